@@ -1,0 +1,12 @@
+# roadstereo_target(<target>): the warnings and sanitizers that every target of the project has.
+function(roadstereo_target target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow)
+  if(ROADSTEREO_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(ROADSTEREO_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${ROADSTEREO_SANITIZE} -fno-omit-frame-pointer
+                                             -fno-sanitize-recover=all)
+    target_link_options(${target} PRIVATE -fsanitize=${ROADSTEREO_SANITIZE})
+  endif()
+endfunction()

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace roadstereo {
+
+/// Bad input or a failed operation. The message is one sentence for a person: it names the file or the
+/// argument, its value, and what would be right.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The system, not the input, is at fault: a full disk, a failed write. The command line exits with 1 instead of 2.
+class SystemError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Throws `E` with the message made of `parts`, written one after the other.
+template <class E = Error, class... Parts>
+[[noreturn]] void fail(const Parts&... parts) {
+  std::ostringstream message;
+  message.precision(10);
+  (message << ... << parts);
+  throw E(message.str());
+}
+
+}  // namespace roadstereo

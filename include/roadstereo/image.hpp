@@ -1,0 +1,122 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+namespace roadstereo {
+
+/// A rectangle of pixels that somebody else owns: row-major, `(u, v)` = (column, row), origin top left.
+/// `stride` counts elements from one row to the next, and may be larger than the width.
+template <class T>
+class ImageView {
+ public:
+  ImageView() = default;
+  ImageView(T* data, int width, int height, std::ptrdiff_t stride)
+      : data_(data), width_(width), height_(height), stride_(stride) {}
+  ImageView(T* data, int width, int height) : ImageView(data, width, height, width) {}
+  /// A view for writing is also a view for reading.
+  operator ImageView<const T>() const requires(!std::is_const_v<T>) { return {data_, width_, height_, stride_}; }
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  std::ptrdiff_t stride() const { return stride_; }
+  std::size_t pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
+  bool empty() const { return width_ == 0 || height_ == 0; }
+
+  T* row(int v) const { return data_ + v * stride_; }
+  T& operator()(int u, int v) const { return row(v)[u]; }
+
+ private:
+  T* data_ = nullptr;
+  int width_ = 0;
+  int height_ = 0;
+  std::ptrdiff_t stride_ = 0;
+};
+
+/// An image that owns its pixels, without padding between rows.
+template <class T>
+class Image {
+ public:
+  Image() = default;
+  Image(int width, int height, T value = T{}) { assign(width, height, value); }
+
+  /// Changes the size; keeps the memory when it suffices, so that equal sizes never allocate. Pixels are unspecified.
+  void resize(int width, int height) {
+    pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    width_ = width;
+    height_ = height;
+  }
+  /// Changes the size and sets every pixel to `value`.
+  void assign(int width, int height, T value) {
+    pixels_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value);
+    width_ = width;
+    height_ = height;
+  }
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  std::size_t pixels() const { return pixels_.size(); }
+  bool empty() const { return pixels_.empty(); }
+
+  T* row(int v) { return pixels_.data() + static_cast<std::ptrdiff_t>(v) * width_; }
+  const T* row(int v) const { return pixels_.data() + static_cast<std::ptrdiff_t>(v) * width_; }
+  T& operator()(int u, int v) { return row(v)[u]; }
+  const T& operator()(int u, int v) const { return row(v)[u]; }
+
+  ImageView<T> view() { return {pixels_.data(), width_, height_}; }
+  ImageView<const T> view() const { return {pixels_.data(), width_, height_}; }
+  operator ImageView<T>() { return view(); }
+  operator ImageView<const T>() const { return view(); }
+
+  bool operator==(const Image&) const = default;
+
+ private:
+  std::vector<T> pixels_;
+  int width_ = 0;
+  int height_ = 0;
+};
+
+/// Bits of one sample of a camera frame.
+enum class SampleType { u8, u16 };
+
+/// Order of the samples of one pixel of a camera frame.
+enum class ChannelOrder { grey, bgr, rgb, bgra, rgba };
+
+/// Samples per pixel: 1, 3 or 4.
+int channel_count(ChannelOrder order);
+
+/// A camera frame as cameras and files deliver it: 8 or 16 bit, grey or colour, with any stride. Owns nothing.
+struct FrameView {
+  const void* data = nullptr;
+  int width = 0;                    ///< pixels
+  int height = 0;                   ///< pixels
+  std::ptrdiff_t stride_bytes = 0;  ///< from one row to the next
+  SampleType sample = SampleType::u8;
+  ChannelOrder order = ChannelOrder::grey;
+};
+
+/// A camera frame that owns its samples, without padding between rows.
+struct Frame {
+  std::vector<std::uint8_t> bytes;
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
+  SampleType sample = SampleType::u8;
+  ChannelOrder order = ChannelOrder::grey;
+
+  FrameView view() const;
+};
+
+/// Grey levels in sixteenths, 0 … 4080, whatever the depth of the camera: what matching works on. Fixed point,
+/// so that sums over windows are exact and every engine sees the same input.
+using GreyImage = Image<std::int16_t>;
+inline constexpr int grey_scale = 16;              ///< steps per 8-bit grey level
+inline constexpr int grey_max = 255 * grey_scale;  ///< value of white
+
+/// Converts a camera frame to grey (Rec. 601 luma for colour).
+/// `white_level` is the sample value of white; 0 takes the largest value of the sample type (255 or 65535).
+/// Throws Error for a null frame or a size outside 32×32 … 8192×8192.
+void to_grey(const FrameView& frame, double white_level, GreyImage& grey);
+
+}  // namespace roadstereo

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "roadstereo/image.hpp"
+
+namespace roadstereo::io {
+
+/// Encodes ids of damages as 16-bit grey PNG, each value as it is.
+std::vector<std::uint8_t> encode_label_png(ImageView<const std::uint16_t> labels);
+
+}  // namespace roadstereo::io

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "roadstereo/image.hpp"
+
+namespace roadstereo {
+
+/// Shape of the aggregation window.
+enum class WindowShape { square, disc };
+
+struct MatcherOptions {
+  int block_radius = 5;        ///< N⁺ is (2r+1)² pixels; the paper's 120-connected system is 5; 1 … 10
+  int aggregation_radius = 4;  ///< radius of the bilateral window; 0 switches aggregation off; 0 … 10
+  WindowShape aggregation_shape = WindowShape::disc;  ///< `disc` keeps the taps within the radius
+  double sigma_space = 3.0;                           ///< σ0 of eq. omega0, pixels
+  double sigma_colour = 12.0;                         ///< σ1 of eq. omega1, 8-bit grey levels
+  double texture_noise = 1.0;    ///< grey-level noise below which texture is no evidence; 0 is plain NCC, 0 … 50
+  bool left_right_check = true;  ///< eq. lrc
+  double consistency = 1.0;      ///< δr of eq. lrc, pixels²
+  bool sub_pixel = true;         ///< eq. subpixel
+  bool drop_range_ends = true;   ///< a winner at the end of its range is no minimum: invalid
+
+  void validate() const;
+};
+
+/// One pair as matching sees it: grey, same size, the target already transformed.
+struct MatchInput {
+  ImageView<const std::int16_t> reference;
+  ImageView<const std::int16_t> target;
+  const int* first_column = nullptr;  ///< per row: first valid column of the target, 0 … width; null: all valid
+  int disparities = 1;                ///< D, 1 … 1024: reference (u, v) may match target (u − d, v), 0 ≤ d < D
+};
+
+/// What matching leaves. Sizes are those of the reference image.
+struct MatchMaps {
+  Image<float> disparity;             ///< sub-pixel, after the left–right check; NaN invalid
+  Image<std::int16_t> winner;         ///< winner-take-all on the reference volume; −1 where nothing can match
+  Image<std::int16_t> target_winner;  ///< winner-take-all on the target volume, in target coordinates; −1 likewise
+};
+
+/// One implementation of section 3.2 of the paper. Holds scratch memory, so that matching frames of one size
+/// allocates only once. One engine must not be used by two threads at a time; two engines know nothing of each other.
+class StereoEngine {
+ public:
+  virtual ~StereoEngine() = default;
+  /// Fills `maps`. Throws Error when sizes differ or a figure is out of range.
+  virtual void match(const MatchInput& input, const MatcherOptions& options, MatchMaps& maps) = 0;
+};
+
+/// An engine as the registry lists it.
+struct EngineInfo {
+  std::string name;         ///< what `--engine` takes
+  std::string description;  ///< one line
+  bool exact = false;       ///< the double-precision oracle
+  std::unique_ptr<StereoEngine> (*make)(int threads);
+};
+
+/// Every engine of this build that this machine can run, best first.
+const std::vector<EngineInfo>& engines();
+
+/// Makes the engine called `name`; "auto" takes the first of the registry. `threads` 0 takes all cores.
+/// Throws Error naming the engines that exist.
+std::unique_ptr<StereoEngine> make_engine(const std::string& name, int threads);
+
+/// The name that "auto" stands for, or `name` itself; throws like make_engine.
+std::string resolve_engine_name(const std::string& name);
+
+}  // namespace roadstereo

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "roadstereo/pipeline.hpp"
+
+namespace roadstereo {
+
+/// One option of the pipeline by its name, as `--set key=value` and result.json spell it.
+struct OptionText {
+  std::string key;          ///< e.g. "matcher.sigma_space"
+  std::string value;        ///< as text
+  std::string description;  ///< what it does, unit
+  bool is_text = false;     ///< the value is a word, not a number or true/false
+};
+
+/// Every option with its present value.
+std::vector<OptionText> list_options(const PipelineOptions& options);
+
+/// Sets one option from text. Throws Error for an unknown key (naming the nearest) or a value that does not parse.
+void set_option(PipelineOptions& options, const std::string& key, const std::string& value);
+
+}  // namespace roadstereo

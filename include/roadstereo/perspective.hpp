@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "roadstereo/calibration.hpp"
+#include "roadstereo/image.hpp"
+#include "roadstereo/road_model.hpp"
+
+namespace roadstereo {
+
+/// How the target image is sampled when its rows are shifted.
+enum class ShiftPrecision { whole_pixel, sub_pixel };
+
+struct PerspectiveOptions {
+  bool enabled = true;  ///< false: no shift, plain stereo over the full range
+  ShiftPrecision shift = ShiftPrecision::sub_pixel;
+  double deepest_damage_m = 0.10;  ///< deepest damage below the road to be measured, metres; needs a calibration
+  double highest_bump_m = 0.05;    ///< highest bump above the road to be measured, metres; needs a calibration
+  int disparities = 0;             ///< number of disparities D searched after the shift; 0 derives it, 1 … 1024
+  double delta_p_px = -1;          ///< δp: the road's disparity after the shift, pixels; negative derives it
+
+  void validate() const;
+};
+
+/// The shift of the perspective transformation: the target pixel at column x of the transformed image comes from
+/// column x − shift(x, v) of the target image, shift = max(0, road disparity − δp).
+struct PerspectiveShift {
+  RoadModel road;       ///< Δu
+  double delta_p = 0;   ///< δp, pixels
+  int disparities = 1;  ///< D: residual disparities 0 … D−1 are searched
+  bool whole_pixel = false;
+  bool enabled = true;
+
+  double at(double x, double v) const;
+};
+
+/// Chooses δp and D. With a calibration from the deepest damage and the highest bump at the road's distance, without
+/// one from the spread of the correspondences; with an unreliable model no shift, and the whole range is searched.
+PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
+                                  int width, int height, const PerspectiveOptions& options);
+
+/// Shifts the rows of the target image (π_tar → π_tar'). `first_column[v]` becomes the first column of the
+/// transformed row that lies inside the target image (= width when none does).
+void transform_target(ImageView<const std::int16_t> target, const PerspectiveShift& shift, int threads,
+                      GreyImage& transformed, std::vector<int>& first_column);
+
+/// Adds the shift back: residual disparities (pixels, NaN invalid) become disparities between the original images.
+void add_shift(ImageView<const float> residual, const PerspectiveShift& shift, int threads, Image<float>& disparity);
+
+}  // namespace roadstereo

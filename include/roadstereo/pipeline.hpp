@@ -1,0 +1,92 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadstereo/alignment.hpp"
+#include "roadstereo/calibration.hpp"
+#include "roadstereo/image.hpp"
+#include "roadstereo/matcher.hpp"
+#include "roadstereo/perspective.hpp"
+#include "roadstereo/road_geometry.hpp"
+#include "roadstereo/road_model.hpp"
+
+namespace roadstereo {
+
+struct PipelineOptions {
+  std::string engine = "auto";  ///< a name from engines(), or "auto"
+  int threads = 0;              ///< worker threads; 0 takes all cores
+  double white_level = 0;       ///< sample value of white; 0 takes 255 or 65535 by the sample type
+  bool check_rows = true;       ///< measure whether the rows agree whenever the road model is estimated anew
+  RoadModelOptions road_model;
+  PerspectiveOptions perspective;
+  MatcherOptions matcher;
+  RoadGeometryOptions road_geometry;
+
+  /// Throws Error naming the first option that is out of range.
+  void validate() const;
+};
+
+/// The presets: "paper" (every constant of the paper) and "default". Throws Error naming those that exist.
+PipelineOptions preset(const std::string& name);
+const std::vector<std::string>& preset_names();
+
+/// Milliseconds that each stage of one frame took.
+struct StageTimes {
+  double prepare = 0;  ///< conversion to grey, checks of the pair
+  double road_model = 0;
+  double perspective = 0;
+  double match = 0;          ///< cost, aggregation, winner-take-all, left–right check, sub-pixel
+  double road_geometry = 0;  ///< roll and projection model
+  double transform = 0;      ///< disparity transformation
+  double total = 0;
+};
+
+/// The paper's result for one pair.
+struct FrameResult {
+  Image<float> disparity;    ///< ℓ: left-image disparities, pixels, NaN invalid
+  Image<float> transformed;  ///< ℓ': the intact road lies at `delta_t`, damage above bumps below; NaN invalid
+  RoadModelEstimate road;    ///< before matching
+  PerspectiveShift shift;
+  RoadGeometry geometry;        ///< after matching; valid only when `geometry_found`
+  bool geometry_found = false;  ///< false when too few disparities were valid; `transformed` is then all NaN
+  double delta_t = 0;           ///< δt, pixels
+  TransformedSpread spread;     ///< σ_d
+  double valid_share = 0;       ///< share of the pixels that have a disparity
+  RowAlignment rows;            ///< measured when the road model was estimated anew
+  StageTimes ms;
+  double mde_per_s = 0;  ///< millions of disparity evaluations per second: W·H·D / total time
+  std::vector<std::string> warnings;
+};
+
+/// The way through, section 3 of the paper in order. Holds what carries over between frames (road model, ψ, scratch
+/// memory) and nothing else. One pipeline must not be used by two threads at a time; two know nothing of each other.
+class Pipeline {
+ public:
+  /// Throws Error when an option is out of range or the engine does not exist.
+  explicit Pipeline(const PipelineOptions& options = preset("default"),
+                    const std::optional<StereoCalibration>& calibration = std::nullopt);
+  ~Pipeline();
+  Pipeline(Pipeline&&) noexcept;
+  Pipeline& operator=(Pipeline&&) noexcept;
+
+  /// Processes one rectified pair. The result belongs to the pipeline and lives until the next call.
+  /// Throws Error when the pair cannot be one: sizes differ or are outside 32×32 … 8192×8192, an image has one
+  /// colour, both images are the same, left and right look swapped, the calibration belongs to another size.
+  const FrameResult& process(const FrameView& left, const FrameView& right);
+
+  /// Forgets the last frame: the next one starts afresh.
+  void reset();
+
+  const PipelineOptions& options() const;
+  const std::string& engine_name() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace roadstereo

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "roadstereo/calibration.hpp"
+#include "roadstereo/image.hpp"
+
+namespace roadstereo {
+
+/// The road in disparity space: d(u, v) = a0 + a1·v + a2·u, pixels. Exact for a plane. With a2 = 0 it is
+/// Δu(v) of eq. relation_vd.
+struct RoadModel {
+  double a0 = 0;
+  double a1 = 0;
+  double a2 = 0;
+
+  double disparity(double u, double v) const { return a0 + a1 * v + a2 * u; }
+};
+
+struct RoadModelOptions {
+  bool with_roll = true;             ///< estimate a2; false is the paper's model (disparity depends on v alone)
+  double max_disparity_share = 0.5;  ///< largest disparity searched, as a share of the image width, 0.05 … 0.9
+  double max_road_tilt_deg = 30.0;   ///< steepest sideways tilt of a road; a steeper plane is a wall, 5 … 80
+  double min_inlier_share = 0.25;    ///< share of the reliable matches that a model must explain to be trusted, 0 … 1
+  double verify_tolerance_px = 1.0;  ///< a carried-over model fits when the median residual is below this, pixels
+
+  void validate() const;
+};
+
+/// What is known of the road before matching.
+struct RoadModelEstimate {
+  RoadModel model;
+  bool reliable = false;            ///< false: the evidence is poor, `reason` says why, and the search must be wide
+  bool carried_over = false;        ///< the last frame's model, verified on this frame
+  std::string reason;               ///< empty when reliable
+  int matches = 0;                  ///< reliable correspondences found over the whole image
+  int inliers = 0;                  ///< of those, on the road
+  double residual_px = 0;           ///< robust standard deviation of the inliers around the model, pixels
+  double lowest_px = 0;             ///< 1st percentile of the residuals of the correspondences near the road, pixels
+  double highest_px = 0;            ///< 99th percentile of the same, pixels
+  double largest_disparity_px = 0;  ///< 99.5th percentile of all correspondences, for a search without a model
+};
+
+/// Finds the road from the images alone: reliable correspondences from a dense coarse-to-fine search along the rows,
+/// then a robust plane. Never guesses: when the evidence is poor, `reliable` is false.
+/// `calibration`, when given, tells walls from roads by their real tilt.
+/// Throws Error when the images look swapped (the matches lie at negative disparities).
+RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                      const std::optional<StereoCalibration>& calibration,
+                                      const RoadModelOptions& options, int threads = 0);
+
+/// Checks `previous` (the last frame's model) on this pair and refines it. `reliable` is false when it no longer fits.
+RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                    const RoadModel& previous, const std::optional<StereoCalibration>& calibration,
+                                    const RoadModelOptions& options, int threads = 0);
+
+}  // namespace roadstereo

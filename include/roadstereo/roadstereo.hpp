@@ -1,0 +1,16 @@
+#pragma once
+
+// The embedded library in one include.
+
+#include "roadstereo/alignment.hpp"
+#include "roadstereo/calibration.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/image.hpp"
+#include "roadstereo/matcher.hpp"
+#include "roadstereo/options.hpp"
+#include "roadstereo/perspective.hpp"
+#include "roadstereo/pipeline.hpp"
+#include "roadstereo/road_geometry.hpp"
+#include "roadstereo/road_model.hpp"
+#include "roadstereo/road_plane.hpp"
+#include "roadstereo/version.hpp"

@@ -1,0 +1,74 @@
+#include "core/parallel.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "roadstereo/error.hpp"
+
+#ifdef ROADSTEREO_WITH_TBB
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#else
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <vector>
+#endif
+
+namespace roadstereo {
+
+int resolve_threads(int threads) {
+  if (threads < 0 || threads > 1024) fail("threads is ", threads, "; it must be between 0 (all cores) and 1024");
+  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void parallel_for(int count, int threads, const std::function<void(int, int)>& body) {
+  const int workers = std::min(resolve_threads(threads), count);
+  if (workers <= 1) {
+    for (int i = 0; i < count; ++i) body(i, 0);
+    return;
+  }
+#ifdef ROADSTEREO_WITH_TBB
+  // More workers than cores gain nothing, and TBB complains about them on stderr.
+  tbb::task_arena arena(std::min(workers, tbb::info::default_concurrency()));
+  arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, count, 1),
+        [&](const tbb::blocked_range<int>& range) {
+          const int worker = tbb::this_task_arena::current_thread_index();
+          for (int i = range.begin(); i < range.end(); ++i) body(i, worker);
+        },
+        tbb::simple_partitioner{});
+  });
+#else
+  std::atomic<int> next{0};
+  std::exception_ptr first_error;
+  std::mutex error_mutex;
+  const auto work = [&](int worker) {
+    for (int i = next++; i < count; i = next++) {
+      try {
+        body(i, worker);
+      } catch (...) {
+        const std::scoped_lock lock(error_mutex);
+        if (!first_error) first_error = std::current_exception();
+        next = count;
+      }
+    }
+  };
+  std::vector<std::thread> pool;
+  for (int t = 1; t < workers; ++t) pool.emplace_back(work, t);
+  work(0);
+  for (std::thread& thread : pool) thread.join();
+  if (first_error) std::rethrow_exception(first_error);
+#endif
+}
+
+void parallel_rows(int rows, int rows_per_band, int threads, const std::function<void(int, int, int)>& body) {
+  const int bands = (rows + rows_per_band - 1) / rows_per_band;
+  parallel_for(bands, threads, [&](int band, int worker) {
+    body(band * rows_per_band, std::min(rows, (band + 1) * rows_per_band), worker);
+  });
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,212 @@
+#include "roadstereo/options.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+#include <utility>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo {
+namespace {
+
+template <class Enum>
+using Words = std::vector<std::pair<const char*, Enum>>;
+
+const Words<ShiftPrecision>& words(ShiftPrecision) {
+  static const Words<ShiftPrecision> all{{"whole_pixel", ShiftPrecision::whole_pixel},
+                                         {"sub_pixel", ShiftPrecision::sub_pixel}};
+  return all;
+}
+
+const Words<WindowShape>& words(WindowShape) {
+  static const Words<WindowShape> all{{"square", WindowShape::square}, {"disc", WindowShape::disc}};
+  return all;
+}
+
+const Words<RollSolver>& words(RollSolver) {
+  static const Words<RollSolver> all{{"gradient_descent", RollSolver::gradient_descent},
+                                     {"closed_form", RollSolver::closed_form},
+                                     {"robust", RollSolver::robust}};
+  return all;
+}
+
+/// The one list of options: calls `visit(key, member, description)` for each.
+template <class Options, class Visitor>
+void visit_options(Options& o, Visitor visit) {
+  visit("engine", o.engine, "engine by name, or auto");
+  visit("threads", o.threads, "worker threads; 0 takes all cores");
+  visit("white_level", o.white_level, "sample value of white; 0 takes 255 or 65535 by the sample type");
+  visit("check_rows", o.check_rows, "measure whether the rows of the pair agree");
+
+  visit("road_model.with_roll", o.road_model.with_roll, "the model depends on the column too (a2)");
+  visit("road_model.max_disparity_share", o.road_model.max_disparity_share,
+        "largest disparity searched, share of the image width");
+  visit("road_model.max_road_tilt_deg", o.road_model.max_road_tilt_deg, "steepest sideways tilt of a road, degrees");
+  visit("road_model.min_inlier_share", o.road_model.min_inlier_share,
+        "share of the textured places that a trusted model explains");
+  visit("road_model.verify_tolerance_px", o.road_model.verify_tolerance_px,
+        "largest spread that a carried-over model may leave, pixels");
+
+  visit("perspective.enabled", o.perspective.enabled, "shift the rows of the target image by the road model");
+  visit("perspective.shift", o.perspective.shift, "whole_pixel or sub_pixel");
+  visit("perspective.deepest_damage_m", o.perspective.deepest_damage_m,
+        "deepest damage to be measured, metres (needs a calibration)");
+  visit("perspective.highest_bump_m", o.perspective.highest_bump_m,
+        "highest bump to be measured, metres (needs a calibration)");
+  visit("perspective.disparities", o.perspective.disparities, "disparities searched after the shift; 0 derives it");
+  visit("perspective.delta_p_px", o.perspective.delta_p_px,
+        "the road's disparity after the shift, pixels; negative derives it");
+
+  visit("matcher.block_radius", o.matcher.block_radius, "radius of the correlation block, pixels");
+  visit("matcher.aggregation_radius", o.matcher.aggregation_radius, "radius of the bilateral window, pixels; 0 is off");
+  visit("matcher.aggregation_shape", o.matcher.aggregation_shape, "square or disc");
+  visit("matcher.sigma_space", o.matcher.sigma_space, "sigma 0 of the bilateral weights, pixels");
+  visit("matcher.sigma_colour", o.matcher.sigma_colour, "sigma 1 of the bilateral weights, 8-bit grey levels");
+  visit("matcher.texture_noise", o.matcher.texture_noise,
+        "noise below which texture is no evidence, 8-bit grey levels");
+  visit("matcher.left_right_check", o.matcher.left_right_check, "remove pixels that the two views see differently");
+  visit("matcher.consistency", o.matcher.consistency, "delta r of the left-right check, pixels squared");
+  visit("matcher.sub_pixel", o.matcher.sub_pixel, "refine the winner by a parabola");
+  visit("matcher.drop_range_ends", o.matcher.drop_range_ends, "a winner at the end of its range is invalid");
+
+  visit("road_geometry.solver", o.road_geometry.solver, "gradient_descent, closed_form or robust");
+  visit("road_geometry.initial_lambda", o.road_geometry.initial_lambda, "first learning rate of the descent");
+  visit("road_geometry.roll_threshold_rad", o.road_geometry.roll_threshold_rad,
+        "step below which the descent has converged, radians");
+  visit("road_geometry.max_iterations", o.road_geometry.max_iterations, "most steps of a solver");
+  visit("road_geometry.delta_t_px", o.road_geometry.delta_t_px,
+        "the road's value in the transformed map, pixels; negative derives it");
+  visit("road_geometry.max_roll_stderr_rad", o.road_geometry.max_roll_stderr_rad,
+        "the roll is observable below this standard error, radians");
+  visit("road_geometry.min_gradient_px", o.road_geometry.min_gradient_px,
+        "... and when the road's disparity changes by this over the image, pixels");
+}
+
+std::string to_text(const std::string& value) {
+  return value;
+}
+std::string to_text(bool value) {
+  return value ? "true" : "false";
+}
+std::string to_text(int value) {
+  return std::to_string(value);
+}
+std::string to_text(double value) {
+  std::ostringstream text;
+  text.precision(17);
+  text << value;
+  // The shortest text that reads back as the same number.
+  for (int digits = 1; digits < 17; ++digits) {
+    std::ostringstream shorter;
+    shorter.precision(digits);
+    shorter << value;
+    if (std::stod(shorter.str()) == value) return shorter.str();
+  }
+  return text.str();
+}
+template <class Enum>
+requires std::is_enum_v<Enum> std::string to_text(Enum value) {
+  for (const auto& [word, meaning] : words(value)) {
+    if (meaning == value) return word;
+  }
+  return "";
+}
+
+[[noreturn]] void refuse(const std::string& key, const std::string& value, const std::string& wanted) {
+  fail("'", value, "' is no value for ", key, "; it takes ", wanted);
+}
+
+template <class Number>
+void parse_number(const std::string& key, const std::string& text, const char* wanted, Number& value) {
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end || text.empty()) refuse(key, text, wanted);
+}
+
+void parse(const std::string&, const std::string& text, std::string& value) {
+  value = text;
+}
+void parse(const std::string& key, const std::string& text, int& value) {
+  parse_number(key, text, "a whole number", value);
+}
+void parse(const std::string& key, const std::string& text, double& value) {
+  parse_number(key, text, "a number", value);
+}
+void parse(const std::string& key, const std::string& text, bool& value) {
+  if (text == "true" || text == "1" || text == "on" || text == "yes") {
+    value = true;
+  } else if (text == "false" || text == "0" || text == "off" || text == "no") {
+    value = false;
+  } else {
+    refuse(key, text, "true or false");
+  }
+}
+template <class Enum>
+requires std::is_enum_v<Enum>
+void parse(const std::string& key, const std::string& text, Enum& value) {
+  std::string wanted;
+  for (const auto& [word, meaning] : words(value)) {
+    if (text == word) {
+      value = meaning;
+      return;
+    }
+    wanted += (wanted.empty() ? "" : " or ") + std::string(word);
+  }
+  refuse(key, text, wanted);
+}
+
+/// Number of letters to insert, drop or change to get from a to b.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row[b.size()];
+}
+
+/// The known key that was probably meant: compared whole, and without its group, since people forget that.
+std::string nearest_key(const PipelineOptions& options, const std::string& key) {
+  std::string nearest;
+  std::size_t smallest = std::string::npos;
+  visit_options(options, [&](const std::string& known, const auto&, const char*) {
+    const std::string name = known.substr(known.find('.') + 1);
+    const std::size_t distance = std::min(edit_distance(key, known), edit_distance(key, name));
+    if (distance < smallest) {
+      smallest = distance;
+      nearest = known;
+    }
+  });
+  return nearest;
+}
+
+}  // namespace
+
+std::vector<OptionText> list_options(const PipelineOptions& options) {
+  std::vector<OptionText> list;
+  visit_options(options, [&](const char* key, const auto& value, const char* description) {
+    using Value = std::decay_t<decltype(value)>;
+    constexpr bool is_text = std::is_enum_v<Value> || std::is_same_v<Value, std::string>;
+    list.push_back({key, to_text(value), description, is_text});
+  });
+  return list;
+}
+
+void set_option(PipelineOptions& options, const std::string& key, const std::string& value) {
+  bool found = false;
+  visit_options(options, [&](const char* known, auto& member, const char*) {
+    if (key != known) return;
+    parse(key, value, member);
+    found = true;
+  });
+  if (!found) fail("there is no option called '", key, "'; the nearest is '", nearest_key(options, key), "'");
+}
+
+}  // namespace roadstereo

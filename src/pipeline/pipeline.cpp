@@ -1,0 +1,223 @@
+#include "roadstereo/pipeline.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "core/parallel.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Milliseconds since it was made or last read.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+    return ms;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+template <class... Parts>
+std::string sentence(const Parts&... parts) {
+  std::ostringstream text;
+  text.precision(3);
+  (text << ... << parts);
+  return text.str();
+}
+
+void require_picture(const GreyImage& image, const char* name) {
+  const std::int16_t first = image(0, 0);
+  for (int v = 0; v < image.height(); ++v) {
+    const std::int16_t* row = image.row(v);
+    if (std::any_of(row, row + image.width(), [first](std::int16_t value) { return value != first; })) return;
+  }
+  fail("the ", name, " image shows nothing: every pixel has the grey level ", static_cast<double>(first) / grey_scale,
+       " of 255");
+}
+
+double valid_share(const Image<float>& map) {
+  std::size_t valid = 0;
+  for (int v = 0; v < map.height(); ++v) {
+    const float* row = map.row(v);
+    for (int u = 0; u < map.width(); ++u) valid += std::isnan(row[u]) ? 0U : 1U;
+  }
+  return static_cast<double>(valid) / static_cast<double>(map.pixels());
+}
+
+}  // namespace
+
+struct Pipeline::State {
+  PipelineOptions options;
+  std::optional<StereoCalibration> calibration;
+  std::string engine_name;
+  int threads = 1;
+  std::unique_ptr<StereoEngine> engine;
+
+  // What carries over from frame to frame.
+  std::optional<RoadModel> last_road;
+  double last_roll_rad = 0;
+
+  // Scratch memory.
+  GreyImage left, right, transformed_target;
+  std::vector<int> first_column;
+  MatchMaps maps;
+  FrameResult result;
+
+  void prepare(const FrameView& left_frame, const FrameView& right_frame);
+  void find_road();
+  void measure_rows();
+  void transform_perspective();
+  void match();
+  void find_geometry();
+  void transform();
+  void summarise();
+};
+
+/// Converts both images to grey and refuses what cannot be a pair.
+void Pipeline::State::prepare(const FrameView& left_frame, const FrameView& right_frame) {
+  if (left_frame.width != right_frame.width || left_frame.height != right_frame.height) {
+    fail("the left image has ", left_frame.width, "×", left_frame.height, " pixels and the right image ",
+         right_frame.width, "×", right_frame.height, "; a pair must have one size");
+  }
+  if (calibration) calibration->validate(left_frame.width, left_frame.height, "calibration");
+  if (left.width() != left_frame.width || left.height() != left_frame.height) last_road.reset();
+  to_grey(left_frame, options.white_level, left);
+  to_grey(right_frame, options.white_level, right);
+  require_picture(left, "left");
+  require_picture(right, "right");
+  if (left == right) fail("left and right are the same image");
+}
+
+/// The road model Δu (eq. relation_vd): the last frame's when it still fits, else from the images.
+void Pipeline::State::find_road() {
+  result.rows = {};
+  if (last_road) {
+    result.road = verify_road_model(left, right, *last_road, calibration, options.road_model, threads);
+    if (result.road.reliable) return;
+    result.warnings.push_back(sentence("the road model was estimated anew: ", result.road.reason));
+  }
+  result.road = estimate_road_model(left, right, calibration, options.road_model, threads);
+  if (!result.road.reliable) {
+    result.warnings.push_back(sentence("no reliable road model (", result.road.reason,
+                                       "): matched without perspective transformation over the full range"));
+  }
+  if (options.check_rows) measure_rows();
+}
+
+void Pipeline::State::measure_rows() {
+  constexpr double largest_offset_px = 0.5;
+  constexpr double largest_spread_px = 1.0;
+  result.rows = measure_row_alignment(left, right);
+  if (!result.rows.known()) return;
+  if (std::abs(result.rows.median_px) > largest_offset_px || result.rows.spread_px > largest_spread_px) {
+    result.warnings.push_back(sentence("the rows of the pair do not agree: vertical offset ", result.rows.median_px,
+                                       " px (median of ", result.rows.points, " points, spread ", result.rows.spread_px,
+                                       " px); rectify the pair"));
+  }
+}
+
+/// π_tar → π_tar', section 3.1.
+void Pipeline::State::transform_perspective() {
+  result.shift = plan_perspective(result.road, calibration, left.width(), left.height(), options.perspective);
+  transform_target(right, result.shift, threads, transformed_target, first_column);
+}
+
+/// Section 3.2, and the shift added back.
+void Pipeline::State::match() {
+  engine->match({left, transformed_target, first_column.data(), result.shift.disparities}, options.matcher, maps);
+  add_shift(maps.disparity, result.shift, threads, result.disparity);
+}
+
+/// Roll angle and projection model, section 3.3.
+void Pipeline::State::find_geometry() {
+  constexpr double least_valid_share = 0.01;
+  result.valid_share = valid_share(result.disparity);
+  result.geometry = {};
+  result.geometry_found = false;
+  if (result.valid_share < least_valid_share) {
+    result.warnings.push_back(sentence("only ", 100 * result.valid_share, " % of the pixels have a disparity"));
+    return;
+  }
+  const auto prior = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
+  result.geometry = fit_road_geometry(result.disparity, std::nullopt, prior, last_roll_rad, options.road_geometry);
+  result.geometry_found = true;
+}
+
+/// ℓ → ℓ' (eq. disparity_transformation). δt is at least δp, so that it stays the same from frame to frame of a flight.
+void Pipeline::State::transform() {
+  result.delta_t = 0;
+  result.spread = {};
+  if (!result.geometry_found) {
+    result.transformed.assign(left.width(), left.height(), std::numeric_limits<float>::quiet_NaN());
+    return;
+  }
+  result.delta_t = transform_disparity(result.disparity, result.geometry, result.shift.delta_p, options.road_geometry,
+                                       threads, result.transformed);
+  result.spread = measure_spread(result.transformed, result.delta_t);
+}
+
+/// What the next frame starts from, and the figures of this one.
+void Pipeline::State::summarise() {
+  last_road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
+  last_roll_rad = result.geometry_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
+  const StageTimes& ms = result.ms;
+  result.ms.total = ms.prepare + ms.road_model + ms.perspective + ms.match + ms.road_geometry + ms.transform;
+  result.mde_per_s = static_cast<double>(left.pixels()) * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
+}
+
+Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
+    : state_(std::make_unique<State>()) {
+  options.validate();
+  state_->options = options;
+  state_->calibration = calibration;
+  state_->engine_name = resolve_engine_name(options.engine);
+  state_->threads = resolve_threads(options.threads);
+  state_->engine = make_engine(options.engine, options.threads);
+}
+
+Pipeline::~Pipeline() = default;
+Pipeline::Pipeline(Pipeline&&) noexcept = default;
+Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
+
+const FrameResult& Pipeline::process(const FrameView& left, const FrameView& right) {
+  State& s = *state_;
+  s.result.warnings.clear();
+  Stopwatch watch;
+  s.prepare(left, right);
+  s.result.ms.prepare = watch.lap();
+  s.find_road();
+  s.result.ms.road_model = watch.lap();
+  s.transform_perspective();
+  s.result.ms.perspective = watch.lap();
+  s.match();
+  s.result.ms.match = watch.lap();
+  s.find_geometry();
+  s.result.ms.road_geometry = watch.lap();
+  s.transform();
+  s.result.ms.transform = watch.lap();
+  s.summarise();
+  return s.result;
+}
+
+void Pipeline::reset() {
+  state_->last_road.reset();
+  state_->last_roll_rad = 0;
+}
+
+const PipelineOptions& Pipeline::options() const {
+  return state_->options;
+}
+const std::string& Pipeline::engine_name() const {
+  return state_->engine_name;
+}
+
+}  // namespace roadstereo

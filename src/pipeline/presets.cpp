@@ -1,0 +1,49 @@
+#include "roadstereo/error.hpp"
+#include "roadstereo/pipeline.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Every constant of the paper.
+PipelineOptions paper_preset() {
+  PipelineOptions options;
+  options.road_model.with_roll = false;  // eq. relation_vd: Δu depends on v alone
+  options.perspective.shift = ShiftPrecision::whole_pixel;
+  options.matcher.block_radius = 5;  // 120-connected system
+  options.matcher.aggregation_radius = 5;
+  options.matcher.aggregation_shape = WindowShape::square;
+  options.matcher.sigma_space = 1.5;   // σ0
+  options.matcher.sigma_colour = 5.5;  // σ1
+  options.matcher.texture_noise = 0;   // eq. c as written
+  options.matcher.consistency = 1;     // δr
+  options.matcher.drop_range_ends = false;
+  options.road_geometry.solver = RollSolver::gradient_descent;
+  options.road_geometry.initial_lambda = 10;  // λ(0)
+  return options;
+}
+
+}  // namespace
+
+const std::vector<std::string>& preset_names() {
+  static const std::vector<std::string> names{"default", "paper"};
+  return names;
+}
+
+PipelineOptions preset(const std::string& name) {
+  if (name == "default") return {};
+  if (name == "paper") return paper_preset();
+  fail("there is no preset called '", name, "'; there are: default, paper");
+}
+
+void PipelineOptions::validate() const {
+  if (!(white_level >= 0 && white_level <= 65535)) {
+    fail("white_level is ", white_level, "; it must be between 0 (the sample type's largest) and 65535");
+  }
+  resolve_engine_name(engine);
+  road_model.validate();
+  perspective.validate();
+  matcher.validate();
+  road_geometry.validate();
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,143 @@
+#include "roadstereo/alignment.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "road/plane_fit.hpp"
+#include "road/shrink.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr int coarse_width = 120;
+constexpr int half_block = 4;
+constexpr int block_pixels = (2 * half_block + 1) * (2 * half_block + 1);
+constexpr double least_correlation = 0.8;
+constexpr double least_deviation = 2.0 * grey_scale;
+constexpr int cells_across = 18;
+constexpr int cells_down = 10;
+
+struct Place {
+  int u = 0;
+  int v = 0;
+};
+
+/// Where a block sits in the right image, relative to its place in the left one.
+struct Offset {
+  int du = 0;
+  int dv = 0;
+  double correlation = -1;
+};
+
+bool inside(ImageView<const std::int16_t> image, int u, int v) {
+  return u >= half_block && v >= half_block && u + half_block < image.width() && v + half_block < image.height();
+}
+
+double correlate(ImageView<const std::int16_t> left, const Place& a, ImageView<const std::int16_t> right,
+                 const Place& b) {
+  std::int32_t sl = 0, sr = 0, ll = 0, rr = 0, lr = 0;  // 81 products of at most 4080² fit
+  for (int y = -half_block; y <= half_block; ++y) {
+    const std::int16_t* l = left.row(a.v + y) + a.u;
+    const std::int16_t* r = right.row(b.v + y) + b.u;
+    for (int x = -half_block; x <= half_block; ++x) {
+      sl += l[x];
+      sr += r[x];
+      ll += l[x] * l[x];
+      rr += r[x] * r[x];
+      lr += l[x] * r[x];
+    }
+  }
+  const double mean_l = static_cast<double>(sl) / block_pixels;
+  const double mean_r = static_cast<double>(sr) / block_pixels;
+  const double variance_l = static_cast<double>(ll) / block_pixels - mean_l * mean_l;
+  const double variance_r = static_cast<double>(rr) / block_pixels - mean_r * mean_r;
+  if (std::min(variance_l, variance_r) < least_deviation * least_deviation) return -1;
+  return (static_cast<double>(lr) / block_pixels - mean_l * mean_r) / std::sqrt(variance_l * variance_r);
+}
+
+/// The place of a cell whose rows differ most: only there a vertical offset can be seen.
+std::optional<Place> best_place(ImageView<const std::int16_t> image, int u0, int v0, int u1, int v1) {
+  Place best;
+  int strongest = 0;
+  for (int v = std::max(v0, half_block + 1); v < std::min(v1, image.height() - half_block - 1); v += 2) {
+    for (int u = std::max(u0, half_block + 1); u < std::min(u1, image.width() - half_block - 1); u += 2) {
+      const int down = std::abs(image(u, v + 1) - image(u, v - 1));
+      const int across = std::abs(image(u + 1, v) - image(u - 1, v));
+      if (std::min(down, across) > strongest) {
+        strongest = std::min(down, across);
+        best = {u, v};
+      }
+    }
+  }
+  if (strongest == 0) return std::nullopt;
+  return best;
+}
+
+Offset search(ImageView<const std::int16_t> left, const Place& place, ImageView<const std::int16_t> right,
+              const Offset& lowest, const Offset& highest) {
+  Offset best;
+  for (int dv = lowest.dv; dv <= highest.dv; ++dv) {
+    for (int du = lowest.du; du <= highest.du; ++du) {
+      if (!inside(right, place.u + du, place.v + dv)) continue;
+      const double correlation = correlate(left, place, right, {place.u + du, place.v + dv});
+      if (correlation > best.correlation) best = {du, dv, correlation};
+    }
+  }
+  return best;
+}
+
+/// Vertical offset of the best match with its fraction, by a parabola; nothing when it is weak or at the end.
+std::optional<double> refine_vertically(ImageView<const std::int16_t> left, const Place& place,
+                                        ImageView<const std::int16_t> right, const Offset& best) {
+  if (best.correlation < least_correlation) return std::nullopt;
+  const Place at{place.u + best.du, place.v + best.dv};
+  if (!inside(right, at.u, at.v - 1) || !inside(right, at.u, at.v + 1)) return std::nullopt;
+  const double before = correlate(left, place, right, {at.u, at.v - 1});
+  const double after = correlate(left, place, right, {at.u, at.v + 1});
+  const double curvature = 2 * before + 2 * after - 4 * best.correlation;
+  if (before > best.correlation || after > best.correlation || curvature >= 0) return std::nullopt;
+  return best.dv + (before - after) / curvature;
+}
+
+}  // namespace
+
+RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right) {
+  int factor = 1;
+  while (left.width() / (2 * factor) >= coarse_width) factor *= 2;
+  const GreyImage small_left = shrink(left, factor);
+  const GreyImage small_right = shrink(right, factor);
+  const int rows = 1 + small_left.height() / 40;
+  const int columns = 2 * small_left.width() / 5;
+
+  std::vector<double> offsets;
+  for (int cell_v = 0; cell_v < cells_down; ++cell_v) {
+    for (int cell_u = 0; cell_u < cells_across; ++cell_u) {
+      const auto place =
+          best_place(small_left, cell_u * small_left.width() / cells_across, cell_v * small_left.height() / cells_down,
+                     (cell_u + 1) * small_left.width() / cells_across, (cell_v + 1) * small_left.height() / cells_down);
+      if (!place) continue;
+      const Offset coarse = search(small_left, *place, small_right, {-columns, -rows}, {0, rows});
+      if (coarse.correlation < least_correlation) continue;
+      const Place full{static_cast<int>(std::lround(unshrink(place->u, factor))),
+                       static_cast<int>(std::lround(unshrink(place->v, factor)))};
+      if (!inside(left, full.u, full.v)) continue;
+      const int reach = factor / 2 + 1;
+      const Offset fine = search(left, full, right, {coarse.du * factor - reach, coarse.dv * factor - reach},
+                                 {coarse.du * factor + reach, coarse.dv * factor + reach});
+      if (const auto offset = refine_vertically(left, full, right, fine)) offsets.push_back(*offset);
+    }
+  }
+  RowAlignment alignment;
+  alignment.points = static_cast<int>(offsets.size());
+  if (offsets.empty()) return alignment;
+  std::sort(offsets.begin(), offsets.end());
+  alignment.median_px = offsets[offsets.size() / 2];
+  for (double& offset : offsets) offset -= alignment.median_px;
+  alignment.spread_px = normal_from_median * median_magnitude(offsets);
+  return alignment;
+}
+
+}  // namespace roadstereo

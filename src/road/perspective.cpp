@@ -1,0 +1,165 @@
+#include "roadstereo/perspective.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parallel.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/road_plane.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr int most_disparities = 1024;
+constexpr int rows_per_band = 32;
+
+/// Room beyond the wanted range, so that the winner at its end still has neighbours and a small error of the road
+/// model costs nothing.
+constexpr double margin_px = 2.0;
+
+/// How far below and above the road's disparity must be searched, pixels.
+struct SearchRange {
+  double below = 0;
+  double above = 0;
+};
+
+/// Residual disparities of the deepest damage and the highest bump where the road is nearest to the camera. A point
+/// at distance e beyond the road plane has the road's disparity times h / (h + e), h = distance of camera and plane.
+SearchRange physical_range(const RoadModel& road, const StereoCalibration& calibration, int width, int height,
+                           const PerspectiveOptions& options) {
+  const double h = road_plane(road, calibration).height_m;
+  const std::array<double, 4> corners{road.disparity(0, 0), road.disparity(width - 1, 0), road.disparity(0, height - 1),
+                                      road.disparity(width - 1, height - 1)};
+  const double nearest = *std::max_element(corners.begin(), corners.end()) + calibration.disparity_offset_px;
+  const double bump = std::min(options.highest_bump_m, 0.5 * h);
+  return {nearest * options.deepest_damage_m / (h + options.deepest_damage_m), nearest * bump / (h - bump)};
+}
+
+int full_range(const RoadModelEstimate& road, int width) {
+  const double largest = road.matches > 0 ? road.largest_disparity_px * 1.1 + 8 : width / 4.0;
+  return std::clamp(static_cast<int>(std::ceil(largest)) + 1, 8, std::min(most_disparities, width - 1));
+}
+
+/// Pixels that cubic interpolation reads beyond the ends of a row: copies of the border.
+constexpr int border = 2;
+
+void copy_with_border(const std::int16_t* row, int width, std::vector<float>& padded) {
+  padded.resize(static_cast<std::size_t>(width + 2 * border));
+  std::fill_n(padded.begin(), border, row[0]);
+  std::copy_n(row, width, padded.begin() + border);
+  std::fill_n(padded.end() - border, border, row[width - 1]);
+}
+
+/// Keys' cubic interpolation at `x` of a row that has a border. Sharp enough not to flatten texture at half-pixel
+/// phases, as linear interpolation does.
+float sample_cubic(const float* row, double x) {
+  const int base = static_cast<int>(x);
+  const auto f = static_cast<float>(x - base);
+  const float* p = row + border + base;
+  const float linear = 0.5f * (p[1] - p[-1]);
+  const float square = p[-1] - 2.5f * p[0] + 2 * p[1] - 0.5f * p[2];
+  const float cube = 0.5f * (p[2] - p[-1]) + 1.5f * (p[0] - p[1]);
+  return p[0] + f * (linear + f * (square + f * cube));
+}
+
+/// First column x of row v whose source x − shift(x, v) lies inside the target image.
+int find_first_column(const PerspectiveShift& shift, int v, int width) {
+  const auto outside = [&](int x) { return x - shift.at(x, v) < 0; };
+  const double guess = shift.at(0, v) / (1 - std::min(shift.road.a2, 0.9));
+  int x = std::clamp(static_cast<int>(guess) - 2, 0, width);
+  while (x > 0 && !outside(x - 1)) --x;
+  while (x < width && outside(x)) ++x;
+  return x;
+}
+
+}  // namespace
+
+void PerspectiveOptions::validate() const {
+  const auto require = [](bool good, const char* name, double value, const char* rule) {
+    if (!good) fail("perspective.", name, " is ", value, "; it must be ", rule);
+  };
+  require(deepest_damage_m > 0 && deepest_damage_m <= 2, "deepest_damage_m", deepest_damage_m,
+          "above 0 and at most 2 metres");
+  require(highest_bump_m > 0 && highest_bump_m <= 2, "highest_bump_m", highest_bump_m, "above 0 and at most 2 metres");
+  require(disparities >= 0 && disparities <= most_disparities, "disparities", disparities,
+          "between 1 and 1024, or 0 to derive it");
+  require(delta_p_px <= most_disparities, "delta_p_px", delta_p_px, "at most 1024, or negative to derive it");
+}
+
+double PerspectiveShift::at(double x, double v) const {
+  if (!enabled) return 0;
+  const double shift = std::max(0.0, road.disparity(x, v) - delta_p);
+  return whole_pixel ? std::round(shift) : shift;
+}
+
+PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
+                                  int width, int height, const PerspectiveOptions& options) {
+  PerspectiveShift shift;
+  shift.whole_pixel = options.shift == ShiftPrecision::whole_pixel;
+  shift.enabled = options.enabled && road.reliable;
+  if (!shift.enabled) {
+    shift.disparities = options.disparities > 0 ? options.disparities : full_range(road, width);
+    return shift;
+  }
+  shift.road = road.model;
+  // What the correspondences show of the road's unevenness, and what is to be measured where a scale is known.
+  SearchRange range{std::max(0.0, -road.lowest_px), std::max(0.0, road.highest_px)};
+  if (calibration) {
+    const SearchRange physical = physical_range(road.model, *calibration, width, height, options);
+    range = {std::max(range.below, physical.below), std::max(range.above, physical.above)};
+  }
+  range.below += margin_px;
+  range.above += margin_px;
+  if (options.disparities > 0) {
+    // A given number of disparities is shared out in the same proportion.
+    shift.disparities = options.disparities;
+    shift.delta_p = std::round((shift.disparities - 1) * range.below / (range.below + range.above));
+  } else {
+    shift.delta_p = std::ceil(range.below);
+    const double above = options.delta_p_px >= 0 ? options.delta_p_px - shift.delta_p : 0;
+    shift.disparities = std::clamp(static_cast<int>(std::ceil(shift.delta_p + above + range.above)) + 1, 1,
+                                   std::min(most_disparities, width - 1));
+  }
+  if (options.delta_p_px >= 0) shift.delta_p = options.delta_p_px;
+  return shift;
+}
+
+void transform_target(ImageView<const std::int16_t> target, const PerspectiveShift& shift, int threads,
+                      GreyImage& transformed, std::vector<int>& first_column) {
+  const int width = target.width();
+  const int height = target.height();
+  transformed.resize(width, height);
+  first_column.resize(static_cast<std::size_t>(height));
+  parallel_rows(height, rows_per_band, threads, [&](int first_row, int last_row, int) {
+    std::vector<float> in;
+    for (int v = first_row; v < last_row; ++v) {
+      const int first = find_first_column(shift, v, width);
+      first_column[static_cast<std::size_t>(v)] = first;
+      copy_with_border(target.row(v), width, in);
+      std::int16_t* out = transformed.row(v);
+      std::fill_n(out, first, std::int16_t{0});
+      for (int x = first; x < width; ++x) {
+        const float value = sample_cubic(in.data(), x - shift.at(x, v));
+        out[x] = static_cast<std::int16_t>(std::clamp(value, 0.0f, static_cast<float>(grey_max)) + 0.5f);
+      }
+    }
+  });
+}
+
+void add_shift(ImageView<const float> residual, const PerspectiveShift& shift, int threads, Image<float>& disparity) {
+  disparity.resize(residual.width(), residual.height());
+  parallel_rows(residual.height(), rows_per_band, threads, [&](int first_row, int last_row, int) {
+    for (int v = first_row; v < last_row; ++v) {
+      const float* in = residual.row(v);
+      float* out = disparity.row(v);
+      // The shift belongs to the column of the transformed target that was matched: u − residual.
+      for (int u = 0; u < residual.width(); ++u) {
+        const double d = in[u];
+        out[u] = std::isnan(d) ? in[u] : static_cast<float>(d + shift.at(u - d, v));
+      }
+    }
+  });
+}
+
+}  // namespace roadstereo

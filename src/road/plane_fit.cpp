@@ -1,0 +1,144 @@
+#include "road/plane_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "road/sampler.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Tukey's constant: 95 % efficiency for normal residuals.
+constexpr double tukey = 4.685;
+
+/// Residuals below this are rounding, not noise.
+constexpr double smallest_scale_px = 1e-3;
+
+double tukey_weight(double residual, double scale) {
+  const double x = residual / (tukey * scale);
+  return std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0;
+}
+
+}  // namespace
+
+void PlaneSums::add(const DisparityPoint& point, double weight) {
+  const double u = point.u - origin_u_;
+  const double v = point.v - origin_v_;
+  n_ += weight;
+  u_ += weight * u;
+  v_ += weight * v;
+  d_ += weight * point.d;
+  uu_ += weight * u * u;
+  uv_ += weight * u * v;
+  vv_ += weight * v * v;
+  ud_ += weight * u * point.d;
+  vd_ += weight * v * point.d;
+  dd_ += weight * point.d * point.d;
+}
+
+void PlaneSums::add(const PlaneSums& other) {
+  n_ += other.n_;
+  u_ += other.u_;
+  v_ += other.v_;
+  d_ += other.d_;
+  uu_ += other.uu_;
+  uv_ += other.uv_;
+  vv_ += other.vv_;
+  ud_ += other.ud_;
+  vd_ += other.vd_;
+  dd_ += other.dd_;
+}
+
+std::optional<RoadModel> PlaneSums::plane(bool with_roll) const {
+  if (n_ <= 0 || vv() <= 1e-9 * n_) return std::nullopt;
+  RoadModel model;
+  if (with_roll) {
+    const double determinant = uu() * vv() - uv() * uv();
+    if (determinant <= 1e-9 * n_ * n_) return std::nullopt;
+    model.a1 = (uu() * vd() - uv() * ud()) / determinant;
+    model.a2 = (vv() * ud() - uv() * vd()) / determinant;
+  } else {
+    model.a1 = vd() / vv();
+  }
+  model.a0 = mean_d() - model.a1 * mean_v() - model.a2 * mean_u();
+  return model;
+}
+
+double median_magnitude(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  return std::abs(*middle);
+}
+
+std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> points, const RoadModel& start,
+                                            double start_scale_px, bool with_roll, int max_iterations) {
+  if (points.size() < 3) return std::nullopt;
+  RobustPlane fit{start, start_scale_px, 0, std::vector<double>(points.size())};
+  std::vector<double> near;
+  near.reserve(points.size());
+  for (fit.iterations = 1; fit.iterations <= max_iterations; ++fit.iterations) {
+    PlaneSums sums(points.front().u, points.front().v);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const DisparityPoint& p = points[i];
+      fit.weights[i] = tukey_weight(p.d - fit.plane.disparity(p.u, p.v), fit.scale_px);
+      if (fit.weights[i] > 0) sums.add(p, fit.weights[i]);
+    }
+    const std::optional<RoadModel> plane = sums.plane(with_roll);
+    if (!plane) return std::nullopt;
+    // The scale comes from the residuals in the window that is left, so that it narrows onto the road.
+    near.clear();
+    for (const DisparityPoint& p : points) {
+      const double residual = p.d - plane->disparity(p.u, p.v);
+      if (std::abs(residual) < tukey * fit.scale_px) near.push_back(residual);
+    }
+    const double scale = std::clamp(normal_from_median * median_magnitude(near), smallest_scale_px, fit.scale_px);
+    const DisparityPoint& far = points.back();
+    const bool settled = std::abs(plane->disparity(far.u, far.v) - fit.plane.disparity(far.u, far.v)) < 1e-9 &&
+                         std::abs(plane->a2 - fit.plane.a2) < 1e-12 && scale > fit.scale_px * (1 - 1e-6);
+    fit.plane = *plane;
+    fit.scale_px = scale;
+    if (settled) break;
+  }
+  return fit;
+}
+
+std::optional<RoadModel> plane_through(const DisparityPoint& a, const DisparityPoint& b, const DisparityPoint& c) {
+  const double bu = b.u - a.u, bv = b.v - a.v, bd = b.d - a.d;
+  const double cu = c.u - a.u, cv = c.v - a.v, cd = c.d - a.d;
+  const double determinant = bu * cv - bv * cu;
+  if (std::abs(determinant) < 1e-6) return std::nullopt;
+  RoadModel model;
+  model.a2 = (bd * cv - bv * cd) / determinant;
+  model.a1 = (bu * cd - bd * cu) / determinant;
+  model.a0 = a.d - model.a1 * a.v - model.a2 * a.u;
+  return model;
+}
+
+std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, double tolerance_px) {
+  constexpr int trials = 400;
+  constexpr std::size_t voters = 2000;
+  if (points.size() < 3) return std::nullopt;
+  Sampler sampler;
+  std::vector<DisparityPoint> jury;
+  for (std::size_t i = 0; i < voters; ++i) jury.push_back(points[sampler.below(points.size())]);
+  std::optional<RoadModel> best;
+  double best_score = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    const auto plane = plane_through(points[sampler.below(points.size())], points[sampler.below(points.size())],
+                                     points[sampler.below(points.size())]);
+    if (!plane) continue;
+    double score = 0;
+    for (const DisparityPoint& p : jury) {
+      const double x = (p.d - plane->disparity(p.u, p.v)) / tolerance_px;
+      if (std::abs(x) < 1) score += 1 - x * x;
+    }
+    if (score > best_score) {
+      best_score = score;
+      best = plane;
+    }
+  }
+  return best;
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "roadstereo/road_model.hpp"
+
+namespace roadstereo {
+
+/// A point of disparity space: pixel (u, v) of the left image with disparity d.
+struct DisparityPoint {
+  double u = 0;
+  double v = 0;
+  double d = 0;
+};
+
+/// The ten sums over a disparity map that eqs. alpha3 and E_min2 are made of. Coordinates are taken relative to an
+/// origin near the data, so that differences of large sums do not cancel.
+class PlaneSums {
+ public:
+  explicit PlaneSums(double origin_u = 0, double origin_v = 0) : origin_u_(origin_u), origin_v_(origin_v) {}
+
+  void add(const DisparityPoint& point, double weight = 1);
+  void add(const PlaneSums& other);
+
+  double weight() const { return n_; }
+  double mean_u() const { return origin_u_ + u_ / n_; }
+  double mean_v() const { return origin_v_ + v_ / n_; }
+  double mean_d() const { return d_ / n_; }
+
+  /// Sums of products of deviations from the means.
+  double uu() const { return uu_ - u_ * u_ / n_; }
+  double uv() const { return uv_ - u_ * v_ / n_; }
+  double vv() const { return vv_ - v_ * v_ / n_; }
+  double ud() const { return ud_ - u_ * d_ / n_; }
+  double vd() const { return vd_ - v_ * d_ / n_; }
+  double dd() const { return dd_ - d_ * d_ / n_; }
+
+  /// The least-squares plane; nothing when the points lie on one line of the image. `with_roll` false keeps a2 = 0.
+  std::optional<RoadModel> plane(bool with_roll = true) const;
+
+ private:
+  double origin_u_, origin_v_;
+  double n_ = 0, u_ = 0, v_ = 0, d_ = 0;
+  double uu_ = 0, uv_ = 0, vv_ = 0, ud_ = 0, vd_ = 0, dd_ = 0;
+};
+
+/// A plane through most of the points, and how well it fits those.
+struct RobustPlane {
+  RoadModel plane;
+  double scale_px = 0;  ///< robust standard deviation of the inliers
+  int iterations = 0;
+  std::vector<double> weights;  ///< Tukey weights of the points, 0 … 1
+};
+
+/// Iteratively reweighted least squares with Tukey's biweight from a starting plane, down from a window of
+/// `start_scale_px`. Nothing when too few points stay.
+std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> points, const RoadModel& start,
+                                            double start_scale_px, bool with_roll, int max_iterations);
+
+/// The plane through three of the points that most others agree with (within `tolerance_px`): a start that no outliers
+/// pull. Deterministic.
+std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, double tolerance_px);
+
+/// The plane through three points; nothing when they lie on one line of the image.
+std::optional<RoadModel> plane_through(const DisparityPoint& a, const DisparityPoint& b, const DisparityPoint& c);
+
+/// Median of |values|; reorders them. 0 when empty.
+double median_magnitude(std::vector<double>& values);
+
+/// Turns a median of magnitudes into the standard deviation of a normal distribution.
+inline constexpr double normal_from_median = 1.4826;
+
+}  // namespace roadstereo

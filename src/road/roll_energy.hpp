@@ -1,0 +1,45 @@
+#pragma once
+
+#include "road/plane_fit.hpp"
+#include "roadstereo/road_geometry.hpp"
+
+namespace roadstereo {
+
+/// The energy E_t min(ψ) of eq. E_min2 as a function of the roll angle alone, in closed form from ten sums over the
+/// map: E(ψ) = S_dd − S_yd² / S_yy with y(ψ) = v cos ψ − u sin ψ (eq. y).
+class RollEnergy {
+ public:
+  explicit RollEnergy(const PlaneSums& sums) : sums_(sums) {}
+
+  double value(double roll) const;
+  double gradient(double roll) const;  ///< eq. d_e_min
+  double alpha1(double roll) const;    ///< eq. alpha3
+  double alpha0(double roll) const;
+
+  /// What the energy is divided by for the descent, so that λ(0) means the same for any map: the curvature at ψ = 0 of
+  /// a road without roll becomes 1/10, for which λ = 10 is Newton's step.
+  double normaliser() const;
+
+ private:
+  double yy(double roll) const;
+  double yd(double roll) const;
+
+  PlaneSums sums_;
+};
+
+/// What a solver returns.
+struct RollSolution {
+  double roll = 0;
+  int iterations = 0;
+};
+
+/// Eq. e_min_gd with the learning rate of eq. adaptive_lambda.
+RollSolution descend_roll(const RollEnergy& energy, double initial_roll, const RoadGeometryOptions& options);
+
+/// The same minimum from the least-squares plane: ψ = atan(−a2 / a1).
+double roll_of_plane(const RoadModel& plane);
+
+/// The same angle in (−π/2, π/2]: the energy repeats after π.
+double wrap_roll(double roll);
+
+}  // namespace roadstereo

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "roadstereo/matcher.hpp"
+
+namespace roadstereo {
+
+/// Section 3.2 of the paper in one pass over bands of rows: sliding sums for the correlation, a ring of cost rows
+/// instead of a volume, vectors along u, threads over bands.
+std::unique_ptr<StereoEngine> make_cpu_engine(int threads);
+
+/// The instruction set that the engine's kernels use on this machine, e.g. "AVX3".
+std::string cpu_engine_target();
+
+}  // namespace roadstereo

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "stereo/window.hpp"
+
+// The vector kernels of the cpu engine: each works on one row of the image, for the instruction set of this machine.
+// Pointers to rows point at column 0; rows have at least `row_padding` readable elements on either side.
+
+namespace roadstereo::cpu {
+
+/// Elements that kernels may read before the first and behind the last column of a row.
+inline constexpr int row_padding = 64;
+
+/// A block whose variance (fixed-point grey²) is below this has no texture: its cost is 1.
+inline constexpr float smallest_variance = 0.25f;
+
+/// Block sums of one view at one row, in fixed-point grey: sum = n·mean + residue with a whole mean.
+struct BlockStatistics {
+  const std::int32_t* sum;
+  const std::int32_t* mean;
+  const std::int32_t* residue;
+  const float* inverse_deviation;  ///< 1 / (n·√(σ² + noise²)), 0 where the block has no texture
+};
+
+/// sums[u] += entering_ref[u]·entering_tar[u] − leaving_ref[u]·leaving_tar[u] for u in [0, width).
+void slide_products(const std::int16_t* entering_ref, const std::int16_t* entering_tar, const std::int16_t* leaving_ref,
+                    const std::int16_t* leaving_tar, int width, std::int32_t* sums);
+
+/// Block sums of one view as kernels write them: columns [0, width).
+struct BlockStatisticsRow {
+  std::int32_t* sum;
+  std::int32_t* mean;
+  std::int32_t* residue;
+  float* inverse_deviation;
+};
+
+/// Block statistics of one view from the column sums of i and i². `noise_variance` is added to σ². Columns whose block
+/// leaves the image get figures of no meaning.
+void block_statistics(const std::int32_t* column_sums, const std::int32_t* column_squares, int block_radius,
+                      int pixels_in_block, float noise_variance, int width, const BlockStatisticsRow& out);
+
+/// cost[u] = 1 − n·cov(u) / (n σ_ref σ_tar), eq. c, for u in [first, last], from the column sums of i_ref·i_tar.
+/// `tar` is shifted so that tar.sum[u] belongs to the target pixel that u is compared with. Exact up to the last step:
+/// n·cov = S_rt − S_r·S_t / n is taken in integers as S_rt − m_r·e_t − m_t·S_r, minus the small e_r·e_t / n.
+void correlation_row(const std::int32_t* column_sums, const BlockStatistics& ref, const BlockStatistics& tar,
+                     int block_radius, int pixels_in_block, int first, int last, float* cost);
+
+/// One row of one view, ready to be aggregated.
+struct AggregationRow {
+  static constexpr int max_rows = 21;
+
+  int width = 0;
+  int disparities = 0;
+  int radius = 0;
+  std::ptrdiff_t plane = 0;         ///< elements from disparity d to d + 1 in `cost`
+  int shift = 0;                    ///< 0 reference view; 1 target view: column x has the cost at x + d
+  std::span<const Tap> taps;        ///< whose rows lie inside the image, row by row
+  std::span<const float> tap_log2;  ///< log2 ω0 per tap
+  float colour_log2 = 0;            ///< log2 ω1 = colour_log2 · (difference in fixed-point grey)²
+  std::array<const std::int16_t*, max_rows> grey{};  ///< row v + dv of this view at index dv + radius
+  std::array<const float*, max_rows> cost{};         ///< costs of that row, plane 0
+  std::array<int, max_rows> first{};                 ///< first valid target column of that row
+};
+
+/// What winner-take-all leaves of one row.
+struct WinnerRow {
+  std::int16_t* winner;  ///< −1 where nothing can match
+  float* offset;         ///< eq. subpixel; NaN when the winner has no neighbour on one side; null: not wanted
+};
+
+/// Scratch of one thread for choose_row.
+struct AggregationScratch {
+  float* weights;   ///< taps × lanes
+  float* energies;  ///< disparities × lanes
+};
+std::size_t weight_scratch_size(std::size_t taps);
+std::size_t energy_scratch_size(int disparities);
+
+/// Aggregates the costs of one row (eq. fbs) and takes the winner at every pixel, with its sub-pixel offset.
+void choose_row(const AggregationRow& row, const AggregationScratch& scratch, const WinnerRow& winners);
+
+std::string target_name();
+
+}  // namespace roadstereo::cpu

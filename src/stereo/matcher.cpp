@@ -1,0 +1,48 @@
+#include "roadstereo/matcher.hpp"
+
+#include "roadstereo/error.hpp"
+#include "stereo/window.hpp"
+
+namespace roadstereo {
+namespace {
+
+template <class Value>
+void require_range(const char* name, Value value, Value lowest, Value highest) {
+  if (!(value >= lowest && value <= highest)) {
+    fail("matcher.", name, " is ", value, "; it must be between ", lowest, " and ", highest);
+  }
+}
+
+}  // namespace
+
+void MatcherOptions::validate() const {
+  require_range("block_radius", block_radius, 1, 10);
+  require_range("aggregation_radius", aggregation_radius, 0, 10);
+  require_range("sigma_space", sigma_space, 0.1, 1000.0);
+  require_range("sigma_colour", sigma_colour, 0.1, 100000.0);
+  require_range("texture_noise", texture_noise, 0.0, 50.0);
+  require_range("consistency", consistency, 0.0, 1000.0);
+}
+
+std::vector<Tap> window_taps(int radius, WindowShape shape) {
+  std::vector<Tap> taps;
+  for (int dv = -radius; dv <= radius; ++dv) {
+    for (int du = -radius; du <= radius; ++du) {
+      if (shape == WindowShape::square || du * du + dv * dv <= radius * radius) taps.push_back({du, dv});
+    }
+  }
+  return taps;
+}
+
+void validate(const MatchInput& input) {
+  if (input.reference.empty()) fail("matching needs an image, but the reference image is empty");
+  if (input.reference.width() != input.target.width() || input.reference.height() != input.target.height()) {
+    fail("the reference image has ", input.reference.width(), "×", input.reference.height(),
+         " pixels and the target image ", input.target.width(), "×", input.target.height(), "; they must be equal");
+  }
+  if (input.disparities < 1 || input.disparities > 1024) {
+    fail("the number of disparities is ", input.disparities, "; it must be between 1 and 1024");
+  }
+}
+
+}  // namespace roadstereo

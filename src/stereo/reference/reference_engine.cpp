@@ -1,0 +1,208 @@
+#include "stereo/reference/reference_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.hpp"
+#include "stereo/window.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Below half a fixed-point step of standard deviation a block has no texture.
+constexpr double smallest_variance = 0.25;
+
+/// The matching costs c(p, d), or the aggregated costs E_d(p, d), of all pixels; NaN where p has no counterpart.
+class CostVolume {
+ public:
+  CostVolume(int width, int height, int disparities)
+      : width_(width),
+        disparities_(disparities),
+        costs_(
+            static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(disparities),
+            nan) {}
+
+  double& operator()(int u, int v, int d) { return costs_[index(u, v, d)]; }
+  double operator()(int u, int v, int d) const { return costs_[index(u, v, d)]; }
+
+ private:
+  std::size_t index(int u, int v, int d) const {
+    const auto pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u);
+    return pixel * static_cast<std::size_t>(disparities_) + static_cast<std::size_t>(d);
+  }
+
+  int width_;
+  int disparities_;
+  std::vector<double> costs_;
+};
+
+/// The two views of a pair and what is asked of them.
+struct Scene {
+  const MatchInput& input;
+  const MatcherOptions& options;
+  std::vector<Tap> window = window_taps(options.aggregation_radius, options.aggregation_shape);
+
+  int width() const { return input.reference.width(); }
+  int height() const { return input.reference.height(); }
+  bool in_reference(int u, int v) const { return u >= 0 && u < width() && v >= 0 && v < height(); }
+  bool in_target(int u, int v) const {
+    return in_reference(u, v) && (input.first_column == nullptr || u >= input.first_column[v]);
+  }
+};
+
+/// c(p, d) of eq. c: one minus the normalised cross-correlation of the blocks around p and p − [d, 0], over the part
+/// N⁺ of the block that both views see.
+double matching_cost(const Scene& scene, int u, int v, int d) {
+  const int radius = scene.options.block_radius;
+  double n = 0, sum_ref = 0, sum_tar = 0, sum_ref_ref = 0, sum_tar_tar = 0, sum_ref_tar = 0;
+  for (int qv = v - radius; qv <= v + radius; ++qv) {
+    for (int qu = u - radius; qu <= u + radius; ++qu) {
+      if (!scene.in_reference(qu, qv) || !scene.in_target(qu - d, qv)) continue;
+      const double i_ref = scene.input.reference(qu, qv);
+      const double i_tar = scene.input.target(qu - d, qv);
+      n += 1;
+      sum_ref += i_ref;
+      sum_tar += i_tar;
+      sum_ref_ref += i_ref * i_ref;
+      sum_tar_tar += i_tar * i_tar;
+      sum_ref_tar += i_ref * i_tar;
+    }
+  }
+  const double mu_ref = sum_ref / n;
+  const double mu_tar = sum_tar / n;
+  const double variance_ref = sum_ref_ref / n - mu_ref * mu_ref;
+  const double variance_tar = sum_tar_tar / n - mu_tar * mu_tar;
+  // Without texture in a block nothing correlates: the cost is neutral. The camera's noise is added to the deviations,
+  // so that texture that may be noise counts less; 0 is the paper's equation.
+  if (variance_ref < smallest_variance || variance_tar < smallest_variance) return 1;
+  const double noise = scene.options.texture_noise * grey_scale;
+  const double sigma_ref = std::sqrt(variance_ref + noise * noise);
+  const double sigma_tar = std::sqrt(variance_tar + noise * noise);
+  return (sigma_ref * sigma_tar + mu_ref * mu_tar) / (sigma_ref * sigma_tar) -
+         sum_ref_tar / (n * sigma_ref * sigma_tar);
+}
+
+CostVolume compute_costs(const Scene& scene, int threads) {
+  const int disparities = scene.input.disparities;
+  CostVolume cost(scene.width(), scene.height(), disparities);
+  parallel_rows(scene.height(), 1, threads, [&](int v, int, int) {
+    for (int u = 0; u < scene.width(); ++u) {
+      for (int d = 0; d < disparities && scene.in_target(u - d, v); ++d) cost(u, v, d) = matching_cost(scene, u, v, d);
+    }
+  });
+  return cost;
+}
+
+/// ω(p, q) of eq. omega: the product of eqs. omega0 and omega1.
+double bilateral_weight(ImageView<const std::int16_t> image, int u, int v, const Tap& tap,
+                        const MatcherOptions& options) {
+  const double difference = static_cast<double>(image(u, v) - image(u + tap.du, v + tap.dv)) / grey_scale;
+  const double distance2 = tap.du * tap.du + tap.dv * tap.dv;
+  const double omega0 = std::exp(-distance2 / (options.sigma_space * options.sigma_space));
+  const double omega1 = std::exp(-difference * difference / (options.sigma_colour * options.sigma_colour));
+  return omega0 * omega1;
+}
+
+/// E_d(p, d) of eq. fbs for every pixel of one view. `shift` is 0 for the reference view and 1 for the target view,
+/// whose pixel x has the cost of reference pixel x + d: c_tar(p, d) = c_ref(p + [d, 0], d).
+CostVolume aggregate(const Scene& scene, const CostVolume& cost, ImageView<const std::int16_t> image, int shift,
+                     int threads) {
+  const int disparities = scene.input.disparities;
+  CostVolume aggregated(scene.width(), scene.height(), disparities);
+  const auto cost_at = [&](int u, int v, int d) {
+    const int column = u + shift * d;
+    return scene.in_reference(u, v) && scene.in_reference(column, v) ? cost(column, v, d) : nan;
+  };
+  parallel_rows(scene.height(), 1, threads, [&](int v, int, int) {
+    for (int u = 0; u < scene.width(); ++u) {
+      for (int d = 0; d < disparities; ++d) {
+        if (std::isnan(cost_at(u, v, d))) continue;
+        double weighted = 0, weights = 0;
+        for (const Tap& tap : scene.window) {
+          const double c = cost_at(u + tap.du, v + tap.dv, d);
+          if (std::isnan(c)) continue;
+          const double omega = bilateral_weight(image, u, v, tap, scene.options);
+          weighted += omega * c;
+          weights += omega;
+        }
+        aggregated(u, v, d) = weighted / weights;
+      }
+    }
+  });
+  return aggregated;
+}
+
+/// Winner-take-all: the disparity of the smallest cost, −1 where there is none; the smaller disparity wins a tie.
+Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy) {
+  Image<std::int16_t> winners(scene.width(), scene.height(), -1);
+  for (int v = 0; v < scene.height(); ++v) {
+    for (int u = 0; u < scene.width(); ++u) {
+      double best = std::numeric_limits<double>::infinity();
+      for (int d = 0; d < scene.input.disparities; ++d) {
+        if (energy(u, v, d) < best) {
+          best = energy(u, v, d);
+          winners(u, v) = static_cast<std::int16_t>(d);
+        }
+      }
+    }
+  }
+  return winners;
+}
+
+/// Eq. lrc. The shift of the perspective transformation depends on the target pixel alone, so it cancels here and the
+/// check on residual disparities is the check on the original ones.
+bool consistent(const MatchMaps& maps, int u, int v, double threshold) {
+  const int d = maps.winner(u, v);
+  const double difference = d - maps.target_winner(u - d, v);
+  return difference * difference <= threshold;
+}
+
+/// Eq. subpixel, on the aggregated costs. A winner at the end of its range has no neighbour on one side.
+double refine(const Scene& scene, const CostVolume& energy, int u, int v, int d) {
+  const bool first = d == 0;
+  const bool last = d + 1 == scene.input.disparities || std::isnan(energy(u, v, d + 1));
+  if (first || last) return scene.options.drop_range_ends ? nan : d;
+  if (!scene.options.sub_pixel) return d;
+  const double before = energy(u, v, d - 1);
+  const double after = energy(u, v, d + 1);
+  const double curvature = 2 * before + 2 * after - 4 * energy(u, v, d);
+  return curvature > 0 ? d + (before - after) / curvature : d;
+}
+
+class ReferenceEngine final : public StereoEngine {
+ public:
+  explicit ReferenceEngine(int threads) : threads_(resolve_threads(threads)) {}
+
+  void match(const MatchInput& input, const MatcherOptions& options, MatchMaps& maps) override {
+    validate(input);
+    options.validate();
+    const Scene scene{input, options};
+    const CostVolume cost = compute_costs(scene, threads_);
+    const CostVolume energy_ref = aggregate(scene, cost, input.reference, 0, threads_);
+    const CostVolume energy_tar = aggregate(scene, cost, input.target, 1, threads_);
+    maps.winner = take_winners(scene, energy_ref);
+    maps.target_winner = take_winners(scene, energy_tar);
+    maps.disparity.assign(scene.width(), scene.height(), std::numeric_limits<float>::quiet_NaN());
+    for (int v = 0; v < scene.height(); ++v) {
+      for (int u = 0; u < scene.width(); ++u) {
+        if (maps.winner(u, v) < 0) continue;
+        if (options.left_right_check && !consistent(maps, u, v, options.consistency)) continue;
+        maps.disparity(u, v) = static_cast<float>(refine(scene, energy_ref, u, v, maps.winner(u, v)));
+      }
+    }
+  }
+
+ private:
+  int threads_;
+};
+
+}  // namespace
+
+std::unique_ptr<StereoEngine> make_reference_engine(int threads) {
+  return std::make_unique<ReferenceEngine>(threads);
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,39 @@
+#include "core/parallel.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/matcher.hpp"
+#include "stereo/cpu/cpu_engine.hpp"
+#include "stereo/reference/reference_engine.hpp"
+
+namespace roadstereo {
+
+const std::vector<EngineInfo>& engines() {
+  static const std::vector<EngineInfo> registry{
+      {"cpu", "threads and SIMD (" + cpu_engine_target() + "), sliding sums, no cost volume", false, make_cpu_engine},
+      {"reference", "the paper's equations in double precision: slow, the oracle", true, make_reference_engine},
+  };
+  return registry;
+}
+
+namespace {
+
+const EngineInfo& find_engine(const std::string& name) {
+  if (name == "auto") return engines().front();
+  std::string known = "auto";
+  for (const EngineInfo& info : engines()) {
+    if (info.name == name) return info;
+    known += ", " + info.name;
+  }
+  fail("there is no engine called '", name, "'; this build has: ", known);
+}
+
+}  // namespace
+
+std::string resolve_engine_name(const std::string& name) {
+  return find_engine(name).name;
+}
+
+std::unique_ptr<StereoEngine> make_engine(const std::string& name, int threads) {
+  return find_engine(name).make(resolve_threads(threads));
+}
+
+}  // namespace roadstereo
