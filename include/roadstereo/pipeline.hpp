@@ -48,7 +48,7 @@ struct StageTimes {
 /// The paper's result for one pair.
 struct FrameResult {
   Image<float> disparity;    ///< ℓ: left-image disparities, pixels, NaN invalid
-  Image<float> transformed;  ///< ℓ': the intact road lies at `delta_t`, damage above bumps below; NaN invalid
+  Image<float> transformed;  ///< ℓ': the intact road lies at `delta_t`, damage below, bumps above; NaN invalid
   RoadModelEstimate road;    ///< before matching
   PerspectiveShift shift;
   RoadGeometry geometry;        ///< after matching; valid only when `geometry_found`

@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <cmath>
+
+#include "io/calibration_formats.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+constexpr double least_baseline_m = 0.005;
+constexpr double most_baseline_m = 10;
+
+void check_finite(double value, const std::string& source, const std::string& name) {
+  if (std::isfinite(value)) return;
+  fail(source, ": ", name, " is ", std::isnan(value) ? "nan" : "infinite", "; it must be a finite number");
+}
+
+void check_focal(double focal, int width, const std::string& source, const std::string& name) {
+  check_finite(focal, source, name);
+  const double least = 0.2 * (width > 0 ? width : 32);  // images here are 32 … 8192 pixels wide
+  const double most = 50.0 * (width > 0 ? width : 8192);
+  if (!(focal >= least && focal <= most)) {
+    fail(source, ": the focal length is ", focal, "; it must be between ", least, " and ", most, " pixels (", name,
+         ")");
+  }
+}
+
+void check_baseline(double baseline, const std::string& source, const std::string& name) {
+  check_finite(baseline, source, name);
+  if (baseline >= least_baseline_m && baseline <= most_baseline_m) return;
+  const char* hint = baseline < 0 ? "; are the left and the right camera swapped?" : "";
+  fail(source, ": the baseline is ", baseline == 0 ? 0.0 : baseline, "; it must be between ", least_baseline_m, " and ",
+       most_baseline_m, " metres (", name, ")", hint);
+}
+
+bool is_rotation(const std::array<double, 9>& r) {
+  constexpr double tolerance = 2e-3;  // files round to few digits
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double dot = r[3 * i] * r[3 * j] + r[3 * i + 1] * r[3 * j + 1] + r[3 * i + 2] * r[3 * j + 2];
+      if (!(std::abs(dot - (i == j ? 1.0 : 0.0)) < tolerance)) return false;
+    }
+  }
+  const double determinant =
+      r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);
+  return determinant > 0;
+}
+
+void check_matrix(const std::array<double, 9>& k, int width, const std::string& source, const std::string& name) {
+  for (const double value : k) check_finite(value, source, name);
+  check_focal(k[0], width, source, name + "[0]");
+  check_focal(k[4], width, source, name + "[4]");
+  if (k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
+    fail(source, ": ", name, " is no camera matrix; below its diagonal it must have zeros, and end with 1");
+  }
+}
+
+void check_distortion(const std::vector<double>& d, bool fisheye, const std::string& source, const std::string& name) {
+  for (const double value : d) check_finite(value, source, name);
+  const std::size_t n = d.size();
+  const bool known = fisheye ? n == 0 || n == 4 : n == 0 || n == 4 || n == 5 || n == 8 || n == 12 || n == 14;
+  if (!known) {
+    fail(source, ": ", name, " has ", n, " coefficients; ",
+         fisheye ? "the fisheye model has 4" : "a lens model has 0, 4, 5, 8, 12 or 14");
+  }
+}
+
+/// Same matrix, no distortion, parallel axes, shifted along the rows alone.
+bool needs_no_rectification(const StereoRig& rig) {
+  constexpr double tolerance = 1e-9;
+  const auto zero = [](double value) { return std::abs(value) <= tolerance; };
+  const auto all_zero = [&](const std::vector<double>& d) { return std::all_of(d.begin(), d.end(), zero); };
+  const auto& k = rig.left_matrix;
+  for (std::size_t i = 0; i < k.size(); ++i) {
+    if (!zero((k[i] - rig.right_matrix[i]) / k[0])) return false;
+    if (!zero(rig.rotation[i] - (i % 4 == 0 ? 1.0 : 0.0))) return false;
+  }
+  return !rig.fisheye && zero((k[4] - k[0]) / k[0]) && zero(k[1] / k[0]) && all_zero(rig.left_distortion) &&
+         all_zero(rig.right_distortion) && zero(rig.translation_m[1]) && zero(rig.translation_m[2]) &&
+         rig.translation_m[0] < 0;
+}
+
+}  // namespace
+
+void check_rectified(const StereoCalibration& calibration, const std::string& source, const FigureNames& names) {
+  check_focal(calibration.focal_px, calibration.width, source, names.focal);
+  check_finite(calibration.cx_px, source, names.cx);
+  check_finite(calibration.cy_px, source, names.cy);
+  check_finite(calibration.disparity_offset_px, source, "the disparity offset");
+  check_baseline(calibration.baseline_m, source, names.baseline);
+}
+
+void check_square_pixels(double fx, double fy, const std::string& source, const std::string& matrix) {
+  constexpr double tolerance = 0.01;
+  if (std::abs(fx - fy) > tolerance * std::abs(fx)) {
+    fail(source, ": ", matrix, " has the focal lengths ", fx, " and ", fy, "; a rectified camera has one");
+  }
+}
+
+void check_rig(const StereoRig& rig, const std::string& source) {
+  check_matrix(rig.left_matrix, rig.width, source, "K1");
+  check_matrix(rig.right_matrix, rig.width, source, "K2");
+  check_distortion(rig.left_distortion, rig.fisheye, source, "D1");
+  check_distortion(rig.right_distortion, rig.fisheye, source, "D2");
+  for (const double value : rig.rotation) check_finite(value, source, "R");
+  if (!is_rotation(rig.rotation)) fail(source, ": R is no rotation; its rows must be orthogonal and of length 1");
+  for (const double value : rig.translation_m) check_finite(value, source, "T");
+  const auto& t = rig.translation_m;
+  check_baseline(std::hypot(t[0], t[1], t[2]), source, "the length of T");
+}
+
+CalibrationFile describe_rig(const StereoRig& rig, const std::string& format, const std::string& source) {
+  check_rig(rig, source);
+  CalibrationFile file;
+  file.format = format;
+  if (!needs_no_rectification(rig)) {
+    file.rig = rig;
+    return file;
+  }
+  StereoCalibration calibration;
+  calibration.focal_px = rig.left_matrix[0];
+  calibration.cx_px = rig.left_matrix[2];
+  calibration.cy_px = rig.left_matrix[5];
+  calibration.baseline_m = -rig.translation_m[0];
+  calibration.width = rig.width;
+  calibration.height = rig.height;
+  file.rectified = calibration;
+  return file;
+}
+
+}  // namespace roadstereo::io

@@ -1,0 +1,98 @@
+#include "roadstereo/io/calibration_file.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "io/calibration_formats.hpp"
+#include "io/file_bytes.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{1} << 20U;
+
+enum class Format { plain_yaml, opencv_stereo, ros_camera_info, kitti, middlebury, k_txt, unknown };
+
+CalibrationText read_text(const std::string& path) {
+  const std::vector<std::uint8_t> bytes = read_file(path, most_bytes);
+  if (std::find(bytes.begin(), bytes.end(), std::uint8_t{0}) != bytes.end()) {
+    fail(path, ": this is not a text file; a calibration is one");
+  }
+  std::string text(bytes.begin(), bytes.end());
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // the byte order mark that some editors leave
+  return {path, std::move(text)};
+}
+
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+bool has_any_key(const std::vector<KeyLine>& lines, std::initializer_list<std::string_view> keys) {
+  return std::any_of(keys.begin(), keys.end(), [&](std::string_view key) { return find_key(lines, key) != nullptr; });
+}
+
+bool is_opencv(std::string_view text) {
+  return text.starts_with("%YAML:") || contains(text, "<opencv_storage") || contains(text, "opencv-matrix");
+}
+
+/// Numbers and nothing else; the first word tells, and the reader names one that is none.
+bool is_k_txt(std::string_view text) {
+  const std::vector<std::string_view> words = split_words(text, ",");
+  constexpr std::string_view beginnings = "+-.0123456789";
+  return words.size() >= 2 && contains(beginnings, words.front().substr(0, 1));
+}
+
+Format recognise(const std::string& text) {
+  const std::vector<KeyLine> colon = key_lines(text, ':');
+  const std::vector<KeyLine> equals = key_lines(text, '=');
+  if (is_opencv(text)) return Format::opencv_stereo;
+  if (has_any_key(colon, {"camera_matrix", "projection_matrix", "rectification_matrix"})) {
+    return Format::ros_camera_info;
+  }
+  if (has_any_key(colon, {"focal_px", "cx_px", "cy_px", "baseline_m"})) return Format::plain_yaml;
+  if (has_any_key(colon, {"P0", "P1", "P2", "P3", "P_rect_00", "P_rect_01", "P_rect_02", "P_rect_03"})) {
+    return Format::kitti;
+  }
+  if (has_any_key(equals, {"cam0", "cam1"})) return Format::middlebury;
+  return is_k_txt(text) ? Format::k_txt : Format::unknown;
+}
+
+[[noreturn]] void fail_second(const CalibrationText& file, const std::string& second_path) {
+  fail(file.path, ": this calibration describes both cameras; the second file, ", second_path, ", must be left out");
+}
+
+}  // namespace
+
+CalibrationFile read_calibration(const std::string& path, const std::string& second_path) {
+  const CalibrationText file = read_text(path);
+  const Format format = recognise(file.text);
+  const bool has_second = !second_path.empty();
+  if (format == Format::ros_camera_info) {
+    if (!has_second) fail(path, ": this is the camera_info of one camera; the right camera's file is needed too");
+    return read_ros_camera_info(file, read_text(second_path));
+  }
+  if (format == Format::opencv_stereo) {
+    if (!has_second) return read_opencv_stereo(file, nullptr);
+    const CalibrationText second = read_text(second_path);
+    return read_opencv_stereo(file, &second);
+  }
+  if (format == Format::unknown) {
+    fail(path,
+         ": this is no calibration known here; it must be plain YAML (focal_px, cx_px, cy_px, baseline_m), "
+         "OpenCV stereo, ROS camera_info, KITTI, Middlebury or K.txt");
+  }
+  if (has_second) fail_second(file, second_path);
+  switch (format) {
+    case Format::plain_yaml:
+      return read_plain_yaml(file);
+    case Format::kitti:
+      return read_kitti(file);
+    case Format::middlebury:
+      return read_middlebury(file);
+    default:
+      return read_k_txt(file);
+  }
+}
+
+}  // namespace roadstereo::io

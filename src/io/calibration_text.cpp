@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "io/calibration_formats.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+constexpr std::string_view white_space = " \t\r\n\v\f";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(white_space);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(white_space) - first + 1);
+}
+
+/// YAML writes .nan and .inf, C writes nan and inf; from_chars knows the latter and no leading plus.
+std::string_view plain_number(std::string_view text) {
+  if (text.size() > 1 && text.front() == '+') text.remove_prefix(1);
+  if (text.size() > 1 && text.front() == '.' && (text[1] < '0' || text[1] > '9')) text.remove_prefix(1);
+  return text;
+}
+
+std::string shortened(std::string_view text) {
+  constexpr std::size_t most = 40;
+  return std::string(text.substr(0, most)) + (text.size() > most ? "…" : "");
+}
+
+}  // namespace
+
+double parse_figure(const std::string& path, const std::string& key, std::string_view text) {
+  const std::string_view number = plain_number(trimmed(text));
+  double value = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  const bool minus_infinity = number == "-.inf" || number == "-.Inf";
+  if (minus_infinity || (error == std::errc{} && !std::isfinite(value)) || error == std::errc::result_out_of_range) {
+    fail(path, ": ", key, " is ", trimmed(text), "; it must be a finite number");
+  }
+  if (error != std::errc{} || end != number.data() + number.size()) {
+    fail(path, ": ", key, " is \"", shortened(trimmed(text)), "\"; it must be a number");
+  }
+  return value;
+}
+
+int parse_side(const std::string& path, const std::string& key, std::string_view text) {
+  constexpr double most = 65535;
+  const double side = parse_figure(path, key, text);
+  if (side < 1 || side > most || side != std::floor(side)) {
+    fail(path, ": ", key, " is ", side, "; it must be a whole number of pixels from 1 to ", most);
+  }
+  return static_cast<int>(side);
+}
+
+std::vector<std::string_view> split_words(std::string_view text, std::string_view separators) {
+  const std::string stops = std::string(white_space) + std::string(separators);
+  std::vector<std::string_view> words;
+  std::size_t at = text.find_first_not_of(stops);
+  while (at != std::string_view::npos) {
+    const std::size_t end = std::min(text.find_first_of(stops, at), text.size());
+    words.push_back(text.substr(at, end - at));
+    at = text.find_first_not_of(stops, end);
+  }
+  return words;
+}
+
+std::vector<KeyLine> key_lines(std::string_view text, char separator) {
+  std::vector<KeyLine> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    const std::size_t middle = line.find(separator);
+    if (middle != std::string_view::npos) {
+      lines.push_back({trimmed(line.substr(0, middle)), trimmed(line.substr(middle + 1))});
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+const KeyLine* find_key(const std::vector<KeyLine>& lines, std::string_view key) {
+  const auto found = std::find_if(lines.begin(), lines.end(), [&](const KeyLine& line) { return line.key == key; });
+  return found == lines.end() ? nullptr : &*found;
+}
+
+}  // namespace roadstereo::io

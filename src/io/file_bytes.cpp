@@ -1,0 +1,44 @@
+#include "io/file_bytes.hpp"
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+std::size_t size_of_ordinary_file(const std::string& path) {
+  namespace fs = std::filesystem;
+  if (path.empty()) fail("the name of the file is empty");
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) fail(path, ": the file does not exist");
+  if (error) fail(path, ": the file cannot be read: ", error.message());
+  if (fs::is_directory(status)) fail(path, ": this is a folder, not a file");
+  if (!fs::is_regular_file(status)) fail(path, ": this is not an ordinary file");
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) fail(path, ": the file cannot be read: ", error.message());
+  return static_cast<std::size_t>(size);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> read_file(const std::string& path, std::size_t most_bytes) {
+  const std::size_t size = size_of_ordinary_file(path);
+  if (size > most_bytes) {
+    fail(path, ": the file has ", size, " bytes; a file of this kind has at most ", most_bytes);
+  }
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail(path, ": the file cannot be read: ", std::generic_category().message(errno));
+  std::vector<std::uint8_t> bytes(size);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  if (bytes.empty()) fail(path, ": the file is empty");
+  return bytes;
+}
+
+}  // namespace roadstereo::io

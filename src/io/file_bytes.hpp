@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace roadstereo::io {
+
+/// Reads a whole file. Throws Error naming it: missing, a folder, not an ordinary file, not readable, empty,
+/// or larger than `most_bytes`.
+std::vector<std::uint8_t> read_file(const std::string& path, std::size_t most_bytes);
+
+}  // namespace roadstereo::io

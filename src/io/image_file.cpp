@@ -1,0 +1,195 @@
+#include "roadstereo/io/image_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "io/file_bytes.hpp"
+#include "io/frame_mat.hpp"
+#include "io/image_check.hpp"
+#include "io/netpbm.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{1} << 30U;
+constexpr int least_side = 32;
+constexpr int most_side = 8192;
+constexpr double kitti_steps = 256;  // per pixel of disparity
+
+cv::Mat decode(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+  cv::Mat mat;
+  try {
+    mat = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);  // this mode also leaves the Exif orientation alone
+  } catch (const cv::Exception&) {
+    mat.release();
+  }
+  if (mat.empty()) fail(path, ": the image cannot be decoded; the file is damaged or of an unusual kind");
+  return mat;
+}
+
+std::vector<std::uint8_t> encode(const char* extension, const cv::Mat& mat, const std::vector<int>& parameters) {
+  std::vector<std::uint8_t> bytes;
+  bool good = false;
+  try {
+    good = cv::imencode(extension, mat, bytes, parameters);
+  } catch (const cv::Exception&) {
+    good = false;
+  }
+  if (!good) fail<SystemError>("an image of ", mat.cols, "×", mat.rows, " pixels cannot be encoded as ", extension);
+  return bytes;
+}
+
+/// Reads PNG, JPEG or TIFF whose size is within limits. `least` and `most` are sides in pixels.
+cv::Mat decode_checked(const std::string& path, const std::vector<std::uint8_t>& bytes, int least,
+                       ImageHeader& header) {
+  std::vector<std::uint8_t> essential;
+  if (is_png(bytes)) {
+    header = check_png(path, bytes, essential);
+  } else if (is_jpeg(bytes)) {
+    header = check_jpeg(path, bytes);
+  } else {
+    header = check_tiff(path, bytes);
+  }
+  check_size(path, header.width, header.height, least, most_side);
+  return decode(path, essential.empty() ? bytes : essential);
+}
+
+void check_frame_depth(const std::string& path, const cv::Mat& mat) {
+  if (mat.depth() != CV_8U && mat.depth() != CV_16U) {
+    fail(path, ": the image's samples have ", 8 * mat.elemSize1(),
+         " bits or a sign; they must be whole numbers of 8 or 16 bits");
+  }
+  if (mat.channels() != 1 && mat.channels() != 3 && mat.channels() != 4) {
+    fail(path, ": the image has ", mat.channels(), " channels; it must have 1, 3 or 4");
+  }
+}
+
+/// TIFF can hold samples that the decoder would not take quietly.
+void check_tiff_depth(const std::string& path, const ImageHeader& header) {
+  if (header.is_float || (header.bits != 8 && header.bits != 16)) {
+    fail(path, ": the image has ", header.bits, header.is_float ? "-bit floating-point" : "-bit",
+         " samples; they must be whole numbers of 8 or 16 bits");
+  }
+}
+
+ChannelOrder order_of(const cv::Mat& mat) {
+  if (mat.channels() == 1) return ChannelOrder::grey;
+  return mat.channels() == 3 ? ChannelOrder::bgr : ChannelOrder::bgra;
+}
+
+std::uint16_t largest_sample(const FrameView& frame) {
+  const int channels = channel_count(frame.order);
+  const int colours = channels == 4 ? 3 : channels;  // opacity says nothing about light
+  std::uint16_t largest = 0;
+  for (int v = 0; v < frame.height; ++v) {
+    const auto* row =
+        reinterpret_cast<const std::uint16_t*>(static_cast<const std::uint8_t*>(frame.data) + v * frame.stride_bytes);
+    for (int u = 0; u < frame.width; ++u, row += channels) {
+      for (int c = 0; c < colours; ++c) largest = std::max(largest, row[c]);
+    }
+  }
+  return largest;
+}
+
+Image<float> disparity_from_tiff(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+  ImageHeader header = check_tiff(path, bytes);
+  if (!header.is_float || header.bits != 32 || header.channels != 1) {
+    fail(path, ": the TIFF file has ", header.channels, " channel(s) of ", header.bits, "-bit ",
+         header.is_float ? "floating-point" : "whole", " numbers; a disparity TIFF has one of 32-bit floating-point");
+  }
+  const cv::Mat mat = decode_checked(path, bytes, 1, header);
+  if (mat.type() != CV_32FC1) fail(path, ": the TIFF file cannot be decoded as 32-bit floating-point numbers");
+  Image<float> map(mat.cols, mat.rows);
+  for (int v = 0; v < mat.rows; ++v) {
+    std::transform(mat.ptr<float>(v), mat.ptr<float>(v) + mat.cols, map.row(v),
+                   [](float value) { return std::isfinite(value) ? value : std::numeric_limits<float>::quiet_NaN(); });
+  }
+  return map;
+}
+
+Image<float> disparity_from_png(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+  ImageHeader header;
+  const cv::Mat mat = decode_checked(path, bytes, 1, header);
+  if (mat.type() != CV_16UC1) {
+    fail(path, ": the PNG file has ", mat.channels(), " channel(s) of ", 8 * mat.elemSize1(),
+         " bits; a disparity PNG has one of 16 bits (256 times the disparity)");
+  }
+  Image<float> map(mat.cols, mat.rows);
+  for (int v = 0; v < mat.rows; ++v) {
+    std::transform(
+        mat.ptr<std::uint16_t>(v), mat.ptr<std::uint16_t>(v) + mat.cols, map.row(v), [](std::uint16_t value) {
+          return value == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value / kitti_steps);
+        });
+  }
+  return map;
+}
+
+std::uint16_t kitti_value(float disparity) {
+  constexpr float most_px = 255.99F;
+  if (!std::isfinite(disparity)) return 0;
+  if (disparity < 0 || disparity > most_px) {
+    fail("a disparity is ", disparity, " px; a 16-bit PNG holds 0 … ", most_px, " px, a TIFF holds any");
+  }
+  return static_cast<std::uint16_t>(std::max(std::lround(kitti_steps * disparity), 1L));
+}
+
+}  // namespace
+
+Frame read_frame(const std::string& path) {
+  const std::vector<std::uint8_t> bytes = read_file(path, most_bytes);
+  if (is_netpbm(bytes)) return read_netpbm(path, bytes);
+  if (!is_png(bytes) && !is_jpeg(bytes) && !is_tiff(bytes)) {
+    fail(path, ": this is not a PNG, JPEG, TIFF, PGM or PPM image");
+  }
+  if (is_tiff(bytes)) check_tiff_depth(path, check_tiff(path, bytes));
+  ImageHeader header;
+  const cv::Mat mat = decode_checked(path, bytes, least_side, header);
+  check_frame_depth(path, mat);
+  return frame_from(mat, order_of(mat));
+}
+
+double find_white_level(const FrameView& left, const FrameView& right) {
+  if (left.sample != right.sample) fail("one image of the pair has 8 bits, the other 16; both must have the same");
+  if (left.sample == SampleType::u8) return 255;
+  const int largest = std::max(largest_sample(left), largest_sample(right));
+  for (const int white : {1023, 4095, 16383}) {
+    if (largest <= white) return white;
+  }
+  return 65535;
+}
+
+Image<float> read_disparity(const std::string& path) {
+  const std::vector<std::uint8_t> bytes = read_file(path, most_bytes);
+  if (is_pfm(bytes)) return read_pfm(path, bytes);
+  if (is_tiff(bytes)) return disparity_from_tiff(path, bytes);
+  if (is_png(bytes)) return disparity_from_png(path, bytes);
+  fail(path, ": this is not a disparity map; it must be a float TIFF, a PFM or a 16-bit PNG");
+}
+
+std::vector<std::uint8_t> encode_float_tiff(ImageView<const float> map) {
+  constexpr int no_compression = 1;  // the one that every reader of float TIFF knows
+  return encode(".tiff", mat_over(map), {cv::IMWRITE_TIFF_COMPRESSION, no_compression});
+}
+
+std::vector<std::uint8_t> encode_kitti_png(ImageView<const float> disparity) {
+  cv::Mat mat(disparity.height(), disparity.width(), CV_16UC1);
+  for (int v = 0; v < disparity.height(); ++v) {
+    std::transform(disparity.row(v), disparity.row(v) + disparity.width(), mat.ptr<std::uint16_t>(v), kitti_value);
+  }
+  return encode(".png", mat, {});
+}
+
+std::vector<std::uint8_t> encode_png(const FrameView& frame) {
+  if (frame.sample != SampleType::u8) fail("the frame to encode has 16-bit samples; it must have 8-bit ones");
+  const cv::Mat mat = mat_over(frame);
+  if (frame.order != ChannelOrder::rgb && frame.order != ChannelOrder::rgba) return encode(".png", mat, {});
+  cv::Mat swapped;
+  cv::cvtColor(mat, swapped, frame.order == ChannelOrder::rgb ? cv::COLOR_RGB2BGR : cv::COLOR_RGBA2BGRA);
+  return encode(".png", swapped, {});
+}
+
+}  // namespace roadstereo::io

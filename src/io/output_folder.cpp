@@ -1,0 +1,160 @@
+#include "roadstereo/io/output_folder.hpp"
+
+#include <stdlib.h>  // mkdtemp is POSIX
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace fs = std::filesystem;
+namespace {
+
+bool is_full(int error) {
+  return error == ENOSPC || error == EDQUOT || error == EIO;
+}
+
+[[noreturn]] void fail_folder(const fs::path& folder, const std::error_code& error) {
+  if (is_full(error.value())) fail<SystemError>("cannot write to folder ", folder.string(), ": ", error.message());
+  fail("cannot write to folder ", folder.string(), ": ", error.message());
+}
+
+[[noreturn]] void fail_write(const fs::path& file, int error) {
+  fail<SystemError>("cannot write ", file.string(), ": ", std::generic_category().message(error));
+}
+
+/// The folders on the way to `folder` that do not exist, innermost first.
+std::vector<fs::path> missing_folders(const fs::path& folder) {
+  std::vector<fs::path> missing;
+  std::error_code ignored;
+  for (fs::path at = folder; !at.empty() && !fs::exists(at, ignored); at = at.parent_path()) missing.push_back(at);
+  return missing;
+}
+
+void write_file(const fs::path& path, const fs::path& shown_as, std::span<const std::uint8_t> bytes) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) fail_write(shown_as, errno);
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const int write_error = errno;
+  const bool closed = std::fclose(file) == 0;  // the last bytes are written here
+  if (!written) fail_write(shown_as, write_error);
+  if (!closed) fail_write(shown_as, errno);
+}
+
+void check_name(const std::string& name) {
+  const fs::path path(name);
+  const bool climbs = std::find(path.begin(), path.end(), fs::path("..")) != path.end();
+  if (name.empty() || path.is_absolute() || climbs || !path.has_filename()) {
+    fail("the output file's name is \"", name, "\"; it must be a relative name without \"..\"");
+  }
+}
+
+/// Renames files and can take it back.
+class Moves {
+ public:
+  explicit Moves(fs::path replaced) : replaced_(std::move(replaced)) {}
+
+  /// Moves `from` to `to`; a file that is there is kept aside.
+  void move(const fs::path& from, const fs::path& to) {
+    Move done{from, to, {}};
+    if (fs::is_directory(to)) throw fs::filesystem_error("", to, std::make_error_code(std::errc::is_a_directory));
+    if (fs::exists(fs::symlink_status(to))) {
+      done.aside = replaced_ / std::to_string(moves_.size());
+      fs::create_directories(replaced_);
+      fs::rename(to, done.aside);
+    }
+    moves_.push_back(done);
+    fs::rename(from, to);
+  }
+
+  void take_back() noexcept {
+    std::error_code ignored;
+    for (; !moves_.empty(); moves_.pop_back()) {
+      const Move& done = moves_.back();
+      fs::rename(done.to, done.from, ignored);
+      if (!done.aside.empty()) fs::rename(done.aside, done.to, ignored);
+    }
+  }
+
+ private:
+  struct Move {
+    fs::path from;
+    fs::path to;
+    fs::path aside;
+  };
+  fs::path replaced_;
+  std::vector<Move> moves_;
+};
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
+  if (folder.empty()) fail("the output folder's name is empty");
+  made_folders_ = missing_folders(folder);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error && !fs::is_directory(folder)) error = std::make_error_code(std::errc::not_a_directory);
+  if (!error) {
+    std::string staging = (folder / ".roadstereo-XXXXXX").string();
+    if (::mkdtemp(staging.data()) == nullptr) error = std::error_code(errno, std::generic_category());
+    if (!error) staging_ = staging;
+  }
+  if (!error) return;
+  remove_unfinished();
+  fail_folder(folder, error);
+}
+
+OutputFolder::~OutputFolder() {
+  remove_unfinished();
+}
+
+void OutputFolder::remove_unfinished() noexcept {
+  std::error_code ignored;
+  if (!staging_.empty()) fs::remove_all(staging_, ignored);
+  for (const fs::path& made : made_folders_) fs::remove(made, ignored);  // only when empty
+}
+
+void OutputFolder::add(const std::string& name, std::span<const std::uint8_t> bytes) {
+  check_name(name);
+  const fs::path staged = staging_ / "new" / name;
+  std::error_code error;
+  fs::create_directories(staged.parent_path(), error);
+  if (error) fail_write(folder_ / name, error.value());
+  try {
+    write_file(staged, folder_ / name, bytes);
+  } catch (const Error&) {
+    fs::remove(staged, error);
+    throw;
+  }
+  if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
+}
+
+void OutputFolder::add(const std::string& name, const std::string& text) {
+  add(name, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+void OutputFolder::commit() {
+  Moves moves(staging_ / "old");
+  fs::path target = folder_;
+  try {
+    for (const std::string& name : names_) {
+      target = folder_ / name;
+      const std::vector<fs::path> missing = missing_folders(target.parent_path());
+      made_folders_.insert(made_folders_.begin(), missing.begin(), missing.end());
+      fs::create_directories(target.parent_path());
+      moves.move(staging_ / "new" / name, target);
+    }
+  } catch (const fs::filesystem_error& error) {
+    moves.take_back();
+    fail_write(target, error.code().value());
+  }
+  std::error_code ignored;
+  fs::remove_all(staging_ / "old", ignored);
+  names_.clear();
+  made_folders_.clear();
+}
+
+}  // namespace roadstereo::io

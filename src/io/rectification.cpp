@@ -1,0 +1,170 @@
+#include "roadstereo/io/rectification.hpp"
+
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "io/calibration_formats.hpp"
+#include "io/frame_mat.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+/// Rotations into the rectified cameras and their common projection.
+struct RectifiedCameras {
+  cv::Matx33d left_rotation;
+  cv::Matx33d right_rotation;
+  cv::Matx34d left;
+  cv::Matx34d right;
+};
+
+/// Where each pixel of a rectified image comes from.
+struct PixelMap {
+  cv::Mat x;
+  cv::Mat y;
+};
+
+cv::Matx33d matrix_of(const std::array<double, 9>& figures) {
+  return cv::Matx33d(figures.data());
+}
+
+std::string size_text(int width, int height) {
+  return std::to_string(width) + "×" + std::to_string(height);
+}
+
+void check_frames(const Frame& left, const Frame& right, const StereoRig& rig) {
+  if (left.width != right.width || left.height != right.height) {
+    fail("the left image has ", size_text(left.width, left.height), " pixels, the right one ",
+         size_text(right.width, right.height), "; both must have the same");
+  }
+  if (rig.width != 0 && (rig.width != left.width || rig.height != left.height)) {
+    fail("the calibration is for ", size_text(rig.width, rig.height), " pixels, but the images have ",
+         size_text(left.width, left.height));
+  }
+}
+
+/// Rectification turns rows into epipolar lines, so the right camera must lie to the right.
+void check_arrangement(const StereoRig& rig) {
+  const cv::Vec3d translation(rig.translation_m.data());
+  const cv::Vec3d centre = matrix_of(rig.rotation).t() * -translation;  // of the right camera, seen from the left
+  const double sideways = std::abs(centre[0]);
+  const auto refuse = [](const char* where, double distance) {
+    fail("the right camera lies ", std::abs(distance), " m ", where, " the left one; it must lie to the right of it");
+  };
+  if (std::abs(centre[1]) >= sideways && std::abs(centre[1]) >= std::abs(centre[2])) {
+    refuse(centre[1] > 0 ? "below" : "above", centre[1]);
+  }
+  if (std::abs(centre[2]) >= sideways) refuse(centre[2] > 0 ? "in front of" : "behind", centre[2]);
+  if (centre[0] <= 0) {
+    fail("the right camera lies ", -centre[0],
+         " m to the left of the left one; the cameras are swapped, or T has the wrong sign");
+  }
+}
+
+RectifiedCameras rectified_cameras(const StereoRig& rig, cv::Size size) {
+  const cv::Matx33d k1 = matrix_of(rig.left_matrix);
+  const cv::Matx33d k2 = matrix_of(rig.right_matrix);
+  const cv::Matx33d rotation = matrix_of(rig.rotation);
+  const cv::Vec3d translation(rig.translation_m.data());
+  RectifiedCameras cameras;
+  cv::Matx44d unused;
+  if (rig.fisheye) {
+    const std::vector<double> none(4, 0.0);
+    cv::fisheye::stereoRectify(k1, rig.left_distortion.empty() ? none : rig.left_distortion, k2,
+                               rig.right_distortion.empty() ? none : rig.right_distortion, size, rotation, translation,
+                               cameras.left_rotation, cameras.right_rotation, cameras.left, cameras.right, unused,
+                               cv::CALIB_ZERO_DISPARITY, size, 0, 1);
+  } else {
+    cv::stereoRectify(k1, rig.left_distortion, k2, rig.right_distortion, size, rotation, translation,
+                      cameras.left_rotation, cameras.right_rotation, cameras.left, cameras.right, unused,
+                      cv::CALIB_ZERO_DISPARITY, 0, size);
+  }
+  return cameras;
+}
+
+PixelMap pixel_map(const std::array<double, 9>& matrix, const std::vector<double>& distortion, bool fisheye,
+                   const cv::Matx33d& rotation, const cv::Matx34d& projection, cv::Size size) {
+  const cv::Matx33d k = matrix_of(matrix);
+  const cv::Matx33d p = projection.get_minor<3, 3>(0, 0);
+  PixelMap map;
+  if (fisheye) {
+    const std::vector<double> d = distortion.empty() ? std::vector<double>(4, 0.0) : distortion;
+    cv::fisheye::initUndistortRectifyMap(k, d, rotation, p, size, CV_32FC1, map.x, map.y);
+  } else {
+    cv::initUndistortRectifyMap(k, distortion, rotation, p, size, CV_32FC1, map.x, map.y);
+  }
+  return map;
+}
+
+bool lies_inside(const PixelMap& map, cv::Size size) {
+  constexpr double tolerance_px = 0.5;  // half of the border pixel
+  const auto within = [](const cv::Mat& coordinate, int side) {
+    double least = 0;
+    double most = 0;
+    cv::minMaxLoc(coordinate, &least, &most);
+    return least >= -tolerance_px && most <= side - 1 + tolerance_px;
+  };
+  return within(map.x, size.width) && within(map.y, size.height);
+}
+
+/// Both maps, looking only at image content. OpenCV's own choice of the focal length is approximate (a few
+/// points of the border are tried) and for fisheye lenses far off, so the view is narrowed until no pixel
+/// looks outside.
+std::pair<PixelMap, PixelMap> inner_maps(const StereoRig& rig, cv::Size size, RectifiedCameras& cameras) {
+  constexpr double zoom = 1.01;
+  constexpr int most_steps = 160;  // about five times the focal length
+  for (int step = 0; step < most_steps; ++step) {
+    PixelMap left =
+        pixel_map(rig.left_matrix, rig.left_distortion, rig.fisheye, cameras.left_rotation, cameras.left, size);
+    PixelMap right =
+        pixel_map(rig.right_matrix, rig.right_distortion, rig.fisheye, cameras.right_rotation, cameras.right, size);
+    if (lies_inside(left, size) && lies_inside(right, size)) return {std::move(left), std::move(right)};
+    for (cv::Matx34d* p : {&cameras.left, &cameras.right}) {
+      (*p)(0, 0) *= zoom;
+      (*p)(1, 1) *= zoom;
+      (*p)(0, 3) *= zoom;  // f·T
+    }
+  }
+  fail("the rig cannot be rectified: the cameras look in too different directions, or a distortion is absurd");
+}
+
+Frame resample(const Frame& frame, const PixelMap& map) {
+  cv::Mat out;
+  cv::remap(mat_over(frame.view()), out, map.x, map.y, cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+  return frame_from(out, frame.order);
+}
+
+StereoCalibration calibration_of(const RectifiedCameras& cameras, cv::Size size) {
+  StereoCalibration calibration;
+  calibration.focal_px = cameras.left(0, 0);
+  calibration.cx_px = cameras.left(0, 2);
+  calibration.cy_px = cameras.left(1, 2);
+  calibration.baseline_m = -cameras.right(0, 3) / cameras.right(0, 0);
+  calibration.disparity_offset_px = cameras.right(0, 2) - cameras.left(0, 2);
+  calibration.width = size.width;
+  calibration.height = size.height;
+  calibration.validate(size.width, size.height, "the rectified rig");
+  return calibration;
+}
+
+}  // namespace
+
+RectifiedPair rectify(const Frame& left, const Frame& right, const StereoRig& rig) {
+  check_frames(left, right, rig);
+  StereoRig sized = rig;
+  sized.width = left.width;
+  sized.height = left.height;
+  check_rig(sized, "the rig");
+  check_arrangement(sized);
+  const cv::Size size(left.width, left.height);
+  try {
+    RectifiedCameras cameras = rectified_cameras(sized, size);
+    const auto [left_map, right_map] = inner_maps(sized, size, cameras);
+    return {resample(left, left_map), resample(right, right_map), calibration_of(cameras, size)};
+  } catch (const cv::Exception& error) {
+    fail("the rig cannot be rectified: ", error.err);
+  }
+}
+
+}  // namespace roadstereo::io

@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "io/drawing.hpp"
+#include "io/frame_mat.hpp"
+#include "io/panels.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+const cv::Scalar line_colour{40, 130, 255};
+constexpr double line_opacity = 0.7;
+
+/// The part of the (disparity, row) plane that a plot shows.
+struct PlotRange {
+  double lowest_px = 0;
+  double highest_px = 1;
+  int rows = 1;
+  int columns = 1;
+};
+
+PlotRange plot_range(ImageView<const float> disparity) {
+  PlotRange range{0, 1, disparity.height(), disparity.width()};
+  const std::vector<double> ends = percentiles(disparity, {0.5, 99.5});
+  if (ends.empty()) return range;
+  const double margin = std::max(0.06 * (ends[1] - ends[0]), 1.0);
+  range.lowest_px = ends[0] - margin;
+  if (ends[0] >= 0) range.lowest_px = std::max(range.lowest_px, 0.0);
+  range.highest_px = ends[1] + margin;
+  return range;
+}
+
+/// Pixels per cell of the histogram. Cells are at least an eighth of a pixel of disparity wide, and a
+/// disparity is shared between the two nearest, so that disparities in fixed steps leave no stripes.
+cv::Mat count_pixels(ImageView<const float> disparity, const PlotRange& range, cv::Size plot) {
+  const double span = range.highest_px - range.lowest_px;
+  const int columns = std::clamp(static_cast<int>(8 * span), 1, plot.width);
+  const int rows = std::min(plot.height, range.rows);
+  cv::Mat counts = cv::Mat::zeros(rows, columns, CV_32FC1);
+  for (int v = 0; v < range.rows; ++v) {
+    const float* in = disparity.row(v);
+    auto* out = counts.ptr<float>(static_cast<int>(static_cast<std::int64_t>(v) * rows / range.rows));
+    for (int u = 0; u < range.columns; ++u) {
+      if (!(in[u] >= range.lowest_px && in[u] < range.highest_px)) continue;
+      const double place = std::clamp((in[u] - range.lowest_px) / span * columns - 0.5, 0.0, columns - 1.0);
+      const int column = static_cast<int>(place);
+      const auto share = static_cast<float>(place - column);
+      out[column] += 1 - share;
+      if (share > 0) out[column + 1] += share;
+    }
+  }
+  return counts;
+}
+
+cv::Mat histogram_picture(ImageView<const float> disparity, const PlotRange& range, cv::Size plot) {
+  cv::Mat brightness = count_pixels(disparity, range, plot);
+  cv::log(brightness + 1, brightness);
+  double most = 0;
+  cv::minMaxLoc(brightness, nullptr, &most);
+  brightness.convertTo(brightness, CV_8U, most > 0 ? 255 / most : 0);
+  cv::resize(brightness, brightness, plot, 0, 0, cv::INTER_NEAREST);
+  cv::Mat picture;
+  cv::cvtColor(brightness, picture, cv::COLOR_GRAY2BGR);
+  return picture;
+}
+
+/// Draws the road's disparity at column `u` over the rows.
+void draw_road_line(cv::Mat& picture, const PlotRange& range, const RoadModel& road, double u, bool dashed, int width) {
+  const auto place = [&](double row_share) {
+    const double v = row_share * (range.rows - 1);
+    const double x = (road.disparity(u, v) - range.lowest_px) / (range.highest_px - range.lowest_px);
+    return cv::Point2d(x * picture.cols, row_share * (picture.rows - 1));
+  };
+  constexpr int pieces = 60;
+  for (int i = 0; i < pieces; ++i) {
+    if (dashed && i % 2 == 1) continue;
+    const cv::Point2d from = place(static_cast<double>(i) / pieces);
+    const cv::Point2d to = place(static_cast<double>(i + 1) / pieces);
+    const double most = 4.0 * picture.cols;
+    if (std::abs(from.x) > most || std::abs(to.x) > most) continue;
+    cv::line(picture, from, to, line_colour, width, cv::LINE_AA);
+  }
+}
+
+bool has_visible_roll(const RoadModel& road, int columns) {
+  constexpr double visible_px = 0.5;
+  return std::abs(road.a2) * columns > visible_px;
+}
+
+void draw_road(cv::Mat& picture, const PlotRange& range, const RoadModel& road, int text_height) {
+  const int width = std::max(1, text_height / 8);
+  cv::Mat over = picture.clone();
+  draw_road_line(over, range, road, 0.5 * (range.columns - 1), false, width);
+  if (has_visible_roll(road, range.columns)) {
+    draw_road_line(over, range, road, 0, true, width);
+    draw_road_line(over, range, road, range.columns - 1, true, width);
+  }
+  cv::addWeighted(over, line_opacity, picture, 1 - line_opacity, 0, picture);
+}
+
+/// What the lines are, in the corner that a road leaves empty: disparities grow downwards.
+void draw_legend(cv::Mat& picture, const RoadModel& road, int columns, int text_height) {
+  std::vector<std::string> lines{"road, middle"};
+  if (has_visible_roll(road, columns)) lines.emplace_back("road, sides");
+  const int sample = 2 * text_height;
+  int y = 2 * text_height;
+  for (std::size_t i = 0; i < lines.size(); ++i, y += 2 * text_height) {
+    const int room = picture.cols - sample - 3 * text_height;
+    const int height = fitting_height(lines[i], text_height, room);
+    const int right = picture.cols - text_height;
+    const int left = right - text_width(lines[i], height) - sample - text_height / 2;
+    const int thickness = std::max(1, text_height / 8);
+    const cv::Rect back = cv::Rect(left - text_height / 2, y - text_height - text_height / 2,
+                                   right - left + text_height, 2 * text_height) &
+                          cv::Rect(0, 0, picture.cols, picture.rows);
+    if (!back.empty()) picture(back) *= 0.35;
+    const int middle = y - height / 2;
+    const int end = left + (i == 0 ? sample : sample * 2 / 5);
+    cv::line(picture, {left, middle}, {end, middle}, line_colour, thickness);
+    if (i > 0) cv::line(picture, {left + sample * 3 / 5, middle}, {left + sample, middle}, line_colour, thickness);
+    put_text(picture, lines[i], {right, y}, height, cv::Scalar::all(255), Align::right);
+  }
+}
+
+void draw_axes(cv::Mat& canvas, cv::Rect plot, const PlotRange& range, int text_height) {
+  const int tick = text_height / 2;
+  const int line = std::max(1, text_height / 12);
+  cv::rectangle(canvas, plot, ink);
+  const Ticks across = round_ticks(range.lowest_px, range.highest_px, std::clamp(plot.width / (6 * text_height), 2, 9));
+  for (const double value : across.values) {
+    const double share = (value - range.lowest_px) / (range.highest_px - range.lowest_px);
+    const int x = plot.x + cvRound(share * (plot.width - 1));
+    cv::line(canvas, {x, plot.br().y}, {x, plot.br().y + tick}, ink, line);
+    put_text(canvas, number_text(value, across.decimals), {x, plot.br().y + tick + text_height + text_height / 2},
+             text_height, ink, Align::centre);
+  }
+  const Ticks down = round_ticks(0, range.rows - 1, std::clamp(plot.height / (3 * text_height), 2, 9));
+  int widest = 0;
+  for (const double value : down.values) {
+    const std::string number = number_text(value, 0);
+    const int y = plot.y + cvRound(value / std::max(range.rows - 1, 1) * (plot.height - 1));
+    cv::line(canvas, {plot.x - tick, y}, {plot.x, y}, ink, line);
+    put_text(canvas, number, {plot.x - tick - text_height / 2, y + text_height / 2}, text_height, ink, Align::right);
+    widest = std::max(widest, text_width(number, text_height));
+  }
+  put_text(canvas, "disparity, px", {plot.x + plot.width / 2, plot.br().y + tick + 3 * text_height + text_height / 2},
+           text_height, ink, Align::centre);
+  put_text_upwards(canvas, "image row", {plot.x - tick - widest - 2 * text_height, plot.y + plot.height / 2},
+                   text_height, plot.height, ink);
+}
+
+}  // namespace
+
+cv::Size v_disparity_margin(int image_height, int text_height) {
+  const std::string longest = number_text(image_height, 0);
+  return {text_width(longest, text_height) + 4 * text_height, 5 * text_height};
+}
+
+void draw_v_disparity(cv::Mat& canvas, cv::Rect plot, ImageView<const float> disparity,
+                      const std::optional<RoadGeometry>& geometry, int text_height) {
+  const PlotRange range = plot_range(disparity);
+  cv::Mat picture = histogram_picture(disparity, range, plot.size());
+  if (geometry) {
+    draw_road(picture, range, geometry->plane, text_height);
+    draw_legend(picture, geometry->plane, range.columns, text_height);
+  }
+  picture.copyTo(canvas(plot));
+  draw_axes(canvas, plot, range, text_height);
+}
+
+Frame v_disparity_picture(ImageView<const float> disparity, const std::optional<RoadGeometry>& geometry) {
+  const int height = std::clamp(disparity.height(), 300, 1200);
+  const int text_height = text_height_for(height);
+  const cv::Size margin = v_disparity_margin(disparity.height(), text_height);
+  const cv::Rect plot(margin.width, text_height, height, height);
+  cv::Mat canvas(plot.br().y + margin.height, plot.br().x + 2 * text_height, CV_8UC3, paper);
+  draw_v_disparity(canvas, plot, disparity, geometry, text_height);
+  return frame_from(canvas, ChannelOrder::bgr);
+}
+
+}  // namespace roadstereo::io

@@ -1,0 +1,43 @@
+#include "io/yaml_text.hpp"
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+
+YAML::Node load_yaml(const CalibrationText& file) {
+  YAML::Node root;
+  try {
+    root = YAML::Load(file.text);
+  } catch (const YAML::Exception& error) {
+    fail(file.path, ": line ", error.mark.line + 1, " is no valid YAML: ", error.msg);
+  }
+  if (!root.IsMap()) fail(file.path, ": the file must be a list of \"key: value\" lines");
+  return root;
+}
+
+double yaml_figure(const CalibrationText& file, const YAML::Node& map, const std::string& key) {
+  const YAML::Node node = map[key];
+  if (!node) fail(file.path, ": ", key, " is missing");
+  if (!node.IsScalar()) fail(file.path, ": ", key, " must be a number");
+  return parse_figure(file.path, key, node.Scalar());
+}
+
+int yaml_side(const CalibrationText& file, const YAML::Node& map, const std::string& key) {
+  const YAML::Node node = map[key];
+  if (!node) return 0;
+  if (!node.IsScalar()) fail(file.path, ": ", key, " must be a number");
+  return parse_side(file.path, key, node.Scalar());
+}
+
+std::vector<double> yaml_figures(const CalibrationText& file, const YAML::Node& node, const std::string& key) {
+  if (!node || node.IsNull()) fail(file.path, ": ", key, " is missing");
+  if (!node.IsSequence()) fail(file.path, ": ", key, " must be a list of numbers");
+  std::vector<double> figures;
+  for (const YAML::Node& item : node) {
+    if (!item.IsScalar()) fail(file.path, ": ", key, " must be a list of numbers");
+    figures.push_back(parse_figure(file.path, key + "[" + std::to_string(figures.size()) + "]", item.Scalar()));
+  }
+  return figures;
+}
+
+}  // namespace roadstereo::io

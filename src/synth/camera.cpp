@@ -1,0 +1,96 @@
+#include "synth/camera.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace roadstereo::synth {
+namespace {
+
+struct Turn {
+  double sine;
+  double cosine;
+};
+
+/// Sine and cosine of an angle, exact at right angles: a camera that looks straight down must see a plane at
+/// one depth, and cos(π/2) in floating point is not 0.
+Turn turn_by(double degrees) {
+  const double radians = degrees * std::numbers::pi / 180.0;
+  if (degrees == 90) return {1, 0};
+  if (degrees == 0) return {0, 1};
+  return {std::sin(radians), std::cos(radians)};
+}
+
+}  // namespace
+
+StereoCalibration Rig::calibration() const {
+  StereoCalibration calibration;
+  calibration.focal_px = focal_px;
+  calibration.cx_px = (width - 1) / 2.0;
+  calibration.cy_px = (height - 1) / 2.0;
+  calibration.baseline_m = baseline_m;
+  calibration.width = width;
+  calibration.height = height;
+  return calibration;
+}
+
+Camera left_camera(const Rig& rig) {
+  const Turn pitch = turn_by(rig.pitch_deg);
+  const Turn roll = turn_by(rig.roll_deg);
+  const Vec3 level_right{1, 0, 0};
+  const Vec3 level_down{0, -pitch.sine, -pitch.cosine};
+  Camera camera;
+  camera.origin = {rig.x_m, rig.y_m, rig.camera_height_m};
+  camera.right = level_right * roll.cosine + level_down * -roll.sine;
+  camera.down = level_right * roll.sine + level_down * roll.cosine;
+  camera.forward = {0, pitch.cosine, -pitch.sine};
+  camera.focal_px = rig.focal_px;
+  camera.cx_px = (rig.width - 1) / 2.0;
+  camera.cy_px = (rig.height - 1) / 2.0;
+  return camera;
+}
+
+Camera right_camera(const Rig& rig, double row_offset_px) {
+  Camera camera = left_camera(rig);
+  camera.origin = camera.origin + camera.right * rig.baseline_m;
+  camera.cy_px += row_offset_px;
+  return camera;
+}
+
+RoadModel plane_model(const Rig& rig) {
+  // On Z = 0 the ray's depth is -height / direction.z, and direction.z is affine in (u, v).
+  const Camera camera = left_camera(rig);
+  const double scale = -rig.baseline_m / rig.camera_height_m;
+  RoadModel plane;
+  plane.a1 = scale * camera.down.z;
+  plane.a2 = scale * camera.right.z;
+  plane.a0 = scale * rig.focal_px * camera.forward.z - plane.a1 * camera.cy_px - plane.a2 * camera.cx_px;
+  return plane;
+}
+
+double paper_roll(const RoadModel& plane) {
+  if (plane.a1 == 0) return plane.a2 == 0 ? 0.0 : std::numbers::pi / 2;
+  return std::atan(-plane.a2 / plane.a1);
+}
+
+FootprintModel::FootprintModel(const Camera& camera, double to_middle_m)
+    : camera_(camera), to_middle_m_(to_middle_m) {
+  const double height = camera.origin.z + camera.right.z * to_middle_m;
+  inverse_depth_per_column_ = -camera.right.z / (height * camera.focal_px);
+  inverse_depth_per_row_ = -camera.down.z / (height * camera.focal_px);
+}
+
+Footprint FootprintModel::at(double depth, double u, double v) const {
+  // The point is C + Z·D; its derivative is Z·D' − Z²·(1/Z)'·D. Far to the sides D leads across the road,
+  // too. That part counts for a third only, for the several rays of a pixel average over it; it would blur
+  // the distance.
+  const double column = (u - camera_.cx_px) / camera_.focal_px - to_middle_m_ / depth;
+  const double row = (v - camera_.cy_px) / camera_.focal_px;
+  const Vec3 sight = camera_.forward + camera_.down * row + camera_.right * (column / 3);
+  const double across = depth / camera_.focal_px;
+  const Vec3 per_column = camera_.right * across + sight * (-depth * depth * inverse_depth_per_column_);
+  const Vec3 per_row = camera_.down * across + sight * (-depth * depth * inverse_depth_per_row_);
+  return {std::sqrt(per_column.x * per_column.x + per_row.x * per_row.x),
+          std::sqrt(per_column.y * per_column.y + per_row.y * per_row.y)};
+}
+
+}  // namespace roadstereo::synth

@@ -1,0 +1,116 @@
+#include "synth/degradation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "synth/hash.hpp"
+
+namespace roadstereo::synth {
+namespace {
+
+constexpr int rows_per_band = 16;
+
+std::vector<double> gaussian_weights(double deviation) {
+  const int reach = std::max(1, static_cast<int>(std::ceil(4 * deviation)));
+  std::vector<double> weights;
+  double sum = 0;
+  for (int i = -reach; i <= reach; ++i) {
+    weights.push_back(std::exp(-0.5 * i * i / (deviation * deviation)));
+    sum += weights.back();
+  }
+  for (double& weight : weights) weight /= sum;
+  return weights;
+}
+
+/// Filters along the rows (columns when `vertical`); beyond the border the last pixel goes on.
+void filter(const Image<float>& in, const std::vector<double>& weights, bool vertical, int threads,
+            Image<float>& out) {
+  const int reach = static_cast<int>(weights.size() / 2);
+  out.resize(in.width(), in.height());
+  parallel_rows(in.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int v = first; v < last; ++v) {
+      for (int u = 0; u < in.width(); ++u) {
+        double sum = 0;
+        for (int i = -reach; i <= reach; ++i) {
+          const int column = vertical ? u : std::clamp(u + i, 0, in.width() - 1);
+          const int row = vertical ? std::clamp(v + i, 0, in.height() - 1) : v;
+          sum += weights[static_cast<std::size_t>(i + reach)] * static_cast<double>(in(column, row));
+        }
+        out(u, v) = static_cast<float>(sum);
+      }
+    }
+  });
+}
+
+double bilinear(const Image<float>& image, double u, double v) {
+  u = std::clamp(u, 0.0, image.width() - 1.0);
+  v = std::clamp(v, 0.0, image.height() - 1.0);
+  const int left = std::min(static_cast<int>(u), image.width() - 2);
+  const int top = std::min(static_cast<int>(v), image.height() - 2);
+  const double a = u - left;
+  const double b = v - top;
+  const auto at = [&](int du, int dv) { return static_cast<double>(image(left + du, top + dv)); };
+  return (1 - b) * ((1 - a) * at(0, 0) + a * at(1, 0)) + b * ((1 - a) * at(0, 1) + a * at(1, 1));
+}
+
+void motion_blur(const Image<float>& in, double length, double angle_deg, int threads, Image<float>& out) {
+  const int taps = 2 * static_cast<int>(std::ceil(length)) + 1;
+  const double angle = angle_deg * std::numbers::pi / 180;
+  const double step_u = std::cos(angle) * length / taps;
+  const double step_v = std::sin(angle) * length / taps;
+  out.resize(in.width(), in.height());
+  parallel_rows(in.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int v = first; v < last; ++v) {
+      for (int u = 0; u < in.width(); ++u) {
+        double sum = 0;
+        for (int i = 0; i < taps; ++i) {
+          const double along = i - (taps - 1) / 2.0;
+          sum += bilinear(in, u + along * step_u, v + along * step_v);
+        }
+        out(u, v) = static_cast<float>(sum / taps);
+      }
+    }
+  });
+}
+
+Frame digitise(const Image<float>& light, double factor, double noise_grey, std::uint64_t noise_key,
+               int threads) {
+  Frame frame;
+  frame.width = light.width();
+  frame.height = light.height();
+  frame.bytes.resize(light.pixels());
+  parallel_rows(light.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int v = first; v < last; ++v) {
+      for (int u = 0; u < light.width(); ++u) {
+        const auto pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(light.width()) +
+                           static_cast<std::size_t>(u);
+        double grey = static_cast<double>(light(u, v)) * factor;
+        if (noise_grey > 0) grey += noise_grey * normal_value(mix64(noise_key) + pixel);
+        frame.bytes[pixel] = static_cast<std::uint8_t>(std::clamp(grey + 0.5, 0.0, 255.0));
+      }
+    }
+  });
+  return frame;
+}
+
+}  // namespace
+
+Frame take_picture(Image<float>& light, const Degradation& degradation, double gain, std::uint64_t noise_key,
+                   int threads) {
+  Image<float> scratch;
+  if (degradation.blur_px > 0) {
+    const std::vector<double> weights = gaussian_weights(degradation.blur_px);
+    filter(light, weights, false, threads, scratch);
+    filter(scratch, weights, true, threads, light);
+  }
+  if (degradation.motion_blur_px > 0) {
+    motion_blur(light, degradation.motion_blur_px, degradation.motion_blur_angle_deg, threads, scratch);
+    std::swap(light, scratch);
+  }
+  return digitise(light, gain * degradation.exposure, degradation.noise_grey, noise_key, threads);
+}
+
+}  // namespace roadstereo::synth

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "roadstereo/synth.hpp"
+#include "synth/hash.hpp"
+
+namespace roadstereo::synth {
+
+/// A crack as roads have them: it wanders, in steps of about 3 cm, around its heading (0 = along the road).
+inline std::vector<std::array<double, 2>> wandering_line(double x, double y, double heading_rad,
+                                                         double length_m, std::uint64_t seed) {
+  constexpr double step = 0.03;
+  Draws draws(seed);
+  std::vector<std::array<double, 2>> points{{x, y}};
+  double bend = 0;
+  for (double done = 0; done < length_m; done += step) {
+    // Bends are pulled back, so that the line wanders but does not curl up.
+    bend = 0.75 * bend + draws.uniform(-0.6, 0.6);
+    x += step * std::sin(heading_rad + bend);
+    y += step * std::cos(heading_rad + bend);
+    points.push_back({x, y});
+  }
+  return points;
+}
+
+/// The families of rigs that the scenes are drawn from.
+Rig uav_rig();
+Rig street_rig();
+Rig close_rig();
+
+}  // namespace roadstereo::synth

@@ -1,0 +1,223 @@
+#include "synth/texture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "synth/hash.hpp"
+#include "synth/noise.hpp"
+
+namespace roadstereo::synth {
+namespace {
+
+constexpr double road_grey = 112;
+constexpr double paint_grey = 205;
+
+/// Brightness of other ground against the road's.
+constexpr double pavement_tone = 1.2;
+constexpr double kerbstone_tone = 1.5;
+constexpr double verge_tone = 0.72;
+
+/// The road ends here; beyond is earth and grass.
+constexpr double verge_x = -5.4;
+
+/// Sun in the left, in front of the camera and 45 degrees high: walls turned away from it are dark.
+constexpr Vec3 to_sun{-0.5, 0.5, 0.70710678118654752};
+constexpr double ambient = 0.45;
+
+/// Wavelengths below `finest` footprints are invisible, above `coarsest` footprints fully there.
+constexpr double finest = 1.6;
+constexpr double full = 3.4;
+
+/// Share of a structure of the given wavelength that a pixel resolves.
+double resolved(double wavelength, double footprint) {
+  return smooth_step((wavelength / footprint - finest) / (full - finest));
+}
+
+/// 1 inside |x| < half, 0 outside, with an edge as wide as a pixel and a half.
+double bar(double x, double half, double footprint) {
+  const double width = std::max(1.5 * footprint, 0.002);
+  return smooth_step((half - std::abs(x)) / width + 0.5);
+}
+
+double distance_to_multiple(double x, double period) {
+  return x - period * std::round(x / period);
+}
+
+double lambert(double slope_x, double slope_y) {
+  const double towards = (to_sun.z - slope_x * to_sun.x - slope_y * to_sun.y) /
+                         std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+  return ambient + (1 - ambient) * std::max(0.0, towards) / to_sun.z;
+}
+
+double fractal_noise(double x, double y, double z, std::uint32_t seed) {
+  return z == 0 ? gradient_noise(x, y, seed) : gradient_noise(x, y, z, seed);
+}
+
+}  // namespace
+
+Texture::Texture(const Road& road, const HeightField& field)
+    : field_(field),
+      contrast_(road.texture_contrast),
+      lane_marking_(road.lane_marking),
+      kerb_x_(no_hit),
+      seed_(mix32(road.seed + 0x51ed270bu)) {
+  for (const Kerb& kerb : road.kerbs) kerb_x_ = std::min(kerb_x_, kerb.x_m);
+}
+
+double Texture::octaves(double x, double y, double z, double footprint, std::uint32_t seed) const {
+  // The finest grain that can be seen is the strongest, and above it strength falls slowly: so a window of
+  // some pixels sees the same roughness at every distance, and the road does not look cloudy.
+  constexpr double amplitude = 0.078 / gradient_noise_deviation;
+  constexpr double decay_per_octave = 0.80;
+  constexpr double shortest = 0.001;
+  constexpr int count = 15;
+  constexpr double octaves_used = 6;
+  const double octave_of_finest = std::max(0.0, std::log2(4 * footprint / shortest));
+  // The turn and the shift of the lattice from octave to octave keep its lines from showing.
+  constexpr double turn_cosine = 0.8;
+  constexpr double turn_sine = 0.6;
+  double sum = 0;
+  double wavelength = shortest;
+  double strength = 0;
+  double lx = x;
+  double ly = y;
+  for (int k = 0; k < count; ++k, wavelength *= 2) {
+    const double above = k - octave_of_finest;
+    if (above >= octaves_used) break;
+    strength = above <= 0 ? 1 : above < 1 ? std::pow(decay_per_octave, above) : strength * decay_per_octave;
+    const double next = turn_cosine * lx - turn_sine * ly;
+    ly = turn_sine * lx + turn_cosine * ly;
+    lx = next;
+    const double weight =
+        amplitude * strength * resolved(wavelength, footprint) * std::min(1.0, octaves_used - above);
+    if (weight <= 0) continue;
+    // Two lattice steps make one period.
+    const double scale = 2 / wavelength;
+    sum += weight *
+           fractal_noise(lx * scale + 0.37 * k, ly * scale, z * scale, seed + static_cast<std::uint32_t>(k));
+  }
+  return sum;
+}
+
+double Texture::aggregate(double x, double y, double z, const Footprint& footprint) const {
+  // Seen at a flat angle a pixel is long and narrow. Then the grain that survives is long and narrow too: the
+  // streaks that paver and tyres leave along the road, in classes of 1, 4, 16 and 64 times as long as wide.
+  const double narrow = std::min(footprint.x, footprint.y);
+  const double level = std::clamp(0.5 * std::log2(footprint.y / narrow), 0.0, 3.0);
+  const double class_below = std::floor(level);
+  // One class rules over half of the way to the next, which saves the other's cost.
+  const double blend = smooth_step(2 * (level - class_below) - 0.5);
+  double sum = 0;
+  for (int i = 0; i < 2; ++i) {
+    const double share = i == 0 ? 1 - blend : blend;
+    if (share == 0) continue;
+    const int stretch_class = static_cast<int>(class_below) + i;
+    const double stretch = std::ldexp(1.0, 2 * stretch_class);
+    // Half of the stretched length: the rays within a pixel average what is left.
+    const double width = std::max(footprint.x, 0.6 * footprint.y / stretch);
+    sum += std::sqrt(share) *
+           octaves(x, y / stretch, z, width, seed_ + 1000u * static_cast<std::uint32_t>(stretch_class));
+  }
+  return sum;
+}
+
+double Texture::stones(double x, double y, double cell, double footprint, std::uint32_t seed) const {
+  const double weight = resolved(cell, 2 * footprint);
+  if (weight == 0) return 0;
+  const double cx = x / cell;
+  const double cy = y / cell;
+  const double edge = std::max(0.15, 1.5 * footprint / cell);
+  // Stones keep to the middle of their cell, so that only the four nearest cells can reach a point.
+  const double first_x = std::floor(cx - 0.5);
+  const double first_y = std::floor(cy - 0.5);
+  double sum = 0;
+  for (int i = 0; i < 4; ++i) {
+    const double ix = first_x + (i & 1);
+    const double iy = first_y + (i >> 1);
+    const std::uint32_t hash =
+        mix32(static_cast<std::uint32_t>(static_cast<std::int64_t>(ix)) * 0x9e3779b1u +
+              static_cast<std::uint32_t>(static_cast<std::int64_t>(iy)) * 0x85ebca77u + seed);
+    const auto part = [&](int shift) { return static_cast<double>((hash >> shift) & 255u) / 255.0; };
+    const double dx = cx - ix - 0.3 - 0.4 * part(0);
+    const double dy = cy - iy - 0.3 - 0.4 * part(8);
+    const double radius = 0.18 + 0.16 * part(16);
+    const double distance = std::sqrt(dx * dx + dy * dy);
+    sum += (part(24) - 0.42) * smooth_step((radius - distance) / edge + 0.5);
+  }
+  return weight * 0.4 * sum;
+}
+
+double Texture::patches(double x, double y, double footprint) const {
+  const double noise = gradient_noise(x / 0.9, y / 1.6, seed_ + 77u) / gradient_noise_deviation;
+  const double edge = std::max(0.25, footprint * 4);
+  return -0.16 * smooth_step((noise - 1.4) / edge + 0.5);
+}
+
+double Texture::pavement(double x, double y, const Footprint& footprint) const {
+  constexpr double kerbstone_width = 0.27;  // with its face
+  constexpr double kerbstone_length = 1;
+  constexpr double slab = 0.5;
+  constexpr double half_joint = 0.006;
+  const double beyond = x - kerb_x_ - kerbstone_width;
+  const double length = beyond < 0 ? kerbstone_length : slab;
+  const double along = bar(distance_to_multiple(y, length), half_joint, footprint.y);
+  const double across =
+      beyond < -half_joint ? 0 : bar(distance_to_multiple(beyond, slab), half_joint, footprint.x);
+  const double sharp = resolved(length, 3 * std::max(footprint.x, footprint.y));
+  const double tone = pavement_tone + (kerbstone_tone - pavement_tone) *
+                                          bar(beyond + kerbstone_width / 2, kerbstone_width / 2, footprint.x);
+  return tone * (1 - 0.35 * sharp * std::max(across, along));
+}
+
+double Texture::verge(double x, double y, const Footprint& footprint) const {
+  // The asphalt ends in a ragged line.
+  const double raggedness = 0.12 * gradient_noise(y / 0.7, 0.5, seed_ + 78u) / gradient_noise_deviation;
+  const double width = std::max(0.04, 1.5 * footprint.x);
+  return smooth_step((verge_x + raggedness - x) / width + 0.5);
+}
+
+double Texture::paint(double x, double y, const Footprint& footprint) const {
+  constexpr double dashes_x = -1.5;
+  constexpr double edge_line_x = -5;
+  constexpr double half_width = 0.06;
+  constexpr double period = 4;
+  constexpr double half_dash = 1;
+  const double edge_line = bar(x - edge_line_x, half_width, footprint.x);
+  const double dashes = bar(x - dashes_x, half_width, footprint.x);
+  if (dashes == 0) return edge_line;
+  return dashes * bar(distance_to_multiple(y - 2.5, period), half_dash, footprint.y);
+}
+
+double Texture::grey(const SurfacePoint& point, const Footprint& footprint) const {
+  // Along a kerb's face the texture follows the face, and within damage it follows the depth: walls are not
+  // smeared.
+  const double x = point.x + field_.kerb_rise(point.x);
+  const double fine = std::min(footprint.x, footprint.y);
+  const double coarse = std::max(footprint.x, footprint.y);
+  double grain = aggregate(x, point.y, point.offset, footprint);
+  grain += stones(x, point.y, 0.012, coarse, seed_ + 11u) + stones(x, point.y, 0.005, coarse, seed_ + 12u);
+  double base = 1;
+  if (x > kerb_x_) {
+    base = pavement(x, point.y, footprint);
+  } else {
+    const double wild = verge(x, point.y, footprint);
+    base += wild * (verge_tone - 1);
+    grain = grain * (1 + 0.5 * wild) + patches(x, point.y, fine) * (1 - wild);
+  }
+  double grey = road_grey * base * std::max(0.15, 1 + contrast_ * grain);
+  if (lane_marking_) {
+    // Paint is gone where the road is.
+    const double share = paint(x, point.y, footprint) * smooth_step((point.light - 0.6) / 0.4) *
+                         std::clamp(0.85 + 1.5 * contrast_ * grain, 0.2, 1.0);
+    grey += share * (paint_grey * (1 + 0.4 * contrast_ * grain) - grey);
+  }
+  return grey * point.light * lambert(point.slope_x, point.slope_y);
+}
+
+double sky_grey(const Vec3& direction) {
+  const double flat = std::hypot(direction.x, direction.y);
+  return 190 + 40 * std::clamp(direction.z / std::max(flat, 1e-9), 0.0, 1.0);
+}
+
+}  // namespace roadstereo::synth

@@ -1,0 +1,39 @@
+// Row alignment of a pair, against known vertical offsets.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "roadstereo/alignment.hpp"
+#include "roadstereo/synth.hpp"
+
+namespace roadstereo {
+namespace {
+
+RowAlignment measure(double row_offset_px) {
+  synth::Scene scene = synth::named_scene("uav");
+  scene.supersampling = 2;
+  scene.degradation.row_offset_px = row_offset_px;
+  const synth::SyntheticPair pair = synth::render(scene);
+  GreyImage left, right;
+  to_grey(pair.left.view(), 0, left);
+  to_grey(pair.right.view(), 0, right);
+  return measure_row_alignment(left, right);
+}
+
+TEST(RowAlignment, FindsTheOffsetToATenthOfAPixel) {
+  for (const double offset : {0.0, 0.5, -1.3, 4.0}) {
+    const RowAlignment rows = measure(offset);
+    ASSERT_TRUE(rows.known());
+    EXPECT_NEAR(rows.median_px, offset, 0.1);
+    EXPECT_LT(rows.spread_px, 0.3);
+  }
+}
+
+TEST(RowAlignment, KnowsNothingOfPicturesWithoutTexture) {
+  const GreyImage flat(200, 120, 1000);
+  EXPECT_FALSE(measure_row_alignment(flat, flat).known());
+}
+
+}  // namespace
+}  // namespace roadstereo

@@ -1,0 +1,450 @@
+// The command line from outside: exit code, what it prints, what it leaves on disk.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "roadstereo/io/image_file.hpp"
+#include "roadstereo/options.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+std::string read_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+std::set<std::string> names_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  return names;
+}
+
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() /
+              (std::string("roadstereo_cli_") + test->name() + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// Runs the binary in the test's folder; `before` is shell code that prepares its process.
+  Outcome run(const std::string& arguments, const std::string& before = "") const {
+    const fs::path out = folder_ / "stdout.txt";
+    const fs::path err = folder_ / "stderr.txt";
+    const std::string command = "cd '" + folder_.string() + "' && { " + before + " '" ROADSTEREO_BINARY "' " +
+                                arguments + " >'" + out.string() + "' 2>'" + err.string() + "'; }";
+    const int status = std::system(command.c_str());
+    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
+    fs::remove(out);
+    fs::remove(err);
+    return outcome;
+  }
+
+  /// A small pair with calibration and truth in the folder "road".
+  void make_road() const {
+    const Outcome outcome = run("synth --scene demo --size 320x180 --output road --quiet");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+
+  Outcome inspect(const std::string& arguments = "--calibration road/calibration.yaml") const {
+    return run("inspect road/left.png road/right.png --output result " + arguments);
+  }
+
+  nlohmann::json json_file(const std::string& name) const {
+    return nlohmann::json::parse(read_text(folder_ / name));
+  }
+
+  fs::path folder_;
+};
+
+/// One sentence on stderr, nothing on stdout.
+void expect_complaint(const Outcome& outcome, int exit_code, const std::string& part) {
+  EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err.rfind("roadstereo: ", 0), 0U) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find(part), std::string::npos) << "no \"" << part << "\" in: " << outcome.err;
+}
+
+const std::set<std::string> result_files = {"disparity.tiff",      "transformed.tiff",      "disparity.png",
+                                            "disparity_color.png", "transformed_color.png", "sheet.png",
+                                            "result.json"};
+
+TEST_F(CommandLine, HelpIsCompleteWithExamples) {
+  const Outcome whole = run("--help");
+  EXPECT_EQ(whole.exit_code, 0);
+  for (const char* part : {"inspect", "synth", "engines", "Example"}) {
+    EXPECT_NE(whole.out.find(part), std::string::npos) << part;
+  }
+  for (const std::string command : {"inspect", "synth", "engines"}) {
+    const Outcome help = run(command + " --help");
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_NE(help.out.find("roadstereo " + command), std::string::npos) << "an example of " << command;
+  }
+}
+
+TEST_F(CommandLine, HelpOfInspectNamesEveryOption) {
+  const Outcome help = run("inspect --help");
+  for (const auto& option : roadstereo::list_options(roadstereo::preset("default"))) {
+    EXPECT_NE(help.out.find(option.key), std::string::npos) << option.key;
+  }
+}
+
+TEST_F(CommandLine, VersionIsPrinted) {
+  const Outcome outcome = run("--version");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.out.rfind("roadstereo ", 0), 0U);
+}
+
+TEST_F(CommandLine, WrongUsageExitsWithTwo) {
+  expect_complaint(run(""), 2, "subcommand");
+  expect_complaint(run("flatten"), 2, "flatten");
+  expect_complaint(run("inspect left.png"), 2, "RIGHT");
+  expect_complaint(run("inspect left.png right.png"), 2, "--output");
+  expect_complaint(run("inspect left.png right.png --output result --colour red"), 2, "--colour");
+  expect_complaint(run("inspect left.png right.png more.png --output result"), 2, "more.png");
+  expect_complaint(run("inspect left.png right.png --output result --threads many"), 2, "--threads");
+}
+
+TEST_F(CommandLine, EnginesAreListed) {
+  const Outcome table = run("engines");
+  EXPECT_EQ(table.exit_code, 0);
+  const auto list = nlohmann::json::parse(run("engines --json").out);
+  ASSERT_FALSE(list["engines"].empty());
+  EXPECT_EQ(list["auto"], list["engines"][0]["name"]);
+  for (const auto& engine : list["engines"]) {
+    EXPECT_NE(table.out.find(engine["name"].get<std::string>()), std::string::npos);
+  }
+}
+
+TEST_F(CommandLine, SynthWritesImagesAndTruth) {
+  make_road();
+  const std::set<std::string> expected = {
+      "left.png",          "right.png",        "calibration.yaml", "truth_disparity.tiff",
+      "truth_visible.png", "truth_labels.png", "truth.json"};
+  EXPECT_EQ(names_in(folder_ / "road"), expected);
+  const auto truth = json_file("road/truth.json");
+  EXPECT_TRUE(truth["plane"]["a1"].is_number());
+  EXPECT_TRUE(truth["roll_rad"].is_number());
+  EXPECT_EQ(truth["rig"]["width"], 320);
+  EXPECT_FALSE(truth["damages"].empty());
+}
+
+TEST_F(CommandLine, SynthFramesAreNumbered) {
+  const Outcome outcome = run("synth --seed 5 --degraded --frames 2 --size 160x120 --output flight");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(names_in(folder_ / "flight/left"), (std::set<std::string>{"000000.png", "000001.png"}));
+  EXPECT_TRUE(fs::exists(folder_ / "flight/truth_disparity/000001.tiff"));
+  EXPECT_NE(read_text(folder_ / "flight/left/000000.png"), read_text(folder_ / "flight/left/000001.png"));
+}
+
+TEST_F(CommandLine, SynthIsRepeatable) {
+  for (const std::string name : {"one --threads 1", "two --threads 2"}) {
+    ASSERT_EQ(run("synth --seed 9 --size 160x120 --output " + name).exit_code, 0);
+  }
+  for (const std::string& name : names_in(folder_ / "one")) {
+    EXPECT_EQ(read_text(folder_ / "one" / name), read_text(folder_ / "two" / name)) << name;
+  }
+}
+
+TEST_F(CommandLine, SynthFollowsItsOptions) {
+  ASSERT_EQ(run("synth --size 160x120 --pitch 90 --roll 3 --height 1.5 --focal 200 --baseline 0.2 --noise 2 "
+                "--blur 0.5 "
+                "--gain 0.1 --exposure 1.2 --output road")
+                .exit_code,
+            0);
+  const auto truth = json_file("road/truth.json");
+  EXPECT_EQ(truth["rig"]["pitch_deg"], 90);
+  EXPECT_EQ(truth["rig"]["focal_px"], 200);
+  EXPECT_EQ(truth["degradation"]["noise_grey"], 2);
+  EXPECT_EQ(truth["degradation"]["exposure"], 1.2);
+}
+
+TEST_F(CommandLine, SynthRefusesWhatItCannotMake) {
+  expect_complaint(run("synth --scene dmeo --output road"), 2, "demo");
+  expect_complaint(run("synth --size 640 --output road"), 2, "640x360");
+  expect_complaint(run("synth --frames 0 --output road"), 2, "--frames");
+  expect_complaint(run("synth --scene demo --seed 1 --output road"), 2, "--seed");
+  expect_complaint(run("synth"), 2, "--output");
+  EXPECT_TRUE(names_in(folder_).empty());
+}
+
+TEST_F(CommandLine, SynthListsItsScenes) {
+  const Outcome outcome = run("synth --list");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.out.find("demo\n"), std::string::npos);
+}
+
+TEST_F(CommandLine, InspectLeavesTheResult) {
+  make_road();
+  const Outcome outcome = inspect();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(names_in(folder_ / "result"), result_files);
+  for (const char* part : {"roll", "valid", "sigma_d", "ms", "result/sheet.png"}) {
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part;
+  }
+  EXPECT_LE(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 24) << "more than one screen";
+}
+
+TEST_F(CommandLine, InspectFindsTheTrueRoad) {
+  make_road();
+  ASSERT_EQ(inspect().exit_code, 0);
+  const auto truth = json_file("road/truth.json");
+  const auto result = json_file("result/result.json");
+  for (const double v : {60.0, 179.0}) {
+    for (const double u : {0.0, 319.0}) {
+      const auto at = [&](const nlohmann::json& plane) {
+        return plane["a0"].get<double>() + plane["a1"].get<double>() * v + plane["a2"].get<double>() * u;
+      };
+      EXPECT_NEAR(at(result["road_model"]), at(truth["plane"]), 0.2) << u << ", " << v;
+    }
+  }
+  EXPECT_NEAR(result["roll_rad"].get<double>(), truth["roll_rad"].get<double>(), 0.005);
+  EXPECT_NEAR(result["camera_height_m"].get<double>(), truth["rig"]["camera_height_m"].get<double>(), 0.05);
+  const double pitch_deg = result["camera_pitch_rad"].get<double>() * 180 / 3.14159265358979;
+  EXPECT_NEAR(pitch_deg, truth["rig"]["pitch_deg"].get<double>(), 1.0);
+}
+
+TEST_F(CommandLine, ResultNamesEveryOptionAndFigure) {
+  make_road();
+  ASSERT_EQ(inspect("--calibration road/calibration.yaml --preset paper --threads 2").exit_code, 0);
+  const auto result = json_file("result/result.json");
+  for (const char* key : {"version",
+                          "inputs",
+                          "size",
+                          "preset",
+                          "options",
+                          "engine",
+                          "threads",
+                          "calibration",
+                          "road_model",
+                          "alpha0",
+                          "alpha1",
+                          "roll_rad",
+                          "roll_stderr_rad",
+                          "roll_observable",
+                          "delta_p",
+                          "delta_t",
+                          "disparities",
+                          "valid_fraction",
+                          "sigma_d_px",
+                          "sigma_d_all_px",
+                          "rows",
+                          "road_model_before_matching",
+                          "ms",
+                          "mde_per_s",
+                          "warnings"}) {
+    EXPECT_TRUE(result.contains(key)) << key;
+  }
+  for (const auto& option : roadstereo::list_options(roadstereo::preset("paper"))) {
+    EXPECT_TRUE(result["options"].contains(option.key)) << option.key;
+  }
+  EXPECT_EQ(result["preset"], "paper");
+  EXPECT_EQ(result["threads"], 2);
+}
+
+TEST_F(CommandLine, WithoutCalibrationNothingIsMetric) {
+  make_road();
+  const Outcome outcome = inspect("");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto result = json_file("result/result.json");
+  EXPECT_TRUE(result["calibration"].is_null());
+  EXPECT_TRUE(result["camera_height_m"].is_null());
+  EXPECT_TRUE(result["camera_pitch_rad"].is_null());
+  EXPECT_EQ(outcome.out.find(" m above"), std::string::npos);
+}
+
+TEST_F(CommandLine, QuietPrintsNothingAndJsonPrintsTheResult) {
+  make_road();
+  const Outcome quiet = inspect("--quiet");
+  EXPECT_EQ(quiet.exit_code, 0) << quiet.err;
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  const Outcome json = inspect("--json");
+  EXPECT_EQ(json.out, read_text(folder_ / "result/result.json"));
+}
+
+TEST_F(CommandLine, ThreadsDoNotChangeTheResult) {
+  make_road();
+  ASSERT_EQ(inspect("--threads 1").exit_code, 0);
+  const std::string one = read_text(folder_ / "result/disparity.tiff");
+  ASSERT_EQ(inspect("--threads 3").exit_code, 0);
+  EXPECT_EQ(one, read_text(folder_ / "result/disparity.tiff"));
+}
+
+TEST_F(CommandLine, SetTakesOneOrSeveral) {
+  make_road();
+  const std::string pair = "road/left.png road/right.png ";
+  ASSERT_EQ(run("inspect --set matcher.block_radius=4 " + pair + "--output result").exit_code, 0);
+  EXPECT_EQ(json_file("result/result.json")["options"]["matcher.block_radius"], 4);
+  ASSERT_EQ(inspect("--set matcher.block_radius=3 matcher.sub_pixel=false --set check_rows=false").exit_code,
+            0);
+  const auto options = json_file("result/result.json")["options"];
+  EXPECT_EQ(options["matcher.block_radius"], 3);
+  EXPECT_EQ(options["matcher.sub_pixel"], false);
+  EXPECT_EQ(options["check_rows"], false);
+}
+
+TEST_F(CommandLine, BadSettingsAreRefused) {
+  make_road();
+  expect_complaint(inspect("--set matcher.sigma_spce=2"), 2, "matcher.sigma_space");
+  expect_complaint(inspect("--set matcher.sigma_space"), 2, "key=value");
+  expect_complaint(inspect("--set matcher.sigma_space=wide"), 2, "wide");
+  expect_complaint(inspect("--set matcher.block_radius=-3"), 2, "block_radius");
+  expect_complaint(inspect("--preset papre"), 2, "paper");
+  expect_complaint(inspect("--engine quantum"), 2, "reference");
+  expect_complaint(inspect("--threads -1"), 2, "threads");
+  EXPECT_FALSE(fs::exists(folder_ / "result"));
+}
+
+TEST_F(CommandLine, UnreadableImagesAreRefused) {
+  make_road();
+  write_text(folder_ / "text.png", "this is no image");
+  const std::string output = " --output result";
+  expect_complaint(run("inspect absent.png road/right.png" + output), 2, "absent.png");
+  expect_complaint(run("inspect road/left.png text.png" + output), 2, "text.png");
+  expect_complaint(run("inspect road road/right.png" + output), 2, "road");
+  write_text(folder_ / "cut.png", read_text(folder_ / "road/left.png").substr(0, 5000));
+  expect_complaint(run("inspect cut.png road/right.png" + output), 2, "cut.png");
+  EXPECT_FALSE(fs::exists(folder_ / "result"));
+}
+
+TEST_F(CommandLine, PairsThatAreNoneAreRefused) {
+  make_road();
+  ASSERT_EQ(run("synth --size 300x180 --output other").exit_code, 0);
+  write_text(folder_ / "black.pgm", "P5 320 180 255\n" + std::string(320 * 180, '\0'));
+  const std::string output = " --output result";
+  const Outcome sizes = run("inspect road/left.png other/right.png" + output);
+  expect_complaint(sizes, 2, "320×180");
+  expect_complaint(sizes, 2, "300×180");
+  expect_complaint(run("inspect black.pgm black.pgm" + output), 2, "");
+  expect_complaint(run("inspect road/left.png black.pgm" + output), 2, "right");
+  expect_complaint(run("inspect road/left.png road/left.png" + output), 2, "same");
+  expect_complaint(run("inspect road/right.png road/left.png" + output), 2, "left and right look swapped");
+  EXPECT_FALSE(fs::exists(folder_ / "result"));
+}
+
+TEST_F(CommandLine, AbsurdCalibrationsAreRefused) {
+  make_road();
+  const auto complaint = [&](const std::string& figures, const std::string& part) {
+    write_text(folder_ / "bad.yaml", figures);
+    expect_complaint(inspect("--calibration bad.yaml"), 2, part);
+    expect_complaint(inspect("--calibration bad.yaml"), 2, "bad.yaml");
+  };
+  const std::string centre = "cx_px: 159.5\ncy_px: 89.5\n";
+  const std::string size = "width: 320\nheight: 180\n";
+  complaint("focal_px: .nan\nbaseline_m: 0.12\n" + centre + size, "nan");
+  complaint("focal_px: 175\nbaseline_m: 0\n" + centre + size, "0");
+  complaint("focal_px: 175\nbaseline_m: 60\n" + centre + size, "60");
+  complaint("focal_px: 3\nbaseline_m: 0.12\n" + centre + size, "3");
+  complaint("focal_px: 175\nbaseline_m: 0.12\n" + centre + "width: 640\nheight: 360\n", "640");
+  complaint("what: ever\n", "");
+  expect_complaint(inspect("--calibration absent.yaml"), 2, "absent.yaml");
+  EXPECT_FALSE(fs::exists(folder_ / "result"));
+}
+
+TEST_F(CommandLine, RosPairIsTwoFiles) {
+  make_road();
+  const auto camera = [](const std::string& tx) {
+    return "image_width: 320\nimage_height: 180\ncamera_name: camera\n"
+           "camera_matrix: {rows: 3, cols: 3, data: [175, 0, 159.5, 0, 175, 89.5, 0, 0, 1]}\n"
+           "distortion_model: plumb_bob\n"
+           "distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\n"
+           "rectification_matrix: {rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}\n"
+           "projection_matrix: {rows: 3, cols: 4, data: [175, 0, 159.5, " +
+           tx + ", 0, 175, 89.5, 0, 0, 0, 1, 0]}\n";
+  };
+  write_text(folder_ / "l.yaml", camera("0"));
+  write_text(folder_ / "r.yaml", camera("-21"));
+  for (const std::string files :
+       {"--calibration l.yaml r.yaml", "--calibration l.yaml --calibration r.yaml"}) {
+    const Outcome outcome = inspect(files + " --json");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NEAR(nlohmann::json::parse(outcome.out)["calibration"]["baseline_m"].get<double>(), 0.12, 1e-9);
+  }
+}
+
+TEST_F(CommandLine, OutputFolderMustBeWritable) {
+  make_road();
+  write_text(folder_ / "file", "in the way");
+  const Outcome outcome = run("inspect road/left.png road/right.png --output file/result");
+  expect_complaint(outcome, 2, "file");
+  EXPECT_EQ(read_text(folder_ / "file"), "in the way");
+}
+
+TEST_F(CommandLine, FullDiskLeavesNothing) {
+  make_road();
+  const auto before = names_in(folder_);
+  // A limit on the size of files makes writes fail as a full disk does.
+  const Outcome outcome =
+      run("inspect road/left.png road/right.png --output result", "trap '' XFSZ; ulimit -f 8;");
+  expect_complaint(outcome, 1, "");
+  EXPECT_EQ(names_in(folder_), before);
+}
+
+TEST_F(CommandLine, FullDiskKeepsAnEarlierResult) {
+  make_road();
+  ASSERT_EQ(inspect("--quiet").exit_code, 0);
+  const std::string earlier = read_text(folder_ / "result/result.json");
+  run("inspect road/left.png road/right.png --output result", "trap '' XFSZ; ulimit -f 8;");
+  EXPECT_EQ(names_in(folder_ / "result"), result_files);
+  EXPECT_EQ(read_text(folder_ / "result/result.json"), earlier);
+}
+
+TEST_F(CommandLine, FileNamesNeedNotBeUtf8) {
+  make_road();
+  fs::copy_file(folder_ / "road/left.png", folder_ / "left\xff.png");
+  const Outcome outcome = run("inspect 'left\xff.png' road/right.png --output result --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(nlohmann::json::accept(outcome.out));
+}
+
+/// The 8-bit image as 16-bit PGM of a 10-bit camera.
+std::string ten_bit_pgm(const roadstereo::Frame& frame) {
+  std::string text = "P5 " + std::to_string(frame.width) + " " + std::to_string(frame.height) + " 65535\n";
+  for (const std::uint8_t grey : frame.bytes) {
+    const int value = grey * 1023 / 255;
+    text += static_cast<char>(value >> 8);
+    text += static_cast<char>(value & 255);
+  }
+  return text;
+}
+
+TEST_F(CommandLine, WhiteLevelIsFoundUnlessGiven) {
+  make_road();
+  for (const std::string side : {"left", "right"}) {
+    const auto frame = roadstereo::io::read_frame((folder_ / "road" / (side + ".png")).string());
+    write_text(folder_ / (side + ".pgm"), ten_bit_pgm(frame));
+  }
+  ASSERT_EQ(run("inspect left.pgm right.pgm --output result").exit_code, 0);
+  EXPECT_EQ(json_file("result/result.json")["options"]["white_level"], 1023);
+  ASSERT_EQ(run("inspect left.pgm right.pgm --output result --set white_level=2000").exit_code, 0);
+  EXPECT_EQ(json_file("result/result.json")["options"]["white_level"], 2000);
+}
+
+}  // namespace

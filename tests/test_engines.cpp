@@ -1,0 +1,204 @@
+// Every engine of the registry against the double-precision reference, on the sizes and disparity counts that are
+// awkward for vectors, and the properties that hold whatever the engine.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/matcher.hpp"
+#include "textured_pair.hpp"
+
+namespace roadstereo {
+namespace {
+
+struct Case {
+  const char* name;
+  int width, height, disparities;
+  MatcherOptions options;
+  bool slanted_view;  ///< the target's first valid column differs from row to row
+};
+
+MatcherOptions paper_options() {
+  MatcherOptions options;
+  options.aggregation_radius = 5;
+  options.aggregation_shape = WindowShape::square;
+  options.sigma_space = 1.5;
+  options.sigma_colour = 5.5;
+  options.texture_noise = 0;
+  options.drop_range_ends = false;
+  return options;
+}
+
+MatcherOptions plain_ncc() {
+  MatcherOptions options;
+  options.aggregation_radius = 0;
+  options.block_radius = 2;
+  return options;
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const int d : {1, 7, 30, 33, 100}) {
+    all.push_back({"odd_small", 33, 35, d, MatcherOptions{}, true});
+    all.push_back({"paper_small", 129, 47, d, paper_options(), true});
+  }
+  all.push_back({"odd_large", 641, 359, 30, MatcherOptions{}, true});
+  all.push_back({"plain_ncc", 97, 61, 33, plain_ncc(), false});
+  MatcherOptions large_block;
+  large_block.block_radius = 10;
+  large_block.aggregation_radius = 10;
+  all.push_back({"large_windows", 90, 64, 20, large_block, true});
+  return all;
+}
+
+class EngineAgreement : public testing::TestWithParam<std::tuple<std::string, int>> {};
+
+TEST_P(EngineAgreement, SameWinnerAndSubPixelAsReference) {
+  const Case setting = cases()[static_cast<std::size_t>(std::get<1>(GetParam()))];
+  const double road = std::min(setting.disparities, setting.width / 2) * 0.4;
+  const auto pair = test::textured_pair(setting.width, setting.height, [&](double u, double v) {
+    return road + 2.0 * std::sin(0.05 * u) * std::cos(0.07 * v);
+  });
+  std::vector<int> first(static_cast<std::size_t>(setting.height), 0);
+  if (setting.slanted_view) {
+    for (int v = 0; v < setting.height; ++v) first[static_cast<std::size_t>(v)] = v / 4 % (setting.width / 3);
+  }
+  const MatchInput input{pair.reference, pair.target, first.data(), setting.disparities};
+  MatchMaps expected, actual;
+  make_engine("reference", 0)->match(input, setting.options, expected);
+  make_engine(std::get<0>(GetParam()), 2)->match(input, setting.options, actual);
+
+  std::size_t candidates = 0, same = 0, target_same = 0, both = 0;
+  double worst = 0;
+  for (int v = 0; v < setting.height; ++v) {
+    for (int u = 0; u < setting.width; ++u) {
+      ++candidates;
+      same += expected.winner(u, v) == actual.winner(u, v);
+      target_same += expected.target_winner(u, v) == actual.target_winner(u, v);
+      if (std::isnan(expected.disparity(u, v)) || std::isnan(actual.disparity(u, v))) continue;
+      if (expected.winner(u, v) != actual.winner(u, v)) continue;
+      ++both;
+      worst = std::max(worst, std::abs(static_cast<double>(expected.disparity(u, v)) - actual.disparity(u, v)));
+    }
+  }
+  EXPECT_GE(static_cast<double>(same), 0.999 * static_cast<double>(candidates));
+  EXPECT_GE(static_cast<double>(target_same), 0.999 * static_cast<double>(candidates));
+  EXPECT_LE(worst, 0.01);
+  if (setting.disparities >= 7 && setting.width > 100) {
+    EXPECT_GT(both, candidates / 4);
+  }
+}
+
+std::vector<std::string> engine_names() {
+  std::vector<std::string> names;
+  for (const EngineInfo& info : engines()) {
+    if (!info.exact) names.push_back(info.name);
+  }
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, EngineAgreement,
+                         testing::Combine(testing::ValuesIn(engine_names()),
+                                          testing::Range(0, static_cast<int>(cases().size()))),
+                         [](const auto& test) {
+                           const Case c = cases()[static_cast<std::size_t>(std::get<1>(test.param))];
+                           return std::get<0>(test.param) + "_" + c.name + "_" + std::to_string(c.disparities);
+                         });
+
+class EveryEngine : public testing::TestWithParam<std::string> {};
+
+std::vector<std::string> all_engine_names() {
+  std::vector<std::string> names;
+  for (const EngineInfo& info : engines()) names.push_back(info.name);
+  return names;
+}
+
+TEST_P(EveryEngine, FindsAConstantDisparityToTheEdgesOfTheCommonView) {
+  constexpr int width = 120, height = 60, d = 9;
+  const auto pair = test::textured_pair(width, height, [](double, double) { return d; });
+  MatchMaps maps;
+  make_engine(GetParam(), 2)->match({pair.reference, pair.target, nullptr, 20}, MatcherOptions{}, maps);
+  for (int v = 0; v < height; ++v) {
+    // At the first column of the common view the winner is the last candidate: no minimum.
+    // Where the block is clipped differently at d − 1 and d + 1 the parabola leans by up to a tenth.
+    for (int u = d + 1; u < width; ++u) {
+      ASSERT_NEAR(maps.disparity(u, v), d, u < d + 10 ? 0.2 : 0.05) << u << "," << v;
+    }
+    for (int u = 0; u < d - 1; ++u) ASSERT_FALSE(std::abs(maps.disparity(u, v) - d) < 0.5) << u << "," << v;
+  }
+}
+
+TEST_P(EveryEngine, ImagesWithoutTextureGiveNoDisparityAndNoNan) {
+  GreyImage flat(64, 48, 1600);
+  MatchMaps maps;
+  make_engine(GetParam(), 1)->match({flat, flat, nullptr, 16}, MatcherOptions{}, maps);
+  for (int v = 0; v < 48; ++v) {
+    for (int u = 0; u < 64; ++u) {
+      EXPECT_EQ(maps.winner(u, v), 0);  // all costs are equal: the smallest disparity wins
+      EXPECT_TRUE(std::isnan(maps.disparity(u, v)));
+    }
+  }
+}
+
+TEST_P(EveryEngine, ResultDoesNotDependOnTheNumberOfThreads) {
+  const auto pair = test::textured_pair(150, 130, [](double, double v) { return 6 + 0.03 * v; });
+  MatchMaps one, three;
+  make_engine(GetParam(), 1)->match({pair.reference, pair.target, nullptr, 16}, MatcherOptions{}, one);
+  make_engine(GetParam(), 3)->match({pair.reference, pair.target, nullptr, 16}, MatcherOptions{}, three);
+  EXPECT_EQ(one.winner, three.winner);
+  EXPECT_EQ(one.target_winner, three.target_winner);
+  for (int v = 0; v < 130; ++v) {
+    for (int u = 0; u < 150; ++u) {
+      const float a = one.disparity(u, v), b = three.disparity(u, v);
+      ASSERT_TRUE(a == b || (std::isnan(a) && std::isnan(b)));
+    }
+  }
+}
+
+TEST_P(EveryEngine, ReadsStridedImagesAndForgetsThePreviousFrame) {
+  const auto pair = test::textured_pair(80, 50, [](double, double) { return 5; });
+  Image<std::int16_t> wide_ref(103, 50, 4000), wide_tar(103, 50, 17);
+  for (int v = 0; v < 50; ++v) {
+    std::copy_n(pair.reference.row(v), 80, wide_ref.row(v));
+    std::copy_n(pair.target.row(v), 80, wide_tar.row(v));
+  }
+  const auto engine = make_engine(GetParam(), 1);
+  MatchMaps packed, strided;
+  engine->match({pair.reference, pair.target, nullptr, 12}, MatcherOptions{}, packed);
+  const auto other = test::textured_pair(
+      100, 70, [](double, double) { return 3; }, 9);
+  engine->match({other.reference, other.target, nullptr, 40}, paper_options(), strided);
+  engine->match({{wide_ref.row(0), 80, 50, 103}, {wide_tar.row(0), 80, 50, 103}, nullptr, 12}, MatcherOptions{},
+                strided);
+  EXPECT_EQ(packed.winner, strided.winner);
+}
+
+TEST_P(EveryEngine, RefusesWhatItCannotMatch) {
+  const GreyImage a(64, 48), b(64, 47);
+  MatchMaps maps;
+  const auto engine = make_engine(GetParam(), 1);
+  EXPECT_THROW(engine->match({a, b, nullptr, 16}, MatcherOptions{}, maps), Error);
+  EXPECT_THROW(engine->match({a, a, nullptr, 0}, MatcherOptions{}, maps), Error);
+  EXPECT_THROW(engine->match({a, a, nullptr, 1025}, MatcherOptions{}, maps), Error);
+  MatcherOptions options;
+  options.block_radius = 0;
+  EXPECT_THROW(engine->match({a, a, nullptr, 16}, options, maps), Error);
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, EveryEngine, testing::ValuesIn(all_engine_names()),
+                         [](const auto& test) { return test.param; });
+
+TEST(Registry, NamesTheEnginesThatExist) {
+  try {
+    make_engine("gpu", 1);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()), "there is no engine called 'gpu'; this build has: auto, cpu, reference");
+  }
+  EXPECT_EQ(resolve_engine_name("auto"), "cpu");
+}
+
+}  // namespace
+}  // namespace roadstereo

@@ -1,0 +1,227 @@
+// The whole way through on synthetic roads with exact truth, for every preset.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/pipeline.hpp"
+#include "roadstereo/synth.hpp"
+
+namespace roadstereo {
+namespace {
+
+synth::SyntheticPair scene(const std::string& name) {
+  synth::Scene s = synth::named_scene(name);
+  s.supersampling = 2;
+  return synth::render(s);
+}
+
+/// Errors against the truth where both cameras see the road.
+struct Errors {
+  double median = 0;
+  double share_above_1px = 0;
+  double density = 0;
+};
+
+Errors compare(const Image<float>& disparity, const synth::SyntheticPair& truth) {
+  std::vector<double> errors;
+  double seen = 0, wrong = 0;
+  for (int v = 0; v < disparity.height(); ++v) {
+    for (int u = 0; u < disparity.width(); ++u) {
+      if (truth.visible(u, v) == 0 || std::isnan(truth.disparity(u, v))) continue;
+      seen += 1;
+      if (std::isnan(disparity(u, v))) continue;
+      errors.push_back(std::abs(disparity(u, v) - truth.disparity(u, v)));
+      wrong += errors.back() > 1;
+    }
+  }
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  return {errors[errors.size() / 2], wrong / static_cast<double>(errors.size()),
+          static_cast<double>(errors.size()) / seen};
+}
+
+class EveryPreset : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryPreset, MatchesARoadFromTheAir) {
+  const synth::SyntheticPair pair = scene("uav");
+  Pipeline pipeline(preset(GetParam()), pair.calibration);
+  const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+  const Errors errors = compare(result.disparity, pair);
+  EXPECT_LT(errors.median, 0.06);
+  EXPECT_LT(errors.share_above_1px, 0.02);
+  EXPECT_GT(errors.density, 0.95);
+  EXPECT_TRUE(result.road.reliable);
+  EXPECT_NEAR(result.geometry.roll_rad, pair.roll_rad, 0.02);
+  EXPECT_NEAR(result.transformed(400, 200), result.delta_t, 0.5);
+}
+
+TEST_P(EveryPreset, PotholesLieBelowTheRoadInTheTransformedMap) {
+  const synth::SyntheticPair pair = scene("demo");
+  Pipeline pipeline(preset(GetParam()), pair.calibration);
+  const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+  // In the truth the deepest pixel of the largest pothole loses this much against the road's plane.
+  double expected = 0;
+  int deepest_u = 0, deepest_v = 0;
+  for (int v = 0; v < pair.disparity.height(); ++v) {
+    for (int u = 0; u < pair.disparity.width(); ++u) {
+      const double below = pair.plane.disparity(u, v) - pair.disparity(u, v);
+      if (pair.labels(u, v) == 0 || pair.visible(u, v) == 0 || std::isnan(result.transformed(u, v))) continue;
+      if (below > expected) {
+        expected = below;
+        deepest_u = u;
+        deepest_v = v;
+      }
+    }
+  }
+  ASSERT_GT(expected, 0.5);
+  // A shift of whole pixels, as in the paper, leaves a saw-tooth of up to half a pixel.
+  const double tolerance = pipeline.options().perspective.shift == ShiftPrecision::whole_pixel ? 0.6 : 0.35;
+  EXPECT_NEAR(result.delta_t - result.transformed(deepest_u, deepest_v), expected, tolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(Presets, EveryPreset, testing::ValuesIn(preset_names()),
+                         [](const auto& test) { return test.param; });
+
+TEST(Pipeline, RollOfARolledCamera) {
+  const synth::SyntheticPair pair = scene("rolled");
+  Pipeline pipeline(preset("default"), pair.calibration);
+  const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+  EXPECT_TRUE(result.geometry.roll_observable);
+  EXPECT_NEAR(result.geometry.roll_rad, pair.roll_rad, 0.002);
+}
+
+TEST(Pipeline, StraightDownTheRollIsNotObservable) {
+  const synth::SyntheticPair pair = scene("nadir");
+  Pipeline pipeline(preset("default"), pair.calibration);
+  const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+  EXPECT_TRUE(result.geometry_found);
+  EXPECT_FALSE(result.geometry.roll_observable);
+  EXPECT_LT(result.spread.road_px, 0.5);
+}
+
+TEST(Pipeline, WorksWithoutCalibration) {
+  const synth::SyntheticPair pair = scene("uav");
+  Pipeline pipeline(preset("default"));
+  const Errors errors = compare(pipeline.process(pair.left.view(), pair.right.view()).disparity, pair);
+  EXPECT_LT(errors.median, 0.06);
+  EXPECT_GT(errors.density, 0.95);
+}
+
+TEST(Pipeline, SuccessiveFramesCarryTheRoadModelOver) {
+  synth::Scene s = synth::named_scene("uav");
+  s.supersampling = 1;
+  Pipeline pipeline;
+  for (int frame = 0; frame < 3; ++frame) {
+    const synth::SyntheticPair pair = synth::render(synth::next_frame(s, frame));
+    const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+    EXPECT_EQ(result.road.carried_over, frame > 0);
+    EXPECT_NEAR(result.geometry.plane.disparity(320, 300), pair.plane.disparity(320, 300), 0.3);
+  }
+  pipeline.reset();
+  const synth::SyntheticPair pair = synth::render(s);
+  EXPECT_FALSE(pipeline.process(pair.left.view(), pair.right.view()).road.carried_over);
+}
+
+TEST(Pipeline, AJumpIsNoticedWithinOneFrame) {
+  synth::Scene s = synth::named_scene("uav");
+  s.supersampling = 1;
+  Pipeline pipeline;
+  const synth::SyntheticPair before = synth::render(s);
+  pipeline.process(before.left.view(), before.right.view());
+  s.rig.camera_height_m *= 0.6;
+  const synth::SyntheticPair after = synth::render(s);
+  const FrameResult& result = pipeline.process(after.left.view(), after.right.view());
+  EXPECT_NEAR(result.geometry.plane.disparity(320, 300), after.plane.disparity(320, 300), 0.3);
+  EXPECT_GT(compare(result.disparity, after).density, 0.9);
+}
+
+TEST(Pipeline, RowsThatDoNotAgreeAreAWarningWithTheFigure) {
+  synth::Scene s = synth::named_scene("uav");
+  s.supersampling = 1;
+  s.degradation.row_offset_px = 1.5;
+  const synth::SyntheticPair pair = synth::render(s);
+  Pipeline pipeline;
+  const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+  EXPECT_NEAR(result.rows.median_px, 1.5, 0.15);
+  ASSERT_FALSE(result.warnings.empty());
+  EXPECT_NE(result.warnings.back().find("the rows of the pair do not agree"), std::string::npos);
+}
+
+TEST(Pipeline, ColourAndSixteenBitsGiveTheSameMap) {
+  const synth::SyntheticPair pair = scene("uav");
+  const auto widen = [](const Frame& grey) {
+    Frame wide{{}, grey.width, grey.height, SampleType::u16, ChannelOrder::bgr};
+    for (const std::uint8_t value : grey.bytes) {
+      for (int c = 0; c < 3; ++c) {
+        wide.bytes.push_back(value);  // value · 257, either byte order
+        wide.bytes.push_back(value);
+      }
+    }
+    return wide;
+  };
+  Pipeline a, b;
+  const FrameResult& grey = a.process(pair.left.view(), pair.right.view());
+  const Frame left = widen(pair.left), right = widen(pair.right);
+  const FrameResult& colour = b.process(left.view(), right.view());
+  for (int v = 0; v < pair.left.height; v += 7) {
+    for (int u = 0; u < pair.left.width; u += 5) {
+      const float x = grey.disparity(u, v), y = colour.disparity(u, v);
+      ASSERT_TRUE(x == y || (std::isnan(x) && std::isnan(y)));
+    }
+  }
+}
+
+TEST(Pipeline, ThreadsChangeNothing) {
+  const synth::SyntheticPair pair = scene("uav");
+  PipelineOptions one = preset("default"), two = preset("default");
+  one.threads = 1;
+  two.threads = 2;
+  Pipeline a(one), b(two);
+  const FrameResult& x = a.process(pair.left.view(), pair.right.view());
+  const FrameResult& y = b.process(pair.left.view(), pair.right.view());
+  EXPECT_EQ(x.geometry.roll_rad, y.geometry.roll_rad);
+  for (int v = 0; v < pair.left.height; ++v) {
+    for (int u = 0; u < pair.left.width; ++u) {
+      const float p = x.transformed(u, v), q = y.transformed(u, v);
+      ASSERT_TRUE(p == q || (std::isnan(p) && std::isnan(q)));
+    }
+  }
+}
+
+std::string refusal(const FrameView& left, const FrameView& right,
+                    const std::optional<StereoCalibration>& calibration = std::nullopt) {
+  try {
+    Pipeline(preset("default"), calibration).process(left, right);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Pipeline, RefusesWhatIsNoPair) {
+  const synth::SyntheticPair pair = scene("uav");
+  Frame black = pair.left;
+  std::fill(black.bytes.begin(), black.bytes.end(), std::uint8_t{0});
+  EXPECT_EQ(refusal(pair.left.view(), pair.left.view()), "left and right are the same image");
+  EXPECT_EQ(refusal(black.view(), pair.right.view()),
+            "the left image shows nothing: every pixel has the grey level 0 of 255");
+  EXPECT_NE(refusal(pair.right.view(), pair.left.view()).find("left and right look swapped"), std::string::npos);
+  FrameView cut = pair.right.view();
+  cut.height -= 1;
+  EXPECT_NE(refusal(pair.left.view(), cut).find("must have one size"), std::string::npos);
+  StereoCalibration wrong = pair.calibration;
+  wrong.width = 320;
+  EXPECT_NE(refusal(pair.left.view(), pair.right.view(), wrong).find("320"), std::string::npos);
+  PipelineOptions options;
+  options.matcher.block_radius = 99;
+  EXPECT_THROW(Pipeline{options}, Error);
+  options = {};
+  options.engine = "quantum";
+  EXPECT_THROW(Pipeline{options}, Error);
+}
+
+}  // namespace
+}  // namespace roadstereo

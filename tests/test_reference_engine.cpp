@@ -1,0 +1,150 @@
+// The double-precision oracle against the paper's equations worked out by hand: it is what every other engine is
+// compared with, so it is compared with nothing of the project.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "roadstereo/matcher.hpp"
+#include "textured_pair.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// c(p, d) of eq. c from its definition as one minus Pearson's correlation, over whole blocks only.
+double pearson_cost(const GreyImage& ref, const GreyImage& tar, int u, int v, int d, int radius) {
+  double n = 0, mean_r = 0, mean_t = 0;
+  for (int y = -radius; y <= radius; ++y) {
+    for (int x = -radius; x <= radius; ++x) {
+      n += 1;
+      mean_r += ref(u + x, v + y);
+      mean_t += tar(u + x - d, v + y);
+    }
+  }
+  mean_r /= n;
+  mean_t /= n;
+  double rt = 0, rr = 0, tt = 0;
+  for (int y = -radius; y <= radius; ++y) {
+    for (int x = -radius; x <= radius; ++x) {
+      const double r = ref(u + x, v + y) - mean_r, t = tar(u + x - d, v + y) - mean_t;
+      rt += r * t;
+      rr += r * r;
+      tt += t * t;
+    }
+  }
+  return 1 - rt / std::sqrt(rr * tt);
+}
+
+TEST(ReferenceEngine, WinnerAndParabolaAreThoseOfTheCosts) {
+  const auto pair = test::textured_pair(60, 40, [](double, double v) { return 4 + 0.05 * v; });
+  MatcherOptions options;
+  options.block_radius = 3;
+  options.aggregation_radius = 0;
+  options.texture_noise = 0;
+  options.left_right_check = false;
+  MatchMaps maps;
+  make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 12}, options, maps);
+  for (int v = 5; v < 35; v += 3) {
+    for (int u = 20; u < 55; u += 3) {
+      double cost[12];
+      int best = 0;
+      for (int d = 0; d < 12; ++d) {
+        cost[d] = pearson_cost(pair.reference, pair.target, u, v, d, 3);
+        if (cost[d] < cost[best]) best = d;
+      }
+      ASSERT_EQ(maps.winner(u, v), best);
+      if (best == 0 || best == 11) continue;
+      const double offset = (cost[best - 1] - cost[best + 1]) /
+                            (2 * cost[best - 1] + 2 * cost[best + 1] - 4 * cost[best]);  // eq. subpixel
+      ASSERT_NEAR(maps.disparity(u, v), best + offset, 1e-5);
+    }
+  }
+}
+
+TEST(ReferenceEngine, AggregationIsTheBilateralMeanOfTheCosts) {
+  const auto pair = test::textured_pair(60, 40, [](double, double v) { return 5 + 0.04 * v; });
+  MatcherOptions options;
+  options.block_radius = 2;
+  options.aggregation_radius = 1;
+  options.aggregation_shape = WindowShape::disc;  // the pixel and its four neighbours
+  options.sigma_space = 1.5;
+  options.sigma_colour = 5.5;
+  options.texture_noise = 0;
+  options.left_right_check = false;
+  MatchMaps maps;
+  make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 10}, options, maps);
+  constexpr int neighbours[5][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+  int compared = 0;
+  for (int v = 6; v < 34; v += 2) {
+    for (int u = 20; u < 55; u += 3) {
+      double energy[10];
+      int best = 0;
+      for (int d = 0; d < 10; ++d) {
+        double sum = 0, weights = 0;
+        for (const auto& n : neighbours) {
+          const double difference = (pair.reference(u, v) - pair.reference(u + n[0], v + n[1])) / 16.0;
+          const double distance2 = n[0] * n[0] + n[1] * n[1];
+          // eqs. omega0 and omega1
+          const double omega = std::exp(-distance2 / (1.5 * 1.5)) * std::exp(-difference * difference / (5.5 * 5.5));
+          sum += omega * pearson_cost(pair.reference, pair.target, u + n[0], v + n[1], d, 2);
+          weights += omega;
+        }
+        energy[d] = sum / weights;
+        if (energy[d] < energy[best]) best = d;
+      }
+      ASSERT_EQ(maps.winner(u, v), best);
+      if (best == 0 || best == 9) continue;
+      const double offset =
+          (energy[best - 1] - energy[best + 1]) / (2 * energy[best - 1] + 2 * energy[best + 1] - 4 * energy[best]);
+      ASSERT_NEAR(maps.disparity(u, v), best + offset, 1e-5);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 100);
+}
+
+TEST(ReferenceEngine, LeftRightCheckRemovesWhatTheOtherViewSeesDifferently) {
+  // Left half at 3 px, right half at 12 px: the strip that the right camera cannot see is 9 px wide.
+  const auto pair = test::textured_pair(120, 40, [](double u, double) { return u < 60 ? 3 : 12; });
+  MatcherOptions options;
+  options.block_radius = 2;
+  options.aggregation_radius = 2;
+  MatchMaps checked, unchecked;
+  make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 20}, options, checked);
+  options.left_right_check = false;
+  make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 20}, options, unchecked);
+  int removed = 0;
+  for (int v = 0; v < 40; ++v) {
+    for (int u = 20; u < 118; ++u) {
+      const int d = checked.winner(u, v);
+      const double difference = d - checked.target_winner(u - d, v);
+      if (difference * difference > 1) {  // eq. lrc, δr = 1
+        EXPECT_TRUE(std::isnan(checked.disparity(u, v)));
+        ++removed;
+      } else {
+        EXPECT_EQ(std::isnan(checked.disparity(u, v)), std::isnan(unchecked.disparity(u, v)));
+      }
+    }
+  }
+  EXPECT_GT(removed, 40);
+}
+
+TEST(ReferenceEngine, GainAndOffsetOfTheTargetChangeNothing) {
+  const auto pair = test::textured_pair(
+      80, 40, [](double, double) { return 6; }, 3, 0.5);
+  GreyImage darker = pair.target;
+  for (int v = 0; v < 40; ++v) {
+    for (int u = 0; u < 80; ++u) darker(u, v) = static_cast<std::int16_t>(pair.target(u, v) / 2 + 100);
+  }
+  MatcherOptions options;
+  options.aggregation_radius = 0;
+  options.texture_noise = 0;
+  MatchMaps a, b;
+  make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 12}, options, a);
+  make_engine("reference", 1)->match({pair.reference, darker, nullptr, 12}, options, b);
+  EXPECT_EQ(a.winner, b.winner);
+}
+
+}  // namespace
+}  // namespace roadstereo
