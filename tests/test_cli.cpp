@@ -46,8 +46,7 @@ class CommandLine : public testing::Test {
  protected:
   void SetUp() override {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              (std::string("roadstereo_cli_") + test->name() + std::to_string(getpid()));
+    folder_ = fs::temp_directory_path() / (std::string("roadstereo_cli_") + test->name() + std::to_string(getpid()));
     fs::create_directories(folder_);
   }
   void TearDown() override { fs::remove_all(folder_); }
@@ -75,9 +74,7 @@ class CommandLine : public testing::Test {
     return run("inspect road/left.png road/right.png --output result " + arguments);
   }
 
-  nlohmann::json json_file(const std::string& name) const {
-    return nlohmann::json::parse(read_text(folder_ / name));
-  }
+  nlohmann::json json_file(const std::string& name) const { return nlohmann::json::parse(read_text(folder_ / name)); }
 
   fs::path folder_;
 };
@@ -302,8 +299,7 @@ TEST_F(CommandLine, SetTakesOneOrSeveral) {
   const std::string pair = "road/left.png road/right.png ";
   ASSERT_EQ(run("inspect --set matcher.block_radius=4 " + pair + "--output result").exit_code, 0);
   EXPECT_EQ(json_file("result/result.json")["options"]["matcher.block_radius"], 4);
-  ASSERT_EQ(inspect("--set matcher.block_radius=3 matcher.sub_pixel=false --set check_rows=false").exit_code,
-            0);
+  ASSERT_EQ(inspect("--set matcher.block_radius=3 matcher.sub_pixel=false --set check_rows=false").exit_code, 0);
   const auto options = json_file("result/result.json")["options"];
   EXPECT_EQ(options["matcher.block_radius"], 3);
   EXPECT_EQ(options["matcher.sub_pixel"], false);
@@ -381,8 +377,7 @@ TEST_F(CommandLine, RosPairIsTwoFiles) {
   };
   write_text(folder_ / "l.yaml", camera("0"));
   write_text(folder_ / "r.yaml", camera("-21"));
-  for (const std::string files :
-       {"--calibration l.yaml r.yaml", "--calibration l.yaml --calibration r.yaml"}) {
+  for (const std::string files : {"--calibration l.yaml r.yaml", "--calibration l.yaml --calibration r.yaml"}) {
     const Outcome outcome = inspect(files + " --json");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_NEAR(nlohmann::json::parse(outcome.out)["calibration"]["baseline_m"].get<double>(), 0.12, 1e-9);
@@ -401,8 +396,7 @@ TEST_F(CommandLine, FullDiskLeavesNothing) {
   make_road();
   const auto before = names_in(folder_);
   // A limit on the size of files makes writes fail as a full disk does.
-  const Outcome outcome =
-      run("inspect road/left.png road/right.png --output result", "trap '' XFSZ; ulimit -f 8;");
+  const Outcome outcome = run("inspect road/left.png road/right.png --output result", "trap '' XFSZ; ulimit -f 8;");
   expect_complaint(outcome, 1, "");
   EXPECT_EQ(names_in(folder_), before);
 }

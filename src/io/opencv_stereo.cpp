@@ -87,7 +87,8 @@ std::array<double, Count> read_matrix(const Storage& storage, std::initializer_l
   std::string key;
   const cv::FileNode node = storage.find(keys, key);
   if (node.empty()) {
-    const std::string other = keys.size() > 1 ? std::string(" (or ") + *(keys.begin() + 1) + ")" : "";
+    std::string other;
+    if (keys.size() > 1) other.append(" (or ").append(*(keys.begin() + 1)).append(")");
     fail(storage.path(), ": ", *keys.begin(), other, " is missing");
   }
   const std::vector<double> figures = figures_of(storage, key, node);

@@ -45,8 +45,7 @@ class BandMatcher {
     costs_.prepare(input, options);
     // Behind the last column the target view reads up to D columns further.
     planes_.resize(ring_ * disparities_, width_ + disparities_, cpu::row_padding);
-    weights_.resize(cpu::weight_scratch_size(aggregation.taps.size()));
-    energies_.resize(cpu::energy_scratch_size(disparities_));
+    scratch_.resize(cpu::choose_row_scratch(aggregation.taps.size()));
     offsets_.resize(static_cast<std::size_t>(width_));
   }
 
@@ -65,6 +64,10 @@ class BandMatcher {
   }
 
  private:
+  const std::int16_t* grey_row(int v, int shift) const {
+    return shift == 0 ? costs_.reference_row(v) : costs_.target_row(v);
+  }
+
   void choose(int v, int shift, const Aggregation& aggregation, const cpu::WinnerRow& winners) {
     AggregationRow row;
     row.width = width_;
@@ -73,24 +76,19 @@ class BandMatcher {
     row.plane = planes_.pitch();
     row.shift = shift;
     row.colour_log2 = aggregation.colour_log2;
-    const int first = std::max(0, v - aggregation.radius);
-    const int last = std::min(height_ - 1, v + aggregation.radius);
-    for (int q = first; q <= last; ++q) {
-      const auto i = static_cast<std::size_t>(q - v + aggregation.radius);
-      row.grey[i] = shift == 0 ? costs_.reference_row(q) : costs_.target_row(q);
-      row.cost[i] = planes_.row((q % ring_) * disparities_);
-      row.first[i] = costs_.first_column(q);
+    row.grey = grey_row(v, shift);
+    row.first_column = costs_.first_column(v);
+    taps_.clear();
+    for (std::size_t i = 0; i < aggregation.taps.size(); ++i) {
+      const Tap& tap = aggregation.taps[i];
+      const int q = v + tap.dv;
+      if (q < 0 || q >= height_) continue;
+      taps_.push_back({planes_.row((q % ring_) * disparities_), grey_row(q, shift), tap.du, costs_.first_column(q),
+                       aggregation.tap_log2[i]});
+      row.common_first_column = std::max(row.common_first_column, taps_.back().first_column);
     }
-    const auto row_begins = [&](int dv) {
-      const auto at = std::partition_point(aggregation.taps.begin(), aggregation.taps.end(),
-                                           [dv](const Tap& tap) { return tap.dv < dv; });
-      return static_cast<std::size_t>(at - aggregation.taps.begin());
-    };
-    const std::size_t begin = row_begins(first - v);
-    const std::size_t count = row_begins(last - v + 1) - begin;
-    row.taps = std::span(aggregation.taps).subspan(begin, count);
-    row.tap_log2 = std::span(aggregation.tap_log2).subspan(begin, count);
-    choose_row(row, {weights_.data(), energies_.data()}, winners);
+    row.taps = taps_;
+    choose_row(row, scratch_.data(), winners);
   }
 
   /// Left–right consistency (eq. lrc) and the sub-pixel disparity. The shift of the perspective transformation
@@ -119,8 +117,8 @@ class BandMatcher {
   int ring_ = 1;
   cpu::CostRows costs_;
   cpu::PaddedRows<float> planes_;
-  std::vector<float> weights_;
-  std::vector<float> energies_;
+  std::vector<cpu::RowTap> taps_;
+  std::vector<float> scratch_;
   std::vector<float> offsets_;
 };
 

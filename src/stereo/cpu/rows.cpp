@@ -115,68 +115,91 @@ HWY_INLINE Float power_of_two(Float x) {
 }
 
 /// Writes ω(p, q) of eq. omega for the pixels p = u … u + lanes − 1 and every tap; 0 where q is outside the view.
-HWY_INLINE void fill_weights(const AggregationRow& row, int u, float* weights) {
+/// Returns one over their sum.
+HWY_INLINE Float fill_weights(const AggregationRow& row, int u, float* weights) {
   const Floats df;
   const Ints di;
   const int lanes = static_cast<int>(hn::Lanes(df));
-  const Int centre = load_widened(row.grey[static_cast<std::size_t>(row.radius)] + u);
+  const Int centre = load_widened(row.grey + u);
   const Int columns = hn::Iota(di, u);
-  for (std::size_t t = 0; t < row.taps.size(); ++t) {
-    const Tap tap = row.taps[t];
-    const auto r = static_cast<std::size_t>(tap.dv + row.radius);
-    const Float difference = hn::ConvertTo(df, hn::Sub(centre, load_widened(row.grey[r] + u + tap.du)));
+  Float sum = hn::Zero(df);
+  for (const RowTap& tap : row.taps) {
+    const Float difference = hn::ConvertTo(df, hn::Sub(centre, load_widened(tap.grey + u + tap.du)));
     const Float exponent =
-        hn::MulAdd(hn::Mul(difference, difference), hn::Set(df, row.colour_log2), hn::Set(df, row.tap_log2[t]));
+        hn::MulAdd(hn::Mul(difference, difference), hn::Set(df, row.colour_log2), hn::Set(df, tap.log2_weight));
     Float weight = power_of_two(exponent);
-    const int lowest = row.shift == 0 ? 0 : row.first[r];
+    const int lowest = row.shift == 0 ? 0 : tap.first_column;
     if (u + tap.du < lowest || u + tap.du + lanes > row.width) {
       const Int q = hn::Add(columns, hn::Set(di, tap.du));
       const auto inside = hn::And(hn::Gt(q, hn::Set(di, lowest - 1)), hn::Lt(q, hn::Set(di, row.width)));
       weight = hn::IfThenElseZero(hn::RebindMask(df, inside), weight);
     }
-    hn::StoreU(weight, df, weights + t * static_cast<std::size_t>(lanes));
+    hn::StoreU(weight, df, weights);
+    weights += lanes;
+    sum = hn::Add(sum, weight);
   }
+  return hn::Div(hn::Set(df, 1.0f), sum);
 }
 
-/// Σ ω(p, q) c(q, d) for `planes` consecutive disparities at once, so that a weight is loaded once for all of them.
+/// Disparities that are aggregated together: a weight is loaded once for all of them.
+constexpr int planes_together = 8;
+
+/// Pixels of a row that are aggregated together for one group of disparities, in vectors: their costs lie one after the
+/// other in memory, and their weights stay in the cache for the next group.
+constexpr int strip_vectors = 16;
+
+/// E_d(p, d) of eq. fbs for `planes` consecutive disparities; every pixel of the window has a counterpart.
 template <int planes>
-HWY_INLINE void aggregate_planes(const AggregationRow& row, int u, int d, const float* weights, float* energies) {
+HWY_INLINE void aggregate_planes(const AggregationRow& row, int u, int d, const float* weights, Float inverse_sum,
+                                 float* energies) {
+  static_assert(planes == 1 || planes == 4 || planes == planes_together);
   const Floats df;
   const std::size_t lanes = hn::Lanes(df);
-  static_assert(planes == 1 || planes == 4 || planes == 8);
   Float e0 = hn::Zero(df), e1 = e0, e2 = e0, e3 = e0, e4 = e0, e5 = e0, e6 = e0, e7 = e0;
   const std::ptrdiff_t step = row.plane + row.shift;
   const std::ptrdiff_t start = u + d * step;
-  for (std::size_t t = 0; t < row.taps.size(); ++t) {
-    const Tap tap = row.taps[t];
-    const float* cost = row.cost[static_cast<std::size_t>(tap.dv + row.radius)] + start + tap.du;
-    const Float weight = hn::LoadU(df, weights + t * lanes);
+  for (const RowTap& tap : row.taps) {
+    const float* cost = tap.cost + start + tap.du;
+    const Float weight = hn::LoadU(df, weights);
+    weights += lanes;
     e0 = hn::MulAdd(weight, hn::LoadU(df, cost), e0);
     if constexpr (planes >= 4) {
       e1 = hn::MulAdd(weight, hn::LoadU(df, cost + step), e1);
       e2 = hn::MulAdd(weight, hn::LoadU(df, cost + 2 * step), e2);
       e3 = hn::MulAdd(weight, hn::LoadU(df, cost + 3 * step), e3);
     }
-    if constexpr (planes >= 8) {
+    if constexpr (planes == planes_together) {
       e4 = hn::MulAdd(weight, hn::LoadU(df, cost + 4 * step), e4);
       e5 = hn::MulAdd(weight, hn::LoadU(df, cost + 5 * step), e5);
       e6 = hn::MulAdd(weight, hn::LoadU(df, cost + 6 * step), e6);
       e7 = hn::MulAdd(weight, hn::LoadU(df, cost + 7 * step), e7);
     }
   }
-  float* out = energies + static_cast<std::size_t>(d) * lanes;
-  hn::StoreU(e0, df, out);
+  hn::StoreU(hn::Mul(e0, inverse_sum), df, energies);
   if constexpr (planes >= 4) {
-    hn::StoreU(e1, df, out + lanes);
-    hn::StoreU(e2, df, out + 2 * lanes);
-    hn::StoreU(e3, df, out + 3 * lanes);
+    hn::StoreU(hn::Mul(e1, inverse_sum), df, energies + lanes);
+    hn::StoreU(hn::Mul(e2, inverse_sum), df, energies + 2 * lanes);
+    hn::StoreU(hn::Mul(e3, inverse_sum), df, energies + 3 * lanes);
   }
-  if constexpr (planes >= 8) {
-    hn::StoreU(e4, df, out + 4 * lanes);
-    hn::StoreU(e5, df, out + 5 * lanes);
-    hn::StoreU(e6, df, out + 6 * lanes);
-    hn::StoreU(e7, df, out + 7 * lanes);
+  if constexpr (planes == planes_together) {
+    hn::StoreU(hn::Mul(e4, inverse_sum), df, energies + 4 * lanes);
+    hn::StoreU(hn::Mul(e5, inverse_sum), df, energies + 5 * lanes);
+    hn::StoreU(hn::Mul(e6, inverse_sum), df, energies + 6 * lanes);
+    hn::StoreU(hn::Mul(e7, inverse_sum), df, energies + 7 * lanes);
   }
+}
+
+/// The same for disparities first … last − 1, at most `planes_together` of them.
+HWY_INLINE void aggregate_inside(const AggregationRow& row, int u, int first, int last, const float* weights,
+                                 Float inverse_sum, float* energies) {
+  const std::size_t lanes = hn::Lanes(Floats());
+  if (last - first == planes_together) {
+    aggregate_planes<planes_together>(row, u, first, weights, inverse_sum, energies);
+    return;
+  }
+  int d = first;
+  for (; d + 4 <= last; d += 4, energies += 4 * lanes) aggregate_planes<4>(row, u, d, weights, inverse_sum, energies);
+  for (; d < last; ++d, energies += lanes) aggregate_planes<1>(row, u, d, weights, inverse_sum, energies);
 }
 
 /// Last disparity at which the pixels u … have a counterpart; negative where none.
@@ -184,109 +207,149 @@ HWY_INLINE Int last_disparity(const AggregationRow& row, int u) {
   const Ints di;
   const Int columns = hn::Iota(di, u);
   const Int largest = hn::Set(di, row.disparities - 1);
-  const Int first = hn::Set(di, row.first[static_cast<std::size_t>(row.radius)]);
+  const Int first = hn::Set(di, row.first_column);
   if (row.shift == 0) return hn::Min(largest, hn::Sub(columns, first));
   const Int bound = hn::Min(largest, hn::Sub(hn::Set(di, row.width - 1), columns));
   return hn::IfThenElse(hn::Lt(columns, first), hn::Set(di, -1), bound);
 }
 
 /// E_d(p, d) near the border, where the common view, and so the sum of the weights, depends on d.
-HWY_INLINE void aggregate_border(const AggregationRow& row, int u, const float* weights, float* energies) {
+void aggregate_border(const AggregationRow& row, int u, int first, int last, const float* weights, float* energies) {
   const Floats df;
   const Ints di;
   const std::size_t lanes = hn::Lanes(df);
   const Int columns = hn::Iota(di, u);
-  const Int last = last_disparity(row, u);
+  const Int last_possible = last_disparity(row, u);
   const Float never = hn::Set(df, std::numeric_limits<float>::infinity());
-  for (int d = 0; d < row.disparities; ++d) {
+  for (int d = first; d < last; ++d, energies += lanes) {
     Float energy = hn::Zero(df);
     Float sum = hn::Zero(df);
-    for (std::size_t t = 0; t < row.taps.size(); ++t) {
-      const Tap tap = row.taps[t];
-      const auto r = static_cast<std::size_t>(tap.dv + row.radius);
+    const float* weight_of_tap = weights;
+    for (const RowTap& tap : row.taps) {
       const Int q = hn::Add(columns, hn::Set(di, tap.du));
       const auto seen =
-          row.shift == 0 ? hn::Gt(q, hn::Set(di, row.first[r] + d - 1)) : hn::Lt(q, hn::Set(di, row.width - d));
-      const Float weight = hn::IfThenElseZero(hn::RebindMask(df, seen), hn::LoadU(df, weights + t * lanes));
-      const float* cost = row.cost[r] + u + tap.du + d * (row.plane + row.shift);
+          row.shift == 0 ? hn::Gt(q, hn::Set(di, tap.first_column + d - 1)) : hn::Lt(q, hn::Set(di, row.width - d));
+      const Float weight = hn::IfThenElseZero(hn::RebindMask(df, seen), hn::LoadU(df, weight_of_tap));
+      weight_of_tap += lanes;
+      const float* cost = tap.cost + u + tap.du + d * (row.plane + row.shift);
       energy = hn::MulAdd(weight, hn::LoadU(df, cost), energy);
       sum = hn::Add(sum, weight);
     }
-    const auto possible = hn::RebindMask(df, hn::Gt(last, hn::Set(di, d - 1)));
-    hn::StoreU(hn::IfThenElse(possible, hn::Div(energy, sum), never), df,
-               energies + static_cast<std::size_t>(d) * lanes);
+    const auto possible = hn::RebindMask(df, hn::Gt(last_possible, hn::Set(di, d - 1)));
+    hn::StoreU(hn::IfThenElse(possible, hn::Div(energy, sum), never), df, energies);
   }
 }
 
-/// Whether the whole window of the pixels u … u + lanes − 1 has a counterpart at every disparity.
-bool inside_common_view(const AggregationRow& row, int u, int lanes) {
-  if (u - row.radius < 0 || u + lanes - 1 + row.radius >= row.width) return false;
-  int first = 0;
-  for (const Tap& tap : row.taps) first = std::max(first, row.first[static_cast<std::size_t>(tap.dv + row.radius)]);
-  if (row.shift == 0) return u - row.radius - (row.disparities - 1) >= first;
-  return u - row.radius >= first && u + lanes - 1 + row.radius + row.disparities - 1 < row.width;
+/// Whether the whole window of the pixels u … u + lanes − 1 has a counterpart at every disparity below `last`.
+bool inside_common_view(const AggregationRow& row, int u, int lanes, int last) {
+  const int left = u - row.radius;
+  const int right = u + lanes - 1 + row.radius;
+  if (left < 0 || right >= row.width) return false;
+  if (row.shift == 0) return left - (last - 1) >= row.common_first_column;
+  return left >= row.common_first_column && right + last - 1 < row.width;
 }
 
-void aggregate(const AggregationRow& row, int u, const float* weights, float* energies) {
-  int d = 0;
-  for (; d + 8 <= row.disparities; d += 8) aggregate_planes<8>(row, u, d, weights, energies);
-  for (; d + 4 <= row.disparities; d += 4) aggregate_planes<4>(row, u, d, weights, energies);
-  for (; d < row.disparities; ++d) aggregate_planes<1>(row, u, d, weights, energies);
-}
+/// Winner-take-all in passing: the best energy so far of each pixel, its disparity, and the energies on either side of
+/// it that the parabola needs. One vector each, in memory.
+struct RunningWinner {
+  float *best, *winner, *before, *after, *previous;
 
-/// Winner-take-all over the energies of the pixels u … u + lanes − 1; the smaller disparity wins a tie.
-HWY_INLINE Int take_winner(int disparities, const float* energies) {
+  static constexpr std::size_t vectors = 5;
+  RunningWinner(float* at, std::size_t lanes)
+      : best(at), winner(at + lanes), before(at + 2 * lanes), after(at + 3 * lanes), previous(at + 4 * lanes) {}
+};
+
+void reset(const RunningWinner& state) {
   const Floats df;
-  const std::size_t lanes = hn::Lanes(df);
-  Float best = hn::Set(df, std::numeric_limits<float>::infinity());
-  Float winner = hn::Set(df, -1.0f);
-  for (int d = 0; d < disparities; ++d) {
-    const Float energy = hn::LoadU(df, energies + static_cast<std::size_t>(d) * lanes);
+  hn::StoreU(hn::Set(df, std::numeric_limits<float>::infinity()), df, state.best);
+  hn::StoreU(hn::Set(df, -1.0f), df, state.winner);
+  for (float* energy : {state.before, state.after, state.previous}) hn::StoreU(hn::Zero(df), df, energy);
+}
+
+/// Lets the energies of the disparities first … last − 1 compete; the smaller disparity wins a tie.
+HWY_INLINE void compete(const float* energies, int first, int last, const RunningWinner& state) {
+  const Floats df;
+  Float best = hn::LoadU(df, state.best), winner = hn::LoadU(df, state.winner), before = hn::LoadU(df, state.before);
+  Float after = hn::LoadU(df, state.after), previous = hn::LoadU(df, state.previous);
+  for (int d = first; d < last; ++d, energies += hn::Lanes(df)) {
+    const Float energy = hn::LoadU(df, energies);
+    after = hn::IfThenElse(hn::Eq(winner, hn::Set(df, static_cast<float>(d - 1))), energy, after);
     const auto better = hn::Lt(energy, best);
     best = hn::Min(energy, best);
     winner = hn::IfThenElse(better, hn::Set(df, static_cast<float>(d)), winner);
+    before = hn::IfThenElse(better, previous, before);
+    previous = energy;
   }
-  return hn::ConvertTo(Ints(), winner);
+  hn::StoreU(best, df, state.best);
+  hn::StoreU(winner, df, state.winner);
+  hn::StoreU(before, df, state.before);
+  hn::StoreU(after, df, state.after);
+  hn::StoreU(previous, df, state.previous);
 }
 
-/// Eq. subpixel for one pixel: NaN when the winner has no neighbour on one side.
-float sub_pixel_offset(const float* energies, std::size_t lanes, std::size_t lane, int winner, int last) {
-  if (winner <= 0 || winner >= last) return std::numeric_limits<float>::quiet_NaN();
-  const float* at = energies + static_cast<std::size_t>(winner) * lanes + lane;
-  const float before = *(at - lanes);
-  const float after = *(at + lanes);
-  const float curvature = 2 * before + 2 * after - 4 * *at;
-  return curvature > 0 ? (before - after) / curvature : 0;
-}
-
-void choose_row(const AggregationRow& row, const AggregationScratch& scratch, const WinnerRow& winners) {
+/// Writes the winners of the pixels u … and their sub-pixel offsets (eq. subpixel): NaN when the winner has no
+/// neighbour on one side.
+void write_winners(const AggregationRow& row, int u, const RunningWinner& state, const WinnerRow& out) {
   const Ints di;
   const std::size_t lanes = hn::Lanes(di);
-  HWY_ALIGN std::int32_t winner[HWY_MAX_BYTES / sizeof(std::int32_t)];
   HWY_ALIGN std::int32_t last[HWY_MAX_BYTES / sizeof(std::int32_t)];
-  for (int u = 0; u < row.width; u += static_cast<int>(lanes)) {
-    fill_weights(row, u, scratch.weights);
-    if (inside_common_view(row, u, static_cast<int>(lanes))) {
-      // Every disparity has the same sum of weights, which changes neither the winner nor the parabola.
-      aggregate(row, u, scratch.weights, scratch.energies);
-    } else {
-      aggregate_border(row, u, scratch.weights, scratch.energies);
-    }
-    hn::Store(take_winner(row.disparities, scratch.energies), di, winner);
-    hn::Store(last_disparity(row, u), di, last);
-    const std::size_t columns = std::min(lanes, static_cast<std::size_t>(row.width - u));
-    for (std::size_t lane = 0; lane < columns; ++lane) {
-      winners.winner[static_cast<std::size_t>(u) + lane] = static_cast<std::int16_t>(winner[lane]);
-      if (winners.offset == nullptr) continue;
-      winners.offset[static_cast<std::size_t>(u) + lane] =
-          sub_pixel_offset(scratch.energies, lanes, lane, winner[lane], last[lane]);
-    }
+  hn::Store(last_disparity(row, u), di, last);
+  const std::size_t columns = std::min(lanes, static_cast<std::size_t>(row.width - u));
+  for (std::size_t lane = 0; lane < columns; ++lane) {
+    const std::size_t column = static_cast<std::size_t>(u) + lane;
+    const auto winner = static_cast<std::int32_t>(state.winner[lane]);
+    out.winner[column] = static_cast<std::int16_t>(winner);
+    if (out.offset == nullptr) continue;
+    const float curvature = 2 * state.before[lane] + 2 * state.after[lane] - 4 * state.best[lane];
+    const float offset = curvature > 0 ? (state.before[lane] - state.after[lane]) / curvature : 0;
+    const bool bracketed = winner > 0 && winner < last[lane];
+    out.offset[column] = bracketed ? offset : std::numeric_limits<float>::quiet_NaN();
   }
 }
 
-std::size_t lane_count() {
-  return hn::Lanes(Floats());
+void choose_row(const AggregationRow& row, float* scratch, const WinnerRow& winners) {
+  const std::size_t lanes = hn::Lanes(Floats());
+  const int strip = strip_vectors * static_cast<int>(lanes);
+  const std::size_t weights_of_vector = row.taps.size() * lanes;
+  float* energies = scratch;
+  float* states = energies + planes_together * lanes;
+  float* inverse_sums = states + strip_vectors * RunningWinner::vectors * lanes;
+  float* weights = inverse_sums + strip_vectors * lanes;
+  const auto state_of = [&](std::size_t i) {
+    return RunningWinner(states + i * RunningWinner::vectors * lanes, lanes);
+  };
+
+  for (int begin = 0; begin < row.width; begin += strip) {
+    const int end = std::min(begin + strip, row.width);
+    const auto each_vector = [&](auto body) {
+      std::size_t i = 0;
+      for (int u = begin; u < end; u += static_cast<int>(lanes), ++i) body(u, i);
+    };
+    each_vector([&](int u, std::size_t i) {
+      hn::StoreU(fill_weights(row, u, weights + i * weights_of_vector), Floats(), inverse_sums + i * lanes);
+      reset(state_of(i));
+    });
+    for (int first = 0; first < row.disparities; first += planes_together) {
+      const int last = std::min(first + planes_together, row.disparities);
+      each_vector([&](int u, std::size_t i) {
+        if (inside_common_view(row, u, static_cast<int>(lanes), last)) {
+          const Float inverse_sum = hn::LoadU(Floats(), inverse_sums + i * lanes);
+          aggregate_inside(row, u, first, last, weights + i * weights_of_vector, inverse_sum, energies);
+        } else {
+          aggregate_border(row, u, first, last, weights + i * weights_of_vector, energies);
+        }
+        compete(energies, first, last, state_of(i));
+      });
+    }
+    each_vector([&](int u, std::size_t i) { write_winners(row, u, state_of(i), winners); });
+  }
 }
+
+std::size_t choose_row_scratch(std::size_t taps) {
+  const std::size_t lanes = hn::Lanes(Floats());
+  return lanes * (planes_together + strip_vectors * (RunningWinner::vectors + 1 + taps));
+}
+
 const char* name_of_target() {
   return hwy::TargetName(HWY_TARGET);
 }
@@ -301,7 +364,7 @@ HWY_EXPORT(slide_products);
 HWY_EXPORT(block_statistics);
 HWY_EXPORT(correlation_row);
 HWY_EXPORT(choose_row);
-HWY_EXPORT(lane_count);
+HWY_EXPORT(choose_row_scratch);
 HWY_EXPORT(name_of_target);
 
 void slide_products(const std::int16_t* entering_ref, const std::int16_t* entering_tar, const std::int16_t* leaving_ref,
@@ -320,15 +383,12 @@ void correlation_row(const std::int32_t* column_sums, const BlockStatistics& ref
   HWY_DYNAMIC_DISPATCH(correlation_row)(column_sums, ref, tar, block_radius, pixels_in_block, first, last, cost);
 }
 
-void choose_row(const AggregationRow& row, const AggregationScratch& scratch, const WinnerRow& winners) {
+void choose_row(const AggregationRow& row, float* scratch, const WinnerRow& winners) {
   HWY_DYNAMIC_DISPATCH(choose_row)(row, scratch, winners);
 }
 
-std::size_t weight_scratch_size(std::size_t taps) {
-  return taps * HWY_DYNAMIC_DISPATCH(lane_count)();
-}
-std::size_t energy_scratch_size(int disparities) {
-  return static_cast<std::size_t>(disparities) * HWY_DYNAMIC_DISPATCH(lane_count)();
+std::size_t choose_row_scratch(std::size_t taps) {
+  return HWY_DYNAMIC_DISPATCH(choose_row_scratch)(taps);
 }
 
 std::string target_name() {

@@ -1,12 +1,9 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
-
-#include "stereo/window.hpp"
 
 // The vector kernels of the cpu engine: each works on one row of the image, for the instruction set of this machine.
 // Pointers to rows point at column 0; rows have at least `row_padding` readable elements on either side.
@@ -50,21 +47,27 @@ void block_statistics(const std::int32_t* column_sums, const std::int32_t* colum
 void correlation_row(const std::int32_t* column_sums, const BlockStatistics& ref, const BlockStatistics& tar,
                      int block_radius, int pixels_in_block, int first, int last, float* cost);
 
+/// One neighbour of the pixels of a row. Its arrays begin at column 0 of the neighbour's row.
+struct RowTap {
+  const float* cost;         ///< matching costs, plane d = 0
+  const std::int16_t* grey;  ///< of the view that is aggregated
+  int du;                    ///< columns to the right of the pixel
+  int first_column;          ///< first valid target column of the neighbour's row
+  float log2_weight;         ///< log2 ω0
+};
+
 /// One row of one view, ready to be aggregated.
 struct AggregationRow {
-  static constexpr int max_rows = 21;
-
   int width = 0;
   int disparities = 0;
   int radius = 0;
-  std::ptrdiff_t plane = 0;         ///< elements from disparity d to d + 1 in `cost`
-  int shift = 0;                    ///< 0 reference view; 1 target view: column x has the cost at x + d
-  std::span<const Tap> taps;        ///< whose rows lie inside the image, row by row
-  std::span<const float> tap_log2;  ///< log2 ω0 per tap
-  float colour_log2 = 0;            ///< log2 ω1 = colour_log2 · (difference in fixed-point grey)²
-  std::array<const std::int16_t*, max_rows> grey{};  ///< row v + dv of this view at index dv + radius
-  std::array<const float*, max_rows> cost{};         ///< costs of that row, plane 0
-  std::array<int, max_rows> first{};                 ///< first valid target column of that row
+  std::ptrdiff_t plane = 0;            ///< elements from disparity d to d + 1 in the costs
+  int shift = 0;                       ///< 0 reference view; 1 target view: column x has the cost at x + d
+  float colour_log2 = 0;               ///< log2 ω1 = colour_log2 · (difference in fixed-point grey)²
+  const std::int16_t* grey = nullptr;  ///< the row itself
+  int first_column = 0;                ///< its first valid target column
+  int common_first_column = 0;         ///< the largest of all rows of the window
+  std::span<const RowTap> taps;        ///< those whose rows lie inside the image
 };
 
 /// What winner-take-all leaves of one row.
@@ -73,16 +76,11 @@ struct WinnerRow {
   float* offset;         ///< eq. subpixel; NaN when the winner has no neighbour on one side; null: not wanted
 };
 
-/// Scratch of one thread for choose_row.
-struct AggregationScratch {
-  float* weights;   ///< taps × lanes
-  float* energies;  ///< disparities × lanes
-};
-std::size_t weight_scratch_size(std::size_t taps);
-std::size_t energy_scratch_size(int disparities);
+/// Floats of scratch memory that choose_row needs for a window of `taps` taps.
+std::size_t choose_row_scratch(std::size_t taps);
 
 /// Aggregates the costs of one row (eq. fbs) and takes the winner at every pixel, with its sub-pixel offset.
-void choose_row(const AggregationRow& row, const AggregationScratch& scratch, const WinnerRow& winners);
+void choose_row(const AggregationRow& row, float* scratch, const WinnerRow& winners);
 
 std::string target_name();
 

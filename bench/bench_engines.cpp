@@ -1,0 +1,110 @@
+// Every engine of the registry beside OpenCV's matchers, on the same frames: matching alone.
+
+#include <benchmark/benchmark.h>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "roadstereo/pipeline.hpp"
+#include "roadstereo/synth.hpp"
+
+namespace {
+
+using namespace roadstereo;
+
+struct Work {
+  int width, height, disparities;
+};
+constexpr Work works[] = {{640, 360, 32}, {1242, 375, 64}, {2079, 1040, 64}};
+
+/// A rectified pair of a road, the target already transformed as the pipeline does it.
+struct MatchableFrame {
+  GreyImage reference, target;
+  std::vector<int> first_column;
+  cv::Mat reference_bytes, target_bytes;
+
+  explicit MatchableFrame(const Work& work) {
+    synth::Scene scene = synth::named_scene("uav");
+    scene.supersampling = 1;
+    scene.rig.focal_px *= static_cast<double>(work.width) / scene.rig.width;
+    scene.rig.width = work.width;
+    scene.rig.height = work.height;
+    const synth::SyntheticPair pair = synth::render(scene);
+    GreyImage right;
+    to_grey(pair.left.view(), 0, reference);
+    to_grey(pair.right.view(), 0, right);
+    PerspectiveShift shift;
+    shift.road = pair.plane;
+    shift.delta_p = work.disparities / 2;
+    shift.disparities = work.disparities;
+    transform_target(right, shift, 0, target, first_column);
+    reference_bytes = to_bytes(reference);
+    target_bytes = to_bytes(target);
+  }
+
+  static cv::Mat to_bytes(const GreyImage& image) {
+    cv::Mat bytes(image.height(), image.width(), CV_8U);
+    for (int v = 0; v < image.height(); ++v) {
+      for (int u = 0; u < image.width(); ++u)
+        bytes.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(image(u, v) / 16);
+    }
+    return bytes;
+  }
+};
+
+void report(benchmark::State& state, const Work& work) {
+  const double evaluations = static_cast<double>(work.width) * work.height * work.disparities;
+  state.counters["Mde/s"] = benchmark::Counter(evaluations * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void match(benchmark::State& state, const std::string& engine_name, const std::string& preset_name, const Work& work) {
+  const MatchableFrame frame(work);
+  const MatcherOptions options = preset(preset_name).matcher;
+  const auto engine = make_engine(engine_name, 0);
+  MatchMaps maps;
+  for (auto _ : state) {
+    engine->match({frame.reference, frame.target, frame.first_column.data(), work.disparities}, options, maps);
+  }
+  report(state, work);
+}
+
+void match_opencv(benchmark::State& state, const cv::Ptr<cv::StereoMatcher>& matcher, const Work& work) {
+  const MatchableFrame frame(work);
+  cv::Mat disparity;
+  for (auto _ : state) matcher->compute(frame.reference_bytes, frame.target_bytes, disparity);
+  report(state, work);
+}
+
+void register_work(const Work& work) {
+  const std::string size =
+      std::to_string(work.width) + "x" + std::to_string(work.height) + "x" + std::to_string(work.disparities);
+  const auto add = [&](const std::string& name, auto body) {
+    benchmark::RegisterBenchmark((size + "/" + name).c_str(), body)->Unit(benchmark::kMillisecond)->UseRealTime();
+  };
+  for (const EngineInfo& info : engines()) {
+    if (info.exact) continue;
+    for (const std::string& name : preset_names()) {
+      add(info.name + "/" + name, [=](benchmark::State& state) { match(state, info.name, name, work); });
+    }
+  }
+  const std::pair<const char*, int> modes[] = {{"SGBM", cv::StereoSGBM::MODE_SGBM},
+                                               {"SGBM_3WAY", cv::StereoSGBM::MODE_SGBM_3WAY},
+                                               {"HH4", cv::StereoSGBM::MODE_HH4}};
+  for (const auto& [name, mode] : modes) {
+    const auto matcher = cv::StereoSGBM::create(0, work.disparities, 5, 200, 800, 1, 63, 10, 100, 2, mode);
+    add(std::string("opencv/") + name, [=](benchmark::State& state) { match_opencv(state, matcher, work); });
+  }
+  add("opencv/BM",
+      [=](benchmark::State& state) { match_opencv(state, cv::StereoBM::create(work.disparities, 11), work); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (const Work& work : works) register_work(work);
+  benchmark::Initialize(&argc, argv);
+  benchmark::AddCustomContext("SIMD target", engines().front().description);
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}
