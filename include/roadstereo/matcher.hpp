@@ -14,10 +14,10 @@ enum class WindowShape { square, disc };
 
 struct MatcherOptions {
   int block_radius = 5;        ///< N⁺ is (2r+1)² pixels; the paper's 120-connected system is 5; 1 … 10
-  int aggregation_radius = 4;  ///< radius of the bilateral window; 0 switches aggregation off; 0 … 10
+  int aggregation_radius = 3;  ///< radius of the bilateral window; 0 switches aggregation off; 0 … 10
   WindowShape aggregation_shape = WindowShape::disc;  ///< `disc` keeps the taps within the radius
-  double sigma_space = 3.0;                           ///< σ0 of eq. omega0, pixels
-  double sigma_colour = 12.0;                         ///< σ1 of eq. omega1, 8-bit grey levels
+  double sigma_space = 4.0;                           ///< σ0 of eq. omega0, pixels
+  double sigma_colour = 20.0;                         ///< σ1 of eq. omega1, 8-bit grey levels
   double texture_noise = 1.0;    ///< grey-level noise below which texture is no evidence; 0 is plain NCC, 0 … 50
   bool left_right_check = true;  ///< eq. lrc
   double consistency = 1.0;      ///< δr of eq. lrc, pixels²

@@ -47,7 +47,7 @@ struct RoadGeometry {
 RoadGeometry fit_road_geometry(ImageView<const float> disparity,
                                const std::optional<ImageView<const std::uint8_t>>& mask,
                                const std::optional<RoadModel>& prior, double initial_roll_rad,
-                               const RoadGeometryOptions& options);
+                               const RoadGeometryOptions& options, int threads = 0);
 
 /// The transformed map ℓ' of eq. disparity_transformation: the intact road lies at δt.
 /// Returns δt: `options.delta_t_px`, or the smallest whole number that makes every value positive, at least `least`.

@@ -148,7 +148,8 @@ void Pipeline::State::find_geometry() {
     return;
   }
   const auto prior = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
-  result.geometry = fit_road_geometry(result.disparity, std::nullopt, prior, last_roll_rad, options.road_geometry);
+  result.geometry =
+      fit_road_geometry(result.disparity, std::nullopt, prior, last_roll_rad, options.road_geometry, threads);
   result.geometry_found = true;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "road/plane_fit.hpp"
 #include "road/roll_energy.hpp"
 #include "roadstereo/error.hpp"
@@ -12,7 +13,7 @@ namespace roadstereo {
 namespace {
 
 /// Points that the robust solver and the standard error look at: enough for both, few enough to cost nothing.
-constexpr std::size_t sample_limit = 60000;
+constexpr std::size_t sample_limit = 20000;
 
 /// Residuals of neighbours are not independent: the standard error takes cells of the map as one observation each.
 constexpr int cells_per_side = 24;
@@ -23,17 +24,20 @@ bool usable(ImageView<const float> disparity, const Mask& mask, int u, int v) {
   return !std::isnan(disparity(u, v)) && (!mask || (*mask)(u, v) != 0);
 }
 
-PlaneSums sum_map(ImageView<const float> disparity, const Mask& mask) {
-  const double centre_u = (disparity.width() - 1) / 2.0;
-  const double centre_v = (disparity.height() - 1) / 2.0;
-  PlaneSums total(centre_u, centre_v);
-  for (int v = 0; v < disparity.height(); ++v) {
-    PlaneSums row(centre_u, centre_v);
-    for (int u = 0; u < disparity.width(); ++u) {
-      if (usable(disparity, mask, u, v)) row.add({static_cast<double>(u), static_cast<double>(v), disparity(u, v)});
+/// The sums over all usable pixels; added up row by row, so that they do not depend on the number of threads.
+PlaneSums sum_map(ImageView<const float> disparity, const Mask& mask, int threads) {
+  const PlaneSums origin((disparity.width() - 1) / 2.0, (disparity.height() - 1) / 2.0);
+  std::vector<PlaneSums> rows(static_cast<std::size_t>(disparity.height()), origin);
+  parallel_rows(disparity.height(), 16, threads, [&](int first, int last, int) {
+    for (int v = first; v < last; ++v) {
+      PlaneSums& row = rows[static_cast<std::size_t>(v)];
+      for (int u = 0; u < disparity.width(); ++u) {
+        if (usable(disparity, mask, u, v)) row.add({static_cast<double>(u), static_cast<double>(v), disparity(u, v)});
+      }
     }
-    total.add(row);
-  }
+  });
+  PlaneSums total = origin;
+  for (const PlaneSums& row : rows) total.add(row);
   return total;
 }
 
@@ -139,14 +143,14 @@ void RoadGeometryOptions::validate() const {
 
 RoadGeometry fit_road_geometry(ImageView<const float> disparity, const Mask& mask,
                                const std::optional<RoadModel>& prior, double initial_roll_rad,
-                               const RoadGeometryOptions& options) {
+                               const RoadGeometryOptions& options, int threads) {
   options.validate();
   if (mask && (mask->width() != disparity.width() || mask->height() != disparity.height())) {
     fail("the mask has ", mask->width(), "×", mask->height(), " pixels and the disparity map ", disparity.width(), "×",
          disparity.height(), "; they must be equal");
   }
   constexpr double fewest = 16;
-  const PlaneSums sums = sum_map(disparity, mask);
+  const PlaneSums sums = sum_map(disparity, mask, threads);
   if (sums.weight() < fewest) {
     fail("only ", sums.weight(), " disparities are valid; the road geometry needs at least ", fewest);
   }

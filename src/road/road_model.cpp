@@ -19,7 +19,7 @@ namespace {
 
 constexpr int coarse_width = 120;   ///< the coarse search shrinks the image to between this and twice this
 constexpr int fewest_matches = 40;  ///< below this nothing is known
-constexpr int places = 5000;        ///< of the fine search
+constexpr int places = 2500;        ///< of the fine search
 
 /// Power of two that brings the image near the width of the coarse search.
 int coarse_factor(int width) {
@@ -64,8 +64,8 @@ double vote(const DisparityPoint& point, const RoadModel& plane, double toleranc
 
 std::optional<RoadModel> search_road(std::span<const DisparityPoint> matches, double tolerance_px, int height,
                                      const TiltLimit& limit) {
-  constexpr int trials = 600;
-  constexpr std::size_t voters = 1500;
+  constexpr int trials = 400;
+  constexpr std::size_t voters = 600;
   Sampler sampler;
   std::vector<DisparityPoint> jury;
   for (std::size_t i = 0; i < voters; ++i) jury.push_back(matches[sampler.below(matches.size())]);
