@@ -50,6 +50,10 @@ std::vector<Case> cases() {
   large_block.block_radius = 10;
   large_block.aggregation_radius = 10;
   all.push_back({"large_windows", 90, 64, 20, large_block, true});
+  MatcherOptions large_ring;  // so large that the row is matched in several tiles of columns
+  large_ring.block_radius = 2;
+  large_ring.aggregation_radius = 10;
+  all.push_back({"tiles", 331, 41, 33, large_ring, true});
   return all;
 }
 

@@ -1,8 +1,8 @@
 #include "roadstereo/options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
-#include <sstream>
 #include <utility>
 
 #include "roadstereo/error.hpp"
@@ -92,18 +92,11 @@ std::string to_text(bool value) {
 std::string to_text(int value) {
   return std::to_string(value);
 }
+/// The shortest text that reads back as the same number.
 std::string to_text(double value) {
-  std::ostringstream text;
-  text.precision(17);
-  text << value;
-  // The shortest text that reads back as the same number.
-  for (int digits = 1; digits < 17; ++digits) {
-    std::ostringstream shorter;
-    shorter.precision(digits);
-    shorter << value;
-    if (std::stod(shorter.str()) == value) return shorter.str();
-  }
-  return text.str();
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
 }
 template <class Enum>
 requires std::is_enum_v<Enum> std::string to_text(Enum value) {

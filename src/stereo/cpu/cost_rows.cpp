@@ -57,22 +57,25 @@ void CostRows::load(int v) {
   std::int16_t* ref_row = reference_.row(v % ring_);
   std::int16_t* tar_row = target_.row(v % ring_);
   const int first = std::min(first_column(v), width_);
-  for (int u = 0; u < width_; ++u) ref_row[u] = static_cast<std::int16_t>(ref[u] - mid_grey);
-  std::fill_n(tar_row, first, std::int16_t{0});
-  for (int u = first; u < width_; ++u) tar_row[u] = static_cast<std::int16_t>(tar[u] - mid_grey);
+  const int end = end_column();
+  for (int u = first_reference_column(); u < end; ++u) ref_row[u] = static_cast<std::int16_t>(ref[u] - mid_grey);
+  for (int u = first_target_column(); u < end; ++u) {
+    tar_row[u] = u < first ? std::int16_t{0} : static_cast<std::int16_t>(tar[u] - mid_grey);
+  }
 }
 
 void CostRows::slide_own_sums(int v, int sign) {
   const std::int16_t* ref = reference_row(v);
   const std::int16_t* tar = target_row(v);
-  const auto add = [&](const std::int16_t* row, std::int32_t* sums, std::int32_t* squares) {
-    for (int u = 0; u < width_; ++u) sums[u] += sign * row[u];
-    for (int u = 0; u < width_; ++u) squares[u] += sign * row[u] * row[u];
+  const int end = end_column();
+  const auto add = [&](const std::int16_t* row, int first, std::int32_t* sums, std::int32_t* squares) {
+    for (int u = first; u < end; ++u) sums[u] += sign * row[u];
+    for (int u = first; u < end; ++u) squares[u] += sign * row[u] * row[u];
   };
-  add(ref, own_sums_.row(ref_sum), own_sums_.row(ref_squares));
-  add(tar, own_sums_.row(tar_sum), own_sums_.row(tar_squares));
+  add(ref, first_reference_column(), own_sums_.row(ref_sum), own_sums_.row(ref_squares));
+  add(tar, first_target_column(), own_sums_.row(tar_sum), own_sums_.row(tar_squares));
   std::int32_t* count = own_sums_.row(tar_count);
-  for (int u = std::min(first_column(v), width_); u < width_; ++u) count[u] += sign;
+  for (int u = std::max(first_column(v), first_target_column()); u < end; ++u) count[u] += sign;
 }
 
 /// Moves the column sums by one row; either row may be `no_row`.
@@ -82,11 +85,14 @@ void CostRows::slide(int entering, int leaving) {
   if (entering != no_row) slide_own_sums(entering, 1);
   if (leaving != no_row) slide_own_sums(leaving, -1);
   for (int d = 0; d < input_.disparities; ++d) {
-    slide_products(ref(entering), tar(entering) - d, ref(leaving), tar(leaving) - d, width_, products_.row(d));
+    slide_products(ref(entering), tar(entering) - d, ref(leaving), tar(leaving) - d, first_reference_column(),
+                   end_column(), products_.row(d));
   }
 }
 
-void CostRows::start(int v) {
+void CostRows::start(int v, int begin, int end) {
+  begin_ = begin;
+  end_ = end;
   own_sums_.clear();
   products_.clear();
   first_entered_ = std::max(0, v - radius_);
@@ -110,26 +116,27 @@ void CostRows::compute(int v, float* planes, std::ptrdiff_t plane_pitch) {
                                    deviations_.row(0)};
   const BlockStatisticsRow tar_row{statistics_.row(sum_tar), statistics_.row(mean_tar), statistics_.row(residue_tar),
                                    deviations_.row(1)};
-  block_statistics(own_sums_.row(ref_sum), own_sums_.row(ref_squares), radius_, pixels, noise_variance_, width_,
+  block_statistics(own_sums_.row(ref_sum), own_sums_.row(ref_squares), radius_, pixels, noise_variance_, begin_, end_,
                    ref_row);
-  block_statistics(own_sums_.row(tar_sum), own_sums_.row(tar_squares), radius_, pixels, noise_variance_, width_,
-                   tar_row);
+  block_statistics(own_sums_.row(tar_sum), own_sums_.row(tar_squares), radius_, pixels, noise_variance_,
+                   std::max(0, begin_ - input_.disparities + 1), end_, tar_row);
 
   int common_first = 0;  // from this target column on, every row of the block is inside the target image
   for (int row = first_row; row <= last_row; ++row) common_first = std::max(common_first, first_column(row));
   for (int d = 0; d < input_.disparities; ++d) {
     float* cost = planes + d * plane_pitch;
-    const int first = first_column(v) + d;
+    const int first = std::max(begin_, first_column(v) + d);
+    const int last = std::min(end_, width_) - 1;
     const int full_first = std::max(first, common_first + d + radius_);
-    const int full_last = width_ - 1 - radius_;
+    const int full_last = std::min(last, width_ - 1 - radius_);
     if (full_first <= full_last) {
       const BlockStatistics ref{ref_row.sum, ref_row.mean, ref_row.residue, ref_row.inverse_deviation};
       const BlockStatistics tar{tar_row.sum - d, tar_row.mean - d, tar_row.residue - d, tar_row.inverse_deviation - d};
       correlation_row(products_.row(d), ref, tar, radius_, pixels, full_first, full_last, cost);
       compute_border(v, d, first, full_first - 1, cost);
-      compute_border(v, d, full_last + 1, width_ - 1, cost);
+      compute_border(v, d, full_last + 1, last, cost);
     } else {
-      compute_border(v, d, first, width_ - 1, cost);
+      compute_border(v, d, first, last, cost);
     }
   }
 }

@@ -36,11 +36,11 @@ class CostRows {
  public:
   void prepare(const MatchInput& input, const MatcherOptions& options);
 
-  /// Begins at row `v`; `compute` is then called for v, v + 1, ….
-  void start(int v);
+  /// Begins at row `v` with the columns [begin, end); `compute` is then called for v, v + 1, ….
+  void start(int v, int begin, int end);
 
   /// Costs of row `v` for every disparity: plane d of `planes` begins at planes + d·plane_pitch, column 0.
-  /// Pixels without a counterpart keep what was there.
+  /// Pixels without a counterpart, and those of other columns, keep what was there.
   void compute(int v, float* planes, std::ptrdiff_t plane_pitch);
 
   /// Grey values of a row of either view, centred on mid-grey. Rows stay for 2·aggregation radius rows.
@@ -50,6 +50,10 @@ class CostRows {
 
  private:
   struct BorderColumn;
+
+  int first_reference_column() const { return std::max(0, begin_ - radius_); }
+  int first_target_column() const { return std::max(0, begin_ - radius_ - input_.disparities + 1); }
+  int end_column() const { return std::min(width_, end_ + radius_); }
 
   void load(int v);
   void slide(int entering, int leaving);
@@ -63,6 +67,8 @@ class CostRows {
   int radius_ = 0;
   int ring_ = 1;
   float noise_variance_ = 0;
+  int begin_ = 0;  ///< columns that costs are wanted of
+  int end_ = 0;
   int loaded_ = 0;  ///< rows below this are in the ring
   int first_entered_ = 0;
   PaddedRows<std::int16_t> reference_;  ///< ring of rows, grey minus mid-grey

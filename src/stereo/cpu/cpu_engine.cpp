@@ -46,30 +46,51 @@ class BandMatcher {
     // Behind the last column the target view reads up to D columns further.
     planes_.resize(ring_ * disparities_, width_ + disparities_, cpu::row_padding);
     scratch_.resize(cpu::choose_row_scratch(aggregation.taps.size()));
-    offsets_.resize(static_cast<std::size_t>(width_));
   }
 
+  /// Matches the rows [first_row, last_row), one tile of columns after the other.
   void match(int first_row, int last_row, const MatcherOptions& options, const Aggregation& aggregation,
              MatchMaps& maps) {
+    const int tile = tile_width(aggregation.radius);
+    for (int begin = 0; begin < width_; begin += tile) {
+      match_tile(first_row, last_row, begin, std::min(begin + tile, width_), aggregation, maps);
+    }
+    for (int v = first_row; v < last_row; ++v) finish_row(v, options, maps);
+  }
+
+ private:
+  /// Columns that are matched together, so that their ring of costs stays in the cache of a core. The target view needs
+  /// the costs of D columns more, so very many disparities are not worth cutting for.
+  int tile_width(int radius) const {
+    constexpr int cache_bytes = 800 * 1024;
+    const int bytes_per_column = ring_ * disparities_ * static_cast<int>(sizeof(float));
+    const int columns = cache_bytes / bytes_per_column - 2 * radius - disparities_;
+    if (columns < std::max(cpu::column_grid, disparities_ / 2) || columns >= width_) return width_;
+    return columns / cpu::column_grid * cpu::column_grid;
+  }
+
+  void match_tile(int first_row, int last_row, int begin, int end, const Aggregation& aggregation, MatchMaps& maps) {
     int next = std::max(0, first_row - aggregation.radius);
-    costs_.start(next);
+    costs_.start(next, std::max(0, begin - aggregation.radius),
+                 std::min(width_, end + aggregation.radius + disparities_ - 1));
     for (int v = first_row; v < last_row; ++v) {
       for (; next <= std::min(height_ - 1, v + aggregation.radius); ++next) {
         costs_.compute(next, planes_.row((next % ring_) * disparities_), planes_.pitch());
       }
-      choose(v, 0, aggregation, {maps.winner.row(v), offsets_.data()});
-      choose(v, 1, aggregation, {maps.target_winner.row(v), nullptr});
-      finish_row(v, options, maps);
+      // The sub-pixel offset waits in the disparity map until the whole row is known.
+      choose(v, 0, begin, end, aggregation, {maps.winner.row(v), maps.disparity.row(v)});
+      choose(v, 1, begin, end, aggregation, {maps.target_winner.row(v), nullptr});
     }
   }
 
- private:
   const std::int16_t* grey_row(int v, int shift) const {
     return shift == 0 ? costs_.reference_row(v) : costs_.target_row(v);
   }
 
-  void choose(int v, int shift, const Aggregation& aggregation, const cpu::WinnerRow& winners) {
+  void choose(int v, int shift, int begin, int end, const Aggregation& aggregation, const cpu::WinnerRow& winners) {
     AggregationRow row;
+    row.begin = begin;
+    row.end = end;
     row.width = width_;
     row.disparities = disparities_;
     row.radius = aggregation.radius;
@@ -98,13 +119,13 @@ class BandMatcher {
     const std::int16_t* target_winner = maps.target_winner.row(v);
     float* disparity = maps.disparity.row(v);
     for (int u = 0; u < width_; ++u) {
+      const float offset = disparity[u];
       disparity[u] = std::numeric_limits<float>::quiet_NaN();
       if (winner[u] < 0) continue;
       if (options.left_right_check) {
         const double difference = winner[u] - target_winner[u - winner[u]];
         if (difference * difference > options.consistency) continue;
       }
-      const float offset = offsets_[static_cast<std::size_t>(u)];
       const bool bracketed = !std::isnan(offset);
       if (!bracketed && options.drop_range_ends) continue;
       disparity[u] = static_cast<float>(winner[u]) + (bracketed && options.sub_pixel ? offset : 0.0f);
@@ -119,7 +140,6 @@ class BandMatcher {
   cpu::PaddedRows<float> planes_;
   std::vector<cpu::RowTap> taps_;
   std::vector<float> scratch_;
-  std::vector<float> offsets_;
 };
 
 class CpuEngine final : public StereoEngine {

@@ -25,10 +25,10 @@ HWY_INLINE Int load_widened(const std::int16_t* from) {
 }
 
 void slide_products(const std::int16_t* entering_ref, const std::int16_t* entering_tar, const std::int16_t* leaving_ref,
-                    const std::int16_t* leaving_tar, int width, std::int32_t* sums) {
+                    const std::int16_t* leaving_tar, int first, int end, std::int32_t* sums) {
   const Ints d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  for (int u = 0; u < width; u += lanes) {
+  for (int u = first; u < end; u += lanes) {
     const Int entering = hn::Mul(load_widened(entering_ref + u), load_widened(entering_tar + u));
     const Int leaving = hn::Mul(load_widened(leaving_ref + u), load_widened(leaving_tar + u));
     hn::StoreU(hn::Add(hn::LoadU(d, sums + u), hn::Sub(entering, leaving)), d, sums + u);
@@ -44,13 +44,13 @@ HWY_INLINE Int block_sum(const std::int32_t* column_sums, int u, int radius) {
 }
 
 void block_statistics(const std::int32_t* column_sums, const std::int32_t* column_squares, int block_radius,
-                      int pixels_in_block, float noise_variance, int width, const BlockStatisticsRow& out) {
+                      int pixels_in_block, float noise_variance, int first, int end, const BlockStatisticsRow& out) {
   const Ints di;
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(di));
   const Float n = hn::Set(df, static_cast<float>(pixels_in_block));
   const Float inverse_n = hn::Set(df, 1.0f / static_cast<float>(pixels_in_block));
-  for (int u = 0; u < width; u += lanes) {
+  for (int u = first; u < end; u += lanes) {
     const Int sum = block_sum(column_sums, u, block_radius);
     const Int mean = hn::NearestInt(hn::Mul(hn::ConvertTo(df, sum), inverse_n));
     const Int residue = hn::Sub(sum, hn::Mul(mean, hn::Set(di, pixels_in_block)));
@@ -319,8 +319,8 @@ void choose_row(const AggregationRow& row, float* scratch, const WinnerRow& winn
     return RunningWinner(states + i * RunningWinner::vectors * lanes, lanes);
   };
 
-  for (int begin = 0; begin < row.width; begin += strip) {
-    const int end = std::min(begin + strip, row.width);
+  for (int begin = row.begin; begin < row.end; begin += strip) {
+    const int end = std::min(begin + strip, row.end);
     const auto each_vector = [&](auto body) {
       std::size_t i = 0;
       for (int u = begin; u < end; u += static_cast<int>(lanes), ++i) body(u, i);
@@ -368,14 +368,14 @@ HWY_EXPORT(choose_row_scratch);
 HWY_EXPORT(name_of_target);
 
 void slide_products(const std::int16_t* entering_ref, const std::int16_t* entering_tar, const std::int16_t* leaving_ref,
-                    const std::int16_t* leaving_tar, int width, std::int32_t* sums) {
-  HWY_DYNAMIC_DISPATCH(slide_products)(entering_ref, entering_tar, leaving_ref, leaving_tar, width, sums);
+                    const std::int16_t* leaving_tar, int first, int end, std::int32_t* sums) {
+  HWY_DYNAMIC_DISPATCH(slide_products)(entering_ref, entering_tar, leaving_ref, leaving_tar, first, end, sums);
 }
 
 void block_statistics(const std::int32_t* column_sums, const std::int32_t* column_squares, int block_radius,
-                      int pixels_in_block, float noise_variance, int width, const BlockStatisticsRow& out) {
+                      int pixels_in_block, float noise_variance, int first, int end, const BlockStatisticsRow& out) {
   HWY_DYNAMIC_DISPATCH(block_statistics)
-  (column_sums, column_squares, block_radius, pixels_in_block, noise_variance, width, out);
+  (column_sums, column_squares, block_radius, pixels_in_block, noise_variance, first, end, out);
 }
 
 void correlation_row(const std::int32_t* column_sums, const BlockStatistics& ref, const BlockStatistics& tar,

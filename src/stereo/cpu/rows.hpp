@@ -24,11 +24,11 @@ struct BlockStatistics {
   const float* inverse_deviation;  ///< 1 / (n·√(σ² + noise²)), 0 where the block has no texture
 };
 
-/// sums[u] += entering_ref[u]·entering_tar[u] − leaving_ref[u]·leaving_tar[u] for u in [0, width).
+/// sums[u] += entering_ref[u]·entering_tar[u] − leaving_ref[u]·leaving_tar[u] for u in [first, end).
 void slide_products(const std::int16_t* entering_ref, const std::int16_t* entering_tar, const std::int16_t* leaving_ref,
-                    const std::int16_t* leaving_tar, int width, std::int32_t* sums);
+                    const std::int16_t* leaving_tar, int first, int end, std::int32_t* sums);
 
-/// Block sums of one view as kernels write them: columns [0, width).
+/// The same as block_statistics writes it.
 struct BlockStatisticsRow {
   std::int32_t* sum;
   std::int32_t* mean;
@@ -36,10 +36,10 @@ struct BlockStatisticsRow {
   float* inverse_deviation;
 };
 
-/// Block statistics of one view from the column sums of i and i². `noise_variance` is added to σ². Columns whose block
-/// leaves the image get figures of no meaning.
+/// Block statistics of one view at the columns [first, end), from the column sums of i and i². `noise_variance` is
+/// added to σ². Columns whose block leaves the image get figures of no meaning.
 void block_statistics(const std::int32_t* column_sums, const std::int32_t* column_squares, int block_radius,
-                      int pixels_in_block, float noise_variance, int width, const BlockStatisticsRow& out);
+                      int pixels_in_block, float noise_variance, int first, int end, const BlockStatisticsRow& out);
 
 /// cost[u] = 1 − n·cov(u) / (n σ_ref σ_tar), eq. c, for u in [first, last], from the column sums of i_ref·i_tar.
 /// `tar` is shifted so that tar.sum[u] belongs to the target pixel that u is compared with. Exact up to the last step:
@@ -56,8 +56,10 @@ struct RowTap {
   float log2_weight;         ///< log2 ω0
 };
 
-/// One row of one view, ready to be aggregated.
+/// One row of one view, ready to be aggregated at the columns [begin, end).
 struct AggregationRow {
+  int begin = 0;
+  int end = 0;
   int width = 0;
   int disparities = 0;
   int radius = 0;
@@ -70,6 +72,9 @@ struct AggregationRow {
   std::span<const RowTap> taps;        ///< those whose rows lie inside the image
 };
 
+/// Column that a row may be cut at without changing its results: vectors begin at its multiples.
+inline constexpr int column_grid = 64;
+
 /// What winner-take-all leaves of one row.
 struct WinnerRow {
   std::int16_t* winner;  ///< −1 where nothing can match
@@ -79,7 +84,8 @@ struct WinnerRow {
 /// Floats of scratch memory that choose_row needs for a window of `taps` taps.
 std::size_t choose_row_scratch(std::size_t taps);
 
-/// Aggregates the costs of one row (eq. fbs) and takes the winner at every pixel, with its sub-pixel offset.
+/// Aggregates the costs (eq. fbs) and takes the winner at every pixel of the row's columns, with its sub-pixel offset.
+/// `row.begin` must be a multiple of `column_grid`.
 void choose_row(const AggregationRow& row, float* scratch, const WinnerRow& winners);
 
 std::string target_name();
