@@ -1,0 +1,14 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace roadstereo::cli {
+
+// Each adds one subcommand to the command line; the subcommand runs when it is parsed.
+void add_inspect(CLI::App& app);
+void add_synth(CLI::App& app);
+void add_engines(CLI::App& app);
+
+}  // namespace roadstereo::cli

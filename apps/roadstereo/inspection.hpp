@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pair_source.hpp"
+#include "roadstereo/pipeline.hpp"
+#include "roadstereo/road_plane.hpp"
+
+namespace roadstereo::cli {
+
+/// One inspected pair: what went in, how it was treated, what came out.
+struct Inspection {
+  PairFiles files;
+  StereoPair pair;
+  std::string preset;
+  PipelineOptions options;
+  std::string engine;  ///< the engine that ran
+  int threads = 0;     ///< the threads it ran on
+  FrameResult result;
+  std::optional<RoadPlane> plane;     ///< in space; only with a calibration and a road
+  std::vector<std::string> warnings;  ///< the pipeline's and the command's own
+};
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,87 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "commands.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/version.hpp"
+
+namespace {
+
+constexpr int exit_bad_input = 2;
+constexpr int exit_failure = 1;
+
+constexpr const char* footer =
+    "Example: make a road, inspect it, look at the sheet\n"
+    "  roadstereo synth --scene demo --output road\n"
+    "  roadstereo inspect road/left.png road/right.png --calibration road/calibration.yaml --output out\n"
+    "\n"
+    "Exit code: 0 success; 2 wrong usage or unreadable input; 1 anything else (a full disk, for one).";
+
+/// Says what went wrong in one line, whatever the message's own line breaks.
+int complain(std::string message, int exit_code) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  fmt::print(stderr, "roadstereo: {}\n", message);
+  return exit_code;
+}
+
+/// The command whose help answers a wrong command line.
+std::string help_command(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? "roadstereo --help" : "roadstereo " + chosen.front()->get_name() + " --help";
+}
+
+/// What waits in the buffer can still meet a full disk.
+void flush_output() {
+  const bool written = std::fflush(stdout) == 0;
+  if (!written) throw roadstereo::SystemError("standard output cannot be written");
+}
+
+int run(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
+    flush_output();
+    return 0;
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return app.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    return complain(fmt::format("{} (see {})", error.what(), help_command(app)), exit_bad_input);
+  }
+}
+
+void describe(CLI::App& app) {
+  app.description(
+      "roadstereo: dense stereo for road inspection.\n"
+      "From a stereo pair of a road: sub-pixel disparities, the roll angle, the road's model, and the\n"
+      "transformed disparity map, in which the intact road is flat and damage stands out.");
+  app.footer(footer);
+  app.set_version_flag("--version", std::string("roadstereo ") + roadstereo::version);
+  app.require_subcommand(0, 1);  // none is refused after parsing, when a mistyped one has been named
+  roadstereo::cli::add_inspect(app);
+  roadstereo::cli::add_synth(app);
+  roadstereo::cli::add_engines(app);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    CLI::App app;
+    describe(app);
+    return run(app, argc, argv);
+  } catch (const roadstereo::SystemError& error) {
+    return complain(error.what(), exit_failure);
+  } catch (const roadstereo::Error& error) {
+    return complain(error.what(), exit_bad_input);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory", exit_failure);
+  } catch (const std::exception& error) {
+    return complain(error.what(), exit_failure);
+  }
+}

@@ -1,0 +1,51 @@
+#include "result_files.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "kitti_range.hpp"
+#include "roadstereo/io/image_file.hpp"
+#include "roadstereo/io/pictures.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+void add_kitti_png(Inspection& inspection, io::OutputFolder& folder) {
+  const KittiRange range = fit_kitti_range(inspection.result.disparity);
+  folder.add("disparity.png", io::encode_kitti_png(range.disparity));
+  if (range.lost == 0) return;
+  inspection.warnings.push_back(
+      fmt::format("{:.2f} % of the disparities lie outside 0 … 255.99 px, which disparity.png cannot hold; "
+                  "disparity.tiff has them all",
+                  100.0 * static_cast<double>(range.lost) / static_cast<double>(range.valid)));
+}
+
+void add_picture(io::OutputFolder& folder, const std::string& name, const Frame& picture) {
+  folder.add(name, io::encode_png(picture.view()));
+}
+
+std::optional<RoadGeometry> known_geometry(const FrameResult& result) {
+  if (!result.geometry_found) return std::nullopt;
+  return result.geometry;
+}
+
+}  // namespace
+
+void add_result_files(Inspection& inspection, io::OutputFolder& folder) {
+  const FrameResult& result = inspection.result;
+  folder.add("disparity.tiff", io::encode_float_tiff(result.disparity));
+  folder.add("transformed.tiff", io::encode_float_tiff(result.transformed));
+  add_kitti_png(inspection, folder);
+  const io::ColourScale spread = io::spread_scale(result.disparity, "disparity, px");
+  add_picture(folder, "disparity_color.png", io::colour_map(result.disparity, spread));
+  const io::ColourScale around_road = io::transformed_scale(result.transformed, result.delta_t);
+  add_picture(folder, "transformed_color.png", io::colour_map(result.transformed, around_road));
+  const std::string title = std::filesystem::path(inspection.files.left).filename().string();
+  add_picture(folder, "sheet.png",
+              io::result_sheet(inspection.pair.left.view(), result.disparity, result.transformed, result.delta_t,
+                               known_geometry(result), title));
+}
+
+}  // namespace roadstereo::cli

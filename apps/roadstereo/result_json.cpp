@@ -1,0 +1,121 @@
+#include "result_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "json_text.hpp"
+#include "roadstereo/options.hpp"
+#include "roadstereo/version.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json inputs_json(const PairFiles& files) {
+  Json calibration = nullptr;
+  if (!files.calibration.empty()) calibration = files.calibration;
+  return {{"left", files.left}, {"right", files.right}, {"calibration", calibration}};
+}
+
+/// Numbers and true/false as such, words as strings.
+Json option_value(const OptionText& option) {
+  if (option.is_text) return option.value;
+  Json value = Json::parse(option.value, nullptr, false);
+  return value.is_discarded() ? Json(option.value) : value;
+}
+
+Json options_json(const PipelineOptions& options) {
+  Json list = Json::object();
+  for (const OptionText& option : list_options(options)) list[option.key] = option_value(option);
+  return list;
+}
+
+Json calibration_json(const StereoPair& pair) {
+  if (!pair.calibration) return nullptr;
+  const StereoCalibration& rig = *pair.calibration;
+  return {{"format", pair.calibration_format},
+          {"rectified_here", pair.rectified_here},
+          {"focal_px", json_number(rig.focal_px)},
+          {"cx_px", json_number(rig.cx_px)},
+          {"cy_px", json_number(rig.cy_px)},
+          {"baseline_m", json_number(rig.baseline_m)},
+          {"disparity_offset_px", json_number(rig.disparity_offset_px)}};
+}
+
+Json model_json(const RoadModel& model) {
+  return {{"a0", json_number(model.a0)}, {"a1", json_number(model.a1)}, {"a2", json_number(model.a2)}};
+}
+
+Json estimate_json(const RoadModelEstimate& road) {
+  Json estimate = {{"reliable", road.reliable}, {"reason", road.reason}};
+  estimate["road_model"] = road.reliable ? model_json(road.model) : Json(nullptr);
+  estimate["matches"] = road.matches;
+  estimate["inliers"] = road.inliers;
+  estimate["residual_px"] = road.reliable ? json_number(road.residual_px) : Json(nullptr);
+  return estimate;
+}
+
+Json rows_json(const RowAlignment& rows) {
+  const bool known = rows.known();
+  return {{"median_px", known ? json_number(rows.median_px) : Json(nullptr)},
+          {"spread_px", known ? json_number(rows.spread_px) : Json(nullptr)},
+          {"points", rows.points}};
+}
+
+Json times_json(const StageTimes& ms) {
+  return {{"prepare", json_number(ms.prepare)},
+          {"road_model", json_number(ms.road_model)},
+          {"perspective", json_number(ms.perspective)},
+          {"match", json_number(ms.match)},
+          {"road_geometry", json_number(ms.road_geometry)},
+          {"transform", json_number(ms.transform)},
+          {"total", json_number(ms.total)}};
+}
+
+void add_geometry(Json& document, const FrameResult& result) {
+  const RoadGeometry& geometry = result.geometry;
+  const auto known = [&](double value) { return result.geometry_found ? json_number(value) : Json(nullptr); };
+  document["road_model"] = result.geometry_found ? model_json(geometry.plane) : Json(nullptr);
+  document["alpha0"] = known(geometry.alpha0);
+  document["alpha1"] = known(geometry.alpha1);
+  document["roll_rad"] = known(geometry.roll_rad);
+  document["roll_stderr_rad"] = known(geometry.roll_stderr_rad);
+  document["roll_observable"] = result.geometry_found && geometry.roll_observable;
+  document["residual_px"] = known(geometry.residual_px);
+  document["delta_p"] = json_number(result.shift.delta_p);
+  document["delta_t"] = known(result.delta_t);
+  document["disparities"] = result.shift.disparities;
+  document["valid_fraction"] = json_number(result.valid_share);
+  document["sigma_d_px"] = known(result.spread.road_px);
+  document["sigma_d_all_px"] = known(result.spread.all_px);
+  document["road_fraction"] = known(result.spread.road_share);
+}
+
+void add_plane(Json& document, const std::optional<RoadPlane>& plane) {
+  document["camera_height_m"] = plane ? json_number(plane->height_m) : Json(nullptr);
+  document["camera_pitch_rad"] = plane ? json_number(plane->pitch_rad) : Json(nullptr);
+}
+
+}  // namespace
+
+std::string result_json(const Inspection& inspection) {
+  const FrameResult& result = inspection.result;
+  Json document = {{"version", version}, {"inputs", inputs_json(inspection.files)}};
+  document["size"] = {{"width", result.disparity.width()}, {"height", result.disparity.height()}};
+  document["preset"] = inspection.preset;
+  document["options"] = options_json(inspection.options);
+  document["engine"] = inspection.engine;
+  document["threads"] = inspection.threads;
+  document["calibration"] = calibration_json(inspection.pair);
+  add_geometry(document, result);
+  add_plane(document, inspection.plane);
+  document["rows"] = rows_json(result.rows);
+  document["road_model_before_matching"] = estimate_json(result.road);
+  document["ms"] = times_json(result.ms);
+  document["mde_per_s"] = json_number(result.mde_per_s);
+  document["warnings"] = inspection.warnings;
+  return json_text(document);
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,88 @@
+#include "scene_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <system_error>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+/// The whole number that all of `text` is; 0 when it is none.
+int whole_number(const std::string& text) {
+  int value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stop == end ? value : 0;
+}
+
+/// Sets the image size; the focal length follows the width, so that the view stays the same.
+void apply_size(synth::Rig& rig, const std::string& size) {
+  const auto cross = size.find('x');
+  const int width = cross == std::string::npos ? 0 : whole_number(size.substr(0, cross));
+  const int height = cross == std::string::npos ? 0 : whole_number(size.substr(cross + 1));
+  if (width <= 0 || height <= 0) fail("--size takes WIDTHxHEIGHT, for example 640x360, but got \"", size, "\"");
+  rig.focal_px *= static_cast<double>(width) / rig.width;
+  rig.width = width;
+  rig.height = height;
+}
+
+void override_with(const std::optional<double>& given, double& value) {
+  if (given) value = *given;
+}
+
+synth::Scene base_scene(const SceneOptions& options) {
+  if (options.seed) return synth::random_scene(*options.seed, options.degraded);
+  return synth::named_scene(options.name);
+}
+
+void add_rig_options(CLI::App& command, SceneOptions& options) {
+  command.add_option("--size", options.size, "Image size; the field of view stays")->type_name("WxH");
+  command.add_option("--height", options.camera_height_m, "Camera height over the road")->type_name("M");
+  command.add_option("--pitch", options.pitch_deg, "Optical axis below the horizon; 90 looks straight down")
+      ->type_name("DEG");
+  command.add_option("--roll", options.roll_deg, "Turn about the optical axis")->type_name("DEG");
+  command.add_option("--focal", options.focal_px, "Focal length")->type_name("PX");
+  command.add_option("--baseline", options.baseline_m, "Distance between the cameras")->type_name("M");
+}
+
+void add_degradation_options(CLI::App& command, SceneOptions& options) {
+  command.add_option("--noise", options.noise_grey, "Noise, standard deviation in grey levels")->type_name("GREY");
+  command.add_option("--blur", options.blur_px, "Gaussian blur, standard deviation")->type_name("PX");
+  command.add_option("--gain", options.gain_difference, "The right image is 1 + X times as bright")->type_name("X");
+  command.add_option("--exposure", options.exposure, "Brightness of both images; above 1 white clips")->type_name("X");
+}
+
+}  // namespace
+
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+  CLI::Option* name = command.add_option("--scene", options.name, "A named scene, see --list")
+                          ->type_name("NAME")
+                          ->capture_default_str();
+  CLI::Option* seed = command.add_option("--seed", options.seed, "A scene drawn at random; same seed, same scene")
+                          ->type_name("N")
+                          ->excludes(name);
+  command.add_flag("--degraded", options.degraded, "Wear of the picture drawn at random too")->needs(seed);
+  add_rig_options(command, options);
+  add_degradation_options(command, options);
+}
+
+synth::Scene make_scene(const SceneOptions& options) {
+  synth::Scene scene = base_scene(options);
+  if (options.size) apply_size(scene.rig, *options.size);
+  override_with(options.camera_height_m, scene.rig.camera_height_m);
+  override_with(options.pitch_deg, scene.rig.pitch_deg);
+  override_with(options.roll_deg, scene.rig.roll_deg);
+  override_with(options.focal_px, scene.rig.focal_px);
+  override_with(options.baseline_m, scene.rig.baseline_m);
+  override_with(options.noise_grey, scene.degradation.noise_grey);
+  override_with(options.blur_px, scene.degradation.blur_px);
+  override_with(options.gain_difference, scene.degradation.gain_difference);
+  override_with(options.exposure, scene.degradation.exposure);
+  scene.validate();
+  return scene;
+}
+
+}  // namespace roadstereo::cli

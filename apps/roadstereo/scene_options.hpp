@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "roadstereo/synth.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace roadstereo::cli {
+
+/// What the command line says about the scene to make. What is not given stays as the scene has it.
+struct SceneOptions {
+  std::string name = "demo";
+  std::optional<std::uint64_t> seed;  ///< a random scene instead of the named one
+  bool degraded = false;              ///< a random scene with wear of the picture
+  std::optional<std::string> size;    ///< "WxH"
+  std::optional<double> camera_height_m;
+  std::optional<double> pitch_deg;
+  std::optional<double> roll_deg;
+  std::optional<double> focal_px;
+  std::optional<double> baseline_m;
+  std::optional<double> noise_grey;
+  std::optional<double> blur_px;
+  std::optional<double> gain_difference;
+  std::optional<double> exposure;
+};
+
+/// Adds the options to a subcommand.
+void add_scene_options(CLI::App& command, SceneOptions& options);
+
+/// The scene that the options describe. Throws Error for an unknown name or a figure that is out of range.
+synth::Scene make_scene(const SceneOptions& options);
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,91 @@
+#include "summary.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "roadstereo/version.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+double degrees(double radians) {
+  return radians * 180.0 / std::numbers::pi;
+}
+
+std::string line(const std::string& title, const std::string& text) {
+  return fmt::format("  {:<10}{}\n", title, text);
+}
+
+std::string pair_text(const Inspection& inspection) {
+  const StereoPair& pair = inspection.pair;
+  const std::string size = fmt::format("{}×{} px, ", pair.left.width, pair.left.height);
+  if (!pair.calibration) return size + "no calibration: pixels only";
+  return size + pair.calibration_format + (pair.rectified_here ? " calibration, rectified here" : " calibration");
+}
+
+std::string engine_text(const Inspection& inspection) {
+  return fmt::format("{}, {} thread{}, preset {}, {} disparities", inspection.engine, inspection.threads,
+                     inspection.threads == 1 ? "" : "s", inspection.preset, inspection.result.shift.disparities);
+}
+
+std::string roll_text(const FrameResult& result) {
+  if (!result.geometry_found) return "unknown: too few pixels have a disparity";
+  const RoadGeometry& geometry = result.geometry;
+  std::string angle = fmt::format("{:.3f}° ± {:.3f}°", degrees(geometry.roll_rad), degrees(geometry.roll_stderr_rad));
+  if (geometry.roll_observable) return angle;
+  return "not observable: the road's disparity hardly changes over the image (fitted " + angle + ")";
+}
+
+std::string term(double factor, char coordinate) {
+  return fmt::format(" {} {:.5f} {}", factor < 0 ? "−" : "+", std::abs(factor), coordinate);
+}
+
+std::string road_text(const FrameResult& result) {
+  if (!result.geometry_found) return "unknown";
+  const RoadModel& plane = result.geometry.plane;
+  return fmt::format("d = {:.2f}{}{} px", plane.a0, term(plane.a1, 'v'), term(plane.a2, 'u'));
+}
+
+std::string camera_text(const RoadPlane& plane) {
+  return fmt::format("{:.3f} m above the road, looking {:.1f}° below its horizon", plane.height_m,
+                     degrees(plane.pitch_rad));
+}
+
+std::string spread_text(const FrameResult& result) {
+  if (!result.geometry_found) return "unknown";
+  return fmt::format("{:.3f} px on the road, {:.3f} px over everything", result.spread.road_px, result.spread.all_px);
+}
+
+std::string time_text(const FrameResult& result) {
+  return fmt::format("{:.1f} ms ({:.0f} Mde/s), {:.1f} ms of it matching", result.ms.total, result.mde_per_s,
+                     result.ms.match);
+}
+
+std::string picture_lines(const std::filesystem::path& folder) {
+  std::string lines = line("pictures", (folder / "sheet.png").string());
+  lines += line("", (folder / "disparity_color.png").string());
+  lines += line("", (folder / "transformed_color.png").string());
+  return lines;
+}
+
+}  // namespace
+
+std::string summary(const Inspection& inspection, const std::filesystem::path& folder) {
+  const FrameResult& result = inspection.result;
+  std::string text = fmt::format("roadstereo {}: {} + {}\n", version, inspection.files.left, inspection.files.right);
+  text += line("pair", pair_text(inspection));
+  text += line("engine", engine_text(inspection));
+  text += line("roll", roll_text(result));
+  text += line("road", road_text(result));
+  if (inspection.plane) text += line("camera", camera_text(*inspection.plane));
+  text += line("valid", fmt::format("{:.1f} % of the pixels", 100 * result.valid_share));
+  text += line("sigma_d", spread_text(result));
+  text += line("time", time_text(result));
+  for (const std::string& warning : inspection.warnings) text += line("warning", warning);
+  return text + picture_lines(folder);
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,50 @@
+#include "synth_files.hpp"
+
+#include <fmt/core.h>
+
+#include "roadstereo/io/image_file.hpp"
+#include "roadstereo/io/label_image.hpp"
+#include "truth_json.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+Image<float> to_float(const Image<double>& map) {
+  Image<float> result(map.width(), map.height());
+  for (int v = 0; v < map.height(); ++v) {
+    for (int u = 0; u < map.width(); ++u) result(u, v) = static_cast<float>(map(u, v));
+  }
+  return result;
+}
+
+FrameView grey_view(const Image<std::uint8_t>& image) {
+  return {image.row(0), image.width(), image.height(), image.width(), SampleType::u8, ChannelOrder::grey};
+}
+
+}  // namespace
+
+std::string FrameNumber::path(const std::string& name, const std::string& extension) const {
+  if (frames == 1) return name + extension;
+  return fmt::format("{}/{:06}{}", name, frame, extension);
+}
+
+void add_synthetic_pair(const synth::Scene& scene, const synth::SyntheticPair& pair, const FrameNumber& number,
+                        io::OutputFolder& folder) {
+  folder.add(number.path("left", ".png"), io::encode_png(pair.left.view()));
+  folder.add(number.path("right", ".png"), io::encode_png(pair.right.view()));
+  folder.add(number.path("truth_disparity", ".tiff"), io::encode_float_tiff(to_float(pair.disparity)));
+  folder.add(number.path("truth_visible", ".png"), io::encode_png(grey_view(pair.visible)));
+  folder.add(number.path("truth_labels", ".png"), io::encode_label_png(pair.labels));
+  folder.add(number.path("truth", ".json"), truth_json(scene, pair));
+}
+
+std::string plain_yaml(const StereoCalibration& calibration) {
+  return fmt::format(
+      "# Rectified pair: focal length and principal point in pixels, baseline in metres.\n"
+      "focal_px: {}\ncx_px: {}\ncy_px: {}\nbaseline_m: {}\nwidth: {}\nheight: {}\n",
+      calibration.focal_px, calibration.cx_px, calibration.cy_px, calibration.baseline_m, calibration.width,
+      calibration.height);
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "roadstereo/synth.hpp"
+
+namespace roadstereo::cli {
+
+/// The content of truth.json: plane, roll, rig and every damage of one synthetic pair.
+std::string truth_json(const synth::Scene& scene, const synth::SyntheticPair& pair);
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Fails when a source file is not laid out as .clang-format says; --fix lays it out.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+formatter=$(command -v clang-format-14 || command -v clang-format)
+mode=(--dry-run --Werror)
+if [ "${1:-}" = --fix ]; then
+  mode=(-i)
+fi
+find apps bench examples include src tests -name '*.[ch]pp' -print0 | xargs -0 "$formatter" "${mode[@]}"
+echo "Format: good."

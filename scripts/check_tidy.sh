@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Runs clang-tidy with .clang-tidy over the library and the command line. Needs the build folder of scripts/test.sh.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+if [ ! -f build/compile_commands.json ]; then
+  echo "build/compile_commands.json is missing: run scripts/test.sh first" >&2
+  exit 2
+fi
+find src apps -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build --quiet
+echo "Tidy: good."

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# From a bare machine to pictures: installs what is missing, builds, makes a synthetic road, inspects it.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+./scripts/install_deps.sh
+cmake --preset release -DROADSTEREO_BUILD_TESTS=OFF -DROADSTEREO_BUILD_BENCHMARKS=OFF
+cmake --build --preset release -j "$(nproc)"
+
+build/bin/roadstereo synth --scene demo --output demo/road
+build/bin/roadstereo inspect demo/road/left.png demo/road/right.png --calibration demo/road/calibration.yaml \
+  --output demo/result
+
+echo
+echo "Pictures:"
+for picture in sheet disparity_color transformed_color; do
+  echo "  $PWD/demo/result/$picture.png"
+done

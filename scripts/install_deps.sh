@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Installs with apt what the build needs and is missing, and says what that is. Debian 12, Ubuntu 22.04 or later.
+#   scripts/install_deps.sh            compiler, CMake, libraries
+#   scripts/install_deps.sh --checks   also what the format and tidy checks need
+set -euo pipefail
+
+packages=(build-essential cmake ninja-build pkg-config
+          libopencv-dev libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
+          libgtest-dev libbenchmark-dev)
+case "${1:-}" in
+  "") ;;
+  --checks) packages+=(clang-format-14 clang-tidy) ;;
+  *) echo "usage: $0 [--checks]" >&2; exit 2 ;;
+esac
+
+installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+
+missing=()
+for package in "${packages[@]}"; do
+  installed "$package" || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "Everything needed is installed."
+  exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "Missing: ${missing[*]}. Install them as root with: apt-get install ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+
+echo "Installing with apt: ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
