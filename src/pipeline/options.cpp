@@ -5,6 +5,7 @@
 #include <charconv>
 #include <utility>
 
+#include "core/edit_distance.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -147,22 +148,6 @@ void parse(const std::string& key, const std::string& text, Enum& value) {
     wanted += (wanted.empty() ? "" : " or ") + std::string(word);
   }
   refuse(key, text, wanted);
-}
-
-/// Number of letters to insert, drop or change to get from a to b.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-    }
-  }
-  return row[b.size()];
 }
 
 /// The known key that was probably meant: compared whole, and without its group, since people forget that.

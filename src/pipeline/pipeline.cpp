@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "core/parallel.hpp"
+#include "core/sentence.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -25,14 +25,6 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
-
-template <class... Parts>
-std::string sentence(const Parts&... parts) {
-  std::ostringstream text;
-  text.precision(3);
-  (text << ... << parts);
-  return text.str();
-}
 
 void require_picture(const GreyImage& image, const char* name) {
   const std::int16_t first = image(0, 0);

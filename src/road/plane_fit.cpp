@@ -115,30 +115,37 @@ std::optional<RoadModel> plane_through(const DisparityPoint& a, const DisparityP
   return model;
 }
 
-std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, double tolerance_px) {
+std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, const PlaneVote& vote,
+                                      const std::function<bool(const RoadModel&)>& possible) {
   constexpr int trials = 400;
-  constexpr std::size_t voters = 2000;
+  constexpr std::size_t voters = 600;
   if (points.size() < 3) return std::nullopt;
   Sampler sampler;
+  const auto draw = [&]() -> const DisparityPoint& { return points[sampler.below(points.size())]; };
   std::vector<DisparityPoint> jury;
-  for (std::size_t i = 0; i < voters; ++i) jury.push_back(points[sampler.below(points.size())]);
+  for (std::size_t i = 0; i < voters; ++i) jury.push_back(draw());
   std::optional<RoadModel> best;
   double best_score = 0;
   for (int trial = 0; trial < trials; ++trial) {
-    const auto plane = plane_through(points[sampler.below(points.size())], points[sampler.below(points.size())],
-                                     points[sampler.below(points.size())]);
-    if (!plane) continue;
+    const DisparityPoint &a = draw(), &b = draw(), &c = draw();
+    const auto plane = plane_through(a, b, c);
+    if (!plane || !possible(*plane)) continue;
     double score = 0;
-    for (const DisparityPoint& p : jury) {
-      const double x = (p.d - plane->disparity(p.u, p.v)) / tolerance_px;
-      if (std::abs(x) < 1) score += 1 - x * x;
-    }
+    for (const DisparityPoint& p : jury) score += vote(p, *plane);
     if (score > best_score) {
       best_score = score;
       best = plane;
     }
   }
   return best;
+}
+
+std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, double tolerance_px) {
+  const auto vote = [tolerance_px](const DisparityPoint& p, const RoadModel& plane) {
+    const double x = (p.d - plane.disparity(p.u, p.v)) / tolerance_px;
+    return std::max(0.0, 1 - x * x);
+  };
+  return search_plane(points, vote, [](const RoadModel&) { return true; });
 }
 
 }  // namespace roadstereo

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -59,8 +60,15 @@ struct RobustPlane {
 std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> points, const RoadModel& start,
                                             double start_scale_px, bool with_roll, int max_iterations);
 
-/// The plane through three of the points that most others agree with (within `tolerance_px`): a start that no outliers
-/// pull. Deterministic.
+/// What a point says to a plane: positive for, negative against.
+using PlaneVote = std::function<double(const DisparityPoint&, const RoadModel&)>;
+
+/// The plane through three of the points that gets the most votes of the others: a start that no outliers pull. Only
+/// planes that `possible` accepts are tried. Deterministic. Nothing when no plane has more votes for it than against.
+std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, const PlaneVote& vote,
+                                      const std::function<bool(const RoadModel&)>& possible);
+
+/// The same where every point within `tolerance_px` votes for a plane and none against it.
 std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, double tolerance_px);
 
 /// The plane through three points; nothing when they lie on one line of the image.

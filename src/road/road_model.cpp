@@ -4,13 +4,12 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <sstream>
 #include <vector>
 
+#include "core/sentence.hpp"
 #include "road/coarse_match.hpp"
 #include "road/guided_match.hpp"
 #include "road/plane_fit.hpp"
-#include "road/sampler.hpp"
 #include "road/shrink.hpp"
 #include "roadstereo/error.hpp"
 
@@ -64,25 +63,9 @@ double vote(const DisparityPoint& point, const RoadModel& plane, double toleranc
 
 std::optional<RoadModel> search_road(std::span<const DisparityPoint> matches, double tolerance_px, int height,
                                      const TiltLimit& limit) {
-  constexpr int trials = 400;
-  constexpr std::size_t voters = 600;
-  Sampler sampler;
-  std::vector<DisparityPoint> jury;
-  for (std::size_t i = 0; i < voters; ++i) jury.push_back(matches[sampler.below(matches.size())]);
-  std::optional<RoadModel> best;
-  double best_score = 0;
-  for (int trial = 0; trial < trials; ++trial) {
-    const auto plane = plane_through(matches[sampler.below(matches.size())], matches[sampler.below(matches.size())],
-                                     matches[sampler.below(matches.size())]);
-    if (!plane || !limit.can_be_road(*plane)) continue;
-    double score = 0;
-    for (const DisparityPoint& p : jury) score += vote(p, *plane, tolerance_px, height);
-    if (score > best_score) {
-      best_score = score;
-      best = plane;
-    }
-  }
-  return best;
+  return search_plane(
+      matches, [&](const DisparityPoint& p, const RoadModel& plane) { return vote(p, plane, tolerance_px, height); },
+      [&](const RoadModel& plane) { return limit.can_be_road(plane); });
 }
 
 /// The same plane in the coordinates of the image shrunk by `factor`.
@@ -152,14 +135,6 @@ Refinement refine_road(ImageView<const std::int16_t> left, ImageView<const std::
     result.rows_covered = (percentile(rows, 0.95) - percentile(rows, 0.05)) / (left.height() * factor);
   }
   return result;
-}
-
-template <class... Parts>
-std::string sentence(const Parts&... parts) {
-  std::ostringstream text;
-  text.precision(3);
-  (text << ... << parts);
-  return text.str();
 }
 
 /// Fills in the estimate from the last refinement and says whether, and if not why not, it can be trusted.

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <string_view>
 #include <utility>
 
+#include "core/edit_distance.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/synth.hpp"
 #include "synth/scene_parts.hpp"
@@ -138,22 +138,6 @@ std::vector<std::pair<std::string, std::function<Scene()>>> catalogue() {
       {"demo", demo}, {"uav", uav}, {"street", street}, {"nadir", nadir}, {"close", close}, {"flat", flat}};
   for (const auto& [name, wear] : wears()) scenes.emplace_back(name, [wear] { return worn(wear); });
   return scenes;
-}
-
-/// Number of letters to insert, drop or change.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t change = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, change});
-    }
-  }
-  return row.back();
 }
 
 }  // namespace
