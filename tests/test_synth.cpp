@@ -38,8 +38,7 @@ Scene small_scene(const std::string& name) {
 }
 
 double grey(const Frame& frame, int u, int v) {
-  return frame.bytes[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
-                     static_cast<std::size_t>(u)];
+  return frame.bytes[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(u)];
 }
 
 double mean_grey(const Frame& frame) {
@@ -472,14 +471,11 @@ TEST(Synth, BadScenesAreRefusedByName) {
   EXPECT_NE(complaint([](Scene& s) { s.rig.pitch_deg = 91; }).find("pitch_deg is 91"), std::string::npos);
   EXPECT_NE(complaint([](Scene& s) { s.rig.focal_px = NAN; }).find("focal_px"), std::string::npos);
   EXPECT_NE(complaint([](Scene& s) { s.rig.width = 31; }).find("width is 31"), std::string::npos);
-  EXPECT_NE(complaint([](Scene& s) { s.rig.camera_height_m = 0; }).find("camera_height_m"),
+  EXPECT_NE(complaint([](Scene& s) { s.rig.camera_height_m = 0; }).find("camera_height_m"), std::string::npos);
+  EXPECT_NE(complaint([](Scene& s) { s.road.blobs[1].irregularity = 0.7; }).find("blob 2: irregularity is 0.7"),
             std::string::npos);
-  EXPECT_NE(
-      complaint([](Scene& s) { s.road.blobs[1].irregularity = 0.7; }).find("blob 2: irregularity is 0.7"),
-      std::string::npos);
   EXPECT_NE(complaint([](Scene& s) { s.road.blobs[0].depth_m = 0; }).find("depth_m"), std::string::npos);
-  EXPECT_NE(complaint([](Scene& s) { s.road.cracks[0].points_m.resize(1); }).find("at least 2"),
-            std::string::npos);
+  EXPECT_NE(complaint([](Scene& s) { s.road.cracks[0].points_m.resize(1); }).find("at least 2"), std::string::npos);
   EXPECT_NE(complaint([](Scene& s) { s.degradation.exposure = 0; }).find("exposure is 0"), std::string::npos);
   EXPECT_NE(complaint([](Scene& s) { s.supersampling = 9; }).find("supersampling is 9"), std::string::npos);
   EXPECT_NE(complaint([](Scene& s) {

@@ -50,8 +50,8 @@ std::string road_text(const FrameResult& result) {
 }
 
 std::string camera_text(const RoadPlane& plane) {
-  return fmt::format("{:.3f} m above the road, looking {:.1f}° below its horizon", plane.height_m,
-                     degrees(plane.pitch_rad));
+  return fmt::format("{:.3f} m above the road, looking {:.1f}° {} its horizon", plane.height_m,
+                     degrees(std::abs(plane.pitch_rad)), plane.pitch_rad < 0 ? "above" : "below");
 }
 
 std::string spread_text(const FrameResult& result) {

@@ -72,8 +72,7 @@ double paper_roll(const RoadModel& plane) {
   return std::atan(-plane.a2 / plane.a1);
 }
 
-FootprintModel::FootprintModel(const Camera& camera, double to_middle_m)
-    : camera_(camera), to_middle_m_(to_middle_m) {
+FootprintModel::FootprintModel(const Camera& camera, double to_middle_m) : camera_(camera), to_middle_m_(to_middle_m) {
   const double height = camera.origin.z + camera.right.z * to_middle_m;
   inverse_depth_per_column_ = -camera.right.z / (height * camera.focal_px);
   inverse_depth_per_row_ = -camera.down.z / (height * camera.focal_px);

@@ -126,8 +126,8 @@ std::vector<DamageTruth> measure_damages(const HeightField& field, const Road& r
   std::vector<DamageTruth> truths(field.pieces().size());
   parallel_for(count, threads, [&](int i, int) {
     const auto place = static_cast<std::size_t>(i);
-    truths[place] = place < road.blobs.size() ? measure_blob(field, i + 1, road.blobs[place])
-                                              : measure_crack(field, i + 1);
+    truths[place] =
+        place < road.blobs.size() ? measure_blob(field, i + 1, road.blobs[place]) : measure_crack(field, i + 1);
   });
   return truths;
 }

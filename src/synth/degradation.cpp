@@ -26,8 +26,7 @@ std::vector<double> gaussian_weights(double deviation) {
 }
 
 /// Filters along the rows (columns when `vertical`); beyond the border the last pixel goes on.
-void filter(const Image<float>& in, const std::vector<double>& weights, bool vertical, int threads,
-            Image<float>& out) {
+void filter(const Image<float>& in, const std::vector<double>& weights, bool vertical, int threads, Image<float>& out) {
   const int reach = static_cast<int>(weights.size() / 2);
   out.resize(in.width(), in.height());
   parallel_rows(in.height(), rows_per_band, threads, [&](int first, int last, int) {
@@ -76,8 +75,7 @@ void motion_blur(const Image<float>& in, double length, double angle_deg, int th
   });
 }
 
-Frame digitise(const Image<float>& light, double factor, double noise_grey, std::uint64_t noise_key,
-               int threads) {
+Frame digitise(const Image<float>& light, double factor, double noise_grey, std::uint64_t noise_key, int threads) {
   Frame frame;
   frame.width = light.width();
   frame.height = light.height();
@@ -85,8 +83,8 @@ Frame digitise(const Image<float>& light, double factor, double noise_grey, std:
   parallel_rows(light.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
       for (int u = 0; u < light.width(); ++u) {
-        const auto pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(light.width()) +
-                           static_cast<std::size_t>(u);
+        const auto pixel =
+            static_cast<std::size_t>(v) * static_cast<std::size_t>(light.width()) + static_cast<std::size_t>(u);
         double grey = static_cast<double>(light(u, v)) * factor;
         if (noise_grey > 0) grey += noise_grey * normal_value(mix64(noise_key) + pixel);
         frame.bytes[pixel] = static_cast<std::uint8_t>(std::clamp(grey + 0.5, 0.0, 255.0));

@@ -98,8 +98,7 @@ DamageSample BlobShape::sample(double x, double y) const {
     share = smooth_step((1 - r / outline_radius(dx / r, dy / r)) / blob_.wall_share);
     if (share == 0) return {};
   }
-  return {-blob_.depth_m * share * (1 + floor_roughness(dx, dy)), blob_.depth_m > 0 ? 1 - 0.4 * share : 1.0,
-          true};
+  return {-blob_.depth_m * share * (1 + floor_roughness(dx, dy)), blob_.depth_m > 0 ? 1 - 0.4 * share : 1.0, true};
 }
 
 double BlobShape::lowest() const {
@@ -178,8 +177,7 @@ void HeightField::add_strips(const std::vector<Kerb>& kerbs) {
     Strip strip{edges[i], i + 1 < edges.size() ? edges[i + 1] : no_hit, 0, 0};
     for (const Kerb& kerb : kerbs) {
       strip.rise += kerb.height_m * std::clamp((strip.x - kerb.x_m) / kerb.width_m, 0.0, 1.0);
-      if (strip.x >= kerb.x_m && strip.x < kerb.x_m + kerb.width_m)
-        strip.slope += kerb.height_m / kerb.width_m;
+      if (strip.x >= kerb.x_m && strip.x < kerb.x_m + kerb.width_m) strip.slope += kerb.height_m / kerb.width_m;
     }
     strips_.push_back(strip);
   }

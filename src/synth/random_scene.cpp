@@ -105,8 +105,7 @@ Crack draw_crack(Draws& draws, const Rig& rig) {
   const Target target = draw_target(draws, rig);
   Crack crack;
   const double length = std::clamp(target.pixel_m * draws.uniform(80, 250), 0.2, 2.5);
-  crack.points_m =
-      wandering_line(target.point.x, target.point.y, draws.uniform(-1.5, 1.5), length, draws.seed());
+  crack.points_m = wandering_line(target.point.x, target.point.y, draws.uniform(-1.5, 1.5), length, draws.seed());
   crack.width_m = std::clamp(target.pixel_m * draws.uniform(1.5, 4), 0.004, 0.03);
   crack.depth_m = crack.width_m * draws.uniform(1, 2);
   crack.irregularity = draws.uniform(0.3, 0.8);

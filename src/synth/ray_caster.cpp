@@ -53,8 +53,7 @@ double RayCaster::refine(const Ray& ray, double above, double below, double tole
     if (middle == above || middle == below || centre == 0) return middle;
     const double guess = middle + (middle - above) * centre / std::sqrt(centre * centre - high * low);
     const double value = clearance(ray, guess);
-    if (value == 0 || std::abs(guess - last) <= tolerance * guess || below - above <= tolerance * below)
-      return guess;
+    if (value == 0 || std::abs(guess - last) <= tolerance * guess || below - above <= tolerance * below) return guess;
     last = guess;
     const auto tighten = [&](double depth, double height) {
       if (depth <= above || depth >= below) return;
@@ -95,8 +94,7 @@ Hit RayCaster::first_hit(const Ray& ray, double tolerance) {
   for (std::size_t i = 0; i < spans_.size();) {
     Span span = spans_[i++];
     if (undamaged < span.enter) return {undamaged, false};
-    while (i < spans_.size() && spans_[i].enter <= span.leave)
-      span.leave = std::max(span.leave, spans_[i++].leave);
+    while (i < spans_.size() && spans_[i].enter <= span.leave) span.leave = std::max(span.leave, spans_[i++].leave);
     const double depth = march(ray, span, tolerance);
     if (depth < no_hit) return {depth, true};
     // Where there is damage the undamaged road is not there: look for it behind.

@@ -74,8 +74,8 @@ class View {
   RayCaster caster_;
 };
 
-Image<float> render_light(const Scene& scene, const HeightField& field, const Texture& texture,
-                          const Camera& camera, double to_middle_m, int threads) {
+Image<float> render_light(const Scene& scene, const HeightField& field, const Texture& texture, const Camera& camera,
+                          double to_middle_m, int threads) {
   Image<float> light(scene.rig.width, scene.rig.height);
   parallel_rows(scene.rig.height, rows_per_band, threads, [&](int first, int last, int) {
     View view(field, texture, camera, to_middle_m);

@@ -9,8 +9,8 @@
 namespace roadstereo::synth {
 
 /// A crack as roads have them: it wanders, in steps of about 3 cm, around its heading (0 = along the road).
-inline std::vector<std::array<double, 2>> wandering_line(double x, double y, double heading_rad,
-                                                         double length_m, std::uint64_t seed) {
+inline std::vector<std::array<double, 2>> wandering_line(double x, double y, double heading_rad, double length_m,
+                                                         std::uint64_t seed) {
   constexpr double step = 0.03;
   Draws draws(seed);
   std::vector<std::array<double, 2>> points{{x, y}};

@@ -45,8 +45,8 @@ double distance_to_multiple(double x, double period) {
 }
 
 double lambert(double slope_x, double slope_y) {
-  const double towards = (to_sun.z - slope_x * to_sun.x - slope_y * to_sun.y) /
-                         std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+  const double towards =
+      (to_sun.z - slope_x * to_sun.x - slope_y * to_sun.y) / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
   return ambient + (1 - ambient) * std::max(0.0, towards) / to_sun.z;
 }
 
@@ -89,13 +89,11 @@ double Texture::octaves(double x, double y, double z, double footprint, std::uin
     const double next = turn_cosine * lx - turn_sine * ly;
     ly = turn_sine * lx + turn_cosine * ly;
     lx = next;
-    const double weight =
-        amplitude * strength * resolved(wavelength, footprint) * std::min(1.0, octaves_used - above);
+    const double weight = amplitude * strength * resolved(wavelength, footprint) * std::min(1.0, octaves_used - above);
     if (weight <= 0) continue;
     // Two lattice steps make one period.
     const double scale = 2 / wavelength;
-    sum += weight *
-           fractal_noise(lx * scale + 0.37 * k, ly * scale, z * scale, seed + static_cast<std::uint32_t>(k));
+    sum += weight * fractal_noise(lx * scale + 0.37 * k, ly * scale, z * scale, seed + static_cast<std::uint32_t>(k));
   }
   return sum;
 }
@@ -116,8 +114,8 @@ double Texture::aggregate(double x, double y, double z, const Footprint& footpri
     const double stretch = std::ldexp(1.0, 2 * stretch_class);
     // Half of the stretched length: the rays within a pixel average what is left.
     const double width = std::max(footprint.x, 0.6 * footprint.y / stretch);
-    sum += std::sqrt(share) *
-           octaves(x, y / stretch, z, width, seed_ + 1000u * static_cast<std::uint32_t>(stretch_class));
+    sum +=
+        std::sqrt(share) * octaves(x, y / stretch, z, width, seed_ + 1000u * static_cast<std::uint32_t>(stretch_class));
   }
   return sum;
 }
@@ -135,9 +133,8 @@ double Texture::stones(double x, double y, double cell, double footprint, std::u
   for (int i = 0; i < 4; ++i) {
     const double ix = first_x + (i & 1);
     const double iy = first_y + (i >> 1);
-    const std::uint32_t hash =
-        mix32(static_cast<std::uint32_t>(static_cast<std::int64_t>(ix)) * 0x9e3779b1u +
-              static_cast<std::uint32_t>(static_cast<std::int64_t>(iy)) * 0x85ebca77u + seed);
+    const std::uint32_t hash = mix32(static_cast<std::uint32_t>(static_cast<std::int64_t>(ix)) * 0x9e3779b1u +
+                                     static_cast<std::uint32_t>(static_cast<std::int64_t>(iy)) * 0x85ebca77u + seed);
     const auto part = [&](int shift) { return static_cast<double>((hash >> shift) & 255u) / 255.0; };
     const double dx = cx - ix - 0.3 - 0.4 * part(0);
     const double dy = cy - iy - 0.3 - 0.4 * part(8);
@@ -162,8 +159,7 @@ double Texture::pavement(double x, double y, const Footprint& footprint) const {
   const double beyond = x - kerb_x_ - kerbstone_width;
   const double length = beyond < 0 ? kerbstone_length : slab;
   const double along = bar(distance_to_multiple(y, length), half_joint, footprint.y);
-  const double across =
-      beyond < -half_joint ? 0 : bar(distance_to_multiple(beyond, slab), half_joint, footprint.x);
+  const double across = beyond < -half_joint ? 0 : bar(distance_to_multiple(beyond, slab), half_joint, footprint.x);
   const double sharp = resolved(length, 3 * std::max(footprint.x, footprint.y));
   const double tone = pavement_tone + (kerbstone_tone - pavement_tone) *
                                           bar(beyond + kerbstone_width / 2, kerbstone_width / 2, footprint.x);

@@ -30,8 +30,7 @@ void check_blobs(const std::vector<Blob>& blobs) {
     require(name("y_m"), blob.y_m, -road_end_m, road_end_m);
     require(name("radius_m"), blob.radius_m, 0.005, 20);
     require(name("depth_m"), blob.depth_m, -2, 2);
-    if (blob.depth_m == 0)
-      fail(name("depth_m"), " is 0; it must be above 0 for a pothole or below 0 for a bump");
+    if (blob.depth_m == 0) fail(name("depth_m"), " is 0; it must be above 0 for a pothole or below 0 for a bump");
     require(name("irregularity"), blob.irregularity, 0, 0.5);
     require(name("wall_share"), blob.wall_share, 0.02, 1);
   }
@@ -77,8 +76,7 @@ void check_road(const Road& road) {
   check_kerbs(road.kerbs);
   constexpr std::size_t most_damages = std::numeric_limits<std::uint16_t>::max();
   if (road.blobs.size() + road.cracks.size() > most_damages) {
-    fail("the road has ", road.blobs.size() + road.cracks.size(), " damages; it must have at most ",
-         most_damages);
+    fail("the road has ", road.blobs.size() + road.cracks.size(), " damages; it must have at most ", most_damages);
   }
 }
 
@@ -97,8 +95,7 @@ void check_clearance(const Rig& rig, const Road& road) {
   constexpr double least = 0.02;
   const HeightField field(road);
   for (const Camera& camera : {left_camera(rig), right_camera(rig, 0)}) {
-    const double surface =
-        std::max(field.undamaged(camera.origin.x), field.height(camera.origin.x, camera.origin.y));
+    const double surface = std::max(field.undamaged(camera.origin.x), field.height(camera.origin.x, camera.origin.y));
     if (camera.origin.z - surface < least) {
       fail("camera_height_m is ", rig.camera_height_m, ", which leaves a camera ", camera.origin.z - surface,
            " m above the surface below it; it must be at least ", least, " m");
