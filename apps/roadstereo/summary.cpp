@@ -36,7 +36,10 @@ std::string roll_text(const FrameResult& result) {
   const RoadGeometry& geometry = result.geometry;
   std::string angle = fmt::format("{:.3f}° ± {:.3f}°", degrees(geometry.roll_rad), degrees(geometry.roll_stderr_rad));
   if (geometry.roll_observable) return angle;
-  return "not observable: the road's disparity hardly changes over the image (fitted " + angle + ")";
+  const bool trusted = result.road.reliable || result.warnings.empty();
+  return std::string("not observable: ") +
+         (trusted ? "the road's disparity hardly changes over the image" : "see the warnings") + " (fitted " + angle +
+         ")";
 }
 
 std::string term(double factor, char coordinate) {

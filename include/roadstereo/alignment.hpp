@@ -14,6 +14,7 @@ struct RowAlignment {
 };
 
 /// Measures the vertical offset of a pair that should be rectified, up to about 2 % of the image height.
-RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right);
+RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                   int threads = 0);
 
 }  // namespace roadstereo

@@ -39,7 +39,7 @@ struct RoadModelEstimate {
   double residual_px = 0;           ///< robust standard deviation of the inliers around the model, pixels
   double lowest_px = 0;             ///< 1st percentile of the residuals of the correspondences near the road, pixels
   double highest_px = 0;            ///< 99th percentile of the same, pixels
-  double largest_disparity_px = 0;  ///< 99.5th percentile of all correspondences, for a search without a model
+  double largest_disparity_px = 0;  ///< 99th percentile of all correspondences, for a search without a model
 };
 
 /// Finds the road from the images alone: reliable correspondences from a dense coarse-to-fine search along the rows,

@@ -108,7 +108,7 @@ void Pipeline::State::find_road() {
 void Pipeline::State::measure_rows() {
   constexpr double largest_offset_px = 0.5;
   constexpr double largest_spread_px = 1.0;
-  result.rows = measure_row_alignment(left, right);
+  result.rows = measure_row_alignment(left, right, threads);
   if (!result.rows.known()) return;
   if (std::abs(result.rows.median_px) > largest_offset_px || result.rows.spread_px > largest_spread_px) {
     result.warnings.push_back(sentence("the rows of the pair do not agree: vertical offset ", result.rows.median_px,
@@ -156,6 +156,14 @@ void Pipeline::State::transform() {
   result.delta_t = transform_disparity(result.disparity, result.geometry, result.shift.delta_p, options.road_geometry,
                                        threads, result.transformed);
   result.spread = measure_spread(result.transformed, result.delta_t);
+  // Nothing vouches for a plane that the images did not show before matching and that few disparities lie on.
+  constexpr double least_road_share = 0.3;
+  if (!result.road.reliable && result.spread.road_share < least_road_share) {
+    result.geometry.roll_observable = false;
+    result.warnings.push_back(
+        sentence("only ", 100 * result.spread.road_share,
+                 " % of the disparities lie on the plane found: there may be no road in the pair"));
+  }
 }
 
 /// What the next frame starts from, and the figures of this one.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "road/plane_fit.hpp"
 #include "road/shrink.hpp"
 
@@ -17,8 +18,15 @@ constexpr int half_block = 4;
 constexpr int block_pixels = (2 * half_block + 1) * (2 * half_block + 1);
 constexpr double least_correlation = 0.8;
 constexpr double least_deviation = 2.0 * grey_scale;
-constexpr int cells_across = 18;
-constexpr int cells_down = 10;
+constexpr int cells_across = 15;
+constexpr int cells_down = 9;
+
+/// A pair at its full size and small.
+struct Pyramid {
+  ImageView<const std::int16_t> left, right;
+  int factor;
+  GreyImage small_left, small_right;
+};
 
 struct Place {
   int u = 0;
@@ -102,34 +110,43 @@ std::optional<double> refine_vertically(ImageView<const std::int16_t> left, cons
   return best.dv + (before - after) / curvature;
 }
 
+/// The vertical offsets that one row of cells shows.
+std::vector<double> measure_cells(const Pyramid& pair, int cell_v) {
+  const int rows = 1 + pair.small_left.height() / 40;
+  const int columns = 2 * pair.small_left.width() / 5;
+  const int reach = pair.factor / 2 + 1;
+  std::vector<double> offsets;
+  for (int cell_u = 0; cell_u < cells_across; ++cell_u) {
+    const auto place = best_place(pair.small_left, cell_u * pair.small_left.width() / cells_across,
+                                  cell_v * pair.small_left.height() / cells_down,
+                                  (cell_u + 1) * pair.small_left.width() / cells_across,
+                                  (cell_v + 1) * pair.small_left.height() / cells_down);
+    if (!place) continue;
+    const Offset coarse = search(pair.small_left, *place, pair.small_right, {-columns, -rows}, {0, rows});
+    if (coarse.correlation < least_correlation) continue;
+    const Place full{static_cast<int>(std::lround(unshrink(place->u, pair.factor))),
+                     static_cast<int>(std::lround(unshrink(place->v, pair.factor)))};
+    if (!inside(pair.left, full.u, full.v)) continue;
+    const Offset fine =
+        search(pair.left, full, pair.right, {coarse.du * pair.factor - reach, coarse.dv * pair.factor - reach},
+               {coarse.du * pair.factor + reach, coarse.dv * pair.factor + reach});
+    if (const auto offset = refine_vertically(pair.left, full, pair.right, fine)) offsets.push_back(*offset);
+  }
+  return offsets;
+}
+
 }  // namespace
 
-RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right) {
+RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                   int threads) {
   int factor = 1;
   while (left.width() / (2 * factor) >= coarse_width) factor *= 2;
-  const GreyImage small_left = shrink(left, factor);
-  const GreyImage small_right = shrink(right, factor);
-  const int rows = 1 + small_left.height() / 40;
-  const int columns = 2 * small_left.width() / 5;
-
+  const Pyramid pair{left, right, factor, shrink(left, factor), shrink(right, factor)};
+  std::vector<std::vector<double>> by_row(cells_down);
+  parallel_for(cells_down, threads,
+               [&](int cell_v, int) { by_row[static_cast<std::size_t>(cell_v)] = measure_cells(pair, cell_v); });
   std::vector<double> offsets;
-  for (int cell_v = 0; cell_v < cells_down; ++cell_v) {
-    for (int cell_u = 0; cell_u < cells_across; ++cell_u) {
-      const auto place =
-          best_place(small_left, cell_u * small_left.width() / cells_across, cell_v * small_left.height() / cells_down,
-                     (cell_u + 1) * small_left.width() / cells_across, (cell_v + 1) * small_left.height() / cells_down);
-      if (!place) continue;
-      const Offset coarse = search(small_left, *place, small_right, {-columns, -rows}, {0, rows});
-      if (coarse.correlation < least_correlation) continue;
-      const Place full{static_cast<int>(std::lround(unshrink(place->u, factor))),
-                       static_cast<int>(std::lround(unshrink(place->v, factor)))};
-      if (!inside(left, full.u, full.v)) continue;
-      const int reach = factor / 2 + 1;
-      const Offset fine = search(left, full, right, {coarse.du * factor - reach, coarse.dv * factor - reach},
-                                 {coarse.du * factor + reach, coarse.dv * factor + reach});
-      if (const auto offset = refine_vertically(left, full, right, fine)) offsets.push_back(*offset);
-    }
-  }
+  for (const auto& row : by_row) offsets.insert(offsets.end(), row.begin(), row.end());
   RowAlignment alignment;
   alignment.points = static_cast<int>(offsets.size());
   if (offsets.empty()) return alignment;

@@ -36,19 +36,23 @@ SearchRange physical_range(const RoadModel& road, const StereoCalibration& calib
   return {nearest * options.deepest_damage_m / (h + options.deepest_damage_m), nearest * bump / (h - bump)};
 }
 
+/// Disparities of a search without a road model: all that the correspondences show, but not more than a quarter of the
+/// image, since wrong ones lie anywhere.
 int full_range(const RoadModelEstimate& road, int width) {
-  const double largest = road.matches > 0 ? road.largest_disparity_px * 1.1 + 8 : width / 4.0;
-  return std::clamp(static_cast<int>(std::ceil(largest)) + 1, 8, std::min(most_disparities, width - 1));
+  const double largest = width / 4.0;
+  const double shown = road.matches > 0 ? road.largest_disparity_px * 1.1 + 8 : largest;
+  return std::clamp(static_cast<int>(std::ceil(std::min(shown, largest))) + 1, 8,
+                    std::min(most_disparities, width - 1));
 }
 
 /// Pixels that cubic interpolation reads beyond the ends of a row: copies of the border.
-constexpr int border = 2;
+constexpr std::size_t border = 2;
 
 void copy_with_border(const std::int16_t* row, int width, std::vector<float>& padded) {
-  padded.resize(static_cast<std::size_t>(width + 2 * border));
+  padded.resize(static_cast<std::size_t>(width) + 2 * border);
   std::fill_n(padded.begin(), border, row[0]);
-  std::copy_n(row, width, padded.begin() + border);
-  std::fill_n(padded.end() - border, border, row[width - 1]);
+  std::copy_n(row, width, padded.begin() + static_cast<std::ptrdiff_t>(border));
+  std::fill_n(padded.end() - static_cast<std::ptrdiff_t>(border), border, row[width - 1]);
 }
 
 /// Keys' cubic interpolation at `x` of a row that has a border. Sharp enough not to flatten texture at half-pixel
@@ -56,7 +60,7 @@ void copy_with_border(const std::int16_t* row, int width, std::vector<float>& pa
 float sample_cubic(const float* row, double x) {
   const int base = static_cast<int>(x);
   const auto f = static_cast<float>(x - base);
-  const float* p = row + border + base;
+  const float* p = row + border + static_cast<std::size_t>(base);
   const float linear = 0.5f * (p[1] - p[-1]);
   const float square = p[-1] - 2.5f * p[0] + 2 * p[1] - 0.5f * p[2];
   const float cube = 0.5f * (p[2] - p[-1]) + 1.5f * (p[0] - p[1]);
@@ -141,7 +145,7 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
       std::fill_n(out, first, std::int16_t{0});
       for (int x = first; x < width; ++x) {
         const float value = sample_cubic(in.data(), x - shift.at(x, v));
-        out[x] = static_cast<std::int16_t>(std::clamp(value, 0.0f, static_cast<float>(grey_max)) + 0.5f);
+        out[x] = static_cast<std::int16_t>(std::lrint(std::clamp(value, 0.0f, static_cast<float>(grey_max))));
       }
     }
   });

@@ -117,8 +117,8 @@ std::optional<RoadModel> plane_through(const DisparityPoint& a, const DisparityP
 
 std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, const PlaneVote& vote,
                                       const std::function<bool(const RoadModel&)>& possible) {
-  constexpr int trials = 400;
-  constexpr std::size_t voters = 600;
+  constexpr int trials = 300;
+  constexpr std::size_t voters = 400;
   if (points.size() < 3) return std::nullopt;
   Sampler sampler;
   const auto draw = [&]() -> const DisparityPoint& { return points[sampler.below(points.size())]; };

@@ -198,8 +198,9 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
     return estimate;
   }
   std::vector<double> disparities;
+  disparities.reserve(matches.size());
   for (const DisparityPoint& p : matches) disparities.push_back(p.d);
-  estimate.largest_disparity_px = percentile(disparities, 0.995);
+  estimate.largest_disparity_px = percentile(disparities, 0.99);
 
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   const auto coarse = search_road(matches, 0.8 * factor, left.height(), limit);

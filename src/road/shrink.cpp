@@ -1,6 +1,8 @@
 #include "road/shrink.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 namespace roadstereo {
@@ -17,9 +19,8 @@ GreyImage shrink(ImageView<const std::int16_t> image, int factor) {
       for (std::size_t u = 0; u < sums.size(); ++u) sums[u] += row[u];
     }
     for (int x = 0; x < width; ++x) {
-      std::int32_t sum = 0;
-      for (int c = 0; c < factor; ++c) sum += sums[static_cast<std::size_t>(x * factor + c)];
-      small(x, y) = static_cast<std::int16_t>(sum / (factor * factor));
+      const auto first = sums.begin() + static_cast<std::ptrdiff_t>(x) * factor;
+      small(x, y) = static_cast<std::int16_t>(std::accumulate(first, first + factor, 0) / (factor * factor));
     }
   }
   return small;

@@ -63,12 +63,19 @@ class Sums {
   double largest_ = 0;
 };
 
+/// Middles of the rows that cut a box into strips of height `step`.
+std::vector<double> rows_of(const Box& box, double step) {
+  std::vector<double> rows(static_cast<std::size_t>(std::ceil((box.high.y - box.low.y) / step)));
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = box.low.y + (static_cast<double>(i) + 0.5) * step;
+  return rows;
+}
+
 DamageTruth measure_blob(const HeightField& field, int id, const Blob& blob) {
   constexpr int cells = 500;
   const Box& box = field.pieces()[static_cast<std::size_t>(id - 1)].box;
   const double step = (box.high.x - box.low.x) / cells;
   Sums sums(field, id, step);
-  for (double y = box.low.y + step / 2; y < box.high.y; y += step) sums.add_row(y, {box.low.x, box.high.x});
+  for (const double y : rows_of(box, step)) sums.add_row(y, {box.low.x, box.high.x});
   return sums.result(blob.depth_m > 0 ? "pothole" : "bump");
 }
 
@@ -113,7 +120,7 @@ DamageTruth measure_crack(const HeightField& field, int id) {
   const HeightField::Piece& piece = field.pieces()[static_cast<std::size_t>(id - 1)];
   const double step = piece.crack->crack().width_m / 16;
   Sums sums(field, id, step);
-  for (double y = piece.box.low.y + step / 2; y < piece.box.high.y; y += step) {
+  for (const double y : rows_of(piece.box, step)) {
     for (const Range& range : groove_ranges(*piece.crack, y)) sums.add_row(y, range);
   }
   return sums.result("crack");

@@ -28,6 +28,7 @@ std::vector<double> gaussian_weights(double deviation) {
 /// Filters along the rows (columns when `vertical`); beyond the border the last pixel goes on.
 void filter(const Image<float>& in, const std::vector<double>& weights, bool vertical, int threads, Image<float>& out) {
   const int reach = static_cast<int>(weights.size() / 2);
+  const double* centre = weights.data() + reach;
   out.resize(in.width(), in.height());
   parallel_rows(in.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
@@ -36,7 +37,7 @@ void filter(const Image<float>& in, const std::vector<double>& weights, bool ver
         for (int i = -reach; i <= reach; ++i) {
           const int column = vertical ? u : std::clamp(u + i, 0, in.width() - 1);
           const int row = vertical ? std::clamp(v + i, 0, in.height() - 1) : v;
-          sum += weights[static_cast<std::size_t>(i + reach)] * static_cast<double>(in(column, row));
+          sum += centre[i] * static_cast<double>(in(column, row));
         }
         out(u, v) = static_cast<float>(sum);
       }

@@ -15,7 +15,8 @@ inline std::vector<std::array<double, 2>> wandering_line(double x, double y, dou
   Draws draws(seed);
   std::vector<std::array<double, 2>> points{{x, y}};
   double bend = 0;
-  for (double done = 0; done < length_m; done += step) {
+  const int steps = static_cast<int>(std::ceil(length_m / step));
+  for (int i = 0; i < steps; ++i) {
     // Bends are pulled back, so that the line wanders but does not curl up.
     bend = 0.75 * bend + draws.uniform(-0.6, 0.6);
     x += step * std::sin(heading_rad + bend);

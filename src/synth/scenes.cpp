@@ -136,7 +136,7 @@ std::vector<std::pair<std::string, std::function<void(Scene&)>>> wears() {
 std::vector<std::pair<std::string, std::function<Scene()>>> catalogue() {
   std::vector<std::pair<std::string, std::function<Scene()>>> scenes = {
       {"demo", demo}, {"uav", uav}, {"street", street}, {"nadir", nadir}, {"close", close}, {"flat", flat}};
-  for (const auto& [name, wear] : wears()) scenes.emplace_back(name, [wear] { return worn(wear); });
+  for (const auto& entry : wears()) scenes.emplace_back(entry.first, [wear = entry.second] { return worn(wear); });
   return scenes;
 }
 

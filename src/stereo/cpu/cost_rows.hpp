@@ -15,7 +15,7 @@ template <class T>
 class PaddedRows {
  public:
   void resize(int rows, int width, int pad_left) {
-    pitch_ = static_cast<std::size_t>(width + pad_left + row_padding);
+    pitch_ = static_cast<std::size_t>(width) + static_cast<std::size_t>(pad_left) + row_padding;
     offset_ = static_cast<std::size_t>(pad_left);
     values_.resize(pitch_ * static_cast<std::size_t>(rows));
   }
