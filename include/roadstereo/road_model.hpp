@@ -19,9 +19,9 @@ struct RoadModel {
 };
 
 struct RoadModelOptions {
-  bool with_roll = true;             ///< estimate a2; false is the paper's model (disparity depends on v alone)
-  double max_disparity_share = 0.5;  ///< largest disparity searched, as a share of the image width, 0.05 … 0.9
-  double max_road_tilt_deg = 30.0;   ///< steepest sideways tilt of a road; a steeper plane is a wall, 5 … 80
+  bool with_roll = true;              ///< estimate a2; false is the paper's model (disparity depends on v alone)
+  double max_disparity_share = 0.35;  ///< largest disparity searched, as a share of the image width, 0.05 … 0.9
+  double max_road_tilt_deg = 30.0;    ///< steepest sideways tilt of a road; a steeper plane is a wall, 5 … 80
   double min_inlier_share = 0.25;    ///< share of the reliable matches that a model must explain to be trusted, 0 … 1
   double verify_tolerance_px = 1.0;  ///< a carried-over model fits when the median residual is below this, pixels
 

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int coarse_width = 120;   ///< the coarse search shrinks the image to between this and twice this
 constexpr int fewest_matches = 40;  ///< below this nothing is known
+constexpr int few_places = 1000;    ///< of the first fine search, which only brings the plane near
 constexpr int places = 2500;        ///< of the fine search
 
 /// Power of two that brings the image near the width of the coarse search.
@@ -110,11 +111,12 @@ struct Refinement {
 };
 
 Refinement refine_road(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, const RoadModel& plane,
-                       int factor, int range_px, const TiltLimit& limit, bool with_roll, int threads) {
+                       int factor, int range_px, int tried_places, const TiltLimit& limit, bool with_roll,
+                       int threads) {
   constexpr int iterations = 50;
   constexpr double tolerance = 1.0;    // of the vote, pixels of the shrunk image
   constexpr double start_scale = 0.5;  // of the fit: a kerb must not pull it, a road that is not flat must stay in
-  GuidedMatches found = match_near_plane(left, right, shrink_model(plane, factor), range_px, places, threads);
+  GuidedMatches found = match_near_plane(left, right, shrink_model(plane, factor), range_px, tried_places, threads);
   Refinement result;
   result.tried = found.tried;
   result.points = unshrink_points(std::move(found.points), factor);
@@ -212,9 +214,11 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const int fine = std::max(1, factor / 8);
   const GreyImage fine_left = shrink(left, fine);
   const GreyImage fine_right = shrink(right, fine);
-  Refinement refinement = refine_road(fine_left, fine_right, *coarse, fine, 7, limit, options.with_roll, threads);
+  Refinement refinement =
+      refine_road(fine_left, fine_right, *coarse, fine, 7, few_places, limit, options.with_roll, threads);
   if (refinement.found) {
-    refinement = refine_road(fine_left, fine_right, refinement.fit.plane, fine, 4, limit, options.with_roll, threads);
+    refinement =
+        refine_road(fine_left, fine_right, refinement.fit.plane, fine, 4, places, limit, options.with_roll, threads);
   }
   judge(refinement, options, estimate);
   if (estimate.reliable && !limit.can_be_road(estimate.model)) {
@@ -230,8 +234,8 @@ RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageVie
                                     const RoadModelOptions& options, int threads) {
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   const int fine = std::max(1, coarse_factor(left.width()) / 8);
-  const Refinement refinement =
-      refine_road(shrink(left, fine), shrink(right, fine), previous, fine, 4, limit, options.with_roll, threads);
+  const Refinement refinement = refine_road(shrink(left, fine), shrink(right, fine), previous, fine, 4, places, limit,
+                                            options.with_roll, threads);
   RoadModelEstimate estimate;
   estimate.carried_over = true;
   estimate.matches = static_cast<int>(refinement.points.size());
