@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include "roadstereo/error.hpp"
@@ -82,6 +83,26 @@ TEST_P(EveryPreset, PotholesLieBelowTheRoadInTheTransformedMap) {
 
 INSTANTIATE_TEST_SUITE_P(Presets, EveryPreset, testing::ValuesIn(preset_names()),
                          [](const auto& test) { return test.param; });
+
+class NamedScene : public testing::TestWithParam<const char*> {};
+
+TEST_P(NamedScene, IsMatchedToAFewHundredthsOfAPixel) {
+  synth::Scene s = synth::named_scene(GetParam());
+  s.supersampling = 1;
+  const synth::SyntheticPair pair = synth::render(s);
+  Pipeline pipeline(preset("default"), pair.calibration);
+  const Errors errors = compare(pipeline.process(pair.left.view(), pair.right.view()).disparity, pair);
+  std::printf("%s: median error %.4f px, above 1 px %.2f %%, density %.2f %%\n", GetParam(), errors.median,
+              100 * errors.share_above_1px, 100 * errors.density);
+  EXPECT_LT(errors.median, 0.06);
+  EXPECT_LT(errors.share_above_1px, 0.06);  // the kerb of the street scene
+  EXPECT_GT(errors.density, 0.97);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, NamedScene,
+                         testing::Values("demo", "uav", "street", "nadir", "close", "low_texture", "noise", "blur",
+                                         "overexposed", "rolled"),
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST(Pipeline, RollOfARolledCamera) {
   const synth::SyntheticPair pair = scene("rolled");
