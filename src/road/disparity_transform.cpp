@@ -54,7 +54,7 @@ TransformedSpread measure_spread(ImageView<const float> transformed, double delt
   constexpr double narrowest_limit_px = 1.0;
   constexpr double nearest_px = 3.0;
   std::vector<double> residuals;
-  const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(transformed.pixels()) / 60000)));
+  const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(transformed.pixels()) / 12000)));
   for (int v = step / 2; v < transformed.height(); v += step) {
     for (int u = step / 2; u < transformed.width(); u += step) {
       if (!std::isnan(transformed(u, v))) residuals.push_back(transformed(u, v) - delta_t);

@@ -11,6 +11,10 @@ GreyImage shrink(ImageView<const std::int16_t> image, int factor) {
   const int width = image.width() / factor;
   const int height = image.height() / factor;
   GreyImage small(width, height);
+  if (factor == 1) {
+    for (int y = 0; y < height; ++y) std::copy_n(image.row(y), width, small.row(y));
+    return small;
+  }
   std::vector<std::int32_t> sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(factor));
   for (int y = 0; y < height; ++y) {
     std::fill(sums.begin(), sums.end(), 0);
