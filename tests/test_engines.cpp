@@ -53,7 +53,7 @@ std::vector<Case> cases() {
   MatcherOptions large_ring;  // so large that the row is matched in several tiles of columns
   large_ring.block_radius = 2;
   large_ring.aggregation_radius = 10;
-  all.push_back({"tiles", 331, 41, 33, large_ring, true});
+  all.push_back({"tiles", 270, 31, 33, large_ring, true});
   return all;
 }
 
