@@ -1,5 +1,7 @@
 #include "roadstereo/matcher.hpp"
 
+#include <algorithm>
+
 #include "roadstereo/error.hpp"
 #include "stereo/window.hpp"
 
@@ -32,6 +34,17 @@ std::vector<Tap> window_taps(int radius, WindowShape shape) {
     }
   }
   return taps;
+}
+
+void block_first_columns(const MatchInput& input, int block_radius, std::vector<int>& first) {
+  const int height = input.reference.height();
+  first.assign(static_cast<std::size_t>(height), 0);
+  if (input.first_column == nullptr) return;
+  for (int v = 0; v < height; ++v) {
+    const int* begin = input.first_column + std::max(0, v - block_radius);
+    const int* end = input.first_column + std::min(height - 1, v + block_radius) + 1;
+    first[static_cast<std::size_t>(v)] = *std::max_element(begin, end);
+  }
 }
 
 void validate(const MatchInput& input) {

@@ -15,6 +15,10 @@ struct Tap {
 /// The pixels q of the window N⁺ around a pixel, row by row.
 std::vector<Tap> window_taps(int radius, WindowShape shape);
 
+/// For every row v the first target column that all rows of the block around v see: blocks are rectangles, so the
+/// common view of a block begins there.
+void block_first_columns(const MatchInput& input, int block_radius, std::vector<int>& first);
+
 /// Throws Error when the images of `input` differ in size or D is out of range.
 void validate(const MatchInput& input);
 

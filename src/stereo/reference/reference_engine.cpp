@@ -44,12 +44,19 @@ struct Scene {
   const MatchInput& input;
   const MatcherOptions& options;
   std::vector<Tap> window = window_taps(options.aggregation_radius, options.aggregation_shape);
+  std::vector<int> first_column{};  ///< per row: first target column that the whole block of the row sees
+
+  Scene(const MatchInput& match_input, const MatcherOptions& match_options)
+      : input(match_input), options(match_options) {
+    block_first_columns(input, options.block_radius, first_column);
+  }
 
   int width() const { return input.reference.width(); }
   int height() const { return input.reference.height(); }
   bool in_reference(int u, int v) const { return u >= 0 && u < width() && v >= 0 && v < height(); }
-  bool in_target(int u, int v) const {
-    return in_reference(u, v) && (input.first_column == nullptr || u >= input.first_column[v]);
+  /// Whether target pixel (x, v) belongs to what is matched in the blocks around row `block_v`.
+  bool in_target(int x, int v, int block_v) const {
+    return in_reference(x, v) && x >= first_column[static_cast<std::size_t>(block_v)];
   }
 };
 
@@ -60,7 +67,7 @@ double matching_cost(const Scene& scene, int u, int v, int d) {
   double n = 0, sum_ref = 0, sum_tar = 0, sum_ref_ref = 0, sum_tar_tar = 0, sum_ref_tar = 0;
   for (int qv = v - radius; qv <= v + radius; ++qv) {
     for (int qu = u - radius; qu <= u + radius; ++qu) {
-      if (!scene.in_reference(qu, qv) || !scene.in_target(qu - d, qv)) continue;
+      if (!scene.in_reference(qu, qv) || !scene.in_target(qu - d, qv, v)) continue;
       const double i_ref = scene.input.reference(qu, qv);
       const double i_tar = scene.input.target(qu - d, qv);
       n += 1;
@@ -90,7 +97,8 @@ CostVolume compute_costs(const Scene& scene, int threads) {
   CostVolume cost(scene.width(), scene.height(), disparities);
   parallel_rows(scene.height(), 1, threads, [&](int v, int, int) {
     for (int u = 0; u < scene.width(); ++u) {
-      for (int d = 0; d < disparities && scene.in_target(u - d, v); ++d) cost(u, v, d) = matching_cost(scene, u, v, d);
+      for (int d = 0; d < disparities && scene.in_target(u - d, v, v); ++d)
+        cost(u, v, d) = matching_cost(scene, u, v, d);
     }
   });
   return cost;

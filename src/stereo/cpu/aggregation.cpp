@@ -1,0 +1,299 @@
+#include "stereo/cpu/aggregation.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "stereo/cpu/aggregation.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
+//
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace roadstereo::cpu::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::ScalableTag<float>;
+using Ints = hn::ScalableTag<std::int32_t>;
+using Float = hn::Vec<Floats>;
+using Int = hn::Vec<Ints>;
+
+/// first, first + 1, … (hn::Iota of a variable goes through memory.)
+HWY_INLINE Int count_from(int first) {
+  const Ints d;
+  return hn::Add(hn::Iota(d, 0), hn::Set(d, first));
+}
+
+/// Neighbouring pixels that are aggregated at once: they share loads, and their sums run side by side. As many as the
+/// registers hold, twice each for two vectors of disparities.
+constexpr int block_columns = (HWY_TARGET <= HWY_AVX3 || HWY_ARCH_ARM_A64) ? 8 : 4;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// Pixels are aggregated in pairs, because tap k of a pixel and tap k − 1 of its right neighbour meet at the same cost:
+/// a window row of n taps is n + 1 steps, each a column of costs for both, with a weight of 0 where one of them has no
+/// tap. The steps of all rows make one list, so that the innermost loop is long.
+struct StepList {
+  const float** cost;     ///< costs of the step for the pixels 0 and 1
+  float* weights;         ///< of the blocks of a strip: for every block and step, its columns
+  float* inverse_sums;    ///< 1 / Σ ω of the columns of a strip
+  std::size_t count = 0;  ///< steps
+
+  float* of_block(int block) const { return weights + static_cast<std::size_t>(block * block_columns) * count; }
+};
+
+/// Lists the costs of the steps.
+HWY_INLINE void list_steps(const AggregationRow& row, StepList& steps) {
+  for (const WindowRow& window : row.rows) {
+    for (int i = -window.half; i <= window.half + 1; ++i) steps.cost[steps.count++] = window.costs + i * row.pitch;
+  }
+}
+
+/// Gathers the weights of the steps for the columns of one strip: step k has tap k of even and tap k − 1 of odd
+/// columns.
+HWY_INLINE void gather_weights(const AggregationRow& row, int strip, const StepList& steps) {
+  const hn::CappedTag<float, block_columns> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int i = 0; i < strip_columns; i += lanes) {
+    const float* const* weights = row.weights.data();
+    float* out = steps.of_block(i / block_columns) + i % block_columns;
+    auto sum = hn::Zero(d);
+    for (const WindowRow& window : row.rows) {
+      auto previous = hn::Zero(d);
+      for (int k = 0; k < 2 * window.half + 1; ++k, out += block_columns) {
+        const auto weight = hn::LoadU(d, *weights++ + strip + i);
+        sum = hn::Add(sum, weight);
+        hn::StoreU(hn::OddEven(previous, weight), d, out);
+        previous = weight;
+      }
+      hn::StoreU(hn::OddEven(previous, hn::Zero(d)), d, out);
+      out += block_columns;
+    }
+    hn::StoreU(hn::Div(hn::Set(d, 1.0f), sum), d, steps.inverse_sums + i);
+  }
+}
+
+/// energies[p, d] = Σ_taps ω·c / Σ ω (eq. fbs) for the pixels p of a block and `vectors` vectors of disparities from
+/// first_d on, whose window lies in the common view.
+template <int vectors>
+HWY_INLINE void aggregate_block(const AggregationRow& row, const StepList& steps, int column, int first_d,
+                                float* energies) {
+  const Floats df;
+  const std::size_t lanes = hn::Lanes(df);
+  const std::ptrdiff_t at = column * row.pitch + first_d;
+  const int in_strip = (column - row.first) % strip_columns;
+  Float energy[block_columns][vectors];
+  for (auto& of_pixel : energy) {
+    for (Float& e : of_pixel) e = hn::Zero(df);
+  }
+  const float* weight = steps.of_block(in_strip / block_columns);
+  for (std::size_t step = 0; step < steps.count; ++step, weight += block_columns) {
+    const float* cost = steps.cost[step] + at;
+    for (int p = 0; p < block_columns; p += 2, cost += 2 * row.pitch) {
+      const Float even = hn::Set(df, weight[p]), odd = hn::Set(df, weight[p + 1]);
+      for (std::size_t i = 0; i < vectors; ++i) {
+        const Float c = hn::Load(df, cost + i * lanes);
+        energy[p][i] = hn::MulAdd(even, c, energy[p][i]);
+        energy[p + 1][i] = hn::MulAdd(odd, c, energy[p + 1][i]);
+      }
+    }
+  }
+  float* out = energies + in_strip * row.pitch + first_d;
+  for (int p = 0; p < block_columns; ++p, out += row.pitch) {
+    const Float inverse_sum = hn::Set(df, steps.inverse_sums[in_strip + p]);
+    for (std::size_t i = 0; i < vectors; ++i) hn::Store(hn::Mul(energy[p][i], inverse_sum), df, out + i * lanes);
+  }
+}
+
+/// The last disparity at which column i of a window row has a counterpart; negative where there is none.
+HWY_INLINE int last_seen(const WindowRow& window, int i) {
+  return i > window.last_own ? -1 : i - window.first_other;
+}
+
+/// The same for one vector of disparities of one pixel near the border, over the taps that have a counterpart; infinite
+/// where the pixel itself has none.
+HWY_INLINE void aggregate_border(const AggregationRow& row, int column, int d, float* energies) {
+  const Floats df;
+  const Ints di;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  const Float never = hn::Set(df, infinity);
+  float* out = energies + (column - row.first) % strip_columns * row.pitch + d;
+  if (d > last_seen(row.centre, column)) {
+    hn::Store(never, df, out);
+    return;
+  }
+  const Int disparity = count_from(d);
+  Float energy = hn::Zero(df), sum = hn::Zero(df);
+  const float* const* weight = row.weights.data();
+  for (const WindowRow& window : row.rows) {
+    for (int i = column - window.half; i <= column + window.half; ++i, ++weight) {
+      const int last = last_seen(window, i);
+      if (last < d) continue;
+      Float w = hn::Set(df, (*weight)[column]);
+      if (last < d + lanes - 1) {
+        w = hn::IfThenElseZero(hn::RebindMask(df, hn::Lt(disparity, hn::Set(di, last + 1))), w);
+      }
+      energy = hn::MulAdd(w, hn::Load(df, window.costs + i * row.pitch + d), energy);
+      sum = hn::Add(sum, w);
+    }
+  }
+  const auto seen = hn::RebindMask(df, hn::Lt(disparity, hn::Set(di, last_seen(row.centre, column) + 1)));
+  hn::Store(hn::IfThenElse(seen, hn::Div(energy, sum), never), df, out);
+}
+
+/// Columns whose whole window has a counterpart at every disparity below `end_d`.
+struct ColumnRange {
+  int first, end;
+};
+HWY_INLINE ColumnRange whole_windows(const AggregationRow& row, int end_d) {
+  ColumnRange range{row.first, row.end};
+  for (const WindowRow& window : row.rows) {
+    range.first = std::max(range.first, window.first_other + end_d - 1 + row.radius);
+    range.end = std::min(range.end, window.last_own + 1 - row.radius);
+  }
+  return range;
+}
+
+/// Energies of one strip at `vectors` vectors of disparities from d on.
+template <int vectors>
+HWY_INLINE void aggregate_strip(const AggregationRow& row, const StepList& steps, int strip, int d, float* energies) {
+  const int lanes = static_cast<int>(hn::Lanes(Floats()));
+  const ColumnRange whole = whole_windows(row, std::min(d + vectors * lanes, row.disparities));
+  const int end = std::min(strip + strip_columns, row.end);
+  for (int column = strip; column < end; column += block_columns) {
+    if (column >= whole.first && column + block_columns <= whole.end) {
+      aggregate_block<vectors>(row, steps, column, d, energies);
+      continue;
+    }
+    for (int i = column; i < std::min(column + block_columns, end); ++i) {
+      for (int k = 0; k < vectors; ++k) aggregate_border(row, i, d + k * lanes, energies);
+    }
+  }
+}
+
+#if HWY_TARGET == HWY_SCALAR
+/// The smallest lane of each of four vectors.
+template <class D>
+HWY_INLINE void smallest_lanes(D /*d*/, const hn::Vec<D>* of, hn::TFromD<D>* smallest) {
+  for (int p = 0; p < 4; ++p) smallest[p] = hn::GetLane(of[p]);
+}
+#else
+/// smallest[0 … 3] = the smallest of those lanes of v that lie at the same place of a 128-bit block.
+template <class D>
+HWY_INLINE void fold_blocks(D d, hn::Vec<D> v, hn::TFromD<D>* smallest) {
+  if constexpr (hn::MaxLanes(D()) > 4) {
+    const hn::Half<D> half;
+    fold_blocks(half, hn::Min(hn::LowerHalf(half, v), hn::UpperHalf(half, v)), smallest);
+  } else {
+    hn::StoreU(v, d, smallest);
+  }
+}
+
+/// The smallest lane of each of four vectors. They are halved side by side: the lanes of a 128-bit block become a b a b
+/// and c d c d, then a b c d.
+template <class D>
+HWY_INLINE void smallest_lanes(D d, const hn::Vec<D>* of, hn::TFromD<D>* smallest) {
+  const hn::Repartition<std::uint64_t, D> pairs;
+  const auto ab = hn::Min(hn::InterleaveLower(d, of[0], of[1]), hn::InterleaveUpper(d, of[0], of[1]));
+  const auto cd = hn::Min(hn::InterleaveLower(d, of[2], of[3]), hn::InterleaveUpper(d, of[2], of[3]));
+  const auto wide_ab = hn::BitCast(pairs, ab), wide_cd = hn::BitCast(pairs, cd);
+  const auto abcd = hn::Min(hn::BitCast(d, hn::InterleaveLower(pairs, wide_ab, wide_cd)),
+                            hn::BitCast(d, hn::InterleaveUpper(pairs, wide_ab, wide_cd)));
+  fold_blocks(d, abcd, smallest);
+}
+#endif
+
+/// Winner-take-all of four pixels: winners[p] = the first d at which energies[p·pitch + d] is smallest. Behind the last
+/// disparity the energies are infinite up to a whole vector.
+HWY_INLINE void take_winners(const AggregationRow& row, const float* energies, std::int32_t* winners) {
+  const Floats df;
+  const Ints di;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  Float vectors[4];
+  for (int p = 0; p < 4; ++p) vectors[p] = hn::Load(df, energies + p * row.pitch);
+  for (int d = lanes; d < row.disparities; d += lanes) {
+    for (int p = 0; p < 4; ++p) vectors[p] = hn::Min(vectors[p], hn::Load(df, energies + p * row.pitch + d));
+  }
+  float smallest[4];
+  smallest_lanes(df, vectors, smallest);
+  const Int behind_last = hn::Set(di, std::numeric_limits<std::int16_t>::max());
+  Int found[4] = {behind_last, behind_last, behind_last, behind_last};
+  for (int d = 0; d < row.disparities; d += lanes) {
+    const Int disparity = count_from(d);
+    for (int p = 0; p < 4; ++p) {
+      const auto here = hn::Eq(hn::Load(df, energies + p * row.pitch + d), hn::Set(df, smallest[p]));
+      found[p] = hn::Min(found[p], hn::IfThenElse(hn::RebindMask(di, here), disparity, behind_last));
+    }
+  }
+  smallest_lanes(di, found, winners);
+}
+
+/// Writes winner and offset (eq. subpixel) of one pixel.
+HWY_INLINE void write_winner(const AggregationRow& row, int column, int winner, const float* energies,
+                             const WinnerRow& out) {
+  const int at = column - row.first;
+  const int last = std::min(row.disparities - 1, last_seen(row.centre, column));
+  out.winner[at] = static_cast<std::int16_t>(last < 0 ? -1 : winner);
+  if (out.offset == nullptr) return;
+  float offset = std::numeric_limits<float>::quiet_NaN();
+  if (winner > 0 && winner < last) {
+    const float before = energies[winner - 1], after = energies[winner + 1];
+    const float curvature = 2 * before + 2 * after - 4 * energies[winner];
+    offset = curvature > 0 ? (before - after) / curvature : 0;
+  }
+  out.offset[at] = offset;
+}
+
+void aggregate_and_choose(const AggregationRow& row, const AggregationScratch& scratch, const WinnerRow& out) {
+  const int lanes = static_cast<int>(hn::Lanes(Floats()));
+  float* energies = scratch.numbers;
+  float* inverse_sums = energies + strip_columns * row.pitch;
+  StepList steps{.cost = scratch.pointers, .weights = inverse_sums + strip_columns, .inverse_sums = inverse_sums};
+  list_steps(row, steps);
+  for (int strip = row.first; strip < row.end; strip += strip_columns) {
+    gather_weights(row, strip, steps);
+    int d = 0;
+    for (; d + lanes < row.disparities; d += 2 * lanes) aggregate_strip<2>(row, steps, strip, d, energies);
+    if (d < row.disparities) aggregate_strip<1>(row, steps, strip, d, energies);
+    for (int column = strip; column < std::min(strip + strip_columns, row.end); column += 4) {
+      float* of_four = energies + (column - strip) * row.pitch;
+      for (int p = 0; p < 4; ++p) {
+        std::fill(of_four + p * row.pitch + row.disparities, of_four + (p + 1) * row.pitch, infinity);
+      }
+      std::int32_t winners[4];
+      take_winners(row, of_four, winners);
+      for (int p = 0; p < std::min(4, row.end - column); ++p) {
+        write_winner(row, column + p, winners[p], of_four + p * row.pitch, out);
+      }
+    }
+  }
+}
+
+const char* name_of_target() {
+  return hwy::TargetName(HWY_TARGET);
+}
+
+}  // namespace roadstereo::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace roadstereo::cpu {
+
+HWY_EXPORT(aggregate_and_choose);
+HWY_EXPORT(name_of_target);
+
+AggregationScratchSize aggregation_scratch(int window_rows, int taps, std::ptrdiff_t pitch) {
+  const std::ptrdiff_t steps = taps + window_rows;
+  return {steps, strip_columns * (pitch + 1 + steps)};
+}
+
+void aggregate_and_choose(const AggregationRow& row, const AggregationScratch& scratch, const WinnerRow& out) {
+  HWY_DYNAMIC_DISPATCH(aggregate_and_choose)(row, scratch, out);
+}
+
+std::string target_name() {
+  return HWY_DYNAMIC_DISPATCH(name_of_target)();
+}
+
+}  // namespace roadstereo::cpu
+#endif  // HWY_ONCE

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+// Vector kernel for aggregation (eq. fbs) and winner-take-all: a vector holds the disparities of one pixel, so that
+// every load is aligned and a tap's weight is one number for all of them.
+
+namespace roadstereo::cpu {
+
+/// Columns that are aggregated together; a tile begins at a multiple of this, so that tiles change no result.
+inline constexpr int strip_columns = 32;
+
+/// One row of the aggregation window: the taps −half … half around the pixel's column.
+struct WindowRow {
+  const float* costs;  ///< c(p, d) of the row: column i, disparity d at i·pitch + d
+  int half;
+  int first_other;  ///< column i sees the other view from disparity 0 to i − first_other
+  int last_own;     ///< last column of the own view
+};
+
+/// One row of one view, ready to be aggregated at the columns [first, end).
+struct AggregationRow {
+  int first;
+  int end;
+  int disparities;
+  std::ptrdiff_t pitch;
+  int radius;                             ///< the largest `half`
+  WindowRow centre;                       ///< the window row of the pixels themselves
+  std::span<const WindowRow> rows;        ///< those that lie in the image
+  std::span<const float* const> weights;  ///< ω of every tap, row by row: weights[tap][column]
+};
+
+/// What winner-take-all leaves of the columns [first, end), from index 0 on.
+struct WinnerRow {
+  std::int16_t* winner;  ///< −1 where nothing can match
+  float* offset;         ///< eq. subpixel; NaN when the winner has no neighbour on one side; null: not wanted
+};
+
+/// Scratch memory of aggregate_and_choose; `numbers` is aligned for vectors.
+struct AggregationScratch {
+  const float** pointers;
+  float* numbers;
+};
+struct AggregationScratchSize {
+  std::ptrdiff_t pointers;
+  std::ptrdiff_t numbers;
+};
+AggregationScratchSize aggregation_scratch(int window_rows, int taps, std::ptrdiff_t pitch);
+
+/// Aggregates the costs (eq. fbs) and takes the winner at every column, with its sub-pixel offset. `row.first` must be
+/// a multiple of strip_columns.
+void aggregate_and_choose(const AggregationRow& row, const AggregationScratch& scratch, const WinnerRow& out);
+
+/// The instruction set that the kernels use on this machine.
+std::string target_name();
+
+}  // namespace roadstereo::cpu

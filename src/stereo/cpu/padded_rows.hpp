@@ -1,0 +1,44 @@
+#pragma once
+
+#include <hwy/aligned_allocator.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace roadstereo::cpu {
+
+/// Elements that kernels may read before the first and behind the last column of a row.
+inline constexpr std::ptrdiff_t row_padding = 64;
+
+/// Rows of numbers with padding on both sides, so that kernels may read beyond their ends. What they read there is
+/// finite but has no meaning. Column 0 of every row is aligned for the widest vectors.
+template <class T>
+class PaddedRows {
+ public:
+  /// `before` columns of each row lie to the left of column 0. Allocates only when there are more elements than ever.
+  void resize(std::size_t rows, std::ptrdiff_t before, std::ptrdiff_t columns) {
+    constexpr std::ptrdiff_t line = 128 / static_cast<std::ptrdiff_t>(sizeof(T));
+    offset_ = (row_padding + before + line - 1) / line * line;
+    pitch_ = (offset_ + columns + row_padding + line - 1) / line * line;
+    const std::size_t size = rows * static_cast<std::size_t>(pitch_);
+    if (size > capacity_) {
+      values_ = hwy::AllocateAligned<T>(size);
+      if (!values_) throw std::bad_alloc();
+      capacity_ = size;
+    }
+    size_ = size;
+    clear();
+  }
+  T* row(std::size_t r) { return values_.get() + offset_ + static_cast<std::ptrdiff_t>(r) * pitch_; }
+  const T* row(std::size_t r) const { return values_.get() + offset_ + static_cast<std::ptrdiff_t>(r) * pitch_; }
+  void clear() { std::fill_n(values_.get(), size_, T{}); }
+
+ private:
+  hwy::AlignedFreeUniquePtr<T[]> values_;
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
+  std::ptrdiff_t pitch_ = 0;
+  std::ptrdiff_t offset_ = 0;
+};
+
+}  // namespace roadstereo::cpu

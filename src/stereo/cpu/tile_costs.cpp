@@ -1,0 +1,140 @@
+#include "stereo/cpu/tile_costs.hpp"
+
+#include <algorithm>
+
+namespace roadstereo::cpu {
+namespace {
+
+constexpr int none = -1;
+
+/// Rows of whole numbers that each view has.
+enum Integers {
+  column_sum,
+  column_square,
+  sample_pairs,
+  block_sum,
+  block_mean,
+  running_sum,
+  running_square,
+  integer_rows
+};
+
+/// Rows of other numbers.
+enum Numbers { block_residue, block_deviation, number_rows };
+
+}  // namespace
+
+void TileCosts::prepare(int columns, int disparities, const MatcherOptions& options) {
+  disparities_ = disparities;
+  pitch_ = (disparities + disparity_grid - 1) / disparity_grid * disparity_grid;
+  radius_ = options.block_radius;
+  ring_ = 2 * radius_ + 2;
+  const double noise = options.texture_noise * grey_scale;
+  noise_variance_ = static_cast<float>(noise * noise);
+  const std::ptrdiff_t own_columns = columns + 2 * radius_;
+  const std::ptrdiff_t other_columns = own_columns + pitch_ + radius_;
+  for (const View view : {own, other}) {
+    const std::ptrdiff_t width = view == own ? own_columns : other_columns;
+    views_[view].grey.resize(static_cast<std::size_t>(ring_), 0, width);
+    views_[view].integers.resize(integer_rows, 0, width + 1);
+    views_[view].numbers.resize(number_rows, 0, width);
+  }
+  no_row_.resize(1, 0, other_columns);
+  products_.resize(1, 0, own_columns * pitch_);
+}
+
+ColumnSums TileCosts::sums(View view) {
+  return {views_[view].integers.row(column_sum), views_[view].integers.row(column_square)};
+}
+
+BlockStatistics TileCosts::statistics(View view) {
+  OneView& of = views_[view];
+  return {of.integers.row(block_sum), of.integers.row(block_mean), of.numbers.row(block_residue),
+          of.numbers.row(block_deviation)};
+}
+
+void TileCosts::start(const MatchView& view, int v, int first, int columns) {
+  view_ = &view;
+  first_ = first - radius_;
+  columns_ = columns + 2 * radius_;
+  other_first_ = view.width() - first_ - columns_;
+  other_columns_ = columns_ + static_cast<int>(pitch_) + radius_;
+  oldest_ = entered_ = std::max(0, v - radius_);
+  for (const View side : {own, other}) views_[side].integers.clear();
+  products_.clear();
+}
+
+/// Moves the column sums by one row; either row may be `none`.
+void TileCosts::slide(int entering, int leaving) {
+  const auto row_of = [&](View view, int v) {
+    return v == none ? no_row_.row(0) : views_[view].grey.row(static_cast<std::size_t>(v % ring_));
+  };
+  if (entering != none) {
+    view_->copy_own(entering, first_, columns_, row_of(own, entering));
+    view_->copy_other(entering, other_first_, other_columns_, row_of(other, entering));
+  }
+  SamplePair* own_pairs = views_[own].integers.row(sample_pairs);
+  SamplePair* other_pairs = views_[other].integers.row(sample_pairs);
+  slide_sums(row_of(own, entering), row_of(own, leaving), 0, columns_, 1, sums(own), own_pairs);
+  slide_sums(row_of(other, entering), row_of(other, leaving), 0, other_columns_, -1, sums(other), other_pairs);
+  slide_products(own_pairs, other_pairs, columns_ - 1, 0, columns_, disparities_, pitch_, products_.row(0));
+}
+
+/// The running sums that clipped blocks are taken from.
+void TileCosts::sum_running(int v) {
+  const auto run = [](const std::int32_t* values, int count, int end, std::int32_t* running) {
+    std::uint32_t total = 0;  // may wrap; the differences that matter are small
+    for (int k = 0; k <= count; ++k) {
+      running[k] = static_cast<std::int32_t>(total);
+      if (k < end) total += static_cast<std::uint32_t>(values[k]);
+    }
+  };
+  for (const View view : {own, other}) {
+    const ColumnSums columns = sums(view);
+    const int count = view == own ? columns_ : other_columns_;
+    const int end = view == own ? count : view_->end_other(v) - other_first_;
+    run(columns.sum, count, end, views_[view].integers.row(running_sum));
+    run(columns.square, count, end, views_[view].integers.row(running_square));
+  }
+}
+
+void TileCosts::compute(int v, float* costs) {
+  const int height = view_->height();
+  const int first_row = std::max(0, v - radius_);
+  const int last_row = std::min(height - 1, v + radius_);
+  while (entered_ <= last_row || oldest_ < first_row) {
+    slide(entered_ <= last_row ? entered_++ : none, oldest_ < first_row ? oldest_++ : none);
+  }
+
+  const int block_rows = last_row - first_row + 1;
+  const int pixels = block_rows * (2 * radius_ + 1);
+  block_statistics(sums(own), radius_, pixels, noise_variance_, radius_, columns_ - radius_, statistics(own));
+  block_statistics(sums(other), radius_, pixels, noise_variance_, radius_, other_columns_ - radius_, statistics(other));
+  const CostRow row{.first = std::max(radius_, -first_),
+                    .end = std::min(columns_ - radius_, view_->width() - first_),
+                    .first_other = view_->first_other(v) - first_,
+                    .last_own = view_->last_own(v) - first_,
+                    .block_radius = radius_,
+                    .block_rows = block_rows,
+                    .disparities = disparities_,
+                    .pitch = pitch_,
+                    .origin = columns_ - 1,
+                    .noise_variance = noise_variance_,
+                    .products = products_.row(0),
+                    .own = statistics(own),
+                    .other = statistics(other)};
+  float* cost = costs - radius_ * pitch_;  // the kernels' columns begin a block's radius before the tile
+  full_block_costs(row, cost);
+  const bool clipped_left = row.first < row.first_other + disparities_ - 1 + radius_;
+  const bool clipped_right = row.end + radius_ > row.last_own + 1;
+  if (!clipped_left && !clipped_right) return;
+  sum_running(v);
+  clipped_block_costs(row,
+                      {.own_sum = views_[own].integers.row(running_sum),
+                       .own_square = views_[own].integers.row(running_square),
+                       .other_sum = views_[other].integers.row(running_sum),
+                       .other_square = views_[other].integers.row(running_square)},
+                      cost);
+}
+
+}  // namespace roadstereo::cpu

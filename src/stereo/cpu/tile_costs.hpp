@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+
+#include "stereo/cpu/block_costs.hpp"
+#include "stereo/cpu/match_view.hpp"
+#include "stereo/cpu/padded_rows.hpp"
+
+namespace roadstereo::cpu {
+
+/// Computes the matching costs of one view in a tile of columns, row after row, from column sums that slide down the
+/// image. All sums are whole numbers, so that a row's costs do not depend on where the slide began.
+class TileCosts {
+ public:
+  /// Memory for tiles of up to `columns` columns.
+  void prepare(int columns, int disparities, const MatcherOptions& options);
+
+  /// Begins at row `v`; `compute` is then called for v, v + 1, …. Costs are wanted of `columns` columns from `first`
+  /// on, which may lie outside the image.
+  void start(const MatchView& view, int v, int first, int columns);
+
+  /// Costs of row v at the columns that lie in the image: column k of the tile begins at costs + k·pitch. Disparities
+  /// without a counterpart get 0.
+  void compute(int v, float* costs);
+
+  /// Elements from one column to the next: the disparities, padded for vectors.
+  std::ptrdiff_t pitch() const { return pitch_; }
+
+ private:
+  enum View { own, other };
+  struct OneView {
+    PaddedRows<std::int16_t> grey;  ///< ring of rows
+    PaddedRows<std::int32_t> integers;
+    PaddedRows<float> numbers;
+  };
+
+  void slide(int entering, int leaving);
+  void sum_running(int v);
+  ColumnSums sums(View view);
+  BlockStatistics statistics(View view);
+
+  const MatchView* view_ = nullptr;
+  int disparities_ = 0;
+  std::ptrdiff_t pitch_ = 0;
+  int radius_ = 0;
+  int ring_ = 1;
+  float noise_variance_ = 0;
+  // Tile coordinates: own column 0 is image column first_, other column 0 is column other_first_ of the backward row.
+  int first_ = 0;
+  int columns_ = 0;  ///< own columns in memory: the tile and a block's radius on either side
+  int other_first_ = 0;
+  int other_columns_ = 0;
+  int entered_ = 0;  ///< rows below this are in the sums, from `oldest_` on
+  int oldest_ = 0;
+  OneView views_[2];
+  PaddedRows<std::int16_t> no_row_;
+  PaddedRows<std::int32_t> products_;  ///< column sums of own·other, pitch_ elements a column
+};
+
+}  // namespace roadstereo::cpu

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "stereo/cpu/aggregation.hpp"
+#include "stereo/cpu/match_view.hpp"
+#include "stereo/cpu/padded_rows.hpp"
+#include "stereo/cpu/tile_costs.hpp"
+#include "stereo/cpu/tile_weights.hpp"
+
+namespace roadstereo::cpu {
+
+/// A part of a view: the rows [first_row, last_row) at the columns [first, end) as the matcher counts them.
+struct Tile {
+  int first_row, last_row;
+  int first, end;
+};
+
+/// Matches one view tile by tile. Owns the scratch memory of one thread: a ring of cost rows as high as the aggregation
+/// window and as wide as a tile, never a volume.
+class ViewMatcher {
+ public:
+  /// Columns of a tile, a multiple of strip_columns: as many as keep the ring of costs in the cache of a core.
+  static int tile_columns(int disparities, const MatcherOptions& options);
+
+  void prepare(const MatchInput& input, const MatcherOptions& options);
+
+  /// Winners of the view's own pixels, and for the reference view their sub-pixel offsets, which wait in the disparity
+  /// map until both views are known.
+  void match(const MatchView& view, const Tile& tile, MatchMaps& maps);
+
+ private:
+  void match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps);
+  float* cost_row(int v) { return costs_.row(static_cast<std::size_t>(v % ring_)); }
+
+  int disparities_ = 0;
+  int radius_ = 0;
+  int ring_ = 1;
+  std::vector<int> half_widths_;  ///< of the window's rows
+  TileCosts tile_costs_;
+  TileWeights tile_weights_;
+  PaddedRows<float> costs_;  ///< ring of rows; column 0 is the tile's first
+  std::vector<WindowRow> window_;
+  PaddedRows<float> scratch_;
+  std::vector<const float*> steps_;
+  std::vector<std::int16_t> winner_;
+  std::vector<float> offset_;
+};
+
+}  // namespace roadstereo::cpu
