@@ -17,12 +17,14 @@ struct Case {
   const char* name;
   int width, height, disparities;
   MatcherOptions options;
-  bool slanted_view;  ///< the target's first valid column differs from row to row
+  bool slanted_view;        ///< the target's first valid column differs from row to row
+  bool with_ranges = false;  ///< tiles search parts of the disparities
 };
 
 MatcherOptions paper_options() {
   MatcherOptions options;
   options.aggregation_radius = 5;
+  options.aggregation_step = 1;
   options.aggregation_shape = WindowShape::square;
   options.sigma_space = 1.5;
   options.sigma_colour = 5.5;
@@ -50,11 +52,33 @@ std::vector<Case> cases() {
   large_block.block_radius = 10;
   large_block.aggregation_radius = 10;
   all.push_back({"large_windows", 90, 64, 20, large_block, true});
+  MatcherOptions sparse;
+  sparse.aggregation_radius = 5;
+  sparse.aggregation_step = 2;
+  all.push_back({"sparse_window", 150, 60, 35, sparse, true});
   MatcherOptions large_ring;  // so large that the row is matched in several tiles of columns
   large_ring.block_radius = 2;
   large_ring.aggregation_radius = 10;
   all.push_back({"tiles", 270, 31, 33, large_ring, true});
+  all.push_back({"ranges", 290, 131, 40, MatcherOptions{}, true, true});
   return all;
+}
+
+/// A different range for every tile, some of them without the right disparity.
+SearchRanges uneven_ranges(int width, int height, int disparities) {
+  SearchRanges ranges;
+  ranges.assign(width, height, disparities);
+  int n = 0;
+  for (auto* grid : {&ranges.reference, &ranges.target}) {
+    for (int row = 0; row < grid->height(); ++row) {
+      for (int column = 0; column < grid->width(); ++column, ++n) {
+        const int first = n * 7 % (disparities / 2);
+        (*grid)(column, row) = {static_cast<std::int16_t>(first),
+                                static_cast<std::int16_t>(std::min(disparities, first + 1 + n * 5 % disparities))};
+      }
+    }
+  }
+  return ranges;
 }
 
 class EngineAgreement : public testing::TestWithParam<std::tuple<std::string, int>> {};
@@ -69,7 +93,9 @@ TEST_P(EngineAgreement, SameWinnerAndSubPixelAsReference) {
   if (setting.slanted_view) {
     for (int v = 0; v < setting.height; ++v) first[static_cast<std::size_t>(v)] = v / 4 % (setting.width / 3);
   }
-  const MatchInput input{pair.reference, pair.target, first.data(), setting.disparities};
+  const SearchRanges ranges = uneven_ranges(setting.width, setting.height, std::max(2, setting.disparities));
+  const MatchInput input{pair.reference, pair.target, first.data(), setting.disparities,
+                         setting.with_ranges ? &ranges : nullptr};
   MatchMaps expected, actual;
   make_engine("reference", 0)->match(input, setting.options, expected);
   make_engine(std::get<0>(GetParam()), 2)->match(input, setting.options, actual);
@@ -90,7 +116,7 @@ TEST_P(EngineAgreement, SameWinnerAndSubPixelAsReference) {
   EXPECT_GE(static_cast<double>(same), 0.999 * static_cast<double>(candidates));
   EXPECT_GE(static_cast<double>(target_same), 0.999 * static_cast<double>(candidates));
   EXPECT_LE(worst, 0.01);
-  if (setting.disparities >= 7 && setting.width > 100) {
+  if (setting.disparities >= 7 && setting.width > 100 && !setting.with_ranges) {
     EXPECT_GT(both, candidates / 4);
   }
 }
@@ -179,6 +205,22 @@ TEST_P(EveryEngine, ReadsStridedImagesAndForgetsThePreviousFrame) {
   EXPECT_EQ(packed.winner, strided.winner);
 }
 
+TEST_P(EveryEngine, RangesThatHoldTheDisparityChangeNothing) {
+  const auto pair = test::textured_pair(200, 80, [](double, double) { return 12; });
+  SearchRanges ranges;
+  ranges.assign(200, 80, 32);
+  for (int column = 0; column < 2; ++column) {
+    for (int row = 0; row < 2; ++row) ranges.reference(column, row) = ranges.target(column, row) = {9, 16};
+  }
+  MatchMaps all, narrow;
+  const auto engine = make_engine(GetParam(), 2);
+  engine->match({pair.reference, pair.target, nullptr, 32}, MatcherOptions{}, all);
+  engine->match({pair.reference, pair.target, nullptr, 32, &ranges}, MatcherOptions{}, narrow);
+  for (int v = 0; v < 80; ++v) {
+    for (int u = 40; u < 200; ++u) ASSERT_NEAR(all.disparity(u, v), narrow.disparity(u, v), 1e-5);
+  }
+}
+
 TEST_P(EveryEngine, RefusesWhatItCannotMatch) {
   const GreyImage a(64, 48), b(64, 47);
   MatchMaps maps;
@@ -189,6 +231,11 @@ TEST_P(EveryEngine, RefusesWhatItCannotMatch) {
   MatcherOptions options;
   options.block_radius = 0;
   EXPECT_THROW(engine->match({a, a, nullptr, 16}, options, maps), Error);
+  SearchRanges ranges;
+  ranges.assign(300, 48, 16);
+  EXPECT_THROW(engine->match({a, a, nullptr, 16, &ranges}, MatcherOptions{}, maps), Error);
+  ranges.assign(64, 48, 17);
+  EXPECT_THROW(engine->match({a, a, nullptr, 16, &ranges}, MatcherOptions{}, maps), Error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, EveryEngine, testing::ValuesIn(all_engine_names()),

@@ -14,7 +14,8 @@ enum class WindowShape { square, disc };
 
 struct MatcherOptions {
   int block_radius = 5;        ///< N⁺ is (2r+1)² pixels; the paper's 120-connected system is 5; 1 … 10
-  int aggregation_radius = 3;  ///< radius of the bilateral window; 0 switches aggregation off; 0 … 10
+  int aggregation_radius = 4;  ///< radius of the bilateral window, pixels; 0 switches aggregation off; 0 … 10
+  int aggregation_step = 2;    ///< distance between its taps, pixels, 1 or 2: neighbours share most of their block
   WindowShape aggregation_shape = WindowShape::disc;  ///< `disc` keeps the taps within the radius
   double sigma_space = 4.0;                           ///< σ0 of eq. omega0, pixels
   double sigma_colour = 20.0;                         ///< σ1 of eq. omega1, 8-bit grey levels
@@ -27,12 +28,34 @@ struct MatcherOptions {
   void validate() const;
 };
 
+/// The disparities that are searched, tile by tile. Knowing the road leaves few of them: after the perspective
+/// transformation the road lies near δp, and a coarse look at the pair tells where something else is.
+struct SearchRanges {
+  static constexpr int tile_columns = 128;  ///< pixels
+  static constexpr int tile_rows = 64;      ///< pixels
+
+  /// Disparities first ≤ d < end.
+  struct Range {
+    std::int16_t first = 0;
+    std::int16_t end = 0;
+    bool operator==(const Range&) const = default;
+  };
+  Image<Range> reference;  ///< one per tile of the reference image, row by row
+  Image<Range> target;     ///< one per tile of the target image
+
+  /// Whole ranges for every tile of an image.
+  void assign(int width, int height, int disparities);
+};
+
 /// One pair as matching sees it: grey, same size, the target already transformed.
 struct MatchInput {
   ImageView<const std::int16_t> reference;
   ImageView<const std::int16_t> target;
-  const int* first_column = nullptr;  ///< per row: first valid column of the target, 0 … width; null: all valid
-  int disparities = 1;                ///< D, 1 … 1024: reference (u, v) may match target (u − d, v), 0 ≤ d < D
+  /// Per row: first valid column of the target, 0 … width; null: all valid. A block is a rectangle: it begins at the
+  /// first column that all its rows see.
+  const int* first_column = nullptr;
+  int disparities = 1;                   ///< D, 1 … 1024: reference (u, v) may match target (u − d, v), 0 ≤ d < D
+  const SearchRanges* ranges = nullptr;  ///< null: every pixel searches all D disparities
 };
 
 /// What matching leaves. Sizes are those of the reference image.

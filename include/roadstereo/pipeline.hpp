@@ -21,6 +21,7 @@ struct PipelineOptions {
   int threads = 0;              ///< worker threads; 0 takes all cores
   double white_level = 0;       ///< sample value of white; 0 takes 255 or 65535 by the sample type
   bool check_rows = true;       ///< measure whether the rows agree whenever the road model is estimated anew
+  bool narrow_search = true;    ///< search in each tile only near the disparities that a coarse look finds there
   RoadModelOptions road_model;
   PerspectiveOptions perspective;
   MatcherOptions matcher;
@@ -39,6 +40,7 @@ struct StageTimes {
   double prepare = 0;  ///< conversion to grey, checks of the pair
   double road_model = 0;
   double perspective = 0;
+  double ranges = 0;         ///< coarse look for the disparities of each tile
   double match = 0;          ///< cost, aggregation, winner-take-all, left–right check, sub-pixel
   double road_geometry = 0;  ///< roll and projection model
   double transform = 0;      ///< disparity transformation

@@ -39,6 +39,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("threads", o.threads, "worker threads; 0 takes all cores");
   visit("white_level", o.white_level, "sample value of white; 0 takes 255 or 65535 by the sample type");
   visit("check_rows", o.check_rows, "measure whether the rows of the pair agree");
+  visit("narrow_search", o.narrow_search, "search in each tile only near what a coarse look finds there");
 
   visit("road_model.with_roll", o.road_model.with_roll, "the model depends on the column too (a2)");
   visit("road_model.max_disparity_share", o.road_model.max_disparity_share,
@@ -61,6 +62,7 @@ void visit_options(Options& o, Visitor visit) {
 
   visit("matcher.block_radius", o.matcher.block_radius, "radius of the correlation block, pixels");
   visit("matcher.aggregation_radius", o.matcher.aggregation_radius, "radius of the bilateral window, pixels; 0 is off");
+  visit("matcher.aggregation_step", o.matcher.aggregation_step, "distance between the window's taps, pixels: 1 or 2");
   visit("matcher.aggregation_shape", o.matcher.aggregation_shape, "square or disc");
   visit("matcher.sigma_space", o.matcher.sigma_space, "sigma 0 of the bilateral weights, pixels");
   visit("matcher.sigma_colour", o.matcher.sigma_colour, "sigma 1 of the bilateral weights, 8-bit grey levels");

@@ -8,6 +8,7 @@
 #include "core/parallel.hpp"
 #include "core/sentence.hpp"
 #include "roadstereo/error.hpp"
+#include "stereo/range_search.hpp"
 
 namespace roadstereo {
 namespace {
@@ -53,6 +54,7 @@ struct Pipeline::State {
   std::string engine_name;
   int threads = 1;
   std::unique_ptr<StereoEngine> engine;
+  std::optional<RangeSearch> range_search;
 
   // What carries over from frame to frame.
   std::optional<RoadModel> last_road;
@@ -61,6 +63,7 @@ struct Pipeline::State {
   // Scratch memory.
   GreyImage left, right, transformed_target;
   std::vector<int> first_column;
+  MatchInput match_input;
   MatchMaps maps;
   FrameResult result;
 
@@ -68,6 +71,7 @@ struct Pipeline::State {
   void find_road();
   void measure_rows();
   void transform_perspective();
+  void narrow_search();
   void match();
   void find_geometry();
   void transform();
@@ -123,9 +127,15 @@ void Pipeline::State::transform_perspective() {
   transform_target(right, result.shift, threads, transformed_target, first_column);
 }
 
+/// Leaves the disparities of each tile that the pair can have.
+void Pipeline::State::narrow_search() {
+  match_input = {left, transformed_target, first_column.data(), result.shift.disparities};
+  if (range_search) match_input.ranges = range_search->find(match_input);
+}
+
 /// Section 3.2, and the shift added back.
 void Pipeline::State::match() {
-  engine->match({left, transformed_target, first_column.data(), result.shift.disparities}, options.matcher, maps);
+  engine->match(match_input, options.matcher, maps);
   add_shift(maps.disparity, result.shift, threads, result.disparity);
 }
 
@@ -171,7 +181,7 @@ void Pipeline::State::summarise() {
   last_road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
   last_roll_rad = result.geometry_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   const StageTimes& ms = result.ms;
-  result.ms.total = ms.prepare + ms.road_model + ms.perspective + ms.match + ms.road_geometry + ms.transform;
+  result.ms.total = ms.prepare + ms.road_model + ms.perspective + ms.ranges + ms.match + ms.road_geometry + ms.transform;
   result.mde_per_s = static_cast<double>(left.pixels()) * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
 }
 
@@ -183,6 +193,7 @@ Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCal
   state_->engine_name = resolve_engine_name(options.engine);
   state_->threads = resolve_threads(options.threads);
   state_->engine = make_engine(options.engine, options.threads);
+  if (options.narrow_search) state_->range_search.emplace(options.engine, options.threads);
 }
 
 Pipeline::~Pipeline() = default;
@@ -199,6 +210,8 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
   s.result.ms.road_model = watch.lap();
   s.transform_perspective();
   s.result.ms.perspective = watch.lap();
+  s.narrow_search();
+  s.result.ms.ranges = watch.lap();
   s.match();
   s.result.ms.match = watch.lap();
   s.find_geometry();

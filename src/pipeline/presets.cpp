@@ -7,10 +7,12 @@ namespace {
 /// Every constant of the paper.
 PipelineOptions paper_preset() {
   PipelineOptions options;
+  options.narrow_search = false;
   options.road_model.with_roll = false;  // eq. relation_vd: Δu depends on v alone
   options.perspective.shift = ShiftPrecision::whole_pixel;
   options.matcher.block_radius = 5;  // 120-connected system
   options.matcher.aggregation_radius = 5;
+  options.matcher.aggregation_step = 1;
   options.matcher.aggregation_shape = WindowShape::square;
   options.matcher.sigma_space = 1.5;   // σ0
   options.matcher.sigma_colour = 5.5;  // σ1

@@ -8,7 +8,7 @@
 
 #include "core/parallel.hpp"
 #include "road/plane_fit.hpp"
-#include "road/shrink.hpp"
+#include "core/shrink.hpp"
 
 namespace roadstereo {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
-#include "road/shrink.hpp"
+#include "core/shrink.hpp"
 
 namespace roadstereo {
 namespace {

@@ -10,7 +10,7 @@
 #include "road/coarse_match.hpp"
 #include "road/guided_match.hpp"
 #include "road/plane_fit.hpp"
-#include "road/shrink.hpp"
+#include "core/shrink.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {

@@ -15,22 +15,54 @@ void require_range(const char* name, Value value, Value lowest, Value highest) {
   }
 }
 
+void validate(const Image<SearchRanges::Range>& ranges, const MatchInput& input, const char* view) {
+  const int across = (input.reference.width() + SearchRanges::tile_columns - 1) / SearchRanges::tile_columns;
+  const int down = (input.reference.height() + SearchRanges::tile_rows - 1) / SearchRanges::tile_rows;
+  if (ranges.width() != across || ranges.height() != down) {
+    fail("there are search ranges for ", ranges.width(), "×", ranges.height(), " tiles of the ", view,
+         " image, which has ", across, "×", down);
+  }
+  for (int row = 0; row < down; ++row) {
+    for (int column = 0; column < across; ++column) {
+      const SearchRanges::Range& range = ranges(column, row);
+      if (range.first < 0 || range.end <= range.first || range.end > input.disparities) {
+        fail("the search range ", range.first, " … ", range.end, " of a tile of the ", view,
+             " image is not within the disparities 0 … ", input.disparities);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void MatcherOptions::validate() const {
   require_range("block_radius", block_radius, 1, 10);
   require_range("aggregation_radius", aggregation_radius, 0, 10);
+  require_range("aggregation_step", aggregation_step, 1, 2);
   require_range("sigma_space", sigma_space, 0.1, 1000.0);
   require_range("sigma_colour", sigma_colour, 0.1, 100000.0);
   require_range("texture_noise", texture_noise, 0.0, 50.0);
   require_range("consistency", consistency, 0.0, 1000.0);
 }
 
-std::vector<Tap> window_taps(int radius, WindowShape shape) {
+void SearchRanges::assign(int width, int height, int disparities) {
+  const int across = (width + tile_columns - 1) / tile_columns;
+  const int down = (height + tile_rows - 1) / tile_rows;
+  const Range all{0, static_cast<std::int16_t>(disparities)};
+  reference.assign(across, down, all);
+  target.assign(across, down, all);
+}
+
+std::vector<Tap> window_taps(const MatcherOptions& options) {
+  const int radius = options.aggregation_radius;
+  const int step = options.aggregation_step;
+  const int reach = radius / step * step;
   std::vector<Tap> taps;
-  for (int dv = -radius; dv <= radius; ++dv) {
-    for (int du = -radius; du <= radius; ++du) {
-      if (shape == WindowShape::square || du * du + dv * dv <= radius * radius) taps.push_back({du, dv});
+  for (int dv = -reach; dv <= reach; dv += step) {
+    for (int du = -reach; du <= reach; du += step) {
+      if (options.aggregation_shape == WindowShape::square || du * du + dv * dv <= radius * radius) {
+        taps.push_back({du, dv});
+      }
     }
   }
   return taps;
@@ -55,6 +87,10 @@ void validate(const MatchInput& input) {
   }
   if (input.disparities < 1 || input.disparities > 1024) {
     fail("the number of disparities is ", input.disparities, "; it must be between 1 and 1024");
+  }
+  if (input.ranges != nullptr) {
+    validate(input.ranges->reference, input, "reference");
+    validate(input.ranges->target, input, "target");
   }
 }
 

@@ -13,7 +13,7 @@ struct Tap {
 };
 
 /// The pixels q of the window N⁺ around a pixel, row by row.
-std::vector<Tap> window_taps(int radius, WindowShape shape);
+std::vector<Tap> window_taps(const MatcherOptions& options);
 
 /// For every row v the first target column that all rows of the block around v see: blocks are rectangles, so the
 /// common view of a block begins there.

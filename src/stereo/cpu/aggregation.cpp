@@ -19,9 +19,12 @@ using Float = hn::Vec<Floats>;
 using Int = hn::Vec<Ints>;
 
 /// first, first + 1, … (hn::Iota of a variable goes through memory.)
-HWY_INLINE Int count_from(int first) {
-  const Ints d;
+template <class D>
+HWY_INLINE hn::Vec<D> count_up(D d, int first) {
   return hn::Add(hn::Iota(d, 0), hn::Set(d, first));
+}
+HWY_INLINE Int count_from(int first) {
+  return count_up(Ints(), first);
 }
 
 /// Neighbouring pixels that are aggregated at once: they share loads, and their sums run side by side. As many as the
@@ -30,9 +33,9 @@ constexpr int block_columns = (HWY_TARGET <= HWY_AVX3 || HWY_ARCH_ARM_A64) ? 8 :
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Pixels are aggregated in pairs, because tap k of a pixel and tap k − 1 of its right neighbour meet at the same cost:
-/// a window row of n taps is n + 1 steps, each a column of costs for both, with a weight of 0 where one of them has no
-/// tap. The steps of all rows make one list, so that the innermost loop is long.
+/// Pixels are aggregated in pairs, because tap k of a pixel and tap k − 1 of the pixel one tap to its right meet at the
+/// same cost: a window row of n taps is n + 1 steps, each a column of costs for both, with a weight of 0 where one of
+/// them has no tap. The steps of all rows make one list, so that the innermost loop is long.
 struct StepList {
   const float** cost;     ///< costs of the step for the pixels 0 and 1
   float* weights;         ///< of the blocks of a strip: for every block and step, its columns
@@ -45,7 +48,9 @@ struct StepList {
 /// Lists the costs of the steps.
 HWY_INLINE void list_steps(const AggregationRow& row, StepList& steps) {
   for (const WindowRow& window : row.rows) {
-    for (int i = -window.half; i <= window.half + 1; ++i) steps.cost[steps.count++] = window.costs + i * row.pitch;
+    for (int i = -window.half; i <= window.half + 1; ++i) {
+      steps.cost[steps.count++] = window.costs + i * row.step * row.pitch;
+    }
   }
 }
 
@@ -53,8 +58,11 @@ HWY_INLINE void list_steps(const AggregationRow& row, StepList& steps) {
 /// columns.
 HWY_INLINE void gather_weights(const AggregationRow& row, int strip, const StepList& steps) {
   const hn::CappedTag<float, block_columns> d;
+  const hn::RebindToSigned<decltype(d)> dd;
   const int lanes = static_cast<int>(hn::Lanes(d));
   for (int i = 0; i < strip_columns; i += lanes) {
+    const auto places = hn::And(count_up(dd, i), hn::Set(dd, row.step));
+    const auto right = hn::RebindMask(d, hn::Eq(places, hn::Set(dd, row.step)));
     const float* const* weights = row.weights.data();
     float* out = steps.of_block(i / block_columns) + i % block_columns;
     auto sum = hn::Zero(d);
@@ -63,10 +71,10 @@ HWY_INLINE void gather_weights(const AggregationRow& row, int strip, const StepL
       for (int k = 0; k < 2 * window.half + 1; ++k, out += block_columns) {
         const auto weight = hn::LoadU(d, *weights++ + strip + i);
         sum = hn::Add(sum, weight);
-        hn::StoreU(hn::OddEven(previous, weight), d, out);
+        hn::StoreU(hn::IfThenElse(right, previous, weight), d, out);
         previous = weight;
       }
-      hn::StoreU(hn::OddEven(previous, hn::Zero(d)), d, out);
+      hn::StoreU(hn::IfThenElseZero(right, previous), d, out);
       out += block_columns;
     }
     hn::StoreU(hn::Div(hn::Set(d, 1.0f), sum), d, steps.inverse_sums + i);
@@ -75,7 +83,7 @@ HWY_INLINE void gather_weights(const AggregationRow& row, int strip, const StepL
 
 /// energies[p, d] = Σ_taps ω·c / Σ ω (eq. fbs) for the pixels p of a block and `vectors` vectors of disparities from
 /// first_d on, whose window lies in the common view.
-template <int vectors>
+template <int vectors, int step_columns>
 HWY_INLINE void aggregate_block(const AggregationRow& row, const StepList& steps, int column, int first_d,
                                 float* energies) {
   const Floats df;
@@ -89,12 +97,14 @@ HWY_INLINE void aggregate_block(const AggregationRow& row, const StepList& steps
   const float* weight = steps.of_block(in_strip / block_columns);
   for (std::size_t step = 0; step < steps.count; ++step, weight += block_columns) {
     const float* cost = steps.cost[step] + at;
-    for (int p = 0; p < block_columns; p += 2, cost += 2 * row.pitch) {
-      const Float even = hn::Set(df, weight[p]), odd = hn::Set(df, weight[p + 1]);
+    for (int pair = 0; pair < block_columns / 2; ++pair) {
+      const int p = pair / step_columns * 2 * step_columns + pair % step_columns;
+      const int q = p + step_columns;
+      const Float left = hn::Set(df, weight[p]), right = hn::Set(df, weight[q]);
       for (std::size_t i = 0; i < vectors; ++i) {
-        const Float c = hn::Load(df, cost + i * lanes);
-        energy[p][i] = hn::MulAdd(even, c, energy[p][i]);
-        energy[p + 1][i] = hn::MulAdd(odd, c, energy[p + 1][i]);
+        const Float c = hn::Load(df, cost + p * row.pitch + i * lanes);
+        energy[p][i] = hn::MulAdd(left, c, energy[p][i]);
+        energy[q][i] = hn::MulAdd(right, c, energy[q][i]);
       }
     }
   }
@@ -126,7 +136,8 @@ HWY_INLINE void aggregate_border(const AggregationRow& row, int column, int d, f
   Float energy = hn::Zero(df), sum = hn::Zero(df);
   const float* const* weight = row.weights.data();
   for (const WindowRow& window : row.rows) {
-    for (int i = column - window.half; i <= column + window.half; ++i, ++weight) {
+    for (int k = -window.half; k <= window.half; ++k, ++weight) {
+      const int i = column + k * row.step;
       const int last = last_seen(window, i);
       if (last < d) continue;
       Float w = hn::Set(df, (*weight)[column]);
@@ -162,7 +173,11 @@ HWY_INLINE void aggregate_strip(const AggregationRow& row, const StepList& steps
   const int end = std::min(strip + strip_columns, row.end);
   for (int column = strip; column < end; column += block_columns) {
     if (column >= whole.first && column + block_columns <= whole.end) {
-      aggregate_block<vectors>(row, steps, column, d, energies);
+      if (row.step == 1) {
+        aggregate_block<vectors, 1>(row, steps, column, d, energies);
+      } else {
+        aggregate_block<vectors, 2>(row, steps, column, d, energies);
+      }
       continue;
     }
     for (int i = column; i < std::min(column + block_columns, end); ++i) {

@@ -13,7 +13,7 @@ namespace roadstereo::cpu {
 /// Columns that are aggregated together; a tile begins at a multiple of this, so that tiles change no result.
 inline constexpr int strip_columns = 32;
 
-/// One row of the aggregation window: the taps −half … half around the pixel's column.
+/// One row of the aggregation window: the taps −half … half around the pixel's column, `step` columns apart.
 struct WindowRow {
   const float* costs;  ///< c(p, d) of the row: column i, disparity d at i·pitch + d
   int half;
@@ -27,7 +27,8 @@ struct AggregationRow {
   int end;
   int disparities;
   std::ptrdiff_t pitch;
-  int radius;                             ///< the largest `half`
+  int step;    ///< columns from one tap to the next, 1 or 2
+  int radius;  ///< columns that the window reaches
   WindowRow centre;                       ///< the window row of the pixels themselves
   std::span<const WindowRow> rows;        ///< those that lie in the image
   std::span<const float* const> weights;  ///< ω of every tap, row by row: weights[tap][column]

@@ -14,6 +14,9 @@ namespace roadstereo::cpu {
 
 /// Disparities are padded to a multiple of this: the widest vector has so many lanes.
 inline constexpr int disparity_grid = 16;
+constexpr std::ptrdiff_t padded_disparities(int disparities) {
+  return (disparities + disparity_grid - 1) / disparity_grid * disparity_grid;
+}
 
 /// A block whose variance (fixed-point grey²) is below this has no texture: its cost is 1.
 inline constexpr float smallest_variance = 0.25f;

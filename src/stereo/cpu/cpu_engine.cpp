@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "core/parallel.hpp"
 #include "stereo/cpu/view_matcher.hpp"
@@ -35,30 +36,49 @@ void finish_row(int v, const MatcherOptions& options, MatchMaps& maps) {
   }
 }
 
-/// How an image is cut into tiles, so that every thread gets several.
-struct Tiling {
-  int columns, across;
-  int rows, down;
-
-  Tiling(const MatchInput& input, const MatcherOptions& options, int threads) {
-    const int width = input.reference.width();
-    const int height = input.reference.height();
-    columns = ViewMatcher::tile_columns(input.disparities, options);
-    across = (width + columns - 1) / columns;
-    // A tile begins by filling its rings, so it should be high.
-    const int halo = 2 * (options.block_radius + options.aggregation_radius);
-    const int wanted = (4 * threads + 2 * across - 1) / (2 * across);
-    rows = std::max(2 * halo, (height + wanted - 1) / wanted);
-    down = (height + rows - 1) / rows;
-  }
-
-  int count() const { return across * down; }
-  Tile tile(int i, int width, int height) const {
-    const int row = i / across * rows;
-    const int column = i % across * columns;
-    return {row, std::min(row + rows, height), column, std::min(column + columns, width)};
-  }
+/// A tile of one of the views.
+struct Job {
+  const MatchView* view;
+  Tile tile;
 };
+
+/// Cuts a view into tiles that all search all disparities, so many that every thread gets several.
+void cut_evenly(const MatchView& view, int columns, int disparities, const MatcherOptions& options, int threads,
+                std::vector<Job>& jobs) {
+  const int across = (view.width() + columns - 1) / columns;
+  // A tile begins by filling its rings, so it should be high.
+  const int halo = 2 * (options.block_radius + options.aggregation_radius);
+  const int wanted = (4 * threads + 2 * across - 1) / (2 * across);
+  const int rows = std::max(2 * halo, (view.height() + wanted - 1) / wanted);
+  for (int row = 0; row < view.height(); row += rows) {
+    for (int column = 0; column < view.width(); column += columns) {
+      jobs.push_back({&view,
+                      {.first_row = row,
+                       .last_row = std::min(row + rows, view.height()),
+                       .first = column,
+                       .end = std::min(column + columns, view.width()),
+                       .range = {0, disparities}}});
+    }
+  }
+}
+
+/// Cuts a view into the tiles of its search ranges.
+void cut_by_ranges(const MatchView& view, const Image<SearchRanges::Range>& ranges, std::vector<Job>& jobs) {
+  constexpr int columns = SearchRanges::tile_columns, rows = SearchRanges::tile_rows;
+  const bool mirrored = view.side() == MatchView::target;
+  for (int row = 0; row < ranges.height(); ++row) {
+    for (int column = 0; column < ranges.width(); ++column) {
+      const int first = column * columns, end = std::min(first + columns, view.width());
+      const SearchRanges::Range& range = ranges(column, row);
+      jobs.push_back({&view,
+                      {.first_row = row * rows,
+                       .last_row = std::min((row + 1) * rows, view.height()),
+                       .first = mirrored ? view.width() - end : first,
+                       .end = mirrored ? view.width() - first : end,
+                       .range = {range.first, range.end - range.first}}});
+    }
+  }
+}
 
 class CpuEngine final : public StereoEngine {
  public:
@@ -73,13 +93,26 @@ class CpuEngine final : public StereoEngine {
     maps.target_winner.resize(width, height);
     maps.disparity.resize(width, height);
     block_first_columns(input, options.block_radius, first_columns_);
-    for (ViewMatcher& matcher : matchers_) matcher.prepare(input, options);
     const MatchView reference(input, MatchView::reference, first_columns_);
     const MatchView target(input, MatchView::target, first_columns_);
-    const Tiling tiling(input, options, threads_);
-    parallel_for(2 * tiling.count(), threads_, [&](int i, int worker) {
-      const MatchView& view = i < tiling.count() ? reference : target;
-      matchers_[static_cast<std::size_t>(worker)].match(view, tiling.tile(i % tiling.count(), width, height), maps);
+    const int whole_columns = std::min(ViewMatcher::tile_columns(input.disparities, options), width);
+    jobs_.clear();
+    for (const MatchView* view : {&reference, &target}) {
+      if (input.ranges == nullptr) {
+        cut_evenly(*view, whole_columns, input.disparities, options, threads_, jobs_);
+      } else {
+        cut_by_ranges(*view, view == &reference ? input.ranges->reference : input.ranges->target, jobs_);
+      }
+    }
+    int columns = 0, disparities = 0;
+    for (const Job& job : jobs_) {
+      columns = std::max(columns, job.tile.end - job.tile.first);
+      disparities = std::max(disparities, job.tile.range.count);
+    }
+    for (ViewMatcher& matcher : matchers_) matcher.prepare(columns, disparities, options);
+    parallel_for(static_cast<int>(jobs_.size()), threads_, [&](int i, int worker) {
+      const Job& job = jobs_[static_cast<std::size_t>(i)];
+      matchers_[static_cast<std::size_t>(worker)].match(*job.view, job.tile, maps);
     });
     parallel_rows(height, 32, threads_, [&](int first, int last, int) {
       for (int v = first; v < last; ++v) finish_row(v, options, maps);
@@ -90,6 +123,7 @@ class CpuEngine final : public StereoEngine {
   int threads_;
   std::vector<ViewMatcher> matchers_;
   std::vector<int> first_columns_;
+  std::vector<Job> jobs_;
 };
 
 }  // namespace

@@ -25,14 +25,13 @@ enum Numbers { block_residue, block_deviation, number_rows };
 }  // namespace
 
 void TileCosts::prepare(int columns, int disparities, const MatcherOptions& options) {
-  disparities_ = disparities;
-  pitch_ = (disparities + disparity_grid - 1) / disparity_grid * disparity_grid;
+  const std::ptrdiff_t pitch = padded_disparities(disparities);
   radius_ = options.block_radius;
   ring_ = 2 * radius_ + 2;
   const double noise = options.texture_noise * grey_scale;
   noise_variance_ = static_cast<float>(noise * noise);
   const std::ptrdiff_t own_columns = columns + 2 * radius_;
-  const std::ptrdiff_t other_columns = own_columns + pitch_ + radius_;
+  const std::ptrdiff_t other_columns = own_columns + pitch + radius_;
   for (const View view : {own, other}) {
     const std::ptrdiff_t width = view == own ? own_columns : other_columns;
     views_[view].grey.resize(static_cast<std::size_t>(ring_), 0, width);
@@ -40,7 +39,7 @@ void TileCosts::prepare(int columns, int disparities, const MatcherOptions& opti
     views_[view].numbers.resize(number_rows, 0, width);
   }
   no_row_.resize(1, 0, other_columns);
-  products_.resize(1, 0, own_columns * pitch_);
+  products_.resize(1, 0, own_columns * pitch);
 }
 
 ColumnSums TileCosts::sums(View view) {
@@ -53,11 +52,13 @@ BlockStatistics TileCosts::statistics(View view) {
           of.numbers.row(block_deviation)};
 }
 
-void TileCosts::start(const MatchView& view, int v, int first, int columns) {
+void TileCosts::start(const MatchView& view, int v, int first, int columns, const DisparityRange& range) {
   view_ = &view;
+  range_ = range;
+  pitch_ = padded_disparities(range.count);
   first_ = first - radius_;
   columns_ = columns + 2 * radius_;
-  other_first_ = view.width() - first_ - columns_;
+  other_first_ = view.width() - first_ - columns_ + range.first;
   other_columns_ = columns_ + static_cast<int>(pitch_) + radius_;
   oldest_ = entered_ = std::max(0, v - radius_);
   for (const View side : {own, other}) views_[side].integers.clear();
@@ -77,7 +78,7 @@ void TileCosts::slide(int entering, int leaving) {
   SamplePair* other_pairs = views_[other].integers.row(sample_pairs);
   slide_sums(row_of(own, entering), row_of(own, leaving), 0, columns_, 1, sums(own), own_pairs);
   slide_sums(row_of(other, entering), row_of(other, leaving), 0, other_columns_, -1, sums(other), other_pairs);
-  slide_products(own_pairs, other_pairs, columns_ - 1, 0, columns_, disparities_, pitch_, products_.row(0));
+  slide_products(own_pairs, other_pairs, columns_ - 1, 0, columns_, range_.count, pitch_, products_.row(0));
 }
 
 /// The running sums that clipped blocks are taken from.
@@ -112,11 +113,11 @@ void TileCosts::compute(int v, float* costs) {
   block_statistics(sums(other), radius_, pixels, noise_variance_, radius_, other_columns_ - radius_, statistics(other));
   const CostRow row{.first = std::max(radius_, -first_),
                     .end = std::min(columns_ - radius_, view_->width() - first_),
-                    .first_other = view_->first_other(v) - first_,
+                    .first_other = view_->first_other(v) + range_.first - first_,
                     .last_own = view_->last_own(v) - first_,
                     .block_radius = radius_,
                     .block_rows = block_rows,
-                    .disparities = disparities_,
+                    .disparities = range_.count,
                     .pitch = pitch_,
                     .origin = columns_ - 1,
                     .noise_variance = noise_variance_,
@@ -125,7 +126,7 @@ void TileCosts::compute(int v, float* costs) {
                     .other = statistics(other)};
   float* cost = costs - radius_ * pitch_;  // the kernels' columns begin a block's radius before the tile
   full_block_costs(row, cost);
-  const bool clipped_left = row.first < row.first_other + disparities_ - 1 + radius_;
+  const bool clipped_left = row.first < row.first_other + range_.count - 1 + radius_;
   const bool clipped_right = row.end + radius_ > row.last_own + 1;
   if (!clipped_left && !clipped_right) return;
   sum_running(v);

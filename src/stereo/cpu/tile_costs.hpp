@@ -8,19 +8,25 @@
 
 namespace roadstereo::cpu {
 
+/// Disparities first ≤ d < first + count.
+struct DisparityRange {
+  int first = 0;
+  int count = 0;
+};
+
 /// Computes the matching costs of one view in a tile of columns, row after row, from column sums that slide down the
 /// image. All sums are whole numbers, so that a row's costs do not depend on where the slide began.
 class TileCosts {
  public:
-  /// Memory for tiles of up to `columns` columns.
+  /// Memory for tiles of up to `columns` columns and `disparities` disparities.
   void prepare(int columns, int disparities, const MatcherOptions& options);
 
   /// Begins at row `v`; `compute` is then called for v, v + 1, …. Costs are wanted of `columns` columns from `first`
-  /// on, which may lie outside the image.
-  void start(const MatchView& view, int v, int first, int columns);
+  /// on, which may lie outside the image, and of the disparities of `range`.
+  void start(const MatchView& view, int v, int first, int columns, const DisparityRange& range);
 
-  /// Costs of row v at the columns that lie in the image: column k of the tile begins at costs + k·pitch. Disparities
-  /// without a counterpart get 0.
+  /// Costs of row v at the columns that lie in the image: column k of the tile begins at costs + k·pitch, with the
+  /// first disparity of the range. Disparities without a counterpart get 0.
   void compute(int v, float* costs);
 
   /// Elements from one column to the next: the disparities, padded for vectors.
@@ -40,7 +46,7 @@ class TileCosts {
   BlockStatistics statistics(View view);
 
   const MatchView* view_ = nullptr;
-  int disparities_ = 0;
+  DisparityRange range_;
   std::ptrdiff_t pitch_ = 0;
   int radius_ = 0;
   int ring_ = 1;

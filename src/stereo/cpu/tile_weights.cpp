@@ -11,7 +11,7 @@ namespace roadstereo::cpu {
 void TileWeights::prepare(int columns, const MatcherOptions& options) {
   radius_ = options.aggregation_radius;
   ring_ = radius_ + 1;
-  taps_ = window_taps(radius_, options.aggregation_shape);
+  taps_ = window_taps(options);
   log2_space_.clear();
   for (const Tap& tap : taps_) {
     const double distance2 = tap.du * tap.du + tap.dv * tap.dv;

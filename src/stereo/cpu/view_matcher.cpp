@@ -5,6 +5,11 @@
 #include "stereo/window.hpp"
 
 namespace roadstereo::cpu {
+namespace {
+
+constexpr int no_taps = -1;  // a row that the window leaves out
+
+}  // namespace
 
 int ViewMatcher::tile_columns(int disparities, const MatcherOptions& options) {
   constexpr int cache_bytes = 512 * 1024;
@@ -15,23 +20,22 @@ int ViewMatcher::tile_columns(int disparities, const MatcherOptions& options) {
   return std::max(fewest, columns / fewest * fewest);
 }
 
-void ViewMatcher::prepare(const MatchInput& input, const MatcherOptions& options) {
-  disparities_ = input.disparities;
+void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& options) {
   radius_ = options.aggregation_radius;
   ring_ = 2 * radius_ + 1;
-  half_widths_.assign(static_cast<std::size_t>(ring_), 0);
-  for (const Tap& tap : window_taps(radius_, options.aggregation_shape)) {
+  step_ = options.aggregation_step;
+  half_widths_.assign(static_cast<std::size_t>(ring_), no_taps);
+  const std::vector<Tap> taps = window_taps(options);
+  for (const Tap& tap : taps) {
     int& half = half_widths_[static_cast<std::size_t>(tap.dv + radius_)];
-    half = std::max(half, tap.du);
+    half = std::max(half, tap.du / step_);
   }
-  const int columns = std::min(tile_columns(disparities_, options), input.reference.width());
   const int padded = (columns + strip_columns - 1) / strip_columns * strip_columns;
-  tile_costs_.prepare(padded + 2 * radius_, disparities_, options);
+  tile_costs_.prepare(padded + 2 * radius_, disparities, options);
   tile_weights_.prepare(padded, options);
-  const std::ptrdiff_t pitch = tile_costs_.pitch();
+  const std::ptrdiff_t pitch = padded_disparities(disparities);
   costs_.resize(static_cast<std::size_t>(ring_), radius_ * pitch, (padded + radius_) * pitch);
-  const auto taps = static_cast<int>(window_taps(radius_, options.aggregation_shape).size());
-  const AggregationScratchSize scratch = aggregation_scratch(ring_, taps, pitch);
+  const AggregationScratchSize scratch = aggregation_scratch(ring_, static_cast<int>(taps.size()), pitch);
   scratch_.resize(1, 0, scratch.numbers);
   steps_.resize(static_cast<std::size_t>(scratch.pointers));
   winner_.resize(static_cast<std::size_t>(padded));
@@ -42,7 +46,7 @@ void ViewMatcher::prepare(const MatchInput& input, const MatcherOptions& options
 void ViewMatcher::match(const MatchView& view, const Tile& tile, MatchMaps& maps) {
   int next = std::max(0, tile.first_row - radius_);
   const int columns = tile.end - tile.first;
-  tile_costs_.start(view, next, tile.first - radius_, columns + 2 * radius_);
+  tile_costs_.start(view, next, tile.first - radius_, columns + 2 * radius_, tile.range);
   tile_weights_.start(view, tile.first_row, tile.first, columns);
   for (int v = tile.first_row; v < tile.last_row; ++v) {
     for (; next <= std::min(view.height() - 1, v + radius_); ++next) {
@@ -56,28 +60,33 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
   const auto window_row = [&](int q) {
     return WindowRow{.costs = cost_row(q),
                      .half = half_widths_[static_cast<std::size_t>(q - v + radius_)],
-                     .first_other = view.first_other(q) - tile.first,
+                     .first_other = view.first_other(q) + tile.range.first - tile.first,
                      .last_own = view.last_own(q) - tile.first};
   };
   window_.clear();
   for (int q = std::max(0, v - radius_); q <= std::min(view.height() - 1, v + radius_); ++q) {
-    window_.push_back(window_row(q));
+    if (half_widths_[static_cast<std::size_t>(q - v + radius_)] != no_taps) window_.push_back(window_row(q));
   }
   const AggregationRow row{.first = 0,
                            .end = tile.end - tile.first,
-                           .disparities = disparities_,
+                           .disparities = tile.range.count,
                            .pitch = tile_costs_.pitch(),
+                           .step = step_,
                            .radius = radius_,
                            .centre = window_row(v),
                            .rows = window_,
                            .weights = tile_weights_.compute(v)};
   const bool reference = view.side() == MatchView::reference;
+  const auto original = [&](std::int16_t winner) {
+    return static_cast<std::int16_t>(winner < 0 ? winner : winner + tile.range.first);
+  };
   aggregate_and_choose(row, {steps_.data(), scratch_.row(0)}, {winner_.data(), reference ? offset_.data() : nullptr});
   if (reference) {
-    std::copy_n(winner_.data(), row.end, maps.winner.row(v) + tile.first);
+    std::transform(winner_.data(), winner_.data() + row.end, maps.winner.row(v) + tile.first, original);
     std::copy_n(offset_.data(), row.end, maps.disparity.row(v) + tile.first);
   } else {
-    std::reverse_copy(winner_.data(), winner_.data() + row.end, maps.target_winner.row(v) + view.width() - tile.end);
+    std::transform(winner_.rend() - row.end, winner_.rend(), maps.target_winner.row(v) + view.width() - tile.end,
+                   original);
   }
 }
 

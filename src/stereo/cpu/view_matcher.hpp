@@ -11,10 +11,12 @@
 
 namespace roadstereo::cpu {
 
-/// A part of a view: the rows [first_row, last_row) at the columns [first, end) as the matcher counts them.
+/// A part of a view: the rows [first_row, last_row) at the columns [first, end) as the matcher counts them, and the
+/// disparities to search there.
 struct Tile {
   int first_row, last_row;
   int first, end;
+  DisparityRange range;
 };
 
 /// Matches one view tile by tile. Owns the scratch memory of one thread: a ring of cost rows as high as the aggregation
@@ -24,7 +26,8 @@ class ViewMatcher {
   /// Columns of a tile, a multiple of strip_columns: as many as keep the ring of costs in the cache of a core.
   static int tile_columns(int disparities, const MatcherOptions& options);
 
-  void prepare(const MatchInput& input, const MatcherOptions& options);
+  /// Memory for tiles of up to `columns` columns.
+  void prepare(int columns, int disparities, const MatcherOptions& options);
 
   /// Winners of the view's own pixels, and for the reference view their sub-pixel offsets, which wait in the disparity
   /// map until both views are known.
@@ -34,10 +37,10 @@ class ViewMatcher {
   void match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps);
   float* cost_row(int v) { return costs_.row(static_cast<std::size_t>(v % ring_)); }
 
-  int disparities_ = 0;
   int radius_ = 0;
   int ring_ = 1;
-  std::vector<int> half_widths_;  ///< of the window's rows
+  int step_ = 1;
+  std::vector<int> half_widths_;  ///< of the window's rows, in steps
   TileCosts tile_costs_;
   TileWeights tile_weights_;
   PaddedRows<float> costs_;  ///< ring of rows; column 0 is the tile's first

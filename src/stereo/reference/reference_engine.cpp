@@ -43,7 +43,7 @@ class CostVolume {
 struct Scene {
   const MatchInput& input;
   const MatcherOptions& options;
-  std::vector<Tap> window = window_taps(options.aggregation_radius, options.aggregation_shape);
+  std::vector<Tap> window = window_taps(options);
   std::vector<int> first_column{};  ///< per row: first target column that the whole block of the row sees
 
   Scene(const MatchInput& match_input, const MatcherOptions& match_options)
@@ -143,13 +143,20 @@ CostVolume aggregate(const Scene& scene, const CostVolume& cost, ImageView<const
   return aggregated;
 }
 
+using Range = SearchRanges::Range;
+
+const Range& range_at(const Image<Range>& ranges, int u, int v) {
+  return ranges(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
+}
+
 /// Winner-take-all: the disparity of the smallest cost, −1 where there is none; the smaller disparity wins a tie.
-Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy) {
+Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, const Image<Range>& ranges) {
   Image<std::int16_t> winners(scene.width(), scene.height(), -1);
   for (int v = 0; v < scene.height(); ++v) {
     for (int u = 0; u < scene.width(); ++u) {
       double best = std::numeric_limits<double>::infinity();
-      for (int d = 0; d < scene.input.disparities; ++d) {
+      const Range searched = range_at(ranges, u, v);
+      for (int d = searched.first; d < searched.end; ++d) {
         if (energy(u, v, d) < best) {
           best = energy(u, v, d);
           winners(u, v) = static_cast<std::int16_t>(d);
@@ -169,9 +176,9 @@ bool consistent(const MatchMaps& maps, int u, int v, double threshold) {
 }
 
 /// Eq. subpixel, on the aggregated costs. A winner at the end of its range has no neighbour on one side.
-double refine(const Scene& scene, const CostVolume& energy, int u, int v, int d) {
-  const bool first = d == 0;
-  const bool last = d + 1 == scene.input.disparities || std::isnan(energy(u, v, d + 1));
+double refine(const Scene& scene, const CostVolume& energy, const Range& searched, int u, int v, int d) {
+  const bool first = d == searched.first;
+  const bool last = d + 1 == searched.end || std::isnan(energy(u, v, d + 1));
   if (first || last) return scene.options.drop_range_ends ? nan : d;
   if (!scene.options.sub_pixel) return d;
   const double before = energy(u, v, d - 1);
@@ -191,14 +198,18 @@ class ReferenceEngine final : public StereoEngine {
     const CostVolume cost = compute_costs(scene, threads_);
     const CostVolume energy_ref = aggregate(scene, cost, input.reference, 0, threads_);
     const CostVolume energy_tar = aggregate(scene, cost, input.target, 1, threads_);
-    maps.winner = take_winners(scene, energy_ref);
-    maps.target_winner = take_winners(scene, energy_tar);
+    SearchRanges ranges;
+    ranges.assign(scene.width(), scene.height(), input.disparities);
+    if (input.ranges != nullptr) ranges = *input.ranges;
+    maps.winner = take_winners(scene, energy_ref, ranges.reference);
+    maps.target_winner = take_winners(scene, energy_tar, ranges.target);
     maps.disparity.assign(scene.width(), scene.height(), std::numeric_limits<float>::quiet_NaN());
     for (int v = 0; v < scene.height(); ++v) {
       for (int u = 0; u < scene.width(); ++u) {
         if (maps.winner(u, v) < 0) continue;
         if (options.left_right_check && !consistent(maps, u, v, options.consistency)) continue;
-        maps.disparity(u, v) = static_cast<float>(refine(scene, energy_ref, u, v, maps.winner(u, v)));
+        maps.disparity(u, v) = static_cast<float>(
+            refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v)));
       }
     }
   }
