@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "stereo/cpu/trim_window.hpp"
 #include "stereo/cpu/view_matcher.hpp"
 #include "stereo/window.hpp"
 
@@ -84,9 +85,10 @@ class CpuEngine final : public StereoEngine {
  public:
   explicit CpuEngine(int threads) : threads_(resolve_threads(threads)), matchers_(static_cast<std::size_t>(threads_)) {}
 
-  void match(const MatchInput& input, const MatcherOptions& options, MatchMaps& maps) override {
+  void match(const MatchInput& input, const MatcherOptions& wanted, MatchMaps& maps) override {
     validate(input);
-    options.validate();
+    wanted.validate();
+    const MatcherOptions options = cpu::trim_window(wanted);
     const int width = input.reference.width();
     const int height = input.reference.height();
     maps.winner.resize(width, height);
