@@ -26,6 +26,7 @@ struct MatcherOptions {
   bool drop_range_ends = true;   ///< a winner at the end of its range is no minimum: invalid
 
   void validate() const;
+  bool operator==(const MatcherOptions&) const = default;
 };
 
 /// The disparities that are searched, tile by tile. Knowing the road leaves few of them: after the perspective

@@ -36,7 +36,7 @@ struct RoadGeometry {
   double alpha1 = 0;             ///< pixels per pixel
   RoadModel plane;               ///< the same model as a plane: a1 = α1 cos ψ, a2 = −α1 sin ψ
   int iterations = 0;            ///< steps that the solver took
-  std::size_t pixels = 0;        ///< disparities used
+  std::size_t pixels = 0;        ///< disparities used: all of them, or a regular sample by the robust solver
   double residual_px = 0;  ///< standard deviation of the disparities around the model, pixels (robust: of inliers)
 };
 
@@ -60,6 +60,6 @@ struct TransformedSpread {
   double all_px = 0;      ///< σ_d over every valid pixel
   double road_share = 0;  ///< share of the valid pixels that count as road
 };
-TransformedSpread measure_spread(ImageView<const float> transformed, double delta_t);
+TransformedSpread measure_spread(ImageView<const float> transformed, double delta_t, int threads = 0);
 
 }  // namespace roadstereo

@@ -1,6 +1,7 @@
 #include "core/parallel.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <thread>
 
 #include "roadstereo/error.hpp"
@@ -18,21 +19,34 @@
 
 namespace roadstereo {
 
+#ifdef ROADSTEREO_WITH_TBB
+namespace {
+
+/// The arena that this thread last used; making one for every call would allocate.
+tbb::task_arena& arena_of(int workers) {
+  // More workers than cores gain nothing, and TBB complains about them on stderr.
+  const int concurrency = std::min(workers, tbb::info::default_concurrency());
+  thread_local std::unique_ptr<tbb::task_arena> arena;
+  if (!arena || arena->max_concurrency() != concurrency) arena = std::make_unique<tbb::task_arena>(concurrency);
+  return *arena;
+}
+
+}  // namespace
+#endif
+
 int resolve_threads(int threads) {
   if (threads < 0 || threads > 1024) fail("threads is ", threads, "; it must be between 0 (all cores) and 1024");
   return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-void parallel_for(int count, int threads, const std::function<void(int, int)>& body) {
+void parallel_for(int count, int threads, FunctionRef<void(int, int)> body) {
   const int workers = std::min(resolve_threads(threads), count);
   if (workers <= 1) {
     for (int i = 0; i < count; ++i) body(i, 0);
     return;
   }
 #ifdef ROADSTEREO_WITH_TBB
-  // More workers than cores gain nothing, and TBB complains about them on stderr.
-  tbb::task_arena arena(std::min(workers, tbb::info::default_concurrency()));
-  arena.execute([&] {
+  const auto run = [&] {
     tbb::parallel_for(
         tbb::blocked_range<int>(0, count, 1),
         [&](const tbb::blocked_range<int>& range) {
@@ -40,7 +54,8 @@ void parallel_for(int count, int threads, const std::function<void(int, int)>& b
           for (int i = range.begin(); i < range.end(); ++i) body(i, worker);
         },
         tbb::simple_partitioner{});
-  });
+  };
+  arena_of(workers).execute(run);
 #else
   std::atomic<int> next{0};
   std::exception_ptr first_error;
@@ -64,7 +79,7 @@ void parallel_for(int count, int threads, const std::function<void(int, int)>& b
 #endif
 }
 
-void parallel_rows(int rows, int rows_per_band, int threads, const std::function<void(int, int, int)>& body) {
+void parallel_rows(int rows, int rows_per_band, int threads, FunctionRef<void(int, int, int)> body) {
   const int bands = (rows + rows_per_band - 1) / rows_per_band;
   parallel_for(bands, threads, [&](int band, int worker) {
     body(band * rows_per_band, std::min(rows, (band + 1) * rows_per_band), worker);

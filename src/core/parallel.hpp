@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include "core/function_ref.hpp"
 
 namespace roadstereo {
 
@@ -11,9 +11,9 @@ int resolve_threads(int threads);
 /// Calls `body(i, worker)` for every i in [0, count), on up to `threads` threads (0: all cores). `worker` numbers the
 /// threads from 0: two calls that run at the same time have different workers, so that each can own scratch memory.
 /// Which worker takes which i is not fixed. The first exception thrown by a body is rethrown.
-void parallel_for(int count, int threads, const std::function<void(int, int)>& body);
+void parallel_for(int count, int threads, FunctionRef<void(int, int)> body);
 
 /// Calls `body(first, last, worker)` on bands of `rows_per_band` rows of [0, rows).
-void parallel_rows(int rows, int rows_per_band, int threads, const std::function<void(int, int, int)>& body);
+void parallel_rows(int rows, int rows_per_band, int threads, FunctionRef<void(int, int, int)> body);
 
 }  // namespace roadstereo

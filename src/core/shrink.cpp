@@ -22,8 +22,7 @@ void shrink_row(ImageView<const std::int16_t> image, int factor, int y, std::int
 
 }  // namespace
 
-void shrink(ImageView<const std::int16_t> image, int factor, GreyImage& small) {
-  small.resize(image.width() / factor, image.height() / factor);
+void shrink(ImageView<const std::int16_t> image, int factor, ImageView<std::int16_t> small) {
   for (int y = 0; y < small.height(); ++y) {
     switch (factor) {
       case 1: std::copy_n(image.row(y), small.width(), small.row(y)); break;
@@ -36,8 +35,8 @@ void shrink(ImageView<const std::int16_t> image, int factor, GreyImage& small) {
 }
 
 GreyImage shrink(ImageView<const std::int16_t> image, int factor) {
-  GreyImage small;
-  shrink(image, factor, small);
+  GreyImage small(image.width() / factor, image.height() / factor);
+  shrink(image, factor, small.view());
   return small;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/parallel.hpp"
+#include "core/scratch.hpp"
 #include "core/sentence.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/range_search.hpp"
@@ -61,6 +62,7 @@ struct Pipeline::State {
   double last_roll_rad = 0;
 
   // Scratch memory.
+  std::pmr::unsynchronized_pool_resource memory;
   GreyImage left, right, transformed_target;
   std::vector<int> first_column;
   MatchInput match_input;
@@ -165,7 +167,7 @@ void Pipeline::State::transform() {
   }
   result.delta_t = transform_disparity(result.disparity, result.geometry, result.shift.delta_p, options.road_geometry,
                                        threads, result.transformed);
-  result.spread = measure_spread(result.transformed, result.delta_t);
+  result.spread = measure_spread(result.transformed, result.delta_t, threads);
   // Nothing vouches for a plane that the images did not show before matching and that few disparities lie on.
   constexpr double least_road_share = 0.3;
   if (!result.road.reliable && result.spread.road_share < least_road_share) {
@@ -202,6 +204,7 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
 const FrameResult& Pipeline::process(const FrameView& left, const FrameView& right) {
   State& s = *state_;
+  const ScratchScope scratch(s.memory);
   s.result.warnings.clear();
   Stopwatch watch;
   s.prepare(left, right);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "core/scratch.hpp"
 #include "road/plane_fit.hpp"
 #include "roadstereo/road_geometry.hpp"
 
@@ -11,6 +12,23 @@ namespace roadstereo {
 namespace {
 
 constexpr int rows_per_band = 64;
+
+/// Sums behind a standard deviation.
+struct Spread {
+  double n = 0, sum = 0, squares = 0;
+
+  void add(double value) {
+    n += 1;
+    sum += value;
+    squares += value * value;
+  }
+  void add(const Spread& other) {
+    n += other.n;
+    sum += other.sum;
+    squares += other.squares;
+  }
+  double deviation() const { return n > 0 ? std::sqrt(std::max(squares / n - sum / n * (sum / n), 0.0)) : 0; }
+};
 
 /// ℓ(p) − α0 + α1 (u sin ψ − v cos ψ): height above (or depth below) the road, in pixels of disparity.
 void subtract_road(ImageView<const float> disparity, const RoadModel& plane, int v, float* out) {
@@ -25,7 +43,7 @@ double transform_disparity(ImageView<const float> disparity, const RoadGeometry&
                            const RoadGeometryOptions& options, int threads, Image<float>& transformed) {
   const int height = disparity.height();
   transformed.resize(disparity.width(), height);
-  std::vector<float> lowest(static_cast<std::size_t>(height), std::numeric_limits<float>::infinity());
+  auto lowest = scratch_vector(static_cast<std::size_t>(height), std::numeric_limits<float>::infinity());
   parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
       float* out = transformed.row(v);
@@ -50,10 +68,10 @@ double transform_disparity(ImageView<const float> disparity, const RoadGeometry&
   return delta_t;
 }
 
-TransformedSpread measure_spread(ImageView<const float> transformed, double delta_t) {
+TransformedSpread measure_spread(ImageView<const float> transformed, double delta_t, int threads) {
   constexpr double narrowest_limit_px = 1.0;
   constexpr double nearest_px = 3.0;
-  std::vector<double> residuals;
+  auto residuals = scratch_vector<double>();
   const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(transformed.pixels()) / 12000)));
   for (int v = step / 2; v < transformed.height(); v += step) {
     for (int u = step / 2; u < transformed.width(); u += step) {
@@ -64,27 +82,28 @@ TransformedSpread measure_spread(ImageView<const float> transformed, double delt
   std::erase_if(residuals, [](double r) { return std::abs(r) > nearest_px; });
   const double limit = std::max(3 * normal_from_median * median_magnitude(residuals), narrowest_limit_px);
 
-  double n = 0, sum = 0, squares = 0, road_n = 0, road_sum = 0, road_squares = 0;
-  for (int v = 0; v < transformed.height(); ++v) {
-    for (int u = 0; u < transformed.width(); ++u) {
-      const double r = transformed(u, v) - delta_t;
-      if (std::isnan(r)) continue;
-      n += 1;
-      sum += r;
-      squares += r * r;
-      if (std::abs(r) > limit) continue;
-      road_n += 1;
-      road_sum += r;
-      road_squares += r * r;
+  struct Row {
+    Spread all, road;
+  };
+  auto rows = scratch_vector<Row>(static_cast<std::size_t>(transformed.height()));
+  parallel_rows(transformed.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int v = first; v < last; ++v) {
+      const float* values = transformed.row(v);
+      Row& row = rows[static_cast<std::size_t>(v)];
+      for (int u = 0; u < transformed.width(); ++u) {
+        const double r = values[u] - delta_t;
+        if (std::isnan(r)) continue;
+        row.all.add(r);
+        if (std::abs(r) <= limit) row.road.add(r);
+      }
     }
+  });
+  Spread all, road;
+  for (const Row& row : rows) {
+    all.add(row.all);
+    road.add(row.road);
   }
-  TransformedSpread spread;
-  if (n > 0) spread.all_px = std::sqrt(std::max(squares / n - sum / n * (sum / n), 0.0));
-  if (road_n > 0) {
-    spread.road_px = std::sqrt(std::max(road_squares / road_n - road_sum / road_n * (road_sum / road_n), 0.0));
-    spread.road_share = road_n / n;
-  }
-  return spread;
+  return {road.deviation(), all.deviation(), all.n > 0 ? road.n / all.n : 0};
 }
 
 }  // namespace roadstereo

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "road/plane_fit.hpp"
 #include "roadstereo/image.hpp"
 
@@ -9,7 +7,7 @@ namespace roadstereo {
 
 /// What the search around a supposed road found.
 struct GuidedMatches {
-  std::vector<DisparityPoint> points;  ///< sub-pixel correspondences within the range
+  ScratchVector<DisparityPoint> points = scratch_vector<DisparityPoint>();  ///< sub-pixel correspondences within the range
   int tried = 0;                       ///< textured places of the road that both views see
 };
 

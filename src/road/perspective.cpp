@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "core/scratch.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/road_plane.hpp"
 
@@ -46,25 +47,46 @@ int full_range(const RoadModelEstimate& road, int width) {
 }
 
 /// Pixels that cubic interpolation reads beyond the ends of a row: copies of the border.
-constexpr std::size_t border = 2;
+constexpr std::ptrdiff_t border = 2;
 
-void copy_with_border(const std::int16_t* row, int width, std::vector<float>& padded) {
-  padded.resize(static_cast<std::size_t>(width) + 2 * border);
-  std::fill_n(padded.begin(), border, row[0]);
-  std::copy_n(row, width, padded.begin() + static_cast<std::ptrdiff_t>(border));
-  std::fill_n(padded.end() - static_cast<std::ptrdiff_t>(border), border, row[width - 1]);
+void copy_with_border(const std::int16_t* row, int width, float* padded) {
+  std::fill_n(padded, border, row[0]);
+  std::copy_n(row, width, padded + border);
+  std::fill_n(padded + border + width, border, row[width - 1]);
 }
 
-/// Keys' cubic interpolation at `x` of a row that has a border. Sharp enough not to flatten texture at half-pixel
-/// phases, as linear interpolation does.
-float sample_cubic(const float* row, double x) {
-  const int base = static_cast<int>(x);
-  const auto f = static_cast<float>(x - base);
-  const float* p = row + border + static_cast<std::size_t>(base);
-  const float linear = 0.5f * (p[1] - p[-1]);
-  const float square = p[-1] - 2.5f * p[0] + 2 * p[1] - 0.5f * p[2];
-  const float cube = 0.5f * (p[2] - p[-1]) + 1.5f * (p[0] - p[1]);
-  return p[0] + f * (linear + f * (square + f * cube));
+/// out[x] = row(x − shift) for x in [first, end), where shift = whole − f(x), 0 ≤ f < 1, changes linearly with x. Keys'
+/// cubic interpolation: sharp enough not to flatten texture at half-pixel phases, as linear interpolation does.
+void sample_cubic(const float* row, int whole, float f_at_first, float f_step, int first, int end, std::int16_t* out) {
+  const float* source = row + border - whole;
+  for (int x = first; x < end; ++x) {
+    const float* p = source + x;
+    const float f = f_at_first + static_cast<float>(x - first) * f_step;
+    const float linear = 0.5f * (p[1] - p[-1]);
+    const float square = p[-1] - 2.5f * p[0] + 2 * p[1] - 0.5f * p[2];
+    const float cube = 0.5f * (p[2] - p[-1]) + 1.5f * (p[0] - p[1]);
+    const float value = p[0] + f * (linear + f * (square + f * cube));
+    const float bounded = std::min(std::max(value, 0.0f), static_cast<float>(grey_max));
+    out[x] = static_cast<std::int16_t>(bounded + 0.5f);
+  }
+}
+
+/// One row of the transformed target from column `first` on, in runs of columns whose shift has one whole part.
+void transform_row(const float* row, const PerspectiveShift& shift, int v, int first, int width, std::int16_t* out) {
+  for (int begin = first; begin < width;) {
+    const double at_begin = shift.at(begin, v);
+    const int whole = static_cast<int>(std::ceil(at_begin));
+    int end = begin + 1;
+    for (int reach = width - begin; reach > 0; reach /= 2) {
+      const auto inside = [&](int x) {
+        return static_cast<int>(std::ceil(shift.at(x, v))) == whole && (shift.at(x, v) > 0) == (at_begin > 0);
+      };
+      while (end + reach <= width && inside(end + reach - 1)) end += reach;
+    }
+    const double step = end - begin > 1 ? (shift.at(end - 1, v) - at_begin) / (end - 1 - begin) : 0;
+    sample_cubic(row, whole, static_cast<float>(whole - at_begin), static_cast<float>(-step), begin, end, out);
+    begin = end;
+  }
 }
 
 /// First column x of row v whose source x − shift(x, v) lies inside the target image.
@@ -135,18 +157,16 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
   const int height = target.height();
   transformed.resize(width, height);
   first_column.resize(static_cast<std::size_t>(height));
-  parallel_rows(height, rows_per_band, threads, [&](int first_row, int last_row, int) {
-    std::vector<float> in;
+  const std::size_t padded = static_cast<std::size_t>(width + 2 * border);
+  auto rows = scratch_vector<float>(padded * static_cast<std::size_t>(resolve_threads(threads)));
+  parallel_rows(height, rows_per_band, threads, [&](int first_row, int last_row, int worker) {
+    float* in = rows.data() + padded * static_cast<std::size_t>(worker);
     for (int v = first_row; v < last_row; ++v) {
       const int first = find_first_column(shift, v, width);
       first_column[static_cast<std::size_t>(v)] = first;
       copy_with_border(target.row(v), width, in);
-      std::int16_t* out = transformed.row(v);
-      std::fill_n(out, first, std::int16_t{0});
-      for (int x = first; x < width; ++x) {
-        const float value = sample_cubic(in.data(), x - shift.at(x, v));
-        out[x] = static_cast<std::int16_t>(std::lrint(std::clamp(value, 0.0f, static_cast<float>(grey_max))));
-      }
+      std::fill_n(transformed.row(v), first, std::int16_t{0});
+      transform_row(in, shift, v, first, width, transformed.row(v));
     }
   });
 }
@@ -157,10 +177,21 @@ void add_shift(ImageView<const float> residual, const PerspectiveShift& shift, i
     for (int v = first_row; v < last_row; ++v) {
       const float* in = residual.row(v);
       float* out = disparity.row(v);
+      if (!shift.enabled) {
+        std::copy_n(in, residual.width(), out);
+        continue;
+      }
       // The shift belongs to the column of the transformed target that was matched: u − residual.
+      if (shift.whole_pixel) {
+        for (int u = 0; u < residual.width(); ++u) {
+          out[u] = std::isnan(in[u]) ? in[u] : in[u] + static_cast<float>(shift.at(u - double{in[u]}, v));
+        }
+        continue;
+      }
+      const auto of_row = static_cast<float>(shift.road.disparity(0, v) - shift.delta_p);
+      const auto slope = static_cast<float>(shift.road.a2);
       for (int u = 0; u < residual.width(); ++u) {
-        const double d = in[u];
-        out[u] = std::isnan(d) ? in[u] : static_cast<float>(d + shift.at(u - d, v));
+        out[u] = in[u] + std::max(0.0f, of_row + slope * (static_cast<float>(u) - in[u]));
       }
     }
   });

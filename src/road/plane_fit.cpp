@@ -64,7 +64,7 @@ std::optional<RoadModel> PlaneSums::plane(bool with_roll) const {
   return model;
 }
 
-double median_magnitude(std::vector<double>& values) {
+double median_magnitude(std::span<double> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -74,8 +74,8 @@ double median_magnitude(std::vector<double>& values) {
 std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> points, const RoadModel& start,
                                             double start_scale_px, bool with_roll, int max_iterations) {
   if (points.size() < 3) return std::nullopt;
-  RobustPlane fit{start, start_scale_px, 0, std::vector<double>(points.size())};
-  std::vector<double> near;
+  RobustPlane fit{start, start_scale_px, 0, scratch_vector<double>(points.size())};
+  auto near = scratch_vector<double>();
   near.reserve(points.size());
   for (fit.iterations = 1; fit.iterations <= max_iterations; ++fit.iterations) {
     PlaneSums sums(points.front().u, points.front().v);
@@ -94,8 +94,8 @@ std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> poin
     }
     const double scale = std::clamp(normal_from_median * median_magnitude(near), smallest_scale_px, fit.scale_px);
     const DisparityPoint& far = points.back();
-    const bool settled = std::abs(plane->disparity(far.u, far.v) - fit.plane.disparity(far.u, far.v)) < 1e-9 &&
-                         std::abs(plane->a2 - fit.plane.a2) < 1e-12 && scale > fit.scale_px * (1 - 1e-6);
+    const bool settled = std::abs(plane->disparity(far.u, far.v) - fit.plane.disparity(far.u, far.v)) < 1e-6 &&
+                         std::abs(plane->a2 - fit.plane.a2) < 1e-9 && scale > fit.scale_px * (1 - 1e-4);
     fit.plane = *plane;
     fit.scale_px = scale;
     if (settled) break;
@@ -115,14 +115,14 @@ std::optional<RoadModel> plane_through(const DisparityPoint& a, const DisparityP
   return model;
 }
 
-std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, const PlaneVote& vote,
-                                      const std::function<bool(const RoadModel&)>& possible) {
+std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, PlaneVote vote,
+                                      FunctionRef<bool(const RoadModel&)> possible) {
   constexpr int trials = 300;
   constexpr std::size_t voters = 400;
   if (points.size() < 3) return std::nullopt;
   Sampler sampler;
   const auto draw = [&]() -> const DisparityPoint& { return points[sampler.below(points.size())]; };
-  std::vector<DisparityPoint> jury;
+  auto jury = scratch_vector<DisparityPoint>();
   for (std::size_t i = 0; i < voters; ++i) jury.push_back(draw());
   std::optional<RoadModel> best;
   double best_score = 0;

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
-#include <vector>
 
+#include "core/function_ref.hpp"
+#include "core/scratch.hpp"
 #include "roadstereo/road_model.hpp"
 
 namespace roadstereo {
@@ -52,7 +52,7 @@ struct RobustPlane {
   RoadModel plane;
   double scale_px = 0;  ///< robust standard deviation of the inliers
   int iterations = 0;
-  std::vector<double> weights;  ///< Tukey weights of the points, 0 … 1
+  ScratchVector<double> weights = scratch_vector<double>();  ///< Tukey weights of the points, 0 … 1
 };
 
 /// Iteratively reweighted least squares with Tukey's biweight from a starting plane, down from a window of
@@ -61,12 +61,12 @@ std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> poin
                                             double start_scale_px, bool with_roll, int max_iterations);
 
 /// What a point says to a plane: positive for, negative against.
-using PlaneVote = std::function<double(const DisparityPoint&, const RoadModel&)>;
+using PlaneVote = FunctionRef<double(const DisparityPoint&, const RoadModel&)>;
 
 /// The plane through three of the points that gets the most votes of the others: a start that no outliers pull. Only
 /// planes that `possible` accepts are tried. Deterministic. Nothing when no plane has more votes for it than against.
-std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, const PlaneVote& vote,
-                                      const std::function<bool(const RoadModel&)>& possible);
+std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, PlaneVote vote,
+                                      FunctionRef<bool(const RoadModel&)> possible);
 
 /// The same where every point within `tolerance_px` votes for a plane and none against it.
 std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, double tolerance_px);
@@ -75,7 +75,7 @@ std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, do
 std::optional<RoadModel> plane_through(const DisparityPoint& a, const DisparityPoint& b, const DisparityPoint& c);
 
 /// Median of |values|; reorders them. 0 when empty.
-double median_magnitude(std::vector<double>& values);
+double median_magnitude(std::span<double> values);
 
 /// Turns a median of magnitudes into the standard deviation of a normal distribution.
 inline constexpr double normal_from_median = 1.4826;

@@ -27,7 +27,7 @@ bool usable(ImageView<const float> disparity, const Mask& mask, int u, int v) {
 /// The sums over all usable pixels; added up row by row, so that they do not depend on the number of threads.
 PlaneSums sum_map(ImageView<const float> disparity, const Mask& mask, int threads) {
   const PlaneSums origin((disparity.width() - 1) / 2.0, (disparity.height() - 1) / 2.0);
-  std::vector<PlaneSums> rows(static_cast<std::size_t>(disparity.height()), origin);
+  auto rows = scratch_vector<PlaneSums>(static_cast<std::size_t>(disparity.height()), origin);
   parallel_rows(disparity.height(), 16, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
       PlaneSums& row = rows[static_cast<std::size_t>(v)];
@@ -41,11 +41,18 @@ PlaneSums sum_map(ImageView<const float> disparity, const Mask& mask, int thread
   return total;
 }
 
+PlaneSums sum_points(std::span<const DisparityPoint> points) {
+  PlaneSums sums;
+  for (const DisparityPoint& p : points) sums.add(p);
+  return sums;
+}
+
 /// Valid disparities on a regular grid, at most about `sample_limit`.
-std::vector<DisparityPoint> sample_map(ImageView<const float> disparity, const Mask& mask) {
+ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, const Mask& mask) {
   const double per_sample = static_cast<double>(disparity.pixels()) / static_cast<double>(sample_limit);
   const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(per_sample))));
-  std::vector<DisparityPoint> points;
+  auto points = scratch_vector<DisparityPoint>();
+  points.reserve(2 * sample_limit);
   for (int v = step / 2; v < disparity.height(); v += step) {
     for (int u = step / 2; u < disparity.width(); u += step) {
       if (usable(disparity, mask, u, v)) {
@@ -69,7 +76,7 @@ SlopeCovariance slope_covariance(std::span<const DisparityPoint> points, std::sp
   struct Score {
     double u = 0, v = 0;
   };
-  std::vector<Score> cells(static_cast<std::size_t>(cells_per_side) * cells_per_side);
+  auto cells = scratch_vector<Score>(static_cast<std::size_t>(cells_per_side) * cells_per_side);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const DisparityPoint& p = points[i];
     const double residual = (weights.empty() ? 1 : weights[i]) * (p.d - plane.disparity(p.u, p.v));
@@ -113,7 +120,7 @@ RoadModel robust_start(std::span<const DisparityPoint> points, const std::option
 
 /// Window that the robust fit begins with: wide enough for a start that is a pixel off, too narrow for kerbs.
 double start_scale(std::span<const DisparityPoint> points, const RoadModel& start) {
-  std::vector<double> residuals;
+  auto residuals = scratch_vector<double>();
   residuals.reserve(points.size());
   for (const DisparityPoint& p : points) residuals.push_back(p.d - start.disparity(p.u, p.v));
   return std::clamp(normal_from_median * median_magnitude(residuals), 0.2, 0.6);
@@ -150,7 +157,9 @@ RoadGeometry fit_road_geometry(ImageView<const float> disparity, const Mask& mas
          disparity.height(), "; they must be equal");
   }
   constexpr double fewest = 16;
-  const PlaneSums sums = sum_map(disparity, mask, threads);
+  const bool robust = options.solver == RollSolver::robust;
+  const ScratchVector<DisparityPoint> points = sample_map(disparity, mask);
+  const PlaneSums sums = robust ? sum_points(points) : sum_map(disparity, mask, threads);
   if (sums.weight() < fewest) {
     fail("only ", sums.weight(), " disparities are valid; the road geometry needs at least ", fewest);
   }
@@ -159,9 +168,8 @@ RoadGeometry fit_road_geometry(ImageView<const float> disparity, const Mask& mas
 
   RoadGeometry geometry;
   geometry.pixels = static_cast<std::size_t>(sums.weight());
-  const std::vector<DisparityPoint> points = sample_map(disparity, mask);
-  std::vector<double> weights;
-  if (options.solver == RollSolver::robust) {
+  auto weights = scratch_vector<double>();
+  if (robust) {
     const RoadModel start = robust_start(points, prior, *least_squares);
     auto fit = fit_robust_plane(points, start, start_scale(points, start), true, options.max_iterations);
     geometry.plane = fit ? fit->plane : *least_squares;

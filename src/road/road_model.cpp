@@ -19,7 +19,8 @@ namespace {
 constexpr int coarse_width = 120;   ///< the coarse search shrinks the image to between this and twice this
 constexpr int fewest_matches = 40;  ///< below this nothing is known
 constexpr int few_places = 1000;    ///< of the first fine search, which only brings the plane near
-constexpr int places = 2500;        ///< of the fine search
+constexpr int places = 1500;        ///< of the fine search
+constexpr int places_again = 500;   ///< of the search around the last frame's plane
 
 /// Power of two that brings the image near the width of the coarse search.
 int coarse_factor(int width) {
@@ -75,12 +76,12 @@ RoadModel shrink_model(const RoadModel& plane, int factor) {
   return {plane.disparity(centre, centre) / factor, plane.a1, plane.a2};
 }
 
-std::vector<DisparityPoint> unshrink_points(std::vector<DisparityPoint> points, int factor) {
+ScratchVector<DisparityPoint> unshrink_points(ScratchVector<DisparityPoint> points, int factor) {
   for (DisparityPoint& p : points) p = {unshrink(p.u, factor), unshrink(p.v, factor), p.d * factor};
   return points;
 }
 
-double percentile(std::vector<double>& values, double share) {
+double percentile(std::span<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
@@ -89,7 +90,7 @@ double percentile(std::vector<double>& values, double share) {
 /// Where the correspondences near the road lie: far enough from it to show damage, bumps and a road that is not flat,
 /// not so far that vehicles and houses count.
 void measure_range(std::span<const DisparityPoint> matches, RoadModelEstimate& estimate) {
-  std::vector<double> residuals;
+  auto residuals = scratch_vector<double>();
   for (const DisparityPoint& p : matches) {
     const double expected = estimate.model.disparity(p.u, p.v);
     const double residual = p.d - expected;
@@ -104,15 +105,18 @@ void measure_range(std::span<const DisparityPoint> matches, RoadModelEstimate& e
 struct Refinement {
   bool found = false;
   RobustPlane fit;
-  std::vector<DisparityPoint> points;  ///< full-size coordinates
+  ScratchVector<DisparityPoint> points = scratch_vector<DisparityPoint>();  ///< full-size coordinates
   int tried = 0;
   int inliers = 0;
   double rows_covered = 0;  ///< share of the image height between the 5th and the 95th percentile of the inliers' rows
 };
 
+/// Where the plane that a refinement starts from comes from.
+enum class Origin { this_pair, last_frame };
+
 Refinement refine_road(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, const RoadModel& plane,
-                       int factor, int range_px, int tried_places, const TiltLimit& limit, bool with_roll,
-                       int threads) {
+                       Origin origin, int factor, int range_px, int tried_places, const TiltLimit& limit,
+                       bool with_roll, int threads) {
   constexpr int iterations = 50;
   constexpr double tolerance = 1.0;    // of the vote, pixels of the shrunk image
   constexpr double start_scale = 0.5;  // of the fit: a kerb must not pull it, a road that is not flat must stay in
@@ -122,12 +126,14 @@ Refinement refine_road(ImageView<const std::int16_t> left, ImageView<const std::
   result.points = unshrink_points(std::move(found.points), factor);
   if (result.points.size() < static_cast<std::size_t>(fewest_matches)) return result;
   // The supposed plane may lie between a road and its pavement: vote anew with the sharper points.
-  const auto voted = search_road(result.points, tolerance * factor, left.height() * factor, limit);
-  if (!voted) return result;
-  auto fit = fit_robust_plane(result.points, *voted, start_scale * factor, with_roll, iterations);
+  const auto start = origin == Origin::last_frame
+                         ? std::optional(plane)
+                         : search_road(result.points, tolerance * factor, left.height() * factor, limit);
+  if (!start) return result;
+  auto fit = fit_robust_plane(result.points, *start, start_scale * factor, with_roll, iterations);
   if (!fit) return result;
   result.fit = std::move(*fit);
-  std::vector<double> rows;
+  auto rows = scratch_vector<double>();
   for (std::size_t i = 0; i < result.points.size(); ++i) {
     if (result.fit.weights[i] > 0) rows.push_back(result.points[i].v);
   }
@@ -215,10 +221,11 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const GreyImage fine_left = shrink(left, fine);
   const GreyImage fine_right = shrink(right, fine);
   Refinement refinement =
-      refine_road(fine_left, fine_right, *coarse, fine, 7, few_places, limit, options.with_roll, threads);
+      refine_road(fine_left, fine_right, *coarse, Origin::this_pair, fine, 7, few_places, limit, options.with_roll, threads);
   if (refinement.found) {
     refinement =
-        refine_road(fine_left, fine_right, refinement.fit.plane, fine, 4, places, limit, options.with_roll, threads);
+        refine_road(fine_left, fine_right, refinement.fit.plane, Origin::this_pair, fine, 4, places, limit,
+                             options.with_roll, threads);
   }
   judge(refinement, options, estimate);
   if (estimate.reliable && !limit.can_be_road(estimate.model)) {
@@ -234,8 +241,17 @@ RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageVie
                                     const RoadModelOptions& options, int threads) {
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   const int fine = std::max(1, coarse_factor(left.width()) / 8);
-  const Refinement refinement = refine_road(shrink(left, fine), shrink(right, fine), previous, fine, 4, places, limit,
-                                            options.with_roll, threads);
+  // At full size there is nothing to shrink, and nothing to copy.
+  auto pixels = scratch_vector<std::int16_t>(fine > 1 ? 2 * left.pixels() / static_cast<std::size_t>(fine * fine) : 0);
+  const auto fine_view = [&](ImageView<const std::int16_t> image, std::size_t at) {
+    if (fine == 1) return image;
+    const ImageView<std::int16_t> small(pixels.data() + at, image.width() / fine, image.height() / fine);
+    shrink(image, fine, small);
+    return ImageView<const std::int16_t>(small);
+  };
+  const Refinement refinement =
+      refine_road(fine_view(left, 0), fine_view(right, pixels.size() / 2), previous, Origin::last_frame, fine, 4,
+                  places_again, limit, options.with_roll, threads);
   RoadModelEstimate estimate;
   estimate.carried_over = true;
   estimate.matches = static_cast<int>(refinement.points.size());

@@ -40,8 +40,11 @@ MatcherOptions coarse_options() {
 RangeSearch::RangeSearch(const std::string& engine, int threads) : engine_(make_engine(engine, threads)) {}
 
 void RangeSearch::shrink_pair(const MatchInput& input) {
-  shrink(input.reference, factor, reference_);
-  shrink(input.target, factor, target_);
+  for (GreyImage* small : {&reference_, &target_}) {
+    small->resize(input.reference.width() / factor, input.reference.height() / factor);
+  }
+  shrink(input.reference, factor, reference_.view());
+  shrink(input.target, factor, target_.view());
   first_column_.assign(static_cast<std::size_t>(reference_.height()), 0);
   if (input.first_column == nullptr) return;
   for (std::size_t v = 0; v < first_column_.size(); ++v) {

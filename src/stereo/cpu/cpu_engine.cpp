@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -88,7 +89,8 @@ class CpuEngine final : public StereoEngine {
   void match(const MatchInput& input, const MatcherOptions& wanted, MatchMaps& maps) override {
     validate(input);
     wanted.validate();
-    const MatcherOptions options = cpu::trim_window(wanted);
+    use(wanted);
+    const MatcherOptions& options = trimmed_;
     const int width = input.reference.width();
     const int height = input.reference.height();
     maps.winner.resize(width, height);
@@ -111,7 +113,7 @@ class CpuEngine final : public StereoEngine {
       columns = std::max(columns, job.tile.end - job.tile.first);
       disparities = std::max(disparities, job.tile.range.count);
     }
-    for (ViewMatcher& matcher : matchers_) matcher.prepare(columns, disparities, options);
+    prepare(columns, disparities);
     parallel_for(static_cast<int>(jobs_.size()), threads_, [&](int i, int worker) {
       const Job& job = jobs_[static_cast<std::size_t>(i)];
       matchers_[static_cast<std::size_t>(worker)].match(*job.view, job.tile, maps);
@@ -122,7 +124,26 @@ class CpuEngine final : public StereoEngine {
   }
 
  private:
+  void use(const MatcherOptions& options) {
+    if (wanted_ == options) return;
+    wanted_ = options;
+    trimmed_ = cpu::trim_window(options);
+    prepared_columns_ = prepared_disparities_ = 0;
+  }
+
+  /// Memory for the largest tile so far: frames that differ in their search ranges allocate nothing.
+  void prepare(int columns, int disparities) {
+    if (columns <= prepared_columns_ && disparities <= prepared_disparities_) return;
+    prepared_columns_ = std::max(columns, prepared_columns_);
+    prepared_disparities_ = std::max(disparities, prepared_disparities_);
+    for (ViewMatcher& matcher : matchers_) matcher.prepare(prepared_columns_, prepared_disparities_, trimmed_);
+  }
+
   int threads_;
+  std::optional<MatcherOptions> wanted_;
+  MatcherOptions trimmed_;
+  int prepared_columns_ = 0;
+  int prepared_disparities_ = 0;
   std::vector<ViewMatcher> matchers_;
   std::vector<int> first_columns_;
   std::vector<Job> jobs_;
