@@ -52,6 +52,9 @@ std::vector<Case> cases() {
   large_block.block_radius = 10;
   large_block.aggregation_radius = 10;
   all.push_back({"large_windows", 90, 64, 20, large_block, true});
+  MatcherOptions one_view;
+  one_view.target_volume = false;
+  all.push_back({"one_view", 150, 60, 35, one_view, true});
   MatcherOptions sparse;
   sparse.aggregation_radius = 5;
   sparse.aggregation_step = 2;

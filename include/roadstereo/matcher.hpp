@@ -21,6 +21,9 @@ struct MatcherOptions {
   double sigma_colour = 20.0;                         ///< σ1 of eq. omega1, 8-bit grey levels
   double texture_noise = 1.0;    ///< grey-level noise below which texture is no evidence; 0 is plain NCC, 0 … 50
   bool left_right_check = true;  ///< eq. lrc
+  /// Match the target view too, with costs aggregated by its own weights, as the paper does. False projects the
+  /// reference's winners into the target view instead, where the nearest of several hides the others: half the work.
+  bool target_volume = true;
   double consistency = 1.0;      ///< δr of eq. lrc, pixels²
   bool sub_pixel = true;         ///< eq. subpixel
   bool drop_range_ends = true;   ///< a winner at the end of its range is no minimum: invalid
@@ -63,7 +66,8 @@ struct MatchInput {
 struct MatchMaps {
   Image<float> disparity;             ///< sub-pixel, after the left–right check; NaN invalid
   Image<std::int16_t> winner;         ///< winner-take-all on the reference volume; −1 where nothing can match
-  Image<std::int16_t> target_winner;  ///< winner-take-all on the target volume, in target coordinates; −1 likewise
+  /// Winner-take-all on the target volume, or the reference's winners projected, in target coordinates; −1 likewise.
+  Image<std::int16_t> target_winner;
 };
 
 /// One implementation of section 3.2 of the paper. Holds scratch memory, so that matching frames of one size

@@ -69,6 +69,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("matcher.texture_noise", o.matcher.texture_noise,
         "noise below which texture is no evidence, 8-bit grey levels");
   visit("matcher.left_right_check", o.matcher.left_right_check, "remove pixels that the two views see differently");
+  visit("matcher.target_volume", o.matcher.target_volume, "match the target view too, not only project the winners");
   visit("matcher.consistency", o.matcher.consistency, "delta r of the left-right check, pixels squared");
   visit("matcher.sub_pixel", o.matcher.sub_pixel, "refine the winner by a parabola");
   visit("matcher.drop_range_ends", o.matcher.drop_range_ends, "a winner at the end of its range is invalid");

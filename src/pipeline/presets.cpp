@@ -24,17 +24,26 @@ PipelineOptions paper_preset() {
   return options;
 }
 
+/// The most speed at an accuracy that still beats semi-global matching on roads: plain correlation of blocks, one view.
+PipelineOptions fast_preset() {
+  PipelineOptions options;
+  options.matcher.aggregation_radius = 0;
+  options.matcher.target_volume = false;
+  return options;
+}
+
 }  // namespace
 
 const std::vector<std::string>& preset_names() {
-  static const std::vector<std::string> names{"default", "paper"};
+  static const std::vector<std::string> names{"default", "fast", "paper"};
   return names;
 }
 
 PipelineOptions preset(const std::string& name) {
   if (name == "default") return {};
+  if (name == "fast") return fast_preset();
   if (name == "paper") return paper_preset();
-  fail("there is no preset called '", name, "'; there are: default, paper");
+  fail("there is no preset called '", name, "'; there are: default, fast, paper");
 }
 
 void PipelineOptions::validate() const {

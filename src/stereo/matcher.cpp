@@ -79,6 +79,15 @@ void block_first_columns(const MatchInput& input, int block_radius, std::vector<
   }
 }
 
+void project_winners(const Image<std::int16_t>& winner, int v, Image<std::int16_t>& target_winner) {
+  const std::int16_t* from = winner.row(v);
+  std::int16_t* to = target_winner.row(v);
+  std::fill_n(to, winner.width(), std::int16_t{-1});
+  for (int u = 0; u < winner.width(); ++u) {
+    if (from[u] >= 0) to[u - from[u]] = std::max(to[u - from[u]], from[u]);
+  }
+}
+
 void validate(const MatchInput& input) {
   if (input.reference.empty()) fail("matching needs an image, but the reference image is empty");
   if (input.reference.width() != input.target.width() || input.reference.height() != input.target.height()) {

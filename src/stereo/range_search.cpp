@@ -31,6 +31,7 @@ MatcherOptions coarse_options() {
   MatcherOptions options;
   options.block_radius = 3;
   options.aggregation_radius = 0;
+  options.target_volume = false;
   options.drop_range_ends = false;
   return options;
 }

@@ -19,6 +19,9 @@ std::vector<Tap> window_taps(const MatcherOptions& options);
 /// common view of a block begins there.
 void block_first_columns(const MatchInput& input, int block_radius, std::vector<int>& first);
 
+/// Row v of the target's winners from those of the reference: the nearest of several hides the others.
+void project_winners(const Image<std::int16_t>& winner, int v, Image<std::int16_t>& target_winner);
+
 /// Throws Error when the images of `input` differ in size or D is out of range.
 void validate(const MatchInput& input);
 

@@ -102,6 +102,7 @@ class CpuEngine final : public StereoEngine {
     const int whole_columns = std::min(ViewMatcher::tile_columns(input.disparities, options), width);
     jobs_.clear();
     for (const MatchView* view : {&reference, &target}) {
+      if (view == &target && !options.target_volume) continue;
       if (input.ranges == nullptr) {
         cut_evenly(*view, whole_columns, input.disparities, options, threads_, jobs_);
       } else {
@@ -119,7 +120,10 @@ class CpuEngine final : public StereoEngine {
       matchers_[static_cast<std::size_t>(worker)].match(*job.view, job.tile, maps);
     });
     parallel_rows(height, 32, threads_, [&](int first, int last, int) {
-      for (int v = first; v < last; ++v) finish_row(v, options, maps);
+      for (int v = first; v < last; ++v) {
+        if (!options.target_volume) project_winners(maps.winner, v, maps.target_winner);
+        finish_row(v, options, maps);
+      }
     });
   }
 

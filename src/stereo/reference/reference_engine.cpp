@@ -197,12 +197,16 @@ class ReferenceEngine final : public StereoEngine {
     const Scene scene{input, options};
     const CostVolume cost = compute_costs(scene, threads_);
     const CostVolume energy_ref = aggregate(scene, cost, input.reference, 0, threads_);
-    const CostVolume energy_tar = aggregate(scene, cost, input.target, 1, threads_);
     SearchRanges ranges;
     ranges.assign(scene.width(), scene.height(), input.disparities);
     if (input.ranges != nullptr) ranges = *input.ranges;
     maps.winner = take_winners(scene, energy_ref, ranges.reference);
-    maps.target_winner = take_winners(scene, energy_tar, ranges.target);
+    if (options.target_volume) {
+      maps.target_winner = take_winners(scene, aggregate(scene, cost, input.target, 1, threads_), ranges.target);
+    } else {
+      maps.target_winner.assign(scene.width(), scene.height(), -1);
+      for (int v = 0; v < scene.height(); ++v) project_winners(maps.winner, v, maps.target_winner);
+    }
     maps.disparity.assign(scene.width(), scene.height(), std::numeric_limits<float>::quiet_NaN());
     for (int v = 0; v < scene.height(); ++v) {
       for (int u = 0; u < scene.width(); ++u) {
