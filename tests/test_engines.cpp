@@ -17,7 +17,7 @@ struct Case {
   const char* name;
   int width, height, disparities;
   MatcherOptions options;
-  bool slanted_view;        ///< the target's first valid column differs from row to row
+  bool slanted_view;         ///< the target's first valid column differs from row to row
   bool with_ranges = false;  ///< tiles search parts of the disparities
 };
 

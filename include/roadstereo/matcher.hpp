@@ -24,9 +24,9 @@ struct MatcherOptions {
   /// Match the target view too, with costs aggregated by its own weights, as the paper does. False projects the
   /// reference's winners into the target view instead, where the nearest of several hides the others: half the work.
   bool target_volume = true;
-  double consistency = 1.0;      ///< δr of eq. lrc, pixels²
-  bool sub_pixel = true;         ///< eq. subpixel
-  bool drop_range_ends = true;   ///< a winner at the end of its range is no minimum: invalid
+  double consistency = 1.0;     ///< δr of eq. lrc, pixels²
+  bool sub_pixel = true;        ///< eq. subpixel
+  bool drop_range_ends = true;  ///< a winner at the end of its range is no minimum: invalid
 
   void validate() const;
   bool operator==(const MatcherOptions&) const = default;
@@ -64,8 +64,8 @@ struct MatchInput {
 
 /// What matching leaves. Sizes are those of the reference image.
 struct MatchMaps {
-  Image<float> disparity;             ///< sub-pixel, after the left–right check; NaN invalid
-  Image<std::int16_t> winner;         ///< winner-take-all on the reference volume; −1 where nothing can match
+  Image<float> disparity;      ///< sub-pixel, after the left–right check; NaN invalid
+  Image<std::int16_t> winner;  ///< winner-take-all on the reference volume; −1 where nothing can match
   /// Winner-take-all on the target volume, or the reference's winners projected, in target coordinates; −1 likewise.
   Image<std::int16_t> target_winner;
 };

@@ -31,7 +31,8 @@ struct PipelineOptions {
   void validate() const;
 };
 
-/// The presets: "default", "fast" (the most speed) and "paper" (every constant of the paper). Throws Error naming those that exist.
+/// The presets: "default", "fast" (the most speed) and "paper" (every constant of the paper). Throws Error naming those
+/// that exist.
 PipelineOptions preset(const std::string& name);
 const std::vector<std::string>& preset_names();
 

@@ -25,11 +25,20 @@ void shrink_row(ImageView<const std::int16_t> image, int factor, int y, std::int
 void shrink(ImageView<const std::int16_t> image, int factor, ImageView<std::int16_t> small) {
   for (int y = 0; y < small.height(); ++y) {
     switch (factor) {
-      case 1: std::copy_n(image.row(y), small.width(), small.row(y)); break;
-      case 2: shrink_row<2>(image, factor, y, small.row(y), small.width()); break;
-      case 4: shrink_row<4>(image, factor, y, small.row(y), small.width()); break;
-      case 8: shrink_row<8>(image, factor, y, small.row(y), small.width()); break;
-      default: shrink_row<0>(image, factor, y, small.row(y), small.width());
+      case 1:
+        std::copy_n(image.row(y), small.width(), small.row(y));
+        break;
+      case 2:
+        shrink_row<2>(image, factor, y, small.row(y), small.width());
+        break;
+      case 4:
+        shrink_row<4>(image, factor, y, small.row(y), small.width());
+        break;
+      case 8:
+        shrink_row<8>(image, factor, y, small.row(y), small.width());
+        break;
+      default:
+        shrink_row<0>(image, factor, y, small.row(y), small.width());
     }
   }
 }

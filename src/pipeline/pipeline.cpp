@@ -183,7 +183,8 @@ void Pipeline::State::summarise() {
   last_road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
   last_roll_rad = result.geometry_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   const StageTimes& ms = result.ms;
-  result.ms.total = ms.prepare + ms.road_model + ms.perspective + ms.ranges + ms.match + ms.road_geometry + ms.transform;
+  result.ms.total =
+      ms.prepare + ms.road_model + ms.perspective + ms.ranges + ms.match + ms.road_geometry + ms.transform;
   result.mde_per_s = static_cast<double>(left.pixels()) * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
 }
 

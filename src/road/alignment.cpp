@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "road/plane_fit.hpp"
 #include "core/shrink.hpp"
+#include "road/plane_fit.hpp"
 
 namespace roadstereo {
 namespace {

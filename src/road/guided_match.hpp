@@ -7,8 +7,9 @@ namespace roadstereo {
 
 /// What the search around a supposed road found.
 struct GuidedMatches {
-  ScratchVector<DisparityPoint> points = scratch_vector<DisparityPoint>();  ///< sub-pixel correspondences within the range
-  int tried = 0;                       ///< textured places of the road that both views see
+  ScratchVector<DisparityPoint> points =
+      scratch_vector<DisparityPoint>();  ///< sub-pixel correspondences within the range
+  int tried = 0;                         ///< textured places of the road that both views see
 };
 
 /// Looks for correspondences within `range_px` of the supposed road, on a grid of about `places` places: each block

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/sentence.hpp"
+#include "core/shrink.hpp"
 #include "road/coarse_match.hpp"
 #include "road/guided_match.hpp"
 #include "road/plane_fit.hpp"
-#include "core/shrink.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -220,11 +220,10 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const int fine = std::max(1, factor / 8);
   const GreyImage fine_left = shrink(left, fine);
   const GreyImage fine_right = shrink(right, fine);
-  Refinement refinement =
-      refine_road(fine_left, fine_right, *coarse, Origin::this_pair, fine, 7, few_places, limit, options.with_roll, threads);
+  Refinement refinement = refine_road(fine_left, fine_right, *coarse, Origin::this_pair, fine, 7, few_places, limit,
+                                      options.with_roll, threads);
   if (refinement.found) {
-    refinement =
-        refine_road(fine_left, fine_right, refinement.fit.plane, Origin::this_pair, fine, 4, places, limit,
+    refinement = refine_road(fine_left, fine_right, refinement.fit.plane, Origin::this_pair, fine, 4, places, limit,
                              options.with_roll, threads);
   }
   judge(refinement, options, estimate);

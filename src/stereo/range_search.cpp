@@ -9,12 +9,12 @@
 namespace roadstereo {
 namespace {
 
-constexpr int factor = 4;            // of the coarse look
+constexpr int factor = 4;               // of the coarse look
 constexpr int fewest_disparities = 12;  // below this there is nothing to save
-constexpr int smallest_side = 128;   // pixels
-constexpr int margin = 3;            // disparities beyond those seen
-constexpr int overlap = 2;           // coarse pixels of the neighbouring tiles that count too
-constexpr int range_grid = 8;        // ranges grow to multiples of this: vectors hold so many anyway
+constexpr int smallest_side = 128;      // pixels
+constexpr int margin = 3;               // disparities beyond those seen
+constexpr int overlap = 2;              // coarse pixels of the neighbouring tiles that count too
+constexpr int range_grid = 8;           // ranges grow to multiples of this: vectors hold so many anyway
 
 /// Coarse columns or rows of a tile.
 constexpr int coarse_columns = SearchRanges::tile_columns / factor;

@@ -28,8 +28,8 @@ class RangeSearch {
   GreyImage reference_, target_;
   std::vector<int> first_column_;
   MatchMaps maps_;
-  std::size_t bins_ = 0;                                    ///< of one tile, one per disparity
-  std::vector<std::uint32_t> in_reference_, in_target_;     ///< how often each disparity was seen in each tile
+  std::size_t bins_ = 0;                                 ///< of one tile, one per disparity
+  std::vector<std::uint32_t> in_reference_, in_target_;  ///< how often each disparity was seen in each tile
   SearchRanges ranges_;
 };
 

@@ -115,6 +115,18 @@ HWY_INLINE void aggregate_block(const AggregationRow& row, const StepList& steps
   }
 }
 
+/// The same without aggregation: energies[p, d] = c(p, d).
+template <int vectors>
+HWY_INLINE void copy_block(const AggregationRow& row, int column, int first_d, float* energies) {
+  const Floats df;
+  const std::size_t lanes = hn::Lanes(df);
+  const float* cost = row.centre.costs + column * row.pitch + first_d;
+  float* out = energies + (column - row.first) % strip_columns * row.pitch + first_d;
+  for (int p = 0; p < block_columns; ++p, cost += row.pitch, out += row.pitch) {
+    for (std::size_t i = 0; i < vectors; ++i) hn::Store(hn::Load(df, cost + i * lanes), df, out + i * lanes);
+  }
+}
+
 /// The last disparity at which column i of a window row has a counterpart; negative where there is none.
 HWY_INLINE int last_seen(const WindowRow& window, int i) {
   return i > window.last_own ? -1 : i - window.first_other;
@@ -173,7 +185,9 @@ HWY_INLINE void aggregate_strip(const AggregationRow& row, const StepList& steps
   const int end = std::min(strip + strip_columns, row.end);
   for (int column = strip; column < end; column += block_columns) {
     if (column >= whole.first && column + block_columns <= whole.end) {
-      if (row.step == 1) {
+      if (row.radius == 0) {
+        copy_block<vectors>(row, column, d, energies);
+      } else if (row.step == 1) {
         aggregate_block<vectors, 1>(row, steps, column, d, energies);
       } else {
         aggregate_block<vectors, 2>(row, steps, column, d, energies);
@@ -243,20 +257,57 @@ HWY_INLINE void take_winners(const AggregationRow& row, const float* energies, s
   smallest_lanes(di, found, winners);
 }
 
-/// Writes winner and offset (eq. subpixel) of one pixel.
-HWY_INLINE void write_winner(const AggregationRow& row, int column, int winner, const float* energies,
-                             const WinnerRow& out) {
-  const int at = column - row.first;
-  const int last = std::min(row.disparities - 1, last_seen(row.centre, column));
-  out.winner[at] = static_cast<std::int16_t>(last < 0 ? -1 : winner);
-  if (out.offset == nullptr) return;
-  float offset = std::numeric_limits<float>::quiet_NaN();
-  if (winner > 0 && winner < last) {
-    const float before = energies[winner - 1], after = energies[winner + 1];
-    const float curvature = 2 * before + 2 * after - 4 * energies[winner];
-    offset = curvature > 0 ? (before - after) / curvature : 0;
+/// Winners of a strip, with the energies on either side that the parabola needs.
+struct StripWinners {
+  std::int32_t winner[strip_columns];
+  float before[strip_columns], best[strip_columns], after[strip_columns];
+};
+
+HWY_INLINE void find_winners(const AggregationRow& row, float* energies, int columns, StripWinners& found) {
+  for (int column = 0; column < columns; column += 4) {
+    float* of_four = energies + column * row.pitch;
+    for (int p = 0; p < 4; ++p) {
+      std::fill(of_four + p * row.pitch + row.disparities, of_four + (p + 1) * row.pitch, infinity);
+    }
+    take_winners(row, of_four, found.winner + column);
+    for (int p = 0; p < 4; ++p) {
+      // A winner at an end has no neighbour there: what is read instead is not used.
+      const int winner = std::clamp(found.winner[column + p], 1, std::max(1, row.disparities - 2));
+      const float* at = of_four + p * row.pitch + winner;
+      found.before[column + p] = at[-1];
+      found.best[column + p] = at[0];
+      found.after[column + p] = at[1];
+    }
   }
-  out.offset[at] = offset;
+}
+
+/// Writes winners and offsets of a strip: for every column −1 and NaN where nothing can match, else the winner and
+/// eq. subpixel, NaN where the winner has no neighbour on one side.
+HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns, const StripWinners& found,
+                              const WinnerRow& out) {
+  const Floats df;
+  const Ints di;
+  const hn::Rebind<std::int16_t, Ints> ds;
+  const int lanes = static_cast<int>(hn::Lanes(di));
+  const Float nan = hn::Set(df, std::numeric_limits<float>::quiet_NaN());
+  for (int i = 0; i < columns; i += lanes) {
+    const Int column = count_from(strip + i);
+    const Int seen = hn::Min(hn::Sub(column, hn::Set(di, row.centre.first_other)), hn::Set(di, row.disparities - 1));
+    const Int last = hn::IfThenElse(hn::Gt(column, hn::Set(di, row.centre.last_own)), hn::Set(di, -1), seen);
+    const Int winner = hn::LoadU(di, found.winner + i);
+    const Int chosen = hn::IfThenElse(hn::Lt(last, hn::Zero(di)), hn::Set(di, -1), winner);
+    const int at = strip - row.first + i;
+    hn::StoreU(hn::DemoteTo(ds, chosen), ds, out.winner + at);
+    if (out.offset == nullptr) continue;
+    const Float before = hn::LoadU(df, found.before + i), after = hn::LoadU(df, found.after + i);
+    const Float both = hn::Add(before, after),
+                twice_best = hn::Add(hn::LoadU(df, found.best + i), hn::LoadU(df, found.best + i));
+    const Float curvature = hn::Mul(hn::Sub(both, twice_best), hn::Set(df, 2.0f));
+    const Float offset =
+        hn::IfThenElseZero(hn::Gt(curvature, hn::Zero(df)), hn::Div(hn::Sub(before, after), curvature));
+    const auto bracketed = hn::And(hn::Gt(winner, hn::Zero(di)), hn::Lt(winner, last));
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(df, bracketed), offset, nan), df, out.offset + at);
+  }
 }
 
 void aggregate_and_choose(const AggregationRow& row, const AggregationScratch& scratch, const WinnerRow& out) {
@@ -264,23 +315,16 @@ void aggregate_and_choose(const AggregationRow& row, const AggregationScratch& s
   float* energies = scratch.numbers;
   float* inverse_sums = energies + strip_columns * row.pitch;
   StepList steps{.cost = scratch.pointers, .weights = inverse_sums + strip_columns, .inverse_sums = inverse_sums};
-  list_steps(row, steps);
+  if (row.radius > 0) list_steps(row, steps);
   for (int strip = row.first; strip < row.end; strip += strip_columns) {
-    gather_weights(row, strip, steps);
+    if (row.radius > 0) gather_weights(row, strip, steps);
     int d = 0;
     for (; d + lanes < row.disparities; d += 2 * lanes) aggregate_strip<2>(row, steps, strip, d, energies);
     if (d < row.disparities) aggregate_strip<1>(row, steps, strip, d, energies);
-    for (int column = strip; column < std::min(strip + strip_columns, row.end); column += 4) {
-      float* of_four = energies + (column - strip) * row.pitch;
-      for (int p = 0; p < 4; ++p) {
-        std::fill(of_four + p * row.pitch + row.disparities, of_four + (p + 1) * row.pitch, infinity);
-      }
-      std::int32_t winners[4];
-      take_winners(row, of_four, winners);
-      for (int p = 0; p < std::min(4, row.end - column); ++p) {
-        write_winner(row, column + p, winners[p], of_four + p * row.pitch, out);
-      }
-    }
+    const int columns = std::min(strip_columns, row.end - strip);
+    StripWinners found;
+    find_winners(row, energies, columns, found);
+    write_winners(row, strip, columns, found, out);
   }
 }
 

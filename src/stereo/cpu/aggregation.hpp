@@ -27,14 +27,14 @@ struct AggregationRow {
   int end;
   int disparities;
   std::ptrdiff_t pitch;
-  int step;    ///< columns from one tap to the next, 1 or 2
-  int radius;  ///< columns that the window reaches
+  int step;                               ///< columns from one tap to the next, 1 or 2
+  int radius;                             ///< columns that the window reaches
   WindowRow centre;                       ///< the window row of the pixels themselves
   std::span<const WindowRow> rows;        ///< those that lie in the image
   std::span<const float* const> weights;  ///< ω of every tap, row by row: weights[tap][column]
 };
 
-/// What winner-take-all leaves of the columns [first, end), from index 0 on.
+/// What winner-take-all leaves of the columns [first, end), from index 0 on; whole strips are written.
 struct WinnerRow {
   std::int16_t* winner;  ///< −1 where nothing can match
   float* offset;         ///< eq. subpixel; NaN when the winner has no neighbour on one side; null: not wanted

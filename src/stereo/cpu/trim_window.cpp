@@ -12,7 +12,8 @@ MatcherOptions trim_window(const MatcherOptions& options) {
     double sum = 0;
     for (const Tap& tap : window_taps(options)) {
       const int distance2 = tap.du * tap.du + tap.dv * tap.dv;
-      if (distance2 > from_radius * from_radius) sum += std::exp(-distance2 / (options.sigma_space * options.sigma_space));
+      if (distance2 > from_radius * from_radius)
+        sum += std::exp(-distance2 / (options.sigma_space * options.sigma_space));
     }
     return sum;
   };

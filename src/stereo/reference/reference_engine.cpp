@@ -212,8 +212,8 @@ class ReferenceEngine final : public StereoEngine {
       for (int u = 0; u < scene.width(); ++u) {
         if (maps.winner(u, v) < 0) continue;
         if (options.left_right_check && !consistent(maps, u, v, options.consistency)) continue;
-        maps.disparity(u, v) = static_cast<float>(
-            refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v)));
+        maps.disparity(u, v) =
+            static_cast<float>(refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v)));
       }
     }
   }
