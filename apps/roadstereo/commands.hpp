@@ -10,5 +10,6 @@ namespace roadstereo::cli {
 void add_inspect(CLI::App& app);
 void add_synth(CLI::App& app);
 void add_engines(CLI::App& app);
+void add_benchmark(CLI::App& app);
 
 }  // namespace roadstereo::cli

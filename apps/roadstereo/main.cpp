@@ -66,6 +66,7 @@ void describe(CLI::App& app) {
   roadstereo::cli::add_inspect(app);
   roadstereo::cli::add_synth(app);
   roadstereo::cli::add_engines(app);
+  roadstereo::cli::add_benchmark(app);
 }
 
 }  // namespace

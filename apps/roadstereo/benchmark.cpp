@@ -1,0 +1,194 @@
+#include <fmt/core.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "allocation_count.hpp"
+#include "benchmark_frames.hpp"
+#include "benchmark_report.hpp"
+#include "commands.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/peer_matchers.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+struct Arguments {
+  PairFiles files;
+  std::string size = "640x360";
+  int disparities = 32;
+  std::string preset = "default";
+  std::string engine = "auto";
+  int threads = 0;
+  int runs = 30;
+  bool no_peers = false;
+  std::string json;
+};
+
+struct Size {
+  int width = 0, height = 0;
+};
+
+Size parse_size(const std::string& text) {
+  Size size;
+  const char* end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size.width);
+  if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
+    const auto height = std::from_chars(width.ptr + 1, end, size.height);
+    if (height.ec == std::errc() && height.ptr == end && size.width > 0 && size.height > 0) return size;
+  }
+  fail("--size takes WIDTHxHEIGHT, for example 640x360, but got \"", text, "\"");
+}
+
+StereoPair make_pair(const Arguments& arguments) {
+  if (!arguments.files.left.empty()) return read_pair(arguments.files);
+  const Size size = parse_size(arguments.size);
+  constexpr int largest = 8192;
+  if (size.width > largest || size.height > largest) {
+    fail("--size is ", arguments.size, "; the sides must be at most ", largest, " pixels");
+  }
+  return synthetic_pair(size.width, size.height);
+}
+
+template <class Call>
+double time_ms(const Call& call) {
+  const auto start = std::chrono::steady_clock::now();
+  call();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+void add_stages(const StageTimes& ms, std::vector<Timing>& stages) {
+  const std::pair<const char*, double> values[] = {
+      {"prepare", ms.prepare}, {"road model", ms.road_model},       {"perspective", ms.perspective}, {"ranges", ms.ranges},
+      {"match", ms.match},     {"road geometry", ms.road_geometry}, {"transform", ms.transform}};
+  if (stages.empty()) {
+    for (const auto& [name, value] : values) stages.push_back({name, {}});
+  }
+  for (std::size_t i = 0; i < stages.size(); ++i) stages[i].ms.push_back(values[i].second);
+}
+
+std::size_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  constexpr std::size_t kilobyte = 1024;
+  return static_cast<std::size_t>(usage.ru_maxrss) * kilobyte;
+}
+
+/// Runs the pipeline and its peers in turn, so that all see the same machine; the first run of each is left out.
+BenchmarkReport measure(const Arguments& arguments) {
+  const StereoPair pair = make_pair(arguments);
+  PipelineOptions options = preset(arguments.preset);
+  options.engine = arguments.engine;
+  options.threads = arguments.threads;
+  options.white_level = pair.white_level;
+  options.perspective.disparities = arguments.disparities;
+  const auto before = allocations();
+  reset_peak();
+  Pipeline pipeline(options, pair.calibration);
+  const auto process = [&] { pipeline.process(pair.left.view(), pair.right.view()); };
+  process();
+  const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+
+  BenchmarkReport report;
+  report.width = pair.left.width;
+  report.height = pair.left.height;
+  report.disparities = result.shift.disparities;
+  report.preset = arguments.preset;
+  report.engine = pipeline.engine_name();
+  report.threads = arguments.threads > 0 ? arguments.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  report.cpu = cpu_name();
+  for (const EngineInfo& info : engines()) {
+    if (info.name == report.engine) report.target = info.description;
+  }
+  if (before) report.scratch_bytes = allocations()->peak_bytes - before->live_bytes;
+
+  std::vector<io::PeerMatcher> peers;
+  if (!arguments.no_peers) {
+    const PeerPair grey = peer_pair(pair, result.shift);
+    for (const std::string& name : io::peer_names()) {
+      peers.emplace_back(name, report.disparities);
+      peers.back().set_pair(grey.reference, grey.target);
+      peers.back().match();
+      report.peers.push_back({name, {}});
+    }
+  }
+  std::size_t allocated = 0;
+  for (int run = 0; run < arguments.runs; ++run) {
+    pipeline.reset();
+    report.first.ms.push_back(time_ms(process));
+    const std::size_t count = before ? allocations()->count : 0;
+    report.total.ms.push_back(time_ms(process));
+    if (before) allocated += allocations()->count - count;
+    add_stages(result.ms, report.stages);
+    for (std::size_t i = 0; i < peers.size(); ++i) report.peers[i].ms.push_back(time_ms([&] { peers[i].match(); }));
+  }
+  if (before) report.allocations = static_cast<double>(allocated) / arguments.runs;
+  report.peak_memory_bytes = peak_memory_bytes();
+  return report;
+}
+
+void write_json(const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  if (!file) fail("cannot write ", path);
+  file << text;
+  file.close();
+  if (!file) throw SystemError("cannot write " + path + ": the disk may be full");
+}
+
+void benchmark(const Arguments& arguments) {
+  if (arguments.files.left.empty() != arguments.files.right.empty()) fail("benchmark takes LEFT and RIGHT, or neither");
+  if (arguments.runs < 1 || arguments.runs > 100000) {
+    fail("--runs is ", arguments.runs, "; it must be between 1 and 100000");
+  }
+  const BenchmarkReport report = measure(arguments);
+  if (!arguments.json.empty()) write_json(arguments.json, report_json(report));
+  fmt::print("{}", report_text(report));
+}
+
+constexpr const char* benchmark_footer =
+    R"(Times the whole pipeline on frames whose road model is known from the frame before, stage by stage, and OpenCV's
+matchers in turn with it on the same frames, with as many disparities. Without LEFT and RIGHT a synthetic road is used.
+
+Examples:
+  roadstereo benchmark
+  roadstereo benchmark --size 1242x375 --disparities 64 --preset fast --json result.json
+  roadstereo benchmark left.png right.png --calibration calibration.yaml)";
+
+}  // namespace
+
+void add_benchmark(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("benchmark", "Time the pipeline, stage by stage, beside OpenCV's matchers");
+  command->footer(benchmark_footer);
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("LEFT", arguments->files.left, "Left image");
+  command->add_option("RIGHT", arguments->files.right, "Right image");
+  command->add_option("--calibration", arguments->files.calibration, "Calibration of the rig")
+      ->type_name("FILE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+  command->add_option("--size", arguments->size, "Size of the synthetic frame")->type_name("WxH")->capture_default_str();
+  command->add_option("--disparities", arguments->disparities, "Disparities searched; 0 derives them")
+      ->type_name("D")
+      ->capture_default_str();
+  command->add_option("--preset", arguments->preset, "Preset")->type_name("NAME")->capture_default_str();
+  command->add_option("--engine", arguments->engine, "Matching engine")->type_name("NAME")->capture_default_str();
+  command->add_option("--threads", arguments->threads, "Worker threads; 0 takes all cores")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--runs", arguments->runs, "Frames timed")->type_name("N")->capture_default_str();
+  command->add_flag("--no-peers", arguments->no_peers, "Leave OpenCV's matchers out");
+  command->add_option("--json", arguments->json, "Also write the figures to this file")->type_name("FILE");
+  command->callback([arguments] { benchmark(*arguments); });
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,108 @@
+#include "benchmark_report.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "json_text.hpp"
+#include "roadstereo/version.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+constexpr double bytes_per_mb = 1 << 20;
+
+nlohmann::ordered_json timing_json(const Timing& timing) {
+  return {{"name", timing.name},
+          {"median_ms", timing.median()},
+          {"min_ms", timing.fastest()},
+          {"max_ms", timing.slowest()},
+          {"runs", timing.ms.size()}};
+}
+
+std::string timing_line(const Timing& timing) {
+  return fmt::format("  {:<14} {:>9.2f} {:>9.2f} {:>9.2f}", timing.name, timing.median(), timing.fastest(),
+                     timing.slowest());
+}
+
+}  // namespace
+
+double Timing::median() const {
+  std::vector<double> sorted = ms;
+  std::sort(sorted.begin(), sorted.end());
+  return sorted.empty() ? 0 : sorted[sorted.size() / 2];
+}
+double Timing::fastest() const {
+  return ms.empty() ? 0 : *std::min_element(ms.begin(), ms.end());
+}
+double Timing::slowest() const {
+  return ms.empty() ? 0 : *std::max_element(ms.begin(), ms.end());
+}
+
+double BenchmarkReport::mde_per_s() const {
+  return static_cast<double>(width) * height * disparities * 1e-6 / (total.median() * 1e-3);
+}
+
+std::string cpu_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    const auto colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+std::string report_text(const BenchmarkReport& report) {
+  std::string text = fmt::format("{}×{}, D {}, preset {}, engine {} ({}), {} threads, {}\n\n", report.width,
+                                 report.height, report.disparities, report.preset, report.engine, report.target,
+                                 report.threads, report.cpu);
+  text += fmt::format("  {:<14} {:>9} {:>9} {:>9}\n", "milliseconds", "median", "min", "max");
+  for (const Timing& stage : report.stages) text += timing_line(stage) + "\n";
+  text += timing_line(report.total) + fmt::format("   {:.0f} Mde/s\n", report.mde_per_s());
+  text += timing_line(report.first) + "   road model found anew\n";
+  if (!report.peers.empty()) text += fmt::format("\n  {:<14} {:>9} {:>9} {:>9}   total / OpenCV\n", "OpenCV", "median", "min", "max");
+  for (const Timing& peer : report.peers) {
+    text += timing_line(peer) + fmt::format("   {:.2f}\n", report.total.median() / peer.median());
+  }
+  text += "\n";
+  if (report.allocations) text += fmt::format("  allocations per frame: {:.0f}\n", *report.allocations);
+  if (report.scratch_bytes) {
+    text += fmt::format("  memory of the pipeline, its images and maps included: {:.1f} MB\n",
+                        static_cast<double>(*report.scratch_bytes) / bytes_per_mb);
+  }
+  text += fmt::format("  peak memory of the process: {:.0f} MB\n",
+                      static_cast<double>(report.peak_memory_bytes) / bytes_per_mb);
+  return text;
+}
+
+std::string report_json(const BenchmarkReport& report) {
+  nlohmann::ordered_json document = {{"version", version},
+                                     {"width", report.width},
+                                     {"height", report.height},
+                                     {"disparities", report.disparities},
+                                     {"preset", report.preset},
+                                     {"engine", report.engine},
+                                     {"simd_target", report.target},
+                                     {"threads", report.threads},
+                                     {"cpu", report.cpu}};
+  for (const Timing& stage : report.stages) document["stages"].push_back(timing_json(stage));
+  document["total"] = timing_json(report.total);
+  document["first_frame"] = timing_json(report.first);
+  document["mde_per_s"] = report.mde_per_s();
+  document["peers"] = nlohmann::ordered_json::array();
+  for (const Timing& peer : report.peers) {
+    nlohmann::ordered_json entry = timing_json(peer);
+    entry["ratio"] = report.total.median() / peer.median();
+    document["peers"].push_back(entry);
+  }
+  document["allocations_per_frame"] =
+      report.allocations ? nlohmann::ordered_json(*report.allocations) : nlohmann::ordered_json();
+  document["pipeline_memory_bytes"] =
+      report.scratch_bytes ? nlohmann::ordered_json(*report.scratch_bytes) : nlohmann::ordered_json();
+  document["peak_memory_bytes"] = report.peak_memory_bytes;
+  return json_text(document);
+}
+
+}  // namespace roadstereo::cli
