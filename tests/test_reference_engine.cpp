@@ -66,6 +66,7 @@ TEST(ReferenceEngine, AggregationIsTheBilateralMeanOfTheCosts) {
   const auto pair = test::textured_pair(60, 40, [](double, double v) { return 5 + 0.04 * v; });
   MatcherOptions options;
   options.block_radius = 2;
+  options.aggregation_step = 1;
   options.aggregation_radius = 1;
   options.aggregation_shape = WindowShape::disc;  // the pixel and its four neighbours
   options.sigma_space = 1.5;

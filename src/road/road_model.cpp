@@ -19,7 +19,7 @@ namespace {
 constexpr int coarse_width = 120;   ///< the coarse search shrinks the image to between this and twice this
 constexpr int fewest_matches = 40;  ///< below this nothing is known
 constexpr int few_places = 1000;    ///< of the first fine search, which only brings the plane near
-constexpr int places = 1500;        ///< of the fine search
+constexpr int places = 2500;        ///< of the fine search
 constexpr int places_again = 500;   ///< of the search around the last frame's plane
 
 /// Power of two that brings the image near the width of the coarse search.

@@ -86,11 +86,10 @@ class CpuEngine final : public StereoEngine {
  public:
   explicit CpuEngine(int threads) : threads_(resolve_threads(threads)), matchers_(static_cast<std::size_t>(threads_)) {}
 
-  void match(const MatchInput& input, const MatcherOptions& wanted, MatchMaps& maps) override {
+  void match(const MatchInput& input, const MatcherOptions& options, MatchMaps& maps) override {
     validate(input);
-    wanted.validate();
-    use(wanted);
-    const MatcherOptions& options = trimmed_;
+    options.validate();
+    use(options);
     const int width = input.reference.width();
     const int height = input.reference.height();
     maps.winner.resize(width, height);
@@ -129,9 +128,9 @@ class CpuEngine final : public StereoEngine {
 
  private:
   void use(const MatcherOptions& options) {
-    if (wanted_ == options) return;
-    wanted_ = options;
-    trimmed_ = cpu::trim_window(options);
+    if (options_ == options) return;
+    options_ = options;
+    taps_ = cpu::trimmed_taps(options);
     prepared_columns_ = prepared_disparities_ = 0;
   }
 
@@ -140,12 +139,12 @@ class CpuEngine final : public StereoEngine {
     if (columns <= prepared_columns_ && disparities <= prepared_disparities_) return;
     prepared_columns_ = std::max(columns, prepared_columns_);
     prepared_disparities_ = std::max(disparities, prepared_disparities_);
-    for (ViewMatcher& matcher : matchers_) matcher.prepare(prepared_columns_, prepared_disparities_, trimmed_);
+    for (ViewMatcher& matcher : matchers_) matcher.prepare(prepared_columns_, prepared_disparities_, *options_, taps_);
   }
 
   int threads_;
-  std::optional<MatcherOptions> wanted_;
-  MatcherOptions trimmed_;
+  std::optional<MatcherOptions> options_;  ///< that everything is prepared for
+  std::vector<Tap> taps_;
   int prepared_columns_ = 0;
   int prepared_disparities_ = 0;
   std::vector<ViewMatcher> matchers_;

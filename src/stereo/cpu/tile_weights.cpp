@@ -8,10 +8,11 @@
 
 namespace roadstereo::cpu {
 
-void TileWeights::prepare(int columns, const MatcherOptions& options) {
-  radius_ = options.aggregation_radius;
+void TileWeights::prepare(int columns, const MatcherOptions& options, std::span<const Tap> taps) {
+  taps_.assign(taps.begin(), taps.end());
+  radius_ = 0;
+  for (const Tap& tap : taps_) radius_ = std::max(radius_, tap.du);
   ring_ = radius_ + 1;
-  taps_ = window_taps(options);
   log2_space_.clear();
   for (const Tap& tap : taps_) {
     const double distance2 = tap.du * tap.du + tap.dv * tap.dv;

@@ -16,7 +16,7 @@ namespace roadstereo::cpu {
 class TileWeights {
  public:
   /// Memory for tiles of up to `columns` columns.
-  void prepare(int columns, const MatcherOptions& options);
+  void prepare(int columns, const MatcherOptions& options, std::span<const Tap> taps);
 
   /// Begins at row `v`; `compute` is then called for v, v + 1, …. Weights are wanted of `columns` columns from `first`.
   void start(const MatchView& view, int v, int first, int columns);

@@ -2,30 +2,25 @@
 
 #include <cmath>
 
-#include "stereo/window.hpp"
-
 namespace roadstereo::cpu {
 
-MatcherOptions trim_window(const MatcherOptions& options) {
-  constexpr double negligible = 1e-3;
-  const auto sum_weights = [&](int from_radius) {
+std::vector<Tap> trimmed_taps(const MatcherOptions& options) {
+  constexpr double negligible = 5e-4;
+  std::vector<Tap> taps = window_taps(options);
+  const auto squared_distance = [](const Tap& tap) { return tap.du * tap.du + tap.dv * tap.dv; };
+  const auto weight_beyond = [&](int squared_radius) {
     double sum = 0;
-    for (const Tap& tap : window_taps(options)) {
-      const int distance2 = tap.du * tap.du + tap.dv * tap.dv;
-      if (distance2 > from_radius * from_radius)
-        sum += std::exp(-distance2 / (options.sigma_space * options.sigma_space));
+    for (const Tap& tap : taps) {
+      const int distance2 = squared_distance(tap);
+      if (distance2 > squared_radius) sum += std::exp(-distance2 / (options.sigma_space * options.sigma_space));
     }
     return sum;
   };
-  const double all = 1 + sum_weights(0);
-  MatcherOptions trimmed = options;
-  for (int radius = 1; radius <= options.aggregation_radius; ++radius) {
-    if (sum_weights(radius) > negligible * all) continue;
-    trimmed.aggregation_radius = radius;
-    trimmed.aggregation_shape = WindowShape::disc;
-    break;
-  }
-  return trimmed;
+  const double limit = negligible * weight_beyond(-1);
+  int squared_radius = 0;
+  while (weight_beyond(squared_radius) > limit) ++squared_radius;
+  std::erase_if(taps, [&](const Tap& tap) { return squared_distance(tap) > squared_radius; });
+  return taps;
 }
 
 }  // namespace roadstereo::cpu

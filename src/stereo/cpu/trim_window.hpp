@@ -1,11 +1,13 @@
 #pragma once
 
-#include "roadstereo/matcher.hpp"
+#include <vector>
+
+#include "stereo/window.hpp"
 
 namespace roadstereo::cpu {
 
-/// The same options with a window that leaves out the taps which carry next to no weight: together at most a thousandth
-/// of Σ ω0. With the paper's σ0 = 1.5 the disc of radius 4, 49 taps, stands for the square of 121.
-MatcherOptions trim_window(const MatcherOptions& options);
+/// The taps of the aggregation window without those that carry next to no weight: a disc whose outside holds at most
+/// half a thousandth of Σ ω0. With the paper's σ0 = 1.5, 57 taps stand for the square of 121.
+std::vector<Tap> trimmed_taps(const MatcherOptions& options);
 
 }  // namespace roadstereo::cpu

@@ -20,19 +20,19 @@ int ViewMatcher::tile_columns(int disparities, const MatcherOptions& options) {
   return std::max(fewest, columns / fewest * fewest);
 }
 
-void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& options) {
-  radius_ = options.aggregation_radius;
+void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& options, std::span<const Tap> taps) {
+  radius_ = 0;
+  for (const Tap& tap : taps) radius_ = std::max(radius_, tap.du);
   ring_ = 2 * radius_ + 1;
   step_ = options.aggregation_step;
   half_widths_.assign(static_cast<std::size_t>(ring_), no_taps);
-  const std::vector<Tap> taps = window_taps(options);
   for (const Tap& tap : taps) {
     int& half = half_widths_[static_cast<std::size_t>(tap.dv + radius_)];
     half = std::max(half, tap.du / step_);
   }
   const int padded = (columns + strip_columns - 1) / strip_columns * strip_columns;
   tile_costs_.prepare(padded + 2 * radius_, disparities, options);
-  tile_weights_.prepare(padded, options);
+  tile_weights_.prepare(padded, options, taps);
   const std::ptrdiff_t pitch = padded_disparities(disparities);
   costs_.resize(static_cast<std::size_t>(ring_), radius_ * pitch, (padded + radius_) * pitch);
   const AggregationScratchSize scratch = aggregation_scratch(ring_, static_cast<int>(taps.size()), pitch);

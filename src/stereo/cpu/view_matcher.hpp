@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "stereo/cpu/aggregation.hpp"
@@ -27,7 +28,7 @@ class ViewMatcher {
   static int tile_columns(int disparities, const MatcherOptions& options);
 
   /// Memory for tiles of up to `columns` columns.
-  void prepare(int columns, int disparities, const MatcherOptions& options);
+  void prepare(int columns, int disparities, const MatcherOptions& options, std::span<const Tap> taps);
 
   /// Winners of the view's own pixels, and for the reference view their sub-pixel offsets, which wait in the disparity
   /// map until both views are known.
