@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs with apt what the build needs and is missing, and says what that is. Debian 12, Ubuntu 22.04 or later.
 #   scripts/install_deps.sh            compiler, CMake, libraries
-#   scripts/install_deps.sh --checks   also what the format and tidy checks need
+#   scripts/install_deps.sh --checks   also what the format, tidy and aarch64 checks need
 set -euo pipefail
 
 packages=(build-essential cmake ninja-build pkg-config
@@ -9,7 +9,7 @@ packages=(build-essential cmake ninja-build pkg-config
           libgtest-dev libbenchmark-dev)
 case "${1:-}" in
   "") ;;
-  --checks) packages+=(clang-format-14 clang-tidy) ;;
+  --checks) packages+=(clang-format-14 clang-tidy g++-aarch64-linux-gnu qemu-user googletest) ;;
   *) echo "usage: $0 [--checks]" >&2; exit 2 ;;
 esac
 

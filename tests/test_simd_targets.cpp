@@ -22,7 +22,8 @@ constexpr Setting settings[] = {{"default", 161, 67, 37}, {"fast", 131, 50, 16},
 
 std::vector<std::int64_t> targets_of_this_machine() {
   std::vector<std::int64_t> targets;
-  for (std::int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1) targets.push_back(rest & -rest);
+  for (std::int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1)
+    targets.push_back(rest & -rest);
   return targets;
 }
 

@@ -11,11 +11,11 @@
 
 // The C library's own functions under the names that stay when malloc and the others are replaced.
 extern "C" {
-void* __libc_malloc(std::size_t);                // NOLINT(bugprone-reserved-identifier)
-void* __libc_calloc(std::size_t, std::size_t);   // NOLINT(bugprone-reserved-identifier)
-void* __libc_realloc(void*, std::size_t);        // NOLINT(bugprone-reserved-identifier)
-void* __libc_memalign(std::size_t, std::size_t); // NOLINT(bugprone-reserved-identifier)
-void __libc_free(void*);                         // NOLINT(bugprone-reserved-identifier)
+void* __libc_malloc(std::size_t);                 // NOLINT(bugprone-reserved-identifier)
+void* __libc_calloc(std::size_t, std::size_t);    // NOLINT(bugprone-reserved-identifier)
+void* __libc_realloc(void*, std::size_t);         // NOLINT(bugprone-reserved-identifier)
+void* __libc_memalign(std::size_t, std::size_t);  // NOLINT(bugprone-reserved-identifier)
+void __libc_free(void*);                          // NOLINT(bugprone-reserved-identifier)
 }
 
 namespace {

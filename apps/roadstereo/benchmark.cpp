@@ -68,8 +68,9 @@ double time_ms(const Call& call) {
 
 void add_stages(const StageTimes& ms, std::vector<Timing>& stages) {
   const std::pair<const char*, double> values[] = {
-      {"prepare", ms.prepare}, {"road model", ms.road_model},       {"perspective", ms.perspective}, {"ranges", ms.ranges},
-      {"match", ms.match},     {"road geometry", ms.road_geometry}, {"transform", ms.transform}};
+      {"prepare", ms.prepare},    {"road model", ms.road_model}, {"perspective", ms.perspective},
+      {"ranges", ms.ranges},      {"match", ms.match},           {"road geometry", ms.road_geometry},
+      {"transform", ms.transform}};
   if (stages.empty()) {
     for (const auto& [name, value] : values) stages.push_back({name, {}});
   }
@@ -104,7 +105,8 @@ BenchmarkReport measure(const Arguments& arguments) {
   report.disparities = result.shift.disparities;
   report.preset = arguments.preset;
   report.engine = pipeline.engine_name();
-  report.threads = arguments.threads > 0 ? arguments.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  report.threads =
+      arguments.threads > 0 ? arguments.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   report.cpu = cpu_name();
   for (const EngineInfo& info : engines()) {
     if (info.name == report.engine) report.target = info.description;
@@ -176,7 +178,9 @@ void add_benchmark(CLI::App& app) {
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
-  command->add_option("--size", arguments->size, "Size of the synthetic frame")->type_name("WxH")->capture_default_str();
+  command->add_option("--size", arguments->size, "Size of the synthetic frame")
+      ->type_name("WxH")
+      ->capture_default_str();
   command->add_option("--disparities", arguments->disparities, "Disparities searched; 0 derives them")
       ->type_name("D")
       ->capture_default_str();

@@ -8,7 +8,8 @@ namespace roadstereo::cli {
 /// A synthetic road seen by a rig with a camera of the given size; always the same.
 StereoPair synthetic_pair(int width, int height);
 
-/// The pair as OpenCV's matchers get it: grey, the target already transformed, so that both search the same disparities.
+/// The pair as OpenCV's matchers get it: grey, the target already transformed, so that both search the same
+/// disparities.
 struct PeerPair {
   GreyImage reference;
   GreyImage target;

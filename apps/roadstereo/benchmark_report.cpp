@@ -55,14 +55,15 @@ std::string cpu_name() {
 }
 
 std::string report_text(const BenchmarkReport& report) {
-  std::string text = fmt::format("{}×{}, D {}, preset {}, engine {} ({}), {} threads, {}\n\n", report.width,
-                                 report.height, report.disparities, report.preset, report.engine, report.target,
-                                 report.threads, report.cpu);
+  std::string text =
+      fmt::format("{}×{}, D {}, preset {}, engine {} ({}), {} threads, {}\n\n", report.width, report.height,
+                  report.disparities, report.preset, report.engine, report.target, report.threads, report.cpu);
   text += fmt::format("  {:<14} {:>9} {:>9} {:>9}\n", "milliseconds", "median", "min", "max");
   for (const Timing& stage : report.stages) text += timing_line(stage) + "\n";
   text += timing_line(report.total) + fmt::format("   {:.0f} Mde/s\n", report.mde_per_s());
   text += timing_line(report.first) + "   road model found anew\n";
-  if (!report.peers.empty()) text += fmt::format("\n  {:<14} {:>9} {:>9} {:>9}   total / OpenCV\n", "OpenCV", "median", "min", "max");
+  if (!report.peers.empty())
+    text += fmt::format("\n  {:<14} {:>9} {:>9} {:>9}   total / OpenCV\n", "OpenCV", "median", "min", "max");
   for (const Timing& peer : report.peers) {
     text += timing_line(peer) + fmt::format("   {:.2f}\n", report.total.median() / peer.median());
   }

@@ -28,9 +28,9 @@ struct BenchmarkReport {
   Timing total{"total", {}};
   Timing first{"first frame", {}};  ///< road model found anew
   std::vector<Timing> peers;
-  std::optional<double> allocations;        ///< per frame
+  std::optional<double> allocations;         ///< per frame
   std::optional<std::size_t> scratch_bytes;  ///< most in use beyond what was there before the pipeline was made
-  std::size_t peak_memory_bytes = 0;        ///< of the whole process
+  std::size_t peak_memory_bytes = 0;         ///< of the whole process
 
   double mde_per_s() const;
 };

@@ -24,7 +24,8 @@ cv::Ptr<cv::StereoMatcher> make_matcher(const std::string& name, int disparities
   constexpr int bm_block = 11;
   const auto semi_global = [&](int mode) {
     constexpr int block = 5;
-    return cv::StereoSGBM::create(0, disparities, block, 8 * block * block, 32 * block * block, 1, 63, 10, 100, 2, mode);
+    return cv::StereoSGBM::create(0, disparities, block, 8 * block * block, 32 * block * block, 1, 63, 10, 100, 2,
+                                  mode);
   };
   if (name == "SGBM") return semi_global(cv::StereoSGBM::MODE_SGBM);
   if (name == "3WAY") return semi_global(cv::StereoSGBM::MODE_SGBM_3WAY);

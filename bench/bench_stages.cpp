@@ -1,0 +1,119 @@
+// Every stage of the pipeline on its own: how its time grows with the number of pixels and of disparities.
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "roadstereo/pipeline.hpp"
+#include "roadstereo/synth.hpp"
+#include "stereo/range_search.hpp"
+
+namespace {
+
+using namespace roadstereo;
+
+/// A pair with all that the stages leave for each other.
+struct Frame {
+  synth::SyntheticPair pair;
+  GreyImage left, right, target;
+  std::vector<int> first_column;
+  PerspectiveShift shift;
+  RoadModelEstimate road;
+  MatchMaps maps;
+  Image<float> disparity, transformed;
+  RoadGeometry geometry;
+
+  Frame(int width, int height, int disparities) {
+    synth::Scene scene = synth::named_scene("uav");
+    scene.supersampling = 1;
+    scene.rig.focal_px *= static_cast<double>(width) / scene.rig.width;
+    scene.rig.width = width;
+    scene.rig.height = height;
+    pair = synth::render(scene);
+    to_grey(pair.left.view(), 0, left);
+    to_grey(pair.right.view(), 0, right);
+    road.model = pair.plane;
+    road.reliable = true;
+    PerspectiveOptions options;
+    options.disparities = disparities;
+    shift = plan_perspective(road, pair.calibration, width, height, options);
+    transform_target(right, shift, 0, target, first_column);
+    make_engine("cpu", 0)->match(input(), MatcherOptions{}, maps);
+    add_shift(maps.disparity, shift, 0, disparity);
+    geometry = fit_road_geometry(disparity, std::nullopt, road.model, 0, {});
+  }
+  MatchInput input() const { return {left, target, first_column.data(), shift.disparities}; }
+};
+
+void report(benchmark::State& state, const Frame& frame) {
+  state.counters["Mde/s"] =
+      benchmark::Counter(static_cast<double>(frame.left.pixels()) * frame.shift.disparities * 1e-6,
+                         benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// Runs `stage(frame)` on a frame of the size and disparities in the benchmark's arguments.
+template <class Stage>
+void run(benchmark::State& state, const Stage& stage) {
+  Frame frame(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), static_cast<int>(state.range(2)));
+  for (auto _ : state) stage(frame);
+  report(state, frame);
+}
+
+/// Matching all disparities, with `threads` threads.
+void match(benchmark::State& state, const std::string& preset_name, int threads) {
+  const auto engine = make_engine("cpu", threads);
+  const MatcherOptions options = preset(preset_name).matcher;
+  run(state, [&](Frame& frame) { engine->match(frame.input(), options, frame.maps); });
+}
+
+template <class Body>
+benchmark::internal::Benchmark* add(const std::string& name, Body body) {
+  return benchmark::RegisterBenchmark(name.c_str(), body)
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime()
+      ->MeasureProcessCPUTime();
+}
+
+void register_all() {
+  const std::vector<std::vector<std::int64_t>> sizes{{640, 360, 32}, {1242, 375, 64}, {2079, 1040, 64}};
+  const auto add_stage = [&](const std::string& name, auto stage) {
+    auto* entry = add("stage/" + name, [stage](benchmark::State& state) { run(state, stage); });
+    for (const auto& size : sizes) entry->Args(size);
+  };
+  add_stage("grey", [](Frame& f) { to_grey(f.pair.left.view(), 0, f.left); });
+  add_stage("estimate_road", [](Frame& f) { estimate_road_model(f.left, f.right, f.pair.calibration, {}); });
+  add_stage("verify_road", [](Frame& f) { verify_road_model(f.left, f.right, f.road.model, f.pair.calibration, {}); });
+  add_stage("transform_target", [](Frame& f) { transform_target(f.right, f.shift, 0, f.target, f.first_column); });
+  add_stage("add_shift", [](Frame& f) { add_shift(f.maps.disparity, f.shift, 0, f.disparity); });
+  add_stage("road_geometry", [](Frame& f) { fit_road_geometry(f.disparity, std::nullopt, f.road.model, 0, {}); });
+  add_stage("transform_disparity",
+            [](Frame& f) { transform_disparity(f.disparity, f.geometry, 0, {}, 0, f.transformed); });
+  auto* ranges = add("stage/search_ranges", [](benchmark::State& state) {
+    RangeSearch search("cpu", 0);
+    run(state, [&](Frame& frame) { search.find(frame.input()); });
+  });
+  for (const auto& size : sizes) ranges->Args(size);
+
+  for (const std::string& name : preset_names()) {
+    for (const int threads : {1, 2}) {
+      const std::string label = "match/" + name + "/threads:" + std::to_string(threads);
+      auto* entry = add(label, [name, threads](benchmark::State& state) { match(state, name, threads); });
+      for (const auto& size : sizes) entry->Args(size);
+      if (threads == 1) {
+        for (const std::int64_t d : {16, 48, 64, 96, 128}) entry->Args({640, 360, d});
+        for (const std::int64_t scale : {1, 3, 4}) entry->Args({320 * scale, 180 * scale, 32});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  register_all();
+  benchmark::Initialize(&argc, argv);
+  benchmark::AddCustomContext("engine", engines().front().description);
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}
