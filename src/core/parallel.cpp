@@ -1,7 +1,7 @@
 #include "core/parallel.hpp"
 
 #include <algorithm>
-#include <memory>
+#include <optional>
 #include <thread>
 
 #include "roadstereo/error.hpp"
@@ -26,8 +26,8 @@ namespace {
 tbb::task_arena& arena_of(int workers) {
   // More workers than cores gain nothing, and TBB complains about them on stderr.
   const int concurrency = std::min(workers, tbb::info::default_concurrency());
-  thread_local std::unique_ptr<tbb::task_arena> arena;
-  if (!arena || arena->max_concurrency() != concurrency) arena = std::make_unique<tbb::task_arena>(concurrency);
+  thread_local std::optional<tbb::task_arena> arena;
+  if (!arena || arena->max_concurrency() != concurrency) arena.emplace(concurrency);
   return *arena;
 }
 

@@ -1,6 +1,7 @@
 #include "core/shrink.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 namespace roadstereo {
@@ -13,7 +14,7 @@ void shrink_row(ImageView<const std::int16_t> image, int factor, int y, std::int
   for (int x = 0; x < width; ++x) {
     std::int32_t sum = 0;
     for (int r = 0; r < n; ++r) {
-      const std::int16_t* from = image.row(y * n + r) + x * n;
+      const std::int16_t* from = image.row(y * n + r) + static_cast<std::ptrdiff_t>(x) * n;
       for (int c = 0; c < n; ++c) sum += from[c];
     }
     small[x] = static_cast<std::int16_t>(sum / (n * n));

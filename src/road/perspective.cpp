@@ -67,7 +67,8 @@ void sample_cubic(const float* row, int whole, float f_at_first, float f_step, i
     const float cube = 0.5f * (p[2] - p[-1]) + 1.5f * (p[0] - p[1]);
     const float value = p[0] + f * (linear + f * (square + f * cube));
     const float bounded = std::min(std::max(value, 0.0f), static_cast<float>(grey_max));
-    out[x] = static_cast<std::int16_t>(bounded + 0.5f);
+    // Not negative, and lround would keep the loop from being vectorised.
+    out[x] = static_cast<std::int16_t>(bounded + 0.5f);  // NOLINT(bugprone-incorrect-roundings)
   }
 }
 

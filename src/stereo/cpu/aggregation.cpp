@@ -49,7 +49,7 @@ struct StepList {
 HWY_INLINE void list_steps(const AggregationRow& row, StepList& steps) {
   for (const WindowRow& window : row.rows) {
     for (int i = -window.half; i <= window.half + 1; ++i) {
-      steps.cost[steps.count++] = window.costs + i * row.step * row.pitch;
+      steps.cost[steps.count++] = window.costs + std::ptrdiff_t{i} * row.step * row.pitch;
     }
   }
 }

@@ -14,7 +14,7 @@ namespace roadstereo::cpu {
 
 /// Disparities are padded to a multiple of this: the widest vector has so many lanes.
 inline constexpr int disparity_grid = 16;
-constexpr std::ptrdiff_t padded_disparities(int disparities) {
+constexpr std::ptrdiff_t padded_disparities(std::ptrdiff_t disparities) {
   return (disparities + disparity_grid - 1) / disparity_grid * disparity_grid;
 }
 

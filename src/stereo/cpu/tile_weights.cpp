@@ -69,7 +69,7 @@ std::span<const float* const> TileWeights::compute(int v) {
     const float* weights = centre_.row(0);
     if (i > half) weights = weights_.row(static_cast<std::size_t>(v % ring_) * half + (i - half - 1));
     if (i < half) weights = weights_.row(static_cast<std::size_t>(q % ring_) * half + (half - 1 - i)) + tap.du;
-    row_.push_back(weights + 2 * radius_);
+    row_.push_back(weights + std::ptrdiff_t{2} * radius_);
   }
   return row_;
 }
