@@ -13,7 +13,7 @@ namespace roadstereo {
 namespace {
 
 /// Points that the robust solver and the standard error look at: enough for both, few enough to cost nothing.
-constexpr std::size_t sample_limit = 12000;
+constexpr std::size_t sample_limit = 6000;
 
 /// Residuals of neighbours are not independent: the standard error takes cells of the map as one observation each.
 constexpr int cells_per_side = 24;
