@@ -209,9 +209,10 @@ TEST_P(EveryEngine, ReadsStridedImagesAndForgetsThePreviousFrame) {
 }
 
 TEST_P(EveryEngine, RangesThatHoldTheDisparityChangeNothing) {
-  const auto pair = test::textured_pair(200, 80, [](double, double) { return 12; });
+  constexpr int width = 200, height = 110;  // two tiles across, two down
+  const auto pair = test::textured_pair(width, height, [](double, double) { return 12; });
   SearchRanges ranges;
-  ranges.assign(200, 80, 32);
+  ranges.assign(width, height, 32);
   for (int column = 0; column < 2; ++column) {
     for (int row = 0; row < 2; ++row) ranges.reference(column, row) = ranges.target(column, row) = {9, 16};
   }
@@ -219,8 +220,8 @@ TEST_P(EveryEngine, RangesThatHoldTheDisparityChangeNothing) {
   const auto engine = make_engine(GetParam(), 2);
   engine->match({pair.reference, pair.target, nullptr, 32}, MatcherOptions{}, all);
   engine->match({pair.reference, pair.target, nullptr, 32, &ranges}, MatcherOptions{}, narrow);
-  for (int v = 0; v < 80; ++v) {
-    for (int u = 40; u < 200; ++u) ASSERT_NEAR(all.disparity(u, v), narrow.disparity(u, v), 1e-5);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 40; u < width; ++u) ASSERT_NEAR(all.disparity(u, v), narrow.disparity(u, v), 1e-5);
   }
 }
 

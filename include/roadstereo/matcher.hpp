@@ -35,8 +35,8 @@ struct MatcherOptions {
 /// The disparities that are searched, tile by tile. Knowing the road leaves few of them: after the perspective
 /// transformation the road lies near δp, and a coarse look at the pair tells where something else is.
 struct SearchRanges {
-  static constexpr int tile_columns = 128;  ///< pixels
-  static constexpr int tile_rows = 64;      ///< pixels
+  static constexpr int tile_columns = 192;  ///< pixels
+  static constexpr int tile_rows = 96;      ///< pixels
 
   /// Disparities first ≤ d < end.
   struct Range {

@@ -7,7 +7,6 @@ namespace {
 /// Every constant of the paper.
 PipelineOptions paper_preset() {
   PipelineOptions options;
-  options.narrow_search = false;
   options.road_model.with_roll = false;  // eq. relation_vd: Δu depends on v alone
   options.perspective.shift = ShiftPrecision::whole_pixel;
   options.matcher.block_radius = 5;  // 120-connected system
