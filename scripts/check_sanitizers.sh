@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-slow='odd_large|large_windows|_100$'
+slow='odd_large|large_windows|_100$|Peers.Fast|RangeSearch.Holds'
 
 check() {
   local preset=$1
