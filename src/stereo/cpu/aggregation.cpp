@@ -54,8 +54,8 @@ HWY_INLINE void list_steps(const AggregationRow& row, StepList& steps) {
   }
 }
 
-/// Gathers the weights of the steps for the columns of one strip: step k has tap k of even and tap k − 1 of odd
-/// columns.
+/// Gathers the weights of the steps for the columns of one strip: step k has tap k of the left pixels of pairs and
+/// tap k − 1 of the right ones. A pixel is a right one when its column has the bit of the step.
 HWY_INLINE void gather_weights(const AggregationRow& row, int strip, const StepList& steps) {
   const hn::CappedTag<float, block_columns> d;
   const hn::RebindToSigned<decltype(d)> dd;
