@@ -67,6 +67,7 @@ Json times_json(const StageTimes& ms) {
   return {{"prepare", json_number(ms.prepare)},
           {"road_model", json_number(ms.road_model)},
           {"perspective", json_number(ms.perspective)},
+          {"ranges", json_number(ms.ranges)},
           {"match", json_number(ms.match)},
           {"road_geometry", json_number(ms.road_geometry)},
           {"transform", json_number(ms.transform)},
