@@ -75,7 +75,7 @@ void RangeSearch::count_disparities() {
         }
       };
       count(in_reference_, u);
-      count(in_target_, u - static_cast<int>(row[u] + 0.5f));
+      count(in_target_, u - static_cast<int>(std::lround(row[u])));
     }
   }
 }
@@ -120,7 +120,8 @@ const SearchRanges* RangeSearch::find(const MatchInput& input) {
   const int coarse_disparities = (input.disparities - 1) / factor + 2;
   engine_->match({reference_, target_, first_column_.data(), coarse_disparities}, coarse_options(), maps_);
   ranges_.assign(width, height, input.disparities);
-  bins_ = static_cast<std::size_t>(coarse_disparities * factor);
+  const int bins = coarse_disparities * factor;
+  bins_ = static_cast<std::size_t>(bins);
   count_disparities();
   choose(in_reference_, ranges_.reference, input.disparities);
   choose(in_target_, ranges_.target, input.disparities);

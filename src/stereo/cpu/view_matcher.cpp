@@ -27,7 +27,7 @@ void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& op
   step_ = options.aggregation_step;
   half_widths_.assign(static_cast<std::size_t>(ring_), no_taps);
   for (const Tap& tap : taps) {
-    int& half = half_widths_[static_cast<std::size_t>(tap.dv + radius_)];
+    int& half = half_width(tap.dv);
     half = std::max(half, tap.du / step_);
   }
   const int padded = (columns + strip_columns - 1) / strip_columns * strip_columns;
@@ -59,13 +59,13 @@ void ViewMatcher::match(const MatchView& view, const Tile& tile, MatchMaps& maps
 void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps) {
   const auto window_row = [&](int q) {
     return WindowRow{.costs = cost_row(q),
-                     .half = half_widths_[static_cast<std::size_t>(q - v + radius_)],
+                     .half = half_width(q - v),
                      .first_other = view.first_other(q) + tile.range.first - tile.first,
                      .last_own = view.last_own(q) - tile.first};
   };
   window_.clear();
   for (int q = std::max(0, v - radius_); q <= std::min(view.height() - 1, v + radius_); ++q) {
-    if (half_widths_[static_cast<std::size_t>(q - v + radius_)] != no_taps) window_.push_back(window_row(q));
+    if (half_width(q - v) != no_taps) window_.push_back(window_row(q));
   }
   const AggregationRow row{.first = 0,
                            .end = tile.end - tile.first,

@@ -36,6 +36,10 @@ class ViewMatcher {
 
  private:
   void match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps);
+  int& half_width(int dv) {
+    const int row = dv + radius_;
+    return half_widths_[static_cast<std::size_t>(row)];
+  }
   float* cost_row(int v) { return costs_.row(static_cast<std::size_t>(v % ring_)); }
 
   int radius_ = 0;
