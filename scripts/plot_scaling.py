@@ -52,7 +52,7 @@ def main(source, target):
     by_threads.axhline(2, color="grey", linewidth=0.8)
     by_threads.set_xticks([x + width for x in range(len(sizes))], [f"{w}×{h}×{d}" for w, h, d in sizes])
     for axes in (by_d, by_pixels, by_threads):
-        axes.legend(loc="upper left")
+        axes.legend(loc="lower right" if axes is by_threads else "upper left")
         axes.grid(alpha=0.3)
     figure.tight_layout()
     figure.savefig(target, dpi=80)
