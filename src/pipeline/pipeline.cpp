@@ -62,7 +62,7 @@ struct Pipeline::State {
   double last_roll_rad = 0;
 
   // Scratch memory.
-  std::pmr::unsynchronized_pool_resource memory{{.max_blocks_per_chunk = 0, .largest_required_pool_block = 4U << 20}};
+  std::pmr::unsynchronized_pool_resource memory{{.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
   GreyImage left, right, transformed_target;
   std::vector<int> first_column;
   MatchInput match_input;
