@@ -2,12 +2,13 @@
 
 #include <benchmark/benchmark.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
-#include "stereo/range_search.hpp"
+#include "stereo/coarse/coarse_search.hpp"
 
 namespace {
 
@@ -89,11 +90,12 @@ void register_all() {
   add_stage("road_geometry", [](Frame& f) { fit_road_geometry(f.disparity, std::nullopt, f.road.model, 0, {}); });
   add_stage("transform_disparity",
             [](Frame& f) { transform_disparity(f.disparity, f.geometry, 0, {}, 0, f.transformed); });
-  auto* ranges = add("stage/search_ranges", [](benchmark::State& state) {
-    RangeSearch search("cpu", 0);
-    run(state, [&](Frame& frame) { search.find(frame.input()); });
+  auto* coarse = add("stage/coarse_search", [](benchmark::State& state) {
+    CoarseSearch search({}, 0);
+    const auto no_road = [](double, double) { return std::numeric_limits<double>::quiet_NaN(); };
+    run(state, [&](Frame& frame) { search.find(frame.input(), no_road); });
   });
-  for (const auto& size : sizes) ranges->Args(size);
+  for (const auto& size : sizes) coarse->Args(size);
 
   for (const std::string& name : preset_names()) {
     for (const int threads : {1, 2}) {

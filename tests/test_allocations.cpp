@@ -59,6 +59,7 @@ std::size_t matching_memory(int width, int height, int disparities, const Matche
   const auto pair = test::textured_pair(width, height, [](double, double) { return 10; });
   MatchMaps maps;
   maps.disparity.resize(width, height);
+  maps.variance.resize(width, height);
   maps.winner.resize(width, height);
   maps.target_winner.resize(width, height);
   const auto engine = make_engine("cpu", 2);

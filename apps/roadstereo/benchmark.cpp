@@ -69,7 +69,7 @@ double time_ms(const Call& call) {
 void add_stages(const StageTimes& ms, std::vector<Timing>& stages) {
   const std::pair<const char*, double> values[] = {
       {"prepare", ms.prepare},    {"road model", ms.road_model}, {"perspective", ms.perspective},
-      {"ranges", ms.ranges},      {"match", ms.match},           {"road geometry", ms.road_geometry},
+      {"coarse", ms.coarse},      {"match", ms.match}, {"refinement", ms.refinement},          {"road geometry", ms.road_geometry},
       {"transform", ms.transform}};
   if (stages.empty()) {
     for (const auto& [name, value] : values) stages.push_back({name, {}});

@@ -67,8 +67,9 @@ Json times_json(const StageTimes& ms) {
   return {{"prepare", json_number(ms.prepare)},
           {"road_model", json_number(ms.road_model)},
           {"perspective", json_number(ms.perspective)},
-          {"ranges", json_number(ms.ranges)},
+          {"coarse", json_number(ms.coarse)},
           {"match", json_number(ms.match)},
+          {"refinement", json_number(ms.refinement)},
           {"road_geometry", json_number(ms.road_geometry)},
           {"transform", json_number(ms.transform)},
           {"total", json_number(ms.total)}};

@@ -13,17 +13,20 @@ namespace roadstereo {
 enum class WindowShape { square, disc };
 
 struct MatcherOptions {
-  int block_radius = 5;        ///< N⁺ is (2r+1)² pixels; the paper's 120-connected system is 5; 1 … 10
-  int aggregation_radius = 4;  ///< radius of the bilateral window, pixels; 0 switches aggregation off; 0 … 10
+  int block_radius = 2;        ///< N⁺ is (2r+1)² pixels; the paper's 120-connected system is 5; 1 … 10
+  int aggregation_radius = 6;  ///< radius of the bilateral window, pixels; 0 switches aggregation off; 0 … 10
   int aggregation_step = 2;    ///< distance between its taps, pixels, 1 or 2: neighbours share most of their block
   WindowShape aggregation_shape = WindowShape::disc;  ///< `disc` keeps the taps within the radius
-  double sigma_space = 4.0;                           ///< σ0 of eq. omega0, pixels
+  double sigma_space = 6.0;                           ///< σ0 of eq. omega0, pixels
   double sigma_colour = 20.0;                         ///< σ1 of eq. omega1, 8-bit grey levels
   double texture_noise = 1.0;    ///< grey-level noise below which texture is no evidence; 0 is plain NCC, 0 … 50
   bool left_right_check = true;  ///< eq. lrc
   /// Match the target view too, with costs aggregated by its own weights, as the paper does. False projects the
   /// reference's winners into the target view instead, where the nearest of several hides the others: half the work.
-  bool target_volume = true;
+  bool target_volume = false;
+  /// Cost that a disparity pays for each pixel away from the prior, in units of the correlation; 0 ignores the prior.
+  double prior_slope = 0.08;
+  double prior_reach = 4.0;  ///< pixels away at which it stops growing, so that damage can leave the prior
   double consistency = 1.0;     ///< δr of eq. lrc, pixels²
   bool sub_pixel = true;        ///< eq. subpixel
   bool drop_range_ends = true;  ///< a winner at the end of its range is no minimum: invalid
@@ -51,6 +54,12 @@ struct SearchRanges {
   void assign(int width, int height, int disparities);
 };
 
+/// A coarse disparity map that winner-take-all leans on where the costs leave a choice.
+struct DisparityPrior {
+  Image<float> disparity;  ///< of the reference view, pixels of the full size; NaN: nothing is known
+  int factor = 1;          ///< its pixel (x, y) stands for the factor × factor pixels from (x·factor, y·factor) on
+};
+
 /// One pair as matching sees it: grey, same size, the target already transformed.
 struct MatchInput {
   ImageView<const std::int16_t> reference;
@@ -59,7 +68,8 @@ struct MatchInput {
   /// first column that all its rows see.
   const int* first_column = nullptr;
   int disparities = 1;                   ///< D, 1 … 1024: reference (u, v) may match target (u − d, v), 0 ≤ d < D
-  const SearchRanges* ranges = nullptr;  ///< null: every pixel searches all D disparities
+  const SearchRanges* ranges = nullptr;   ///< null: every pixel searches all D disparities
+  const DisparityPrior* prior = nullptr;  ///< null: the costs alone decide
 };
 
 /// What matching leaves. Sizes are those of the reference image.
@@ -68,6 +78,7 @@ struct MatchMaps {
   Image<std::int16_t> winner;  ///< winner-take-all on the reference volume; −1 where nothing can match
   /// Winner-take-all on the target volume, or the reference's winners projected, in target coordinates; −1 likewise.
   Image<std::int16_t> target_winner;
+  Image<float> variance;  ///< of `disparity` from the costs alone, pixels²; infinite where they do not tell
 };
 
 /// One implementation of section 3.2 of the paper. Holds scratch memory, so that matching frames of one size

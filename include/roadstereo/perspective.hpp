@@ -31,6 +31,7 @@ struct PerspectiveShift {
   int disparities = 1;  ///< D: residual disparities 0 … D−1 are searched
   bool whole_pixel = false;
   bool enabled = true;
+  double row_offset = 0;  ///< the target's rows lie this much lower than the reference's, pixels; undone by the shift
 
   double at(double x, double v) const;
 };
@@ -40,7 +41,7 @@ struct PerspectiveShift {
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
                                   int width, int height, const PerspectiveOptions& options);
 
-/// Shifts the rows of the target image (π_tar → π_tar'). `first_column[v]` becomes the first column of the
+/// Shifts the rows of the target image (π_tar → π_tar'), along themselves and by the rows' offset. `first_column[v]` becomes the first column of the
 /// transformed row that lies inside the target image (= width when none does).
 void transform_target(ImageView<const std::int16_t> target, const PerspectiveShift& shift, int threads,
                       GreyImage& transformed, std::vector<int>& first_column);

@@ -8,9 +8,11 @@
 
 #include "roadstereo/alignment.hpp"
 #include "roadstereo/calibration.hpp"
+#include "roadstereo/coarse_search.hpp"
 #include "roadstereo/image.hpp"
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/perspective.hpp"
+#include "roadstereo/refinement.hpp"
 #include "roadstereo/road_geometry.hpp"
 #include "roadstereo/road_model.hpp"
 
@@ -21,10 +23,13 @@ struct PipelineOptions {
   int threads = 0;              ///< worker threads; 0 takes all cores
   double white_level = 0;       ///< sample value of white; 0 takes 255 or 65535 by the sample type
   bool check_rows = true;       ///< measure whether the rows agree whenever the road model is estimated anew
+  bool correct_rows = true;     ///< undo a constant offset of the rows, up to 2 px, that `check_rows` has measured
   bool narrow_search = true;    ///< search in each tile only near the disparities that a coarse look finds there
   RoadModelOptions road_model;
   PerspectiveOptions perspective;
+  CoarseSearchOptions coarse_search;
   MatcherOptions matcher;
+  RefinementOptions refinement;
   RoadGeometryOptions road_geometry;
 
   /// Throws Error naming the first option that is out of range.
@@ -41,8 +46,9 @@ struct StageTimes {
   double prepare = 0;  ///< conversion to grey, checks of the pair
   double road_model = 0;
   double perspective = 0;
-  double ranges = 0;         ///< coarse look for the disparities of each tile
+  double coarse = 0;         ///< coarse look: disparities of each tile, prior
   double match = 0;          ///< cost, aggregation, winner-take-all, left–right check, sub-pixel
+  double refinement = 0;     ///< smoothing by the standard errors
   double road_geometry = 0;  ///< roll and projection model
   double transform = 0;      ///< disparity transformation
   double total = 0;
@@ -51,6 +57,7 @@ struct StageTimes {
 /// The paper's result for one pair.
 struct FrameResult {
   Image<float> disparity;    ///< ℓ: left-image disparities, pixels, NaN invalid
+  Image<float> sigma;        ///< standard error of `disparity`, pixels, NaN where that is invalid
   Image<float> transformed;  ///< ℓ': the intact road lies at `delta_t`, damage below, bumps above; NaN invalid
   RoadModelEstimate road;    ///< before matching
   PerspectiveShift shift;

@@ -39,6 +39,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("threads", o.threads, "worker threads; 0 takes all cores");
   visit("white_level", o.white_level, "sample value of white; 0 takes 255 or 65535 by the sample type");
   visit("check_rows", o.check_rows, "measure whether the rows of the pair agree");
+  visit("correct_rows", o.correct_rows, "undo the constant offset of the rows that check_rows measures");
   visit("narrow_search", o.narrow_search, "search in each tile only near what a coarse look finds there");
 
   visit("road_model.with_roll", o.road_model.with_roll, "the model depends on the column too (a2)");
@@ -60,6 +61,19 @@ void visit_options(Options& o, Visitor visit) {
   visit("perspective.delta_p_px", o.perspective.delta_p_px,
         "the road's disparity after the shift, pixels; negative derives it");
 
+  visit("coarse_search.factor", o.coarse_search.factor, "shrinks the pair by 2, 4 or 8; 0 derives it");
+  visit("coarse_search.block_radius", o.coarse_search.block_radius, "radius of its correlation block, coarse pixels");
+  visit("coarse_search.texture_noise", o.coarse_search.texture_noise,
+        "noise below which its texture is no evidence, 8-bit grey levels");
+  visit("coarse_search.step_penalty", o.coarse_search.step_penalty, "cost of a change by one coarse pixel along the row");
+  visit("coarse_search.jump_penalty", o.coarse_search.jump_penalty, "cost of a larger change along the row");
+  visit("coarse_search.road_pull", o.coarse_search.road_pull,
+        "cost of a coarse pixel away from the road where nothing is known");
+  visit("coarse_search.road_reach", o.coarse_search.road_reach, "coarse pixels away at which that cost stops growing");
+  visit("coarse_search.row_error_px", o.coarse_search.row_error_px, "error of the rows, coarse pixels");
+  visit("coarse_search.known_within_px", o.coarse_search.known_within_px,
+        "standard error at which the road pulls half as strongly, coarse pixels");
+
   visit("matcher.block_radius", o.matcher.block_radius, "radius of the correlation block, pixels");
   visit("matcher.aggregation_radius", o.matcher.aggregation_radius, "radius of the bilateral window, pixels; 0 is off");
   visit("matcher.aggregation_step", o.matcher.aggregation_step, "distance between the window's taps, pixels: 1 or 2");
@@ -70,9 +84,19 @@ void visit_options(Options& o, Visitor visit) {
         "noise below which texture is no evidence, 8-bit grey levels");
   visit("matcher.left_right_check", o.matcher.left_right_check, "remove pixels that the two views see differently");
   visit("matcher.target_volume", o.matcher.target_volume, "match the target view too, not only project the winners");
+  visit("matcher.prior_slope", o.matcher.prior_slope, "cost of a pixel away from the coarse map; 0 ignores it");
+  visit("matcher.prior_reach", o.matcher.prior_reach, "pixels away at which that cost stops growing");
   visit("matcher.consistency", o.matcher.consistency, "delta r of the left-right check, pixels squared");
   visit("matcher.sub_pixel", o.matcher.sub_pixel, "refine the winner by a parabola");
   visit("matcher.drop_range_ends", o.matcher.drop_range_ends, "a winner at the end of its range is invalid");
+
+  visit("refinement.radius", o.refinement.radius, "of the neighbours that a disparity is averaged with, pixels; 0 is off");
+  visit("refinement.step", o.refinement.step, "distance between those neighbours, pixels");
+  visit("refinement.reach_sigmas", o.refinement.reach_sigmas,
+        "joint standard errors at which a neighbour loses its weight");
+  visit("refinement.most_sigma_px", o.refinement.most_sigma_px,
+        "a disparity known less well agrees with its neighbours no more easily than this, pixels");
+  visit("refinement.least_sigma_px", o.refinement.least_sigma_px, "standard error that no disparity falls below, pixels");
 
   visit("road_geometry.solver", o.road_geometry.solver, "gradient_descent, closed_form or robust");
   visit("road_geometry.initial_lambda", o.road_geometry.initial_lambda, "first learning rate of the descent");

@@ -9,7 +9,8 @@
 #include "core/scratch.hpp"
 #include "core/sentence.hpp"
 #include "roadstereo/error.hpp"
-#include "stereo/range_search.hpp"
+#include "stereo/coarse/coarse_search.hpp"
+#include "stereo/window.hpp"
 
 namespace roadstereo {
 namespace {
@@ -54,12 +55,14 @@ struct Pipeline::State {
   std::optional<StereoCalibration> calibration;
   std::string engine_name;
   int threads = 1;
+  double support = 1;  ///< pixels that one disparity rests on
   std::unique_ptr<StereoEngine> engine;
-  std::optional<RangeSearch> range_search;
+  std::optional<CoarseSearch> coarse_search;
 
   // What carries over from frame to frame.
   std::optional<RoadModel> last_road;
   double last_roll_rad = 0;
+  double row_offset = 0;  ///< of the target's rows, pixels; measured whenever the road model is estimated anew
 
   // Scratch memory.
   std::pmr::unsynchronized_pool_resource memory{{.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
@@ -67,14 +70,16 @@ struct Pipeline::State {
   std::vector<int> first_column;
   MatchInput match_input;
   MatchMaps maps;
+  Image<float> shifted;  ///< disparities before they are refined
   FrameResult result;
 
   void prepare(const FrameView& left_frame, const FrameView& right_frame);
   void find_road();
   void measure_rows();
   void transform_perspective();
-  void narrow_search();
+  void look_coarsely();
   void match();
+  void refine();
   void find_geometry();
   void transform();
   void summarise();
@@ -115,7 +120,15 @@ void Pipeline::State::measure_rows() {
   constexpr double largest_offset_px = 0.5;
   constexpr double largest_spread_px = 1.0;
   result.rows = measure_row_alignment(left, right, threads);
+  row_offset = 0;
   if (!result.rows.known()) return;
+  constexpr double largest_correction_px = 2.0;
+  constexpr double least_correction_px = 0.1;
+  const double offset = std::abs(result.rows.median_px);
+  if (options.correct_rows && offset >= least_correction_px && offset <= largest_correction_px &&
+      result.rows.spread_px <= largest_spread_px) {
+    row_offset = result.rows.median_px;
+  }
   if (std::abs(result.rows.median_px) > largest_offset_px || result.rows.spread_px > largest_spread_px) {
     result.warnings.push_back(sentence("the rows of the pair do not agree: vertical offset ", result.rows.median_px,
                                        " px (median of ", result.rows.points, " points, spread ", result.rows.spread_px,
@@ -126,19 +139,32 @@ void Pipeline::State::measure_rows() {
 /// π_tar → π_tar', section 3.1.
 void Pipeline::State::transform_perspective() {
   result.shift = plan_perspective(result.road, calibration, left.width(), left.height(), options.perspective);
+  result.shift.row_offset = row_offset;
   transform_target(right, result.shift, threads, transformed_target, first_column);
 }
 
-/// Leaves the disparities of each tile that the pair can have.
-void Pipeline::State::narrow_search() {
+/// Which disparities each tile can have, and a coarse map that matching leans on where the costs leave a choice.
+void Pipeline::State::look_coarsely() {
   match_input = {left, transformed_target, first_column.data(), result.shift.disparities};
-  if (range_search) match_input.ranges = range_search->find(match_input);
+  if (!coarse_search) return;
+  // The road's disparity after the shift; beyond the horizon there is none.
+  const auto road = [this](double u, double v) {
+    const double disparity = result.shift.enabled ? result.shift.road.disparity(u, v) : -1;
+    return disparity < 0 ? std::numeric_limits<double>::quiet_NaN() : std::min(disparity, result.shift.delta_p);
+  };
+  if (!coarse_search->find(match_input, road)) return;
+  if (options.narrow_search) match_input.ranges = coarse_search->ranges();
+  match_input.prior = &coarse_search->prior();
 }
 
-/// Section 3.2, and the shift added back.
-void Pipeline::State::match() {
-  engine->match(match_input, options.matcher, maps);
-  add_shift(maps.disparity, result.shift, threads, result.disparity);
+/// Section 3.2.
+void Pipeline::State::match() { engine->match(match_input, options.matcher, maps); }
+
+/// Adds the shift back, and smooths where the standard errors allow it.
+void Pipeline::State::refine() {
+  add_shift(maps.disparity, result.shift, threads, shifted);
+  refine_disparities(shifted, maps.variance, result.shift.road, support, options.refinement, threads,
+                     result.disparity, result.sigma);
 }
 
 /// Roll angle and projection model, section 3.3.
@@ -184,7 +210,7 @@ void Pipeline::State::summarise() {
   last_roll_rad = result.geometry_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   const StageTimes& ms = result.ms;
   result.ms.total =
-      ms.prepare + ms.road_model + ms.perspective + ms.ranges + ms.match + ms.road_geometry + ms.transform;
+      ms.prepare + ms.road_model + ms.perspective + ms.coarse + ms.match + ms.refinement + ms.road_geometry + ms.transform;
   result.mde_per_s = static_cast<double>(left.pixels()) * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
 }
 
@@ -195,8 +221,11 @@ Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCal
   state_->calibration = calibration;
   state_->engine_name = resolve_engine_name(options.engine);
   state_->threads = resolve_threads(options.threads);
+  state_->support = support_pixels(options.matcher);
   state_->engine = make_engine(options.engine, options.threads);
-  if (options.narrow_search) state_->range_search.emplace(options.engine, options.threads);
+  if (options.narrow_search || options.matcher.prior_slope > 0) {
+    state_->coarse_search.emplace(options.coarse_search, options.threads);
+  }
 }
 
 Pipeline::~Pipeline() = default;
@@ -214,10 +243,12 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
   s.result.ms.road_model = watch.lap();
   s.transform_perspective();
   s.result.ms.perspective = watch.lap();
-  s.narrow_search();
-  s.result.ms.ranges = watch.lap();
+  s.look_coarsely();
+  s.result.ms.coarse = watch.lap();
   s.match();
   s.result.ms.match = watch.lap();
+  s.refine();
+  s.result.ms.refinement = watch.lap();
   s.find_geometry();
   s.result.ms.road_geometry = watch.lap();
   s.transform();

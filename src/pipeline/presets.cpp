@@ -7,8 +7,12 @@ namespace {
 /// Every constant of the paper.
 PipelineOptions paper_preset() {
   PipelineOptions options;
+  options.correct_rows = false;
   options.road_model.with_roll = false;  // eq. relation_vd: Δu depends on v alone
   options.perspective.shift = ShiftPrecision::whole_pixel;
+  options.coarse_search.road_pull = 0;
+  options.matcher.prior_slope = 0;   // the costs alone decide
+  options.matcher.target_volume = true;
   options.matcher.block_radius = 5;  // 120-connected system
   options.matcher.aggregation_radius = 5;
   options.matcher.aggregation_step = 1;
@@ -18,6 +22,7 @@ PipelineOptions paper_preset() {
   options.matcher.texture_noise = 0;   // eq. c as written
   options.matcher.consistency = 1;     // δr
   options.matcher.drop_range_ends = false;
+  options.refinement.radius = 0;
   options.road_geometry.solver = RollSolver::gradient_descent;
   options.road_geometry.initial_lambda = 10;  // λ(0)
   return options;
@@ -26,8 +31,8 @@ PipelineOptions paper_preset() {
 /// The most speed at an accuracy that still beats semi-global matching on roads: plain correlation of blocks, one view.
 PipelineOptions fast_preset() {
   PipelineOptions options;
+  options.matcher.block_radius = 5;
   options.matcher.aggregation_radius = 0;
-  options.matcher.target_volume = false;
   return options;
 }
 
@@ -52,7 +57,9 @@ void PipelineOptions::validate() const {
   resolve_engine_name(engine);
   road_model.validate();
   perspective.validate();
+  coarse_search.validate();
   matcher.validate();
+  refinement.validate();
   road_geometry.validate();
 }
 

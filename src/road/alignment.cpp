@@ -8,6 +8,7 @@
 
 #include "core/parallel.hpp"
 #include "core/shrink.hpp"
+#include "road/block_alignment.hpp"
 #include "road/plane_fit.hpp"
 
 namespace roadstereo {
@@ -16,7 +17,8 @@ namespace {
 constexpr int coarse_width = 120;
 constexpr int half_block = 4;
 constexpr int block_pixels = (2 * half_block + 1) * (2 * half_block + 1);
-constexpr double least_correlation = 0.8;
+constexpr int refined_radius = 8;
+constexpr double least_correlation = 0.7;
 constexpr double least_deviation = 2.0 * grey_scale;
 constexpr int cells_across = 15;
 constexpr int cells_down = 9;
@@ -26,7 +28,29 @@ struct Pyramid {
   ImageView<const std::int16_t> left, right;
   int factor;
   GreyImage small_left, small_right;
+  GreyImage smooth_left, smooth_right;  ///< for sampling between the pixels
 };
+
+/// The image under a 3×3 binomial filter: interpolating it does not smooth it much further, so that noise does not make
+/// offsets of half a pixel look good.
+GreyImage smoothed(ImageView<const std::int16_t> image, int threads) {
+  GreyImage out(image.width(), image.height());
+  parallel_rows(image.height(), 32, threads, [&](int first, int last, int) {
+    for (int v = first; v < last; ++v) {
+      const std::int16_t* rows[3] = {image.row(std::max(0, v - 1)), image.row(v),
+                                     image.row(std::min(image.height() - 1, v + 1))};
+      const auto column = [&](int u) { return rows[0][u] + 2 * rows[1][u] + rows[2][u]; };
+      std::int16_t* to = out.row(v);
+      const int end = image.width() - 1;
+      for (int u = 1; u < end; ++u) {
+        to[u] = static_cast<std::int16_t>((column(u - 1) + 2 * column(u) + column(u + 1) + 8) / 16);
+      }
+      to[0] = to[1];
+      to[end] = to[end - 1];
+    }
+  });
+  return out;
+}
 
 struct Place {
   int u = 0;
@@ -97,19 +121,6 @@ Offset search(ImageView<const std::int16_t> left, const Place& place, ImageView<
   return best;
 }
 
-/// Vertical offset of the best match with its fraction, by a parabola; nothing when it is weak or at the end.
-std::optional<double> refine_vertically(ImageView<const std::int16_t> left, const Place& place,
-                                        ImageView<const std::int16_t> right, const Offset& best) {
-  if (best.correlation < least_correlation) return std::nullopt;
-  const Place at{place.u + best.du, place.v + best.dv};
-  if (!inside(right, at.u, at.v - 1) || !inside(right, at.u, at.v + 1)) return std::nullopt;
-  const double before = correlate(left, place, right, {at.u, at.v - 1});
-  const double after = correlate(left, place, right, {at.u, at.v + 1});
-  const double curvature = 2 * before + 2 * after - 4 * best.correlation;
-  if (before > best.correlation || after > best.correlation || curvature >= 0) return std::nullopt;
-  return best.dv + (before - after) / curvature;
-}
-
 /// The vertical offsets that one row of cells shows.
 std::vector<double> measure_cells(const Pyramid& pair, int cell_v) {
   const int rows = 1 + pair.small_left.height() / 40;
@@ -130,7 +141,10 @@ std::vector<double> measure_cells(const Pyramid& pair, int cell_v) {
     const Offset fine =
         search(pair.left, full, pair.right, {coarse.du * pair.factor - reach, coarse.dv * pair.factor - reach},
                {coarse.du * pair.factor + reach, coarse.dv * pair.factor + reach});
-    if (const auto offset = refine_vertically(pair.left, full, pair.right, fine)) offsets.push_back(*offset);
+    if (fine.correlation < least_correlation) continue;
+    const BlockAlignment start{.du = static_cast<double>(fine.du), .dv = static_cast<double>(fine.dv)};
+    const auto aligned = align_block(pair.smooth_left, full.u, full.v, pair.smooth_right, start, refined_radius);
+    if (aligned) offsets.push_back(aligned->dv);
   }
   return offsets;
 }
@@ -141,7 +155,8 @@ RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView
                                    int threads) {
   int factor = 1;
   while (left.width() / (2 * factor) >= coarse_width) factor *= 2;
-  const Pyramid pair{left, right, factor, shrink(left, factor), shrink(right, factor)};
+  const Pyramid pair{left, right, factor, shrink(left, factor), shrink(right, factor),
+                     smoothed(left, threads), smoothed(right, threads)};
   std::vector<std::vector<double>> by_row(cells_down);
   parallel_for(cells_down, threads,
                [&](int cell_v, int) { by_row[static_cast<std::size_t>(cell_v)] = measure_cells(pair, cell_v); });

@@ -49,10 +49,30 @@ int full_range(const RoadModelEstimate& road, int width) {
 /// Pixels that cubic interpolation reads beyond the ends of a row: copies of the border.
 constexpr std::ptrdiff_t border = 2;
 
-void copy_with_border(const std::int16_t* row, int width, float* padded) {
-  std::fill_n(padded, border, row[0]);
-  std::copy_n(row, width, padded + border);
-  std::fill_n(padded + border + width, border, row[width - 1]);
+/// Weights of Keys' cubic interpolation for the samples at −1, 0, 1, 2 around the place f, 0 ≤ f < 1.
+std::array<float, 4> cubic_weights(double f) {
+  const double f2 = f * f, f3 = f2 * f;
+  return {static_cast<float>(-0.5 * f + f2 - 0.5 * f3), static_cast<float>(1 - 2.5 * f2 + 1.5 * f3),
+          static_cast<float>(0.5 * f + 2 * f2 - 1.5 * f3), static_cast<float>(-0.5 * f2 + 0.5 * f3)};
+}
+
+/// padded = row v of the image, or what lies between its rows where v is no whole number.
+void copy_with_border(ImageView<const std::int16_t> image, double v, float* padded) {
+  const int width = image.width();
+  const double whole = std::floor(v);
+  const auto row = [&](int below) {
+    return image.row(std::clamp(static_cast<int>(whole) + below, 0, image.height() - 1));
+  };
+  float* out = padded + border;
+  if (v == whole) {
+    std::copy_n(row(0), width, out);
+  } else {
+    const std::array<float, 4> weight = cubic_weights(v - whole);
+    const std::int16_t *a = row(-1), *b = row(0), *c = row(1), *d = row(2);
+    for (int u = 0; u < width; ++u) out[u] = weight[0] * a[u] + weight[1] * b[u] + weight[2] * c[u] + weight[3] * d[u];
+  }
+  std::fill_n(padded, border, out[0]);
+  std::fill_n(out + width, border, out[width - 1]);
 }
 
 /// out[x] = row(x − shift) for x in [first, end), where shift = whole − f(x), 0 ≤ f < 1, changes linearly with x. Keys'
@@ -165,7 +185,7 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
     for (int v = first_row; v < last_row; ++v) {
       const int first = find_first_column(shift, v, width);
       first_column[static_cast<std::size_t>(v)] = first;
-      copy_with_border(target.row(v), width, in);
+      copy_with_border(target, v + shift.row_offset, in);
       std::fill_n(transformed.row(v), first, std::int16_t{0});
       transform_row(in, shift, v, first, width, transformed.row(v));
     }

@@ -1,6 +1,8 @@
 #include "roadstereo/matcher.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "roadstereo/error.hpp"
 #include "stereo/window.hpp"
@@ -42,6 +44,8 @@ void MatcherOptions::validate() const {
   require_range("sigma_space", sigma_space, 0.1, 1000.0);
   require_range("sigma_colour", sigma_colour, 0.1, 100000.0);
   require_range("texture_noise", texture_noise, 0.0, 50.0);
+  require_range("prior_slope", prior_slope, 0.0, 100.0);
+  require_range("prior_reach", prior_reach, 0.0, 1000.0);
   require_range("consistency", consistency, 0.0, 1000.0);
 }
 
@@ -66,6 +70,19 @@ std::vector<Tap> window_taps(const MatcherOptions& options) {
     }
   }
   return taps;
+}
+
+double support_pixels(const MatcherOptions& options) {
+  const double side = 2 * options.block_radius + 1;
+  double weights = 0, squares = 0;
+  for (const Tap& tap : window_taps(options)) {
+    const double distance2 = tap.du * tap.du + tap.dv * tap.dv;
+    const double weight = std::exp(-distance2 / (options.sigma_space * options.sigma_space));  // ω0
+    weights += weight;
+    squares += weight * distance2 / 2;
+  }
+  const double variance = (side * side - 1) / 12 + squares / weights;
+  return std::max(side * side, 4 * std::numbers::pi * variance);
 }
 
 void block_first_columns(const MatchInput& input, int block_radius, std::vector<int>& first) {

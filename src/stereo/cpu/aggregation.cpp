@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "stereo/window.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "stereo/cpu/aggregation.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for every instruction set
@@ -232,25 +234,55 @@ HWY_INLINE void smallest_lanes(D d, const hn::Vec<D>* of, hn::TFromD<D>* smalles
 }
 #endif
 
-/// Winner-take-all of four pixels: winners[p] = the first d at which energies[p·pitch + d] is smallest. Behind the last
-/// disparity the energies are infinite up to a whole vector.
-HWY_INLINE void take_winners(const AggregationRow& row, const float* energies, std::int32_t* winners) {
+/// The energies of four pixels as winner-take-all sees them.
+struct PlainEnergies {
+  const float* energies;
+  std::ptrdiff_t pitch;
+
+  HWY_INLINE Float at(int p, int d) const { return hn::Load(Floats(), energies + p * pitch + d); }
+};
+struct LeaningEnergies {
+  PlainEnergies plain;
+  float centre[4], slope[4];
+  float reach;
+
+  HWY_INLINE LeaningEnergies(const AggregationRow& row, const float* energies, int column)
+      : plain{energies, row.pitch}, reach(row.lean.reach) {
+    for (int p = 0; p < 4; ++p) {
+      const float at = column + p < row.end ? row.lean.centre[column + p] : 0.0f;
+      const bool known = at == at;
+      centre[p] = known ? at : 0.0f;
+      slope[p] = known ? row.lean.slope : 0.0f;
+    }
+  }
+
+  HWY_INLINE Float at(int p, int d) const {
+    const Floats df;
+    const Float away = hn::Abs(hn::Sub(hn::ConvertTo(df, count_from(d)), hn::Set(df, centre[p])));
+    return hn::MulAdd(hn::Min(away, hn::Set(df, reach)), hn::Set(df, slope[p]), plain.at(p, d));
+  }
+};
+
+/// Winner-take-all of four pixels: winners[p] = the first d at which the energy is smallest. Behind the last disparity
+/// the energies are infinite up to a whole vector.
+template <class Energies>
+HWY_INLINE void take_winners(const Energies& energies, int disparities, std::int32_t* winners) {
   const Floats df;
   const Ints di;
   const int lanes = static_cast<int>(hn::Lanes(df));
   Float vectors[4];
-  for (int p = 0; p < 4; ++p) vectors[p] = hn::Load(df, energies + p * row.pitch);
-  for (int d = lanes; d < row.disparities; d += lanes) {
-    for (int p = 0; p < 4; ++p) vectors[p] = hn::Min(vectors[p], hn::Load(df, energies + p * row.pitch + d));
+  for (int p = 0; p < 4; ++p) vectors[p] = energies.at(p, 0);
+  for (int d = lanes; d < disparities; d += lanes) {
+    for (int p = 0; p < 4; ++p) vectors[p] = hn::Min(vectors[p], energies.at(p, d));
   }
   float smallest[4];
   smallest_lanes(df, vectors, smallest);
   const Int behind_last = hn::Set(di, std::numeric_limits<std::int16_t>::max());
   Int found[4] = {behind_last, behind_last, behind_last, behind_last};
-  for (int d = 0; d < row.disparities; d += lanes) {
+  for (int d = 0; d < disparities; d += lanes) {
     const Int disparity = count_from(d);
     for (int p = 0; p < 4; ++p) {
-      const auto here = hn::Eq(hn::Load(df, energies + p * row.pitch + d), hn::Set(df, smallest[p]));
+      const auto here = hn::Eq(energies.at(p, d), hn::Set(df, smallest[p]));
       found[p] = hn::Min(found[p], hn::IfThenElse(hn::RebindMask(di, here), disparity, behind_last));
     }
   }
@@ -263,13 +295,17 @@ struct StripWinners {
   float before[strip_columns], best[strip_columns], after[strip_columns];
 };
 
-HWY_INLINE void find_winners(const AggregationRow& row, float* energies, int columns, StripWinners& found) {
+HWY_INLINE void find_winners(const AggregationRow& row, int strip, float* energies, int columns, StripWinners& found) {
   for (int column = 0; column < columns; column += 4) {
     float* of_four = energies + column * row.pitch;
     for (int p = 0; p < 4; ++p) {
       std::fill(of_four + p * row.pitch + row.disparities, of_four + (p + 1) * row.pitch, infinity);
     }
-    take_winners(row, of_four, found.winner + column);
+    if (row.lean.centre == nullptr) {
+      take_winners(PlainEnergies{of_four, row.pitch}, row.disparities, found.winner + column);
+    } else {
+      take_winners(LeaningEnergies(row, of_four, strip + column), row.disparities, found.winner + column);
+    }
     for (int p = 0; p < 4; ++p) {
       // A winner at an end has no neighbour there: what is read instead is not used.
       const int winner = std::clamp(found.winner[column + p], 1, std::max(1, row.disparities - 2));
@@ -281,8 +317,9 @@ HWY_INLINE void find_winners(const AggregationRow& row, float* energies, int col
   }
 }
 
-/// Writes winners and offsets of a strip: for every column −1 and NaN where nothing can match, else the winner and
-/// eq. subpixel, NaN where the winner has no neighbour on one side.
+/// Writes winners, offsets and variances of a strip: for every column −1 and NaN where nothing can match, else the
+/// winner and eq. subpixel, NaN where the winner has no neighbour on one side. The variance is derived in
+/// stereo/window.hpp.
 HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns, const StripWinners& found,
                               const WinnerRow& out) {
   const Floats df;
@@ -300,13 +337,19 @@ HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns,
     hn::StoreU(hn::DemoteTo(ds, chosen), ds, out.winner + at);
     if (out.offset == nullptr) continue;
     const Float before = hn::LoadU(df, found.before + i), after = hn::LoadU(df, found.after + i);
-    const Float both = hn::Add(before, after),
-                twice_best = hn::Add(hn::LoadU(df, found.best + i), hn::LoadU(df, found.best + i));
-    const Float curvature = hn::Mul(hn::Sub(both, twice_best), hn::Set(df, 2.0f));
-    const Float offset =
-        hn::IfThenElseZero(hn::Gt(curvature, hn::Zero(df)), hn::Div(hn::Sub(before, after), curvature));
+    const Float best = hn::LoadU(df, found.best + i);
+    const Float curvature = hn::Sub(hn::Add(before, after), hn::Add(best, best));
+    const auto curved = hn::Gt(curvature, hn::Set(df, least_curvature));
+    const Float half = hn::Set(df, 0.5f);
+    const Float vertex = hn::IfThenElseZero(curved, hn::Div(hn::Mul(half, hn::Sub(before, after)), curvature));
+    // A winner that leans on the prior need not be a minimum of the costs.
+    const Float offset = hn::Clamp(vertex, hn::Neg(half), half);
+    const Float outside = hn::Sub(vertex, offset);
+    const Float noise = hn::Div(hn::Mul(hn::Set(df, 2 / row.support), hn::Max(best, hn::Zero(df))), curvature);
+    const Float variance = hn::IfThenElse(curved, hn::MulAdd(outside, outside, noise), hn::Set(df, infinity));
     const auto bracketed = hn::And(hn::Gt(winner, hn::Zero(di)), hn::Lt(winner, last));
     hn::StoreU(hn::IfThenElse(hn::RebindMask(df, bracketed), offset, nan), df, out.offset + at);
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(df, bracketed), variance, hn::Set(df, infinity)), df, out.variance + at);
   }
 }
 
@@ -323,7 +366,7 @@ void aggregate_and_choose(const AggregationRow& row, const AggregationScratch& s
     if (d < row.disparities) aggregate_strip<1>(row, steps, strip, d, energies);
     const int columns = std::min(strip_columns, row.end - strip);
     StripWinners found;
-    find_winners(row, energies, columns, found);
+    find_winners(row, strip, energies, columns, found);
     write_winners(row, strip, columns, found, out);
   }
 }

@@ -21,6 +21,13 @@ struct WindowRow {
   int last_own;     ///< last column of the own view
 };
 
+/// What winner-take-all leans on: energies at disparity d grow by slope · min(|d − centre|, reach).
+struct LeanRow {
+  const float* centre = nullptr;  ///< per column of the tile; NaN: nothing to lean on there; null: nowhere
+  float slope = 0;
+  float reach = 0;
+};
+
 /// One row of one view, ready to be aggregated at the columns [first, end).
 struct AggregationRow {
   int first;
@@ -32,12 +39,15 @@ struct AggregationRow {
   WindowRow centre;                       ///< the window row of the pixels themselves
   std::span<const WindowRow> rows;        ///< those that lie in the image
   std::span<const float* const> weights;  ///< ω of every tap, row by row: weights[tap][column]
+  LeanRow lean;
+  float support = 1;  ///< pixels that an energy rests on
 };
 
 /// What winner-take-all leaves of the columns [first, end), from index 0 on; whole strips are written.
 struct WinnerRow {
   std::int16_t* winner;  ///< −1 where nothing can match
   float* offset;         ///< eq. subpixel; NaN when the winner has no neighbour on one side; null: not wanted
+  float* variance;       ///< of the disparity, pixels²; infinite where the costs do not tell; wanted with `offset`
 };
 
 /// Scratch memory of aggregate_and_choose; `numbers` is aligned for vectors.

@@ -95,6 +95,7 @@ class CpuEngine final : public StereoEngine {
     maps.winner.resize(width, height);
     maps.target_winner.resize(width, height);
     maps.disparity.resize(width, height);
+    maps.variance.resize(width, height);
     block_first_columns(input, options.block_radius, first_columns_);
     const MatchView reference(input, MatchView::reference, first_columns_);
     const MatchView target(input, MatchView::target, first_columns_);

@@ -37,9 +37,14 @@ void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& op
   costs_.resize(static_cast<std::size_t>(ring_), radius_ * pitch, (padded + radius_) * pitch);
   const AggregationScratchSize scratch = aggregation_scratch(ring_, static_cast<int>(taps.size()), pitch);
   scratch_.resize(1, 0, scratch.numbers);
+  support_ = static_cast<float>(support_pixels(options));
+  prior_slope_ = static_cast<float>(options.prior_slope);
+  prior_reach_ = static_cast<float>(options.prior_reach);
+  prior_.resize(static_cast<std::size_t>(padded));
   steps_.resize(static_cast<std::size_t>(scratch.pointers));
   winner_.resize(static_cast<std::size_t>(padded));
   offset_.resize(static_cast<std::size_t>(padded));
+  variance_.resize(static_cast<std::size_t>(padded));
   window_.reserve(static_cast<std::size_t>(ring_));
 }
 
@@ -75,19 +80,35 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
                            .radius = radius_,
                            .centre = window_row(v),
                            .rows = window_,
-                           .weights = tile_weights_.compute(v)};
+                           .weights = tile_weights_.compute(v),
+                           .lean = lean_row(view, v, tile),
+                           .support = support_};
   const bool reference = view.side() == MatchView::reference;
   const auto original = [&](std::int16_t winner) {
     return static_cast<std::int16_t>(winner < 0 ? winner : winner + tile.range.first);
   };
-  aggregate_and_choose(row, {steps_.data(), scratch_.row(0)}, {winner_.data(), reference ? offset_.data() : nullptr});
+  aggregate_and_choose(row, {steps_.data(), scratch_.row(0)}, {winner_.data(), reference ? offset_.data() : nullptr, variance_.data()});
   if (reference) {
     std::transform(winner_.data(), winner_.data() + row.end, maps.winner.row(v) + tile.first, original);
     std::copy_n(offset_.data(), row.end, maps.disparity.row(v) + tile.first);
+    std::copy_n(variance_.data(), row.end, maps.variance.row(v) + tile.first);
   } else {
     std::transform(winner_.rend() - row.end, winner_.rend(), maps.target_winner.row(v) + view.width() - tile.end,
                    original);
   }
+}
+
+/// The prior of row v, relative to the tile's first disparity.
+LeanRow ViewMatcher::lean_row(const MatchView& view, int v, const Tile& tile) {
+  const DisparityPrior* prior = view.prior();
+  if (prior == nullptr || prior_slope_ == 0) return {};
+  const int down = prior->disparity.height(), across = prior->disparity.width();
+  const float* row = prior->disparity.row(std::min(v / prior->factor, down - 1));
+  const auto first = static_cast<float>(tile.range.first);
+  for (int i = tile.first; i < tile.end; ++i) {
+    prior_[static_cast<std::size_t>(i - tile.first)] = row[std::min(i / prior->factor, across - 1)] - first;
+  }
+  return {.centre = prior_.data(), .slope = prior_slope_, .reach = prior_reach_};
 }
 
 }  // namespace roadstereo::cpu

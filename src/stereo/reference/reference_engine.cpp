@@ -44,6 +44,7 @@ struct Scene {
   const MatchInput& input;
   const MatcherOptions& options;
   std::vector<Tap> window = window_taps(options);
+  double support = support_pixels(options);
   std::vector<int> first_column{};  ///< per row: first target column that the whole block of the row sees
 
   Scene(const MatchInput& match_input, const MatcherOptions& match_options)
@@ -149,16 +150,27 @@ const Range& range_at(const Image<Range>& ranges, int u, int v) {
   return ranges(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
 }
 
+/// What a disparity pays for its distance from the prior: prior_slope · min(|d − prior|, prior_reach).
+double lean(const Scene& scene, const DisparityPrior* prior, int u, int v, int d) {
+  if (prior == nullptr) return 0;
+  const Image<float>& map = prior->disparity;
+  const double centre = map(std::min(u / prior->factor, map.width() - 1), std::min(v / prior->factor, map.height() - 1));
+  if (std::isnan(centre)) return 0;
+  return scene.options.prior_slope * std::min(std::abs(d - centre), scene.options.prior_reach);
+}
+
 /// Winner-take-all: the disparity of the smallest cost, −1 where there is none; the smaller disparity wins a tie.
-Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, const Image<Range>& ranges) {
+Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, const Image<Range>& ranges,
+                                 const DisparityPrior* prior) {
   Image<std::int16_t> winners(scene.width(), scene.height(), -1);
   for (int v = 0; v < scene.height(); ++v) {
     for (int u = 0; u < scene.width(); ++u) {
       double best = std::numeric_limits<double>::infinity();
       const Range searched = range_at(ranges, u, v);
       for (int d = searched.first; d < searched.end; ++d) {
-        if (energy(u, v, d) < best) {
-          best = energy(u, v, d);
+        const double leaning = energy(u, v, d) + lean(scene, prior, u, v, d);
+        if (leaning < best) {
+          best = leaning;
           winners(u, v) = static_cast<std::int16_t>(d);
         }
       }
@@ -175,16 +187,32 @@ bool consistent(const MatchMaps& maps, int u, int v, double threshold) {
   return difference * difference <= threshold;
 }
 
-/// Eq. subpixel, on the aggregated costs. A winner at the end of its range has no neighbour on one side.
-double refine(const Scene& scene, const CostVolume& energy, const Range& searched, int u, int v, int d) {
+/// A sub-pixel disparity and its variance.
+struct Refined {
+  double disparity = nan;
+  double variance = std::numeric_limits<double>::infinity();
+};
+
+/// Eq. subpixel, on the aggregated costs, and the variance that they tell of (stereo/window.hpp). A winner at the end of
+/// its range has no neighbour on one side; one that leans on the prior need not be a minimum of the costs.
+Refined refine(const Scene& scene, const CostVolume& energy, const Range& searched, int u, int v, int d) {
+  Refined refined;
   const bool first = d == searched.first;
   const bool last = d + 1 == searched.end || std::isnan(energy(u, v, d + 1));
-  if (first || last) return scene.options.drop_range_ends ? nan : d;
-  if (!scene.options.sub_pixel) return d;
-  const double before = energy(u, v, d - 1);
-  const double after = energy(u, v, d + 1);
-  const double curvature = 2 * before + 2 * after - 4 * energy(u, v, d);
-  return curvature > 0 ? d + (before - after) / curvature : d;
+  if (first || last) {
+    if (!scene.options.drop_range_ends) refined.disparity = d;
+    return refined;
+  }
+  const double before = energy(u, v, d - 1), best = energy(u, v, d), after = energy(u, v, d + 1);
+  const double curvature = before + after - 2 * best;
+  refined.disparity = d;
+  if (curvature <= double{least_curvature}) return refined;
+  const double vertex = (before - after) / (2 * curvature);
+  const double offset = std::clamp(vertex, -0.5, 0.5);
+  if (scene.options.sub_pixel) refined.disparity = d + offset;
+  refined.variance = 2 * std::max(best, 0.0) / (scene.support * curvature) +
+                     (vertex - offset) * (vertex - offset);
+  return refined;
 }
 
 class ReferenceEngine final : public StereoEngine {
@@ -200,20 +228,23 @@ class ReferenceEngine final : public StereoEngine {
     SearchRanges ranges;
     ranges.assign(scene.width(), scene.height(), input.disparities);
     if (input.ranges != nullptr) ranges = *input.ranges;
-    maps.winner = take_winners(scene, energy_ref, ranges.reference);
+    maps.winner = take_winners(scene, energy_ref, ranges.reference, input.prior);
     if (options.target_volume) {
-      maps.target_winner = take_winners(scene, aggregate(scene, cost, input.target, 1, threads_), ranges.target);
+      maps.target_winner = take_winners(scene, aggregate(scene, cost, input.target, 1, threads_), ranges.target, nullptr);
     } else {
       maps.target_winner.assign(scene.width(), scene.height(), -1);
       for (int v = 0; v < scene.height(); ++v) project_winners(maps.winner, v, maps.target_winner);
     }
     maps.disparity.assign(scene.width(), scene.height(), std::numeric_limits<float>::quiet_NaN());
+    maps.variance.assign(scene.width(), scene.height(), std::numeric_limits<float>::infinity());
     for (int v = 0; v < scene.height(); ++v) {
       for (int u = 0; u < scene.width(); ++u) {
         if (maps.winner(u, v) < 0) continue;
         if (options.left_right_check && !consistent(maps, u, v, options.consistency)) continue;
-        maps.disparity(u, v) =
-            static_cast<float>(refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v)));
+        const Refined refined =
+            refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v));
+        maps.disparity(u, v) = static_cast<float>(refined.disparity);
+        maps.variance(u, v) = static_cast<float>(refined.variance);
       }
     }
   }

@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.hpp"
+#include "core/scratch.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/refinement.hpp"
+#include "road/refinement/weighted_mean.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr int lanes = 16;           // elements that the kernel may touch behind a row
+constexpr float unknown = 1e12F;    // variance of a disparity that is not there
+constexpr float widest_sigma = 10;  // pixels; nothing is known less well than by the search range
+constexpr int rows_per_band = 32;
+/// Variances of the theory are too small by this: the colour weights leave fewer pixels to a cost than its support, and
+/// neither sampling nor the slant of a surface is noise. Measured on synthetic roads (docs/accuracy.md).
+constexpr float optimism = 2;
+constexpr int most_lines = 65;
+
+/// What is refined, and how.
+struct Maps {
+  ImageView<const float> disparity, variance;
+  RoadModel road;
+  RefinementOptions options;
+};
+
+/// The rows of a band and a radius around them as the kernel reads them: heights above the road with room on both sides.
+class BandRows {
+ public:
+  BandRows(const Maps& maps, int radius)
+      : maps_(maps), radius_(radius), pitch_(maps.disparity.width() + 2 * std::ptrdiff_t{radius} + lanes) {}
+
+  static std::size_t numbers(int width, int radius) {
+    const std::ptrdiff_t pitch = width + 2 * std::ptrdiff_t{radius} + lanes;
+    return static_cast<std::size_t>(3 * pitch * (rows_per_band + 2 * std::ptrdiff_t{radius}));
+  }
+
+  void fill(int first, int last, float* numbers) {
+    first_ = std::max(0, first - radius_);
+    end_ = std::min(maps_.disparity.height(), last + radius_);
+    numbers_ = numbers;
+    for (int v = first_; v < end_; ++v) fill_row(v);
+  }
+
+  bool holds(int v) const { return v >= first_ && v < end_; }
+  MeasuredRow row(int v) const {
+    const float* at = numbers_ + 3 * pitch_ * (v - first_) + radius_;
+    return {at, at + pitch_, at + 2 * pitch_};
+  }
+
+ private:
+  void fill_row(int v) {
+    const float *disparity = maps_.disparity.row(v), *variance = maps_.variance.row(v);
+    const auto least = static_cast<float>(maps_.options.least_sigma_px * maps_.options.least_sigma_px);
+    const auto most = static_cast<float>(maps_.options.most_sigma_px * maps_.options.most_sigma_px);
+    const auto of_row = static_cast<float>(maps_.road.disparity(0, v)), slope = static_cast<float>(maps_.road.a2);
+    float* height = numbers_ + 3 * pitch_ * (v - first_);
+    float *precision = height + pitch_, *spread = precision + pitch_;
+    std::fill_n(height, 2 * pitch_, 0.0F);
+    std::fill_n(spread, pitch_, unknown);
+    for (int u = 0; u < maps_.disparity.width(); ++u) {
+      const bool known = disparity[u] == disparity[u];
+      const float bounded = std::min(variance[u], widest_sigma * widest_sigma) + least;
+      height[radius_ + u] = known ? disparity[u] - (of_row + slope * static_cast<float>(u)) : 0.0F;
+      precision[radius_ + u] = known ? 1 / bounded : 0.0F;
+      spread[radius_ + u] = known ? std::min(bounded, most) : unknown;
+    }
+  }
+
+  const Maps& maps_;
+  int radius_;
+  std::ptrdiff_t pitch_;
+  int first_ = 0, end_ = 0;
+  float* numbers_ = nullptr;
+};
+
+/// Refines row v of a band.
+void refine_row(const Maps& maps, const BandRows& rows, const MeanSettings& settings, int radius, int v, float* mean,
+                float* precision, float* refined, float* sigma) {
+  std::array<WindowLine, most_lines> lines;
+  std::size_t count = 0;
+  for (int dv = -radius; dv <= radius; dv += maps.options.step) {
+    if (rows.holds(v + dv)) lines[count++] = {rows.row(v + dv), -radius, maps.options.step};
+  }
+  const int width = maps.disparity.width();
+  weighted_mean(rows.row(v), {lines.data(), count}, settings, width, mean, precision);
+  const auto of_row = static_cast<float>(maps.road.disparity(0, v)), slope = static_cast<float>(maps.road.a2);
+  const float* disparity = maps.disparity.row(v);
+  for (int u = 0; u < width; ++u) {
+    const bool known = disparity[u] == disparity[u];
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    refined[u] = known ? mean[u] + (of_row + slope * static_cast<float>(u)) : nan;
+    sigma[u] = known ? std::sqrt(optimism / precision[u]) : nan;
+  }
+}
+
+}  // namespace
+
+void RefinementOptions::validate() const {
+  const auto require = [](bool good, const char* name, double value, const char* rule) {
+    if (!good) fail("refinement.", name, " is ", value, "; it must be ", rule);
+  };
+  require(radius >= 0 && radius <= 32, "radius", radius, "between 0 and 32 pixels");
+  require(step >= 1 && step <= 16, "step", step, "between 1 and 16 pixels");
+  require(reach_sigmas >= 0.5 && reach_sigmas <= 100, "reach_sigmas", reach_sigmas, "between 0.5 and 100");
+  require(least_sigma_px >= 0.001 && least_sigma_px <= 1, "least_sigma_px", least_sigma_px,
+          "between 0.001 and 1 pixels");
+  require(most_sigma_px >= least_sigma_px && most_sigma_px <= 10, "most_sigma_px", most_sigma_px,
+          "between least_sigma_px and 10 pixels");
+}
+
+void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const RoadModel& road,
+                        double support, const RefinementOptions& options, int threads, Image<float>& refined,
+                        Image<float>& sigma) {
+  options.validate();
+  const int width = disparity.width(), height = disparity.height();
+  if (variance.width() != width || variance.height() != height) {
+    fail("the disparity map has ", width, "×", height, " pixels and its variance ", variance.width(), "×",
+         variance.height(), "; they must be equal");
+  }
+  refined.resize(width, height);
+  sigma.resize(width, height);
+  const Maps maps{disparity, variance, road, options};
+  const int radius = options.radius / options.step * options.step;
+  const MeanSettings settings{.reach2 = static_cast<float>(options.reach_sigmas * options.reach_sigmas),
+                              .share = static_cast<float>(std::min(1.0, options.step * options.step / support))};
+  const std::size_t band_numbers = BandRows::numbers(width, radius);
+  const int row_numbers = width + lanes;
+  const std::size_t numbers = band_numbers + 2 * static_cast<std::size_t>(row_numbers);
+  auto scratch = scratch_vector<float>(numbers * static_cast<std::size_t>(resolve_threads(threads)));
+  parallel_rows(height, rows_per_band, threads, [&](int first, int last, int worker) {
+    float* own = scratch.data() + numbers * static_cast<std::size_t>(worker);
+    float* mean = own + band_numbers;
+    BandRows rows(maps, radius);
+    rows.fill(first, last, own);
+    for (int v = first; v < last; ++v) {
+      refine_row(maps, rows, settings, radius, v, mean, mean + row_numbers, refined.row(v), sigma.row(v));
+    }
+  });
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,140 @@
+#include "stereo/coarse/coarse_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.hpp"
+#include "core/shrink.hpp"
+#include "roadstereo/error.hpp"
+#include "stereo/coarse/scanline.hpp"
+#include "stereo/window.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr int most_columns = 800;       // of the coarse pair, when the factor is derived
+constexpr int smallest_side = 64;       // pixels; below that there is nothing to gain
+constexpr int fewest_disparities = 12;  // below this narrowing saves nothing
+constexpr int fewest_rows = 24;         // of a band
+constexpr float no_evidence = 1;  // cost of a disparity without a counterpart: that of uncorrelated blocks
+
+int derived_factor(const CoarseSearchOptions& options, int width) {
+  if (options.factor != 0) return options.factor;
+  int factor = 2;
+  while (factor < 8 && width / factor > most_columns) factor *= 2;
+  return factor;
+}
+
+template <class Value>
+void require_range(const char* name, Value value, Value lowest, Value highest) {
+  if (!(value >= lowest && value <= highest)) {
+    fail("coarse_search.", name, " is ", value, "; it must be between ", lowest, " and ", highest);
+  }
+}
+
+}  // namespace
+
+void CoarseSearchOptions::validate() const {
+  if (factor != 0 && factor != 2 && factor != 4 && factor != 8) {
+    fail("coarse_search.factor is ", factor, "; it must be 2, 4 or 8, or 0 to derive it");
+  }
+  require_range("block_radius", block_radius, 1, 10);
+  require_range("texture_noise", texture_noise, 0.0, 50.0);
+  require_range("step_penalty", step_penalty, 0.0, 10.0);
+  require_range("jump_penalty", jump_penalty, 0.0, 10.0);
+  require_range("road_pull", road_pull, 0.0, 10.0);
+  require_range("road_reach", road_reach, 0.0, 1000.0);
+  require_range("row_error_px", row_error_px, 0.0, 10.0);
+  require_range("known_within_px", known_within_px, 0.01, 10.0);
+}
+
+CoarseSearch::CoarseSearch(const CoarseSearchOptions& options, int threads)
+    : options_(options), threads_(resolve_threads(threads)), workers_(static_cast<std::size_t>(threads_)) {
+  options.validate();
+}
+
+void CoarseSearch::shrink_pair(const MatchInput& input, int factor) {
+  for (GreyImage* small : {&reference_, &target_}) {
+    small->resize(input.reference.width() / factor, input.reference.height() / factor);
+  }
+  shrink(input.reference, factor, reference_.view());
+  shrink(input.target, factor, target_.view());
+  first_column_.assign(static_cast<std::size_t>(reference_.height()), 0);
+  if (input.first_column == nullptr) return;
+  for (std::size_t v = 0; v < first_column_.size(); ++v) {
+    const int* rows = input.first_column + static_cast<std::size_t>(factor) * v;
+    const int first = *std::max_element(rows, rows + factor);
+    first_column_[v] = std::min(reference_.width(), (first + factor - 1) / factor);
+  }
+}
+
+bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, double)> road) {
+  const int width = input.reference.width(), height = input.reference.height();
+  ranges_found_ = false;
+  if (std::min(width, height) < smallest_side) return false;
+  prior_.factor = derived_factor(options_, width);
+  shrink_pair(input, prior_.factor);
+  const int disparities = std::max(2, (input.disparities - 1) / prior_.factor + 1);
+  const MatchInput coarse{reference_, target_, first_column_.data(), disparities};
+  block_first_columns(coarse, options_.block_radius, block_first_column_);
+  prior_.disparity.resize(reference_.width(), reference_.height());
+
+  MatcherOptions block;
+  block.block_radius = options_.block_radius;
+  block.texture_noise = options_.texture_noise;
+  for (Worker& worker : workers_) {
+    worker.costs.prepare(reference_.width(), coarse.disparities, block);
+    const std::ptrdiff_t pitch = cpu::padded_disparities(coarse.disparities);
+    worker.row.resize(1, 0, reference_.width() * pitch);
+    worker.centre.resize(static_cast<std::size_t>(reference_.width()));
+    worker.pull.resize(static_cast<std::size_t>(reference_.width()));
+    worker.scratch.resize(1, 0, static_cast<std::ptrdiff_t>(scanline_scratch(reference_.width(), pitch)));
+  }
+  // A band begins by filling its sums, so it should be high.
+  const int rows = std::max(fewest_rows, (reference_.height() + 4 * threads_ - 1) / (4 * threads_));
+  parallel_rows(reference_.height(), rows, threads_, [&](int first, int last, int worker) {
+    match_rows(coarse, first, last, road, workers_[static_cast<std::size_t>(worker)]);
+  });
+  if (input.disparities < fewest_disparities) return true;
+  tile_ranges_.find(prior_.disparity, prior_.factor, width, height, input.disparities);
+  ranges_found_ = true;
+  return true;
+}
+
+void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, FunctionRef<double(double, double)> road,
+                              Worker& worker) {
+  const cpu::MatchView view(coarse, cpu::MatchView::reference, block_first_column_);
+  worker.costs.start(view, first, 0, view.width(), {0, coarse.disparities});
+  worker.evidence.start(coarse.reference, first,
+                        {.block_radius = options_.block_radius,
+                         .noise = options_.texture_noise,
+                         .row_error = options_.row_error_px,
+                         .half_at = options_.known_within_px});
+  for (int v = first; v < last; ++v) {
+    worker.costs.compute(v, worker.row.row(0));
+    finish_row(coarse, v, road, worker);
+  }
+}
+
+/// Takes the winners of row v along its smoothest paths, with the road as the guess where the picture says nothing.
+void CoarseSearch::finish_row(const MatchInput& coarse, int v, FunctionRef<double(double, double)> road,
+                              Worker& worker) {
+  const int width = reference_.width();
+  const auto factor = static_cast<float>(prior_.factor);
+  const std::vector<float>& ignorance = worker.evidence.next();
+  for (int u = 0; u < width; ++u) {
+    const auto column = static_cast<std::size_t>(u);
+    worker.centre[column] =
+        static_cast<float>(road(unshrink(u, prior_.factor), unshrink(v, prior_.factor))) / factor;
+    worker.pull[column] = static_cast<float>(options_.road_pull) * ignorance[column];
+  }
+  float* out = prior_.disparity.row(v);
+  match_scanline(
+      {worker.row.row(0), worker.costs.pitch(), width, coarse.disparities, block_first_column_[static_cast<std::size_t>(v)]},
+      {worker.centre.data(), worker.pull.data(), static_cast<float>(options_.road_reach)},
+      {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)}, no_evidence,
+      worker.scratch.row(0), out);
+  for (int u = 0; u < width; ++u) out[u] *= factor;
+}
+
+}  // namespace roadstereo
