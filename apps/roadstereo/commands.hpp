@@ -11,5 +11,6 @@ void add_inspect(CLI::App& app);
 void add_synth(CLI::App& app);
 void add_engines(CLI::App& app);
 void add_benchmark(CLI::App& app);
+void add_evaluate(CLI::App& app);
 
 }  // namespace roadstereo::cli

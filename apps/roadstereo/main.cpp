@@ -67,6 +67,7 @@ void describe(CLI::App& app) {
   roadstereo::cli::add_synth(app);
   roadstereo::cli::add_engines(app);
   roadstereo::cli::add_benchmark(app);
+  roadstereo::cli::add_evaluate(app);
 }
 
 }  // namespace

@@ -1,0 +1,25 @@
+#include <CLI/CLI.hpp>
+
+#include "commands.hpp"
+#include "evaluate/experiments.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+constexpr const char* evaluate_footer =
+    R"(Every experiment prints a table, beside the paper's figures where it has some; --json writes the same figures to a
+file, --figure a picture of them.
+
+Example:
+  roadstereo evaluate score disparity.tiff truth.png --tolerances 1,2,3 --figure error.png)";
+
+}  // namespace
+
+void add_evaluate(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("evaluate", "Accuracy against ground truth: the paper's experiments and more");
+  command->footer(evaluate_footer);
+  command->require_subcommand(1);
+  add_score(*command);
+}
+
+}  // namespace roadstereo::cli

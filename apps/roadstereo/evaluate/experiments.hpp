@@ -1,0 +1,12 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace roadstereo::cli {
+
+// Each adds one experiment to `evaluate`; it runs when it is parsed.
+void add_score(CLI::App& evaluate);
+
+}  // namespace roadstereo::cli

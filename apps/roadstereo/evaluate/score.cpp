@@ -1,0 +1,65 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "evaluate/experiments.hpp"
+#include "evaluate/mask_file.hpp"
+#include "evaluate/report.hpp"
+#include "evaluate/score_columns.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/image_file.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+struct Arguments {
+  std::string map, truth, mask;
+  std::vector<double> tolerances_px{1, 2, 3};
+  ReportFiles report;
+};
+
+void score(const Arguments& arguments) {
+  const Image<float> map = io::read_disparity(arguments.map);
+  const Image<float> truth = io::read_disparity(arguments.truth);
+  Image<std::uint8_t> mask;
+  std::optional<ImageView<const std::uint8_t>> inside;
+  if (!arguments.mask.empty()) {
+    mask = read_mask(arguments.mask);
+    inside = mask.view();
+  }
+  const DisparityScore figures = score_disparity(map, truth, inside, arguments.tolerances_px);
+  if (figures.truth_pixels == 0) fail(arguments.truth, " labels no pixel", inside ? " inside the mask" : "");
+  const Table table{fmt::format("{} against {}: {} of {} labelled pixels have a disparity", arguments.map,
+                                arguments.truth, figures.given_pixels, figures.truth_pixels),
+                    score_columns(arguments.tolerances_px),
+                    {score_cells(figures)}};
+  if (!arguments.report.json.empty()) write_report(arguments.report.json, table.json().front());
+  fmt::print("{}", table.text());
+}
+
+constexpr const char* score_footer =
+    R"(Maps and truth: float TIFF or PFM (NaN, in PFM also infinity, is missing), or 16-bit PNG (value / 256 px, 0 missing).
+
+Example:
+  roadstereo evaluate score out/disparity.tiff disp_noc_0/000003_10.png --mask road/000003_10.png --figure error.png)";
+
+}  // namespace
+
+void add_score(CLI::App& evaluate) {
+  CLI::App* command = evaluate.add_subcommand("score", "Any disparity map against any truth");
+  command->footer(score_footer);
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("MAP", arguments->map, "Disparity map")->required();
+  command->add_option("TRUTH", arguments->truth, "Ground truth, of the same size")->required();
+  command->add_option("--mask", arguments->mask, "Image that is not 0 where pixels count")->type_name("FILE");
+  command->add_option("--tolerances", arguments->tolerances_px, "Disparity error tolerances of e_p, pixels")
+      ->type_name("PX,PX…")
+      ->delimiter(',')
+      ->capture_default_str();
+  add_report_options(*command, arguments->report);
+  command->callback([arguments] { score(*arguments); });
+}
+
+}  // namespace roadstereo::cli
