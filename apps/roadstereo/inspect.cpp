@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -15,6 +14,7 @@
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/output_folder.hpp"
 #include "roadstereo/options.hpp"
+#include "settings.hpp"
 #include "summary.hpp"
 
 namespace roadstereo::cli {
@@ -50,22 +50,11 @@ void place_rest(Arguments& arguments) {
   if (arguments.files.calibration.size() > 2) fail("--calibration takes one file, or the two of a ROS pair");
 }
 
-std::pair<std::string, std::string> split_setting(const std::string& setting) {
-  const auto equals = setting.find('=');
-  if (equals == std::string::npos || equals == 0) {
-    fail("--set takes key=value, for example matcher.sigma_space=2, but got \"", setting, "\"");
-  }
-  return {setting.substr(0, equals), setting.substr(equals + 1)};
-}
-
 PipelineOptions make_options(const Arguments& arguments) {
   PipelineOptions options = preset(arguments.preset);
   options.engine = arguments.engine;
   options.threads = arguments.threads;
-  for (const std::string& setting : arguments.settings) {
-    const auto [key, value] = split_setting(setting);
-    set_option(options, key, value);
-  }
+  apply_settings(arguments.settings, options);
   options.validate();
   return options;
 }

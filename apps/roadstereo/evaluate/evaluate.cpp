@@ -20,6 +20,7 @@ void add_evaluate(CLI::App& app) {
   command->footer(evaluate_footer);
   command->require_subcommand(1);
   add_score(*command);
+  add_kitti(*command);
 }
 
 }  // namespace roadstereo::cli

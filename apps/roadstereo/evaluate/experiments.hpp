@@ -7,6 +7,7 @@ class App;
 namespace roadstereo::cli {
 
 // Each adds one experiment to `evaluate`; it runs when it is parsed.
+void add_kitti(CLI::App& evaluate);
 void add_score(CLI::App& evaluate);
 
 }  // namespace roadstereo::cli

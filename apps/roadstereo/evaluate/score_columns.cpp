@@ -2,7 +2,26 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+#include <limits>
+
 namespace roadstereo::cli {
+namespace {
+
+/// Mean of what is finite; NaN when nothing is.
+template <class Figure>
+double mean_of(const std::vector<DisparityScore>& scores, const Figure& figure) {
+  double sum = 0, count = 0;
+  for (const DisparityScore& score : scores) {
+    const double value = figure(score);
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    count += 1;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
 
 std::string tolerance_text(double tolerance_px) {
   return fmt::format("{:g}", tolerance_px);
@@ -17,7 +36,7 @@ std::vector<Column> score_columns(const std::vector<double>& tolerances_px) {
   columns.push_back({"density %", "density_percent"});
   for (const double tolerance : tolerances_px) {
     const std::string text = tolerance_text(tolerance);
-    columns.push_back({"e_p(" + text + ")+missing %", "e_p_or_missing_" + text + "px_percent"});
+    columns.push_back({"e_p+(" + text + ") %", "e_p_or_missing_" + text + "px_percent"});
   }
   return columns;
 }
@@ -29,6 +48,28 @@ std::vector<Cell> score_cells(const DisparityScore& score) {
   cells.emplace_back(percent * score.density(), 2);
   for (const double share : score.bad_or_missing_share) cells.emplace_back(percent * share, 3);
   return cells;
+}
+
+std::string score_legend() {
+  return "  e_p: disparities in error by more than so many px; e_p+: missing disparities counted as errors, too\n";
+}
+
+DisparityScore mean_score(const std::vector<DisparityScore>& scores) {
+  DisparityScore mean;
+  for (const DisparityScore& score : scores) {
+    mean.truth_pixels += score.truth_pixels;
+    mean.given_pixels += score.given_pixels;
+  }
+  mean.rms_px = mean_of(scores, [](const DisparityScore& score) { return score.rms_px; });
+  mean.mean_px = mean_of(scores, [](const DisparityScore& score) { return score.mean_px; });
+  mean.median_px = mean_of(scores, [](const DisparityScore& score) { return score.median_px; });
+  const std::size_t tolerances = scores.empty() ? 0 : scores.front().bad_share.size();
+  for (std::size_t i = 0; i < tolerances; ++i) {
+    mean.bad_share.push_back(mean_of(scores, [i](const DisparityScore& score) { return score.bad_share[i]; }));
+    mean.bad_or_missing_share.push_back(
+        mean_of(scores, [i](const DisparityScore& score) { return score.bad_or_missing_share[i]; }));
+  }
+  return mean;
 }
 
 }  // namespace roadstereo::cli

@@ -1,0 +1,180 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "evaluate/experiments.hpp"
+#include "evaluate/kitti_figure.hpp"
+#include "evaluate/methods.hpp"
+#include "evaluate/report.hpp"
+#include "evaluate/score_columns.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+const std::vector<double>& tolerances_px() {
+  static const std::vector<double> tolerances{1, 2, 3};  // the paper's, and 1 px
+  return tolerances;
+}
+
+struct Arguments {
+  std::string folder, road_masks;
+  MethodSettings methods;
+  ReportFiles report;
+};
+
+/// Scores over one kind of pixels, by method and by frame.
+struct Region {
+  std::string title, key;
+  std::vector<std::string> frames{};
+  std::vector<std::vector<DisparityScore>> scores = std::vector<std::vector<DisparityScore>>(method_names().size());
+
+  std::vector<DisparityScore> means() const {
+    std::vector<DisparityScore> means;
+    for (const auto& of_method : scores) means.push_back(mean_score(of_method));
+    return means;
+  }
+};
+
+/// OpenCV's matchers get as many disparities as is usual for these images, or what the truth needs.
+int peer_disparities(ImageView<const float> truth) {
+  constexpr int usual = 128;
+  double largest = 0;
+  for (int v = 0; v < truth.height(); ++v) {
+    for (int u = 0; u < truth.width(); ++u) largest = std::fmax(largest, truth(u, v));
+  }
+  return std::max(usual, static_cast<int>(std::ceil(largest)) + 1);
+}
+
+/// Adds the frame's scores to the regions and, when asked, a row to the sheet.
+void score_frame(const KittiFiles& files, const Arguments& arguments, Region& road, Region& everything,
+                 std::vector<std::vector<io::SheetCell>>* sheet) {
+  const KittiFrame frame = read_kitti_frame(files);
+  const MethodTask task{frame.pair, peer_disparities(frame.truth)};
+  const std::vector<std::string> names = method_names();
+  Image<float> ours, peer;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Image<float> map = run_method(names[i], task, arguments.methods);
+    everything.scores[i].push_back(score_disparity(map, frame.truth, std::nullopt, tolerances_px()));
+    if (frame.road) {
+      road.scores[i].push_back(score_disparity(map, frame.truth, frame.road->view(), tolerances_px()));
+    }
+    if (names[i] == "default") ours = map;
+    if (names[i] == "SGBM") peer = map;
+  }
+  everything.frames.push_back(files.name);
+  if (frame.road) road.frames.push_back(files.name);
+  if (sheet != nullptr) sheet->push_back(kitti_sheet_row(files.name, frame, ours, peer, "SGBM"));
+}
+
+std::vector<Cell> published(const std::string& name, double rms_px, double above_2, double above_3) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  DisparityScore score;
+  score.rms_px = rms_px;
+  score.mean_px = score.median_px = unknown;
+  score.bad_share = {unknown, above_2 / 100, above_3 / 100};
+  score.bad_or_missing_share = {unknown, unknown, unknown};
+  std::vector<Cell> row = score_cells(score);
+  row[score_columns({}).size() + tolerances_px().size() - 1] = Cell(unknown, 2);  // density
+  row.insert(row.begin(), Cell(name + " (published)"));
+  return row;
+}
+
+Table mean_table(const Region& region) {
+  Table table{fmt::format("{}, mean over {} frames", region.title, region.frames.size()), {{"method", "method"}}, {}};
+  const auto columns = score_columns(tolerances_px());
+  table.columns.insert(table.columns.end(), columns.begin(), columns.end());
+  const std::vector<DisparityScore> means = region.means();
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    table.rows.push_back(score_cells(means[i]));
+    table.rows.back().insert(table.rows.back().begin(), Cell(method_names()[i]));
+  }
+  return table;
+}
+
+/// e_r and e_p+(2) of every method, frame by frame.
+Table frame_table(const Region& region) {
+  Table table{region.title + ", frame by frame: e_r px / e_p+(2) %", {{"frame", "frame"}}, {}};
+  for (const std::string& name : method_names()) table.columns.push_back({name, name});
+  for (std::size_t frame = 0; frame < region.frames.size(); ++frame) {
+    table.rows.push_back({Cell(region.frames[frame])});
+    for (const auto& of_method : region.scores) {
+      const DisparityScore& score = of_method[frame];
+      table.rows.back().push_back(
+          Cell(fmt::format("{:.2f} / {:.2f}", score.rms_px, 100 * score.bad_or_missing_share[1])));
+    }
+  }
+  return table;
+}
+
+nlohmann::ordered_json region_json(const Region& region) {
+  nlohmann::ordered_json document;
+  document["mean"] = mean_table(region).json();
+  const std::vector<std::string> names = method_names();
+  for (std::size_t frame = 0; frame < region.frames.size(); ++frame) {
+    Table table{"", {{"method", "method"}}, {}};
+    const auto columns = score_columns(tolerances_px());
+    table.columns.insert(table.columns.end(), columns.begin(), columns.end());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      table.rows.push_back(score_cells(region.scores[i][frame]));
+      table.rows.back().insert(table.rows.back().begin(), Cell(names[i]));
+    }
+    document["frames"][region.frames[frame]] = table.json();
+  }
+  return document;
+}
+
+void kitti(const Arguments& arguments) {
+  const std::vector<KittiFiles> frames = find_kitti_frames(arguments.folder, arguments.road_masks);
+  Region road{"Road regions", "road"}, everything{"Everything labelled", "all"};
+  std::vector<std::vector<io::SheetCell>> sheet;
+  constexpr std::size_t most_sheet_rows = 4;
+  for (const KittiFiles& files : frames) {
+    const bool shown = !arguments.report.figure.empty() && sheet.size() < most_sheet_rows;
+    score_frame(files, arguments, road, everything, shown ? &sheet : nullptr);
+  }
+  nlohmann::ordered_json document;
+  std::vector<Frame> pictures;
+  constexpr int cell_width = 480;
+  if (!sheet.empty()) pictures.push_back(io::picture_sheet(sheet, cell_width));
+  for (const Region& region : {road, everything}) {
+    if (region.frames.empty()) continue;
+    Table table = mean_table(region);
+    if (region.key == "road") {
+      table.rows.push_back(published("PSMNet", 1.039, 1.345, 0.016));
+      table.rows.push_back(published("paper", 0.409, 0.217, 0.023));
+    }
+    fmt::print("{}\n{}\n", table.text(), frame_table(region).text());
+    document[region.key] = region_json(region);
+    if (!sheet.empty()) pictures.push_back(kitti_bars(region.title, method_names(), region.means(), tolerances_px()));
+  }
+  fmt::print("{}  published: Table 1 of the paper, on KITTI frames and road regions chosen by hand\n", score_legend());
+  if (!arguments.report.json.empty()) write_report(arguments.report.json, document);
+  if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, io::stack_pictures(pictures));
+}
+
+constexpr const char* kitti_footer =
+    R"(DIR is laid out as KITTI Stereo 2015: image_2, image_3, disp_noc_0, optionally calib_cam_to_cam. OpenCV's matchers get
+the same rectified pairs and 128 disparities, or more where the truth needs them.
+
+Example:
+  roadstereo evaluate kitti kitti2015 --figure kitti.png --json kitti.json)";
+
+}  // namespace
+
+void add_kitti(CLI::App& evaluate) {
+  CLI::App* command = evaluate.add_subcommand("kitti", "Road disparities on KITTI Stereo 2015: the paper's Table 1");
+  command->footer(kitti_footer);
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("DIR", arguments->folder, "Folder of the frames")->required();
+  command->add_option("--road-masks", arguments->road_masks, "Folder of road masks; DIR/road when it is there")
+      ->type_name("DIR");
+  add_method_options(*command, arguments->methods);
+  add_report_options(*command, arguments->report);
+  command->callback([arguments] { kitti(*arguments); });
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "evaluate/kitti_frames.hpp"
+#include "roadstereo/disparity_score.hpp"
+#include "roadstereo/io/picture_sheet.hpp"
+
+namespace roadstereo::cli {
+
+/// One row of the sheet as in the paper's figure: left image with the road in magenta, truth, our disparities, and the
+/// errors of ours and of a peer.
+std::vector<io::SheetCell> kitti_sheet_row(const std::string& name, const KittiFrame& frame,
+                                           ImageView<const float> ours, ImageView<const float> peer,
+                                           const std::string& peer_name);
+
+/// Bars of e_p+ and e_r of every method, means over the frames.
+Frame kitti_bars(const std::string& region, const std::vector<std::string>& methods,
+                 const std::vector<DisparityScore>& means, const std::vector<double>& tolerances_px);
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,71 @@
+#include "evaluate/kitti_frames.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "evaluate/mask_file.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/image_file.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string existing(const fs::path& path) {
+  if (!fs::is_regular_file(path)) fail(path.string(), " is missing: every truth of KITTI Stereo 2015 needs its pair");
+  return path.string();
+}
+
+std::string if_there(const fs::path& path) {
+  return fs::is_regular_file(path) ? path.string() : "";
+}
+
+/// P2 of the rectified cameras: focal length by the width that rectification left.
+std::optional<StereoCalibration> kitti_calibration(int width) {
+  struct Day {
+    int width;
+    double focal_px;
+  };
+  constexpr std::array<Day, 5> days{{{1242, 721.54}, {1241, 718.856}, {1238, 718.34}, {1226, 707.09}, {1224, 707.05}}};
+  for (const Day& day : days) {
+    if (day.width == width) return StereoCalibration{day.focal_px, 609.56, 172.85, 0.5327, 0, 0, 0};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<KittiFiles> find_kitti_frames(const std::string& folder, const std::string& road_masks) {
+  const fs::path root = folder;
+  const fs::path truths = root / "disp_noc_0";
+  if (!fs::is_directory(truths)) fail(folder, " has no folder disp_noc_0: it must be laid out as KITTI Stereo 2015");
+  const fs::path masks = road_masks.empty() ? root / "road" : fs::path(road_masks);
+  if (!road_masks.empty() && !fs::is_directory(masks)) fail(road_masks, " is not a folder of road masks");
+  std::vector<KittiFiles> frames;
+  for (const auto& entry : fs::directory_iterator(truths)) {
+    const fs::path file = entry.path().filename();
+    if (file.extension() != ".png") continue;
+    const std::string name = file.stem().string();
+    const std::string number = name.substr(0, name.find('_'));
+    frames.push_back({name, existing(root / "image_2" / file), existing(root / "image_3" / file), entry.path().string(),
+                      if_there(root / "calib_cam_to_cam" / (number + ".txt")), if_there(masks / file)});
+  }
+  if (frames.empty()) fail(truths.string(), " has no PNG in it");
+  std::sort(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return frames;
+}
+
+KittiFrame read_kitti_frame(const KittiFiles& files) {
+  KittiFrame frame;
+  PairFiles pair{files.left, files.right, {}};
+  if (!files.calibration.empty()) pair.calibration.push_back(files.calibration);
+  frame.pair = read_pair(pair);
+  if (!frame.pair.calibration) frame.pair.calibration = kitti_calibration(frame.pair.left.width);
+  frame.truth = io::read_disparity(files.truth);
+  if (!files.road.empty()) frame.road = read_mask(files.road);
+  return frame;
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,60 @@
+#include "evaluate/methods.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "roadstereo/io/peer_matchers.hpp"
+#include "settings.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+Image<float> run_preset(const std::string& name, const MethodTask& task, const MethodSettings& settings) {
+  PipelineOptions options = preset(name);
+  options.threads = settings.threads;
+  options.white_level = task.pair.white_level;
+  if (!task.shows_a_road) {
+    options.perspective.enabled = false;
+    options.perspective.disparities = task.disparities;
+  }
+  apply_settings(settings.settings, options);
+  Pipeline pipeline(options, task.pair.calibration);
+  return pipeline.process(task.pair.left.view(), task.pair.right.view()).disparity;
+}
+
+Image<float> run_peer(const std::string& name, const MethodTask& task) {
+  GreyImage left, right;
+  to_grey(task.pair.left.view(), task.pair.white_level, left);
+  to_grey(task.pair.right.view(), task.pair.white_level, right);
+  io::PeerMatcher matcher(name, task.disparities);
+  matcher.set_pair(left, right);
+  matcher.match();
+  return matcher.disparity();
+}
+
+}  // namespace
+
+void add_method_options(CLI::App& command, MethodSettings& settings) {
+  command.add_option("--threads", settings.threads, "Worker threads; 0 takes all cores")
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--set", settings.settings, "Sets one option of every preset; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names{"paper", "default", "fast"};
+  names.insert(names.end(), io::peer_names().begin(), io::peer_names().end());
+  return names;
+}
+
+Image<float> run_method(const std::string& name, const MethodTask& task, const MethodSettings& settings) {
+  const auto& peers = io::peer_names();
+  const bool is_peer = std::find(peers.begin(), peers.end(), name) != peers.end();
+  return is_peer ? run_peer(name, task) : run_preset(name, task, settings);
+}
+
+}  // namespace roadstereo::cli
