@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "io/drawing.hpp"
 #include "io/frame_mat.hpp"
@@ -54,20 +55,25 @@ Frame picture_sheet(const std::vector<std::vector<SheetCell>>& rows, int cell_wi
   return frame_from(sheet, ChannelOrder::bgr);
 }
 
-Frame stack_pictures(const std::vector<Frame>& pictures) {
-  if (pictures.empty()) fail("a stack needs at least one picture");
+Frame collage(const std::vector<std::vector<Frame>>& rows) {
+  std::vector<std::pair<const Frame*, cv::Point>> places;
   cv::Size size(0, 0);
-  for (const Frame& picture : pictures) {
-    size.width = std::max(size.width, picture.width);
-    size.height += picture.height;
+  for (const auto& row : rows) {
+    int x = 0, tallest = 0;
+    for (const Frame& picture : row) {
+      places.emplace_back(&picture, cv::Point(x, size.height));
+      x += picture.width;
+      tallest = std::max(tallest, picture.height);
+    }
+    size.width = std::max(size.width, x);
+    size.height += tallest;
   }
-  cv::Mat stack(size, CV_8UC3, paper);
-  int top = 0;
-  for (const Frame& picture : pictures) {
-    to_bgr(picture.view(), white).copyTo(stack(cv::Rect(0, top, picture.width, picture.height)));
-    top += picture.height;
+  if (places.empty()) fail("a collage needs at least one picture");
+  cv::Mat canvas(size, CV_8UC3, paper);
+  for (const auto& [picture, at] : places) {
+    to_bgr(picture->view(), white).copyTo(canvas(cv::Rect(at, cv::Size(picture->width, picture->height))));
   }
-  return frame_from(stack, ChannelOrder::bgr);
+  return frame_from(canvas, ChannelOrder::bgr);
 }
 
 }  // namespace roadstereo::io

@@ -21,6 +21,8 @@ void add_evaluate(CLI::App& app) {
   command->require_subcommand(1);
   add_score(*command);
   add_kitti(*command);
+  add_middlebury(*command);
+  add_synth_accuracy(*command);
 }
 
 }  // namespace roadstereo::cli

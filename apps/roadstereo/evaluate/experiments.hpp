@@ -8,6 +8,8 @@ namespace roadstereo::cli {
 
 // Each adds one experiment to `evaluate`; it runs when it is parsed.
 void add_kitti(CLI::App& evaluate);
+void add_middlebury(CLI::App& evaluate);
 void add_score(CLI::App& evaluate);
+void add_synth_accuracy(CLI::App& evaluate);
 
 }  // namespace roadstereo::cli

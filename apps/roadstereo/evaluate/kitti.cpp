@@ -137,9 +137,9 @@ void kitti(const Arguments& arguments) {
     score_frame(files, arguments, road, everything, shown ? &sheet : nullptr);
   }
   nlohmann::ordered_json document;
-  std::vector<Frame> pictures;
-  constexpr int cell_width = 480;
-  if (!sheet.empty()) pictures.push_back(io::picture_sheet(sheet, cell_width));
+  std::vector<std::vector<Frame>> pictures;
+  constexpr int cell_width = 620;
+  if (!sheet.empty()) pictures.push_back({io::picture_sheet(sheet, cell_width)});
   for (const Region& region : {road, everything}) {
     if (region.frames.empty()) continue;
     Table table = mean_table(region);
@@ -153,7 +153,7 @@ void kitti(const Arguments& arguments) {
   }
   fmt::print("{}  published: Table 1 of the paper, on KITTI frames and road regions chosen by hand\n", score_legend());
   if (!arguments.report.json.empty()) write_report(arguments.report.json, document);
-  if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, io::stack_pictures(pictures));
+  if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, io::collage(pictures));
 }
 
 constexpr const char* kitti_footer =

@@ -28,9 +28,9 @@ std::vector<io::SheetCell> kitti_sheet_row(const std::string& name, const KittiF
           {"error of " + peer_name, error_picture(peer)}};
 }
 
-Frame kitti_bars(const std::string& region, const std::vector<std::string>& methods,
-                 const std::vector<DisparityScore>& means, const std::vector<double>& tolerances_px) {
-  io::BarGroups shares{region + ": errors, missing disparities included", "e_p+, %", {}, methods, {}};
+std::vector<Frame> kitti_bars(const std::string& region, const std::vector<std::string>& methods,
+                              const std::vector<DisparityScore>& means, const std::vector<double>& tolerances_px) {
+  io::BarGroups shares{region + ": in error or missing", "e_p+, %", {}, methods, {}};
   io::BarGroups rms{region + ": e_r", "e_r, px", {"e_r"}, methods, {}};
   for (const double tolerance : tolerances_px) {
     shares.groups.push_back(fmt::format("more than {} px", tolerance_text(tolerance)));
@@ -41,7 +41,7 @@ Frame kitti_bars(const std::string& region, const std::vector<std::string>& meth
     for (const double share : mean.bad_or_missing_share) shares.values.back().push_back(percent * share);
     rms.values.push_back({mean.rms_px});
   }
-  return io::stack_pictures({io::draw_bars(shares), io::draw_bars(rms)});
+  return {io::draw_bars(shares), io::draw_bars(rms)};
 }
 
 }  // namespace roadstereo::cli

@@ -16,7 +16,7 @@ std::vector<io::SheetCell> kitti_sheet_row(const std::string& name, const KittiF
                                            const std::string& peer_name);
 
 /// Bars of e_p+ and e_r of every method, means over the frames.
-Frame kitti_bars(const std::string& region, const std::vector<std::string>& methods,
-                 const std::vector<DisparityScore>& means, const std::vector<double>& tolerances_px);
+std::vector<Frame> kitti_bars(const std::string& region, const std::vector<std::string>& methods,
+                              const std::vector<DisparityScore>& means, const std::vector<double>& tolerances_px);
 
 }  // namespace roadstereo::cli

@@ -1,23 +1,33 @@
 #include "evaluate/mask_file.hpp"
 
-#include <algorithm>
+#include <cstring>
 
 #include "roadstereo/io/image_file.hpp"
 
 namespace roadstereo::cli {
+namespace {
 
-Image<std::uint8_t> read_mask(const std::string& path) {
+/// The n-th sample of the frame, of 8 or 16 bits.
+int sample_at(const Frame& frame, std::size_t index) {
+  if (frame.sample == SampleType::u8) return frame.bytes[index];
+  std::uint16_t sample = 0;
+  std::memcpy(&sample, &frame.bytes[2 * index], sizeof sample);
+  return sample;
+}
+
+}  // namespace
+
+Image<std::uint8_t> read_mask(const std::string& path, int least) {
   const Frame frame = io::read_frame(path);
-  const bool alpha = frame.order == ChannelOrder::bgra || frame.order == ChannelOrder::rgba;
-  const std::ptrdiff_t sample_bytes = frame.sample == SampleType::u16 ? 2 : 1;
-  const std::ptrdiff_t pixel_bytes = channel_count(frame.order) * sample_bytes;
-  const std::ptrdiff_t colour_bytes = alpha ? pixel_bytes - sample_bytes : pixel_bytes;
-  Image<std::uint8_t> mask(frame.width, frame.height);
-  auto pixel = frame.bytes.begin();
+  const auto channels = static_cast<std::size_t>(channel_count(frame.order));
+  const std::size_t colours = channels == 4 ? 3 : channels;  // the fourth is alpha
+  Image<std::uint8_t> mask(frame.width, frame.height, 0);
+  std::size_t pixel = 0;
   for (int v = 0; v < mask.height(); ++v) {
-    for (int u = 0; u < mask.width(); ++u, pixel += pixel_bytes) {
-      const bool set = std::any_of(pixel, pixel + colour_bytes, [](std::uint8_t byte) { return byte != 0; });
-      mask(u, v) = set ? 255 : 0;
+    for (int u = 0; u < mask.width(); ++u, ++pixel) {
+      for (std::size_t colour = 0; colour < colours; ++colour) {
+        if (sample_at(frame, pixel * channels + colour) >= least) mask(u, v) = 255;
+      }
     }
   }
   return mask;

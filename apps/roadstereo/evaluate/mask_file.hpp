@@ -7,7 +7,7 @@
 
 namespace roadstereo::cli {
 
-/// Reads a mask from an image: 255 where any sample of the pixel is above zero, 0 elsewhere.
-Image<std::uint8_t> read_mask(const std::string& path);
+/// Reads a mask from an image: 255 where any colour of the pixel is at least `least`, 0 elsewhere.
+Image<std::uint8_t> read_mask(const std::string& path, int least = 1);
 
 }  // namespace roadstereo::cli

@@ -48,10 +48,10 @@ std::string Table::text() const {
     }
   }
   std::string heading = "  ", body;
-  for (std::size_t i = 0; i < columns.size(); ++i) heading += padded(columns[i].heading, widths[i] + 2, numbers[i]);
+  for (std::size_t i = 0; i < columns.size(); ++i) heading += padded(columns[i].heading, widths[i], numbers[i]) + "  ";
   for (const auto& row : rows) {
     std::string cells = "  ";
-    for (std::size_t i = 0; i < columns.size(); ++i) cells += padded(row[i].text(), widths[i] + 2, numbers[i]);
+    for (std::size_t i = 0; i < columns.size(); ++i) cells += padded(row[i].text(), widths[i], numbers[i]) + "  ";
     body += line(cells);
   }
   return (title.empty() ? "" : title + "\n") + line(heading) + body;

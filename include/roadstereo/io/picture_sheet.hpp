@@ -17,7 +17,7 @@ struct SheetCell {
 /// picture.
 Frame picture_sheet(const std::vector<std::vector<SheetCell>>& rows, int cell_width);
 
-/// Pictures as they are, one below the other.
-Frame stack_pictures(const std::vector<Frame>& pictures);
+/// Rows of pictures as they are. Throws Error when there is none.
+Frame collage(const std::vector<std::vector<Frame>>& rows);
 
 }  // namespace roadstereo::io

@@ -1,0 +1,88 @@
+#include "evaluate/synth_groups.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "roadstereo/io/jpeg_loss.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+/// The same view with other pixels.
+void resize(synth::Scene& scene, int width, int height) {
+  scene.rig.focal_px *= static_cast<double>(width) / scene.rig.width;
+  scene.rig.width = width;
+  scene.rig.height = height;
+}
+
+void remove_texture(synth::Scene& scene) {
+  scene.road.texture_contrast = 0.12;
+  scene.road.lane_marking = false;
+}
+
+void blur_by_motion(synth::Scene& scene) {
+  scene.degradation.motion_blur_px = 7;
+  scene.degradation.motion_blur_angle_deg = 70;
+}
+
+}  // namespace
+
+const std::vector<SynthGroup>& synth_groups() {
+  static const std::vector<SynthGroup> groups{
+      {"clean", [](synth::Scene&) {}},
+      {"low texture", remove_texture},
+      {"noise", [](synth::Scene& scene) { scene.degradation.noise_grey = 6; }},
+      {"blur", [](synth::Scene& scene) { scene.degradation.blur_px = 1.5; }},
+      {"motion blur", blur_by_motion},
+      {"over-exposure", [](synth::Scene& scene) { scene.degradation.exposure = 2.1; }},
+      {"JPEG 60", [](synth::Scene&) {}, 60},
+      {"half a row off", [](synth::Scene& scene) { scene.degradation.row_offset_px = 0.5; }},
+  };
+  return groups;
+}
+
+std::vector<synth::Scene> synth_scenes(bool small) {
+  const std::vector<std::string> names = small ? std::vector<std::string>{"uav", "demo"}
+                                               : std::vector<std::string>{"uav", "demo", "nadir", "close", "street"};
+  const std::uint64_t random_scenes = small ? 1 : 5;
+  std::vector<synth::Scene> scenes;
+  for (const std::string& name : names) scenes.push_back(synth::named_scene(name));
+  for (std::uint64_t seed = 1; seed <= random_scenes; ++seed) scenes.push_back(synth::random_scene(seed));
+  for (synth::Scene& scene : scenes) {
+    if (small) {
+      resize(scene, 320, 180);
+    } else {
+      resize(scene, 640, 360);
+    }
+  }
+  return scenes;
+}
+
+SynthCase make_synth_case(const SynthGroup& group, synth::Scene scene, int threads) {
+  group.wear(scene);
+  synth::SyntheticPair made = synth::render(scene, threads);
+  SynthCase example;
+  example.pair.left = std::move(made.left);
+  example.pair.right = std::move(made.right);
+  if (group.jpeg_quality > 0) {
+    example.pair.left = io::with_jpeg_loss(example.pair.left, group.jpeg_quality);
+    example.pair.right = io::with_jpeg_loss(example.pair.right, group.jpeg_quality);
+  }
+  example.pair.calibration = made.calibration;
+  example.visible = std::move(made.visible);
+  example.truth.resize(made.disparity.width(), made.disparity.height());
+  example.damage.assign(made.labels.width(), made.labels.height(), 0);
+  double largest = 0;
+  for (int v = 0; v < example.truth.height(); ++v) {
+    for (int u = 0; u < example.truth.width(); ++u) {
+      example.truth(u, v) = static_cast<float>(made.disparity(u, v));
+      if (made.labels(u, v) != 0) example.damage(u, v) = example.visible(u, v);
+      largest = std::fmax(largest, made.disparity(u, v));
+    }
+  }
+  example.disparities = static_cast<int>(std::ceil(largest)) + 1;
+  return example;
+}
+
+}  // namespace roadstereo::cli
