@@ -1,9 +1,11 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <optional>
 
+#include "evaluate/error_figure.hpp"
 #include "evaluate/experiments.hpp"
 #include "evaluate/mask_file.hpp"
 #include "evaluate/report.hpp"
@@ -31,11 +33,13 @@ void score(const Arguments& arguments) {
   }
   const DisparityScore figures = score_disparity(map, truth, inside, arguments.tolerances_px);
   if (figures.truth_pixels == 0) fail(arguments.truth, " labels no pixel", inside ? " inside the mask" : "");
+  const double reach = *std::max_element(arguments.tolerances_px.begin(), arguments.tolerances_px.end());
   const Table table{fmt::format("{} against {}: {} of {} labelled pixels have a disparity", arguments.map,
                                 arguments.truth, figures.given_pixels, figures.truth_pixels),
                     score_columns(arguments.tolerances_px),
                     {score_cells(figures)}};
   if (!arguments.report.json.empty()) write_report(arguments.report.json, table.json().front());
+  if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, error_figure(map, truth, inside, reach));
   fmt::print("{}", table.text());
 }
 

@@ -53,7 +53,7 @@ GroupScores score_group(const SynthGroup& group, const std::vector<synth::Scene>
   return means;
 }
 
-/// The figures that `index` is the best of the group in; those that leave pixels out at will do not count.
+/// The figures that `index` is the best of the group in. Only e_r says nothing of missing disparities.
 std::string best_in(const std::vector<DisparityScore>& group, std::size_t index) {
   const auto is_best = [&](const auto& figure) {
     for (const DisparityScore& other : group) {

@@ -1,0 +1,198 @@
+// `roadstereo evaluate` from outside: what it prints and writes, against maps whose scores are known by hand.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadstereo/io/image_file.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace roadstereo;
+
+constexpr float none = std::numeric_limits<float>::quiet_NaN();
+constexpr int width = 40, height = 32;
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+std::string read_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::optional<fs::path> data_folder(const std::string& part) {
+  const char* folder = std::getenv("ROADSTEREO_DATA");
+  if (folder == nullptr || !fs::is_directory(fs::path(folder) / part)) return std::nullopt;
+  return fs::path(folder) / part;
+}
+
+class Evaluate : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("roadstereo_eval_") + test->name() + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command =
+        "cd '" + folder_.string() + "' && '" ROADSTEREO_BINARY "' evaluate " + arguments + " >stdout.txt 2>stderr.txt";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout.txt"),
+            read_text(folder_ / "stderr.txt")};
+  }
+
+  void write(const std::string& name, const std::vector<std::uint8_t>& bytes) const {
+    std::ofstream file(folder_ / name, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  }
+
+  nlohmann::json json_file(const std::string& name) const { return nlohmann::json::parse(read_text(folder_ / name)); }
+
+  fs::path folder_;
+};
+
+/// Nothing on stdout, one sentence on stderr.
+void expect_complaint(const Outcome& outcome, const std::string& part) {
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+}
+
+/// The truth is 20 px everywhere but in the first row, which is unlabelled. The map is right in the left half but for
+/// its first column, which is missing, and 2.5 px too high in the right half.
+Image<float> example_truth() {
+  Image<float> truth(width, height, 20.0F);
+  for (int u = 0; u < width; ++u) truth(u, 0) = none;
+  return truth;
+}
+Image<float> example_map() {
+  Image<float> map(width, height, 20.0F);
+  for (int v = 0; v < height; ++v) {
+    map(0, v) = none;
+    for (int u = width / 2; u < width; ++u) map(u, v) = 22.5F;
+  }
+  return map;
+}
+
+TEST_F(Evaluate, ScoreOfAnExampleByHand) {
+  write("map.tiff", io::encode_float_tiff(example_map()));
+  write("truth.png", io::encode_kitti_png(example_truth()));
+  const Outcome outcome = run("score map.tiff truth.png --tolerances 1,3 --json score.json --figure score.png");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto score = json_file("score.json");
+  // 31 labelled rows of 40 pixels; 39 of each have a disparity, 20 of them with an error of 2.5 px.
+  EXPECT_NEAR(score["e_r_px"], 2.5 * std::sqrt(20.0 / 39), 1e-6);
+  EXPECT_NEAR(score["mean_error_px"], 2.5 * 20 / 39, 1e-6);
+  EXPECT_NEAR(score["median_error_px"], 2.5, 1e-6);
+  EXPECT_NEAR(score["e_p_1px_percent"], 100.0 * 20 / 39, 1e-6);
+  EXPECT_NEAR(score["e_p_3px_percent"], 0, 1e-6);
+  EXPECT_NEAR(score["density_percent"], 97.5, 1e-6);
+  EXPECT_NEAR(score["e_p_or_missing_1px_percent"], 52.5, 1e-6);
+  EXPECT_NEAR(score["e_p_or_missing_3px_percent"], 2.5, 1e-6);
+  EXPECT_NE(outcome.out.find("1209 of 1240"), std::string::npos) << outcome.out;
+  EXPECT_GE(io::read_frame((folder_ / "score.png").string()).width, 640);
+}
+
+TEST_F(Evaluate, ScoreCountsOnlyTheMask) {
+  write("map.tiff", io::encode_float_tiff(example_map()));
+  write("truth.tiff", io::encode_float_tiff(example_truth()));
+  Frame mask{std::vector<std::uint8_t>(std::size_t{width} * height, 0), width, height};
+  for (std::size_t i = 0; i < mask.bytes.size(); ++i) mask.bytes[i] = i % width < width / 2 ? 1 : 0;
+  write("mask.png", io::encode_png(mask.view()));
+  ASSERT_EQ(run("score map.tiff truth.tiff --mask mask.png --json score.json").exit_code, 0);
+  EXPECT_EQ(json_file("score.json")["e_r_px"], 0);
+  EXPECT_NEAR(json_file("score.json")["density_percent"], 95, 1e-6);
+}
+
+TEST_F(Evaluate, ScoreRefusesWhatCannotBeCompared) {
+  write("map.tiff", io::encode_float_tiff(example_map()));
+  write("small.tiff", io::encode_float_tiff(Image<float>(width, height + 1, 1.0F)));
+  write("empty.tiff", io::encode_float_tiff(Image<float>(width, height, none)));
+  expect_complaint(run("score map.tiff absent.tiff"), "absent.tiff");
+  expect_complaint(run("score map.tiff small.tiff"), "40×33");
+  expect_complaint(run("score map.tiff empty.tiff"), "empty.tiff");
+  expect_complaint(run("score map.tiff map.tiff --tolerances -1"), "-1 px");
+  expect_complaint(run("score map.tiff map.tiff --json absent/score.json"), "absent/score.json");
+}
+
+TEST_F(Evaluate, FoldersOfTheWrongLayoutAreNamed) {
+  expect_complaint(run(""), "");
+  expect_complaint(run("kitti absent"), "absent");
+  expect_complaint(run("middlebury absent"), "absent");
+  fs::create_directories(folder_ / "kitti2015/disp_noc_0");
+  expect_complaint(run("kitti kitti2015"), "PNG");
+  write("kitti2015/disp_noc_0/000000_10.png", io::encode_kitti_png(example_truth()));
+  expect_complaint(run("kitti kitti2015"), "image_2/000000_10.png");
+  expect_complaint(run("middlebury kitti2015"), "im0.png");
+}
+
+TEST_F(Evaluate, HelpNamesEveryExperiment) {
+  const Outcome help = run("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  for (const std::string name : {"score", "kitti", "middlebury", "synth"}) {
+    EXPECT_NE(help.out.find(name), std::string::npos) << name;
+    EXPECT_NE(run(name + " --help").out.find("roadstereo evaluate " + name), std::string::npos) << name;
+  }
+}
+
+TEST_F(Evaluate, SynthComparesEveryMethodInEveryGroup) {
+  const Outcome outcome = run("synth --sizes small --json synth.json --figure synth.png --threads 2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto document = json_file("synth.json");
+  EXPECT_EQ(document["visible"].size(), 8U * 7U);
+  EXPECT_EQ(document["damage"].size(), 8U * 7U);
+  EXPECT_EQ(document["sub_pixel_bias"].size(), 7U);
+  for (const auto& row : document["visible"]) {
+    if (row["group"] != "clean" || row["method"] != "default") continue;
+    EXPECT_LT(row["e_p_or_missing_1px_percent"].get<double>(), 3.0);
+    EXPECT_LT(row["e_r_px"].get<double>(), 0.2);
+  }
+  EXPECT_GT(io::read_frame((folder_ / "synth.png").string()).height, 800);
+  EXPECT_EQ(run("synth --sizes tiny").exit_code, 2);
+}
+
+TEST_F(Evaluate, KittiPutsThePublishedTableBesideOurs) {
+  const auto data = data_folder("kitti2015");
+  if (!data) GTEST_SKIP() << "SKIPPED: no real data; set ROADSTEREO_DATA to a folder that has kitti2015";
+  for (const char* part : {"image_2", "image_3", "disp_noc_0", "road"}) {
+    fs::create_directories(folder_ / "frames" / part);
+    fs::copy_file(*data / part / "000007_10.png", folder_ / "frames" / part / "000007_10.png");
+  }
+  const Outcome outcome = run("kitti frames --json kitti.json --figure kitti.png");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* part : {"PSMNet (published)", "1.345", "0.217", "SGBM", "000007_10"}) {
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part;
+  }
+  const auto road = json_file("kitti.json")["road"];
+  EXPECT_EQ(road["mean"], road["frames"]["000007_10"]);  // of one frame
+  EXPECT_EQ(road["mean"].size(), 7U);
+}
+
+TEST_F(Evaluate, MiddleburyTakesOneScene) {
+  const auto data = data_folder("middlebury");
+  if (!data) GTEST_SKIP() << "SKIPPED: no real data; set ROADSTEREO_DATA to a folder that has middlebury";
+  const Outcome outcome = run("middlebury '" + (*data / "Motorcycle").string() + "' --json middlebury.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("Motorcycle, 70 disparities"), std::string::npos) << outcome.out;
+  EXPECT_EQ(json_file("middlebury.json")["Motorcycle"].size(), 7U);
+}
+
+}  // namespace
