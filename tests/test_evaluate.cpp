@@ -184,6 +184,10 @@ TEST_F(Evaluate, KittiPutsThePublishedTableBesideOurs) {
   const auto road = json_file("kitti.json")["road"];
   EXPECT_EQ(road["mean"], road["frames"]["000007_10"]);  // of one frame
   EXPECT_EQ(road["mean"].size(), 7U);
+  const auto published = json_file("kitti.json")["published"];
+  EXPECT_NEAR(published[0]["e_r_px"], 1.039, 1e-9);
+  EXPECT_NEAR(published[1]["e_p_2px_percent"], 0.217, 1e-9);
+  EXPECT_TRUE(published[1]["density_percent"].is_null());
 }
 
 TEST_F(Evaluate, MiddleburyTakesOneScene) {

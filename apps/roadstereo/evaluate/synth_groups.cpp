@@ -47,6 +47,7 @@ std::vector<synth::Scene> synth_scenes(bool small) {
                                                : std::vector<std::string>{"uav", "demo", "nadir", "close", "street"};
   const std::uint64_t random_scenes = small ? 1 : 5;
   std::vector<synth::Scene> scenes;
+  scenes.reserve(names.size() + random_scenes);
   for (const std::string& name : names) scenes.push_back(synth::named_scene(name));
   for (std::uint64_t seed = 1; seed <= random_scenes; ++seed) scenes.push_back(synth::random_scene(seed));
   for (synth::Scene& scene : scenes) {
