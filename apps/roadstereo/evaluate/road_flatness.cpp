@@ -1,0 +1,54 @@
+#include "road_flatness.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+/// Calls `use(u, v, d)` for every valid disparity of the mask.
+template <class Use>
+void for_each_road_pixel(ImageView<const float> disparity, ImageView<const std::uint8_t> mask, const Use& use) {
+  for (int v = 0; v < disparity.height(); ++v) {
+    for (int u = 0; u < disparity.width(); ++u) {
+      if (mask(u, v) != 0 && !std::isnan(disparity(u, v))) use(u, v, static_cast<double>(disparity(u, v)));
+    }
+  }
+}
+
+}  // namespace
+
+RoadModel fit_without_roll(ImageView<const float> disparity, ImageView<const std::uint8_t> mask) {
+  const double origin = disparity.height() / 2.0;  // near the data, so that large sums do not cancel
+  double n = 0, sum_v = 0, sum_d = 0, sum_vv = 0, sum_vd = 0;
+  for_each_road_pixel(disparity, mask, [&](int, int v, double d) {
+    const double row = v - origin;
+    n += 1;
+    sum_v += row;
+    sum_d += d;
+    sum_vv += row * row;
+    sum_vd += row * d;
+  });
+  const double determinant = n * sum_vv - sum_v * sum_v;
+  if (determinant <= 0) fail("the road has disparities in fewer than two rows; a line needs at least two");
+  RoadModel model;
+  model.a1 = (n * sum_vd - sum_v * sum_d) / determinant;
+  model.a0 = (sum_d - model.a1 * sum_v) / n - model.a1 * origin;
+  return model;
+}
+
+double transformed_deviation(ImageView<const float> disparity, ImageView<const std::uint8_t> mask,
+                             const RoadModel& plane) {
+  double n = 0, sum = 0, squares = 0;
+  for_each_road_pixel(disparity, mask, [&](int u, int v, double d) {
+    const double transformed = d - plane.disparity(u, v);
+    n += 1;
+    sum += transformed;
+    squares += transformed * transformed;
+  });
+  return std::sqrt(std::max(squares / n - sum / n * (sum / n), 0.0));
+}
+
+}  // namespace roadstereo::cli
