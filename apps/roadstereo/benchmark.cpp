@@ -3,8 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <chrono>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -16,8 +14,10 @@
 #include "benchmark_frames.hpp"
 #include "benchmark_report.hpp"
 #include "commands.hpp"
+#include "image_size.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/peer_matchers.hpp"
+#include "stopwatch.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -34,36 +34,14 @@ struct Arguments {
   std::string json;
 };
 
-struct Size {
-  int width = 0, height = 0;
-};
-
-Size parse_size(const std::string& text) {
-  Size size;
-  const char* end = text.data() + text.size();
-  const auto width = std::from_chars(text.data(), end, size.width);
-  if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
-    const auto height = std::from_chars(width.ptr + 1, end, size.height);
-    if (height.ec == std::errc() && height.ptr == end && size.width > 0 && size.height > 0) return size;
-  }
-  fail("--size takes WIDTHxHEIGHT, for example 640x360, but got \"", text, "\"");
-}
-
 StereoPair make_pair(const Arguments& arguments) {
   if (!arguments.files.left.empty()) return read_pair(arguments.files);
-  const Size size = parse_size(arguments.size);
+  const ImageSize size = parse_image_size(arguments.size);
   constexpr int largest = 8192;
   if (size.width > largest || size.height > largest) {
     fail("--size is ", arguments.size, "; the sides must be at most ", largest, " pixels");
   }
   return synthetic_pair(size.width, size.height);
-}
-
-template <class Call>
-double time_ms(const Call& call) {
-  const auto start = std::chrono::steady_clock::now();
-  call();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 void add_stages(const StageTimes& ms, std::vector<Timing>& stages) {

@@ -1,29 +1,16 @@
 #include "scene_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <system_error>
 
-#include "roadstereo/error.hpp"
+#include "image_size.hpp"
 
 namespace roadstereo::cli {
 
 namespace {
 
-/// The whole number that all of `text` is; 0 when it is none.
-int whole_number(const std::string& text) {
-  int value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && stop == end ? value : 0;
-}
-
 /// Sets the image size; the focal length follows the width, so that the view stays the same.
 void apply_size(synth::Rig& rig, const std::string& size) {
-  const auto cross = size.find('x');
-  const int width = cross == std::string::npos ? 0 : whole_number(size.substr(0, cross));
-  const int height = cross == std::string::npos ? 0 : whole_number(size.substr(cross + 1));
-  if (width <= 0 || height <= 0) fail("--size takes WIDTHxHEIGHT, for example 640x360, but got \"", size, "\"");
+  const auto [width, height] = parse_image_size(size);
   rig.focal_px *= static_cast<double>(width) / rig.width;
   rig.width = width;
   rig.height = height;

@@ -23,6 +23,11 @@ void add_evaluate(CLI::App& app) {
   add_kitti(*command);
   add_middlebury(*command);
   add_synth_accuracy(*command);
+  add_lambda(*command);
+  add_roll(*command);
+  add_flatness(*command);
+  add_blur(*command);
+  add_runtime(*command);
 }
 
 }  // namespace roadstereo::cli

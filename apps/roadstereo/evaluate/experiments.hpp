@@ -11,5 +11,10 @@ void add_kitti(CLI::App& evaluate);
 void add_middlebury(CLI::App& evaluate);
 void add_score(CLI::App& evaluate);
 void add_synth_accuracy(CLI::App& evaluate);
+void add_lambda(CLI::App& evaluate);
+void add_roll(CLI::App& evaluate);
+void add_flatness(CLI::App& evaluate);
+void add_blur(CLI::App& evaluate);
+void add_runtime(CLI::App& evaluate);
 
 }  // namespace roadstereo::cli

@@ -1,0 +1,110 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "blur_trials.hpp"
+#include "experiments.hpp"
+#include "report.hpp"
+#include "roadstereo/io/plot.hpp"
+#include "table.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+struct Arguments {
+  BlurOptions trials;
+  ReportFiles files;
+};
+
+constexpr const char* note =
+    "Density, e_r and e_p over the pixels that both cameras see, mean over the directions. SGBM gets the pair that "
+    "the\n"
+    "default preset has transformed, which helps it. The paper shows blurred frames but gives no figures.\n";
+
+constexpr double percent = 100;
+
+Table make_table(const std::vector<BlurTrial>& trials, const BlurOptions& options) {
+  Table table{fmt::format("Motion blur, scene {}, noise {} grey levels", options.scene, options.noise_grey),
+              {{"length px", "length_px"},
+               {"method", "method"},
+               {"density %", "density_percent"},
+               {"e_r px", "rms_px"},
+               {"> 1 px or missing %", "wrong_percent"}},
+              {}};
+  for (const double length : blur_lengths(options)) {
+    for (const std::string& method : blur_methods()) {
+      const BlurTrial mean = mean_over_directions(trials, method, length);
+      table.rows.push_back({Cell(length, 1), method, Cell(percent * mean.density, 1), Cell(mean.rms_px, 3),
+                            Cell(percent * mean.wrong, 1)});
+    }
+  }
+  return table;
+}
+
+Frame draw(const std::vector<BlurTrial>& trials, const BlurOptions& options) {
+  io::Panel density{"Density", "length of the motion blur, px", "density, %", {}};
+  io::Panel error{"Error", "length of the motion blur, px", "e_r, px", {}};
+  for (const std::string& method : blur_methods()) {
+    io::Curve share{method, blur_lengths(options), {}, true, true};
+    io::Curve rms = share;
+    for (const double length : share.x) {
+      const BlurTrial mean = mean_over_directions(trials, method, length);
+      share.y.push_back(percent * mean.density);
+      rms.y.push_back(mean.rms_px);
+    }
+    density.curves.push_back(share);
+    error.curves.push_back(rms);
+  }
+  error.y_lowest = 0;
+  return io::draw_plot({density, error});
+}
+
+nlohmann::ordered_json trials_json(const std::vector<BlurTrial>& trials) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const BlurTrial& trial : trials) {
+    all.push_back({{"method", trial.method},
+                   {"length_px", trial.length_px},
+                   {"direction_deg", trial.direction_deg},
+                   {"density", trial.density},
+                   {"rms_px", trial.rms_px},
+                   {"wrong", trial.wrong}});
+  }
+  return all;
+}
+
+void run(const Arguments& arguments) {
+  const std::vector<BlurTrial> trials = try_blur(arguments.trials);
+  const Table table = make_table(trials, arguments.trials);
+  if (!arguments.files.json.empty()) {
+    write_report(arguments.files.json,
+                 {{"experiment", "blur"}, {"rows", table.json()}, {"trials", trials_json(trials)}});
+  }
+  if (!arguments.files.figure.empty()) write_figure(arguments.files.figure, draw(trials, arguments.trials));
+  fmt::print("{}\n{}", table.text(), note);
+}
+
+}  // namespace
+
+void add_blur(CLI::App& evaluate) {
+  CLI::App* command = evaluate.add_subcommand("blur", "Density and error against motion blur, on synthetic roads");
+  const auto arguments = std::make_shared<Arguments>();
+  BlurOptions& trials = arguments->trials;
+  command->add_option("--scene", trials.scene, "A named scene")->type_name("NAME")->capture_default_str();
+  command->add_option("--longest", trials.longest_px, "Longest motion")->type_name("PX")->capture_default_str();
+  command->add_option("--steps", trials.steps, "Lengths from 0 to the longest")->capture_default_str();
+  command->add_option("--directions", trials.directions_deg, "Directions of the motion; 0 is along the rows")
+      ->type_name("DEG,…")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--noise", trials.noise_grey, "Noise, standard deviation in grey levels")
+      ->type_name("GREY")
+      ->capture_default_str();
+  command->add_option("--threads", trials.threads, "Worker threads; 0 takes all cores")->capture_default_str();
+  add_report_options(*command, arguments->files);
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace roadstereo::cli

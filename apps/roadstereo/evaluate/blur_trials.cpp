@@ -1,0 +1,133 @@
+#include "blur_trials.hpp"
+
+#include <array>
+#include <optional>
+
+#include "benchmark_frames.hpp"
+#include "roadstereo/disparity_score.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/peer_matchers.hpp"
+#include "roadstereo/pipeline.hpp"
+#include "roll_maps.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+constexpr const char* peer = "SGBM";
+constexpr std::array presets{"default", "paper"};
+
+/// One blurred pair and what is right about it.
+struct BlurredPair {
+  StereoPair pair;
+  Image<float> truth;
+  Image<std::uint8_t> visible;
+};
+
+BlurredPair render_blurred(const BlurOptions& options, double length_px, double direction_deg) {
+  synth::Scene scene = synth::named_scene(options.scene);
+  scene.supersampling = 2;
+  scene.degradation.noise_grey = options.noise_grey;
+  scene.degradation.motion_blur_px = length_px;
+  scene.degradation.motion_blur_angle_deg = direction_deg;
+  synth::SyntheticPair made = synth::render(scene, options.threads);
+  BlurredPair blurred;
+  blurred.truth = exact_map(made);
+  blurred.visible = std::move(made.visible);
+  blurred.pair.left = std::move(made.left);
+  blurred.pair.right = std::move(made.right);
+  blurred.pair.calibration = made.calibration;
+  return blurred;
+}
+
+BlurTrial score(const BlurredPair& blurred, const Image<float>& disparity) {
+  constexpr std::array tolerances_px{1.0};
+  const DisparityScore score = score_disparity(disparity, blurred.truth, blurred.visible.view(), tolerances_px);
+  BlurTrial trial;
+  trial.density = score.density();
+  trial.rms_px = score.rms_px;
+  trial.wrong = score.bad_or_missing_share.front();
+  return trial;
+}
+
+Image<float> match_peer(const StereoPair& pair, const PerspectiveShift& shift, int threads) {
+  const PeerPair grey = peer_pair(pair, shift);
+  io::PeerMatcher matcher(peer, shift.disparities);
+  matcher.set_pair(grey.reference, grey.target);
+  matcher.match();
+  Image<float> disparity;
+  add_shift(matcher.disparity(), shift, threads, disparity);
+  return disparity;
+}
+
+/// Every method on one pair.
+std::vector<BlurTrial> try_pair(const BlurredPair& blurred, int threads) {
+  std::vector<BlurTrial> trials;
+  std::optional<PerspectiveShift> shift;
+  for (const char* name : presets) {
+    PipelineOptions options = preset(name);
+    options.threads = threads;
+    Pipeline pipeline(options, blurred.pair.calibration);
+    const FrameResult& result = pipeline.process(blurred.pair.left.view(), blurred.pair.right.view());
+    if (!shift) shift = result.shift;
+    trials.push_back(score(blurred, result.disparity));
+    trials.back().method = name;
+  }
+  trials.push_back(score(blurred, match_peer(blurred.pair, *shift, threads)));
+  trials.back().method = peer;
+  return trials;
+}
+
+}  // namespace
+
+void BlurOptions::validate() const {
+  if (!(longest_px > 0 && longest_px <= 100)) fail("--longest is ", longest_px, "; it must be above 0 and at most 100");
+  if (steps < 2 || steps > 1000) fail("--steps is ", steps, "; it must be between 2 and 1000");
+  if (directions_deg.empty()) fail("--directions is empty; give at least one angle");
+  if (!(noise_grey >= 0 && noise_grey <= 50)) fail("--noise is ", noise_grey, "; it must be between 0 and 50");
+}
+
+const std::vector<std::string>& blur_methods() {
+  static const std::vector<std::string> methods{presets[0], presets[1], peer};
+  return methods;
+}
+
+std::vector<double> blur_lengths(const BlurOptions& options) {
+  std::vector<double> lengths;
+  for (int i = 0; i < options.steps; ++i) lengths.push_back(options.longest_px * i / (options.steps - 1));
+  return lengths;
+}
+
+std::vector<BlurTrial> try_blur(const BlurOptions& options) {
+  options.validate();
+  std::vector<BlurTrial> all;
+  for (const double length : blur_lengths(options)) {
+    for (const double direction : options.directions_deg) {
+      for (BlurTrial& trial : try_pair(render_blurred(options, length, direction), options.threads)) {
+        trial.length_px = length;
+        trial.direction_deg = direction;
+        all.push_back(std::move(trial));
+      }
+    }
+  }
+  return all;
+}
+
+BlurTrial mean_over_directions(const std::vector<BlurTrial>& trials, const std::string& method, double length_px) {
+  BlurTrial mean;
+  mean.method = method;
+  mean.length_px = length_px;
+  double count = 0;
+  for (const BlurTrial& trial : trials) {
+    if (trial.method != method || trial.length_px != length_px) continue;
+    mean.density += trial.density;
+    mean.rms_px += trial.rms_px;
+    mean.wrong += trial.wrong;
+    count += 1;
+  }
+  mean.density /= count;
+  mean.rms_px /= count;
+  mean.wrong /= count;
+  return mean;
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,115 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments.hpp"
+#include "lambda_sweep.hpp"
+#include "report.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/plot.hpp"
+#include "roadstereo/road_geometry.hpp"
+#include "table.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+constexpr double published_optimum = 10;
+
+struct Arguments {
+  double lowest = 0.01;
+  double highest = 1e4;
+  int count = 25;
+  int threads = 0;
+  ReportFiles files;
+
+  void validate() const {
+    constexpr double largest = 1e6;  // of road_geometry.initial_lambda
+    if (!(lowest > 0 && lowest < highest && highest <= largest)) {
+      fail("--lowest ", lowest, " and --highest ", highest, " must be above 0, in order, and at most ", largest);
+    }
+    if (count < 2 || count > 1000) fail("--count is ", count, "; it must be between 2 and 1000");
+  }
+};
+
+constexpr const char* note =
+    "The energy is divided so that λ = 10 is Newton's step for a road without roll (docs/method.md): an optimum at 10\n"
+    "confirms that scale and says nothing about the paper's, which is not published. From the second step on\n"
+    "eq. adaptive_lambda makes λ a secant step wherever it began, so that λ(0) costs about one iteration at most. "
+    "First\n"
+    "steps are bounded by π/8 and halved while they climb, within one iteration: large λ(0) are all the same.\n";
+
+Table make_table(const std::vector<LambdaTrial>& trials, std::size_t maps) {
+  Table table{fmt::format("Iterations of the gradient descent against λ(0), {} maps, δψ = π/1.8e6", maps),
+              {{"λ(0)", "lambda"},
+               {"mean", "mean_iterations"},
+               {"most", "most_iterations"},
+               {"largest error rad", "largest_error_rad"}},
+              {}};
+  for (const LambdaTrial& trial : trials) {
+    table.rows.push_back(
+        {Cell(trial.lambda, 3), Cell(trial.mean(), 2), Cell(trial.most(), 0), Cell(trial.largest_error_rad, 9)});
+  }
+  return table;
+}
+
+Frame draw(const std::vector<LambdaTrial>& trials, double optimum) {
+  io::Curve mean{"mean of the maps", {}, {}, true, true};
+  io::Curve most{"slowest map", {}, {}, true, false};
+  double highest = 0;
+  for (const LambdaTrial& trial : trials) {
+    mean.x.push_back(trial.lambda);
+    mean.y.push_back(trial.mean());
+    most.x.push_back(trial.lambda);
+    most.y.push_back(trial.most());
+    highest = std::max(highest, trial.most() + 1);
+  }
+  const io::Curve paper{
+      "optimum of the paper: 10", {published_optimum, published_optimum}, {0, highest}, true, false, true};
+  const auto least = std::min_element(mean.y.begin(), mean.y.end());
+  const io::Curve best{fmt::format("optimum here: {:.3g}", optimum), {optimum}, {*least}, false, true};
+  io::Panel panel{
+      "Gradient descent on the roll angle", "initial learning rate", "iterations", {mean, most, paper, best}};
+  panel.log_x = true;
+  panel.y_lowest = 0;
+  panel.y_highest = highest;
+  return io::draw_plot({panel});
+}
+
+void run(const Arguments& arguments) {
+  arguments.validate();
+  const std::vector<LambdaMap> maps = make_lambda_maps(arguments.threads);
+  std::vector<LambdaTrial> trials;
+  for (const double lambda : geometric_series(arguments.lowest, arguments.highest, arguments.count)) {
+    trials.push_back(try_lambda(lambda, maps, RoadGeometryOptions{}.roll_threshold_rad, arguments.threads));
+  }
+  const double optimum = best_lambda(trials);
+  const Table table = make_table(trials, maps.size());
+  if (!arguments.files.json.empty()) {
+    write_report(arguments.files.json, {{"experiment", "lambda"},
+                                        {"maps", maps.size()},
+                                        {"optimum", optimum},
+                                        {"published_optimum", published_optimum},
+                                        {"rows", table.json()}});
+  }
+  if (!arguments.files.figure.empty()) write_figure(arguments.files.figure, draw(trials, optimum));
+  fmt::print("{}\nOptimum {:.3g}; the paper's is {}.\n{}", table.text(), optimum, published_optimum, note);
+}
+
+}  // namespace
+
+void add_lambda(CLI::App& evaluate) {
+  CLI::App* command = evaluate.add_subcommand("lambda", "Iterations of the roll angle's descent against λ(0)");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("--lowest", arguments->lowest, "Smallest λ(0)")->capture_default_str();
+  command->add_option("--highest", arguments->highest, "Largest λ(0)")->capture_default_str();
+  command->add_option("--count", arguments->count, "Values between them, equal ratios")->capture_default_str();
+  command->add_option("--threads", arguments->threads, "Worker threads; 0 takes all cores")->capture_default_str();
+  add_report_options(*command, arguments->files);
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace roadstereo::cli

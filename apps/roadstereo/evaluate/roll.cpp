@@ -1,0 +1,138 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments.hpp"
+#include "report.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/plot.hpp"
+#include "roll_trials.hpp"
+#include "table.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+constexpr double published_mean_rad = 0.012;
+
+struct Arguments {
+  RollTrialOptions trials;
+  bool no_pairs = false;
+  ReportFiles files;
+
+  void validate() const {
+    constexpr double steepest_deg = 45;
+    if (!(trials.largest_roll_deg > 0 && trials.largest_roll_deg <= steepest_deg)) {
+      fail("--largest is ", trials.largest_roll_deg, "; it must be above 0 and at most ", steepest_deg);
+    }
+    if (trials.angles < 1 || trials.angles > 1000) {
+      fail("--angles is ", trials.angles, "; it must be between 1 and 1000");
+    }
+  }
+};
+
+constexpr const char* note =
+    "Rows with camber: the road is no plane (1 cm lower 1.6 m beside its crown), and the truth is the roll against "
+    "the\n"
+    "plane at its crown; what the pictures show of it is not symmetric, and the best plane leans with it.\n";
+
+Table make_table(const std::vector<RollErrors>& all) {
+  Table table{
+      "Error of the roll angle, rad",
+      {{"maps", "maps"}, {"solver", "solver"}, {"trials", "trials"}, {"mean", "mean_rad"}, {"largest", "largest_rad"}},
+      {{"published: EISATS, rotated", "gradient descent", Cell(NAN, 0), Cell(published_mean_rad, 3), Cell(NAN, 6)}}};
+  for (const RollErrors& errors : all) {
+    table.rows.push_back({errors.maps, errors.solver, Cell(static_cast<double>(errors.error_rad.size()), 0),
+                          Cell(errors.mean_rad(), 6), Cell(errors.largest_rad(), 6)});
+  }
+  return table;
+}
+
+/// The largest error of all views against the angle: one curve per solver for the hardest planar maps, one per road for
+/// the matched pairs.
+io::Curve curve_of(const RollErrors& errors, const std::string& name) {
+  io::Curve curve{name, {}, {}, true, true};
+  for (std::size_t i = 0; i < errors.roll_deg.size(); ++i) {
+    const auto known = std::find(curve.x.begin(), curve.x.end(), errors.roll_deg[i]);
+    const double error = std::abs(errors.error_rad[i]);
+    if (known == curve.x.end()) {
+      curve.x.push_back(errors.roll_deg[i]);
+      curve.y.push_back(error);
+    } else {
+      double& largest = curve.y[static_cast<std::size_t>(known - curve.x.begin())];
+      largest = std::max(largest, error);
+    }
+  }
+  return curve;
+}
+
+Frame draw(const std::vector<RollErrors>& all) {
+  constexpr const char* hardest = "rolled rig, damage, 5 % outliers";
+  constexpr double smallest_shown_rad = 1e-8;
+  io::Panel exact{"Exact maps, damage, 5 % outliers", "roll, degrees", "largest error of the views, rad", {}};
+  io::Panel matched{"Matched pairs, damage, noise", "roll, degrees", "largest error of the views, rad", {}};
+  for (const RollErrors& errors : all) {
+    if (errors.maps == hardest) exact.curves.push_back(curve_of(errors, errors.solver));
+    if (errors.maps.starts_with("matched")) matched.curves.push_back(curve_of(errors, errors.maps));
+  }
+  std::vector<io::Panel> panels{exact};
+  if (!matched.curves.empty()) panels.push_back(matched);
+  for (io::Panel& panel : panels) {
+    const auto& angles = panel.curves.front().x;
+    panel.curves.push_back({"mean error of the paper",
+                            {angles.front(), angles.back()},
+                            {published_mean_rad, published_mean_rad},
+                            true,
+                            false,
+                            true});
+    panel.log_y = true;
+    panel.y_highest = 0.1;
+  }
+  panels.front().y_lowest = smallest_shown_rad;
+  return io::draw_plot(panels);
+}
+
+nlohmann::ordered_json trials_json(const std::vector<RollErrors>& all) {
+  nlohmann::ordered_json trials = nlohmann::ordered_json::array();
+  for (const RollErrors& errors : all) {
+    trials.push_back({{"maps", errors.maps},
+                      {"solver", errors.solver},
+                      {"roll_deg", errors.roll_deg},
+                      {"error_rad", errors.error_rad}});
+  }
+  return trials;
+}
+
+void run(const Arguments& arguments) {
+  arguments.validate();
+  std::vector<RollErrors> all = try_exact_maps(arguments.trials);
+  if (!arguments.no_pairs) {
+    for (RollErrors& errors : try_matched_maps(arguments.trials)) all.push_back(std::move(errors));
+  }
+  const Table table = make_table(all);
+  if (!arguments.files.json.empty()) {
+    write_report(arguments.files.json, {{"experiment", "roll"}, {"rows", table.json()}, {"trials", trials_json(all)}});
+  }
+  if (!arguments.files.figure.empty()) write_figure(arguments.files.figure, draw(all));
+  fmt::print("{}\n{}", table.text(), note);
+}
+
+}  // namespace
+
+void add_roll(CLI::App& evaluate) {
+  CLI::App* command = evaluate.add_subcommand("roll", "Error of the roll angle on synthetic roads under known rolls");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("--largest", arguments->trials.largest_roll_deg, "Largest roll of exact maps, both ways")
+      ->type_name("DEG")
+      ->capture_default_str();
+  command->add_option("--angles", arguments->trials.angles, "Angles tried per view")->capture_default_str();
+  command->add_flag("--no-pairs", arguments->no_pairs, "Exact maps only, no matching");
+  command->add_option("--threads", arguments->trials.threads, "Worker threads; 0 takes all cores")
+      ->capture_default_str();
+  add_report_options(*command, arguments->files);
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+namespace roadstereo::cli {
+
+struct ImageSize {
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
+};
+
+/// Reads "640x360", the argument of --size. Throws Error when it is not two positive numbers.
+ImageSize parse_image_size(const std::string& text);
+
+}  // namespace roadstereo::cli
