@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "mask_file.hpp"
 #include "road_flatness.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
@@ -11,20 +12,11 @@
 namespace roadstereo::cli {
 namespace {
 
-/// 255 where the mask's first channel is not black.
-Image<std::uint8_t> read_mask(const std::filesystem::path& path, int width, int height) {
-  const Frame frame = io::read_frame(path.string());
-  if (frame.width != width || frame.height != height) {
-    fail(path.string(), " has ", frame.width, "×", frame.height, " pixels and the disparity map ", width, "×", height,
-         "; they must be equal");
-  }
-  if (frame.sample != SampleType::u8) fail(path.string(), " has 16 bits per sample; a mask must have 8");
-  const auto channels = static_cast<std::size_t>(channel_count(frame.order));
-  Image<std::uint8_t> mask(width, height);
-  for (std::size_t pixel = 0; pixel < mask.pixels(); ++pixel) {
-    mask.row(0)[pixel] = frame.bytes[pixel * channels] != 0 ? 255 : 0;
-  }
-  return mask;
+/// The mask belongs to the map: `path` names the file that is of another size.
+void require_size(const Image<std::uint8_t>& mask, const Image<float>& disparity, const std::filesystem::path& path) {
+  if (mask.width() == disparity.width() && mask.height() == disparity.height()) return;
+  fail(path.string(), " has ", mask.width(), "×", mask.height(), " pixels and the disparity map ", disparity.width(),
+       "×", disparity.height(), "; they must be equal");
 }
 
 }  // namespace
@@ -58,7 +50,9 @@ Flatness measure_flatness(ImageView<const float> disparity, ImageView<const std:
 
 FlatnessFrame measure_frame(const FlatnessFolders& folders, const std::string& name, const PipelineOptions& options) {
   const Image<float> truth = io::read_disparity((folders.data / "disp_noc_0" / name).string());
-  const Image<std::uint8_t> mask = read_mask(folders.road_masks / name, truth.width(), truth.height());
+  const std::filesystem::path mask_file = folders.road_masks / name;
+  const Image<std::uint8_t> mask = read_mask(mask_file.string());
+  require_size(mask, truth, mask_file);
   const Frame left = io::read_frame((folders.data / "image_2" / name).string());
   const Frame right = io::read_frame((folders.data / "image_3" / name).string());
   if (left.width != truth.width() || left.height != truth.height()) {

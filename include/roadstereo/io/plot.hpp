@@ -26,8 +26,8 @@ struct Panel {
   std::vector<Curve> curves;
   bool log_x = false;
   bool log_y = false;
-  std::optional<double> y_lowest;          ///< the smallest value of the curves when absent
-  std::optional<double> y_highest;         ///< the largest value of the curves when absent
+  std::optional<double> y_lowest{};        ///< the smallest value of the curves when absent
+  std::optional<double> y_highest{};       ///< the largest value of the curves when absent
   std::vector<double> horizontal_lines{};  ///< y of thin reference lines from side to side
   std::vector<double> vertical_lines{};    ///< x of thin reference lines from top to bottom
 };
