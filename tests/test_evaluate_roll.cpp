@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "road_flatness.hpp"
+#include "evaluate/road_flatness.hpp"
+#include "evaluate/roll_maps.hpp"
 #include "roadstereo/error.hpp"
-#include "roll_maps.hpp"
 
 namespace roadstereo::cli {
 namespace {

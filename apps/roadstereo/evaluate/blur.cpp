@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "blur_trials.hpp"
-#include "experiments.hpp"
-#include "report.hpp"
+#include "evaluate/blur_trials.hpp"
+#include "evaluate/experiments.hpp"
+#include "evaluate/report.hpp"
+#include "evaluate/table.hpp"
 #include "roadstereo/io/plot.hpp"
-#include "table.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -28,16 +28,16 @@ constexpr double percent = 100;
 
 Table make_table(const std::vector<BlurTrial>& trials, const BlurOptions& options) {
   Table table{fmt::format("Motion blur, scene {}, noise {} grey levels", options.scene, options.noise_grey),
-              {{"length px", "length_px"},
-               {"method", "method"},
+              {{"method", "method"},
+               {"length px", "length_px"},
                {"density %", "density_percent"},
                {"e_r px", "rms_px"},
                {"> 1 px or missing %", "wrong_percent"}},
               {}};
-  for (const double length : blur_lengths(options)) {
-    for (const std::string& method : blur_methods()) {
+  for (const std::string& method : blur_methods()) {
+    for (const double length : blur_lengths(options)) {
       const BlurTrial mean = mean_over_directions(trials, method, length);
-      table.rows.push_back({Cell(length, 1), method, Cell(percent * mean.density, 1), Cell(mean.rms_px, 3),
+      table.rows.push_back({method, Cell(length, 1), Cell(percent * mean.density, 1), Cell(mean.rms_px, 3),
                             Cell(percent * mean.wrong, 1)});
     }
   }
@@ -102,7 +102,7 @@ void add_blur(CLI::App& evaluate) {
   command->add_option("--noise", trials.noise_grey, "Noise, standard deviation in grey levels")
       ->type_name("GREY")
       ->capture_default_str();
-  command->add_option("--threads", trials.threads, "Worker threads; 0 takes all cores")->capture_default_str();
+  add_method_options(*command, trials.methods);
   add_report_options(*command, arguments->files);
   command->callback([arguments] { run(*arguments); });
 }

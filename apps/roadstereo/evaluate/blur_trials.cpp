@@ -1,14 +1,15 @@
-#include "blur_trials.hpp"
+#include "evaluate/blur_trials.hpp"
 
 #include <array>
 #include <optional>
 
 #include "benchmark_frames.hpp"
+#include "evaluate/roll_maps.hpp"
 #include "roadstereo/disparity_score.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/peer_matchers.hpp"
 #include "roadstereo/pipeline.hpp"
-#include "roll_maps.hpp"
+#include "settings.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -29,7 +30,7 @@ BlurredPair render_blurred(const BlurOptions& options, double length_px, double 
   scene.degradation.noise_grey = options.noise_grey;
   scene.degradation.motion_blur_px = length_px;
   scene.degradation.motion_blur_angle_deg = direction_deg;
-  synth::SyntheticPair made = synth::render(scene, options.threads);
+  synth::SyntheticPair made = synth::render(scene, options.methods.threads);
   BlurredPair blurred;
   blurred.truth = exact_map(made);
   blurred.visible = std::move(made.visible);
@@ -60,19 +61,20 @@ Image<float> match_peer(const StereoPair& pair, const PerspectiveShift& shift, i
 }
 
 /// Every method on one pair.
-std::vector<BlurTrial> try_pair(const BlurredPair& blurred, int threads) {
+std::vector<BlurTrial> try_pair(const BlurredPair& blurred, const MethodSettings& methods) {
   std::vector<BlurTrial> trials;
   std::optional<PerspectiveShift> shift;
   for (const char* name : presets) {
     PipelineOptions options = preset(name);
-    options.threads = threads;
+    options.threads = methods.threads;
+    apply_settings(methods.settings, options);
     Pipeline pipeline(options, blurred.pair.calibration);
     const FrameResult& result = pipeline.process(blurred.pair.left.view(), blurred.pair.right.view());
     if (!shift) shift = result.shift;
     trials.push_back(score(blurred, result.disparity));
     trials.back().method = name;
   }
-  trials.push_back(score(blurred, match_peer(blurred.pair, *shift, threads)));
+  trials.push_back(score(blurred, match_peer(blurred.pair, *shift, methods.threads)));
   trials.back().method = peer;
   return trials;
 }
@@ -102,7 +104,7 @@ std::vector<BlurTrial> try_blur(const BlurOptions& options) {
   std::vector<BlurTrial> all;
   for (const double length : blur_lengths(options)) {
     for (const double direction : options.directions_deg) {
-      for (BlurTrial& trial : try_pair(render_blurred(options, length, direction), options.threads)) {
+      for (BlurTrial& trial : try_pair(render_blurred(options, length, direction), options.methods)) {
         trial.length_px = length;
         trial.direction_deg = direction;
         all.push_back(std::move(trial));

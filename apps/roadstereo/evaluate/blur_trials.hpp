@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/methods.hpp"
+
 namespace roadstereo::cli {
 
 struct BlurOptions {
@@ -11,7 +13,7 @@ struct BlurOptions {
   int steps = 11;                                    ///< lengths from 0 to the longest
   std::vector<double> directions_deg = {0, 45, 90};  ///< 0 is along the rows, the direction of the disparities
   double noise_grey = 2;                             ///< standard deviation, grey levels, added after the blur
-  int threads = 0;
+  MethodSettings methods;
 
   /// Throws Error naming the option that is out of range.
   void validate() const;

@@ -1,17 +1,17 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "experiments.hpp"
-#include "flatness_frames.hpp"
-#include "report.hpp"
+#include "evaluate/experiments.hpp"
+#include "evaluate/flatness_frames.hpp"
+#include "evaluate/report.hpp"
+#include "evaluate/roll_trials.hpp"
+#include "evaluate/table.hpp"
 #include "roadstereo/io/plot.hpp"
-#include "roadstereo/options.hpp"
-#include "roll_trials.hpp"
-#include "table.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -23,7 +23,7 @@ struct Arguments {
   std::string data;
   std::string road_masks;
   std::string preset = "default";
-  int threads = 0;
+  MethodSettings methods;
   ReportFiles files;
 };
 
@@ -87,13 +87,11 @@ Frame draw(const std::vector<FlatnessFrame>& frames) {
 }
 
 void run(const Arguments& arguments) {
-  const FlatnessFolders folders{arguments.data, arguments.road_masks.empty()
-                                                    ? std::filesystem::path(arguments.data) / "road"
-                                                    : std::filesystem::path(arguments.road_masks)};
-  PipelineOptions options = preset(arguments.preset);
-  options.threads = arguments.threads;
+  preset(arguments.preset);  // one that does not exist is refused by its name, before any work
   std::vector<FlatnessFrame> frames;
-  for (const std::string& name : flatness_frames(folders)) frames.push_back(measure_frame(folders, name, options));
+  for (const KittiFiles& files : find_kitti_frames(arguments.data, arguments.road_masks)) {
+    frames.push_back(measure_frame(files, arguments.preset, arguments.methods));
+  }
   const Table table = make_table(frames);
   if (!arguments.files.json.empty()) {
     write_report(arguments.files.json,
@@ -117,7 +115,7 @@ void add_flatness(CLI::App& evaluate) {
   command->add_option("--preset", arguments->preset, "Preset that matches the frames")
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("--threads", arguments->threads, "Worker threads; 0 takes all cores")->capture_default_str();
+  add_method_options(*command, arguments->methods);
   add_report_options(*command, arguments->files);
   command->callback([arguments] { run(*arguments); });
 }

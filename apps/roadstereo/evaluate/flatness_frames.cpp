@@ -1,39 +1,22 @@
-#include "flatness_frames.hpp"
+#include "evaluate/flatness_frames.hpp"
 
-#include <algorithm>
 #include <optional>
 
-#include "mask_file.hpp"
-#include "road_flatness.hpp"
+#include "evaluate/road_flatness.hpp"
+#include "evaluate/roll_trials.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/image_file.hpp"
-#include "roll_trials.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
-/// The mask belongs to the map: `path` names the file that is of another size.
-void require_size(const Image<std::uint8_t>& mask, const Image<float>& disparity, const std::filesystem::path& path) {
-  if (mask.width() == disparity.width() && mask.height() == disparity.height()) return;
-  fail(path.string(), " has ", mask.width(), "×", mask.height(), " pixels and the disparity map ", disparity.width(),
-       "×", disparity.height(), "; they must be equal");
+/// The mask belongs to the truth.
+void require_size(const Image<std::uint8_t>& mask, const Image<float>& truth, const std::string& path) {
+  if (mask.width() == truth.width() && mask.height() == truth.height()) return;
+  fail(path, " has ", mask.width(), "×", mask.height(), " pixels and the ground truth ", truth.width(), "×",
+       truth.height(), "; they must be equal");
 }
 
 }  // namespace
-
-std::vector<std::string> flatness_frames(const FlatnessFolders& folders) {
-  const std::filesystem::path truth = folders.data / "disp_noc_0";
-  if (!std::filesystem::is_directory(truth)) {
-    fail(folders.data.string(), " has no folder disp_noc_0; flatness takes a folder like KITTI Stereo 2015's training");
-  }
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(truth)) {
-    if (entry.path().extension() == ".png") names.push_back(entry.path().filename().string());
-  }
-  if (names.empty()) fail(truth.string(), " has no PNG files; flatness needs ground truth disparities");
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 Flatness measure_flatness(ImageView<const float> disparity, ImageView<const std::uint8_t> mask, int threads) {
   Flatness flatness;
@@ -48,21 +31,13 @@ Flatness measure_flatness(ImageView<const float> disparity, ImageView<const std:
   return flatness;
 }
 
-FlatnessFrame measure_frame(const FlatnessFolders& folders, const std::string& name, const PipelineOptions& options) {
-  const Image<float> truth = io::read_disparity((folders.data / "disp_noc_0" / name).string());
-  const std::filesystem::path mask_file = folders.road_masks / name;
-  const Image<std::uint8_t> mask = read_mask(mask_file.string());
-  require_size(mask, truth, mask_file);
-  const Frame left = io::read_frame((folders.data / "image_2" / name).string());
-  const Frame right = io::read_frame((folders.data / "image_3" / name).string());
-  if (left.width != truth.width() || left.height != truth.height()) {
-    fail(name, ": the image has ", left.width, "×", left.height, " pixels and the ground truth ", truth.width(), "×",
-         truth.height(), "; they must be equal");
-  }
-  Pipeline pipeline(options);
-  const FrameResult& result = pipeline.process(left.view(), right.view());
-  return {name, measure_flatness(truth, mask, options.threads),
-          measure_flatness(result.disparity, mask, options.threads)};
+FlatnessFrame measure_frame(const KittiFiles& files, const std::string& preset, const MethodSettings& methods) {
+  const KittiFrame frame = read_kitti_frame(files);
+  if (!frame.road) fail(files.name, " has no road mask; give the folder of the masks with --road-masks");
+  require_size(*frame.road, frame.truth, files.road);
+  const Image<float> matched = run_method(preset, MethodTask{frame.pair}, methods);
+  return {files.name, measure_flatness(frame.truth, *frame.road, methods.threads),
+          measure_flatness(matched, *frame.road, methods.threads)};
 }
 
 }  // namespace roadstereo::cli

@@ -2,12 +2,11 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <string>
-#include <vector>
 
+#include "evaluate/kitti_frames.hpp"
+#include "evaluate/methods.hpp"
 #include "roadstereo/image.hpp"
-#include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
 
@@ -18,25 +17,17 @@ struct Flatness {
   std::array<double, 3> roll_rad{};      ///< what they found
 };
 
-/// One frame of a folder laid out like KITTI Stereo 2015.
+/// One frame of KITTI Stereo 2015.
 struct FlatnessFrame {
   std::string name;
   Flatness truth;    ///< of the ground truth inside the road mask
-  Flatness matched;  ///< of the pipeline's own disparities inside the same mask
+  Flatness matched;  ///< of the preset's own disparities inside the same mask
 };
-
-/// The folders of the frames: disparities `disp_noc_0`, images `image_2` and `image_3`, files of one name in each.
-struct FlatnessFolders {
-  std::filesystem::path data;
-  std::filesystem::path road_masks;
-};
-
-/// Names of the frames that have ground truth, in order. Throws Error when there are none.
-std::vector<std::string> flatness_frames(const FlatnessFolders& folders);
 
 Flatness measure_flatness(ImageView<const float> disparity, ImageView<const std::uint8_t> mask, int threads);
 
-/// Reads the frame, matches it with `options` and measures both. Throws Error naming the file that is wrong.
-FlatnessFrame measure_frame(const FlatnessFolders& folders, const std::string& name, const PipelineOptions& options);
+/// Reads the frame, matches it with the preset and measures both. Throws Error when the frame has no road mask, or one
+/// of another size.
+FlatnessFrame measure_frame(const KittiFiles& files, const std::string& preset, const MethodSettings& methods);
 
 }  // namespace roadstereo::cli

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "experiments.hpp"
-#include "lambda_sweep.hpp"
-#include "report.hpp"
+#include "evaluate/experiments.hpp"
+#include "evaluate/lambda_sweep.hpp"
+#include "evaluate/report.hpp"
+#include "evaluate/table.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/plot.hpp"
 #include "roadstereo/road_geometry.hpp"
-#include "table.hpp"
 
 namespace roadstereo::cli {
 namespace {

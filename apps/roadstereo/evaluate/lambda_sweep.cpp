@@ -1,4 +1,4 @@
-#include "lambda_sweep.hpp"
+#include "evaluate/lambda_sweep.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <numeric>
 #include <optional>
 
+#include "evaluate/roll_maps.hpp"
 #include "roadstereo/road_geometry.hpp"
-#include "roll_maps.hpp"
 
 namespace roadstereo::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "road_flatness.hpp"
+#include "evaluate/road_flatness.hpp"
 
 #include <algorithm>
 #include <cmath>

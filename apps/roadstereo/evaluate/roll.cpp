@@ -1,21 +1,24 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "experiments.hpp"
-#include "report.hpp"
+#include "evaluate/experiments.hpp"
+#include "evaluate/report.hpp"
+#include "evaluate/roll_trials.hpp"
+#include "evaluate/table.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/plot.hpp"
-#include "roll_trials.hpp"
-#include "table.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
 constexpr double published_mean_rad = 0.012;
+constexpr double microradians = 1e6;  ///< per radian
 
 struct Arguments {
   RollTrialOptions trials;
@@ -56,7 +59,7 @@ io::Curve curve_of(const RollErrors& errors, const std::string& name) {
   io::Curve curve{name, {}, {}, true, true};
   for (std::size_t i = 0; i < errors.roll_deg.size(); ++i) {
     const auto known = std::find(curve.x.begin(), curve.x.end(), errors.roll_deg[i]);
-    const double error = std::abs(errors.error_rad[i]);
+    const double error = std::abs(errors.error_rad[i]) * microradians;
     if (known == curve.x.end()) {
       curve.x.push_back(errors.roll_deg[i]);
       curve.y.push_back(error);
@@ -70,9 +73,9 @@ io::Curve curve_of(const RollErrors& errors, const std::string& name) {
 
 Frame draw(const std::vector<RollErrors>& all) {
   constexpr const char* hardest = "rolled rig, damage, 5 % outliers";
-  constexpr double smallest_shown_rad = 1e-8;
-  io::Panel exact{"Exact maps, damage, 5 % outliers", "roll, degrees", "largest error of the views, rad", {}};
-  io::Panel matched{"Matched pairs, damage, noise", "roll, degrees", "largest error of the views, rad", {}};
+  constexpr double smallest_shown_urad = 0.01, largest_shown_urad = 50000;
+  io::Panel exact{"Exact maps, damage, 5 % outliers", "roll, degrees", "largest error, microradians", {}};
+  io::Panel matched{"Matched pairs, damage, noise", "roll, degrees", "largest error, microradians", {}};
   for (const RollErrors& errors : all) {
     if (errors.maps == hardest) exact.curves.push_back(curve_of(errors, errors.solver));
     if (errors.maps.starts_with("matched")) matched.curves.push_back(curve_of(errors, errors.maps));
@@ -83,14 +86,14 @@ Frame draw(const std::vector<RollErrors>& all) {
     const auto& angles = panel.curves.front().x;
     panel.curves.push_back({"mean error of the paper",
                             {angles.front(), angles.back()},
-                            {published_mean_rad, published_mean_rad},
+                            {published_mean_rad * microradians, published_mean_rad * microradians},
                             true,
                             false,
                             true});
     panel.log_y = true;
-    panel.y_highest = 0.1;
+    panel.y_highest = largest_shown_urad;
   }
-  panels.front().y_lowest = smallest_shown_rad;
+  panels.front().y_lowest = smallest_shown_urad;
   return io::draw_plot(panels);
 }
 
@@ -129,8 +132,7 @@ void add_roll(CLI::App& evaluate) {
       ->capture_default_str();
   command->add_option("--angles", arguments->trials.angles, "Angles tried per view")->capture_default_str();
   command->add_flag("--no-pairs", arguments->no_pairs, "Exact maps only, no matching");
-  command->add_option("--threads", arguments->trials.threads, "Worker threads; 0 takes all cores")
-      ->capture_default_str();
+  add_method_options(*command, arguments->trials.methods);
   add_report_options(*command, arguments->files);
   command->callback([arguments] { run(*arguments); });
 }

@@ -1,4 +1,4 @@
-#include "roll_maps.hpp"
+#include "evaluate/roll_maps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "roll_trials.hpp"
+#include "evaluate/roll_trials.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,9 @@
 #include <optional>
 #include <utility>
 
+#include "evaluate/roll_maps.hpp"
 #include "roadstereo/pipeline.hpp"
-#include "roll_maps.hpp"
+#include "settings.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -61,11 +62,11 @@ class Trials {
 };
 
 void try_rolled_rigs(const Wear& wear, const RollTrialOptions& options, std::vector<RollErrors>& all) {
-  Trials trials(std::string("rolled rig, ") + wear.name, options.threads);
+  Trials trials(std::string("rolled rig, ") + wear.name, options.methods.threads);
   std::uint64_t seed = 0;
   for (const RollView& view : views) {
     for (const double angle : angles_between(options.largest_roll_deg, options.angles)) {
-      const auto pair = synth::render(roll_scene(view, angle, wear.damaged, wear.camber), options.threads);
+      const auto pair = synth::render(roll_scene(view, angle, wear.damaged, wear.camber), options.methods.threads);
       Image<float> map = exact_map(pair);
       add_outliers(map, wear.outliers, ++seed);
       trials.add(map, angle, pair.roll_rad);
@@ -77,10 +78,11 @@ void try_rolled_rigs(const Wear& wear, const RollTrialOptions& options, std::vec
 void try_rotated_maps(const Wear& wear, Resampling resampling, const RollTrialOptions& options,
                       std::vector<RollErrors>& all) {
   const char* name = resampling == Resampling::nearest ? "rotated map (nearest), " : "rotated map (bilinear), ";
-  Trials trials(name + std::string(wear.name), options.threads);
+  Trials trials(name + std::string(wear.name), options.methods.threads);
   std::uint64_t seed = 0;
   for (const RollView& view : views) {
-    Image<float> level = exact_map(synth::render(roll_scene(view, 0, wear.damaged, wear.camber), options.threads));
+    Image<float> level =
+        exact_map(synth::render(roll_scene(view, 0, wear.damaged, wear.camber), options.methods.threads));
     add_outliers(level, wear.outliers, ++seed);
     for (const double angle : angles_between(options.largest_roll_deg, options.angles)) {
       const double roll = angle * radians_per_degree;
@@ -93,14 +95,15 @@ void try_rotated_maps(const Wear& wear, Resampling resampling, const RollTrialOp
 RollErrors try_pairs(double road_camber, const RollTrialOptions& options) {
   constexpr double noise_grey = 2;
   PipelineOptions pipeline_options = preset("default");
-  pipeline_options.threads = options.threads;
+  pipeline_options.threads = options.methods.threads;
+  apply_settings(options.methods.settings, pipeline_options);
   RollErrors errors{road_camber > 0 ? "matched pair, damage, camber" : "matched pair, damage", "robust", {}, {}};
   for (const RollView& view : views) {
     for (const double angle : angles_between(options.largest_matched_roll_deg, options.angles)) {
       synth::Scene scene = roll_scene(view, angle, true, road_camber);
       scene.supersampling = 2;
       scene.degradation.noise_grey = noise_grey;
-      const synth::SyntheticPair pair = synth::render(scene, options.threads);
+      const synth::SyntheticPair pair = synth::render(scene, options.methods.threads);
       Pipeline pipeline(pipeline_options, pair.calibration);
       const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
       errors.roll_deg.push_back(angle);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/methods.hpp"
 #include "roadstereo/road_geometry.hpp"
 
 namespace roadstereo::cli {
@@ -21,7 +22,7 @@ struct RollTrialOptions {
   double largest_roll_deg = 20;          ///< of exact maps, both ways
   double largest_matched_roll_deg = 10;  ///< of matched pairs
   int angles = 9;                        ///< from −largest to +largest
-  int threads = 0;
+  MethodSettings methods;                ///< threads, and options of the default pipeline
 };
 
 /// A solver by its name.
