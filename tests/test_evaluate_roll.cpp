@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
+#include "evaluate/lambda_sweep.hpp"
 #include "evaluate/road_flatness.hpp"
 #include "evaluate/roll_maps.hpp"
 #include "roadstereo/error.hpp"
@@ -74,6 +76,27 @@ TEST(AddOutliers, SpoilsTheShareAndKeepsWhatIsInvalid) {
   EXPECT_TRUE(std::isnan(map(5, 5)));
   EXPECT_NEAR(spoilt / static_cast<double>(map.pixels()), 0.05, 0.003);  // five standard deviations
   EXPECT_NEAR(sum / spoilt, 25, 1);
+}
+
+TEST(LambdaSweep, ValuesHaveEqualRatios) {
+  const std::vector<double> values = geometric_series(0.01, 10000, 7);
+  ASSERT_EQ(values.size(), 7U);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_NEAR(values[i] / std::pow(10, static_cast<double>(i) - 2), 1, 1e-12);
+  }
+}
+
+TEST(LambdaSweep, BestIsTheMiddleOfThoseThatShareTheLeast) {
+  EXPECT_NEAR(best_lambda({{1, {5, 7}, 0}, {10, {3, 4}, 0}, {1000, {4, 3}, 0}, {1e4, {3, 5}, 0}}), 100, 1e-9);
+}
+
+TEST(LambdaSweep, EveryRateReachesTheRollOfAPlane) {
+  const std::vector<LambdaMap> maps{{plane_map({20, 0.25, -0.02}), std::atan(0.02 / 0.25)}};
+  for (const double lambda : {0.01, 10.0, 1e4}) {
+    const LambdaTrial trial = try_lambda(lambda, maps, 1e-8, 1);
+    EXPECT_LT(trial.largest_error_rad, 1e-6) << lambda;
+    EXPECT_EQ(trial.iterations.size(), 1U);
+  }
 }
 
 // On a plane with roll the row tells all but a2·u, which is uniform over the columns: σ_d = |a2|·√((w² − 1)/12).

@@ -20,9 +20,10 @@ struct Arguments {
 };
 
 constexpr const char* note =
-    "Density, e_r and e_p over the pixels that both cameras see, mean over the directions. SGBM gets the pair that "
-    "the\n"
-    "default preset has transformed, which helps it. The paper shows blurred frames but gives no figures.\n";
+    "Density, e_r and e_p over the pixels that both cameras see, mean over the directions. SGBM gets the pair as the\n"
+    "default preset has transformed it, which helps: otherwise it would see nothing of the leftmost columns. The "
+    "paper\n"
+    "shows blurred frames but gives no figures.\n";
 
 constexpr double percent = 100;
 

@@ -95,6 +95,7 @@ const std::vector<std::string>& blur_methods() {
 
 std::vector<double> blur_lengths(const BlurOptions& options) {
   std::vector<double> lengths;
+  lengths.reserve(static_cast<std::size_t>(options.steps));
   for (int i = 0; i < options.steps; ++i) lengths.push_back(options.longest_px * i / (options.steps - 1));
   return lengths;
 }

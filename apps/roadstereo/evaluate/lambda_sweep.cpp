@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "evaluate/roll_maps.hpp"
 #include "roadstereo/road_geometry.hpp"
@@ -58,6 +59,7 @@ double LambdaTrial::most() const {
 
 std::vector<double> geometric_series(double lowest, double highest, int count) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   const double ratio = highest / lowest;
   for (int i = 0; i < count; ++i) values.push_back(lowest * std::pow(ratio, i / std::max(1.0, count - 1.0)));
   return values;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -33,6 +34,7 @@ constexpr Wear wears[] = {{"clean", false, 0, 0},
 
 std::vector<double> angles_between(double largest, int count) {
   std::vector<double> angles;
+  angles.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) angles.push_back(count == 1 ? largest : largest * (2.0 * i / (count - 1) - 1));
   return angles;
 }
