@@ -199,4 +199,66 @@ TEST_F(Evaluate, MiddleburyTakesOneScene) {
   EXPECT_EQ(json_file("middlebury.json")["Motorcycle"].size(), 7U);
 }
 
+TEST_F(Evaluate, LambdaWritesOneRowPerRate) {
+  const Outcome outcome = run("lambda --count 2 --json lambda.json --figure lambda.png");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto lambda = json_file("lambda.json");
+  ASSERT_EQ(lambda["rows"].size(), 2U);
+  EXPECT_NEAR(lambda["rows"][0]["lambda"], 0.01, 1e-12);
+  EXPECT_NEAR(lambda["rows"][1]["lambda"], 1e4, 1e-6);
+  EXPECT_EQ(lambda["published_optimum"], 10);
+  EXPECT_GT(io::read_frame((folder_ / "lambda.png").string()).width, 300);
+}
+
+// Without damage every solver finds the roll of a plane; the paper's mean error stands beside them.
+TEST_F(Evaluate, RollOfCleanMapsIsExact) {
+  const Outcome outcome = run("roll --angles 1 --largest 7 --no-pairs --json roll.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto roll = json_file("roll.json");
+  EXPECT_EQ(roll["rows"][0]["mean_rad"], 0.012);
+  int clean = 0;
+  for (const auto& row : roll["rows"]) {
+    if (row["maps"] != "rolled rig, clean") continue;
+    EXPECT_LT(row["largest_rad"], 1e-6) << row["solver"];
+    ++clean;
+  }
+  EXPECT_EQ(clean, 3);
+}
+
+TEST_F(Evaluate, BlurComparesThreeMethods) {
+  const Outcome outcome = run("blur --steps 2 --longest 4 --directions 0 --json blur.json --figure blur.png");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json_file("blur.json")["trials"].size(), 6U);
+}
+
+TEST_F(Evaluate, RuntimeCountsDisparitiesAsThePaperDoes) {
+  const Outcome outcome = run("runtime --size 160x96 --disparities 16 --runs 1 --json runtime.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const auto& row : json_file("runtime.json")["rows"]) {
+    const bool published = row["method"].get<std::string>().starts_with("published");
+    const double evaluations = published ? 695.0 * 361 * 30 : 160.0 * 96 * 16;
+    const double per_second = evaluations / row["total_ms"].get<double>() / 1e3;
+    EXPECT_NEAR(row["mde_per_s"].get<double>() / per_second, 1, 1e-4) << row["method"];
+  }
+}
+
+TEST_F(Evaluate, FlatnessOfKittiRoads) {
+  const auto data = data_folder("kitti2015");
+  if (!data) GTEST_SKIP() << "SKIPPED: no real data; set ROADSTEREO_DATA to a folder that has kitti2015";
+  const Outcome outcome = run("flatness '" + data->string() + "' --preset fast --json flatness.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const auto& row : json_file("flatness.json")["rows"]) {
+    // One unknown more fits no worse.
+    EXPECT_LE(row["gradient_descent_px"], row["without_roll_px"]) << row;
+  }
+}
+
+TEST_F(Evaluate, ExperimentsRefuseWhatTheyCannotDo) {
+  expect_complaint(run("lambda --lowest 5 --highest 1"), "--lowest 5");
+  expect_complaint(run("roll --angles 0"), "--angles is 0");
+  expect_complaint(run("blur --scene bluur"), "did you mean");
+  expect_complaint(run("runtime --size 10"), "--size takes WIDTHxHEIGHT");
+  expect_complaint(run("flatness nowhere"), "nowhere");
+}
+
 }  // namespace

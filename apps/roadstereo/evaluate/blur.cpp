@@ -104,6 +104,7 @@ void add_blur(CLI::App& evaluate) {
       ->type_name("GREY")
       ->capture_default_str();
   add_method_options(*command, trials.methods);
+  command->footer("Example:\n  roadstereo evaluate blur --scene street --directions 0,90 --figure blur.png");
   add_report_options(*command, arguments->files);
   command->callback([arguments] { run(*arguments); });
 }

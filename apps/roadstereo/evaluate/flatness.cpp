@@ -116,6 +116,7 @@ void add_flatness(CLI::App& evaluate) {
       ->type_name("NAME")
       ->capture_default_str();
   add_method_options(*command, arguments->methods);
+  command->footer("Example:\n  roadstereo evaluate flatness kitti2015 --figure flatness.png");
   add_report_options(*command, arguments->files);
   command->callback([arguments] { run(*arguments); });
 }

@@ -108,6 +108,7 @@ void add_lambda(CLI::App& evaluate) {
   command->add_option("--highest", arguments->highest, "Largest λ(0)")->capture_default_str();
   command->add_option("--count", arguments->count, "Values between them, equal ratios")->capture_default_str();
   command->add_option("--threads", arguments->threads, "Worker threads; 0 takes all cores")->capture_default_str();
+  command->footer("Example:\n  roadstereo evaluate lambda --figure lambda.png");
   add_report_options(*command, arguments->files);
   command->callback([arguments] { run(*arguments); });
 }

@@ -133,6 +133,7 @@ void add_roll(CLI::App& evaluate) {
   command->add_option("--angles", arguments->trials.angles, "Angles tried per view")->capture_default_str();
   command->add_flag("--no-pairs", arguments->no_pairs, "Exact maps only, no matching");
   add_method_options(*command, arguments->trials.methods);
+  command->footer("Example:\n  roadstereo evaluate roll --figure roll.png --json roll.json");
   add_report_options(*command, arguments->files);
   command->callback([arguments] { run(*arguments); });
 }

@@ -119,6 +119,7 @@ void add_runtime(CLI::App& evaluate) {
       ->capture_default_str();
   command->add_option("--runs", arguments->runtime.runs, "Frames timed")->type_name("N")->capture_default_str();
   add_method_options(*command, arguments->runtime.methods);
+  command->footer("Example:\n  roadstereo evaluate runtime --size 1242x375 --disparities 64");
   add_report_options(*command, arguments->files);
   command->callback([arguments] { run(*arguments); });
 }
