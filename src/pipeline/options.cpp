@@ -96,6 +96,8 @@ void visit_options(Options& o, Visitor visit) {
         "joint standard errors at which a neighbour loses its weight");
   visit("refinement.most_sigma_px", o.refinement.most_sigma_px,
         "a disparity known less well agrees with its neighbours no more easily than this, pixels");
+  visit("refinement.worst_sigma_px", o.refinement.worst_sigma_px,
+        "a disparity known less well than that is invalid, pixels");
   visit("refinement.least_sigma_px", o.refinement.least_sigma_px, "standard error that no disparity falls below, pixels");
 
   visit("road_geometry.solver", o.road_geometry.solver, "gradient_descent, closed_form or robust");

@@ -23,6 +23,7 @@ PipelineOptions paper_preset() {
   options.matcher.consistency = 1;     // δr
   options.matcher.drop_range_ends = false;
   options.refinement.radius = 0;
+  options.refinement.worst_sigma_px = 1000;  // the left-right check alone decides
   options.road_geometry.solver = RollSolver::gradient_descent;
   options.road_geometry.initial_lambda = 10;  // λ(0)
   return options;

@@ -90,11 +90,13 @@ void refine_row(const Maps& maps, const BandRows& rows, const MeanSettings& sett
   weighted_mean(rows.row(v), {lines.data(), count}, settings, width, mean, precision);
   const auto of_row = static_cast<float>(maps.road.disparity(0, v)), slope = static_cast<float>(maps.road.a2);
   const float* disparity = maps.disparity.row(v);
+  const auto worst = static_cast<float>(maps.options.worst_sigma_px);
   for (int u = 0; u < width; ++u) {
-    const bool known = disparity[u] == disparity[u];
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    const float error = std::sqrt(optimism / precision[u]);
+    const bool known = disparity[u] == disparity[u] && error <= worst;
     refined[u] = known ? mean[u] + (of_row + slope * static_cast<float>(u)) : nan;
-    sigma[u] = known ? std::sqrt(optimism / precision[u]) : nan;
+    sigma[u] = known ? error : nan;
   }
 }
 
@@ -109,6 +111,7 @@ void RefinementOptions::validate() const {
   require(reach_sigmas >= 0.5 && reach_sigmas <= 100, "reach_sigmas", reach_sigmas, "between 0.5 and 100");
   require(least_sigma_px >= 0.001 && least_sigma_px <= 1, "least_sigma_px", least_sigma_px,
           "between 0.001 and 1 pixels");
+  require(worst_sigma_px > 0, "worst_sigma_px", worst_sigma_px, "above 0 pixels");
   require(most_sigma_px >= least_sigma_px && most_sigma_px <= 10, "most_sigma_px", most_sigma_px,
           "between least_sigma_px and 10 pixels");
 }
