@@ -14,9 +14,11 @@ enum class WindowShape { square, disc };
 
 struct MatcherOptions {
   int block_radius = 2;        ///< N⁺ is (2r+1)² pixels; the paper's 120-connected system is 5; 1 … 10
-  int aggregation_radius = 6;  ///< radius of the bilateral window, pixels; 0 switches aggregation off; 0 … 10
+  int aggregation_radius = 8;  ///< radius of the bilateral window, pixels; 0 switches aggregation off; 0 … 10
+  /// Height of the window over its width: a road is foreshortened along the columns, and its damage with it; 0.1 … 1.
+  double aggregation_aspect = 0.5;
   int aggregation_step = 2;    ///< distance between its taps, pixels, 1 or 2: neighbours share most of their block
-  WindowShape aggregation_shape = WindowShape::disc;  ///< `disc` keeps the taps within the radius
+  WindowShape aggregation_shape = WindowShape::disc;  ///< `disc` keeps the taps within the ellipse
   double sigma_space = 6.0;                           ///< σ0 of eq. omega0, pixels
   double sigma_colour = 20.0;                         ///< σ1 of eq. omega1, 8-bit grey levels
   double texture_noise = 1.0;    ///< grey-level noise below which texture is no evidence; 0 is plain NCC, 0 … 50

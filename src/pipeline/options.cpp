@@ -76,6 +76,7 @@ void visit_options(Options& o, Visitor visit) {
 
   visit("matcher.block_radius", o.matcher.block_radius, "radius of the correlation block, pixels");
   visit("matcher.aggregation_radius", o.matcher.aggregation_radius, "radius of the bilateral window, pixels; 0 is off");
+  visit("matcher.aggregation_aspect", o.matcher.aggregation_aspect, "height of the bilateral window over its width");
   visit("matcher.aggregation_step", o.matcher.aggregation_step, "distance between the window's taps, pixels: 1 or 2");
   visit("matcher.aggregation_shape", o.matcher.aggregation_shape, "square or disc");
   visit("matcher.sigma_space", o.matcher.sigma_space, "sigma 0 of the bilateral weights, pixels");

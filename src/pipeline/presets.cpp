@@ -15,6 +15,7 @@ PipelineOptions paper_preset() {
   options.matcher.target_volume = true;
   options.matcher.block_radius = 5;  // 120-connected system
   options.matcher.aggregation_radius = 5;
+  options.matcher.aggregation_aspect = 1;
   options.matcher.aggregation_step = 1;
   options.matcher.aggregation_shape = WindowShape::square;
   options.matcher.sigma_space = 1.5;   // σ0

@@ -40,6 +40,7 @@ void validate(const Image<SearchRanges::Range>& ranges, const MatchInput& input,
 void MatcherOptions::validate() const {
   require_range("block_radius", block_radius, 1, 10);
   require_range("aggregation_radius", aggregation_radius, 0, 10);
+  require_range("aggregation_aspect", aggregation_aspect, 0.1, 1.0);
   require_range("aggregation_step", aggregation_step, 1, 2);
   require_range("sigma_space", sigma_space, 0.1, 1000.0);
   require_range("sigma_colour", sigma_colour, 0.1, 100000.0);
@@ -60,11 +61,13 @@ void SearchRanges::assign(int width, int height, int disparities) {
 std::vector<Tap> window_taps(const MatcherOptions& options) {
   const int radius = options.aggregation_radius;
   const int step = options.aggregation_step;
-  const int reach = radius / step * step;
+  const double height = radius * options.aggregation_aspect;
+  const int columns = radius / step * step, rows = static_cast<int>(height) / step * step;
   std::vector<Tap> taps;
-  for (int dv = -reach; dv <= reach; dv += step) {
-    for (int du = -reach; du <= reach; du += step) {
-      if (options.aggregation_shape == WindowShape::square || du * du + dv * dv <= radius * radius) {
+  for (int dv = -rows; dv <= rows; dv += step) {
+    for (int du = -columns; du <= columns; du += step) {
+      const double across = du, down = dv / options.aggregation_aspect;
+      if (options.aggregation_shape == WindowShape::square || across * across + down * down <= radius * radius) {
         taps.push_back({du, dv});
       }
     }

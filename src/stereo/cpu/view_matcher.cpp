@@ -21,9 +21,12 @@ int ViewMatcher::tile_columns(int disparities, const MatcherOptions& options) {
 }
 
 void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& options, std::span<const Tap> taps) {
-  radius_ = 0;
-  for (const Tap& tap : taps) radius_ = std::max(radius_, tap.du);
-  ring_ = 2 * radius_ + 1;
+  radius_ = rows_ = 0;
+  for (const Tap& tap : taps) {
+    radius_ = std::max(radius_, tap.du);
+    rows_ = std::max(rows_, tap.dv);
+  }
+  ring_ = 2 * rows_ + 1;
   step_ = options.aggregation_step;
   half_widths_.assign(static_cast<std::size_t>(ring_), no_taps);
   for (const Tap& tap : taps) {
@@ -49,12 +52,12 @@ void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& op
 }
 
 void ViewMatcher::match(const MatchView& view, const Tile& tile, MatchMaps& maps) {
-  int next = std::max(0, tile.first_row - radius_);
+  int next = std::max(0, tile.first_row - rows_);
   const int columns = tile.end - tile.first;
   tile_costs_.start(view, next, tile.first - radius_, columns + 2 * radius_, tile.range);
   tile_weights_.start(view, tile.first_row, tile.first, columns);
   for (int v = tile.first_row; v < tile.last_row; ++v) {
-    for (; next <= std::min(view.height() - 1, v + radius_); ++next) {
+    for (; next <= std::min(view.height() - 1, v + rows_); ++next) {
       tile_costs_.compute(next, cost_row(next) - radius_ * tile_costs_.pitch());
     }
     match_row(view, v, tile, maps);
@@ -69,7 +72,7 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
                      .last_own = view.last_own(q) - tile.first};
   };
   window_.clear();
-  for (int q = std::max(0, v - radius_); q <= std::min(view.height() - 1, v + radius_); ++q) {
+  for (int q = std::max(0, v - rows_); q <= std::min(view.height() - 1, v + rows_); ++q) {
     if (half_width(q - v) != no_taps) window_.push_back(window_row(q));
   }
   const AggregationRow row{.first = 0,

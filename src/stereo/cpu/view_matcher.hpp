@@ -38,12 +38,13 @@ class ViewMatcher {
   LeanRow lean_row(const MatchView& view, int v, const Tile& tile);
   void match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps);
   int& half_width(int dv) {
-    const int row = dv + radius_;
+    const int row = dv + rows_;
     return half_widths_[static_cast<std::size_t>(row)];
   }
   float* cost_row(int v) { return costs_.row(static_cast<std::size_t>(v % ring_)); }
 
-  int radius_ = 0;
+  int radius_ = 0;  ///< columns that the window reaches
+  int rows_ = 0;    ///< rows that it reaches
   int ring_ = 1;
   int step_ = 1;
   std::vector<int> half_widths_;  ///< of the window's rows, in steps
