@@ -45,10 +45,14 @@ StereoPair make_pair(const Arguments& arguments) {
 }
 
 void add_stages(const StageTimes& ms, std::vector<Timing>& stages) {
-  const std::pair<const char*, double> values[] = {
-      {"prepare", ms.prepare},    {"road model", ms.road_model}, {"perspective", ms.perspective},
-      {"coarse", ms.coarse},      {"match", ms.match}, {"refinement", ms.refinement},          {"road geometry", ms.road_geometry},
-      {"transform", ms.transform}};
+  const std::pair<const char*, double> values[] = {{"prepare", ms.prepare},
+                                                   {"road model", ms.road_model},
+                                                   {"perspective", ms.perspective},
+                                                   {"coarse", ms.coarse},
+                                                   {"match", ms.match},
+                                                   {"refinement", ms.refinement},
+                                                   {"road geometry", ms.road_geometry},
+                                                   {"transform", ms.transform}};
   if (stages.empty()) {
     for (const auto& [name, value] : values) stages.push_back({name, {}});
   }

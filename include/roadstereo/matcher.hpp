@@ -17,7 +17,7 @@ struct MatcherOptions {
   int aggregation_radius = 8;  ///< radius of the bilateral window, pixels; 0 switches aggregation off; 0 … 10
   /// Height of the window over its width: a road is foreshortened along the columns, and its damage with it; 0.1 … 1.
   double aggregation_aspect = 0.5;
-  int aggregation_step = 2;    ///< distance between its taps, pixels, 1 or 2: neighbours share most of their block
+  int aggregation_step = 2;  ///< distance between its taps, pixels, 1 or 2: neighbours share most of their block
   WindowShape aggregation_shape = WindowShape::disc;  ///< `disc` keeps the taps within the ellipse
   double sigma_space = 6.0;                           ///< σ0 of eq. omega0, pixels
   double sigma_colour = 20.0;                         ///< σ1 of eq. omega1, 8-bit grey levels
@@ -28,7 +28,7 @@ struct MatcherOptions {
   bool target_volume = false;
   /// Cost that a disparity pays for each pixel away from the prior, in units of the correlation; 0 ignores the prior.
   double prior_slope = 0.08;
-  double prior_reach = 4.0;  ///< pixels away at which it stops growing, so that damage can leave the prior
+  double prior_reach = 4.0;     ///< pixels away at which it stops growing, so that damage can leave the prior
   double consistency = 1.0;     ///< δr of eq. lrc, pixels²
   bool sub_pixel = true;        ///< eq. subpixel
   bool drop_range_ends = true;  ///< a winner at the end of its range is no minimum: invalid
@@ -70,7 +70,7 @@ struct MatchInput {
   /// first column that all its rows see.
   const int* first_column = nullptr;
   int disparities = 1;                   ///< D, 1 … 1024: reference (u, v) may match target (u − d, v), 0 ≤ d < D
-  const SearchRanges* ranges = nullptr;   ///< null: every pixel searches all D disparities
+  const SearchRanges* ranges = nullptr;  ///< null: every pixel searches all D disparities
   const DisparityPrior* prior = nullptr;  ///< null: the costs alone decide
 };
 

@@ -41,8 +41,8 @@ struct PerspectiveShift {
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
                                   int width, int height, const PerspectiveOptions& options);
 
-/// Shifts the rows of the target image (π_tar → π_tar'), along themselves and by the rows' offset. `first_column[v]` becomes the first column of the
-/// transformed row that lies inside the target image (= width when none does).
+/// Shifts the rows of the target image (π_tar → π_tar'), along themselves and by the rows' offset. `first_column[v]`
+/// becomes the first column of the transformed row that lies inside the target image (= width when none does).
 void transform_target(ImageView<const std::int16_t> target, const PerspectiveShift& shift, int threads,
                       GreyImage& transformed, std::vector<int>& first_column);
 

@@ -65,7 +65,8 @@ void visit_options(Options& o, Visitor visit) {
   visit("coarse_search.block_radius", o.coarse_search.block_radius, "radius of its correlation block, coarse pixels");
   visit("coarse_search.texture_noise", o.coarse_search.texture_noise,
         "noise below which its texture is no evidence, 8-bit grey levels");
-  visit("coarse_search.step_penalty", o.coarse_search.step_penalty, "cost of a change by one coarse pixel along the row");
+  visit("coarse_search.step_penalty", o.coarse_search.step_penalty,
+        "cost of a change by one coarse pixel along the row");
   visit("coarse_search.jump_penalty", o.coarse_search.jump_penalty, "cost of a larger change along the row");
   visit("coarse_search.road_pull", o.coarse_search.road_pull,
         "cost of a coarse pixel away from the road where nothing is known");
@@ -91,7 +92,8 @@ void visit_options(Options& o, Visitor visit) {
   visit("matcher.sub_pixel", o.matcher.sub_pixel, "refine the winner by a parabola");
   visit("matcher.drop_range_ends", o.matcher.drop_range_ends, "a winner at the end of its range is invalid");
 
-  visit("refinement.radius", o.refinement.radius, "of the neighbours that a disparity is averaged with, pixels; 0 is off");
+  visit("refinement.radius", o.refinement.radius,
+        "of the neighbours that a disparity is averaged with, pixels; 0 is off");
   visit("refinement.step", o.refinement.step, "distance between those neighbours, pixels");
   visit("refinement.reach_sigmas", o.refinement.reach_sigmas,
         "joint standard errors at which a neighbour loses its weight");
@@ -99,7 +101,8 @@ void visit_options(Options& o, Visitor visit) {
         "a disparity known less well agrees with its neighbours no more easily than this, pixels");
   visit("refinement.worst_sigma_px", o.refinement.worst_sigma_px,
         "a disparity known less well than that is invalid, pixels");
-  visit("refinement.least_sigma_px", o.refinement.least_sigma_px, "standard error that no disparity falls below, pixels");
+  visit("refinement.least_sigma_px", o.refinement.least_sigma_px,
+        "standard error that no disparity falls below, pixels");
 
   visit("road_geometry.solver", o.road_geometry.solver, "gradient_descent, closed_form or robust");
   visit("road_geometry.initial_lambda", o.road_geometry.initial_lambda, "first learning rate of the descent");

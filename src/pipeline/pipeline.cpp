@@ -158,13 +158,15 @@ void Pipeline::State::look_coarsely() {
 }
 
 /// Section 3.2.
-void Pipeline::State::match() { engine->match(match_input, options.matcher, maps); }
+void Pipeline::State::match() {
+  engine->match(match_input, options.matcher, maps);
+}
 
 /// Adds the shift back, and smooths where the standard errors allow it.
 void Pipeline::State::refine() {
   add_shift(maps.disparity, result.shift, threads, shifted);
-  refine_disparities(shifted, maps.variance, result.shift.road, support, options.refinement, threads,
-                     result.disparity, result.sigma);
+  refine_disparities(shifted, maps.variance, result.shift.road, support, options.refinement, threads, result.disparity,
+                     result.sigma);
 }
 
 /// Roll angle and projection model, section 3.3.
@@ -209,8 +211,8 @@ void Pipeline::State::summarise() {
   last_road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
   last_roll_rad = result.geometry_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   const StageTimes& ms = result.ms;
-  result.ms.total =
-      ms.prepare + ms.road_model + ms.perspective + ms.coarse + ms.match + ms.refinement + ms.road_geometry + ms.transform;
+  result.ms.total = ms.prepare + ms.road_model + ms.perspective + ms.coarse + ms.match + ms.refinement +
+                    ms.road_geometry + ms.transform;
   result.mde_per_s = static_cast<double>(left.pixels()) * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
 }
 

@@ -11,7 +11,7 @@ PipelineOptions paper_preset() {
   options.road_model.with_roll = false;  // eq. relation_vd: Δu depends on v alone
   options.perspective.shift = ShiftPrecision::whole_pixel;
   options.coarse_search.road_pull = 0;
-  options.matcher.prior_slope = 0;   // the costs alone decide
+  options.matcher.prior_slope = 0;  // the costs alone decide
   options.matcher.target_volume = true;
   options.matcher.block_radius = 5;  // 120-connected system
   options.matcher.aggregation_radius = 5;

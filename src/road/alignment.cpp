@@ -155,8 +155,13 @@ RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView
                                    int threads) {
   int factor = 1;
   while (left.width() / (2 * factor) >= coarse_width) factor *= 2;
-  const Pyramid pair{left, right, factor, shrink(left, factor), shrink(right, factor),
-                     smoothed(left, threads), smoothed(right, threads)};
+  const Pyramid pair{left,
+                     right,
+                     factor,
+                     shrink(left, factor),
+                     shrink(right, factor),
+                     smoothed(left, threads),
+                     smoothed(right, threads)};
   std::vector<std::vector<double>> by_row(cells_down);
   parallel_for(cells_down, threads,
                [&](int cell_v, int) { by_row[static_cast<std::size_t>(cell_v)] = measure_cells(pair, cell_v); });

@@ -16,13 +16,13 @@ struct Tap {
 std::vector<Tap> window_taps(const MatcherOptions& options);
 
 /// Number of independent pixels that an aggregated cost rests on: the block and the window (without the colour weights,
-/// which are not known beforehand) together spread over it like a Gaussian of the variance s² = s²_block + s²_window per
-/// axis, and a Gaussian mean has the noise of 4π s² pixels.
+/// which are not known beforehand) together spread over it like a Gaussian of the variance s² = s²_block + s²_window
+/// per axis, and a Gaussian mean has the noise of 4π s² pixels.
 ///
-/// The variance of a disparity follows from its aggregated costs E. A block of n pixels with signal variance S and noise
-/// variance N per view has E = N / (S + N) at the right disparity, and its curvature along d is
-/// K = Σ(∂i/∂u)² / (n (S + N)). The disparity of least squares has the variance 2 N / Σ(∂i/∂u)² = 2 E / (n K). A winner
-/// that is no minimum of the costs adds the distance from the vertex of the parabola to the reach of eq. subpixel.
+/// The variance of a disparity follows from its aggregated costs E. A block of n pixels with signal variance S and
+/// noise variance N per view has E = N / (S + N) at the right disparity, and its curvature along d is K = Σ(∂i/∂u)² /
+/// (n (S + N)). The disparity of least squares has the variance 2 N / Σ(∂i/∂u)² = 2 E / (n K). A winner that is no
+/// minimum of the costs adds the distance from the vertex of the parabola to the reach of eq. subpixel.
 double support_pixels(const MatcherOptions& options);
 
 /// Second difference of the costs below which they do not tell where their minimum is.

@@ -5,9 +5,9 @@
 
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
+#include "road/refinement/weighted_mean.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/refinement.hpp"
-#include "road/refinement/weighted_mean.hpp"
 
 namespace roadstereo {
 namespace {
@@ -28,7 +28,8 @@ struct Maps {
   RefinementOptions options;
 };
 
-/// The rows of a band and a radius around them as the kernel reads them: heights above the road with room on both sides.
+/// The rows of a band and a radius around them as the kernel reads them: heights above the road with room on both
+/// sides.
 class BandRows {
  public:
   BandRows(const Maps& maps, int radius)

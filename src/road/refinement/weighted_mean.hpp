@@ -19,13 +19,13 @@ struct WindowLine {
 };
 
 struct MeanSettings {
-  float reach2 = 9;      ///< squared number of joint standard errors at which a neighbour loses its weight
-  float share = 1;       ///< part of one neighbour that is independent of the others
+  float reach2 = 9;  ///< squared number of joint standard errors at which a neighbour loses its weight
+  float share = 1;   ///< part of one neighbour that is independent of the others
 };
 
 /// mean[u], precision[u] for u in [0, width): the mean of the window's neighbours q of u, weighted by their precision
-/// and by (1 − (value(q) − value(u))² / (reach² (variance(q) + variance(u))))², 0 beyond reach; and its precision. Writes
-/// whole vectors: up to 16 elements behind `width`.
+/// and by (1 − (value(q) − value(u))² / (reach² (variance(q) + variance(u))))², 0 beyond reach; and its precision.
+/// Writes whole vectors: up to 16 elements behind `width`.
 void weighted_mean(const MeasuredRow& centre, std::span<const WindowLine> window, const MeanSettings& settings,
                    int width, float* mean, float* precision);
 

@@ -16,7 +16,7 @@ constexpr int most_columns = 800;       // of the coarse pair, when the factor i
 constexpr int smallest_side = 64;       // pixels; below that there is nothing to gain
 constexpr int fewest_disparities = 12;  // below this narrowing saves nothing
 constexpr int fewest_rows = 24;         // of a band
-constexpr float no_evidence = 1;  // cost of a disparity without a counterpart: that of uncorrelated blocks
+constexpr float no_evidence = 1;        // cost of a disparity without a counterpart: that of uncorrelated blocks
 
 int derived_factor(const CoarseSearchOptions& options, int width) {
   if (options.factor != 0) return options.factor;
@@ -124,16 +124,15 @@ void CoarseSearch::finish_row(const MatchInput& coarse, int v, FunctionRef<doubl
   const std::vector<float>& ignorance = worker.evidence.next();
   for (int u = 0; u < width; ++u) {
     const auto column = static_cast<std::size_t>(u);
-    worker.centre[column] =
-        static_cast<float>(road(unshrink(u, prior_.factor), unshrink(v, prior_.factor))) / factor;
+    worker.centre[column] = static_cast<float>(road(unshrink(u, prior_.factor), unshrink(v, prior_.factor))) / factor;
     worker.pull[column] = static_cast<float>(options_.road_pull) * ignorance[column];
   }
   float* out = prior_.disparity.row(v);
-  match_scanline(
-      {worker.row.row(0), worker.costs.pitch(), width, coarse.disparities, block_first_column_[static_cast<std::size_t>(v)]},
-      {worker.centre.data(), worker.pull.data(), static_cast<float>(options_.road_reach)},
-      {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)}, no_evidence,
-      worker.scratch.row(0), out);
+  match_scanline({worker.row.row(0), worker.costs.pitch(), width, coarse.disparities,
+                  block_first_column_[static_cast<std::size_t>(v)]},
+                 {worker.centre.data(), worker.pull.data(), static_cast<float>(options_.road_reach)},
+                 {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)}, no_evidence,
+                 worker.scratch.row(0), out);
   for (int u = 0; u < width; ++u) out[u] *= factor;
 }
 

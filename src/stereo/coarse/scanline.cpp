@@ -145,9 +145,9 @@ void match_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const 
   follow_paths(row, penalties, memory);
   for (int u = 0; u < row.columns; ++u) {
     const int count = std::min(row.disparities, u - row.first_seen + 1);
-    disparity[u] = count > 0 ? take_winner(memory.forth + u * memory.pitch, memory.back + u * memory.pitch, count,
-                                           memory.turns[0])
-                             : std::numeric_limits<float>::quiet_NaN();
+    disparity[u] =
+        count > 0 ? take_winner(memory.forth + u * memory.pitch, memory.back + u * memory.pitch, count, memory.turns[0])
+                  : std::numeric_limits<float>::quiet_NaN();
   }
 }
 

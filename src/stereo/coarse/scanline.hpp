@@ -14,7 +14,8 @@ struct ScanlineCosts {
   int first_seen;  ///< column u has a counterpart up to disparity u − first_seen
 };
 
-/// What the pixels of a row are guessed to be: disparity d of column u costs pull[u] · min(|d − centre[u]|, reach) more.
+/// What the pixels of a row are guessed to be: disparity d of column u costs pull[u] · min(|d − centre[u]|, reach)
+/// more.
 struct ScanlineGuess {
   const float* centre;  ///< NaN: no guess
   const float* pull;
@@ -31,9 +32,9 @@ struct ScanlinePenalties {
 std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch);
 
 /// Takes for every column the disparity of the smallest total cost among all paths along the row that pass through it:
-/// costs of the pixels, guesses and penalties of the changes, by dynamic programming forth and back. Its fraction is that
-/// of eq. subpixel on the total costs; NaN where a column has no counterpart at all. A disparity without a counterpart
-/// costs `no_evidence`, and is never taken.
+/// costs of the pixels, guesses and penalties of the changes, by dynamic programming forth and back. Its fraction is
+/// that of eq. subpixel on the total costs; NaN where a column has no counterpart at all. A disparity without a
+/// counterpart costs `no_evidence`, and is never taken.
 void match_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,
                     float no_evidence, float* scratch, float* disparity);
 

@@ -7,8 +7,8 @@
 
 namespace roadstereo {
 
-/// Counts which disparities a coarse match found in each tile and leaves those to search there, with a margin. Damage is
-/// far wider than its disparity is deep: a thing whose disparity leaves the margin is tens of pixels wide when it
+/// Counts which disparities a coarse match found in each tile and leaves those to search there, with a margin. Damage
+/// is far wider than its disparity is deep: a thing whose disparity leaves the margin is tens of pixels wide when it
 /// belongs to the road, and cannot be missed.
 class TileRanges {
  public:

@@ -90,7 +90,8 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
   const auto original = [&](std::int16_t winner) {
     return static_cast<std::int16_t>(winner < 0 ? winner : winner + tile.range.first);
   };
-  aggregate_and_choose(row, {steps_.data(), scratch_.row(0)}, {winner_.data(), reference ? offset_.data() : nullptr, variance_.data()});
+  aggregate_and_choose(row, {steps_.data(), scratch_.row(0)},
+                       {winner_.data(), reference ? offset_.data() : nullptr, variance_.data()});
   if (reference) {
     std::transform(winner_.data(), winner_.data() + row.end, maps.winner.row(v) + tile.first, original);
     std::copy_n(offset_.data(), row.end, maps.disparity.row(v) + tile.first);

@@ -154,7 +154,8 @@ const Range& range_at(const Image<Range>& ranges, int u, int v) {
 double lean(const Scene& scene, const DisparityPrior* prior, int u, int v, int d) {
   if (prior == nullptr) return 0;
   const Image<float>& map = prior->disparity;
-  const double centre = map(std::min(u / prior->factor, map.width() - 1), std::min(v / prior->factor, map.height() - 1));
+  const double centre =
+      map(std::min(u / prior->factor, map.width() - 1), std::min(v / prior->factor, map.height() - 1));
   if (std::isnan(centre)) return 0;
   return scene.options.prior_slope * std::min(std::abs(d - centre), scene.options.prior_reach);
 }
@@ -193,8 +194,8 @@ struct Refined {
   double variance = std::numeric_limits<double>::infinity();
 };
 
-/// Eq. subpixel, on the aggregated costs, and the variance that they tell of (stereo/window.hpp). A winner at the end of
-/// its range has no neighbour on one side; one that leans on the prior need not be a minimum of the costs.
+/// Eq. subpixel, on the aggregated costs, and the variance that they tell of (stereo/window.hpp). A winner at the end
+/// of its range has no neighbour on one side; one that leans on the prior need not be a minimum of the costs.
 Refined refine(const Scene& scene, const CostVolume& energy, const Range& searched, int u, int v, int d) {
   Refined refined;
   const bool first = d == searched.first;
@@ -210,8 +211,7 @@ Refined refine(const Scene& scene, const CostVolume& energy, const Range& search
   const double vertex = (before - after) / (2 * curvature);
   const double offset = std::clamp(vertex, -0.5, 0.5);
   if (scene.options.sub_pixel) refined.disparity = d + offset;
-  refined.variance = 2 * std::max(best, 0.0) / (scene.support * curvature) +
-                     (vertex - offset) * (vertex - offset);
+  refined.variance = 2 * std::max(best, 0.0) / (scene.support * curvature) + (vertex - offset) * (vertex - offset);
   return refined;
 }
 
@@ -230,7 +230,8 @@ class ReferenceEngine final : public StereoEngine {
     if (input.ranges != nullptr) ranges = *input.ranges;
     maps.winner = take_winners(scene, energy_ref, ranges.reference, input.prior);
     if (options.target_volume) {
-      maps.target_winner = take_winners(scene, aggregate(scene, cost, input.target, 1, threads_), ranges.target, nullptr);
+      maps.target_winner =
+          take_winners(scene, aggregate(scene, cost, input.target, 1, threads_), ranges.target, nullptr);
     } else {
       maps.target_winner.assign(scene.width(), scene.height(), -1);
       for (int v = 0; v < scene.height(); ++v) project_winners(maps.winner, v, maps.target_winner);
@@ -241,8 +242,7 @@ class ReferenceEngine final : public StereoEngine {
       for (int u = 0; u < scene.width(); ++u) {
         if (maps.winner(u, v) < 0) continue;
         if (options.left_right_check && !consistent(maps, u, v, options.consistency)) continue;
-        const Refined refined =
-            refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v));
+        const Refined refined = refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v));
         maps.disparity(u, v) = static_cast<float>(refined.disparity);
         maps.variance(u, v) = static_cast<float>(refined.variance);
       }
