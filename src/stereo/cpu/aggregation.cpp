@@ -268,7 +268,6 @@ struct LeaningEnergies {
 template <class Energies>
 HWY_INLINE void take_winners(const Energies& energies, int disparities, std::int32_t* winners) {
   const Floats df;
-  const Ints di;
   const int lanes = static_cast<int>(hn::Lanes(df));
   Float vectors[4];
   for (int p = 0; p < 4; ++p) vectors[p] = energies.at(p, 0);
@@ -277,16 +276,16 @@ HWY_INLINE void take_winners(const Energies& energies, int disparities, std::int
   }
   float smallest[4];
   smallest_lanes(df, vectors, smallest);
-  const Int behind_last = hn::Set(di, std::numeric_limits<std::int16_t>::max());
-  Int found[4] = {behind_last, behind_last, behind_last, behind_last};
-  for (int d = 0; d < disparities; d += lanes) {
-    const Int disparity = count_from(d);
-    for (int p = 0; p < 4; ++p) {
-      const auto here = hn::Eq(energies.at(p, d), hn::Set(df, smallest[p]));
-      found[p] = hn::Min(found[p], hn::IfThenElse(hn::RebindMask(di, here), disparity, behind_last));
+  for (int p = 0; p < 4; ++p) {
+    const Float lowest = hn::Set(df, smallest[p]);
+    winners[p] = 0;
+    for (int d = 0; d < disparities; d += lanes) {
+      const auto first = hn::FindFirstTrue(df, hn::Eq(energies.at(p, d), lowest));
+      if (first < 0) continue;
+      winners[p] = d + static_cast<std::int32_t>(first);
+      break;
     }
   }
-  smallest_lanes(di, found, winners);
 }
 
 /// Winners of a strip, with the energies on either side that the parabola needs.

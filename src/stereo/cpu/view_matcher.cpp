@@ -106,11 +106,15 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
 LeanRow ViewMatcher::lean_row(const MatchView& view, int v, const Tile& tile) {
   const DisparityPrior* prior = view.prior();
   if (prior == nullptr || prior_slope_ == 0) return {};
-  const int down = prior->disparity.height(), across = prior->disparity.width();
-  const float* row = prior->disparity.row(std::min(v / prior->factor, down - 1));
+  const Image<float>& map = prior->disparity;
+  const float* row = map.row(std::min(v / prior->factor, map.height() - 1));
   const auto first = static_cast<float>(tile.range.first);
-  for (int i = tile.first; i < tile.end; ++i) {
-    prior_[static_cast<std::size_t>(i - tile.first)] = row[std::min(i / prior->factor, across - 1)] - first;
+  for (int i = tile.first; i < tile.end;) {
+    const int x = i / prior->factor;
+    const int end = x + 1 < map.width() ? std::min(tile.end, (x + 1) * prior->factor) : tile.end;
+    std::fill(prior_.data() + (i - tile.first), prior_.data() + (end - tile.first),
+              row[std::min(x, map.width() - 1)] - first);
+    i = end;
   }
   return {.centre = prior_.data(), .slope = prior_slope_, .reach = prior_reach_};
 }
