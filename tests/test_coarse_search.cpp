@@ -1,18 +1,27 @@
-// The search ranges of the tiles: they must hold the true disparities, and be narrow where the road is all there is.
+// The coarse look at a pair: the ranges of the tiles must hold the true disparities and be narrow where the road is all
+// there is; the prior must lie near the truth, and on the road where the picture shows nothing.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <vector>
 
+#include "core/shrink.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/synth.hpp"
-#include "stereo/range_search.hpp"
+#include "stereo/coarse/coarse_search.hpp"
 #include "textured_pair.hpp"
 
 namespace roadstereo {
 namespace {
 
-TEST(RangeSearch, HoldsTheTrueDisparitiesOfRoads) {
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+constexpr auto no_road = [](double /*u*/, double /*v*/) { return nan; };
+
+TEST(CoarseSearch, RangesHoldTheTrueDisparitiesOfRoads) {
   for (const char* name : {"uav", "street", "close", "low_texture", "noise"}) {
     SCOPED_TRACE(name);
     synth::Scene scene = synth::named_scene(name);
@@ -27,8 +36,13 @@ TEST(RangeSearch, HoldsTheTrueDisparitiesOfRoads) {
     to_grey(pair.left.view(), 0, left);
     to_grey(pair.right.view(), 0, right);
     transform_target(right, shift, 0, target, first_column);
-    RangeSearch search("cpu", 2);
-    const SearchRanges* ranges = search.find({left, target, first_column.data(), shift.disparities});
+    CoarseSearch search({}, 2);
+    const auto road = [&](double u, double v) {
+      const double disparity = shift.road.disparity(u, v);
+      return disparity < 0 ? nan : std::min(disparity, shift.delta_p);
+    };
+    ASSERT_TRUE(search.find({left, target, first_column.data(), shift.disparities}, road));
+    const SearchRanges* ranges = search.ranges();
     ASSERT_NE(ranges, nullptr);
     std::size_t seen = 0, held = 0;
     double searched = 0;
@@ -50,24 +64,26 @@ TEST(RangeSearch, HoldsTheTrueDisparitiesOfRoads) {
   }
 }
 
-TEST(RangeSearch, SearchesNearlyEverythingWhereNothingMatches) {
+TEST(CoarseSearch, SearchesNearlyEverythingWhereNothingMatches) {
   const auto one = test::textured_pair(
       256, 192, [](double, double) { return 0; }, 1);
   const auto other = test::textured_pair(
       256, 192, [](double, double) { return 0; }, 99);
-  RangeSearch search("cpu", 1);
-  const SearchRanges* ranges = search.find({one.reference, other.target, nullptr, 40});
+  CoarseSearch search({}, 1);
+  ASSERT_TRUE(search.find({one.reference, other.target, nullptr, 40}, no_road));
+  const SearchRanges* ranges = search.ranges();
   ASSERT_NE(ranges, nullptr);
   EXPECT_GE(ranges->reference(0, 0).end - ranges->reference(0, 0).first, 32);
   EXPECT_GE(ranges->target(0, 0).end - ranges->target(0, 0).first, 32);
 }
 
-TEST(RangeSearch, FindsAThingThatStandsOut) {
+TEST(CoarseSearch, RangesHoldAThingThatStandsOut) {
   // Road at 20, a block 48 pixels wide at 34, within one tile.
   const auto pair =
       test::textured_pair(256, 192, [](double u, double v) { return u > 80 && u < 128 && v > 30 && v < 70 ? 34 : 20; });
-  RangeSearch search("cpu", 1);
-  const SearchRanges* ranges = search.find({pair.reference, pair.target, nullptr, 48});
+  CoarseSearch search({}, 1);
+  ASSERT_TRUE(search.find({pair.reference, pair.target, nullptr, 48}, [](double, double) { return 20.0; }));
+  const SearchRanges* ranges = search.ranges();
   ASSERT_NE(ranges, nullptr);
   EXPECT_LE(ranges->reference(0, 0).first, 19);
   EXPECT_GE(ranges->reference(0, 0).end, 36);
@@ -75,11 +91,109 @@ TEST(RangeSearch, FindsAThingThatStandsOut) {
   EXPECT_LE(ranges->reference(0, 1).end, 30);
 }
 
-TEST(RangeSearch, IsNotWorthItForFewDisparitiesOrSmallImages) {
-  const GreyImage image(256, 192, 1600), small(100, 90, 1600);
-  RangeSearch search("cpu", 1);
-  EXPECT_EQ(search.find({image, image, nullptr, 8}), nullptr);
-  EXPECT_EQ(search.find({small, small, nullptr, 64}), nullptr);
+TEST(CoarseSearch, FewDisparitiesHaveAPriorButNoRanges) {
+  const auto pair = test::textured_pair(256, 192, [](double, double) { return 4; });
+  CoarseSearch search({}, 1);
+  ASSERT_TRUE(search.find({pair.reference, pair.target, nullptr, 48}, no_road));
+  ASSERT_NE(search.ranges(), nullptr);
+  ASSERT_TRUE(search.find({pair.reference, pair.target, nullptr, 8}, no_road));
+  EXPECT_EQ(search.ranges(), nullptr);
+  EXPECT_NEAR(search.prior().disparity(64, 48), 4, 1);
+}
+
+TEST(CoarseSearch, SmallImagesAreNotWorthIt) {
+  const GreyImage small(100, 60, 1600);
+  CoarseSearch search({}, 1);
+  EXPECT_FALSE(search.find({small, small, nullptr, 64}, no_road));
+  EXPECT_EQ(search.ranges(), nullptr);
+}
+
+/// Every pixel of the prior that lies at least `border` coarse pixels inside and has a counterpart of its whole block.
+template <class Check>
+void for_each_inside(const DisparityPrior& prior, int border, int first_column, const Check& check) {
+  for (int y = border; y + border < prior.disparity.height(); ++y) {
+    for (int x = first_column; x + border < prior.disparity.width(); ++x) {
+      check(unshrink(x, prior.factor), unshrink(y, prior.factor), prior.disparity(x, y));
+    }
+  }
+}
+
+TEST(CoarseSearch, PriorLiesNearTheTruth) {
+  const auto truth = [](double u, double v) { return 12 + 0.02 * v + 2 * std::sin(0.04 * u); };
+  const auto pair = test::textured_pair(301, 195, truth);
+  for (const int factor : {2, 4}) {
+    SCOPED_TRACE(factor);
+    CoarseSearchOptions options;
+    options.factor = factor;
+    CoarseSearch search(options, 2);
+    ASSERT_TRUE(search.find({pair.reference, pair.target, nullptr, 32}, no_road));
+    ASSERT_EQ(search.prior().factor, factor);
+    ASSERT_EQ(search.prior().disparity.width(), 301 / factor);
+    ASSERT_EQ(search.prior().disparity.height(), 195 / factor);
+    double squares = 0;
+    int count = 0;
+    for_each_inside(search.prior(), 4, 20 / factor + 4, [&](double u, double v, float found) {
+      squares += std::pow(found - truth(u, v), 2);
+      ++count;
+    });
+    EXPECT_LT(std::sqrt(squares / count), 0.3 * factor);
+  }
+}
+
+TEST(CoarseSearch, WithoutTextureTheRoadIsThePriorAndElsewhereThePicture) {
+  constexpr int picture = 10, road = 16;
+  auto pair = test::textured_pair(320, 192, [](double, double) { return picture; });
+  for (int v = 60; v < 140; ++v) {
+    std::fill(pair.reference.row(v) + 120, pair.reference.row(v) + 240, std::int16_t{2000});
+    std::fill(pair.target.row(v) + 120 - picture, pair.target.row(v) + 240 - picture, std::int16_t{2000});
+  }
+  CoarseSearch search({}, 2);
+  ASSERT_TRUE(search.find({pair.reference, pair.target, nullptr, 32}, [](double, double) { return double{road}; }));
+  int inside = 0, outside = 0;
+  for_each_inside(search.prior(), 4, 16, [&](double u, double v, float found) {
+    // The block and its gradients reach four coarse pixels, and the target's flat region begins at its own edge.
+    if (u > 136 && u < 224 && v > 70 && v < 130) {
+      ++inside;
+      ASSERT_NEAR(found, road, 1) << u << ", " << v;
+    } else if (u < 104 || u > 256 || v < 50 || v > 150) {
+      ++outside;
+      ASSERT_NEAR(found, picture, 1) << u << ", " << v;
+    }
+  });
+  EXPECT_GT(inside, 1000);
+  EXPECT_GT(outside, 5000);
+}
+
+TEST(CoarseSearch, ThreadsChangeNothing) {
+  const auto pair = test::textured_pair(258, 230, [](double u, double v) { return 9 + 0.03 * v + std::sin(0.1 * u); });
+  std::vector<int> first_column(230);
+  for (std::size_t v = 0; v < first_column.size(); ++v) first_column[v] = static_cast<int>(v / 8);
+  const MatchInput input{pair.reference, pair.target, first_column.data(), 40};
+  const auto road = [](double /*u*/, double v) { return 9 + 0.03 * v; };
+  CoarseSearch one({}, 1), three({}, 3);
+  ASSERT_TRUE(one.find(input, road));
+  ASSERT_TRUE(three.find(input, road));
+  EXPECT_EQ(one.ranges()->reference, three.ranges()->reference);
+  EXPECT_EQ(one.ranges()->target, three.ranges()->target);
+  const Image<float>&a = one.prior().disparity, &b = three.prior().disparity;
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = 0; x < a.width(); ++x) ASSERT_TRUE(a(x, y) == b(x, y) || (std::isnan(a(x, y)) && std::isnan(b(x, y))));
+  }
+}
+
+TEST(CoarseSearch, OptionsAreChecked) {
+  const auto refused = [](auto change) {
+    CoarseSearchOptions options;
+    change(options);
+    EXPECT_THROW(options.validate(), Error);
+  };
+  EXPECT_NO_THROW(CoarseSearchOptions{}.validate());
+  refused([](auto& o) { o.factor = 3; });
+  refused([](auto& o) { o.block_radius = 0; });
+  refused([](auto& o) { o.step_penalty = -0.1; });
+  refused([](auto& o) { o.jump_penalty = nan; });
+  refused([](auto& o) { o.road_pull = 11; });
+  refused([](auto& o) { o.known_within_px = 0; });
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -85,6 +86,51 @@ TEST(TransformTarget, WholePixelShiftCopiesPixels) {
     const int s = static_cast<int>(std::lround(8 + 0.3 * v));
     EXPECT_EQ(first[static_cast<std::size_t>(v)], s);
     for (int x = s; x < 120; ++x) ASSERT_EQ(transformed(x, v), pair.target(x - s, v));
+  }
+}
+
+/// A target that changes along v alone, as a polynomial that takes whole values at whole and half rows.
+GreyImage by_rows(int height, double (*grey)(double)) {
+  GreyImage image(40, height);
+  for (int v = 0; v < height; ++v) std::fill_n(image.row(v), 40, static_cast<std::int16_t>(std::lround(grey(v))));
+  return image;
+}
+
+// Keys' cubic interpolation reproduces polynomials of the second degree.
+TEST(TransformTarget, UndoesARowOffsetExactlyForQuadraticTexture) {
+  constexpr int height = 30;
+  double (*const textures[])(double) = {[](double v) { return 200 + 20 * v; }, [](double v) { return 4 * v * v; },
+                                        [](double v) { return 3900 - 30 * v - 2 * v * (v + 0.5); }};
+  for (const auto grey : textures) {
+    const GreyImage target = by_rows(height, grey);
+    for (const double offset : {0.5, -0.5, 1.5, -2.0, 0.0}) {
+      SCOPED_TRACE(offset);
+      PerspectiveShift shift = shift_by({6.25, 0.1, 0}, 2);
+      shift.row_offset = offset;
+      GreyImage transformed;
+      std::vector<int> first;
+      transform_target(target, shift, 2, transformed, first);
+      for (int v = 4; v + 4 < height; ++v) {
+        for (int x = first[static_cast<std::size_t>(v)]; x < 40; ++x) ASSERT_EQ(transformed(x, v), grey(v + offset));
+      }
+    }
+  }
+}
+
+TEST(TransformTarget, WholeRowOffsetCopiesRows) {
+  constexpr int height = 40;
+  const auto pair = test::textured_pair(70, height, [](double, double) { return 3; });
+  for (const int offset : {1, -2}) {
+    PerspectiveShift shift;
+    shift.enabled = false;
+    shift.row_offset = offset;
+    GreyImage transformed;
+    std::vector<int> first;
+    transform_target(pair.target, shift, 1, transformed, first);
+    for (int v = 0; v < height; ++v) {
+      const int row = std::clamp(v + offset, 0, height - 1);
+      ASSERT_TRUE(std::equal(transformed.row(v), transformed.row(v) + 70, pair.target.row(row))) << v;
+    }
   }
 }
 

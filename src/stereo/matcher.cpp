@@ -35,6 +35,11 @@ void validate(const Image<SearchRanges::Range>& ranges, const MatchInput& input,
   }
 }
 
+void validate(const DisparityPrior& prior) {
+  if (prior.disparity.empty()) fail("matching is to lean on a prior, but the prior is empty");
+  if (prior.factor < 1) fail("the prior's factor is ", prior.factor, "; it must be at least 1");
+}
+
 }  // namespace
 
 void MatcherOptions::validate() const {
@@ -121,6 +126,7 @@ void validate(const MatchInput& input) {
     validate(input.ranges->reference, input, "reference");
     validate(input.ranges->target, input, "target");
   }
+  if (input.prior != nullptr) validate(*input.prior);
 }
 
 }  // namespace roadstereo

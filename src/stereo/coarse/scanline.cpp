@@ -72,6 +72,8 @@ HWY_INLINE PathMemory share_out(const ScanlineCosts& row, float* scratch) {
   memory.back = memory.forth + row.columns * memory.pitch;
   for (float* column = memory.turns[0]; column < memory.back; column += memory.pitch) {
     std::fill(column - guard, column, never);
+    // The paths' totals are written by whole vectors, which may end with the last disparity.
+    std::fill(column + row.disparities, column + row.pitch, never);
   }
   std::fill_n(memory.back - guard, guard, never);
   return memory;
