@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/options.hpp"
@@ -90,7 +91,7 @@ void expect_complaint(const Outcome& outcome, int exit_code, const std::string& 
 
 const std::set<std::string> result_files = {"disparity.tiff",      "transformed.tiff",      "disparity.png",
                                             "disparity_color.png", "transformed_color.png", "sheet.png",
-                                            "result.json"};
+                                            "sigma.tiff",          "sigma_color.png",       "result.json"};
 
 TEST_F(CommandLine, HelpIsCompleteWithExamples) {
   const Outcome whole = run("--help");
@@ -284,6 +285,28 @@ TEST_F(CommandLine, QuietPrintsNothingAndJsonPrintsTheResult) {
   EXPECT_EQ(quiet.out + quiet.err, "");
   const Outcome json = inspect("--json");
   EXPECT_EQ(json.out, read_text(folder_ / "result/result.json"));
+}
+
+TEST_F(CommandLine, StandardErrorBelongsToTheDisparities) {
+  make_road();
+  ASSERT_EQ(inspect("--quiet").exit_code, 0);
+  const auto disparity = roadstereo::io::read_disparity((folder_ / "result/disparity.tiff").string());
+  const auto sigma = roadstereo::io::read_disparity((folder_ / "result/sigma.tiff").string());
+  ASSERT_EQ(sigma.width(), 320);
+  ASSERT_EQ(sigma.height(), 180);
+  std::vector<float> known;
+  for (int v = 0; v < sigma.height(); ++v) {
+    for (int u = 0; u < sigma.width(); ++u) {
+      ASSERT_EQ(std::isnan(sigma(u, v)), std::isnan(disparity(u, v))) << u << ", " << v;
+      if (!std::isnan(sigma(u, v))) known.push_back(sigma(u, v));
+    }
+  }
+  std::sort(known.begin(), known.end());
+  EXPECT_GT(known.front(), 0);
+  const double median = json_file("result/result.json")["sigma_px"];
+  EXPECT_GE(median, known[(known.size() - 1) / 2] - 1e-6);
+  EXPECT_LE(median, known[known.size() / 2] + 1e-6);
+  EXPECT_GT(roadstereo::io::read_frame((folder_ / "result/sigma_color.png").string()).width, 320);  // map and scale bar
 }
 
 TEST_F(CommandLine, ThreadsDoNotChangeTheResult) {

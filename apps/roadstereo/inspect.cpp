@@ -116,8 +116,9 @@ std::string settings_help() {
 }
 
 constexpr const char* inspect_footer =
-    R"(Into the output folder: disparity.tiff and transformed.tiff (32-bit float, NaN invalid), disparity.png
-(16 bit, value / 256 px, 0 invalid), disparity_color.png, transformed_color.png, sheet.png, result.json.
+    R"(Into the output folder: disparity.tiff, sigma.tiff (the standard error of disparity.tiff, px) and transformed.tiff
+(32-bit float, NaN invalid), disparity.png (16 bit, value / 256 px, 0 invalid), disparity_color.png, sigma_color.png,
+transformed_color.png, sheet.png, result.json.
 
 Calibration formats, recognised by content: plain YAML (focal_px, cx_px, cy_px, baseline_m, width, height),
 OpenCV stereo YAML or XML, ROS camera_info (two files, left then right), KITTI calib*.txt, Middlebury

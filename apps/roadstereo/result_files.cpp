@@ -40,6 +40,9 @@ void add_result_files(Inspection& inspection, io::OutputFolder& folder) {
   add_kitti_png(inspection, folder);
   const io::ColourScale spread = io::spread_scale(result.disparity, "disparity, px");
   add_picture(folder, "disparity_color.png", io::colour_map(result.disparity, spread));
+  folder.add("sigma.tiff", io::encode_float_tiff(result.sigma));
+  const io::ColourScale errors = io::spread_scale(result.sigma, "standard error, px");
+  add_picture(folder, "sigma_color.png", io::colour_map(result.sigma, errors));
   const io::ColourScale around_road = io::transformed_scale(result.transformed, result.delta_t);
   add_picture(folder, "transformed_color.png", io::colour_map(result.transformed, around_road));
   const std::string title = std::filesystem::path(inspection.files.left).filename().string();

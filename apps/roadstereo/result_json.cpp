@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "finite_values.hpp"
 #include "json_text.hpp"
 #include "roadstereo/options.hpp"
 #include "roadstereo/version.hpp"
@@ -89,6 +90,7 @@ void add_geometry(Json& document, const FrameResult& result) {
   document["delta_t"] = known(result.delta_t);
   document["disparities"] = result.shift.disparities;
   document["valid_fraction"] = json_number(result.valid_share);
+  document["sigma_px"] = json_number(median(finite_values(result.sigma)));
   document["sigma_d_px"] = known(result.spread.road_px);
   document["sigma_d_all_px"] = known(result.spread.all_px);
   document["road_fraction"] = known(result.spread.road_share);

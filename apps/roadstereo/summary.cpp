@@ -70,6 +70,7 @@ std::string time_text(const FrameResult& result) {
 std::string picture_lines(const std::filesystem::path& folder) {
   std::string lines = line("pictures", (folder / "sheet.png").string());
   lines += line("", (folder / "disparity_color.png").string());
+  lines += line("", (folder / "sigma_color.png").string());
   lines += line("", (folder / "transformed_color.png").string());
   return lines;
 }
