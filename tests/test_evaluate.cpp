@@ -147,7 +147,7 @@ TEST_F(Evaluate, FoldersOfTheWrongLayoutAreNamed) {
 TEST_F(Evaluate, HelpNamesEveryExperiment) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const std::string name : {"score", "kitti", "middlebury", "synth"}) {
+  for (const std::string name : {"score", "kitti", "middlebury", "synth", "sigma"}) {
     EXPECT_NE(help.out.find(name), std::string::npos) << name;
     EXPECT_NE(run(name + " --help").out.find("roadstereo evaluate " + name), std::string::npos) << name;
   }
@@ -167,6 +167,24 @@ TEST_F(Evaluate, SynthComparesEveryMethodInEveryGroup) {
   }
   EXPECT_GT(io::read_frame((folder_ / "synth.png").string()).height, 800);
   EXPECT_EQ(run("synth --sizes tiny").exit_code, 2);
+}
+
+TEST_F(Evaluate, SigmaSplitsThePixelsIntoTenths) {
+  const Outcome outcome = run("sigma --sizes small --preset fast --json sigma.json --figure sigma.png --threads 2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("goal: 90–97 %"), std::string::npos) << outcome.out;
+  const auto document = json_file("sigma.json");
+  ASSERT_EQ(document["groups"].size(), 2U * 9U);
+  double in_groups = 0, in_bins = 0;
+  for (const auto& row : document["groups"]) {
+    if (row["where"] == "visible" && row["group"] != "all") in_groups += row["pixels"].get<double>();
+    EXPECT_LE(row["within_1_sigma_percent"], row["within_2_sigma_percent"]);
+  }
+  ASSERT_EQ(document["bins"].size(), 10U);
+  for (const auto& bin : document["bins"]) in_bins += bin["pixels"].get<double>();
+  EXPECT_EQ(in_groups, in_bins);
+  EXPECT_LT(document["bins"][0]["sigma_px"], document["bins"][9]["sigma_px"]);
+  EXPECT_GT(io::read_frame((folder_ / "sigma.png").string()).height, 800);
 }
 
 TEST_F(Evaluate, KittiPutsThePublishedTableBesideOurs) {

@@ -102,6 +102,16 @@ TEST(Plot, BarsAreAsHighAsTheirValues) {
   EXPECT_NEAR(first / second, 3.0 / 4.0, 0.03);
 }
 
+TEST(Plot, TallBarsAreCutOff) {
+  BarGroups bars{"title", "y, px", {"one"}, {"a", "b"}, {{1}, {100}}};
+  bars.y_highest = 2;
+  const Frame frame = draw_bars(bars, width, height);
+  const cv::Rect whole(0, area_with_legend("a").y, width, height - area_with_legend("a").y);
+  const double low = count_colour(frame, series(0), whole), cut = count_colour(frame, series(1), whole);
+  EXPECT_GT(cut / low, 1.7);  // twice as high, less the letters of its value
+  EXPECT_LT(cut / low, 2.05);
+}
+
 template <class Call>
 std::string complaint(const Call& call) {
   try {

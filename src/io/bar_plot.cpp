@@ -26,7 +26,17 @@ PlotAxes make_axes(const BarGroups& bars) {
   const bool below_zero = std::any_of(values.begin(), values.end(), [](double value) { return value < 0; });
   if (!below_zero) axes.y.lowest = 0;
   axes.y.highest = std::max(axes.y.highest, 0.0);
+  if (bars.y_highest) axes.y.highest = std::min(axes.y.highest, *bars.y_highest);
   return axes;
+}
+
+/// The value of a bar that is cut off, upwards in its top.
+void draw_cut_value(cv::Mat& picture, const cv::Rect& bar, double value) {
+  constexpr int most_length = 60;
+  constexpr int two_digits = 10;
+  const int height = std::clamp(bar.width - 2, 6, plot_text);
+  const cv::Point centre(bar.x + bar.width / 2, bar.y + most_length / 2);
+  put_text_upwards(picture, number_text(value, value < two_digits ? 1 : 0), centre, height, most_length, paper);
 }
 
 }  // namespace
@@ -47,13 +57,17 @@ Frame draw_bars(const BarGroups& bars, int width, int height) {
       if (!axes.y.can_show(value)) continue;
       const double left = middle + (static_cast<double>(series) / static_cast<double>(bars.series.size()) - 0.5) *
                                        filled_share * group_width;
-      const cv::Point one(cvRound(left), y_of(value));
+      const cv::Point one(cvRound(left), y_of(std::min(value, axes.y.highest)));
       const cv::Point other(std::max(one.x, cvRound(left + bar_width) - 2), y_of(0));
       cv::rectangle(picture, one, other, series_colour(series), cv::FILLED);
+      if (value > axes.y.highest) draw_cut_value(picture, {one, other}, value);
     }
     const std::string& name = bars.groups[group];
     put_text(picture, name, {cvRound(middle), area.br().y + 2 * plot_text},
              fitting_height(name, plot_text, cvRound(group_width)), ink, Align::centre);
+  }
+  for (const double y : bars.horizontal_lines) {
+    draw_dashed(picture, cv::Point(area.x, y_of(y)), cv::Point(area.br().x, y_of(y)), ink, 1);
   }
   return frame_from(picture, ChannelOrder::bgr);
 }

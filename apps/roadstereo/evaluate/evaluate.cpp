@@ -23,6 +23,7 @@ void add_evaluate(CLI::App& app) {
   add_kitti(*command);
   add_middlebury(*command);
   add_synth_accuracy(*command);
+  add_sigma(*command);
   add_lambda(*command);
   add_roll(*command);
   add_flatness(*command);

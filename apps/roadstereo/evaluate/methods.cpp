@@ -10,15 +10,7 @@ namespace roadstereo::cli {
 namespace {
 
 Image<float> run_preset(const std::string& name, const MethodTask& task, const MethodSettings& settings) {
-  PipelineOptions options = preset(name);
-  options.threads = settings.threads;
-  options.white_level = task.pair.white_level;
-  if (!task.shows_a_road) {
-    options.perspective.enabled = false;
-    options.perspective.disparities = task.disparities;
-  }
-  apply_settings(settings.settings, options);
-  Pipeline pipeline(options, task.pair.calibration);
+  Pipeline pipeline(method_options(name, task, settings), task.pair.calibration);
   return pipeline.process(task.pair.left.view(), task.pair.right.view()).disparity;
 }
 
@@ -49,6 +41,18 @@ std::vector<std::string> method_names() {
   std::vector<std::string> names{"paper", "default", "fast"};
   names.insert(names.end(), io::peer_names().begin(), io::peer_names().end());
   return names;
+}
+
+PipelineOptions method_options(const std::string& preset_name, const MethodTask& task, const MethodSettings& settings) {
+  PipelineOptions options = preset(preset_name);
+  options.threads = settings.threads;
+  options.white_level = task.pair.white_level;
+  if (!task.shows_a_road) {
+    options.perspective.enabled = false;
+    options.perspective.disparities = task.disparities;
+  }
+  apply_settings(settings.settings, options);
+  return options;
 }
 
 Image<float> run_method(const std::string& name, const MethodTask& task, const MethodSettings& settings) {

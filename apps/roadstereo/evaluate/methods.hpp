@@ -31,6 +31,9 @@ struct MethodTask {
   bool shows_a_road = true;  ///< false: no perspective transformation
 };
 
+/// The options of that preset for the pair, with what the command line says on top.
+PipelineOptions method_options(const std::string& preset_name, const MethodTask& task, const MethodSettings& settings);
+
 /// Disparities of one pair, nothing carried over from another: by the preset of that name on the pair as it is, or by
 /// OpenCV's matcher of that name on the same pair in grey.
 Image<float> run_method(const std::string& name, const MethodTask& task, const MethodSettings& settings);

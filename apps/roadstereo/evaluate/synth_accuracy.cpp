@@ -135,10 +135,7 @@ void add_synth_accuracy(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("synth", "Rendered roads with exact truth, clean and spoilt");
   command->footer(synth_footer);
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--sizes", arguments->sizes, "full: ten scenes of 640x360; small: three of 320x180")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"full", "small"}))
-      ->capture_default_str();
+  add_synth_sizes(*command, arguments->sizes);
   add_method_options(*command, arguments->methods);
   add_report_options(*command, arguments->report);
   command->callback([arguments] { synth_accuracy(*arguments); });

@@ -1,5 +1,6 @@
 #include "evaluate/synth_groups.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -27,6 +28,13 @@ void blur_by_motion(synth::Scene& scene) {
 }
 
 }  // namespace
+
+void add_synth_sizes(CLI::App& command, std::string& sizes) {
+  command.add_option("--sizes", sizes, "full: ten scenes of 640x360; small: three of 320x180")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"full", "small"}))
+      ->capture_default_str();
+}
 
 const std::vector<SynthGroup>& synth_groups() {
   static const std::vector<SynthGroup> groups{

@@ -7,7 +7,14 @@
 #include "pair_source.hpp"
 #include "roadstereo/synth.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace roadstereo::cli {
+
+/// Adds --sizes, which chooses between the sets of synth_scenes.
+void add_synth_sizes(CLI::App& command, std::string& sizes);
 
 /// What makes the pairs of a group hard.
 struct SynthGroup {

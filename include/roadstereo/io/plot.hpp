@@ -43,6 +43,8 @@ struct BarGroups {
   std::vector<std::string> groups;
   std::vector<std::string> series;
   std::vector<std::vector<double>> values;  ///< of each series, one per group; NaN leaves the bar out
+  std::optional<double> y_highest{};        ///< a taller bar is cut off there and carries its value
+  std::vector<double> horizontal_lines{};   ///< y of thin reference lines from side to side
 };
 
 /// Draws grouped bars that stand on zero. Throws Error when there is no bar, or a series has another number of values
