@@ -68,6 +68,7 @@ TEST(ReferenceEngine, AggregationIsTheBilateralMeanOfTheCosts) {
   options.block_radius = 2;
   options.aggregation_step = 1;
   options.aggregation_radius = 1;
+  options.aggregation_aspect = 1;
   options.aggregation_shape = WindowShape::disc;  // the pixel and its four neighbours
   options.sigma_space = 1.5;
   options.sigma_colour = 5.5;

@@ -234,25 +234,42 @@ HWY_INLINE void smallest_lanes(D d, const hn::Vec<D>* of, hn::TFromD<D>* smalles
 }
 #endif
 
-/// The energies of four pixels as winner-take-all sees them.
+/// The energies of four pixels, as they are.
 struct PlainEnergies {
   const float* energies;
   std::ptrdiff_t pitch;
 
   HWY_INLINE Float at(int p, int d) const { return hn::Load(Floats(), energies + p * pitch + d); }
 };
+
+/// The smallest energy of each of four pixels. Behind the last disparity the energies are infinite up to a whole vector.
+template <class Energies>
+HWY_INLINE void smallest_energies(const Energies& energies, int disparities, float* smallest) {
+  const Floats df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  Float vectors[4];
+  for (int p = 0; p < 4; ++p) vectors[p] = energies.at(p, 0);
+  for (int d = lanes; d < disparities; d += lanes) {
+    for (int p = 0; p < 4; ++p) vectors[p] = hn::Min(vectors[p], energies.at(p, d));
+  }
+  smallest_lanes(df, vectors, smallest);
+}
+
+/// The energies of four pixels with what they pay for their distance from the prior.
 struct LeaningEnergies {
   PlainEnergies plain;
   float centre[4], slope[4];
   float reach;
 
-  HWY_INLINE LeaningEnergies(const AggregationRow& row, const float* energies, int column)
-      : plain{energies, row.pitch}, reach(row.lean.reach) {
+  HWY_INLINE LeaningEnergies(const AggregationRow& row, const PlainEnergies& energies, int column)
+      : plain(energies), reach(row.lean.reach) {
+    float smallest[4];
+    smallest_energies(plain, row.disparities, smallest);
     for (int p = 0; p < 4; ++p) {
       const float at = column + p < row.end ? row.lean.centre[column + p] : 0.0f;
       const bool known = at == at;
       centre[p] = known ? at : 0.0f;
-      slope[p] = known ? row.lean.slope : 0.0f;
+      slope[p] = known ? row.lean.slope * std::min(1.0f, (smallest[p] + lean_offset) / lean_full_at) : 0.0f;
     }
   }
 
@@ -263,19 +280,13 @@ struct LeaningEnergies {
   }
 };
 
-/// Winner-take-all of four pixels: winners[p] = the first d at which the energy is smallest. Behind the last disparity
-/// the energies are infinite up to a whole vector.
+/// Winner-take-all of four pixels: winners[p] = the first d at which the energy is smallest.
 template <class Energies>
 HWY_INLINE void take_winners(const Energies& energies, int disparities, std::int32_t* winners) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
-  Float vectors[4];
-  for (int p = 0; p < 4; ++p) vectors[p] = energies.at(p, 0);
-  for (int d = lanes; d < disparities; d += lanes) {
-    for (int p = 0; p < 4; ++p) vectors[p] = hn::Min(vectors[p], energies.at(p, d));
-  }
   float smallest[4];
-  smallest_lanes(df, vectors, smallest);
+  smallest_energies(energies, disparities, smallest);
   for (int p = 0; p < 4; ++p) {
     const Float lowest = hn::Set(df, smallest[p]);
     winners[p] = 0;
@@ -300,10 +311,11 @@ HWY_INLINE void find_winners(const AggregationRow& row, int strip, float* energi
     for (int p = 0; p < 4; ++p) {
       std::fill(of_four + p * row.pitch + row.disparities, of_four + (p + 1) * row.pitch, infinity);
     }
+    const PlainEnergies plain{of_four, row.pitch};
     if (row.lean.centre == nullptr) {
-      take_winners(PlainEnergies{of_four, row.pitch}, row.disparities, found.winner + column);
+      take_winners(plain, row.disparities, found.winner + column);
     } else {
-      take_winners(LeaningEnergies(row, of_four, strip + column), row.disparities, found.winner + column);
+      take_winners(LeaningEnergies(row, plain, strip + column), row.disparities, found.winner + column);
     }
     for (int p = 0; p < 4; ++p) {
       // A winner at an end has no neighbour there: what is read instead is not used.
@@ -341,10 +353,12 @@ HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns,
     const auto curved = hn::Gt(curvature, hn::Set(df, least_curvature));
     const Float half = hn::Set(df, 0.5f);
     const Float vertex = hn::IfThenElseZero(curved, hn::Div(hn::Mul(half, hn::Sub(before, after)), curvature));
-    // A winner that leans on the prior need not be a minimum of the costs.
-    const Float offset = hn::Clamp(vertex, hn::Neg(half), half);
-    const Float outside = hn::Sub(vertex, offset);
     const Float noise = hn::Div(hn::Mul(hn::Set(df, 2 / row.support), hn::Max(best, hn::Zero(df))), curvature);
+    // A winner that leans on the prior need not be a minimum of the costs.
+    const auto sure = hn::Lt(noise, hn::Set(df, sure_variance));
+    const Float reach = hn::IfThenElse(sure, hn::Set(df, sure_reach), half);
+    const Float offset = hn::Clamp(vertex, hn::Neg(reach), reach);
+    const Float outside = hn::Sub(vertex, offset);
     const Float variance = hn::IfThenElse(curved, hn::MulAdd(outside, outside, noise), hn::Set(df, infinity));
     const auto bracketed = hn::And(hn::Gt(winner, hn::Zero(di)), hn::Lt(winner, last));
     hn::StoreU(hn::IfThenElse(hn::RebindMask(df, bracketed), offset, nan), df, out.offset + at);

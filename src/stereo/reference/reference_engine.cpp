@@ -150,14 +150,16 @@ const Range& range_at(const Image<Range>& ranges, int u, int v) {
   return ranges(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
 }
 
-/// What a disparity pays for its distance from the prior: prior_slope · min(|d − prior|, prior_reach).
-double lean(const Scene& scene, const DisparityPrior* prior, int u, int v, int d) {
+/// What a disparity pays for its distance from the prior: slope · min(|d − prior|, prior_reach), slope = prior_slope but
+/// where the smallest cost `best` is small (stereo/window.hpp).
+double lean(const Scene& scene, const DisparityPrior* prior, double best, int u, int v, int d) {
   if (prior == nullptr) return 0;
   const Image<float>& map = prior->disparity;
   const double centre =
       map(std::min(u / prior->factor, map.width() - 1), std::min(v / prior->factor, map.height() - 1));
   if (std::isnan(centre)) return 0;
-  return scene.options.prior_slope * std::min(std::abs(d - centre), scene.options.prior_reach);
+  const double weight = std::min(1.0, (best + double{lean_offset}) / double{lean_full_at});
+  return weight * scene.options.prior_slope * std::min(std::abs(d - centre), scene.options.prior_reach);
 }
 
 /// Winner-take-all: the disparity of the smallest cost, −1 where there is none; the smaller disparity wins a tie.
@@ -166,10 +168,14 @@ Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, c
   Image<std::int16_t> winners(scene.width(), scene.height(), -1);
   for (int v = 0; v < scene.height(); ++v) {
     for (int u = 0; u < scene.width(); ++u) {
-      double best = std::numeric_limits<double>::infinity();
       const Range searched = range_at(ranges, u, v);
+      double smallest = std::numeric_limits<double>::infinity();
       for (int d = searched.first; d < searched.end; ++d) {
-        const double leaning = energy(u, v, d) + lean(scene, prior, u, v, d);
+        if (energy(u, v, d) < smallest) smallest = energy(u, v, d);
+      }
+      double best = std::numeric_limits<double>::infinity();
+      for (int d = searched.first; d < searched.end; ++d) {
+        const double leaning = energy(u, v, d) + lean(scene, prior, smallest, u, v, d);
         if (leaning < best) {
           best = leaning;
           winners(u, v) = static_cast<std::int16_t>(d);
@@ -209,9 +215,11 @@ Refined refine(const Scene& scene, const CostVolume& energy, const Range& search
   refined.disparity = d;
   if (curvature <= double{least_curvature}) return refined;
   const double vertex = (before - after) / (2 * curvature);
-  const double offset = std::clamp(vertex, -0.5, 0.5);
+  const double noise = 2 * std::max(best, 0.0) / (scene.support * curvature);
+  const double reach = noise < double{sure_variance} ? double{sure_reach} : 0.5;
+  const double offset = std::clamp(vertex, -reach, reach);
   if (scene.options.sub_pixel) refined.disparity = d + offset;
-  refined.variance = 2 * std::max(best, 0.0) / (scene.support * curvature) + (vertex - offset) * (vertex - offset);
+  refined.variance = noise + (vertex - offset) * (vertex - offset);
   return refined;
 }
 
