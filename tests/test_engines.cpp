@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "roadstereo/error.hpp"
@@ -19,6 +21,8 @@ struct Case {
   MatcherOptions options;
   bool slanted_view;         ///< the target's first valid column differs from row to row
   bool with_ranges = false;  ///< tiles search parts of the disparities
+  int prior_factor = 0;      ///< a prior of this factor; 0: none
+  double prior_offset = 0;   ///< of the prior from the truth, pixels
 };
 
 MatcherOptions paper_options() {
@@ -64,6 +68,16 @@ std::vector<Case> cases() {
   large_ring.aggregation_radius = 10;
   all.push_back({"tiles", 270, 31, 33, large_ring, true});
   all.push_back({"ranges", 290, 131, 40, MatcherOptions{}, true, true});
+  all.push_back({"prior_below", 131, 67, 33, MatcherOptions{}, true, false, 2, -2.5});
+  all.push_back({"prior_above", 131, 67, 33, MatcherOptions{}, true, false, 3, 3.5});
+  all.push_back({"prior_with_ranges", 290, 131, 40, MatcherOptions{}, true, true, 3, 1.5});
+  MatcherOptions steep;  // so steep that the winner need not be a minimum of the costs
+  steep.prior_slope = 0.5;
+  steep.aggregation_radius = 0;
+  all.push_back({"steep_prior", 131, 67, 33, steep, false, false, 2, -1.25});
+  MatcherOptions unused;
+  unused.prior_slope = 0;
+  all.push_back({"unused_prior", 131, 67, 20, unused, true, false, 2, 1});
   return all;
 }
 
@@ -84,26 +98,57 @@ SearchRanges uneven_ranges(int width, int height, int disparities) {
   return ranges;
 }
 
+/// The disparity that the pairs of the cases are painted with.
+double true_disparity(const Case& setting, double u, double v) {
+  return std::min(setting.disparities, setting.width / 2) * 0.4 + 2.0 * std::sin(0.05 * u) * std::cos(0.07 * v);
+}
+
+/// The truth, off by the case's offset, with a hole; some of it below 0 or beyond the last disparity.
+DisparityPrior prior_of(const Case& setting) {
+  DisparityPrior prior;
+  prior.factor = std::max(1, setting.prior_factor);
+  prior.disparity.resize(setting.width / prior.factor, setting.height / prior.factor);
+  for (int y = 0; y < prior.disparity.height(); ++y) {
+    for (int x = 0; x < prior.disparity.width(); ++x) {
+      const double truth = true_disparity(setting, x * prior.factor, y * prior.factor);
+      const double wide = y % 16 == 7 ? 10 * setting.prior_offset : setting.prior_offset;
+      const bool hole = x % 16 < 5 && y % 8 < 3;
+      prior.disparity(x, y) =
+          hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(truth + wide + 0.3 * std::sin(0.7 * x));
+    }
+  }
+  return prior;
+}
+
+/// Within 1 %, or both infinite.
+bool same_variance(double expected, double actual) {
+  constexpr double float_costs = 1e-7;  // of costs near 0
+  return expected == actual || std::abs(expected - actual) <= 0.01 * expected + float_costs;
+}
+
 class EngineAgreement : public testing::TestWithParam<std::tuple<std::string, int>> {};
 
 TEST_P(EngineAgreement, SameWinnerAndSubPixelAsReference) {
   const Case setting = cases()[static_cast<std::size_t>(std::get<1>(GetParam()))];
-  const double road = std::min(setting.disparities, setting.width / 2) * 0.4;
-  const auto pair = test::textured_pair(setting.width, setting.height, [&](double u, double v) {
-    return road + 2.0 * std::sin(0.05 * u) * std::cos(0.07 * v);
-  });
+  const auto pair = test::textured_pair(setting.width, setting.height,
+                                        [&](double u, double v) { return true_disparity(setting, u, v); });
   std::vector<int> first(static_cast<std::size_t>(setting.height), 0);
   if (setting.slanted_view) {
     for (int v = 0; v < setting.height; ++v) first[static_cast<std::size_t>(v)] = v / 4 % (setting.width / 3);
   }
   const SearchRanges ranges = uneven_ranges(setting.width, setting.height, std::max(2, setting.disparities));
-  const MatchInput input{pair.reference, pair.target, first.data(), setting.disparities,
-                         setting.with_ranges ? &ranges : nullptr};
+  const DisparityPrior prior = prior_of(setting);
+  const MatchInput input{pair.reference,
+                         pair.target,
+                         first.data(),
+                         setting.disparities,
+                         setting.with_ranges ? &ranges : nullptr,
+                         setting.prior_factor > 0 ? &prior : nullptr};
   MatchMaps expected, actual;
   make_engine("reference", 0)->match(input, setting.options, expected);
   make_engine(std::get<0>(GetParam()), 2)->match(input, setting.options, actual);
 
-  std::size_t candidates = 0, same = 0, target_same = 0, both = 0;
+  std::size_t candidates = 0, same = 0, target_same = 0, both = 0, variances_differ = 0;
   double worst = 0;
   for (int v = 0; v < setting.height; ++v) {
     for (int u = 0; u < setting.width; ++u) {
@@ -114,8 +159,11 @@ TEST_P(EngineAgreement, SameWinnerAndSubPixelAsReference) {
       if (expected.winner(u, v) != actual.winner(u, v)) continue;
       ++both;
       worst = std::max(worst, std::abs(static_cast<double>(expected.disparity(u, v)) - actual.disparity(u, v)));
+      variances_differ += !same_variance(expected.variance(u, v), actual.variance(u, v));
     }
   }
+  // A curvature near 0 has no relative precision in 32 bits.
+  EXPECT_LE(static_cast<double>(variances_differ), 0.002 * static_cast<double>(both));
   EXPECT_GE(static_cast<double>(same), 0.999 * static_cast<double>(candidates));
   EXPECT_GE(static_cast<double>(target_same), 0.999 * static_cast<double>(candidates));
   EXPECT_LE(worst, 0.01);
@@ -151,13 +199,16 @@ std::vector<std::string> all_engine_names() {
 TEST_P(EveryEngine, FindsAConstantDisparityToTheEdgesOfTheCommonView) {
   constexpr int width = 120, height = 60, d = 9;
   const auto pair = test::textured_pair(width, height, [](double, double) { return d; });
+  const MatcherOptions options;
+  const int reach = options.block_radius + options.aggregation_radius;
   MatchMaps maps;
-  make_engine(GetParam(), 2)->match({pair.reference, pair.target, nullptr, 20}, MatcherOptions{}, maps);
+  make_engine(GetParam(), 2)->match({pair.reference, pair.target, nullptr, 20}, options, maps);
   for (int v = 0; v < height; ++v) {
     // At the first column of the common view the winner is the last candidate: no minimum.
-    // Near the border the block is clipped differently at d − 1 and d + 1, and the parabola leans a little.
+    // Near the border the windows are clipped, blocks even differently at d − 1 and d + 1: the parabola leans further.
     for (int u = d + 1; u < width; ++u) {
-      ASSERT_NEAR(maps.disparity(u, v), d, 0.2) << u << "," << v;
+      const bool clipped = std::min({u - d - 1, width - 1 - u, v, height - 1 - v}) < reach;
+      ASSERT_NEAR(maps.disparity(u, v), d, clipped ? 0.35 : 0.2) << u << "," << v;
     }
     for (int u = 0; u < d - 1; ++u) ASSERT_FALSE(std::abs(maps.disparity(u, v) - d) < 0.5) << u << "," << v;
   }
@@ -225,6 +276,23 @@ TEST_P(EveryEngine, RangesThatHoldTheDisparityChangeNothing) {
   }
 }
 
+TEST_P(EveryEngine, ThePriorDecidesWhereNothingElseDoes) {
+  constexpr int reach = 4;  // pixels; further away one disparity is as good as the other
+  MatcherOptions options;
+  options.prior_reach = reach;
+  const GreyImage flat(64, 48, 1600);
+  DisparityPrior prior{Image<float>(32, 24, 7.0F), 2};
+  for (int y = 12; y < 24; ++y) std::fill_n(prior.disparity.row(y), 32, std::numeric_limits<float>::quiet_NaN());
+  MatchMaps maps;
+  make_engine(GetParam(), 2)->match({flat, flat, nullptr, 16, nullptr, &prior}, options, maps);
+  for (int v = 0; v < 48; ++v) {
+    for (int u = 0; u < 64; ++u) {
+      ASSERT_EQ(maps.winner(u, v), v < 24 && u > 7 - reach ? std::min(u, 7) : 0) << u << ", " << v;
+      ASSERT_TRUE(std::isinf(maps.variance(u, v))) << u << ", " << v;
+    }
+  }
+}
+
 TEST_P(EveryEngine, RefusesWhatItCannotMatch) {
   const GreyImage a(64, 48), b(64, 47);
   MatchMaps maps;
@@ -238,6 +306,10 @@ TEST_P(EveryEngine, RefusesWhatItCannotMatch) {
   SearchRanges ranges;
   ranges.assign(300, 48, 16);
   EXPECT_THROW(engine->match({a, a, nullptr, 16, &ranges}, MatcherOptions{}, maps), Error);
+  DisparityPrior prior;
+  EXPECT_THROW(engine->match({a, a, nullptr, 16, nullptr, &prior}, MatcherOptions{}, maps), Error);
+  prior = {Image<float>(32, 24, 3.0F), 0};
+  EXPECT_THROW(engine->match({a, a, nullptr, 16, nullptr, &prior}, MatcherOptions{}, maps), Error);
   ranges.assign(64, 48, 17);
   EXPECT_THROW(engine->match({a, a, nullptr, 16, &ranges}, MatcherOptions{}, maps), Error);
 }

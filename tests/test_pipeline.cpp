@@ -169,6 +169,60 @@ TEST(Pipeline, RowsThatDoNotAgreeAreAWarningWithTheFigure) {
   EXPECT_NE(result.warnings.back().find("the rows of the pair do not agree"), std::string::npos);
 }
 
+TEST(Pipeline, CorrectedRowsHalveTheError) {
+  synth::Scene s = synth::named_scene("uav");
+  s.supersampling = 1;
+  s.degradation.row_offset_px = 0.8;
+  const synth::SyntheticPair pair = synth::render(s);
+  const auto median = [&](bool correct) {
+    PipelineOptions options = preset("default");
+    options.correct_rows = correct;
+    Pipeline pipeline(options, pair.calibration);
+    const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+    if (correct) {
+      EXPECT_NEAR(result.shift.row_offset, 0.8, 0.1);
+    } else {
+      EXPECT_EQ(result.shift.row_offset, 0);
+    }
+    return compare(result.disparity, pair).median;
+  };
+  EXPECT_LT(median(true), 0.5 * median(false));
+}
+
+class SigmaOfScene : public testing::TestWithParam<const char*> {};
+
+TEST_P(SigmaOfScene, IsTheErrorOfTheDisparities) {
+  synth::Scene s = synth::named_scene(GetParam());
+  s.supersampling = 1;
+  const synth::SyntheticPair pair = synth::render(s);
+  Pipeline pipeline(preset("default"), pair.calibration);
+  const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+  std::vector<double> in_sigmas;
+  for (int v = 0; v < pair.left.height; ++v) {
+    for (int u = 0; u < pair.left.width; ++u) {
+      const float disparity = result.disparity(u, v), sigma = result.sigma(u, v);
+      ASSERT_EQ(std::isnan(disparity), std::isnan(sigma)) << u << ", " << v;
+      if (std::isnan(disparity)) continue;
+      ASSERT_GT(sigma, 0) << u << ", " << v;
+      if (pair.visible(u, v) == 0 || std::isnan(pair.disparity(u, v))) continue;
+      in_sigmas.push_back(std::abs(disparity - pair.disparity(u, v)) / double{sigma});
+    }
+  }
+  std::sort(in_sigmas.begin(), in_sigmas.end());
+  const auto count = static_cast<double>(in_sigmas.size());
+  const auto below_two = std::lower_bound(in_sigmas.begin(), in_sigmas.end(), 2.0) - in_sigmas.begin();
+  constexpr double median_of_normal = 0.6745;
+  const double scale = in_sigmas[in_sigmas.size() / 2] / median_of_normal;
+  std::printf("%s: %.1f %% of the errors are below 2 sigma, typical error %.2f sigma\n", GetParam(),
+              100 * static_cast<double>(below_two) / count, scale);
+  EXPECT_GT(static_cast<double>(below_two), 0.90 * count);  // 95.4 % of normal errors
+  EXPECT_GT(scale, 0.5);  // with much noise the standard errors are too large, but less than twice
+  EXPECT_LT(scale, 1.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SigmaOfScene, testing::Values("uav", "noise"),
+                         [](const auto& test) { return std::string(test.param); });
+
 TEST(Pipeline, ColourAndSixteenBitsGiveTheSameMap) {
   const synth::SyntheticPair pair = scene("uav");
   const auto widen = [](const Frame& grey) {

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
+#include "roadstereo/error.hpp"
 #include "roadstereo/matcher.hpp"
 #include "textured_pair.hpp"
 
@@ -58,6 +61,10 @@ TEST(ReferenceEngine, WinnerAndParabolaAreThoseOfTheCosts) {
       const double offset = (cost[best - 1] - cost[best + 1]) /
                             (2 * cost[best - 1] + 2 * cost[best + 1] - 4 * cost[best]);  // eq. subpixel
       ASSERT_NEAR(maps.disparity(u, v), best + offset, 1e-5);
+      // 2 E / (n K) with n = 4π s², s² = (7² − 1) / 12 of a block of 7×7.
+      const double curvature = cost[best - 1] + cost[best + 1] - 2 * cost[best];
+      const double variance = 2 * cost[best] / (16 * std::numbers::pi * curvature);
+      ASSERT_NEAR(maps.variance(u, v), variance, 1e-5 * variance + 1e-9);
     }
   }
 }
@@ -104,6 +111,121 @@ TEST(ReferenceEngine, AggregationIsTheBilateralMeanOfTheCosts) {
     }
   }
   EXPECT_GT(compared, 100);
+}
+
+/// A texture that repeats every 8 columns, seen 3 columns further left: the costs of 3, 11, 19 … are all 0.
+struct Repeating {
+  static constexpr int width = 100, height = 30;
+  GreyImage reference{width, height}, target{width, height};
+
+  Repeating() {
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        reference(u, v) = static_cast<std::int16_t>(4000 * test::lattice(u % 8, v, 1));
+        target(u, v) = static_cast<std::int16_t>(4000 * test::lattice((u + 3) % 8, v, 1));
+      }
+    }
+  }
+
+  /// What every pixel far from the border takes.
+  int winner(float prior, double slope, double reach) const {
+    MatcherOptions options;
+    options.aggregation_radius = 0;
+    options.prior_slope = slope;
+    options.prior_reach = reach;
+    const DisparityPrior of_all{Image<float>(width / 2, height / 2, prior), 2};
+    MatchMaps maps;
+    make_engine("reference", 1)->match({reference, target, nullptr, 16, nullptr, &of_all}, options, maps);
+    const int first = maps.winner(30, 5);
+    for (int v = 5; v < 25; ++v) {
+      for (int u = 30; u < 90; ++u) EXPECT_EQ(maps.winner(u, v), first);
+    }
+    return first;
+  }
+};
+
+TEST(ReferenceEngine, ThePriorChoosesBetweenEqualMinima) {
+  const Repeating pair;
+  EXPECT_EQ(pair.winner(std::numeric_limits<float>::quiet_NaN(), 0.08, 4), 3);  // the smaller one
+  EXPECT_EQ(pair.winner(11, 0, 4), 3);                                          // ignored
+  EXPECT_EQ(pair.winner(9, 0.01, 100), 11);                                     // 2 px away, the other one 6
+  EXPECT_EQ(pair.winner(6.9F, 0.01, 100), 3);
+  EXPECT_EQ(pair.winner(7.1F, 0.01, 100), 11);
+  EXPECT_EQ(pair.winner(40, 0.01, 4), 3);     // both beyond reach: as if there were none
+  EXPECT_EQ(pair.winner(40, 0.01, 100), 11);  // both within
+}
+
+TEST(ReferenceEngine, BeyondItsReachThePriorLosesToThePicture) {
+  // No cost exceeds 2: within reach a slope of 10 decides alone; 0.02 · 4 decides nothing that has texture.
+  const auto pair = test::textured_pair(100, 30, [](double, double) { return 3; });
+  const DisparityPrior prior{Image<float>(100, 30, 11.0F), 1};
+  MatcherOptions options;
+  options.left_right_check = false;
+  MatchMaps maps;
+  const auto winner = [&](double slope, double reach) {
+    options.prior_slope = slope;
+    options.prior_reach = reach;
+    make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 16, nullptr, &prior}, options, maps);
+    return maps.winner;
+  };
+  const auto strong = winner(10, 100), weak = winner(0.02, 4);
+  for (int v = 0; v < 30; ++v) {
+    for (int u = 20; u < 100; ++u) {
+      ASSERT_EQ(strong(u, v), 11);
+      ASSERT_EQ(weak(u, v), 3);
+    }
+  }
+}
+
+/// Grey-level noise of the given standard deviation, independent from pixel to pixel.
+void add_noise(GreyImage& image, double deviation, std::uint64_t seed) {
+  for (int v = 0; v < image.height(); ++v) {
+    for (int u = 0; u < image.width(); ++u) {
+      const double triangular = test::lattice(u, v, seed) + test::lattice(u, v, seed + 1) - 1;  // of variance 1/6
+      const auto grain = static_cast<int>(std::lround(deviation * std::sqrt(6.0) * triangular * grey_scale));
+      image(u, v) = static_cast<std::int16_t>(std::clamp(image(u, v) + grain, 0, grey_max));
+    }
+  }
+}
+
+TEST(ReferenceEngine, VarianceIsWhatNoiseDoesToTheDisparity) {
+  // Without noise the parabola errs, too, at the ends of blocks; that is no matter of variance.
+  auto pair = test::textured_pair(
+      260, 120, [](double, double) { return 6; }, 5);
+  MatcherOptions options;
+  options.block_radius = 4;
+  options.aggregation_radius = 0;
+  options.texture_noise = 0;
+  MatchMaps clean, noisy;
+  make_engine("reference", 0)->match({pair.reference, pair.target, nullptr, 14}, options, clean);
+  add_noise(pair.reference, 4, 11);
+  add_noise(pair.target, 4, 21);
+  make_engine("reference", 0)->match({pair.reference, pair.target, nullptr, 14}, options, noisy);
+  double ratios = 0;
+  int count = 0;
+  for (int v = 5; v < 115; v += 3) {
+    for (int u = 20; u < 250; u += 3) {
+      const double error = noisy.disparity(u, v) - clean.disparity(u, v);
+      if (std::isnan(error)) continue;
+      ratios += error * error / noisy.variance(u, v);
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 2000);
+  EXPECT_NEAR(ratios / count, 1, 0.25);
+}
+
+TEST(MatcherOptions, AreChecked) {
+  const auto refused = [](auto change) {
+    MatcherOptions options;
+    change(options);
+    EXPECT_THROW(options.validate(), Error);
+  };
+  EXPECT_NO_THROW(MatcherOptions{}.validate());
+  refused([](auto& o) { o.prior_slope = -0.1; });
+  refused([](auto& o) { o.prior_slope = std::numeric_limits<double>::quiet_NaN(); });
+  refused([](auto& o) { o.prior_reach = 1001; });
+  refused([](auto& o) { o.aggregation_step = 3; });
 }
 
 TEST(ReferenceEngine, LeftRightCheckRemovesWhatTheOtherViewSeesDifferently) {

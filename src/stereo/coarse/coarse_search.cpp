@@ -84,6 +84,7 @@ bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, doub
   block.texture_noise = options_.texture_noise;
   for (Worker& worker : workers_) {
     worker.costs.prepare(reference_.width(), coarse.disparities, block);
+    worker.evidence.prepare(reference_.width());
     const std::ptrdiff_t pitch = cpu::padded_disparities(coarse.disparities);
     worker.row.resize(1, 0, reference_.width() * pitch);
     worker.centre.resize(static_cast<std::size_t>(reference_.width()));

@@ -11,6 +11,12 @@ constexpr double gradient_unit = 2.0 * grey_scale / (1 << gradient_shift);
 
 }  // namespace
 
+void Evidence::prepare(int columns) {
+  squares_.reserve(static_cast<std::size_t>(columns));
+  products_.reserve(static_cast<std::size_t>(columns));
+  ignorance_.reserve(static_cast<std::size_t>(columns));
+}
+
 void Evidence::start(ImageView<const std::int16_t> image, int first_row, const EvidenceOptions& options) {
   image_ = image;
   options_ = options;

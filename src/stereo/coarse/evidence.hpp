@@ -20,6 +20,8 @@ struct EvidenceOptions {
 /// The ignorance is s² / (s² + half_at²).
 class Evidence {
  public:
+  /// Makes room for images so wide, so that `start` allocates nothing.
+  void prepare(int columns);
   /// Begins at row `first_row` of the image; `next` is then called for that row and those below it.
   void start(ImageView<const std::int16_t> image, int first_row, const EvidenceOptions& options);
   /// Ignorance of the blocks of the next row; valid until the next call.
