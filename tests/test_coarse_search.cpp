@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "core/shrink.hpp"
@@ -21,48 +22,49 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 constexpr auto no_road = [](double /*u*/, double /*v*/) { return nan; };
 
-TEST(CoarseSearch, RangesHoldTheTrueDisparitiesOfRoads) {
-  for (const char* name : {"uav", "street", "close", "low_texture", "noise"}) {
-    SCOPED_TRACE(name);
-    synth::Scene scene = synth::named_scene(name);
-    scene.supersampling = 1;
-    const synth::SyntheticPair pair = synth::render(scene);
-    PerspectiveShift shift;
-    shift.road = pair.plane;
-    shift.disparities = 48;
-    shift.delta_p = 24;
-    GreyImage left, right, target;
-    std::vector<int> first_column;
-    to_grey(pair.left.view(), 0, left);
-    to_grey(pair.right.view(), 0, right);
-    transform_target(right, shift, 0, target, first_column);
-    CoarseSearch search({}, 2);
-    const auto road = [&](double u, double v) {
-      const double disparity = shift.road.disparity(u, v);
-      return disparity < 0 ? nan : std::min(disparity, shift.delta_p);
-    };
-    ASSERT_TRUE(search.find({left, target, first_column.data(), shift.disparities}, road));
-    const SearchRanges* ranges = search.ranges();
-    ASSERT_NE(ranges, nullptr);
-    std::size_t seen = 0, held = 0;
-    double searched = 0;
-    for (int v = 0; v < left.height(); ++v) {
-      for (int u = 0; u < left.width(); ++u) {
-        const SearchRanges::Range& range =
-            ranges->reference(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
-        searched += range.end - range.first;
-        if (!pair.visible(u, v)) continue;
-        const double full = pair.disparity(u, v);
-        const double residual = full - shift.at(u - full, v);
-        if (std::isnan(full) || residual < 0 || residual > shift.disparities - 1) continue;
-        ++seen;
-        held += residual >= range.first && residual <= range.end - 1;
-      }
+class RoadScene : public testing::TestWithParam<const char*> {};
+
+TEST_P(RoadScene, RangesHoldTheTrueDisparities) {
+  synth::Scene scene = synth::named_scene(GetParam());
+  scene.supersampling = 1;
+  const synth::SyntheticPair pair = synth::render(scene);
+  PerspectiveShift shift;
+  shift.road = pair.plane;
+  shift.disparities = 48;
+  shift.delta_p = 24;
+  GreyImage left, right, target;
+  std::vector<int> first_column;
+  to_grey(pair.left.view(), 0, left);
+  to_grey(pair.right.view(), 0, right);
+  transform_target(right, shift, 0, target, first_column);
+  CoarseSearch search({}, 2);
+  const auto road = [&](double u, double v) {
+    const double disparity = shift.road.disparity(u, v);
+    return disparity < 0 ? nan : std::min(disparity, shift.delta_p);
+  };
+  ASSERT_TRUE(search.find({left, target, first_column.data(), shift.disparities}, road));
+  const SearchRanges* ranges = search.ranges();
+  ASSERT_NE(ranges, nullptr);
+  std::size_t seen = 0, held = 0;
+  double searched = 0;
+  for (int v = 0; v < left.height(); ++v) {
+    for (int u = 0; u < left.width(); ++u) {
+      const SearchRanges::Range& range = ranges->reference(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
+      searched += range.end - range.first;
+      if (!pair.visible(u, v)) continue;
+      const double full = pair.disparity(u, v);
+      const double residual = full - shift.at(u - full, v);
+      if (std::isnan(full) || residual < 0 || residual > shift.disparities - 1) continue;
+      ++seen;
+      held += residual >= range.first && residual <= range.end - 1;
     }
-    EXPECT_GE(static_cast<double>(held), 0.995 * static_cast<double>(seen));
-    EXPECT_LE(searched / static_cast<double>(left.pixels()), 0.75 * shift.disparities);
   }
+  EXPECT_GE(static_cast<double>(held), 0.995 * static_cast<double>(seen));
+  EXPECT_LE(searched / static_cast<double>(left.pixels()), 0.75 * shift.disparities);
 }
+
+INSTANTIATE_TEST_SUITE_P(Scenes, RoadScene, testing::Values("uav", "street", "close", "low_texture", "noise"),
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST(CoarseSearch, SearchesNearlyEverythingWhereNothingMatches) {
   const auto one = test::textured_pair(
