@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-slow='odd_large|large_windows|_100$|Peers.Fast|RangeSearch.Holds'
+slow='odd_large|large_windows|_100$|Peers.Fast|RoadScene'
 
 check() {
   local preset=$1

@@ -70,7 +70,7 @@ std::vector<Case> cases() {
   all.push_back({"ranges", 290, 131, 40, MatcherOptions{}, true, true});
   all.push_back({"prior_below", 131, 67, 33, MatcherOptions{}, true, false, 2, -2.5});
   all.push_back({"prior_above", 131, 67, 33, MatcherOptions{}, true, false, 3, 3.5});
-  all.push_back({"prior_with_ranges", 290, 131, 40, MatcherOptions{}, true, true, 3, 1.5});
+  all.push_back({"prior_with_ranges", 200, 101, 40, MatcherOptions{}, true, true, 3, 1.5});
   MatcherOptions steep;  // so steep that the winner need not be a minimum of the costs
   steep.prior_slope = 0.5;
   steep.aggregation_radius = 0;
