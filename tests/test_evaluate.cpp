@@ -147,7 +147,7 @@ TEST_F(Evaluate, FoldersOfTheWrongLayoutAreNamed) {
 TEST_F(Evaluate, HelpNamesEveryExperiment) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const std::string name : {"score", "kitti", "middlebury", "synth", "sigma"}) {
+  for (const std::string name : {"score", "kitti", "middlebury", "synth", "sigma", "ablation"}) {
     EXPECT_NE(help.out.find(name), std::string::npos) << name;
     EXPECT_NE(run(name + " --help").out.find("roadstereo evaluate " + name), std::string::npos) << name;
   }
@@ -185,6 +185,26 @@ TEST_F(Evaluate, SigmaSplitsThePixelsIntoTenths) {
   EXPECT_EQ(in_groups, in_bins);
   EXPECT_LT(document["bins"][0]["sigma_px"], document["bins"][9]["sigma_px"]);
   EXPECT_GT(io::read_frame((folder_ / "sigma.png").string()).height, 800);
+}
+
+TEST_F(Evaluate, AblationComparesEveryVariantWithItsPreset) {
+  const Outcome outcome = run("ablation --sizes small --json ablation.json --figure ablation.png --threads 2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto variants = json_file("ablation.json")["variants"];
+  const auto figure = [&](const std::string& variant, const char* key) {
+    for (const auto& row : variants) {
+      if (row["variant"] == variant) return row[key].get<double>();
+    }
+    ADD_FAILURE() << "no variant " << variant;
+    return 0.0;
+  };
+  // Whole pixels for every disparity, as against a parabola: the error is uniform in ±0.5 px, its median 0.25 px.
+  EXPECT_NEAR(figure("paper, no sub-pixel parabola", "clean_median_error_px"), 0.25, 0.05);
+  EXPECT_LT(figure("paper", "clean_median_error_px"), 0.1);
+  EXPECT_GT(figure("whole-pixel shift", "clean_median_error_px"), figure("default", "clean_median_error_px"));
+  EXPECT_FALSE(variants[0].contains("kitti_e_r_px"));
+  EXPECT_GT(io::read_frame((folder_ / "ablation.png").string()).height, 500);
+  expect_complaint(run("ablation --kitti absent"), "absent");
 }
 
 TEST_F(Evaluate, KittiPutsThePublishedTableBesideOurs) {

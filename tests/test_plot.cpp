@@ -6,6 +6,7 @@
 
 #include "io/plot_axes.hpp"
 #include "roadstereo/error.hpp"
+#include "roadstereo/io/bar_table.hpp"
 #include "roadstereo/io/plot.hpp"
 
 namespace {
@@ -110,6 +111,15 @@ TEST(Plot, TallBarsAreCutOff) {
   const double low = count_colour(frame, series(0), whole), cut = count_colour(frame, series(1), whole);
   EXPECT_GT(cut / low, 1.7);  // twice as high, less the letters of its value
   EXPECT_LT(cut / low, 2.05);
+}
+
+TEST(Plot, LyingBarsAreAsLongAsTheirValues) {
+  const BarTable table{"title", {"base", "half", "none"}, {0, 0, 0}, {{"x, px", {2, 1, none}, 1}}};
+  const Frame frame = draw_bar_table(table);
+  const cv::Rect whole(0, 0, frame.width, frame.height);
+  const double base = count_colour(frame, {178, 114, 0}, whole), better = count_colour(frame, {115, 158, 0}, whole);
+  EXPECT_NEAR(better / base, 0.5, 0.02);
+  EXPECT_THROW(draw_bar_table({"title", {"row"}, {0}, {{"x", {1, 2}, 1}}}), Error);
 }
 
 template <class Call>
