@@ -160,6 +160,13 @@ TEST_F(Evaluate, SynthComparesEveryMethodInEveryGroup) {
   EXPECT_EQ(document["visible"].size(), 8U * 7U);
   EXPECT_EQ(document["damage"].size(), 8U * 7U);
   EXPECT_EQ(document["sub_pixel_bias"].size(), 7U);
+  EXPECT_EQ(document["best_damage"].size(), 8U);
+  EXPECT_NE(outcome.out.find("of 8 groups"), std::string::npos);
+  for (const auto& row : document["common"]) {
+    if (row["method"] != "BM") {
+      EXPECT_EQ(row["density_percent"], 100) << row;
+    }
+  }
   for (const auto& row : document["visible"]) {
     if (row["group"] != "clean" || row["method"] != "default") continue;
     EXPECT_LT(row["e_p_or_missing_1px_percent"].get<double>(), 3.0);
@@ -222,6 +229,11 @@ TEST_F(Evaluate, KittiPutsThePublishedTableBesideOurs) {
   const auto road = json_file("kitti.json")["road"];
   EXPECT_EQ(road["mean"], road["frames"]["000007_10"]);  // of one frame
   EXPECT_EQ(road["mean"].size(), 7U);
+  for (const auto& row : json_file("kitti.json")["road_common"]["mean"]) {
+    if (row["method"] != "BM") {
+      EXPECT_EQ(row["density_percent"], 100) << row;
+    }
+  }
   const auto published = json_file("kitti.json")["published"];
   EXPECT_NEAR(published[0]["e_r_px"], 1.039, 1e-9);
   EXPECT_NEAR(published[1]["e_p_2px_percent"], 0.217, 1e-9);

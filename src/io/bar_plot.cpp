@@ -34,7 +34,7 @@ PlotAxes make_axes(const BarGroups& bars) {
 void draw_cut_value(cv::Mat& picture, const cv::Rect& bar, double value) {
   constexpr int most_length = 60;
   constexpr int two_digits = 10;
-  const int height = std::clamp(bar.width - 2, 6, plot_text);
+  const int height = std::clamp(bar.width - 4, 6, plot_text);
   const cv::Point centre(bar.x + bar.width / 2, bar.y + most_length / 2);
   put_text_upwards(picture, number_text(value, value < two_digits ? 1 : 0), centre, height, most_length, paper);
 }

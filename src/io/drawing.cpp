@@ -68,6 +68,22 @@ void put_text(cv::Mat& picture, const std::string& text, cv::Point at, int heigh
   cv::putText(picture, ascii, at, font, scale_for(height), colour, thickness_for(height), cv::LINE_AA);
 }
 
+namespace {
+
+/// Paints with the colour as far as `cover` (0 … 255) covers the picture.
+void lay_colour(cv::Mat picture, const cv::Mat& cover, const cv::Scalar& colour) {
+  const cv::Vec3d paint(colour[0], colour[1], colour[2]);
+  for (int v = 0; v < picture.rows; ++v) {
+    for (int u = 0; u < picture.cols; ++u) {
+      auto& pixel = picture.at<cv::Vec3b>(v, u);
+      const double share = cover.at<std::uint8_t>(v, u) / 255.0;
+      pixel = cv::Vec3b(cv::Vec3d(pixel) * (1 - share) + paint * share);
+    }
+  }
+}
+
+}  // namespace
+
 void put_text_upwards(cv::Mat& picture, const std::string& text, cv::Point centre, int height, int most_length,
                       const cv::Scalar& colour) {
   const std::string ascii = to_ascii(text);
@@ -75,13 +91,13 @@ void put_text_upwards(cv::Mat& picture, const std::string& text, cv::Point centr
   int below_base = 0;
   const cv::Size size = text_size(ascii, fitting, below_base);
   const int margin = thickness_for(fitting) + 1;
-  cv::Mat line(size.height + below_base + 2 * margin, size.width + 2 * margin, CV_8UC3, paper);
-  put_text(line, ascii, {margin, size.height + margin}, fitting, colour);
+  cv::Mat line(size.height + below_base + 2 * margin, size.width + 2 * margin, CV_8UC1, cv::Scalar(0));
+  put_text(line, ascii, {margin, size.height + margin}, fitting, cv::Scalar(255));
   cv::rotate(line, line, cv::ROTATE_90_COUNTERCLOCKWISE);
   const cv::Rect wanted(centre.x - line.cols / 2, centre.y - line.rows / 2, line.cols, line.rows);
   const cv::Rect visible = wanted & cv::Rect(0, 0, picture.cols, picture.rows);
   if (visible.empty()) return;
-  line(visible - wanted.tl()).copyTo(picture(visible));
+  lay_colour(picture(visible), line(visible - wanted.tl()), colour);
 }
 
 int fitting_height(const std::string& text, int height, int most_length) {

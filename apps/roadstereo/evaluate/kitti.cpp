@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "evaluate/common_pixels.hpp"
 #include "evaluate/experiments.hpp"
 #include "evaluate/kitti_figure.hpp"
 #include "evaluate/methods.hpp"
@@ -39,6 +40,13 @@ struct Region {
   }
 };
 
+struct Regions {
+  Region road{"Road regions", "road"};
+  Region road_common{"Road regions, where every method but BM gives a disparity", "road_common"};
+  Region everything{"Everything labelled", "all"};
+  Region everything_common{"Everything labelled, where every method but BM gives a disparity", "all_common"};
+};
+
 /// OpenCV's matchers get as many disparities as is usual for these images, or what the truth needs.
 int peer_disparities(ImageView<const float> truth) {
   constexpr int usual = 128;
@@ -49,25 +57,29 @@ int peer_disparities(ImageView<const float> truth) {
   return std::max(usual, static_cast<int>(std::ceil(largest)) + 1);
 }
 
+void add_scores(const std::string& frame, const std::vector<Image<float>>& maps, ImageView<const float> truth,
+                const std::optional<ImageView<const std::uint8_t>>& mask, Region& region) {
+  region.frames.push_back(frame);
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    region.scores[i].push_back(score_disparity(maps[i], truth, mask, tolerances_px()));
+  }
+}
+
 /// Adds the frame's scores to the regions and, when asked, a row to the sheet.
-void score_frame(const KittiFiles& files, const Arguments& arguments, Region& road, Region& everything,
+void score_frame(const KittiFiles& files, const MethodSettings& methods, Regions& regions,
                  std::vector<std::vector<io::SheetCell>>* sheet) {
   const KittiFrame frame = read_kitti_frame(files);
-  const MethodTask task{frame.pair, peer_disparities(frame.truth)};
-  const std::vector<std::string> names = method_names();
-  Image<float> ours, peer;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const Image<float> map = run_method(names[i], task, arguments.methods);
-    everything.scores[i].push_back(score_disparity(map, frame.truth, std::nullopt, tolerances_px()));
-    if (frame.road) {
-      road.scores[i].push_back(score_disparity(map, frame.truth, frame.road->view(), tolerances_px()));
-    }
-    if (names[i] == "default") ours = map;
-    if (names[i] == "SGBM") peer = map;
+  const std::vector<Image<float>> maps = run_methods({frame.pair, peer_disparities(frame.truth)}, methods);
+  add_scores(files.name, maps, frame.truth, std::nullopt, regions.everything);
+  add_scores(files.name, maps, frame.truth, common_pixels(maps, std::nullopt).view(), regions.everything_common);
+  if (frame.road) {
+    add_scores(files.name, maps, frame.truth, frame.road->view(), regions.road);
+    add_scores(files.name, maps, frame.truth, common_pixels(maps, frame.road->view()).view(), regions.road_common);
   }
-  everything.frames.push_back(files.name);
-  if (frame.road) road.frames.push_back(files.name);
-  if (sheet != nullptr) sheet->push_back(kitti_sheet_row(files.name, frame, ours, peer, "SGBM"));
+  if (sheet != nullptr) {
+    sheet->push_back(
+        kitti_sheet_row(files.name, frame, maps[method_index("default")], maps[method_index("SGBM")], "SGBM"));
+  }
 }
 
 std::vector<Cell> published(const std::string& name, double rms_px, double above_2, double above_3) {
@@ -134,28 +146,30 @@ nlohmann::ordered_json region_json(const Region& region) {
 
 void kitti(const Arguments& arguments) {
   const std::vector<KittiFiles> frames = find_kitti_frames(arguments.folder, arguments.road_masks);
-  Region road{"Road regions", "road"}, everything{"Everything labelled", "all"};
+  Regions regions;
   std::vector<std::vector<io::SheetCell>> sheet;
   constexpr std::size_t most_sheet_rows = 4;
   for (const KittiFiles& files : frames) {
     const bool shown = !arguments.report.figure.empty() && sheet.size() < most_sheet_rows;
-    score_frame(files, arguments, road, everything, shown ? &sheet : nullptr);
+    score_frame(files, arguments.methods, regions, shown ? &sheet : nullptr);
   }
   nlohmann::ordered_json document;
   std::vector<std::vector<Frame>> pictures;
   constexpr int cell_width = 620;
   if (!sheet.empty()) pictures.push_back({io::picture_sheet(sheet, cell_width)});
-  for (const Region& region : {road, everything}) {
-    if (region.frames.empty()) continue;
-    Table table = mean_table(region);
-    document[region.key] = region_json(region);
-    if (region.key == "road") {
+  for (const Region* region : {&regions.road, &regions.everything}) {
+    if (region->frames.empty()) continue;
+    Table table = mean_table(*region);
+    document[region->key] = region_json(*region);
+    if (region == &regions.road) {
       const Table paper = published_table(table.columns);
       table.rows.insert(table.rows.end(), paper.rows.begin(), paper.rows.end());
       document["published"] = paper.json();
     }
-    fmt::print("{}\n{}\n", table.text(), frame_table(region).text());
-    if (!sheet.empty()) pictures.push_back(kitti_bars(region.title, method_names(), region.means(), tolerances_px()));
+    const Region& common = region == &regions.road ? regions.road_common : regions.everything_common;
+    document[common.key] = region_json(common);
+    fmt::print("{}\n{}\n{}\n", table.text(), mean_table(common).text(), frame_table(*region).text());
+    if (!sheet.empty()) pictures.push_back(kitti_bars(region->title, method_names(), region->means(), tolerances_px()));
   }
   fmt::print("{}  published: Table 1 of the paper, on KITTI frames and road regions chosen by hand\n", score_legend());
   if (!arguments.report.json.empty()) write_report(arguments.report.json, document);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "evaluate/bar_reach.hpp"
 #include "evaluate/error_map.hpp"
 #include "evaluate/score_columns.hpp"
 #include "roadstereo/io/pictures.hpp"
@@ -30,7 +31,7 @@ std::vector<io::SheetCell> kitti_sheet_row(const std::string& name, const KittiF
 
 std::vector<Frame> kitti_bars(const std::string& region, const std::vector<std::string>& methods,
                               const std::vector<DisparityScore>& means, const std::vector<double>& tolerances_px) {
-  io::BarGroups shares{region + ": in error or missing", "e_p+, %", {}, methods, {}};
+  io::BarGroups shares{region + ": in error or missing; cut bars carry their value", "e_p+, %", {}, methods, {}};
   io::BarGroups rms{region + ": e_r", "e_r, px", {"e_r"}, methods, {}};
   for (const double tolerance : tolerances_px) {
     shares.groups.push_back(fmt::format("more than {} px", tolerance_text(tolerance)));
@@ -41,6 +42,8 @@ std::vector<Frame> kitti_bars(const std::string& region, const std::vector<std::
     for (const double share : mean.bad_or_missing_share) shares.values.back().push_back(percent * share);
     rms.values.push_back({mean.rms_px});
   }
+  shares.y_highest = reach_without_bm(shares);
+  rms.y_highest = reach_without_bm(rms);
   return {io::draw_bars(shares), io::draw_bars(rms)};
 }
 

@@ -43,6 +43,11 @@ std::vector<std::string> method_names() {
   return names;
 }
 
+std::size_t method_index(const std::string& name) {
+  const std::vector<std::string> names = method_names();
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
 PipelineOptions method_options(const std::string& preset_name, const MethodTask& task, const MethodSettings& settings) {
   PipelineOptions options = preset(preset_name);
   options.threads = settings.threads;
@@ -59,6 +64,12 @@ Image<float> run_method(const std::string& name, const MethodTask& task, const M
   const auto& peers = io::peer_names();
   const bool is_peer = std::find(peers.begin(), peers.end(), name) != peers.end();
   return is_peer ? run_peer(name, task) : run_preset(name, task, settings);
+}
+
+std::vector<Image<float>> run_methods(const MethodTask& task, const MethodSettings& settings) {
+  std::vector<Image<float>> maps;
+  for (const std::string& name : method_names()) maps.push_back(run_method(name, task, settings));
+  return maps;
 }
 
 }  // namespace roadstereo::cli

@@ -24,6 +24,9 @@ void add_method_options(CLI::App& command, MethodSettings& settings);
 /// Who is compared: the presets, then OpenCV's matchers.
 std::vector<std::string> method_names();
 
+/// Where a method stands among them.
+std::size_t method_index(const std::string& name);
+
 /// A rectified pair, and how far to search it.
 struct MethodTask {
   const StereoPair& pair;
@@ -37,5 +40,8 @@ PipelineOptions method_options(const std::string& preset_name, const MethodTask&
 /// Disparities of one pair, nothing carried over from another: by the preset of that name on the pair as it is, or by
 /// OpenCV's matcher of that name on the same pair in grey.
 Image<float> run_method(const std::string& name, const MethodTask& task, const MethodSettings& settings);
+
+/// Those of every method, in the order of method_names().
+std::vector<Image<float>> run_methods(const MethodTask& task, const MethodSettings& settings);
 
 }  // namespace roadstereo::cli

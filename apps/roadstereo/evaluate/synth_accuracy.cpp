@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <memory>
 
 #include "evaluate/experiments.hpp"
@@ -10,14 +9,11 @@
 #include "evaluate/score_columns.hpp"
 #include "evaluate/synth_figure.hpp"
 #include "evaluate/synth_groups.hpp"
+#include "evaluate/synth_scores.hpp"
+#include "evaluate/synth_verdict.hpp"
 
 namespace roadstereo::cli {
 namespace {
-
-const std::vector<double>& tolerances_px() {
-  static const std::vector<double> tolerances{0.5, 1};
-  return tolerances;
-}
 
 struct Arguments {
   std::string sizes = "full";
@@ -25,64 +21,16 @@ struct Arguments {
   ReportFiles report;
 };
 
-/// Means over the scenes of one group, by method.
-struct GroupScores {
-  std::vector<DisparityScore> whole;   ///< over what both cameras see
-  std::vector<DisparityScore> damage;  ///< over the damage alone
-};
-
-/// Matches every scene of a group with every method; sub-pixel phases of the maps go to `biases`, one per method.
-GroupScores score_group(const SynthGroup& group, const std::vector<synth::Scene>& scenes,
-                        const MethodSettings& settings, std::vector<SubPixelBias>* biases) {
-  const std::vector<std::string> names = method_names();
-  std::vector<std::vector<DisparityScore>> whole(names.size()), damage(names.size());
-  for (const synth::Scene& scene : scenes) {
-    const SynthCase example = make_synth_case(group, scene, settings.threads);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const Image<float> map = run_method(names[i], {example.pair, example.disparities}, settings);
-      whole[i].push_back(score_disparity(map, example.truth, example.visible.view(), tolerances_px()));
-      damage[i].push_back(score_disparity(map, example.truth, example.damage.view(), tolerances_px()));
-      if (biases != nullptr) (*biases)[i].add(map, example.truth, example.visible);
-    }
-  }
-  GroupScores means;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    means.whole.push_back(mean_score(whole[i]));
-    means.damage.push_back(mean_score(damage[i]));
-  }
-  return means;
-}
-
-/// The figures that `index` is the best of the group in. Only e_r says nothing of missing disparities.
-std::string best_in(const std::vector<DisparityScore>& group, std::size_t index) {
-  const auto is_best = [&](const auto& figure) {
-    for (const DisparityScore& other : group) {
-      if (!(figure(group[index]) <= figure(other))) return false;
-    }
-    return true;
-  };
-  std::string text;
-  for (std::size_t i = 0; i < tolerances_px().size(); ++i) {
-    if (!is_best([i](const DisparityScore& score) { return score.bad_or_missing_share[i]; })) continue;
-    text += (text.empty() ? "e_p+(" : ", e_p+(") + tolerance_text(tolerances_px()[i]) + ")";
-  }
-  if (is_best([](const DisparityScore& score) { return score.rms_px; })) text += text.empty() ? "e_r" : ", e_r";
-  return text;
-}
-
-Table group_table(const std::string& title, const std::vector<std::vector<DisparityScore>>& groups) {
+Table group_table(const std::string& title, const ScoresByGroup& groups) {
   Table table{title, {{"group", "group"}, {"method", "method"}}, {}};
-  const auto columns = score_columns(tolerances_px());
+  const auto columns = score_columns(synth_tolerances_px());
   table.columns.insert(table.columns.end(), columns.begin(), columns.end());
-  table.columns.push_back({"best in", "best_in"});
   const std::vector<std::string> names = method_names();
   for (std::size_t group = 0; group < groups.size(); ++group) {
     for (std::size_t i = 0; i < names.size(); ++i) {
-      std::vector<Cell> row{Cell(synth_groups()[group].name), Cell(names[i])};
+      table.rows.push_back({Cell(synth_groups()[group].name), Cell(names[i])});
       const std::vector<Cell> cells = score_cells(groups[group][i]);
-      row.insert(row.end(), cells.begin(), cells.end());
-      row.emplace_back(best_in(groups[group], i));
-      table.rows.push_back(row);
+      table.rows.back().insert(table.rows.back().end(), cells.begin(), cells.end());
     }
   }
   return table;
@@ -101,25 +49,29 @@ Table bias_table(const std::vector<SubPixelBias>& biases) {
 
 void synth_accuracy(const Arguments& arguments) {
   const std::vector<synth::Scene> scenes = synth_scenes(arguments.sizes == "small");
-  std::vector<SubPixelBias> biases(method_names().size());
-  std::vector<std::vector<DisparityScore>> whole, damage;
-  for (const SynthGroup& group : synth_groups()) {
-    const bool clean = &group == &synth_groups().front();
-    const GroupScores scores = score_group(group, scenes, arguments.methods, clean ? &biases : nullptr);
-    whole.push_back(scores.whole);
-    damage.push_back(scores.damage);
-  }
-  const Table everywhere = group_table(fmt::format("What both cameras see, mean over {} scenes", scenes.size()), whole);
-  const Table on_damage = group_table("On damage alone", damage);
-  const Table bias = bias_table(biases);
-  fmt::print("{}\n{}\n{}\n{}", everywhere.text(), on_damage.text(), bias.text(), score_legend());
+  const SynthScores scores = score_synth(scenes, arguments.methods);
+  const Table visible =
+      group_table(fmt::format("What both cameras see, mean over {} scenes", scenes.size()), scores.visible);
+  const Table damage = group_table("On damage alone", scores.damage);
+  const Table common = group_table("What both cameras see and every method but BM gives", scores.common);
+  const Table common_damage = group_table("Damage that every method but BM gives", scores.common_damage);
+  const Table bias = bias_table(scores.biases);
+  const SynthVerdict everywhere = judge_default("What both cameras see", scores.visible, scores.common);
+  const SynthVerdict on_damage = judge_default("Damage", scores.damage, scores.common_damage);
+  fmt::print("{}\n{}\n{}\n{}\n{}\n{}\n", visible.text(), damage.text(), common.text(), common_damage.text(),
+             bias.text(), score_legend());
+  fmt::print("{}\n{}\n{}\n{}\n", everywhere.table.text(), on_damage.table.text(), everywhere.summary,
+             on_damage.summary);
   if (!arguments.report.json.empty()) {
-    write_report(arguments.report.json,
-                 {{"visible", everywhere.json()}, {"damage", on_damage.json()}, {"sub_pixel_bias", bias.json()}});
+    write_report(arguments.report.json, {{"visible", visible.json()},
+                                         {"damage", damage.json()},
+                                         {"common", common.json()},
+                                         {"common_damage", common_damage.json()},
+                                         {"sub_pixel_bias", bias.json()},
+                                         {"best_visible", everywhere.table.json()},
+                                         {"best_damage", on_damage.table.json()}});
   }
-  if (!arguments.report.figure.empty()) {
-    write_figure(arguments.report.figure, synth_figure(biases, {whole, damage}, tolerances_px()));
-  }
+  if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, synth_figure(scores));
 }
 
 constexpr const char* synth_footer =

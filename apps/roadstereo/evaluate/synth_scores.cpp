@@ -1,0 +1,65 @@
+#include "evaluate/synth_scores.hpp"
+
+#include "evaluate/common_pixels.hpp"
+#include "evaluate/score_columns.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+/// Scores of every method over one kind of pixels, scene by scene.
+class SceneScores {
+ public:
+  void add(const std::vector<Image<float>>& maps, const SynthCase& example, ImageView<const std::uint8_t> mask) {
+    scores_.resize(maps.size());
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      scores_[i].push_back(score_disparity(maps[i], example.truth, mask, synth_tolerances_px()));
+    }
+  }
+  std::vector<DisparityScore> means() const {
+    std::vector<DisparityScore> means;
+    means.reserve(scores_.size());
+    for (const auto& of_method : scores_) means.push_back(mean_score(of_method));
+    return means;
+  }
+
+ private:
+  std::vector<std::vector<DisparityScore>> scores_;
+};
+
+void score_group(const SynthGroup& group, const std::vector<synth::Scene>& scenes, const MethodSettings& settings,
+                 bool clean, SynthScores& scores) {
+  SceneScores visible, damage, common, common_damage;
+  for (const synth::Scene& scene : scenes) {
+    const SynthCase example = make_synth_case(group, scene, settings.threads);
+    const std::vector<Image<float>> maps = run_methods({example.pair, example.disparities}, settings);
+    visible.add(maps, example, example.visible);
+    damage.add(maps, example, example.damage);
+    common.add(maps, example, common_pixels(maps, example.visible.view()));
+    common_damage.add(maps, example, common_pixels(maps, example.damage.view()));
+    for (std::size_t i = 0; clean && i < maps.size(); ++i) {
+      scores.biases[i].add(maps[i], example.truth, example.visible);
+    }
+  }
+  scores.visible.push_back(visible.means());
+  scores.damage.push_back(damage.means());
+  scores.common.push_back(common.means());
+  scores.common_damage.push_back(common_damage.means());
+}
+
+}  // namespace
+
+const std::vector<double>& synth_tolerances_px() {
+  static const std::vector<double> tolerances{0.5, 1};
+  return tolerances;
+}
+
+SynthScores score_synth(const std::vector<synth::Scene>& scenes, const MethodSettings& settings) {
+  SynthScores scores;
+  scores.biases.resize(method_names().size());
+  for (const SynthGroup& group : synth_groups()) {
+    score_group(group, scenes, settings, &group == &synth_groups().front(), scores);
+  }
+  return scores;
+}
+
+}  // namespace roadstereo::cli
