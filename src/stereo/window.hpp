@@ -25,8 +25,8 @@ std::vector<Tap> window_taps(const MatcherOptions& options);
 /// minimum of the costs adds the distance from the vertex of the parabola to the reach of eq. subpixel.
 double support_pixels(const MatcherOptions& options);
 
-/// The prior counts in full where the smallest cost is `lean_full_at` − `lean_offset` or more, and less where a disparity
-/// correlates well: small differences of small costs say as much as large ones of large costs.
+/// The prior counts in full where the smallest cost is `lean_full_at` − `lean_offset` or more, and less where a
+/// disparity correlates well: small differences of small costs say as much as large ones of large costs.
 inline constexpr float lean_offset = 0.02F;
 inline constexpr float lean_full_at = 0.1F;
 

@@ -242,7 +242,8 @@ struct PlainEnergies {
   HWY_INLINE Float at(int p, int d) const { return hn::Load(Floats(), energies + p * pitch + d); }
 };
 
-/// The smallest energy of each of four pixels. Behind the last disparity the energies are infinite up to a whole vector.
+/// The smallest energy of each of four pixels. Behind the last disparity the energies are infinite up to a whole
+/// vector.
 template <class Energies>
 HWY_INLINE void smallest_energies(const Energies& energies, int disparities, float* smallest) {
   const Floats df;

@@ -150,8 +150,8 @@ const Range& range_at(const Image<Range>& ranges, int u, int v) {
   return ranges(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
 }
 
-/// What a disparity pays for its distance from the prior: slope · min(|d − prior|, prior_reach), slope = prior_slope but
-/// where the smallest cost `best` is small (stereo/window.hpp).
+/// What a disparity pays for its distance from the prior: slope · min(|d − prior|, prior_reach), slope = prior_slope
+/// but where the smallest cost `best` is small (stereo/window.hpp).
 double lean(const Scene& scene, const DisparityPrior* prior, double best, int u, int v, int d) {
   if (prior == nullptr) return 0;
   const Image<float>& map = prior->disparity;
