@@ -42,6 +42,8 @@ const std::vector<Measure>& measures() {
       {"clean e_p+(1) %", "clean_e_p_or_missing_1px_percent", &AblationFigures::clean_bad_or_missing, percent, 2},
       {"hard e_p+(1) %", "hard_e_p_or_missing_1px_percent", &AblationFigures::hard_bad_or_missing, percent, 2},
       {"damage e_r px", "damage_e_r_px", &AblationFigures::damage_rms_px, 1, 3},
+      {"damage e_p+(0.5) %", "damage_e_p_or_missing_0.5px_percent", &AblationFigures::damage_bad_or_missing, percent,
+       2},
       {"match ms", "match_ms", &AblationFigures::match_ms, 1, 1},
       {"total ms", "total_ms", &AblationFigures::total_ms, 1, 1},
   };

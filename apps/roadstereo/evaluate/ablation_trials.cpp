@@ -14,10 +14,10 @@ namespace roadstereo::cli {
 namespace {
 
 const std::vector<double>& tolerances_px() {
-  static const std::vector<double> tolerances{1, 2};
+  static const std::vector<double> tolerances{0.5, 1, 2};
   return tolerances;
 }
-constexpr std::size_t above_1 = 0, above_2 = 1;
+constexpr std::size_t above_half = 0, above_1 = 1, above_2 = 2;
 
 /// What is collected of one variant.
 struct Trials {
@@ -75,7 +75,9 @@ AblationFigures summarise(const Trials& trials) {
   figures.clean_median_px = clean.median_px;
   figures.clean_bad_or_missing = clean.bad_or_missing_share[above_1];
   figures.hard_bad_or_missing = mean_score(trials.hard).bad_or_missing_share[above_1];
-  figures.damage_rms_px = mean_score(trials.damage).rms_px;
+  const DisparityScore damage = mean_score(trials.damage);
+  figures.damage_rms_px = damage.rms_px;
+  figures.damage_bad_or_missing = damage.bad_or_missing_share[above_half];
   figures.match_ms = median(trials.match_ms);
   figures.total_ms = median(trials.total_ms);
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

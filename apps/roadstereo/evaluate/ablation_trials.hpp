@@ -19,7 +19,7 @@ struct AblationFigures {
   double kitti_bad = 0, kitti_bad_or_missing = 0;        ///< e_p(2), e_p+(2), shares
   double clean_median_px = 0, clean_bad_or_missing = 0;  ///< rendered, unspoilt: median |error|, e_p+(1)
   double hard_bad_or_missing = 0;                        ///< rendered, mean over the spoilt groups: e_p+(1)
-  double damage_rms_px = 0;                              ///< rendered, mean over all groups: e_r on damage
+  double damage_rms_px = 0, damage_bad_or_missing = 0;   ///< rendered, mean over all groups, on damage: e_r, e_p+(0.5)
   double match_ms = 0, total_ms = 0;                     ///< medians over the frames
 };
 
