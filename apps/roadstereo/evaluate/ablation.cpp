@@ -54,7 +54,7 @@ const std::vector<Measure>& measures() {
 std::string with_difference(const Measure& measure, const std::vector<AblationFigures>& figures, std::size_t variant) {
   const double value = measure.factor * figures[variant].*measure.figure;
   if (!std::isfinite(value)) return "–";
-  const std::string text = fmt::format("{:.{}f}", value, measure.decimals);
+  std::string text = fmt::format("{:.{}f}", value, measure.decimals);
   const std::size_t base = base_of(variant);
   if (base == variant) return text;
   return fmt::format("{} ({:+.{}f})", text, value - measure.factor * figures[base].*measure.figure, measure.decimals);

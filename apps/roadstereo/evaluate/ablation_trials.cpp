@@ -98,6 +98,7 @@ std::vector<AblationFigures> measure_ablation(const AblationOptions& options) {
   if (!options.kitti.empty()) run_kitti(options, trials);
   run_rendered(options, trials);
   std::vector<AblationFigures> figures;
+  figures.reserve(trials.size());
   for (const Trials& of_variant : trials) figures.push_back(summarise(of_variant));
   return figures;
 }
