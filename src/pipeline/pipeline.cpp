@@ -262,6 +262,7 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
 void Pipeline::reset() {
   state_->last_road.reset();
   state_->last_roll_rad = 0;
+  state_->row_offset = 0;
 }
 
 const PipelineOptions& Pipeline::options() const {

@@ -35,6 +35,7 @@ PipelineOptions paper_preset() {
 PipelineOptions fast_preset() {
   PipelineOptions options;
   options.coarse_search.factor = 4;
+  options.matcher.drop_range_ends = true;
   options.matcher.block_radius = 5;
   options.matcher.aggregation_radius = 0;
   options.refinement.radius = 0;

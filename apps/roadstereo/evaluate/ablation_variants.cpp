@@ -20,7 +20,7 @@ std::vector<Variant> default_variants() {
       {"no left-right check", "default", {"matcher.left_right_check=false"}},
       {"target volume matched too", "default", {"matcher.target_volume=true"}},
       {"no sub-pixel parabola", "default", {"matcher.sub_pixel=false"}},
-      {"range ends kept", "default", {"matcher.drop_range_ends=false"}},
+      {"range ends dropped", "default", {"matcher.drop_range_ends=true"}},
       {"no refinement", "default", {"refinement.radius=0"}},
   };
 }
