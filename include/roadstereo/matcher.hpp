@@ -27,8 +27,8 @@ struct MatcherOptions {
   /// reference's winners into the target view instead, where the nearest of several hides the others: half the work.
   bool target_volume = false;
   /// Cost that a disparity pays for each pixel away from the prior, in units of the correlation; 0 ignores the prior.
-  double prior_slope = 0.07;
-  double prior_reach = 4.0;      ///< pixels away at which it stops growing, so that damage can leave the prior
+  double prior_slope = 0.08;
+  double prior_reach = 8.0;      ///< pixels away at which it stops growing, so that damage can leave the prior
   double consistency = 1.0;      ///< δr of eq. lrc, pixels²
   bool sub_pixel = true;         ///< eq. subpixel
   bool drop_range_ends = false;  ///< a winner at the end of its range, which may be no minimum, is invalid
