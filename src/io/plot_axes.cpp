@@ -160,7 +160,9 @@ void draw_dashed(cv::Mat& picture, cv::Point2d from, cv::Point2d to, const cv::S
   constexpr double dash = 7;
   constexpr double period = 12;
   const double length = cv::norm(to - from);
-  for (double start = 0; start < length; start += period) {
+  const int dashes = static_cast<int>(std::ceil(length / period));
+  for (int k = 0; k < dashes; ++k) {
+    const double start = k * period;
     const cv::Point2d first = from + (to - from) * (start / length);
     const cv::Point2d last = from + (to - from) * (std::min(start + dash, length) / length);
     cv::line(picture, first, last, colour, thickness, cv::LINE_AA);
