@@ -48,7 +48,7 @@ TEST(Refinement, AConstantMapStaysAndItsErrorIsThatOfTheMean) {
     for (int u = 0; u < width; ++u) {
       const double count = taps(u, width, options) * taps(v, height, options);
       ASSERT_EQ(refined.disparity(u, v), 7.25F);
-      ASSERT_NEAR(refined.sigma(u, v), std::sqrt(2 * single / std::max(1.0, count * share)), 1e-5);
+      ASSERT_NEAR(refined.sigma(u, v), std::sqrt(1.7 * single / std::max(1.0, count * share)), 1e-5);
     }
   }
 }
@@ -117,8 +117,8 @@ TEST(Refinement, NanStaysNanAndLendsNoWeight) {
   }
   const double single = 0.01 + options.least_sigma_px * options.least_sigma_px;
   EXPECT_EQ(refined.disparity(44, 34), 3.0F);
-  EXPECT_NEAR(refined.sigma(44, 34), std::sqrt(2 * single / (8 * 0.16)), 1e-5);
-  EXPECT_NEAR(refined.sigma(46, 34), std::sqrt(2 * single / (9 * 0.16)), 1e-5);
+  EXPECT_NEAR(refined.sigma(44, 34), std::sqrt(1.7 * single / (8 * 0.16)), 1e-5);
+  EXPECT_NEAR(refined.sigma(46, 34), std::sqrt(1.7 * single / (9 * 0.16)), 1e-5);
 }
 
 /// The disparities of smooth noise around a road, some of them missing.
@@ -151,7 +151,7 @@ TEST(Refinement, RadiusZeroLeavesTheDisparitiesAsTheyAre) {
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
       if (!std::isnan(map(u, v))) {
-        ASSERT_NEAR(refined.sigma(u, v), std::sqrt(2 * single), 1e-5);
+        ASSERT_NEAR(refined.sigma(u, v), std::sqrt(1.7 * single), 1e-5);
       }
     }
   }

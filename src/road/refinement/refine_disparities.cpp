@@ -18,7 +18,7 @@ constexpr float widest_sigma = 10;  // pixels; nothing is known less well than b
 constexpr int rows_per_band = 32;
 /// Variances of the theory are too small by this: the colour weights leave fewer pixels to a cost than its support, and
 /// neither sampling nor the slant of a surface is noise. Measured on synthetic roads (docs/accuracy.md).
-constexpr float optimism = 2;
+constexpr float optimism = 1.7F;
 constexpr int most_lines = 65;
 
 /// What is refined, and how.
