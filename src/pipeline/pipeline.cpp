@@ -157,9 +157,12 @@ void Pipeline::State::look_coarsely() {
   match_input.prior = &coarse_search->prior();
 }
 
-/// Section 3.2.
+/// Section 3.2. Without a road the coarse map has only its rows to go by, and matching leans on it less far.
 void Pipeline::State::match() {
-  engine->match(match_input, options.matcher, maps);
+  constexpr double reach_without_road_px = 2;
+  MatcherOptions matcher = options.matcher;
+  if (!result.shift.enabled) matcher.prior_reach = std::min(matcher.prior_reach, reach_without_road_px);
+  engine->match(match_input, matcher, maps);
 }
 
 /// Adds the shift back, and smooths where the standard errors allow it.
