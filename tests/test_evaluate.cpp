@@ -229,7 +229,8 @@ TEST_F(Evaluate, KittiPutsThePublishedTableBesideOurs) {
   const auto road = json_file("kitti.json")["road"];
   EXPECT_EQ(road["mean"], road["frames"]["000007_10"]);  // of one frame
   EXPECT_EQ(road["mean"].size(), 7U);
-  for (const auto& row : json_file("kitti.json")["road_common"]["mean"]) {
+  const auto row_list = json_file("kitti.json")["road_common"]["mean"];
+  for (const auto& row : row_list) {
     if (row["method"] != "BM") {
       EXPECT_EQ(row["density_percent"], 100) << row;
     }
@@ -284,7 +285,8 @@ TEST_F(Evaluate, BlurComparesThreeMethods) {
 TEST_F(Evaluate, RuntimeCountsDisparitiesAsThePaperDoes) {
   const Outcome outcome = run("runtime --size 160x96 --disparities 16 --runs 1 --json runtime.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const auto& row : json_file("runtime.json")["rows"]) {
+  const auto row_list = json_file("runtime.json")["rows"];
+  for (const auto& row : row_list) {
     const bool published = row["method"].get<std::string>().starts_with("published");
     const double evaluations = published ? 695.0 * 361 * 30 : 160.0 * 96 * 16;
     const double per_second = evaluations / row["total_ms"].get<double>() / 1e3;
@@ -297,7 +299,8 @@ TEST_F(Evaluate, FlatnessOfKittiRoads) {
   if (!data) GTEST_SKIP() << "SKIPPED: no real data; set ROADSTEREO_DATA to a folder that has kitti2015";
   const Outcome outcome = run("flatness '" + data->string() + "' --preset fast --json flatness.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const auto& row : json_file("flatness.json")["rows"]) {
+  const auto row_list = json_file("flatness.json")["rows"];
+  for (const auto& row : row_list) {
     // One unknown more fits no worse.
     EXPECT_LE(row["gradient_descent_px"], row["without_roll_px"]) << row;
   }
