@@ -11,11 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "every_target.hpp"
 #include "stereo/coarse/scanline.hpp"
 #include "textured_pair.hpp"
 
 namespace roadstereo {
 namespace {
+
+using test::EveryTarget;
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr double no_evidence = 0.75;
@@ -163,19 +166,6 @@ void expect_cheapest(const Row& row, const Totals& totals) {
   }
 }
 
-class EveryTarget : public testing::TestWithParam<std::int64_t> {
- protected:
-  void SetUp() override { use(GetParam()); }
-  void TearDown() override { use(0); }
-
- private:
-  /// 0 gives back what the machine has.
-  static void use(std::int64_t targets) {
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
 TEST_P(EveryTarget, TakesTheCheapestOfAllPaths) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE(seed);
@@ -219,14 +209,7 @@ TEST_P(EveryTarget, OneColumnIsARow) {
   expect_cheapest(row, of_all_paths(row));
 }
 
-std::vector<std::int64_t> targets_of_this_machine() {
-  std::vector<std::int64_t> targets;
-  for (std::int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1)
-    targets.push_back(rest & -rest);
-  return targets;
-}
-
-INSTANTIATE_TEST_SUITE_P(Machine, EveryTarget, testing::ValuesIn(targets_of_this_machine()),
+INSTANTIATE_TEST_SUITE_P(Machine, EveryTarget, testing::ValuesIn(test::targets_of_this_machine()),
                          [](const auto& test) { return std::string(hwy::TargetName(test.param)); });
 
 }  // namespace

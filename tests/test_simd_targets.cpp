@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "every_target.hpp"
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "textured_pair.hpp"
@@ -14,31 +15,13 @@
 namespace roadstereo {
 namespace {
 
+using test::EveryTarget;
+
 struct Setting {
   const char* preset;
   int width, height, disparities;
 };
 constexpr Setting settings[] = {{"default", 161, 67, 37}, {"fast", 131, 50, 16}, {"paper", 97, 51, 33}};
-
-std::vector<std::int64_t> targets_of_this_machine() {
-  std::vector<std::int64_t> targets;
-  for (std::int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1)
-    targets.push_back(rest & -rest);
-  return targets;
-}
-
-class EveryTarget : public testing::TestWithParam<std::int64_t> {
- protected:
-  void SetUp() override { use(GetParam()); }
-  void TearDown() override { use(0); }
-
- private:
-  /// 0 gives back what the machine has.
-  static void use(std::int64_t targets) {
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
 
 TEST_P(EveryTarget, AgreesWithTheReference) {
   for (const Setting& setting : settings) {
@@ -72,7 +55,7 @@ TEST_P(EveryTarget, AgreesWithTheReference) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Machine, EveryTarget, testing::ValuesIn(targets_of_this_machine()),
+INSTANTIATE_TEST_SUITE_P(Machine, EveryTarget, testing::ValuesIn(test::targets_of_this_machine()),
                          [](const auto& test) { return std::string(hwy::TargetName(test.param)); });
 
 }  // namespace

@@ -4,18 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/require_range.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/window.hpp"
 
 namespace roadstereo {
 namespace {
-
-template <class Value>
-void require_range(const char* name, Value value, Value lowest, Value highest) {
-  if (!(value >= lowest && value <= highest)) {
-    fail("matcher.", name, " is ", value, "; it must be between ", lowest, " and ", highest);
-  }
-}
 
 void validate(const Image<SearchRanges::Range>& ranges, const MatchInput& input, const char* view) {
   const int across = (input.reference.width() + SearchRanges::tile_columns - 1) / SearchRanges::tile_columns;
@@ -43,16 +37,16 @@ void validate(const DisparityPrior& prior) {
 }  // namespace
 
 void MatcherOptions::validate() const {
-  require_range("block_radius", block_radius, 1, 10);
-  require_range("aggregation_radius", aggregation_radius, 0, 10);
-  require_range("aggregation_aspect", aggregation_aspect, 0.1, 1.0);
-  require_range("aggregation_step", aggregation_step, 1, 2);
-  require_range("sigma_space", sigma_space, 0.1, 1000.0);
-  require_range("sigma_colour", sigma_colour, 0.1, 100000.0);
-  require_range("texture_noise", texture_noise, 0.0, 50.0);
-  require_range("prior_slope", prior_slope, 0.0, 100.0);
-  require_range("prior_reach", prior_reach, 0.0, 1000.0);
-  require_range("consistency", consistency, 0.0, 1000.0);
+  require_range("matcher", "block_radius", block_radius, 1, 10);
+  require_range("matcher", "aggregation_radius", aggregation_radius, 0, 10);
+  require_range("matcher", "aggregation_aspect", aggregation_aspect, 0.1, 1.0);
+  require_range("matcher", "aggregation_step", aggregation_step, 1, 2);
+  require_range("matcher", "sigma_space", sigma_space, 0.1, 1000.0);
+  require_range("matcher", "sigma_colour", sigma_colour, 0.1, 100000.0);
+  require_range("matcher", "texture_noise", texture_noise, 0.0, 50.0);
+  require_range("matcher", "prior_slope", prior_slope, 0.0, 100.0);
+  require_range("matcher", "prior_reach", prior_reach, 0.0, 1000.0);
+  require_range("matcher", "consistency", consistency, 0.0, 1000.0);
 }
 
 void SearchRanges::assign(int width, int height, int disparities) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "core/require_range.hpp"
 #include "core/shrink.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/scanline.hpp"
@@ -25,27 +26,20 @@ int derived_factor(const CoarseSearchOptions& options, int width) {
   return factor;
 }
 
-template <class Value>
-void require_range(const char* name, Value value, Value lowest, Value highest) {
-  if (!(value >= lowest && value <= highest)) {
-    fail("coarse_search.", name, " is ", value, "; it must be between ", lowest, " and ", highest);
-  }
-}
-
 }  // namespace
 
 void CoarseSearchOptions::validate() const {
   if (factor != 0 && factor != 2 && factor != 4 && factor != 8) {
     fail("coarse_search.factor is ", factor, "; it must be 2, 4 or 8, or 0 to derive it");
   }
-  require_range("block_radius", block_radius, 1, 10);
-  require_range("texture_noise", texture_noise, 0.0, 50.0);
-  require_range("step_penalty", step_penalty, 0.0, 10.0);
-  require_range("jump_penalty", jump_penalty, 0.0, 10.0);
-  require_range("road_pull", road_pull, 0.0, 10.0);
-  require_range("road_reach", road_reach, 0.0, 1000.0);
-  require_range("row_error_px", row_error_px, 0.0, 10.0);
-  require_range("known_within_px", known_within_px, 0.01, 10.0);
+  require_range("coarse_search", "block_radius", block_radius, 1, 10);
+  require_range("coarse_search", "texture_noise", texture_noise, 0.0, 50.0);
+  require_range("coarse_search", "step_penalty", step_penalty, 0.0, 10.0);
+  require_range("coarse_search", "jump_penalty", jump_penalty, 0.0, 10.0);
+  require_range("coarse_search", "road_pull", road_pull, 0.0, 10.0);
+  require_range("coarse_search", "road_reach", road_reach, 0.0, 1000.0);
+  require_range("coarse_search", "row_error_px", row_error_px, 0.0, 10.0);
+  require_range("coarse_search", "known_within_px", known_within_px, 0.01, 10.0);
 }
 
 CoarseSearch::CoarseSearch(const CoarseSearchOptions& options, int threads)

@@ -18,7 +18,6 @@ using Floats = hn::CappedTag<float, 16>;
 using Float = hn::Vec<Floats>;
 
 constexpr float never = std::numeric_limits<float>::infinity();
-constexpr std::ptrdiff_t guard = 16;  // elements that never win before and behind the disparities of a column
 
 /// Completes the costs: guesses, disparities without a counterpart, and those behind the last.
 HWY_INLINE void complete_costs(const ScanlineCosts& row, const ScanlineGuess& guess, float no_evidence) {
@@ -65,17 +64,17 @@ struct PathMemory {
 
 HWY_INLINE PathMemory share_out(const ScanlineCosts& row, float* scratch) {
   PathMemory memory{};
-  memory.pitch = row.pitch + guard;
-  memory.turns[0] = scratch + guard;
+  memory.pitch = row.pitch + scanline_guard;
+  memory.turns[0] = scratch + scanline_guard;
   memory.turns[1] = memory.turns[0] + memory.pitch;
   memory.forth = memory.turns[1] + memory.pitch;
   memory.back = memory.forth + row.columns * memory.pitch;
   for (float* column = memory.turns[0]; column < memory.back; column += memory.pitch) {
-    std::fill(column - guard, column, never);
+    std::fill(column - scanline_guard, column, never);
     // The paths' totals are written by whole vectors, which may end with the last disparity.
     std::fill(column + row.disparities, column + row.pitch, never);
   }
-  std::fill_n(memory.back - guard, guard, never);
+  std::fill_n(memory.back - scanline_guard, scanline_guard, never);
   return memory;
 }
 
@@ -162,8 +161,7 @@ namespace roadstereo {
 HWY_EXPORT(match_scanline);
 
 std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch) {
-  constexpr std::ptrdiff_t guard = 16;
-  return static_cast<std::size_t>((2 * columns + 2) * (pitch + guard) + guard);
+  return static_cast<std::size_t>((2 * columns + 2) * (pitch + scanline_guard) + scanline_guard);
 }
 
 void match_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,

@@ -28,6 +28,9 @@ struct ScanlinePenalties {
   float jump;  ///< by more
 };
 
+/// Elements that never win before and behind the disparities of a column of paths.
+inline constexpr std::ptrdiff_t scanline_guard = 16;
+
 /// Elements of scratch memory, aligned for vectors, that match_scanline needs.
 std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch);
 
