@@ -18,4 +18,17 @@ struct RoadPlane {
 /// (a2, a1, (a0 + a1·v_o + a2·u_o + doffs)/f)·p = b.
 RoadPlane road_plane(const RoadModel& model, const StereoCalibration& calibration);
 
+/// Axes on the road, metres: origin at the foot of the left camera, x to the camera's right, y forward (up in the
+/// image), z up out of the road. All three are unit vectors of the camera frame.
+struct RoadFrame {
+  std::array<double, 3> origin_m{};  ///< camera frame
+  std::array<double, 3> x{}, y{}, z{};
+
+  /// A point of the camera frame in the road's axes, metres.
+  std::array<double, 3> to_road(const std::array<double, 3>& point_m) const;
+};
+
+/// x is the camera's x axis laid onto the plane; z is against the plane's normal; y = z × x.
+RoadFrame road_frame(const RoadPlane& plane);
+
 }  // namespace roadstereo

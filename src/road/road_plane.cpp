@@ -16,4 +16,23 @@ RoadPlane road_plane(const RoadModel& model, const StereoCalibration& calibratio
   return plane;
 }
 
+std::array<double, 3> RoadFrame::to_road(const std::array<double, 3>& point_m) const {
+  const std::array<double, 3> p{point_m[0] - origin_m[0], point_m[1] - origin_m[1], point_m[2] - origin_m[2]};
+  const auto dot = [&p](const std::array<double, 3>& axis) { return p[0] * axis[0] + p[1] * axis[1] + p[2] * axis[2]; };
+  return {dot(x), dot(y), dot(z)};
+}
+
+RoadFrame road_frame(const RoadPlane& plane) {
+  const std::array<double, 3>& n = plane.normal;
+  RoadFrame frame;
+  frame.origin_m = {plane.height_m * n[0], plane.height_m * n[1], plane.height_m * n[2]};
+  frame.z = {-n[0], -n[1], -n[2]};
+  const double length = std::sqrt(1 - n[0] * n[0]);
+  frame.x = {length, -n[0] * n[1] / length, -n[0] * n[2] / length};
+  const std::array<double, 3>& x = frame.x;
+  const std::array<double, 3>& z = frame.z;
+  frame.y = {z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]};
+  return frame;
+}
+
 }  // namespace roadstereo
