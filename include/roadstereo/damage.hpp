@@ -36,6 +36,7 @@ Severity astm_severity(double depth_m, double diameter_m);
 struct DamageOptions {
   double threshold_sigma = 5;     ///< depth that counts as damage, in standard errors of the road's surface
   double min_depth_m = 0.005;     ///< ... and in metres along the road's normal, when calibrated
+  double max_depth_m = 0.3;       ///< what departs by more is no damage but a vehicle, a wall or a ditch
   double min_area_m2 = 0.001;     ///< on the road's surface, when calibrated
   double min_area_share = 0.001;  ///< share of the image; instead of min_area_m2 without a calibration
   bool protrusions = true;        ///< find bumps, heave and debris as well
@@ -48,6 +49,7 @@ struct DamageInput {
   ImageView<const float> transformed;  ///< ℓ', pixels; NaN invalid; depressions below the road, protrusions above it
   ImageView<const float> disparity;    ///< ℓ, pixels; needed for everything metric
   ImageView<const float> sigma;        ///< standard error of ℓ, pixels; without it noise is measured in the map
+  ImageView<const std::uint8_t> grey;  ///< left image, 8-bit grey: helps to draw outlines where matching left holes
   std::optional<RoadModel> plane;      ///< the road's plane in ℓ; needed for everything metric
   std::optional<StereoCalibration> calibration;  ///< needed for everything metric
 };
@@ -104,8 +106,7 @@ struct DamageMap {
   std::string unmetric_reason;  ///< why not
 };
 
-/// Finds and measures what differs from the road. No damage is a result, not an error. `image`, when given, has the
-/// size of the maps; it helps where matching left holes.
+/// Finds and measures what differs from the road. No damage is a result, not an error.
 /// Throws Error when the map has no disparities, one value only, or the views do not agree in size.
 DamageMap find_damage(const DamageInput& input, const DamageOptions& options = {}, int threads = 0);
 

@@ -1,0 +1,107 @@
+#include "damage/cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr int rows_per_band = 16;
+
+/// Sum and number of the valid pixels of one cell.
+struct Sum {
+  double sum = 0;
+  int count = 0;
+};
+
+template <class Value>
+Sum sum_of_cell(ImageView<const Value> map, int i, int j, int factor) {
+  Sum cell;
+  const int last_v = std::min((j + 1) * factor, map.height());
+  const int last_u = std::min((i + 1) * factor, map.width());
+  for (int v = j * factor; v < last_v; ++v) {
+    const Value* row = map.row(v);
+    for (int u = i * factor; u < last_u; ++u) {
+      if (!std::isfinite(static_cast<float>(row[u]))) continue;
+      cell.sum += row[u];
+      ++cell.count;
+    }
+  }
+  return cell;
+}
+
+template <class Value>
+Image<float> mean_cells(ImageView<const Value> map, int factor, int threads) {
+  Image<float> cells((map.width() + factor - 1) / factor, (map.height() + factor - 1) / factor);
+  parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int j = first; j < last; ++j) {
+      for (int i = 0; i < cells.width(); ++i) {
+        const Sum cell = sum_of_cell(map, i, j, factor);
+        const bool known = 2 * cell.count >= factor * factor || (factor > 1 && 4 * cell.count >= factor * factor &&
+                                                                 (i + 1 == cells.width() || j + 1 == cells.height()));
+        cells(i, j) = known ? static_cast<float>(cell.sum / cell.count) : std::numeric_limits<float>::quiet_NaN();
+      }
+    }
+  });
+  return cells;
+}
+
+void require_values(ImageView<const float> transformed) {
+  float lowest = std::numeric_limits<float>::infinity();
+  float highest = -lowest;
+  for (int v = 0; v < transformed.height(); ++v) {
+    const float* row = transformed.row(v);
+    for (int u = 0; u < transformed.width(); ++u) {
+      if (!std::isfinite(row[u])) continue;
+      lowest = std::min(lowest, row[u]);
+      highest = std::max(highest, row[u]);
+    }
+  }
+  if (lowest > highest) fail("the transformed map has no valid pixel");
+  if (lowest == highest) fail("the transformed map shows nothing: every valid pixel is ", lowest);
+}
+
+}  // namespace
+
+int cell_factor(int width, int height) {
+  constexpr double most_cells = 300e3;
+  const double pixels = static_cast<double>(width) * height;
+  return std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / most_cells))));
+}
+
+Cells make_cells(ImageView<const float> transformed, int factor, int threads) {
+  require_values(transformed);
+  Cells cells;
+  cells.factor = factor;
+  cells.image_width = transformed.width();
+  cells.image_height = transformed.height();
+  cells.value = mean_cells(transformed, factor, threads);
+  return cells;
+}
+
+Image<float> make_grey_cells(ImageView<const std::uint8_t> grey, int factor, int threads) {
+  return mean_cells(grey, factor, threads);
+}
+
+float at_pixel(const Image<float>& cells, int factor, int u, int v) {
+  const float half = 0.5F * static_cast<float>(factor - 1);
+  const float x = std::clamp((static_cast<float>(u) - half) / static_cast<float>(factor), 0.0F,
+                             static_cast<float>(cells.width() - 1));
+  const float y = std::clamp((static_cast<float>(v) - half) / static_cast<float>(factor), 0.0F,
+                             static_cast<float>(cells.height() - 1));
+  const int i = std::min(static_cast<int>(x), std::max(0, cells.width() - 2));
+  const int j = std::min(static_cast<int>(y), std::max(0, cells.height() - 2));
+  const int right = std::min(i + 1, cells.width() - 1);
+  const int below = std::min(j + 1, cells.height() - 1);
+  const float s = x - static_cast<float>(i);
+  const float t = y - static_cast<float>(j);
+  if (s == 0 && t == 0) return cells(i, j);
+  return (1 - t) * ((1 - s) * cells(i, j) + s * cells(right, j)) +
+         t * ((1 - s) * cells(i, below) + s * cells(right, below));
+}
+
+}  // namespace roadstereo

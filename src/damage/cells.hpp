@@ -1,0 +1,34 @@
+#pragma once
+
+#include "roadstereo/damage.hpp"
+
+namespace roadstereo {
+
+/// The maps in square cells of a few pixels: what segmentation looks at. A cell knows the mean of its valid pixels.
+struct Cells {
+  int factor = 1;       ///< pixels along the side of a cell
+  int image_width = 0;  ///< pixels
+  int image_height = 0;
+  Image<float> value;  ///< ℓ', pixels; NaN where fewer than half of the pixels are valid
+
+  int width() const { return value.width(); }
+  int height() const { return value.height(); }
+  /// Image coordinate of the middle of cell i, along u as along v.
+  double middle(int i) const { return i * factor + 0.5 * (factor - 1); }
+  /// Cell that pixel u (or v) lies in.
+  int cell_of(int pixel) const { return pixel / factor; }
+};
+
+/// The side of a cell that keeps a frame below some 300 000 cells.
+int cell_factor(int width, int height);
+
+/// Throws Error when no pixel of the map is valid, or all have one value.
+Cells make_cells(ImageView<const float> transformed, int factor, int threads);
+
+/// The grey image in cells of the same side: mean grey levels, 0 … 255.
+Image<float> make_grey_cells(ImageView<const std::uint8_t> grey, int factor, int threads);
+
+/// A map of cells between their middles, at pixel (u, v): bilinear, continued at the border. NaN where a neighbour is.
+float at_pixel(const Image<float>& cells, int factor, int u, int v);
+
+}  // namespace roadstereo

@@ -1,0 +1,207 @@
+#include "damage/metric_measurement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "damage/oriented_box.hpp"
+
+namespace roadstereo {
+namespace {
+
+using Point = std::array<double, 3>;
+
+double dot(const Point& one, const Point& other) {
+  return one[0] * other[0] + one[1] * other[1] + one[2] * other[2];
+}
+
+/// Rays of one frame against its road.
+class Geometry {
+ public:
+  explicit Geometry(const DamageInput& input)
+      : calibration_(*input.calibration),
+        model_(*input.plane),
+        plane_(road_plane(*input.plane, *input.calibration)),
+        frame_(road_frame(plane_)) {
+    delta_t_ = find_delta_t(input);
+  }
+
+  /// Disparity of the undamaged surface, whose ℓ' is `surface`.
+  double road_disparity(int u, int v, double surface) const { return model_.disparity(u, v) + surface - delta_t_; }
+  double z(double disparity) const { return calibration_.depth_m(disparity); }
+  Point point(int u, int v, double disparity) const { return calibration_.point_m(u, v, disparity); }
+  /// Area of the road that one pixel covers where it lies at `road`: Z³ / (f²·n·P).
+  double pixel_area(const Point& road) const {
+    const double f = calibration_.focal_px;
+    return road[2] * road[2] * road[2] / (f * f * dot(plane_.normal, road));
+  }
+  /// Depth along the normal between two points of one ray.
+  double depth_between(const Point& road, const Point& seen) const {
+    return dot(plane_.normal, seen) - dot(plane_.normal, road);
+  }
+  /// Metres of depth per pixel of disparity: n·P / (d + doffs).
+  double metres_per_pixel(const Point& seen, double disparity) const {
+    return dot(plane_.normal, seen) / (disparity + calibration_.disparity_offset_px);
+  }
+  const RoadFrame& frame() const { return frame_; }
+  double focal_px() const { return calibration_.focal_px; }
+
+ private:
+  /// ℓ' = ℓ − road + δt holds everywhere: one pixel tells δt.
+  double find_delta_t(const DamageInput& input) const {
+    for (int v = input.disparity.height() - 1; v >= 0; --v) {
+      for (int u = 0; u < input.disparity.width(); ++u) {
+        const double delta =
+            static_cast<double>(input.transformed(u, v)) - input.disparity(u, v) + model_.disparity(u, v);
+        if (std::isfinite(delta)) return delta;
+      }
+    }
+    return 0;
+  }
+
+  StereoCalibration calibration_;
+  RoadModel model_;
+  RoadPlane plane_;
+  RoadFrame frame_;
+  double delta_t_ = 0;
+};
+
+/// Sums over the pixels of one damage.
+struct Sums {
+  double area = 0, volume = 0, measured_depth = 0;
+  Point centroid{};
+  double metres_per_pixel = 0, sigma = 0;
+  std::size_t measured = 0;
+  std::vector<std::array<double, 2>> rim;  ///< on the road
+  double perimeter = 0;                    ///< metres
+};
+
+bool on_rim(const Image<std::uint16_t>& ids, int u, int v) {
+  const std::uint16_t id = ids(u, v);
+  return u == 0 || v == 0 || u + 1 == ids.width() || v + 1 == ids.height() || ids(u - 1, v) != id ||
+         ids(u + 1, v) != id || ids(u, v - 1) != id || ids(u, v + 1) != id;
+}
+
+Sums add_up(const DamageInput& input, const Geometry& geometry, const DamageMap& maps, const Damage& damage,
+            double offset) {
+  Sums sums;
+  const double f = geometry.focal_px();
+  for (int v = damage.box_px[1]; v <= damage.box_px[3]; ++v) {
+    for (int u = damage.box_px[0]; u <= damage.box_px[2]; ++u) {
+      if (maps.ids(u, v) != damage.id) continue;
+      const double on_road = geometry.road_disparity(u, v, maps.surface(u, v) + offset);
+      const double seen = on_road - (maps.depth(u, v) + offset);
+      const Point road = geometry.point(u, v, on_road);
+      const Point point = geometry.point(u, v, seen);
+      const double area = geometry.pixel_area(road);
+      sums.area += area;
+      sums.volume += (point[2] * point[2] * point[2] - road[2] * road[2] * road[2]) / (3 * f * f);
+      for (std::size_t k = 0; k < 3; ++k) sums.centroid[k] += area * road[k];
+      sums.metres_per_pixel += area * geometry.metres_per_pixel(point, seen);
+      if (!input.sigma.empty() && !std::isnan(input.sigma(u, v))) {
+        sums.sigma += static_cast<double>(input.sigma(u, v)) * input.sigma(u, v);
+        ++sums.measured;
+      }
+      if (!on_rim(maps.ids, u, v)) continue;
+      const Point flat = geometry.frame().to_road(road);
+      sums.rim.push_back({flat[0], flat[1]});
+      sums.perimeter += std::sqrt(area);
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& candidate) {
+  constexpr int gap = 3;            // cells; nearer the rim the wall is smeared
+  constexpr float noise_reach = 3;  // beyond it is another damage, or a hollow
+  constexpr double gaussian_mad = 1.4826;
+  constexpr double independent = 6;  // undulations of the road around one damage that do not know of each other
+  const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
+  const int reach = gap + std::max(3, static_cast<int>(0.4 * radius));
+  const Image<std::uint8_t> inner = grow(candidate.cells, gap);
+  const Image<std::uint8_t> outer = grow(candidate.cells, reach);
+  const Box box = candidate.box.grown(reach, inner.width(), inner.height());
+  std::vector<double> values;
+  const float most = noise_reach * static_cast<float>(found.relief.noise);
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      if (outer(i, j) == 0 || inner(i, j) != 0 || found.relief.known(i, j) == 0) continue;
+      const float depth = found.relief.depth(i, j);
+      if (std::abs(depth) <= most) values.push_back(-depth);
+    }
+  }
+  constexpr std::size_t least_cells = 20;
+  if (values.size() < least_cells) return {0, found.relief.noise};
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  const double median = *middle;
+  for (double& value : values) value = std::abs(value - median);
+  std::nth_element(values.begin(), middle, values.end());
+  return {median, gaussian_mad * *middle / std::sqrt(independent)};
+}
+
+void measure_in_metres(const DamageInput& input, const DamageOptions& options, const Segmentation& found,
+                       const SurfaceOffset& offset, std::size_t index, DamageMap& result) {
+  Damage& damage = result.damages[index];
+  if (damage.pixels == 0) return;
+  const Geometry geometry(input);
+  const Sums sums = add_up(input, geometry, result, damage, offset.value);
+  DamageMetrics metrics;
+  const double per_pixel = sums.metres_per_pixel / sums.area;
+  const double sigma_px =
+      sums.measured > 0 ? std::sqrt(sums.sigma / static_cast<double>(sums.measured)) : result.noise_px;
+  metrics.area_m2.value = sums.area;
+  metrics.volume_m3.value = std::abs(sums.volume);
+  metrics.mean_depth_m.value = metrics.volume_m3.value / sums.area;
+  const auto [u, v] = damage.deepest_px;
+  const double signed_depth =
+      damage.kind == DamageKind::depression ? damage.max_depth_px.value : -damage.max_depth_px.value;
+  const double on_road = geometry.road_disparity(u, v, result.surface(u, v) + offset.value);
+  const Point road = geometry.point(u, v, on_road);
+  const Point deepest = geometry.point(u, v, on_road - signed_depth);
+  metrics.max_depth_m.value = std::abs(geometry.depth_between(road, deepest));
+  metrics.max_depth_m.std_error =
+      damage.max_depth_px.std_error * geometry.metres_per_pixel(deepest, on_road - signed_depth);
+
+  const double rim_px = 0.5 * found.cells.factor + 1;  // how well the outline is known
+  const double border_m = rim_px * std::sqrt(sums.area / static_cast<double>(damage.pixels));
+  constexpr double independent_borders = 4;
+  metrics.area_m2.std_error = sums.perimeter * border_m / std::sqrt(independent_borders);
+  const double surface_m = per_pixel * std::hypot(offset.std_error, 0.3 * sigma_px);
+  metrics.volume_m3.std_error =
+      std::hypot(sums.area * surface_m, 0.3 * metrics.mean_depth_m.value * metrics.area_m2.std_error);
+  metrics.mean_depth_m.std_error =
+      std::hypot(surface_m, 0.7 * metrics.mean_depth_m.value * metrics.area_m2.std_error / metrics.area_m2.value);
+
+  const OrientedBox box = oriented_box(sums.rim);
+  metrics.length_m = box.length;
+  metrics.width_m = box.width;
+  metrics.angle_rad = box.angle_rad;
+  metrics.diameter_m = 2 * std::sqrt(sums.area / std::numbers::pi);
+  for (std::size_t k = 0; k < 3; ++k) metrics.centroid_m[k] = sums.centroid[k] / sums.area;
+  const Point flat = geometry.frame().to_road(metrics.centroid_m);
+  metrics.road_centroid_m = {flat[0], flat[1]};
+  metrics.distance_m = std::sqrt(dot(metrics.centroid_m, metrics.centroid_m));
+  metrics.resolvable_depth_m = options.threshold_sigma * std::hypot(sigma_px, offset.std_error) * per_pixel;
+  metrics.severity = metrics.max_depth_m.value < metrics.resolvable_depth_m
+                         ? Severity::unresolvable
+                         : astm_severity(metrics.max_depth_m.value, metrics.diameter_m);
+  damage.metrics = metrics;
+}
+
+void depth_to_metres(const DamageInput& input, DamageMap& result) {
+  const Geometry geometry(input);
+  for (int v = 0; v < result.depth.height(); ++v) {
+    for (int u = 0; u < result.depth.width(); ++u) {
+      float& depth = result.depth(u, v);
+      if (std::isnan(depth)) continue;
+      const double on_road = geometry.road_disparity(u, v, result.surface(u, v));
+      depth = static_cast<float>(
+          geometry.depth_between(geometry.point(u, v, on_road), geometry.point(u, v, on_road - depth)));
+    }
+  }
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "damage/measurement.hpp"
+
+namespace roadstereo {
+
+/// How much the road right around a damage differs from the fitted surface: the surface is raised by `value` there.
+struct SurfaceOffset {
+  double value = 0;      ///< pixels of ℓ'
+  double std_error = 0;  ///< of the undamaged surface across the hole, pixels
+};
+SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& candidate);
+
+/// Fills the metric figures of damage number `index`; `result.depth` is in pixels.
+void measure_in_metres(const DamageInput& input, const DamageOptions& options, const Segmentation& found,
+                       const SurfaceOffset& offset, std::size_t index, DamageMap& result);
+
+/// Turns `result.depth` from pixels of ℓ' to metres along the road's normal.
+void depth_to_metres(const DamageInput& input, DamageMap& result);
+
+}  // namespace roadstereo

@@ -1,0 +1,79 @@
+#include "damage/oriented_box.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace roadstereo {
+namespace {
+
+using Point = std::array<double, 2>;
+
+double turn(const Point& a, const Point& b, const Point& c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/// Andrew's monotone chain: the corners against the clock, the first not repeated.
+std::vector<Point> convex_hull(std::vector<Point> points) {
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  std::vector<Point> hull;
+  hull.reserve(2 * points.size());
+  const auto add_chain = [&hull](auto first, auto last) {
+    const std::size_t start = hull.size();
+    for (auto point = first; point != last; ++point) {
+      while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), *point) <= 0) hull.pop_back();
+      hull.push_back(*point);
+    }
+    hull.pop_back();
+  };
+  add_chain(points.begin(), points.end());
+  add_chain(points.rbegin(), points.rend());
+  return hull;
+}
+
+/// Sides of the rectangle along the direction (c, s).
+std::array<double, 2> sides_along(const std::vector<Point>& hull, double c, double s) {
+  double low_along = std::numeric_limits<double>::infinity();
+  double high_along = -low_along;
+  double low_across = low_along;
+  double high_across = -low_along;
+  for (const Point& point : hull) {
+    const double along = c * point[0] + s * point[1];
+    const double across = c * point[1] - s * point[0];
+    low_along = std::min(low_along, along);
+    high_along = std::max(high_along, along);
+    low_across = std::min(low_across, across);
+    high_across = std::max(high_across, across);
+  }
+  return {high_along - low_along, high_across - low_across};
+}
+
+double half_turn(double angle) {
+  if (angle > std::numbers::pi / 2) return angle - std::numbers::pi;
+  if (angle <= -std::numbers::pi / 2) return angle + std::numbers::pi;
+  return angle;
+}
+
+}  // namespace
+
+OrientedBox oriented_box(std::vector<Point> points) {
+  const std::vector<Point> hull = convex_hull(std::move(points));
+  OrientedBox best;
+  double least_area = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; hull.size() > 1 && k < hull.size(); ++k) {
+    const Point& from = hull[k];
+    const Point& to = hull[(k + 1) % hull.size()];
+    const double angle = std::atan2(to[1] - from[1], to[0] - from[0]);
+    const auto [along, across] = sides_along(hull, std::cos(angle), std::sin(angle));
+    if (along * across >= least_area) continue;
+    least_area = along * across;
+    best = {std::max(along, across), std::min(along, across),
+            half_turn(half_turn(along >= across ? angle : angle + std::numbers::pi / 2))};
+  }
+  return best;
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+
+#include "damage/cells.hpp"
+
+namespace roadstereo {
+
+/// Where each cell lies on the road, and what one unit of height there does to ℓ'.
+struct SurfaceCoordinates {
+  Image<float> x, y;   ///< metres on the road when calibrated, else shares of the image; NaN where there is no road
+  Image<float> scale;  ///< pixels of ℓ' for a metre of height when calibrated, else 1
+};
+
+/// From the plane and the calibration when both are there, else from the image alone.
+SurfaceCoordinates surface_coordinates(const Cells& cells, const DamageInput& input);
+
+/// The undamaged road, a quadratic of the road's coordinates: a plane cannot follow a camber.
+struct RoadSurface {
+  Image<float> value;  ///< ℓ' of the road at each cell, pixels; NaN where there is no road
+  double noise = 0;    ///< standard deviation of the cells around it, pixels, robust
+};
+
+/// Robust fit (Tukey's weights) to the cells of `region` (0 = leave out); without a region to the cells near the value
+/// that most cells have. Throws Error when fewer than 32 cells can be used.
+RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
+                             const std::optional<ImageView<const std::uint8_t>>& region);
+
+}  // namespace roadstereo
