@@ -36,7 +36,8 @@ Severity astm_severity(double depth_m, double diameter_m);
 struct DamageOptions {
   double threshold_sigma = 5;     ///< depth that counts as damage, in standard errors of the road's surface
   double min_depth_m = 0.005;     ///< ... and in metres along the road's normal, when calibrated
-  double max_depth_m = 0.3;       ///< what departs by more is no damage but a vehicle, a wall or a ditch
+  double max_depth_m = 0.3;       ///< what lies deeper is no damage but a ditch
+  double max_height_m = 0.12;     ///< what rises higher is no damage but a kerb, an island or a vehicle
   double min_area_m2 = 0.001;     ///< on the road's surface, when calibrated
   double min_area_share = 0.001;  ///< share of the image; instead of min_area_m2 without a calibration
   bool protrusions = true;        ///< find bumps, heave and debris as well

@@ -43,10 +43,14 @@ Image<std::uint8_t> holes_of(const Image<float>& depth, const Image<std::uint8_t
   return holes;
 }
 
+/// What the cells of a damage of this kind are marked with.
+std::uint8_t mark_of(DamageKind kind) {
+  return kind == DamageKind::depression ? 1 : 2;
+}
+
 /// What lies around a region, within half of its radius.
 struct Surroundings {
-  double on_road = 0;  ///< share of the known cells that lie on the road, or no deeper than the outline
-  double known = 0;    ///< share of the cells that are known
+  double on_road = 0;  ///< share of the cells that lie on the road, or no deeper than the outline
   double open = 0;     ///< share of the region's rim that is the border of the picture
 };
 
@@ -71,7 +75,8 @@ double open_share(const Image<std::uint8_t>& region, const Box& box) {
   return rim > 0 ? open / rim : 0;
 }
 
-Surroundings surroundings_of(const Candidate& candidate, const Relief& relief, const Image<std::uint8_t>& road) {
+Surroundings surroundings_of(const Candidate& candidate, const Relief& relief, const Image<std::uint8_t>& road,
+                             const Image<std::uint8_t>& taken) {
   constexpr double half = 0.5;
   constexpr float hollow = 10;  // standard deviations: the bowl around a pothole is no deeper
   constexpr int least_reach = 3;
@@ -80,27 +85,28 @@ Surroundings surroundings_of(const Candidate& candidate, const Relief& relief, c
   const Image<std::uint8_t> grown = grow(candidate.cells, reach);
   const Box around = candidate.box.grown(reach, road.width(), road.height());
   const float sign = candidate.kind == DamageKind::depression ? 1.0F : -1.0F;
-  const float bowl = candidate.kind == DamageKind::depression ? std::min(candidate.level, hollow * static_cast<float>(relief.noise)) : 0.0F;
+  const float bowl = candidate.kind == DamageKind::depression
+                         ? std::min(candidate.level, hollow * static_cast<float>(relief.noise))
+                         : 0.0F;
   double cells = 0;
-  double known = 0;
   double on_road = 0;
   for (int j = around.first_row; j <= around.last_row; ++j) {
     for (int i = around.first_column; i <= around.last_column; ++i) {
-      if (grown(i, j) == 0 || candidate.cells(i, j) != 0) continue;
+      if (grown(i, j) == 0 || candidate.cells(i, j) != 0 || taken(i, j) != 0) continue;
       ++cells;
       if (relief.known(i, j) == 0) continue;
-      ++known;
       const float depth = sign * relief.depth(i, j);
       on_road += road(i, j) != 0 || (depth > 0 && depth <= bowl) ? 1 : 0;
     }
   }
-  if (known == 0) return {};
-  return {on_road / known, known / cells, open_share(candidate.cells, candidate.box)};
+  if (cells == 0) return {1, open_share(candidate.cells, candidate.box)};
+  return {on_road / cells, open_share(candidate.cells, candidate.box)};
 }
 
 class Search {
  public:
-  Search(const Relief& relief, const Image<std::uint8_t>& road, const Thresholds& thresholds, const Witness& witness, DamageKind kind)
+  Search(const Relief& relief, const Image<std::uint8_t>& road, const Thresholds& thresholds, const Witness& witness,
+         DamageKind kind)
       : relief_(relief), road_(road), thresholds_(thresholds), witness_(witness), kind_(kind), depth_(relief.depth) {
     if (kind == DamageKind::protrusion) turn_over();
     allowed_ = relief.known;
@@ -147,7 +153,6 @@ class Search {
 
   void add(const ConnectedRegion& core, std::vector<Candidate>& found, Image<std::uint8_t>& taken) const {
     constexpr double least_on_road = 0.6;
-    constexpr double least_known = 0.5;
     constexpr double most_open = 0.25;
     const int i = core.cells.front() % depth_.width();
     const int j = core.cells.front() / depth_.width();
@@ -155,25 +160,14 @@ class Search {
     if (static_cast<float>(core.cells.size()) < 0.1F * least) return;
     Candidate candidate = draw(core, taken);
     if (candidate.size == 0 || static_cast<float>(candidate.size) < least) return;
-    if (too_large(candidate)) return;
-    const Surroundings around = surroundings_of(candidate, relief_, road_);
-    if (around.on_road < least_on_road || around.known < least_known || around.open > most_open) return;
+    const Surroundings around = surroundings_of(candidate, relief_, road_, taken);
+    if (around.on_road < least_on_road || around.open > most_open) return;
     for (int row = candidate.box.first_row; row <= candidate.box.last_row; ++row) {
       for (int column = candidate.box.first_column; column <= candidate.box.last_column; ++column) {
-        if (candidate.cells(column, row) != 0) taken(column, row) = 255;
+        if (candidate.cells(column, row) != 0) taken(column, row) = mark_of(kind_);
       }
     }
     found.push_back(std::move(candidate));
-  }
-
-  /// Whether any cell departs by more than damage does: a vehicle, a wall, a ditch.
-  bool too_large(const Candidate& candidate) const {
-    for (int j = candidate.box.first_row; j <= candidate.box.last_row; ++j) {
-      for (int i = candidate.box.first_column; i <= candidate.box.last_column; ++i) {
-        if (candidate.cells(i, j) != 0 && depth_(i, j) > thresholds_.largest(i, j)) return true;
-      }
-    }
-    return false;
   }
 
   /// The region around a core. Where it would run into another damage, only what lies deeper than the saddle between
@@ -189,6 +183,9 @@ class Search {
     const Outline outline =
         find_outline(field, core.cells, noise_floor * static_cast<float>(relief_.noise), thresholds_.metric);
     if (!thresholds_.metric && outline.steepness < bowl) return candidate;
+    const std::int32_t first = core.cells.front();
+    const Image<float>& largest = kind_ == DamageKind::depression ? thresholds_.deepest : thresholds_.highest;
+    if (outline.floor > largest(first % depth_.width(), first / depth_.width())) return candidate;
     candidate.level = outline.level;
     for (int i = 0; i < tries; ++i, candidate.level *= deeper) {
       candidate.cells = flood(field, core.cells, candidate.level, {0, 0, depth_.width() - 1, depth_.height() - 1});
@@ -208,14 +205,18 @@ class Search {
     return candidate;
   }
 
-  /// Box and size. False when the region has cells of another damage.
+  /// Box and size. False when the region has cells of another damage of its kind; those of the other kind it gives up.
   static bool measure_extent(Candidate& candidate, const Image<std::uint8_t>& taken) {
     candidate.box = {};
     candidate.size = 0;
     for (int j = 0; j < taken.height(); ++j) {
       for (int i = 0; i < taken.width(); ++i) {
         if (candidate.cells(i, j) == 0) continue;
-        if (taken(i, j) != 0) return false;
+        if (taken(i, j) == mark_of(candidate.kind)) return false;
+        if (taken(i, j) != 0) {
+          candidate.cells(i, j) = 0;
+          continue;
+        }
         candidate.box.add(i, j);
         ++candidate.size;
       }

@@ -21,7 +21,8 @@ struct Candidate {
 struct Thresholds {
   bool metric = false;       ///< whether they come from metres
   Image<float> depth;        ///< pixels of ℓ'
-  Image<float> largest;      ///< more than this is no damage, pixels of ℓ'
+  Image<float> deepest;      ///< a depression that is deeper is no damage, pixels of ℓ'
+  Image<float> highest;      ///< a protrusion that is higher is none, pixels of ℓ'
   Image<float> least_cells;  ///< area, cells
 };
 

@@ -65,22 +65,26 @@ Thresholds make_thresholds(const Relief& relief, const SurfaceCoordinates& coord
   const auto of_image = static_cast<float>(options.min_area_share * static_cast<double>(cells.value.pixels()));
   thresholds.depth.assign(cells.width(), cells.height(), noise);
   thresholds.least_cells.assign(cells.width(), cells.height(), of_image);
-  thresholds.largest.assign(cells.width(), cells.height(), std::numeric_limits<float>::infinity());
+  thresholds.deepest.assign(cells.width(), cells.height(), std::numeric_limits<float>::infinity());
+  thresholds.highest = thresholds.deepest;
   thresholds.metric = metric;
   if (!metric) return thresholds;
   const RoadPlane plane = road_plane(*input.plane, *input.calibration);
+  constexpr double least_pixels = 64;  // fewer is less than matching's window
   const double cell_share = 1.0 / (cells.factor * cells.factor);
   for (int j = 0; j < cells.height(); ++j) {
     for (int i = 0; i < cells.width(); ++i) {
       const auto least = static_cast<float>(options.min_depth_m * coordinates.scale(i, j));
       if (std::isnan(least)) continue;
       thresholds.depth(i, j) = std::max(noise, least);
-      thresholds.largest(i, j) = static_cast<float>(options.max_depth_m * coordinates.scale(i, j));
+      thresholds.deepest(i, j) = static_cast<float>(options.max_depth_m * coordinates.scale(i, j));
+      thresholds.highest(i, j) = static_cast<float>(options.max_height_m * coordinates.scale(i, j));
       const double u = cells.middle(i);
       const double v = cells.middle(j);
       const double z = input.calibration->depth_m(input.plane->disparity(u, v));
       const double pixel_m2 = z * z * z / (input.calibration->focal_px * input.calibration->focal_px * plane.height_m);
-      thresholds.least_cells(i, j) = static_cast<float>(options.min_area_m2 / pixel_m2 * cell_share);
+      thresholds.least_cells(i, j) =
+          static_cast<float>(std::max(options.min_area_m2 / pixel_m2, least_pixels) * cell_share);
     }
   }
   return thresholds;
@@ -98,6 +102,7 @@ void DamageOptions::validate() const {
   require_range("damage", "threshold_sigma", threshold_sigma, 1.0, 100.0);
   require_range("damage", "min_depth_m", min_depth_m, 0.0, 10.0);
   require_range("damage", "max_depth_m", max_depth_m, min_depth_m, 10.0);
+  require_range("damage", "max_height_m", max_height_m, min_depth_m, 10.0);
   require_range("damage", "min_area_m2", min_area_m2, 0.0, 1e4);
   require_range("damage", "min_area_share", min_area_share, 0.0, 1.0);
 }
@@ -117,8 +122,9 @@ DamageMap find_damage(const DamageInput& input, const DamageOptions& options, in
   result.metric = result.unmetric_reason.empty();
   const Thresholds thresholds = make_thresholds(relief, coordinates, cells, input, options, result.metric);
   result.noise_px = surface.noise;
-  const Segmentation found{cells, surface, road, relief,
-                           find_candidates(relief, road, thresholds, make_witness(input, cells, threads), options.protrusions)};
+  const Segmentation found{
+      cells, surface, road, relief,
+      find_candidates(relief, road, thresholds, make_witness(input, cells, threads), options.protrusions)};
   measure_damage(input, options, found, threads, result);
   return result;
 }

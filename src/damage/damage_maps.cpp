@@ -39,15 +39,13 @@ void paint_candidate(const Segmentation& found, const Candidate& candidate, std:
                      Image<std::uint16_t>& ids) {
   const int factor = found.cells.factor;
   const Box box = candidate.box.grown(1, found.cells.width(), found.cells.height());
-  const float sign = sign_of(candidate.kind);
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
       const Place place = place_of(candidate.cells, i, j);
       if (place == Place::outside) continue;
       for (int v = j * factor; v < std::min((j + 1) * factor, ids.height()); ++v) {
         for (int u = i * factor; u < std::min((i + 1) * factor, ids.width()); ++u) {
-          const bool deep = factor == 1 ? candidate.cells(i, j) != 0
-                                        : candidate.cells(i, j) != 0;
+          const bool deep = factor == 1 ? candidate.cells(i, j) != 0 : candidate.cells(i, j) != 0;
           if ((place == Place::inside || deep) && ids(u, v) == 0) ids(u, v) = id;
         }
       }

@@ -72,12 +72,15 @@ std::vector<Damage> measure_in_pixels(const DamageInput& input, const Segmentati
   return damages;
 }
 
-/// Drops what is not deeper than its own standard error says it must be, and numbers the rest anew, deepest first.
+/// Drops what is not deeper than its own standard error says it must be, or reaches beyond the road, and numbers the
+/// rest anew, deepest first.
 void keep_significant(DamageMap& result) {
   constexpr double least_sigmas = 3;
   std::vector<Damage> kept;
   for (const Damage& damage : result.damages) {
-    if (damage.pixels > 0 && damage.max_depth_px.value >= least_sigmas * damage.max_depth_px.std_error) {
+    const bool finite =
+        !damage.metrics || std::isfinite(damage.metrics->max_depth_m.value + damage.metrics->area_m2.value);
+    if (damage.pixels > 0 && finite && damage.max_depth_px.value >= least_sigmas * damage.max_depth_px.std_error) {
       kept.push_back(damage);
     }
   }
@@ -112,7 +115,7 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
     const double sigma = std::isnan(own) ? result.noise_px : own;
     damage.max_depth_px.value += damage.kind == DamageKind::depression ? offset.value : -offset.value;
     damage.max_depth_px.std_error = std::hypot(sigma, offset.std_error);
-    if (result.metric) measure_in_metres(input, options, found, offset, k, result);
+    if (result.metric) measure_in_metres(input, options, offset, k, result);
   }
   keep_significant(result);
   if (result.metric) depth_to_metres(input, result);

@@ -111,6 +111,34 @@ Sums add_up(const DamageInput& input, const Geometry& geometry, const DamageMap&
   return sums;
 }
 
+/// Standard errors: of the disparity (of one place for the largest depth, less for a mean), of the undamaged surface,
+/// of what matching does to a small hollow, and of the outline. The last two were measured on synthetic roads
+/// (docs/accuracy.md): matching sees through a window, so that a hollow of its size loses part of its depth and its
+/// outline is known to a fifth of it.
+void set_standard_errors(const Sums& sums, const SurfaceOffset& offset, double noise_px, double sigma_px,
+                         double per_pixel, DamageMetrics& metrics, Damage& damage) {
+  constexpr double window_px = 10;       // radius of the block and of the aggregation
+  constexpr double sub_pixel_px = 0.03;  // bias that the phase of the sub-pixel step leaves
+  constexpr double of_mean = 0.3;        // of the error of one pixel, for the mean of a region
+  constexpr double outline = 0.2;        // of the window
+  const double radius_px = std::sqrt(static_cast<double>(damage.pixels) / std::numbers::pi);
+  const double smear = window_px / radius_px;
+  const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
+  const double surface_px = std::hypot(offset.std_error, sub_pixel_px);
+
+  const double at_deepest_m = metrics.max_depth_m.std_error;  // metres per pixel of disparity there
+  damage.max_depth_px.std_error = std::hypot(damage.max_depth_px.std_error, sub_pixel_px);
+  metrics.max_depth_m.std_error =
+      std::hypot(damage.max_depth_px.std_error * at_deepest_m, 0.13 * smear * metrics.max_depth_m.value);
+  // A gentle foot ends where it drops below what can be told from the road.
+  const double foot_px =
+      radius_px * std::min(1.0, 2 * std::hypot(noise_px, offset.std_error) / damage.max_depth_px.value);
+  metrics.area_m2.std_error = sums.perimeter * std::hypot(outline * window_px, foot_px) * pixel_m;
+  const double mean_m = std::hypot(surface_px, of_mean * sigma_px) * per_pixel;
+  metrics.mean_depth_m.std_error = std::hypot(mean_m, 0.35 * smear * metrics.mean_depth_m.value);
+  metrics.volume_m3.std_error = std::hypot(sums.area * mean_m, 0.25 * smear * metrics.volume_m3.value);
+}
+
 }  // namespace
 
 SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& candidate) {
@@ -142,8 +170,8 @@ SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& c
   return {median, gaussian_mad * *middle / std::sqrt(independent)};
 }
 
-void measure_in_metres(const DamageInput& input, const DamageOptions& options, const Segmentation& found,
-                       const SurfaceOffset& offset, std::size_t index, DamageMap& result) {
+void measure_in_metres(const DamageInput& input, const DamageOptions& options, const SurfaceOffset& offset,
+                       std::size_t index, DamageMap& result) {
   Damage& damage = result.damages[index];
   if (damage.pixels == 0) return;
   const Geometry geometry(input);
@@ -162,18 +190,8 @@ void measure_in_metres(const DamageInput& input, const DamageOptions& options, c
   const Point road = geometry.point(u, v, on_road);
   const Point deepest = geometry.point(u, v, on_road - signed_depth);
   metrics.max_depth_m.value = std::abs(geometry.depth_between(road, deepest));
-  metrics.max_depth_m.std_error =
-      damage.max_depth_px.std_error * geometry.metres_per_pixel(deepest, on_road - signed_depth);
-
-  const double rim_px = 0.5 * found.cells.factor + 1;  // how well the outline is known
-  const double border_m = rim_px * std::sqrt(sums.area / static_cast<double>(damage.pixels));
-  constexpr double independent_borders = 4;
-  metrics.area_m2.std_error = sums.perimeter * border_m / std::sqrt(independent_borders);
-  const double surface_m = per_pixel * std::hypot(offset.std_error, 0.3 * sigma_px);
-  metrics.volume_m3.std_error =
-      std::hypot(sums.area * surface_m, 0.3 * metrics.mean_depth_m.value * metrics.area_m2.std_error);
-  metrics.mean_depth_m.std_error =
-      std::hypot(surface_m, 0.7 * metrics.mean_depth_m.value * metrics.area_m2.std_error / metrics.area_m2.value);
+  metrics.max_depth_m.std_error = geometry.metres_per_pixel(deepest, on_road - signed_depth);
+  set_standard_errors(sums, offset, result.noise_px, sigma_px, per_pixel, metrics, damage);
 
   const OrientedBox box = oriented_box(sums.rim);
   metrics.length_m = box.length;

@@ -12,8 +12,8 @@ struct SurfaceOffset {
 SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& candidate);
 
 /// Fills the metric figures of damage number `index`; `result.depth` is in pixels.
-void measure_in_metres(const DamageInput& input, const DamageOptions& options, const Segmentation& found,
-                       const SurfaceOffset& offset, std::size_t index, DamageMap& result);
+void measure_in_metres(const DamageInput& input, const DamageOptions& options, const SurfaceOffset& offset,
+                       std::size_t index, DamageMap& result);
 
 /// Turns `result.depth` from pixels of ℓ' to metres along the road's normal.
 void depth_to_metres(const DamageInput& input, DamageMap& result);

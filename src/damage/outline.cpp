@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <cstdio>
-#include <cstdlib>
 
 namespace roadstereo {
 namespace {
@@ -127,8 +125,8 @@ Image<std::uint8_t> flood(const DepthField& field, const std::vector<std::int32_
 }
 
 Outline find_outline(const DepthField& field, const std::vector<std::int32_t>& seeds, float lowest, bool metric) {
-  const double cones = getenv("CO")?atof(getenv("CO")):3;          // a paraboloid's rim is twice as steep as the cone
-  const double share_of_best = getenv("SB")?atof(getenv("SB")):.9;  // where nothing is that steep
+  constexpr double cones = 3;            // a paraboloid's rim is twice as steep as the cone
+  constexpr double share_of_best = 0.9;  // where nothing is that steep
   constexpr float highest_share = 0.9F;
   constexpr float halfway = 0.6F;
   const float floor = floor_depth(field, seeds);
@@ -141,15 +139,14 @@ Outline find_outline(const DepthField& field, const std::vector<std::int32_t>& s
     steepness[k] = steepness_of(contour_of(field, flood(field, seeds, level[k], within), within), floor);
   }
   auto k = static_cast<std::size_t>(std::max_element(steepness.begin(), steepness.end()) - steepness.begin());
-  if (getenv("DBG")) fprintf(stderr, "floor %.3g seeds %zu best %.2f at %.2f\n", floor, seeds.size(), steepness[k], level[k]/floor);
   const double enough = std::min(cones, share_of_best * steepness[k]);
   const double best = steepness[k];
   while (k > 0 && steepness[k - 1] >= enough) --k;
-  return {metric ? level[k] : std::max(level[k], halfway * floor), best};
+  return {metric ? level[k] : std::max(level[k], halfway * floor), floor, best};
 }
 
 void grow_to_foot(const DepthField& field, float level, float least, Image<std::uint8_t>& region) {
-  constexpr double beyond = 1.5;      // a foot is round
+  constexpr double beyond = 1.5;         // a foot is round
   constexpr float above_hollow = 0.15F;  // of the depth at the outline, over what lies around
   const Box box = box_of(region);
   const Contour contour = contour_of(field, region, box);

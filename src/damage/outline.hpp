@@ -18,18 +18,20 @@ Image<std::uint8_t> flood(const DepthField& field, const std::vector<std::int32_
 
 /// Where a damage begins.
 struct Outline {
-  float level = 0;       ///< depth, pixels of ℓ'
-  double steepness = 0;  ///< of its wall where it is steepest: 1 is a cone of the same opening and depth, 2 the rim of a bowl
+  float level = 0;  ///< depth, pixels of ℓ'
+  float floor = 0;  ///< depth that a quarter of the seeds exceed, pixels of ℓ'
+  double steepness =
+      0;  ///< of its wall where it is steepest: 1 is a cone of the same opening and depth, 2 the rim of a bowl
 };
 
 /// A wide hollow around a pothole belongs to the road's own shape, and the wall to the pothole: of the contours around
-/// `seeds`, from the steepest outwards, the last one along which the mean slope is still 2.6 times that of a cone with
-/// the same opening and depth. Never below `lowest`. Where nothing says how deep a hollow really is (`metric` is
+/// `seeds`, from the steepest outwards, the last one along which the mean slope is still three times that of a cone
+/// with the same opening and depth. Never below `lowest`. Where nothing says how deep a hollow really is (`metric` is
 /// false), no higher than 0.6 of the depth: halfway up the wall.
 Outline find_outline(const DepthField& field, const std::vector<std::int32_t>& seeds, float lowest, bool metric);
 
-/// Grows a region to the foot of its wall: over cells that are deeper than what lies around it, no farther than the wall's
-/// own slope, continued, reaches. `least` is the depth that noise makes.
+/// Grows a region to the foot of its wall: over cells that are deeper than what lies around it, no farther than the
+/// wall's own slope, continued, reaches. `least` is the depth that noise makes.
 void grow_to_foot(const DepthField& field, float level, float least, Image<std::uint8_t>& region);
 
 }  // namespace roadstereo

@@ -9,7 +9,7 @@ namespace roadstereo {
 namespace {
 
 Image<std::uint8_t> near_surface(const Cells& cells, const RoadSurface& surface) {
-  const double reach = getenv("RR")?atof(getenv("RR")):3;
+  constexpr double reach = 3;  // standard deviations of the road
   const auto most = static_cast<float>(reach * surface.noise);
   Image<std::uint8_t> near(cells.width(), cells.height());
   for (int j = 0; j < cells.height(); ++j) {
@@ -35,7 +35,7 @@ Image<std::uint8_t> largest_part(const Image<std::uint8_t>& mask) {
 }  // namespace
 
 Image<std::uint8_t> find_road_region(const Cells& cells, const RoadSurface& surface) {
-  const int bridge = getenv("RB")?atoi(getenv("RB")):2;  // cells; narrower connections are none
+  constexpr int bridge = 2;  // cells; narrower connections are none
   constexpr std::size_t speck = 30;
   Image<std::uint8_t> near = near_surface(cells, surface);
   fill_enclosed(near, speck);

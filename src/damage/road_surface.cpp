@@ -108,8 +108,8 @@ RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coord
   constexpr std::size_t least_samples = 32;
   constexpr int plane_steps = 6;
   constexpr int quadratic_steps = 12;
-  const double tukey = getenv("TK")?atof(getenv("TK")):4.7;
-  const double widest = getenv("WI")?atof(getenv("WI")):3;  // of the spread, for what counts when it is measured anew
+  constexpr double tukey = 4.7;
+  constexpr double widest = 3;  // of the spread, for what counts when it is measured anew
   constexpr double least_spread = 1e-3;
   std::vector<Sample> samples = draw_samples(cells, coordinates, region);
   if (samples.size() < least_samples) {

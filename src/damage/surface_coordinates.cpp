@@ -24,7 +24,8 @@ SurfaceCoordinates image_coordinates(const Cells& cells) {
 /// A point on the plane has n·p = h; lifting it by z at a fixed pixel brings it nearer by the factor 1 − z/h, so that
 /// its disparity grows by (d + doffs)·z/h to first order.
 SurfaceCoordinates road_coordinates(const Cells& cells, const RoadModel& model, const StereoCalibration& calibration) {
-  constexpr double least_disparity_px = 2;  // farther away nothing can be measured
+  constexpr double least_disparity_px = 2;
+  constexpr double longest_row_m = 1;  // of the road that a row of pixels covers: farther away nothing can be measured
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   SurfaceCoordinates c;
   c.x.assign(cells.width(), cells.height(), nan);
@@ -38,6 +39,8 @@ SurfaceCoordinates road_coordinates(const Cells& cells, const RoadModel& model, 
       const double v = cells.middle(j);
       const double disparity = model.disparity(u, v);
       if (disparity + calibration.disparity_offset_px < least_disparity_px) continue;
+      const double z = calibration.depth_m(disparity);
+      if (z * z > longest_row_m * calibration.focal_px * plane.height_m) continue;
       const std::array<double, 3> point = frame.to_road(calibration.point_m(u, v, disparity));
       c.x(i, j) = static_cast<float>(point[0]);
       c.y(i, j) = static_cast<float>(point[1]);
