@@ -176,6 +176,7 @@ class Search {
     constexpr int tries = 8;
     constexpr float deeper = 1.25F;
     constexpr float noise_floor = 2;  // standard deviations of the road
+    constexpr float foot = 0.5F;      // likewise, where the region is known to hang together
     constexpr double bowl = 2;        // a paraboloid's rim is twice as steep as the cone
     const DepthField field{depth_, allowed_};
     Candidate candidate;
@@ -190,7 +191,7 @@ class Search {
     for (int i = 0; i < tries; ++i, candidate.level *= deeper) {
       candidate.cells = flood(field, core.cells, candidate.level, {0, 0, depth_.width() - 1, depth_.height() - 1});
       if (thresholds_.metric) {
-        grow_to_foot(field, candidate.level, static_cast<float>(relief_.noise), candidate.cells);
+        grow_to_foot(field, candidate.level, foot * static_cast<float>(relief_.noise), candidate.cells);
       }
       fill_enclosed(candidate.cells, depth_.pixels() / 4);
       if (!measure_extent(candidate, taken)) continue;

@@ -122,20 +122,20 @@ void set_standard_errors(const Sums& sums, const SurfaceOffset& offset, double n
   constexpr double of_mean = 0.3;        // of the error of one pixel, for the mean of a region
   constexpr double outline = 0.2;        // of the window
   const double radius_px = std::sqrt(static_cast<double>(damage.pixels) / std::numbers::pi);
-  const double smear = window_px / radius_px;
+  const double smear = window_px / radius_px * (1 + window_px / radius_px);
   const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
   const double surface_px = std::hypot(offset.std_error, sub_pixel_px);
 
   const double at_deepest_m = metrics.max_depth_m.std_error;  // metres per pixel of disparity there
   damage.max_depth_px.std_error = std::hypot(damage.max_depth_px.std_error, sub_pixel_px);
   metrics.max_depth_m.std_error =
-      std::hypot(damage.max_depth_px.std_error * at_deepest_m, 0.13 * smear * metrics.max_depth_m.value);
+      std::hypot(damage.max_depth_px.std_error * at_deepest_m, 0.15 * smear * metrics.max_depth_m.value);
   // A gentle foot ends where it drops below what can be told from the road.
   const double foot_px =
       radius_px * std::min(1.0, 2 * std::hypot(noise_px, offset.std_error) / damage.max_depth_px.value);
   metrics.area_m2.std_error = sums.perimeter * std::hypot(outline * window_px, foot_px) * pixel_m;
   const double mean_m = std::hypot(surface_px, of_mean * sigma_px) * per_pixel;
-  metrics.mean_depth_m.std_error = std::hypot(mean_m, 0.35 * smear * metrics.mean_depth_m.value);
+  metrics.mean_depth_m.std_error = std::hypot(mean_m, 0.4 * smear * metrics.mean_depth_m.value);
   metrics.volume_m3.std_error = std::hypot(sums.area * mean_m, 0.25 * smear * metrics.volume_m3.value);
 }
 
