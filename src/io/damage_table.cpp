@@ -21,19 +21,13 @@ struct ToJson {
   }
 };
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string cell = "\"";
-  for (const char letter : text) cell += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-  return cell + "\"";
-}
-
-/// A value as a cell of CSV: the shortest digits that are read back as the same number.
+/// A value as a cell of CSV: the shortest digits that are read back as the same number. Texts are names of kinds and
+/// severities, which need no quotes.
 struct ToCell {
   std::string operator()(std::monostate) const { return {}; }
   std::string operator()(std::int64_t value) const { return std::to_string(value); }
   std::string operator()(bool value) const { return value ? "true" : "false"; }
-  std::string operator()(const std::string& value) const { return quoted(value); }
+  std::string operator()(const std::string& value) const { return value; }
   std::string operator()(double value) const {
     std::array<char, 32> digits{};
     return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};

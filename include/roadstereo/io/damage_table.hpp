@@ -12,7 +12,7 @@ namespace roadstereo::io {
 /// The damages with the frame's noise, and why nothing is metric where that is so.
 std::string damages_json(const DamageMap& map);
 
-/// RFC 4180: CRLF, quotes where needed, the line of names even when there is no damage.
+/// RFC 4180: lines end with CRLF; the line of names is there even when there is no damage.
 std::string damages_csv(const DamageMap& map);
 
 }  // namespace roadstereo::io

@@ -6,6 +6,7 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 #include <vector>
 
 #include "io/damage_colours.hpp"
@@ -50,19 +51,16 @@ std::string edge_path(const Mask& mask) {
 
 /// The mask's pixels as a path of bars along the rows.
 std::string area_path(const Mask& mask) {
-  std::string path;
+  std::ostringstream path;
   for (int v = 0; v < mask.height(); ++v) {
     int length = 0;
     for (int u = 0; u <= mask.width(); ++u) {
       const bool on = u < mask.width() && mask(u, v) != 0;
-      if (!on && length > 0) {
-        const std::string bar = std::to_string(length);
-        path += "M" + std::to_string(u - length) + " " + std::to_string(v) + "h" + bar + "v1h-" + bar + "z";
-      }
+      if (!on && length > 0) path << 'M' << u - length << ' ' << v << 'h' << length << "v1h-" << length << 'z';
       length = on ? length + 1 : 0;
     }
   }
-  return path;
+  return path.str();
 }
 
 /// A mask over the crop's scaled pixels of what holds at the nearest pixel of the map.

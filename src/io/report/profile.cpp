@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <vector>
 
 #include "io/drawing.hpp"
@@ -44,17 +45,17 @@ std::string curve_path(const CrossSection& section, const std::vector<double>& d
 
 /// The area between the curve and the undamaged road.
 std::string area_path(const CrossSection& section, const Axis& x, const Axis& y) {
-  std::string path;
+  std::ostringstream path;
   const std::string road = place_text(y.place(0));
   const auto& depths = section.filled;
   for (std::size_t i = 0; i < depths.size(); ++i) {
     if (!std::isfinite(depths[i])) continue;
     const std::string at = place_text(x.place(section.position[i]));
-    if (i == 0 || !std::isfinite(depths[i - 1])) path += "M" + at + " " + road;
-    path += "L" + at + " " + place_text(y.place(depths[i]));
-    if (i + 1 == depths.size() || !std::isfinite(depths[i + 1])) path += "L" + at + " " + road + "Z";
+    if (i == 0 || !std::isfinite(depths[i - 1])) path << 'M' << at << ' ' << road;
+    path << 'L' << at << ' ' << place_text(y.place(depths[i]));
+    if (i + 1 == depths.size() || !std::isfinite(depths[i + 1])) path << 'L' << at << ' ' << road << 'Z';
   }
-  return path;
+  return path.str();
 }
 
 /// A line of text with its anchor in the middle or at the end.
