@@ -333,9 +333,9 @@ TEST(DamageReport, HatchesHoles) {
   const auto box = truth.map.damages.front().box_px;
   truth.disparity(u, v) = truth::nan_value;
   truth.disparity(u + 1, v) = truth::nan_value;
-  // The crop begins a quarter of the longer side before the box and is not scaled.
-  const int margin = static_cast<int>(std::lround(0.25 * (std::max(box[2] - box[0], box[3] - box[1]) + 1)));
-  const int left = u - std::max(0, box[0] - margin), top = v - std::max(0, box[1] - margin);
+  // The crop begins a quarter of each side before the box and is not scaled.
+  const int left = u - (box[0] - static_cast<int>(std::lround(0.25 * (box[2] - box[0] + 1))));
+  const int top = v - (box[1] - static_cast<int>(std::lround(0.25 * (box[3] - box[1] + 1))));
   EXPECT_EQ(hatched(), "M" + std::to_string(left) + " " + std::to_string(top) + "h2v1h-2z");
 }
 

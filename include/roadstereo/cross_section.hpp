@@ -15,7 +15,7 @@ namespace roadstereo {
 struct CrossSection {
   bool metric = false;                    ///< whether positions are metres; else pixels
   std::vector<std::array<int, 2>> pixel;  ///< (u, v)
-  std::vector<double> position;           ///< along the line on the road, from its first pixel
+  std::vector<double> position;           ///< where the line of sight meets the undamaged road, from the first pixel
   std::vector<double> depth;              ///< measured, in the unit of `DamageMap::depth`; NaN in holes
   std::vector<double> filled;  ///< the same with what was interpolated in the holes; NaN where nothing is known
 };

@@ -10,8 +10,8 @@
 namespace roadstereo {
 
 /// The surface of a damage and its surroundings as a grid of points, row by row as in the image.
-/// Metric: x to the camera's right and y forward along the road, metres; else pixels, y up in the image. Both from the
-/// middle of the grid.
+/// Metric: where the lines of sight meet the undamaged road, x to the camera's right and y forward, metres; else
+/// pixels, y up in the image. Both from the middle of the grid.
 struct Relief {
   bool metric = false;  ///< whether x and y are metres
   Image<float> x, y;

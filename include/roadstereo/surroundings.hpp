@@ -12,7 +12,7 @@ struct PixelBox {
   int height() const { return v1 - v0 + 1; }
 };
 
-/// The damage's box and a margin of `share` of its longer side, at least `least_px`, inside the map.
+/// The damage's box and a margin of `share` of each side, at least `least_px`, inside the map.
 PixelBox surroundings(const DamageMap& map, const Damage& damage, double share, int least_px);
 
 }  // namespace roadstereo

@@ -68,21 +68,13 @@ Line line_through(const DamageMap& map, const Damage& damage, const std::array<d
   return line;
 }
 
-/// Positions along the road: every pixel's point laid onto the line from the first to the last.
 std::vector<double> road_positions(const CrossSection& section, const LocalRoad& road) {
-  const auto place = [&](std::size_t i) {
-    const auto& [u, v] = section.pixel[i];
-    return road.at(u, v, std::isfinite(section.filled[i]) ? section.filled[i] : 0);
-  };
-  const std::size_t count = section.pixel.size();
-  const std::array<double, 2> origin = road.at(section.pixel.front()[0], section.pixel.front()[1], 0);
-  const std::array<double, 2> end = road.at(section.pixel.back()[0], section.pixel.back()[1], 0);
-  const double x = end[0] - origin[0], y = end[1] - origin[1];
-  const double length = std::max(std::hypot(x, y), std::numeric_limits<double>::min());
-  std::vector<double> positions(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::array<double, 2> at = place(i);
-    positions[i] = ((at[0] - origin[0]) * x + (at[1] - origin[1]) * y) / length;
+  std::vector<double> positions;
+  positions.reserve(section.pixel.size());
+  const std::array<double, 2> origin = road.at(section.pixel.front()[0], section.pixel.front()[1]);
+  for (const auto& [u, v] : section.pixel) {
+    const std::array<double, 2> at = road.at(u, v);
+    positions.push_back(std::hypot(at[0] - origin[0], at[1] - origin[1]));
   }
   return positions;
 }

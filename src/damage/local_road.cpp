@@ -17,21 +17,21 @@ void require_same_size(const DamageMap& map, ImageView<const float> disparity) {
 LocalRoad::LocalRoad(const RoadModel& model, const StereoCalibration& calibration)
     : calibration_(calibration), plane_(road_plane(model, calibration)), frame_(road_frame(plane_)) {}
 
-std::array<double, 3> LocalRoad::point(double u, double v, double depth_m) const {
+std::array<double, 3> LocalRoad::point(double u, double v) const {
   const double x = (u - calibration_.cx_px) / calibration_.focal_px;
   const double y = (v - calibration_.cy_px) / calibration_.focal_px;
   const std::array<double, 3>& n = plane_.normal;
-  const double z = (plane_.height_m + depth_m) / (n[0] * x + n[1] * y + n[2]);
+  const double z = plane_.height_m / (n[0] * x + n[1] * y + n[2]);
   return {x * z, y * z, z};
 }
 
-std::array<double, 2> LocalRoad::at(double u, double v, double depth_m) const {
-  const std::array<double, 3> on_road = frame_.to_road(point(u, v, depth_m));
+std::array<double, 2> LocalRoad::at(double u, double v) const {
+  const std::array<double, 3> on_road = frame_.to_road(point(u, v));
   return {on_road[0], on_road[1]};
 }
 
 std::array<double, 2> LocalRoad::image_direction(double u, double v, double angle_rad) const {
-  const std::array<double, 3> p = point(u, v, 0);
+  const std::array<double, 3> p = point(u, v);
   const double along_x = std::cos(angle_rad), along_y = std::sin(angle_rad);
   const auto component = [&](std::size_t i) { return along_x * frame_.x[i] + along_y * frame_.y[i]; };
   const double du = component(0) * p[2] - component(2) * p[0];

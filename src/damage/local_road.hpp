@@ -18,16 +18,16 @@ class LocalRoad {
  public:
   LocalRoad(const RoadModel& model, const StereoCalibration& calibration);
 
-  /// The point of the line of sight of (u, v) that lies `depth_m` below the plane, in the axes of the road (x to the
-  /// camera's right, y forward), metres.
-  std::array<double, 2> at(double u, double v, double depth_m) const;
+  /// Where the line of sight of (u, v) meets the plane, in the axes of the road (x to the camera's right, y forward),
+  /// metres.
+  std::array<double, 2> at(double u, double v) const;
 
   /// The direction in the image, a unit vector, of the direction on the road that leaves (u, v) at `angle_rad` from x
   /// towards y.
   std::array<double, 2> image_direction(double u, double v, double angle_rad) const;
 
  private:
-  std::array<double, 3> point(double u, double v, double depth_m) const;
+  std::array<double, 3> point(double u, double v) const;
 
   StereoCalibration calibration_;
   RoadPlane plane_;

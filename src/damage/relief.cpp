@@ -35,9 +35,8 @@ Relief damage_relief(const DamageMap& map, const Damage& damage, ImageView<const
   constexpr int least_margin_px = 6;
   const PixelBox box = surroundings(map, damage, share, least_margin_px);
   const std::optional<LocalRoad> road = find_local_road(map, damage, disparity, calibration);
-  const double shrink = std::min(1.0, static_cast<double>(most_points) / std::max(box.width(), box.height()));
-  const int columns = std::max(2, static_cast<int>(box.width() * shrink));
-  const int rows = std::max(2, static_cast<int>(box.height() * shrink));
+  const int columns = std::clamp(box.width(), 2, most_points);  // each for itself: a crack keeps its width
+  const int rows = std::clamp(box.height(), 2, most_points);
 
   Relief relief{road.has_value(), Image<float>(columns, rows), Image<float>(columns, rows), Image<float>(columns, rows),
                 Image<std::uint8_t>(columns, rows)};
@@ -48,8 +47,8 @@ Relief damage_relief(const DamageMap& map, const Damage& damage, ImageView<const
       const float depth = map.depth(u, v);
       const bool known = std::isfinite(depth);
       const bool measured = known && (disparity.empty() || std::isfinite(disparity(u, v)));
-      const std::array<double, 2> at = road ? road->at(u, v, known ? static_cast<double>(depth) : 0.0)
-                                            : std::array<double, 2>{static_cast<double>(u), static_cast<double>(-v)};
+      const std::array<double, 2> at =
+          road ? road->at(u, v) : std::array<double, 2>{static_cast<double>(u), static_cast<double>(-v)};
       relief.x(column, row) = static_cast<float>(at[0]);
       relief.y(column, row) = static_cast<float>(at[1]);
       relief.depth(column, row) = depth;

@@ -148,7 +148,9 @@ std::string picture_uri(std::span<const std::uint8_t> encoded, int most_side) {
 Crop crop_around(const DamageMap& map, const Damage& damage, int most_side) {
   constexpr double share = 0.25;
   constexpr int least_margin_px = 8;
-  const PixelBox box = surroundings(map, damage, share, least_margin_px);
+  const auto& [u0, v0, u1, v1] = damage.box_px;
+  const int longer = std::max(u1 - u0, v1 - v0) + 1;  // a thin one still shows what is around it
+  const PixelBox box = surroundings(map, damage, share, std::max(least_margin_px, longer / 8));
   const double scale = std::min(1.0, static_cast<double>(most_side) / std::max(box.width(), box.height()));
   return {box, {std::max(1, cvRound(scale * box.width())), std::max(1, cvRound(scale * box.height()))}};
 }

@@ -90,18 +90,18 @@ std::string y_ticks(const Axis& y, double unit) {
   return marks;
 }
 
-/// The range of depths with 0 in it and room at either end.
+/// The range of depths with 0 in it and room at either end, the label's included.
 Axis depth_axis(const CrossSection& section) {
-  constexpr double room = 0.1, label_room = 0.06;  // the road's label stands above its line
+  constexpr double room = 0.16;
   Axis y{0, 0, plot_top, plot_bottom};
   for (const double depth : section.filled) {
     if (!std::isfinite(depth)) continue;
     y.lowest = std::min(y.lowest, depth);
     y.highest = std::max(y.highest, depth);
   }
-  const double span = std::max(y.highest - y.lowest, 1e-6);
-  y.lowest -= (room + label_room) * span;
-  y.highest += room * span;
+  const double margin = room * std::max(y.highest - y.lowest, 1e-6);
+  y.lowest -= margin;
+  y.highest += margin;
   return y;
 }
 
@@ -133,7 +133,8 @@ std::string profile_svg(const CrossSection& section, const Damage& damage, bool 
   fields["interpolated"] = curve_path(section, section.filled, x, y);
   fields["measured"] = curve_path(section, section.depth, x, y);
   fields["road"] = place_text(y.place(0));
-  fields["road_label"] = place_text(y.place(0) - 6);
+  const bool rises = damage.kind == DamageKind::protrusion;  // the label stands on the other side of the line
+  fields["road_label"] = place_text(y.place(0) + (rises ? 15 : -6));
   fields["deepest"] = deepest_mark(section, damage, x, y);
   fields["kind"] = name_of(damage.kind);
   fields["x_label"] = section.metric ? std::string("along the road, ") + (metres ? "m" : "mm") : "along the image, px";
