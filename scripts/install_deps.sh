@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs with apt what the build needs and is missing, and says what that is. Debian 12, Ubuntu 22.04 or later.
 #   scripts/install_deps.sh            compiler, CMake, libraries
-#   scripts/install_deps.sh --checks   also what the format, tidy and aarch64 checks need
+#   scripts/install_deps.sh --checks   also what the format, tidy and aarch64 checks and the tests in a browser need
 set -euo pipefail
 
 packages=(build-essential cmake ninja-build pkg-config
@@ -9,7 +9,8 @@ packages=(build-essential cmake ninja-build pkg-config
           libgtest-dev libbenchmark-dev)
 case "${1:-}" in
   "") ;;
-  --checks) packages+=(clang-format-14 clang-tidy g++-aarch64-linux-gnu qemu-user googletest) ;;
+  --checks) packages+=(clang-format-14 clang-tidy g++-aarch64-linux-gnu qemu-user googletest
+                       chromium chromium-driver python3-selenium) ;;
   *) echo "usage: $0 [--checks]" >&2; exit 2 ;;
 esac
 

@@ -75,7 +75,7 @@ double open_share(const Image<std::uint8_t>& region, const Box& box) {
   return rim > 0 ? open / rim : 0;
 }
 
-Surroundings surroundings_of(const Candidate& candidate, const Relief& relief, const Image<std::uint8_t>& road,
+Surroundings surroundings_of(const Candidate& candidate, const DepthCells& relief, const Image<std::uint8_t>& road,
                              const Image<std::uint8_t>& taken) {
   constexpr double half = 0.5;
   constexpr float hollow = 10;  // standard deviations: the bowl around a pothole is no deeper
@@ -105,7 +105,7 @@ Surroundings surroundings_of(const Candidate& candidate, const Relief& relief, c
 
 class Search {
  public:
-  Search(const Relief& relief, const Image<std::uint8_t>& road, const Thresholds& thresholds, const Witness& witness,
+  Search(const DepthCells& relief, const Image<std::uint8_t>& road, const Thresholds& thresholds, const Witness& witness,
          DamageKind kind)
       : relief_(relief), road_(road), thresholds_(thresholds), witness_(witness), kind_(kind), depth_(relief.depth) {
     if (kind == DamageKind::protrusion) turn_over();
@@ -225,7 +225,7 @@ class Search {
     return true;
   }
 
-  const Relief& relief_;
+  const DepthCells& relief_;
   const Image<std::uint8_t>& road_;
   const Thresholds& thresholds_;
   const Witness& witness_;
@@ -236,7 +236,7 @@ class Search {
 
 }  // namespace
 
-std::vector<Candidate> find_candidates(const Relief& relief, const Image<std::uint8_t>& road,
+std::vector<Candidate> find_candidates(const DepthCells& relief, const Image<std::uint8_t>& road,
                                        const Thresholds& thresholds, const Witness& witness, bool protrusions) {
   std::vector<Candidate> found;
   Image<std::uint8_t> taken(relief.depth.width(), relief.depth.height(), 0);

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "damage/connected_regions.hpp"
-#include "damage/relief.hpp"
+#include "damage/depth_cells.hpp"
 #include "roadstereo/damage.hpp"
 
 namespace roadstereo {
@@ -33,7 +33,7 @@ struct Witness {
 };
 
 /// Regions that depart from the road by more than the thresholds and that the road surrounds, deepest first.
-std::vector<Candidate> find_candidates(const Relief& relief, const Image<std::uint8_t>& road,
+std::vector<Candidate> find_candidates(const DepthCells& relief, const Image<std::uint8_t>& road,
                                        const Thresholds& thresholds, const Witness& witness, bool protrusions);
 
 }  // namespace roadstereo

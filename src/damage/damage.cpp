@@ -9,7 +9,7 @@
 #include "damage/candidates.hpp"
 #include "damage/cells.hpp"
 #include "damage/measurement.hpp"
-#include "damage/relief.hpp"
+#include "damage/depth_cells.hpp"
 #include "damage/road_region.hpp"
 #include "damage/road_surface.hpp"
 #include "roadstereo/error.hpp"
@@ -58,7 +58,7 @@ void find_road(const Cells& cells, const SurfaceCoordinates& coordinates, RoadSu
 }
 
 /// Depth that counts at each cell: standard errors, or metres where they are more.
-Thresholds make_thresholds(const Relief& relief, const SurfaceCoordinates& coordinates, const Cells& cells,
+Thresholds make_thresholds(const DepthCells& relief, const SurfaceCoordinates& coordinates, const Cells& cells,
                            const DamageInput& input, const DamageOptions& options, bool metric) {
   Thresholds thresholds;
   const auto noise = static_cast<float>(options.threshold_sigma * relief.noise);
@@ -116,7 +116,7 @@ DamageMap find_damage(const DamageInput& input, const DamageOptions& options, in
   RoadSurface surface;
   Image<std::uint8_t> road;
   find_road(cells, coordinates, surface, road);
-  const Relief relief = make_relief(cells, surface);
+  const DepthCells relief = make_depth_cells(cells, surface);
   DamageMap result;
   result.unmetric_reason = missing_for_metres(input);
   result.metric = result.unmetric_reason.empty();

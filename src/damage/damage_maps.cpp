@@ -53,7 +53,7 @@ void paint_candidate(const Segmentation& found, const Candidate& candidate, std:
   }
 }
 
-/// Relief with the islands and gaps inside the damages replaced by what surrounds them.
+/// DepthCells with the islands and gaps inside the damages replaced by what surrounds them.
 Image<float> relief_without_islands(const Segmentation& found) {
   Image<float> depth = found.relief.depth;
   Image<std::uint8_t> known = found.relief.known;

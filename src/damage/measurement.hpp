@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "damage/candidates.hpp"
-#include "damage/relief.hpp"
+#include "damage/depth_cells.hpp"
 #include "damage/road_surface.hpp"
 
 namespace roadstereo {
@@ -13,7 +13,7 @@ struct Segmentation {
   const Cells& cells;
   const RoadSurface& surface;
   const Image<std::uint8_t>& road;
-  const Relief& relief;
+  const DepthCells& relief;
   std::vector<Candidate> candidates;
 };
 

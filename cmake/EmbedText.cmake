@@ -1,0 +1,22 @@
+# embed_text(<target> <namespace> <header> (<name> <file>)...): each file as `const std::string_view name` in the
+# namespace, declared by the header and compiled into the target. Done when CMake runs; a change of a file makes it run.
+function(embed_text target namespace header)
+  set(text "#include \"${header}\"\n\nnamespace ${namespace} {\n")
+  while(ARGN)
+    list(POP_FRONT ARGN name file)
+    set(path "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
+    file(READ "${path}" content)
+    string(APPEND text "\nconst std::string_view ${name} = R\"embedded(${content})embedded\";\n")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${path}")
+  endwhile()
+  string(APPEND text "\n}  // namespace ${namespace}\n")
+  set(generated "${CMAKE_CURRENT_BINARY_DIR}/${target}_embedded.cpp")
+  set(old "")
+  if(EXISTS "${generated}")
+    file(READ "${generated}" old)
+  endif()
+  if(NOT old STREQUAL text)  # an equal file keeps its time, so that nothing is compiled anew
+    file(WRITE "${generated}" "${text}")
+  endif()
+  target_sources(${target} PRIVATE "${generated}")
+endfunction()

@@ -1,0 +1,110 @@
+#include "io/damage_columns.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "io/damage_colours.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+DamageValue number(double value) {
+  if (!std::isfinite(value)) return std::monostate{};
+  return value;
+}
+
+DamageValue count(std::size_t value) {
+  return static_cast<std::int64_t>(value);
+}
+
+template <auto Member>
+DamageValue metric(const Damage& damage) {
+  if (!damage.metrics) return std::monostate{};
+  return number((*damage.metrics).*Member);
+}
+
+template <auto Member>
+DamageValue metric_value(const Damage& damage) {
+  if (!damage.metrics) return std::monostate{};
+  return number(((*damage.metrics).*Member).value);
+}
+
+template <auto Member>
+DamageValue metric_error(const Damage& damage) {
+  if (!damage.metrics) return std::monostate{};
+  return number(((*damage.metrics).*Member).std_error);
+}
+
+template <auto Member, std::size_t Index>
+DamageValue metric_part(const Damage& damage) {
+  if (!damage.metrics) return std::monostate{};
+  return number(((*damage.metrics).*Member)[Index]);
+}
+
+template <auto Member, std::size_t Index>
+DamageValue pixel(const Damage& damage) {
+  return static_cast<std::int64_t>((damage.*Member)[Index]);
+}
+
+std::vector<DamageColumn> identity_columns() {
+  return {{"id", [](const Damage& d) -> DamageValue { return std::int64_t{d.id}; }},
+          {"kind", [](const Damage& d) -> DamageValue { return std::string(name_of(d.kind)); }},
+          {"severity", [](const Damage& d) -> DamageValue { return std::string(name_of(severity_of(d))); }}};
+}
+
+std::vector<DamageColumn> metric_columns() {
+  using M = DamageMetrics;
+  return {{"area_m2", metric_value<&M::area_m2>},
+          {"area_m2_stderr", metric_error<&M::area_m2>},
+          {"max_depth_m", metric_value<&M::max_depth_m>},
+          {"max_depth_m_stderr", metric_error<&M::max_depth_m>},
+          {"mean_depth_m", metric_value<&M::mean_depth_m>},
+          {"mean_depth_m_stderr", metric_error<&M::mean_depth_m>},
+          {"volume_m3", metric_value<&M::volume_m3>},
+          {"volume_m3_stderr", metric_error<&M::volume_m3>},
+          {"length_m", metric<&M::length_m>},
+          {"width_m", metric<&M::width_m>},
+          {"angle_deg",
+           [](const Damage& d) -> DamageValue {
+             if (!d.metrics) return std::monostate{};
+             return number(d.metrics->angle_rad * 180 / std::numbers::pi);
+           }},
+          {"diameter_m", metric<&M::diameter_m>},
+          {"centroid_x_m", metric_part<&M::centroid_m, 0>},
+          {"centroid_y_m", metric_part<&M::centroid_m, 1>},
+          {"centroid_z_m", metric_part<&M::centroid_m, 2>},
+          {"road_x_m", metric_part<&M::road_centroid_m, 0>},
+          {"road_y_m", metric_part<&M::road_centroid_m, 1>},
+          {"distance_m", metric<&M::distance_m>},
+          {"resolvable_depth_m", metric<&M::resolvable_depth_m>}};
+}
+
+std::vector<DamageColumn> pixel_columns() {
+  return {{"pixels", [](const Damage& d) { return count(d.pixels); }},
+          {"measured_share", [](const Damage& d) { return number(d.measured_share); }},
+          {"centroid_u_px", [](const Damage& d) { return number(d.centroid_px[0]); }},
+          {"centroid_v_px", [](const Damage& d) { return number(d.centroid_px[1]); }},
+          {"box_u0_px", pixel<&Damage::box_px, 0>},
+          {"box_v0_px", pixel<&Damage::box_px, 1>},
+          {"box_u1_px", pixel<&Damage::box_px, 2>},
+          {"box_v1_px", pixel<&Damage::box_px, 3>},
+          {"deepest_u_px", pixel<&Damage::deepest_px, 0>},
+          {"deepest_v_px", pixel<&Damage::deepest_px, 1>},
+          {"max_depth_px", [](const Damage& d) { return number(d.max_depth_px.value); }},
+          {"max_depth_px_stderr", [](const Damage& d) { return number(d.max_depth_px.std_error); }},
+          {"mean_depth_px", [](const Damage& d) { return number(d.mean_depth_px); }},
+          {"cut_by_border", [](const Damage& d) -> DamageValue { return d.cut_by_border; }}};
+}
+
+}  // namespace
+
+const std::vector<DamageColumn>& damage_columns() {
+  static const std::vector<DamageColumn> columns = [] {
+    std::vector<DamageColumn> all = identity_columns();
+    for (const auto& part : {metric_columns(), pixel_columns()}) all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }();
+  return columns;
+}
+
+}  // namespace roadstereo::io

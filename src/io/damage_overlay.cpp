@@ -1,0 +1,141 @@
+#include "roadstereo/io/damage_overlay.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "io/damage_colours.hpp"
+#include "io/drawing.hpp"
+#include "io/frame_mat.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/image_file.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+const cv::Scalar dark{20, 20, 20};
+
+cv::Scalar bgr(const Rgb& colour) {
+  return {static_cast<double>(colour[2]), static_cast<double>(colour[1]), static_cast<double>(colour[0])};
+}
+
+cv::Scalar colour_of(const Damage& damage) {
+  return bgr(damage_colour(damage.kind, severity_of(damage)));
+}
+
+std::string label_of(const Damage& damage) {
+  const bool metric = damage.metrics.has_value();
+  const double depth = metric ? damage.metrics->max_depth_m.value * 1000 : damage.max_depth_px.value;
+  const std::string sign = damage.kind == DamageKind::protrusion ? "+" : "";
+  return std::to_string(damage.id) + ": " + sign +
+         number_text(std::abs(depth), metric ? 0 : (std::abs(depth) < 1 ? 2 : 1)) + (metric ? " mm" : " px");
+}
+
+cv::Rect box_of(const Damage& damage) {
+  const auto& [u0, v0, u1, v1] = damage.box_px;
+  return {cv::Point(u0, v0), cv::Point(u1 + 1, v1 + 1)};
+}
+
+/// Outlines of the region in the image's pixels; holes have theirs.
+std::vector<std::vector<cv::Point>> outlines(const DamageMap& map, const Damage& damage) {
+  const cv::Rect box = box_of(damage);
+  cv::Mat mask(box.height, box.width, CV_8UC1);
+  for (int v = 0; v < box.height; ++v) {
+    for (int u = 0; u < box.width; ++u) {
+      mask.at<std::uint8_t>(v, u) = map.ids(box.x + u, box.y + v) == damage.id ? 255 : 0;
+    }
+  }
+  std::vector<std::vector<cv::Point>> contours;
+  cv::findContours(mask, contours, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE, box.tl());
+  return contours;
+}
+
+/// Puts labels next to boxes where no label is yet.
+class LabelPlaces {
+ public:
+  LabelPlaces(cv::Size picture, int gap) : picture_(picture), gap_(gap) {}
+
+  cv::Rect take(const cv::Rect& box, cv::Size label) {
+    cv::Rect best;
+    int least = std::numeric_limits<int>::max();
+    for (const cv::Rect& place : candidates(box, label)) {
+      const int covered = overlap(place);
+      if (covered < least) best = place;
+      least = std::min(least, covered);
+    }
+    taken_.push_back(best);
+    return best;
+  }
+
+ private:
+  /// Above, below, right, left, in the middle; then further up and down.
+  std::vector<cv::Rect> candidates(const cv::Rect& box, cv::Size label) const {
+    const int x = box.x + (box.width - label.width) / 2, y = box.y + (box.height - label.height) / 2;
+    const int above = box.y - gap_ - label.height, below = box.br().y + gap_;
+    std::vector<cv::Point> corners{
+        {x, above}, {x, below}, {box.br().x + gap_, y}, {box.x - gap_ - label.width, y}, {x, y}};
+    constexpr int further = 4;
+    for (int i = 1; i <= further; ++i) {
+      corners.emplace_back(x, above - i * (label.height + gap_));
+      corners.emplace_back(x, below + i * (label.height + gap_));
+    }
+    std::vector<cv::Rect> places;
+    places.reserve(corners.size());
+    for (const cv::Point& corner : corners) places.push_back(inside({corner, label}));
+    return places;
+  }
+
+  cv::Rect inside(cv::Rect place) const {
+    place.x = std::clamp(place.x, gap_, std::max(gap_, picture_.width - place.width - gap_));
+    place.y = std::clamp(place.y, gap_, std::max(gap_, picture_.height - place.height - gap_));
+    return place;
+  }
+
+  int overlap(const cv::Rect& place) const {
+    int area = 0;
+    for (const cv::Rect& other : taken_) area += (place & other).area();
+    return area;
+  }
+
+  cv::Size picture_;
+  int gap_;
+  std::vector<cv::Rect> taken_;
+};
+
+void put_haloed(cv::Mat& picture, const std::string& text, cv::Point at, int height, const cv::Scalar& colour) {
+  const int reach = std::max(1, height / 7);
+  for (const int dy : {-reach, 0, reach}) {
+    for (const int dx : {-reach, 0, reach}) put_text(picture, text, at + cv::Point(dx, dy), height, dark);
+  }
+  put_text(picture, text, at, height, colour);
+}
+
+}  // namespace
+
+Frame damage_overlay(const FrameView& picture, const DamageMap& map) {
+  if (picture.width != map.ids.width() || picture.height != map.ids.height()) {
+    fail("the picture has ", picture.width, "×", picture.height, " pixels, but the map of damages has ",
+         map.ids.width(), "×", map.ids.height());
+  }
+  cv::Mat canvas = to_bgr(picture, find_white_level(picture, picture));
+  const int letters = text_height_for(std::min(canvas.rows, canvas.cols));
+  const int line = std::max(1, cvRound(letters / 7.0));
+  for (const Damage& damage : map.damages) {
+    const auto contours = outlines(map, damage);
+    cv::polylines(canvas, contours, true, dark, line + std::max(2, line), cv::LINE_AA);
+    cv::polylines(canvas, contours, true, colour_of(damage), line, cv::LINE_AA);
+  }
+  LabelPlaces places(canvas.size(), line + 2);
+  const cv::Scalar white{255, 255, 255};
+  for (const Damage& damage : map.damages) {
+    const std::string text = label_of(damage);
+    const int width = text_width(text, letters);
+    const cv::Rect place = places.take(box_of(damage), {width + 2 * line, letters + letters / 2});
+    put_haloed(canvas, text, {place.x + line, place.y + letters + letters / 4}, letters, white);
+  }
+  return frame_from(canvas, ChannelOrder::bgr);
+}
+
+}  // namespace roadstereo::io

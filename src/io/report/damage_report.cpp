@@ -1,0 +1,129 @@
+#include "roadstereo/io/damage_report.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/damage_colours.hpp"
+#include "io/frame_mat.hpp"
+#include "io/panels.hpp"
+#include "io/report/damage_section.hpp"
+#include "io/report/list.hpp"
+#include "io/report/markup.hpp"
+#include "io/report/pictures.hpp"
+#include "io/report/summary.hpp"
+#include "io/report/templates.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/damage_overlay.hpp"
+#include "roadstereo/io/image_file.hpp"
+#include "roadstereo/version.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+void require_size(const DamageMap& map, const char* what, int width, int height) {
+  if (width == map.ids.width() && height == map.ids.height()) return;
+  fail(what, " has ", width, "×", height, " pixels, but the map of damages has ", map.ids.width(), "×",
+       map.ids.height());
+}
+
+void validate(const DamageReportInput& input) {
+  const DamageMap& map = input.map;
+  if (input.left.data != nullptr) require_size(map, "the left image", input.left.width, input.left.height);
+  for (const auto& view : {input.disparity, input.transformed}) {
+    if (!view.empty()) require_size(map, "a disparity map", view.width(), view.height());
+  }
+}
+
+cv::Mat background_of(const DamageReportInput& input) {
+  validate(input);
+  if (input.left.data != nullptr) return to_bgr(input.left, find_white_level(input.left, input.left));
+  const ImageView<const float> map = input.transformed;
+  if (map.empty()) return colour_pixels(input.map.depth, spread_scale(input.map.depth, ""));
+  const std::vector<double> road = percentiles(input.map.surface, {50});
+  return colour_pixels(map, road.empty() ? spread_scale(map, "") : transformed_scale(map, road.front()));
+}
+
+std::string figure(const std::string& id, const std::string& title, const std::string& picture,
+                   const std::string& text) {
+  return fill(templates::figure, {{"id", id}, {"title", title}, {"picture", picture}, {"text", text}});
+}
+
+std::string sheet_figure(const DamageReportInput& input) {
+  constexpr int most_side = 1700;
+  if (input.sheet.empty()) return "";
+  return figure("sheet", "Result sheet", picture_uri(input.sheet, most_side),
+                "Left image, disparity, transformed disparity (the intact road is flat) and v-disparity histogram.");
+}
+
+std::string overlay_figure(const DamageReportInput& input) {
+  constexpr int most_side = 1400;
+  if (input.map.damages.empty()) return "";
+  const Frame overlay = damage_overlay(damage_background(input).view(), input.map);
+  return figure("overlay", "Where the damage is", picture_uri(mat_over(overlay.view()), most_side),
+                input.map.metric
+                    ? "Every damage with its number and largest depth, coloured by severity; + is above the road."
+                    : "Every damage with its number and largest change of disparity; + is above the road.");
+}
+
+std::string sections(const DamageReportInput& input) {
+  const std::vector<Damage>& damages = input.map.damages;
+  if (damages.empty()) return "";
+  const cv::Mat background = background_of(input);
+  const SectionSize size = SectionSize::for_count(damages.size());
+  std::string html = "<h2>Each damage</h2>\n";
+  if (damages.size() > most_reliefs) {
+    html += "<p class=\"hint\">The " + std::to_string(most_reliefs) + " deepest of the " +
+            std::to_string(damages.size()) + " damages have a 3-D view.</p>\n";
+  }
+  for (std::size_t i = 0; i < damages.size(); ++i) {
+    html += damage_section(input, background, damages[i], size, i < most_reliefs);
+  }
+  return html;
+}
+
+/// The colours of depths for the scripts, from above the road to below it.
+std::string palette_json() {
+  constexpr int steps = 65;
+  const cv::Mat ramp = depth_ramp(steps);
+  nlohmann::json colours = nlohmann::json::array();
+  for (int i = 0; i < steps; ++i) {
+    const auto& bgr = ramp.at<cv::Vec3b>(i);
+    colours.push_back({bgr[2], bgr[1], bgr[0]});
+  }
+  return colours.dump();
+}
+
+std::string ramp_uri() {
+  constexpr int steps = 128;
+  return picture_uri(depth_ramp(steps), steps);
+}
+
+}  // namespace
+
+Frame damage_background(const DamageReportInput& input) {
+  return frame_from(background_of(input), ChannelOrder::bgr);
+}
+
+std::string damage_report(const DamageReportInput& input) {
+  validate(input);
+  const DamageMap& map = input.map;
+  Fields fields;
+  fields["title"] = input.title;
+  fields["style"] = std::string(templates::style);
+  fields["colours"] = severity_colours() + ":root{--ramp:url(" + ramp_uri() + ")}";
+  fields["version"] = version;
+  fields["size"] = std::to_string(map.ids.width()) + " × " + std::to_string(map.ids.height()) + " px";
+  fields["notices"] = summary_notices(map);
+  fields["cards"] = summary_cards(map);
+  fields["facts"] = fact_list(input.facts);
+  fields["sheet"] = sheet_figure(input);
+  fields["overlay"] = overlay_figure(input);
+  fields["list"] = damage_list(map);
+  fields["legend"] = map.metric && !map.damages.empty() ? severity_legend() : "";
+  fields["damages"] = sections(input);
+  fields["palette"] = palette_json();
+  fields["scripts"] = std::string(templates::sorting) + std::string(templates::relief3d);
+  return fill(templates::report, fields);
+}
+
+}  // namespace roadstereo::io

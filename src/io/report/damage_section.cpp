@@ -1,0 +1,132 @@
+#include "io/report/damage_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "io/damage_colours.hpp"
+#include "io/drawing.hpp"
+#include "io/report/figures.hpp"
+#include "io/report/markup.hpp"
+#include "io/report/pictures.hpp"
+#include "io/report/profile.hpp"
+#include "io/report/relief_view.hpp"
+#include "io/report/templates.hpp"
+#include "roadstereo/cross_section.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+constexpr double mm = 1000;      // in a metre
+constexpr double litres = 1000;  // in a cubic metre
+constexpr double degrees = 180 / std::numbers::pi;
+
+std::string pair_text(double first, double second, int decimals, const std::string& unit) {
+  return "(" + number_text(first, decimals) + ", " + number_text(second, decimals) + ")\u00a0" + unit;
+}
+
+Facts metric_facts(const Damage& damage, const DamageMetrics& metrics) {
+  const bool rises = damage.kind == DamageKind::protrusion;
+  return {{rises ? "largest height" : "largest depth", measured_text(scaled(metrics.max_depth_m, mm), "mm")},
+          {rises ? "mean height" : "mean depth", measured_text(scaled(metrics.mean_depth_m, mm), "mm")},
+          {"area", measured_text(metrics.area_m2, "m²")},
+          {"volume", measured_text(scaled(metrics.volume_m3, litres), "L")},
+          {"length × width", value_text(metrics.length_m, "") + " × " + value_text(metrics.width_m, "m")},
+          {"long side's angle", number_text(metrics.angle_rad * degrees, 0) + "°"},
+          {"mean diameter", value_text(metrics.diameter_m, "m")},
+          {"on the road (x, y)", pair_text(metrics.road_centroid_m[0], metrics.road_centroid_m[1], 2, "m")},
+          {"distance", value_text(metrics.distance_m, "m")},
+          {"resolvable depth", value_text(metrics.resolvable_depth_m * mm, "mm")}};
+}
+
+Facts facts_of(const Damage& damage) {
+  Facts facts;
+  if (damage.metrics) facts = metric_facts(damage, *damage.metrics);
+  facts.emplace_back("largest disparity change", measured_text(damage.max_depth_px, "px"));
+  facts.emplace_back("centre (u, v)", pair_text(damage.centroid_px[0], damage.centroid_px[1], 0, "px"));
+  facts.emplace_back("seen as", std::to_string(damage.pixels) + "\u00a0px");
+  facts.emplace_back("measured", number_text(100 * damage.measured_share, 0) + "\u00a0%");
+  return facts;
+}
+
+std::string facts_html(const Facts& facts) {
+  std::string html;
+  for (const auto& [name, value] : facts) {
+    html += "<div><dt>" + escaped(name) + "</dt><dd>" + escaped(value) + "</dd></div>";
+  }
+  return html;
+}
+
+/// The largest depth of the region, either way: where the colours end.
+double reach_of(const DamageMap& map, const Damage& damage) {
+  const auto& [u0, v0, u1, v1] = damage.box_px;
+  double reach = 1e-6;
+  for (int v = v0; v <= v1; ++v) {
+    for (int u = u0; u <= u1; ++u) {
+      const double depth = std::abs(static_cast<double>(map.depth(u, v)));
+      if (map.ids(u, v) == damage.id && std::isfinite(depth)) reach = std::max(reach, depth);
+    }
+  }
+  return reach;
+}
+
+/// Numbers beside the colours, −reach at the top.
+std::string scale_html(double reach) {
+  constexpr int most = 7;
+  const Ticks ticks = round_ticks(-reach, reach, most);
+  std::string html;
+  for (const double value : ticks.values) {
+    html += "<span style=\"top:" + number_text(50 * (value + reach) / reach, 1) + "%\">" +
+            number_text(value, ticks.decimals) + "</span>";
+  }
+  return html;
+}
+
+/// The map whose NaN are the holes.
+ImageView<const float> holes_of(const DamageReportInput& input) {
+  return input.disparity.empty() ? input.transformed : input.disparity;
+}
+
+/// The rig, where there are disparities that it can turn into points.
+std::optional<StereoCalibration> rig_of(const DamageReportInput& input) {
+  return input.disparity.empty() ? std::nullopt : input.calibration;
+}
+
+}  // namespace
+
+SectionSize SectionSize::for_count(std::size_t damages) {
+  constexpr std::size_t few = 10;
+  if (damages <= few) return {480, 120};
+  return damages <= most_reliefs ? SectionSize{360, 80} : SectionSize{160, 80};
+}
+
+std::string damage_section(const DamageReportInput& input, const cv::Mat& background, const Damage& damage,
+                           const SectionSize& size, bool with_relief) {
+  const DamageMap& map = input.map;
+  const Crop crop = crop_around(map, damage, size.picture_side);
+  const double reach = reach_of(map, damage);
+  const CrossSection section = cross_section(map, damage, holes_of(input), rig_of(input));
+  Fields fields;
+  fields["id"] = std::to_string(damage.id);
+  fields["kind"] = name_of(damage.kind);
+  fields["severity"] = name_of(severity_of(damage));
+  fields["note"] = damage.cut_by_border ? "cut by the image's border: it may be larger than seen" : "";
+  fields["facts"] = facts_html(facts_of(damage));
+  fields["crop"] = crop_svg(background, map, damage, crop);
+  fields["depth"] = depth_svg(map, damage, crop, {holes_of(input), &section, reach});
+  fields["depth_unit"] = map.metric ? "mm" : "px";
+  fields["scale"] = scale_html(map.metric ? reach * mm : reach);
+  fields["profile"] = profile_svg(section, damage, map.metric);
+  fields["relief"] = "";
+  if (with_relief) {
+    const Relief relief = damage_relief(map, damage, holes_of(input), rig_of(input), size.relief_points);
+    fields["relief"] = relief_html(relief, damage, reach);
+  }
+  return fill(templates::damage, fields);
+}
+
+}  // namespace roadstereo::io

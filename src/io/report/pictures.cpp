@@ -1,0 +1,180 @@
+#include "io/report/pictures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+#include <vector>
+
+#include "io/damage_colours.hpp"
+#include "io/drawing.hpp"
+#include "io/panels.hpp"
+#include "io/report/markup.hpp"
+#include "io/report/templates.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+using Mask = Image<std::uint8_t>;
+
+/// The edges between the mask and what is around it, as a path of straight pieces.
+std::string edge_path(const Mask& mask) {
+  const auto at = [&](int u, int v) {
+    return u >= 0 && v >= 0 && u < mask.width() && v < mask.height() && mask(u, v) != 0;
+  };
+  std::string path;
+  const auto add = [&path](int u, int v, char direction, int length) {
+    if (length > 0) path += "M" + std::to_string(u) + " " + std::to_string(v) + direction + std::to_string(length);
+  };
+  for (int v = 0; v <= mask.height(); ++v) {
+    int length = 0;
+    for (int u = 0; u <= mask.width(); ++u) {
+      const bool edge = u < mask.width() && at(u, v) != at(u, v - 1);
+      if (!edge) add(u - length, v, 'h', length);
+      length = edge ? length + 1 : 0;
+    }
+  }
+  for (int u = 0; u <= mask.width(); ++u) {
+    int length = 0;
+    for (int v = 0; v <= mask.height(); ++v) {
+      const bool edge = v < mask.height() && at(u, v) != at(u - 1, v);
+      if (!edge) add(u, v - length, 'v', length);
+      length = edge ? length + 1 : 0;
+    }
+  }
+  return path;
+}
+
+/// The mask's pixels as a path of bars along the rows.
+std::string area_path(const Mask& mask) {
+  std::ostringstream path;
+  for (int v = 0; v < mask.height(); ++v) {
+    int length = 0;
+    for (int u = 0; u <= mask.width(); ++u) {
+      const bool on = u < mask.width() && mask(u, v) != 0;
+      if (!on && length > 0) path << 'M' << u - length << ' ' << v << 'h' << length << "v1h-" << length << 'z';
+      length = on ? length + 1 : 0;
+    }
+  }
+  return path.str();
+}
+
+/// A mask over the crop's scaled pixels of what holds at the nearest pixel of the map.
+template <class Holds>
+Mask crop_mask(const Crop& crop, Holds holds) {
+  Mask mask(crop.size.width, crop.size.height);
+  for (int v = 0; v < mask.height(); ++v) {
+    const int row = crop.box.v0 + v * crop.box.height() / mask.height();
+    for (int u = 0; u < mask.width(); ++u) {
+      mask(u, v) = holds(crop.box.u0 + u * crop.box.width() / mask.width(), row) ? 255 : 0;
+    }
+  }
+  return mask;
+}
+
+std::string outline(const DamageMap& map, const Damage& damage, const Crop& crop) {
+  return edge_path(crop_mask(crop, [&](int u, int v) { return map.ids(u, v) == damage.id; }));
+}
+
+cv::Rect rect_of(const PixelBox& box) {
+  return {box.u0, box.v0, box.width(), box.height()};
+}
+
+Fields crop_fields(const cv::Mat& picture, const DamageMap& map, const Damage& damage, const Crop& crop) {
+  const auto [red, green, blue] = damage_colour(damage.kind, severity_of(damage));
+  return {{"width", std::to_string(crop.size.width)},
+          {"height", std::to_string(crop.size.height)},
+          {"ratio", number_text(static_cast<double>(crop.size.width) / crop.size.height, 3)},
+          {"picture", picture_uri(picture, std::max(crop.size.width, crop.size.height))},
+          {"outline", outline(map, damage, crop)},
+          {"colour", "rgb(" + std::to_string(red) + "," + std::to_string(green) + "," + std::to_string(blue) + ")"},
+          {"id", std::to_string(damage.id)}};
+}
+
+/// The line of a cross-section.
+std::string cut_path(const CrossSection& section, const Crop& crop) {
+  const double scale = static_cast<double>(crop.size.width) / crop.box.width();
+  const auto place = [&](const std::array<int, 2>& pixel) {
+    return number_text((pixel[0] - crop.box.u0 + 0.5) * scale, 1) + " " +
+           number_text((pixel[1] - crop.box.v0 + 0.5) * scale, 1);
+  };
+  return "M" + place(section.pixel.front()) + "L" + place(section.pixel.back());
+}
+
+/// Height above the road, so that the colours of transformed maps (red below) hold.
+Image<float> heights(const DamageMap& map, const PixelBox& box) {
+  Image<float> part(box.width(), box.height());
+  for (int v = 0; v < box.height(); ++v) {
+    const float* const row = map.depth.row(box.v0 + v) + box.u0;
+    std::transform(row, row + box.width(), part.row(v), [](float depth) { return -depth; });
+  }
+  return part;
+}
+
+cv::Mat shrunk(const cv::Mat& picture, int most_side) {
+  const int longer = std::max(picture.cols, picture.rows);
+  if (longer <= most_side) return picture;
+  const double scale = static_cast<double>(most_side) / longer;
+  cv::Mat small;
+  const cv::Size size(std::max(1, cvRound(scale * picture.cols)), std::max(1, cvRound(scale * picture.rows)));
+  cv::resize(picture, small, size, 0, 0, cv::INTER_AREA);
+  return small;
+}
+
+}  // namespace
+
+std::string picture_uri(const cv::Mat& picture, int most_side) {
+  constexpr int quality = 88;
+  const cv::Mat small = shrunk(picture, most_side);
+  std::vector<std::uint8_t> jpeg, png;
+  if (!cv::imencode(".jpg", small, jpeg, {cv::IMWRITE_JPEG_QUALITY, quality}) || !cv::imencode(".png", small, png)) {
+    fail<SystemError>("a picture of the report could not be encoded");
+  }
+  if (png.size() < jpeg.size()) return "data:image/png;base64," + base64(png);
+  return "data:image/jpeg;base64," + base64(jpeg);
+}
+
+std::string picture_uri(std::span<const std::uint8_t> encoded, int most_side) {
+  const std::vector<std::uint8_t> bytes(encoded.begin(), encoded.end());
+  const cv::Mat picture = cv::imdecode(bytes, cv::IMREAD_COLOR);
+  if (picture.empty()) fail("the sheet for the report, ", encoded.size(), " bytes, is not a PNG or JPEG picture");
+  return picture_uri(picture, most_side);
+}
+
+Crop crop_around(const DamageMap& map, const Damage& damage, int most_side) {
+  constexpr double share = 0.25;
+  constexpr int least_margin_px = 8;
+  const auto& [u0, v0, u1, v1] = damage.box_px;
+  const int longer = std::max(u1 - u0, v1 - v0) + 1;  // a thin one still shows what is around it
+  const PixelBox box = surroundings(map, damage, share, std::max(least_margin_px, longer / 8));
+  const double scale = std::min(1.0, static_cast<double>(most_side) / std::max(box.width(), box.height()));
+  return {box, {std::max(1, cvRound(scale * box.width())), std::max(1, cvRound(scale * box.height()))}};
+}
+
+std::string crop_svg(const cv::Mat& picture, const DamageMap& map, const Damage& damage, const Crop& crop) {
+  return fill(templates::crop, crop_fields(picture(rect_of(crop.box)), map, damage, crop));
+}
+
+std::string depth_svg(const DamageMap& map, const Damage& damage, const Crop& crop, const DepthMarks& marks) {
+  const ImageView<const float> holes = marks.holes;
+  const cv::Mat colours = colour_pixels(heights(map, crop.box), {-marks.reach, marks.reach, true, ""});
+  Fields fields = crop_fields(colours, map, damage, crop);
+  const Mask interpolated = crop_mask(crop, [&](int u, int v) {
+    return !holes.empty() && std::isfinite(map.depth(u, v)) && !std::isfinite(holes(u, v));
+  });
+  fields["holes"] = area_path(interpolated);
+  fields["cut"] = marks.section == nullptr ? "" : cut_path(*marks.section, crop);
+  return fill(templates::depth, fields);
+}
+
+cv::Mat depth_ramp(int steps) {
+  Image<float> ramp(1, steps);
+  for (int i = 0; i < steps; ++i) ramp(0, i) = 1 - 2 * static_cast<float>(i) / static_cast<float>(steps - 1);
+  return colour_pixels(ramp, {-1, 1, true, ""});
+}
+
+}  // namespace roadstereo::io

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <span>
+#include <string>
+
+#include "roadstereo/cross_section.hpp"
+#include "roadstereo/damage.hpp"
+#include "roadstereo/image.hpp"
+#include "roadstereo/surroundings.hpp"
+
+namespace roadstereo::io {
+
+/// An 8-bit BGR picture as the source of an image: JPEG, or PNG where that is smaller. Larger ones are shrunk to
+/// `most_side` pixels.
+std::string picture_uri(const cv::Mat& picture, int most_side);
+
+/// The same of an encoded picture. Throws Error when it is none.
+std::string picture_uri(std::span<const std::uint8_t> encoded, int most_side);
+
+/// The part of a frame that shows a damage, scaled by a whole-picture factor so that drawings on it stay small.
+struct Crop {
+  PixelBox box;
+  cv::Size size;  ///< pixels of the scaled picture
+};
+Crop crop_around(const DamageMap& map, const Damage& damage, int most_side);
+
+/// The crop of the picture with the damage's outline, as SVG.
+std::string crop_svg(const cv::Mat& picture, const DamageMap& map, const Damage& damage, const Crop& crop);
+
+/// What the picture of depths shows besides them.
+struct DepthMarks {
+  ImageView<const float> holes;           ///< its NaN are hatched
+  const CrossSection* section = nullptr;  ///< its line is drawn
+  double reach = 1;                       ///< depth of the last colour
+};
+
+/// The crop of the depths with outline and marks, as SVG.
+std::string depth_svg(const DamageMap& map, const Damage& damage, const Crop& crop, const DepthMarks& marks);
+
+/// The colours of depths from −reach (above the road) to reach as a picture one pixel wide, top to bottom.
+cv::Mat depth_ramp(int steps);
+
+}  // namespace roadstereo::io

@@ -1,0 +1,76 @@
+#include "io/report/relief_view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "io/report/markup.hpp"
+#include "io/report/templates.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+constexpr double most_steps = 32000;
+constexpr std::int16_t unknown_step = -32768;
+
+/// Values as whole steps, two bytes each, low byte first.
+struct Steps {
+  double step = 1;  ///< what one is worth
+  std::string text;
+};
+
+Steps in_steps(const Image<float>& values) {
+  double largest = 0;
+  const float* const begin = values.row(0);
+  for (const float* at = begin; at != begin + values.pixels(); ++at) {
+    if (std::isfinite(*at)) largest = std::max(largest, static_cast<double>(std::abs(*at)));
+  }
+  const double step = largest > 0 ? largest / most_steps : 1;
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(2 * values.pixels());
+  for (const float* at = begin; at != begin + values.pixels(); ++at) {
+    const auto whole = std::isfinite(*at) ? static_cast<std::int16_t>(std::lround(*at / step)) : unknown_step;
+    const auto bits = static_cast<std::uint16_t>(whole);
+    bytes.push_back(static_cast<std::uint8_t>(bits & 0xffU));
+    bytes.push_back(static_cast<std::uint8_t>(bits >> 8U));
+  }
+  return {step, base64(bytes)};
+}
+
+/// One bit per point, the first point in the lowest bit.
+std::string in_bits(const Image<std::uint8_t>& mask) {
+  std::vector<std::uint8_t> bytes((mask.pixels() + 7) / 8);
+  const std::uint8_t* const begin = mask.row(0);
+  for (std::size_t i = 0; i < mask.pixels(); ++i) {
+    if (begin[i] != 0) bytes[i / 8] = static_cast<std::uint8_t>(bytes[i / 8] | (1U << (i % 8)));
+  }
+  return base64(bytes);
+}
+
+std::string number(double value) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+}  // namespace
+
+std::string relief_html(const Relief& relief, const Damage& damage, double reach) {
+  const Steps x = in_steps(relief.x), y = in_steps(relief.y), depth = in_steps(relief.depth);
+  return fill(templates::relief, {{"id", std::to_string(damage.id)},
+                                  {"columns", std::to_string(relief.depth.width())},
+                                  {"rows", std::to_string(relief.depth.height())},
+                                  {"unit", relief.metric ? "m" : "px"},
+                                  {"reach", number(reach)},
+                                  {"x", x.text},
+                                  {"x_step", number(x.step)},
+                                  {"y", y.text},
+                                  {"y_step", number(y.step)},
+                                  {"depth", depth.text},
+                                  {"depth_step", number(depth.step)},
+                                  {"measured", in_bits(relief.measured)}});
+}
+
+}  // namespace roadstereo::io
