@@ -1,0 +1,241 @@
+#include "evaluate/rigid_registration.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+constexpr int turns = 36;  // starts about the shortest axis; each of them also upside down
+constexpr std::size_t refined_starts = 6;
+constexpr std::size_t ranking_points = 500;
+constexpr std::size_t refined_points = 6000;
+constexpr int ranking_steps = 20;
+constexpr int refining_steps = 80;
+constexpr int polishing_steps = 200;
+constexpr double settled = 1e-7;  // change of a step, of the surface's extent
+
+struct Pose {
+  RigidMotion motion;
+  double rms = 0;
+};
+
+struct Pairs {
+  std::vector<ScanSurface::Nearest> nearest;
+  std::vector<double> sorted;  ///< distances
+};
+
+Pairs find_pairs(const Points& cloud, const ScanSurface& surface, const RigidMotion& motion) {
+  Pairs pairs;
+  pairs.nearest.reserve(cloud.size());
+  pairs.sorted.reserve(cloud.size());
+  for (const Eigen::Vector3d& point : cloud) {
+    pairs.nearest.push_back(surface.nearest(motion(point)));
+    pairs.sorted.push_back(pairs.nearest.back().distance);
+  }
+  std::sort(pairs.sorted.begin(), pairs.sorted.end());
+  return pairs;
+}
+
+std::size_t kept_count(double share, std::size_t points) {
+  return std::max<std::size_t>(3, static_cast<std::size_t>(share * static_cast<double>(points)));
+}
+
+double trimmed_rms(const Pairs& pairs, double share) {
+  const std::size_t kept = kept_count(share, pairs.sorted.size());
+  double squares = 0;
+  for (std::size_t i = 0; i < kept; ++i) squares += pairs.sorted[i] * pairs.sorted[i];
+  return std::sqrt(squares / static_cast<double>(kept));
+}
+
+/// The motion that brings the points closest to their partners, over the nearest share of them, in closed form.
+RigidMotion fit_points(const Points& cloud, const ScanSurface& surface, const Pairs& pairs, double share) {
+  const double limit = pairs.sorted[kept_count(share, pairs.sorted.size()) - 1];
+  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  double count = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (pairs.nearest[i].distance > limit) continue;
+    const Eigen::Vector3d& partner = surface.points()[pairs.nearest[i].index];
+    from += cloud[i];
+    to += partner;
+    products += cloud[i] * partner.transpose();
+    count += 1;
+  }
+  const Eigen::Matrix3d covariance = products - from * to.transpose() / count;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const bool mirrored = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0;
+  const Eigen::Vector3d signs(1, 1, mirrored ? -1 : 1);
+  RigidMotion motion;
+  motion.rotation = svd.matrixV() * signs.asDiagonal() * svd.matrixU().transpose();
+  motion.translation = (to - motion.rotation * from) / count;
+  return motion;
+}
+
+/// How far a step moves the points of a cloud, at the most.
+double step_length(const RigidMotion& before, const RigidMotion& after, const Eigen::Vector3d& centre, double extent) {
+  return (after(centre) - before(centre)).norm() + (after.rotation - before.rotation).norm() * extent;
+}
+
+Pose fit_by_points(const Points& cloud, const ScanSurface& surface, Pose pose, double share, int steps) {
+  const MainAxes axes = main_axes(cloud);
+  const double extent = axes.spread[0];
+  for (int step = 0; step < steps; ++step) {
+    const RigidMotion next = fit_points(cloud, surface, find_pairs(cloud, surface, pose.motion), share);
+    const double length = step_length(pose.motion, next, axes.centre, extent);
+    pose.motion = next;
+    if (length < settled * extent) break;
+  }
+  pose.rms = trimmed_rms(find_pairs(cloud, surface, pose.motion), share);
+  return pose;
+}
+
+/// A surface with its normals.
+struct Planes {
+  const ScanSurface& surface;
+  const Points& normals;
+};
+
+/// Tukey's weight of a distance.
+double tukey_weight(double distance, double scale) {
+  constexpr double reach = 4.685;
+  const double share = distance / (reach * scale);
+  return share < 1 ? (1 - share * share) * (1 - share * share) : 0;
+}
+
+/// One step of Gauss and Newton on the distances to the planes of the nearest points, about the cloud's place.
+RigidMotion step_to_planes(const Points& cloud, const Planes& planes, const RigidMotion& motion, double least_scale) {
+  const Pairs pairs = find_pairs(cloud, planes.surface, motion);
+  constexpr double to_sigma = 1.4826;
+  const double scale = std::max(to_sigma * pairs.sorted[pairs.sorted.size() / 2], least_scale);
+  const Eigen::Vector3d pivot = motion(main_axes(cloud).centre);
+  Matrix6 normal_matrix = Matrix6::Zero();
+  Vector6 right = Vector6::Zero();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double weight = tukey_weight(pairs.nearest[i].distance, scale);
+    if (weight <= 0) continue;
+    const Eigen::Vector3d point = motion(cloud[i]);
+    const Eigen::Vector3d& normal = planes.normals[pairs.nearest[i].index];
+    Vector6 row;
+    row << (point - pivot).cross(normal), normal;
+    normal_matrix += weight * row * row.transpose();
+    right -= weight * row * normal.dot(point - planes.surface.points()[pairs.nearest[i].index]);
+  }
+  constexpr double damping = 1e-6;  // a sphere may turn as it likes
+  normal_matrix.diagonal() *= 1 + damping;
+  const Vector6 solution = normal_matrix.ldlt().solve(right);
+  const Eigen::Vector3d turn = solution.head<3>();
+  const double angle = turn.norm();
+  const Eigen::Matrix3d rotation =
+      angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
+  RigidMotion next;
+  next.rotation = rotation * motion.rotation;
+  next.translation = rotation * (motion.translation - pivot) + pivot + solution.tail<3>();
+  return next;
+}
+
+Pose fit_to_planes(const Points& cloud, const Planes& planes, Pose pose, double share) {
+  const MainAxes axes = main_axes(cloud);
+  constexpr double least_scale_share = 1e-3;
+  const double extent = axes.spread[0];
+  for (int step = 0; step < refining_steps; ++step) {
+    const RigidMotion next = step_to_planes(cloud, planes, pose.motion, least_scale_share * extent);
+    if (!next.translation.allFinite() || !next.rotation.allFinite()) break;
+    const double length = step_length(pose.motion, next, axes.centre, extent);
+    pose.motion = next;
+    if (length < settled * extent) break;
+  }
+  pose.rms = trimmed_rms(find_pairs(cloud, planes.surface, pose.motion), share);
+  return pose;
+}
+
+/// Both on their main axes: all turns about the shortest one, and all of them upside down.
+std::vector<RigidMotion> starts(const Points& cloud, const Points& surface) {
+  const MainAxes from = main_axes(cloud), to = main_axes(surface);
+  std::vector<RigidMotion> motions;
+  for (int i = 0; i < 2 * turns; ++i) {
+    const double angle = 2 * std::numbers::pi * (i / 2) / turns;
+    Eigen::Matrix3d local = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    if (i % 2 == 1) local *= Eigen::Vector3d(1, -1, -1).asDiagonal();
+    RigidMotion motion;
+    motion.rotation = to.axes * local * from.axes.transpose();
+    motion.translation = to.centre - motion.rotation * from.centre;
+    motions.push_back(motion);
+  }
+  return motions;
+}
+
+bool is_elsewhere(const RigidMotion& one, const RigidMotion& other, const MainAxes& cloud) {
+  constexpr double most_turn_rad = 10 * std::numbers::pi / 180;
+  constexpr double most_shift = 0.3;  // standard deviations: about a tenth of the extent
+  const double turn = Eigen::AngleAxisd(one.rotation.transpose() * other.rotation).angle();
+  return turn > most_turn_rad || (one(cloud.centre) - other(cloud.centre)).norm() > most_shift * cloud.spread[0];
+}
+
+/// The starts after a few steps on few points, best first.
+std::vector<Pose> ranked_starts(const Points& cloud, const Points& surface_points, const RegistrationOptions& options) {
+  const MainAxes axes = main_axes(surface_points);
+  constexpr double coarse_side = 0.12;  // of the standard deviation along the longest axis
+  const ScanSurface coarse(thin_out(surface_points, coarse_side * axes.spread[0]));
+  const Points few = every_nth(cloud, ranking_points);
+  std::vector<Pose> poses;
+  for (const RigidMotion& motion : starts(few, surface_points)) {
+    poses.push_back(fit_by_points(few, coarse, {motion}, options.trimmed_share, ranking_steps));
+  }
+  std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.rms < b.rms; });
+  return poses;
+}
+
+/// Of the ranked ones, the first that differ from each other.
+std::vector<Pose> different_poses(const std::vector<Pose>& ranked, const MainAxes& cloud, std::size_t most) {
+  std::vector<Pose> chosen;
+  for (const Pose& pose : ranked) {
+    const bool is_new = std::all_of(chosen.begin(), chosen.end(),
+                                    [&](const Pose& other) { return is_elsewhere(pose.motion, other.motion, cloud); });
+    if (is_new && chosen.size() < most) chosen.push_back(pose);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+void RegistrationOptions::validate() const {
+  constexpr double least_share = 0.3;
+  if (trimmed_share >= least_share && trimmed_share <= 1) return;
+  fail("trimmed_share is ", trimmed_share, "; it must be between ", least_share, " and 1");
+}
+
+Registration register_cloud(const Points& cloud, const ScanSurface& surface, const RegistrationOptions& options) {
+  options.validate();
+  constexpr std::size_t least_points = 100;
+  if (cloud.size() < least_points) fail("the cloud has ", cloud.size(), " points; registration needs ", least_points);
+  const MainAxes cloud_axes = main_axes(cloud);
+  constexpr double fine_side = 0.04;  // of the standard deviation along the longest axis: 0.8 mm of a hand's breadth
+  const ScanSurface fine(thin_out(surface.points(), fine_side * main_axes(surface.points()).spread[0]));
+  const Points normals = fine.normals();
+  const Points points = every_nth(cloud, refined_points);
+  std::vector<Pose> poses =
+      different_poses(ranked_starts(cloud, surface.points(), options), cloud_axes, refined_starts);
+  for (Pose& pose : poses) pose = fit_to_planes(points, {fine, normals}, pose, options.trimmed_share);
+  std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.rms < b.rms; });
+  Pose best = poses.front();
+  if (options.last_step == LastStep::least_squares) best = fit_by_points(points, surface, best, 1, polishing_steps);
+  Registration result{best.motion, poses.front().rms, std::numeric_limits<double>::infinity()};
+  for (const Pose& pose : poses) {
+    if (is_elsewhere(pose.motion, poses.front().motion, cloud_axes))
+      result.next_rms = std::min(result.next_rms, pose.rms);
+  }
+  return result;
+}
+
+}  // namespace roadstereo::cli
