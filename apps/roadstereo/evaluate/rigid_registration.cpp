@@ -100,12 +100,6 @@ Pose fit_by_points(const Points& cloud, const ScanSurface& surface, Pose pose, d
   return pose;
 }
 
-/// A surface with its normals.
-struct Planes {
-  const ScanSurface& surface;
-  const Points& normals;
-};
-
 /// Tukey's weight of a distance.
 double tukey_weight(double distance, double scale) {
   constexpr double reach = 4.685;
@@ -114,8 +108,8 @@ double tukey_weight(double distance, double scale) {
 }
 
 /// One step of Gauss and Newton on the distances to the planes of the nearest points, about the cloud's place.
-RigidMotion step_to_planes(const Points& cloud, const Planes& planes, const RigidMotion& motion, double least_scale) {
-  const Pairs pairs = find_pairs(cloud, planes.surface, motion);
+RigidMotion step_to_planes(const Points& cloud, const ScanModel& scan, const RigidMotion& motion, double least_scale) {
+  const Pairs pairs = find_pairs(cloud, scan.even, motion);
   constexpr double to_sigma = 1.4826;
   const double scale = std::max(to_sigma * pairs.sorted[pairs.sorted.size() / 2], least_scale);
   const Eigen::Vector3d pivot = motion(main_axes(cloud).centre);
@@ -123,13 +117,14 @@ RigidMotion step_to_planes(const Points& cloud, const Planes& planes, const Rigi
   Vector6 right = Vector6::Zero();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double weight = tukey_weight(pairs.nearest[i].distance, scale);
-    if (weight <= 0) continue;
+    const ScanSurface::Lie& lie = scan.lies[pairs.nearest[i].index];
+    if (weight <= 0 || lie.at_edge) continue;  // a plane does not end where the scan does
     const Eigen::Vector3d point = motion(cloud[i]);
-    const Eigen::Vector3d& normal = planes.normals[pairs.nearest[i].index];
+    const Eigen::Vector3d& normal = lie.normal;
     Vector6 row;
     row << (point - pivot).cross(normal), normal;
     normal_matrix += weight * row * row.transpose();
-    right -= weight * row * normal.dot(point - planes.surface.points()[pairs.nearest[i].index]);
+    right -= weight * row * normal.dot(point - scan.even.points()[pairs.nearest[i].index]);
   }
   constexpr double damping = 1e-6;  // a sphere may turn as it likes
   normal_matrix.diagonal() *= 1 + damping;
@@ -144,24 +139,24 @@ RigidMotion step_to_planes(const Points& cloud, const Planes& planes, const Rigi
   return next;
 }
 
-Pose fit_to_planes(const Points& cloud, const Planes& planes, Pose pose, double share) {
+Pose fit_to_planes(const Points& cloud, const ScanModel& scan, Pose pose, double share) {
   const MainAxes axes = main_axes(cloud);
   constexpr double least_scale_share = 1e-3;
   const double extent = axes.spread[0];
   for (int step = 0; step < refining_steps; ++step) {
-    const RigidMotion next = step_to_planes(cloud, planes, pose.motion, least_scale_share * extent);
+    const RigidMotion next = step_to_planes(cloud, scan, pose.motion, least_scale_share * extent);
     if (!next.translation.allFinite() || !next.rotation.allFinite()) break;
     const double length = step_length(pose.motion, next, axes.centre, extent);
     pose.motion = next;
     if (length < settled * extent) break;
   }
-  pose.rms = trimmed_rms(find_pairs(cloud, planes.surface, pose.motion), share);
+  pose.rms = trimmed_rms(find_pairs(cloud, scan.even, pose.motion), share);
   return pose;
 }
 
 /// Both on their main axes: all turns about the shortest one, and all of them upside down.
-std::vector<RigidMotion> starts(const Points& cloud, const Points& surface) {
-  const MainAxes from = main_axes(cloud), to = main_axes(surface);
+std::vector<RigidMotion> starts(const Points& cloud, const MainAxes& to) {
+  const MainAxes from = main_axes(cloud);
   std::vector<RigidMotion> motions;
   for (int i = 0; i < 2 * turns; ++i) {
     const double angle = 2 * std::numbers::pi * (i / 2) / turns;
@@ -183,13 +178,12 @@ bool is_elsewhere(const RigidMotion& one, const RigidMotion& other, const MainAx
 }
 
 /// The starts after a few steps on few points, best first.
-std::vector<Pose> ranked_starts(const Points& cloud, const Points& surface_points, const RegistrationOptions& options) {
-  const MainAxes axes = main_axes(surface_points);
+std::vector<Pose> ranked_starts(const Points& cloud, const ScanModel& scan, const RegistrationOptions& options) {
   constexpr double coarse_side = 0.12;  // of the standard deviation along the longest axis
-  const ScanSurface coarse(thin_out(surface_points, coarse_side * axes.spread[0]));
+  const ScanSurface coarse(thin_out(scan.scan.points(), coarse_side * scan.axes.spread[0]));
   const Points few = every_nth(cloud, ranking_points);
   std::vector<Pose> poses;
-  for (const RigidMotion& motion : starts(few, surface_points)) {
+  for (const RigidMotion& motion : starts(few, scan.axes)) {
     poses.push_back(fit_by_points(few, coarse, {motion}, options.trimmed_share, ranking_steps));
   }
   std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.rms < b.rms; });
@@ -215,25 +209,23 @@ void RegistrationOptions::validate() const {
   fail("trimmed_share is ", trimmed_share, "; it must be between ", least_share, " and 1");
 }
 
-Registration register_cloud(const Points& cloud, const ScanSurface& surface, const RegistrationOptions& options) {
+Registration register_cloud(const Points& cloud, const ScanModel& scan, const RegistrationOptions& options) {
   options.validate();
   constexpr std::size_t least_points = 100;
   if (cloud.size() < least_points) fail("the cloud has ", cloud.size(), " points; registration needs ", least_points);
   const MainAxes cloud_axes = main_axes(cloud);
-  constexpr double fine_side = 0.04;  // of the standard deviation along the longest axis: 0.8 mm of a hand's breadth
-  const ScanSurface fine(thin_out(surface.points(), fine_side * main_axes(surface.points()).spread[0]));
-  const Points normals = fine.normals();
   const Points points = every_nth(cloud, refined_points);
-  std::vector<Pose> poses =
-      different_poses(ranked_starts(cloud, surface.points(), options), cloud_axes, refined_starts);
-  for (Pose& pose : poses) pose = fit_to_planes(points, {fine, normals}, pose, options.trimmed_share);
+  std::vector<Pose> poses = different_poses(ranked_starts(cloud, scan, options), cloud_axes, refined_starts);
+  const bool polish = options.last_step == LastStep::least_squares;
+  for (Pose& pose : poses) {
+    pose = fit_to_planes(points, scan, pose, options.trimmed_share);
+    if (polish) pose = fit_by_points(points, scan.scan, pose, 1, polishing_steps);
+  }
   std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.rms < b.rms; });
-  Pose best = poses.front();
-  if (options.last_step == LastStep::least_squares) best = fit_by_points(points, surface, best, 1, polishing_steps);
-  Registration result{best.motion, poses.front().rms, std::numeric_limits<double>::infinity()};
+  const Pose& best = poses.front();
+  Registration result{best.motion, best.rms, std::numeric_limits<double>::infinity()};
   for (const Pose& pose : poses) {
-    if (is_elsewhere(pose.motion, poses.front().motion, cloud_axes))
-      result.next_rms = std::min(result.next_rms, pose.rms);
+    if (is_elsewhere(pose.motion, best.motion, cloud_axes)) result.next_rms = std::min(result.next_rms, pose.rms);
   }
   return result;
 }

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "evaluate/scan_surface.hpp"
+#include "evaluate/scan_model.hpp"
 
 namespace roadstereo::cli {
 
@@ -30,15 +30,16 @@ struct RegistrationOptions {
 
 /// How a cloud lies on a surface.
 struct Registration {
-  RigidMotion motion;   ///< from the cloud to the surface
-  double rms = 0;       ///< of the closest distances of the nearest `trimmed_share` of the points
+  RigidMotion motion;  ///< from the cloud to the surface
+  double rms = 0;      ///< what the last step minimises: of the closest distances of the nearest `trimmed_share` of the
+                       ///< points, or of all of them after least squares
   double next_rms = 0;  ///< the same of the best other pose, more than 10° or a tenth of the extent away; infinite:
                         ///< every start led here
 };
 
-/// Finds the rigid motion from `cloud` to `surface`, wherever both lie: both are laid on their main axes, turned all
+/// Finds the rigid motion from `cloud` to `scan`, wherever both lie: both are laid on their main axes, turned all
 /// round and upside down; the best starts are refined. Both must show about the same part of the surface. Always the
 /// same result for the same points. Throws Error for fewer than 100 points of the cloud.
-Registration register_cloud(const Points& cloud, const ScanSurface& surface, const RegistrationOptions& options = {});
+Registration register_cloud(const Points& cloud, const ScanModel& scan, const RegistrationOptions& options = {});
 
 }  // namespace roadstereo::cli

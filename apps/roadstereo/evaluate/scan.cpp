@@ -55,9 +55,11 @@ const std::vector<Column>& columns() {
                                            {"median", "median_mm"},
                                            {"90 %", "p90_mm"},
                                            {"99 %", "p99_mm"},
+                                           {"covered %", "covered_percent"},
+                                           {"RMS", "rms_covered_mm"},
                                            {"RMS+10", "rms_missing_10mm"},
-                                           {"trimmed", "trimmed_rms_mm"},
-                                           {"next pose", "next_pose_trimmed_rms_mm"}};
+                                           {"pose", "pose_rms_mm"},
+                                           {"next pose", "next_pose_rms_mm"}};
   return columns;
 }
 
@@ -72,6 +74,8 @@ std::vector<Cell> cells(const Row& row) {
           Cell(score.median_mm, 3),
           Cell(score.p90_mm, 3),
           Cell(score.p99_mm, 3),
+          Cell(percent * static_cast<double>(score.covered) / static_cast<double>(score.measured), 1),
+          Cell(score.rms_covered_mm, 3),
           Cell(score.rms_or_missing_mm, 3),
           Cell(row.registration.rms, 3),
           Cell(std::isfinite(row.registration.next_rms) ? row.registration.next_rms
@@ -101,8 +105,10 @@ std::vector<Cell> mean_cells(const std::vector<Row>& rows, const std::string& me
 
 constexpr const char* legend =
     R"(  RMS, median, 90 %, 99 %: distance from each labelled pixel's point to the closest point of the scan, mm, none left out
+  covered: points that do not lie beyond the scan's rim (labels reach farther than casts) or over its holes, and their RMS
   RMS+10: every labelled pixel without a disparity counts as 10 mm
-  trimmed: RMS of the closest 80 % after the robust fit; next pose: the same where the next best start ended
+  pose: what the registration reached with its sample of points (RMS; with --robust of the closest 80 %); next pose:
+  the same of the best pose that is another one
 )";
 
 void print(const std::vector<Row>& rows, const Arguments& arguments) {
@@ -115,9 +121,9 @@ void print(const std::vector<Row>& rows, const Arguments& arguments) {
 }
 
 /// Clouds and scans in units that cannot be right would register somewhere.
-void check_extents(const Points& cloud, const Points& scan) {
+void check_extents(const Points& cloud, const MainAxes& scan) {
   constexpr double most_ratio = 4;
-  const double ratio = main_axes(cloud).spread[0] / main_axes(scan).spread[0];
+  const double ratio = main_axes(cloud).spread[0] / scan.spread[0];
   if (ratio > 1 / most_ratio && ratio < most_ratio) return;
   fail("the cloud is ", ratio, " times as large as the scan; it must show the same pothole, in the units that ",
        "--cloud-unit-mm and --scan-unit-mm say");
@@ -125,10 +131,10 @@ void check_extents(const Points& cloud, const Points& scan) {
 
 void scan_cloud(const Arguments& arguments) {
   const Points cloud = read_points(arguments.inputs[0], arguments.cloud_unit_mm);
-  const ScanSurface scan(read_points(arguments.inputs[1], arguments.scan_unit_mm));
-  check_extents(cloud, scan.points());
+  const ScanModel scan(read_points(arguments.inputs[1], arguments.scan_unit_mm));
+  check_extents(cloud, scan.axes);
   const Registration registration = register_cloud(cloud, scan, registration_options(arguments));
-  const std::vector<double> distances = closest_distances(cloud, scan, registration.motion);
+  const std::vector<ScanDistance> distances = closest_distances(cloud, scan, registration.motion);
   const std::size_t labelled = arguments.labelled == 0 ? cloud.size() : arguments.labelled;
   print({{"cloud", "cloud", score_distances(distances, labelled), registration}}, arguments);
   if (arguments.report.figure.empty()) return;
@@ -140,14 +146,14 @@ void scan_pair(const ScanFiles& files, const Arguments& arguments, std::vector<R
                std::vector<io::SheetCell>* pictures) {
   const StereoPair pair = read_pair(files.pair);
   const Image<std::uint8_t> label = read_mask(files.label);
-  const ScanSurface scan(read_points(files.scan, arguments.scan_unit_mm));
+  const ScanModel scan(read_points(files.scan, arguments.scan_unit_mm));
   if (pictures != nullptr) pictures->push_back(pothole_picture(files.name, pair, label));
   for (const std::string& method : arguments.compared) {
     const Image<float> map = run_method(method, {pair, arguments.disparities}, arguments.methods);
     const LabelledPoints found = labelled_points(map, label, *pair.calibration);
-    check_extents(found.points, scan.points());
+    check_extents(found.points, scan.axes);
     const Registration registration = register_cloud(found.points, scan, registration_options(arguments));
-    const std::vector<double> distances = closest_distances(found.points, scan, registration.motion);
+    const std::vector<ScanDistance> distances = closest_distances(found.points, scan, registration.motion);
     rows.push_back({files.name, method, score_distances(distances, found.labelled), registration});
     if (pictures != nullptr) pictures->push_back(distance_picture(method, rows.back().score, found, distances, label));
   }

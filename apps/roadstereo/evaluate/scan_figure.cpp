@@ -63,29 +63,29 @@ io::SheetCell pothole_picture(const std::string& name, const StereoPair& pair, I
 }
 
 io::SheetCell distance_picture(const std::string& method, const ScanScore& score, const LabelledPoints& found,
-                               const std::vector<double>& distances_mm, ImageView<const std::uint8_t> label) {
+                               const std::vector<ScanDistance>& distances, ImageView<const std::uint8_t> label) {
   const Box box = box_around(label);
   Image<float> map(box.u1 - box.u0, box.v1 - box.v0, nothing);
-  for (std::size_t i = 0; i < distances_mm.size(); ++i) {
-    map(found.pixels[i][0] - box.u0, found.pixels[i][1] - box.v0) = static_cast<float>(distances_mm[i]);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    map(found.pixels[i][0] - box.u0, found.pixels[i][1] - box.v0) = static_cast<float>(distances[i].mm);
   }
   constexpr double percent = 100;
   return {fmt::format("{}: RMS {:.2f} mm, {:.1f} % complete", method, score.rms_mm, percent * score.completeness()),
           io::colour_map(map, distance_scale())};
 }
 
-Frame distance_plan(const Points& cloud, const ScanSurface& scan, const RigidMotion& motion) {
-  const MainAxes axes = main_axes(scan.points());
+Frame distance_plan(const Points& cloud, const ScanModel& scan, const RigidMotion& motion) {
+  const MainAxes& axes = scan.axes;
   constexpr double pixel_mm = 0.5, reach = 3.5;  // standard deviations
   const int width = static_cast<int>(2 * reach * axes.spread[0] / pixel_mm);
   const int height = static_cast<int>(2 * reach * axes.spread[1] / pixel_mm);
   Image<float> map(width, height, nothing);
-  const std::vector<double> distances = closest_distances(cloud, scan, motion);
+  const std::vector<ScanDistance> distances = closest_distances(cloud, scan, motion);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d at = axes.axes.transpose() * (motion(cloud[i]) - axes.centre) / pixel_mm;
     const auto u = static_cast<int>(std::floor(at[0] + width / 2.0));
     const auto v = static_cast<int>(std::floor(at[1] + height / 2.0));
-    if (u >= 0 && v >= 0 && u < width && v < height) map(u, v) = static_cast<float>(distances[i]);
+    if (u >= 0 && v >= 0 && u < width && v < height) map(u, v) = static_cast<float>(distances[i].mm);
   }
   return io::colour_map(map, distance_scale());
 }

@@ -7,31 +7,50 @@
 
 namespace roadstereo::cli {
 
-std::vector<double> closest_distances(const Points& cloud, const ScanSurface& scan, const RigidMotion& motion) {
-  std::vector<double> distances;
+namespace {
+
+double mean_square(const std::vector<double>& values) {
+  double squares = 0;
+  for (const double value : values) squares += value * value;
+  return squares / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+std::vector<ScanDistance> closest_distances(const Points& cloud, const ScanModel& scan, const RigidMotion& motion) {
+  std::vector<ScanDistance> distances;
   distances.reserve(cloud.size());
-  for (const Eigen::Vector3d& point : cloud) distances.push_back(scan.nearest(motion(point)).distance);
+  for (const Eigen::Vector3d& point : cloud) {
+    const Eigen::Vector3d moved = motion(point);
+    distances.push_back({scan.scan.nearest(moved).distance, scan.covers(moved)});
+  }
   return distances;
 }
 
-ScanScore score_distances(const std::vector<double>& distances_mm, std::size_t labelled) {
-  if (distances_mm.empty()) fail("no labelled pixel has a disparity");
-  if (labelled < distances_mm.size()) {
-    fail("the number of labelled pixels is ", labelled, "; the cloud has ", distances_mm.size(), " points");
+ScanScore score_distances(const std::vector<ScanDistance>& distances, std::size_t labelled) {
+  if (distances.empty()) fail("no labelled pixel has a disparity");
+  if (labelled < distances.size()) {
+    fail("the number of labelled pixels is ", labelled, "; the cloud has ", distances.size(), " points");
+  }
+  std::vector<double> all, covered;
+  for (const ScanDistance& distance : distances) {
+    all.push_back(distance.mm);
+    if (distance.covered) covered.push_back(distance.mm);
   }
   constexpr double missing_mm = 10;
   ScanScore score;
   score.labelled = labelled;
-  score.measured = distances_mm.size();
-  double squares = 0;
-  for (const double distance : distances_mm) squares += distance * distance;
-  const auto measured = static_cast<double>(score.measured);
-  const auto missing = static_cast<double>(labelled - score.measured);
-  score.rms_mm = std::sqrt(squares / measured);
-  score.rms_or_missing_mm = std::sqrt((squares + missing * missing_mm * missing_mm) / static_cast<double>(labelled));
-  score.median_mm = median(distances_mm);
-  score.p90_mm = quantile(distances_mm, 0.9);
-  score.p99_mm = quantile(distances_mm, 0.99);
+  score.measured = all.size();
+  score.covered = covered.size();
+  const auto measured = static_cast<double>(all.size());
+  const auto missing = static_cast<double>(labelled - all.size());
+  const double squares = mean_square(all) * measured + missing * missing_mm * missing_mm;
+  score.rms_mm = std::sqrt(mean_square(all));
+  score.rms_covered_mm = std::sqrt(mean_square(covered));
+  score.rms_or_missing_mm = std::sqrt(squares / static_cast<double>(labelled));
+  score.median_mm = median(all);
+  score.p90_mm = quantile(all, 0.9);
+  score.p99_mm = quantile(all, 0.99);
   return score;
 }
 

@@ -1,10 +1,12 @@
 #include "evaluate/scan_surface.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <nanoflann.hpp>
+#include <numbers>
 #include <utility>
 
 #include "roadstereo/error.hpp"
@@ -30,6 +32,20 @@ struct TreePoints {
 
 using KdTree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, TreePoints>, TreePoints, 3, std::size_t>;
+
+/// The widest angle about a point, radians, in which it has no neighbour. `axes`: the plane that they lie in.
+double widest_gap(const Eigen::Vector3d& point, const Points& around, const Eigen::Matrix3d& axes) {
+  std::vector<double> angles;
+  for (const Eigen::Vector3d& neighbour : around) {
+    const Eigen::Vector3d local = axes.transpose() * (neighbour - point);
+    if (local.squaredNorm() > 0) angles.push_back(std::atan2(local[1], local[0]));
+  }
+  if (angles.empty()) return 2 * std::numbers::pi;
+  std::sort(angles.begin(), angles.end());
+  double widest = angles.front() + 2 * std::numbers::pi - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) widest = std::max(widest, angles[i] - angles[i - 1]);
+  return widest;
+}
 
 }  // namespace
 
@@ -102,18 +118,19 @@ ScanSurface::Nearest ScanSurface::nearest(const Eigen::Vector3d& point) const {
   return found;
 }
 
-Points ScanSurface::normals() const {
-  Points normals;
-  normals.reserve(points().size());
+std::vector<ScanSurface::Lie> ScanSurface::lies() const {
+  std::vector<Lie> lies;
+  lies.reserve(points().size());
   std::array<std::size_t, neighbours> indices{};
   std::array<double, neighbours> squared{};
   Points around(neighbours);
   for (const Eigen::Vector3d& point : points()) {
     tree_->index.knnSearch(point.data(), neighbours, indices.data(), squared.data());
     for (std::size_t i = 0; i < neighbours; ++i) around[i] = points()[indices[i]];
-    normals.emplace_back(main_axes(around).axes.col(2));
+    const Eigen::Matrix3d axes = main_axes(around).axes;
+    lies.push_back({axes.col(2), widest_gap(point, around, axes) > 2 * std::numbers::pi / 3});
   }
-  return normals;
+  return lies;
 }
 
 const Points& ScanSurface::points() const {

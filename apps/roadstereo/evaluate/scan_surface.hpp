@@ -38,8 +38,12 @@ class ScanSurface {
   };
   Nearest nearest(const Eigen::Vector3d& point) const;
 
-  /// Unit normals of the planes through the 16 nearest points, of either sign; one per point.
-  Points normals() const;
+  /// How the surface lies around every point, by the 16 nearest ones.
+  struct Lie {
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit vector, of either sign
+    bool at_edge = false;                               ///< nothing follows within a third of the directions
+  };
+  std::vector<Lie> lies() const;
   const Points& points() const;
 
  private:
