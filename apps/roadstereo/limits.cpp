@@ -112,8 +112,7 @@ nlohmann::ordered_json limits_json(const Arguments& arguments, const ResolutionL
   return document;
 }
 
-/// Depths against the distance from the camera, with ASTM's depths; straight down, where no row differs, against the
-/// place on the road.
+/// Depths against the place on the road, with ASTM's depths.
 Frame limits_figure(const Arguments& arguments, const ResolutionLimits& limits) {
   constexpr int points = 200;
   constexpr double most_mm = 1000;
@@ -133,6 +132,10 @@ Frame limits_figure(const Arguments& arguments, const ResolutionLimits& limits) 
                   false,
                   true};
   for (const double depth : astm_depths_m) panel.horizontal_lines.push_back(mm * depth);
+  constexpr double least_reach_mm = 70;  // ASTM's depths are always in the picture
+  double reach = least_reach_mm;
+  for (const double depth : step.y) reach = std::fmax(reach, depth);
+  panel.y_highest = reach;
   constexpr int width = 900, height = 560;
   return io::draw_plot({panel}, width, height);
 }

@@ -19,11 +19,12 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 constexpr int turns = 36;  // starts about the shortest axis; each of them also upside down
 constexpr std::size_t refined_starts = 6;
 constexpr std::size_t ranking_points = 500;
-constexpr std::size_t refined_points = 6000;
+constexpr std::size_t choosing_points = 2000;
+constexpr std::size_t final_points = 10000;
 constexpr int ranking_steps = 20;
 constexpr int refining_steps = 80;
-constexpr int polishing_steps = 200;
-constexpr double settled = 1e-7;  // change of a step, of the surface's extent
+constexpr int polishing_steps = 100;
+constexpr double settled = 1e-5;  // change of a step, of the surface's extent
 
 struct Pose {
   RigidMotion motion;
@@ -201,6 +202,14 @@ std::vector<Pose> different_poses(const std::vector<Pose>& ranked, const MainAxe
   return chosen;
 }
 
+/// Follows a pose to its end. The last step, when there is one, is taken towards the points of `surface`.
+Pose refine(const Points& cloud, const ScanModel& scan, const ScanSurface& surface, const Pose& start,
+            const RegistrationOptions& options) {
+  const Pose robust = fit_to_planes(cloud, scan, start, options.trimmed_share);
+  if (options.last_step == LastStep::robust) return robust;
+  return fit_by_points(cloud, surface, robust, 1, polishing_steps);
+}
+
 }  // namespace
 
 void RegistrationOptions::validate() const {
@@ -214,18 +223,15 @@ Registration register_cloud(const Points& cloud, const ScanModel& scan, const Re
   constexpr std::size_t least_points = 100;
   if (cloud.size() < least_points) fail("the cloud has ", cloud.size(), " points; registration needs ", least_points);
   const MainAxes cloud_axes = main_axes(cloud);
-  const Points points = every_nth(cloud, refined_points);
+  const Points some = every_nth(cloud, choosing_points);
   std::vector<Pose> poses = different_poses(ranked_starts(cloud, scan, options), cloud_axes, refined_starts);
-  const bool polish = options.last_step == LastStep::least_squares;
-  for (Pose& pose : poses) {
-    pose = fit_to_planes(points, scan, pose, options.trimmed_share);
-    if (polish) pose = fit_by_points(points, scan.scan, pose, 1, polishing_steps);
-  }
+  for (Pose& pose : poses) pose = refine(some, scan, scan.even, pose, options);
   std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.rms < b.rms; });
-  const Pose& best = poses.front();
+  const Pose best = refine(every_nth(cloud, final_points), scan, scan.scan, poses.front(), options);
   Registration result{best.motion, best.rms, std::numeric_limits<double>::infinity()};
   for (const Pose& pose : poses) {
-    if (is_elsewhere(pose.motion, best.motion, cloud_axes)) result.next_rms = std::min(result.next_rms, pose.rms);
+    if (is_elsewhere(pose.motion, poses.front().motion, cloud_axes))
+      result.next_rms = std::min(result.next_rms, pose.rms);
   }
   return result;
 }
