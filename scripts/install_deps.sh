@@ -5,7 +5,8 @@
 set -euo pipefail
 
 packages=(build-essential cmake ninja-build pkg-config
-          libopencv-dev libtbb-dev libhwy-dev libeigen3-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
+          libopencv-dev libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
+          libeigen3-dev libnanoflann-dev
           libgtest-dev libbenchmark-dev)
 case "${1:-}" in
   "") ;;

@@ -65,6 +65,7 @@ void describe(CLI::App& app) {
   app.require_subcommand(0, 1);  // none is refused after parsing, when a mistyped one has been named
   roadstereo::cli::add_inspect(app);
   roadstereo::cli::add_synth(app);
+  roadstereo::cli::add_limits(app);
   roadstereo::cli::add_engines(app);
   roadstereo::cli::add_benchmark(app);
   roadstereo::cli::add_evaluate(app);

@@ -10,6 +10,7 @@
 #include "roadstereo/options.hpp"
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/pipeline.hpp"
+#include "roadstereo/resolution_limits.hpp"
 #include "roadstereo/road_geometry.hpp"
 #include "roadstereo/road_model.hpp"
 #include "roadstereo/road_plane.hpp"

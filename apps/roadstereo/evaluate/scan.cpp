@@ -1,0 +1,249 @@
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "evaluate/experiments.hpp"
+#include "evaluate/mask_file.hpp"
+#include "evaluate/methods.hpp"
+#include "evaluate/report.hpp"
+#include "evaluate/scan_figure.hpp"
+#include "evaluate/scan_frames.hpp"
+#include "evaluate/scan_score.hpp"
+#include "evaluate/table.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/picture_sheet.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> inputs;  ///< DIR; CLOUD and SCAN; LEFT and RIGHT
+  std::vector<std::string> calibration;
+  std::string label, scan;
+  std::size_t labelled = 0;
+  double cloud_unit_mm = 1000, scan_unit_mm = 1;
+  std::vector<std::string> compared{"default", "SGBM"};
+  int disparities = 352;
+  bool robust = false;
+  MethodSettings methods;
+  ReportFiles report;
+};
+
+RegistrationOptions registration_options(const Arguments& arguments) {
+  RegistrationOptions options;
+  options.last_step = arguments.robust ? LastStep::robust : LastStep::least_squares;
+  return options;
+}
+
+/// One line of the table: who measured which pothole how well.
+struct Row {
+  std::string frame, method;
+  ScanScore score;
+  Registration registration;
+};
+
+const std::vector<Column>& columns() {
+  static const std::vector<Column> columns{{"pair", "pair"},
+                                           {"method", "method"},
+                                           {"labelled", "labelled_pixels"},
+                                           {"complete %", "completeness_percent"},
+                                           {"RMS mm", "rms_mm"},
+                                           {"median", "median_mm"},
+                                           {"90 %", "p90_mm"},
+                                           {"99 %", "p99_mm"},
+                                           {"covered %", "covered_percent"},
+                                           {"RMS", "rms_covered_mm"},
+                                           {"RMS+10", "rms_missing_10mm"},
+                                           {"pose", "pose_rms_mm"},
+                                           {"next pose", "next_pose_rms_mm"}};
+  return columns;
+}
+
+std::vector<Cell> cells(const Row& row) {
+  constexpr double percent = 100;
+  const ScanScore& score = row.score;
+  return {Cell(row.frame),
+          Cell(row.method),
+          Cell(static_cast<double>(score.labelled), 0),
+          Cell(percent * score.completeness(), 2),
+          Cell(score.rms_mm, 3),
+          Cell(score.median_mm, 3),
+          Cell(score.p90_mm, 3),
+          Cell(score.p99_mm, 3),
+          Cell(percent * static_cast<double>(score.covered) / static_cast<double>(score.measured), 1),
+          Cell(score.rms_covered_mm, 3),
+          Cell(score.rms_or_missing_mm, 3),
+          Cell(row.registration.rms, 3),
+          Cell(std::isfinite(row.registration.next_rms) ? row.registration.next_rms
+                                                        : std::numeric_limits<double>::quiet_NaN(),
+               3)};
+}
+
+/// The method's row over all pairs: means of the figures.
+std::vector<Cell> mean_cells(const std::vector<Row>& rows, const std::string& method) {
+  constexpr std::size_t first_figure = 2;
+  std::vector<double> sums(columns().size(), 0);
+  double count = 0;
+  for (const Row& row : rows) {
+    if (row.method != method) continue;
+    const std::vector<Cell> figures = cells(row);
+    for (std::size_t i = first_figure; i < figures.size(); ++i) {
+      const auto value = figures[i].json();
+      sums[i] += value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+    }
+    count += 1;
+  }
+  std::vector<Cell> result{Cell("mean"), Cell(method)};
+  for (std::size_t i = first_figure; i < sums.size(); ++i)
+    result.emplace_back(sums[i] / count, i == first_figure ? 0 : 3);
+  return result;
+}
+
+constexpr const char* legend =
+    R"(  RMS, median, 90 %, 99 %: distance from each labelled pixel's point to the closest point of the scan, mm, none left out
+  covered: points that do not lie beyond the scan's rim (labels reach farther than casts) or over its holes, and their RMS
+  RMS+10: every labelled pixel without a disparity counts as 10 mm
+  pose: what the registration reached with its sample of points (RMS; with --robust of the closest 80 %); next pose:
+  the same of the best pose that is another one
+)";
+
+void print(const std::vector<Row>& rows, const Arguments& arguments) {
+  Table table{"Closest distance to the laser scan", columns(), {}};
+  for (const Row& row : rows) table.rows.push_back(cells(row));
+  const std::size_t methods = arguments.inputs.size() == 1 ? arguments.compared.size() : 0;
+  for (std::size_t i = 0; i < methods; ++i) table.rows.push_back(mean_cells(rows, arguments.compared[i]));
+  fmt::print("{}\n{}", table.text(), legend);
+  if (!arguments.report.json.empty()) write_report(arguments.report.json, table.json());
+}
+
+/// Clouds and scans in units that cannot be right would register somewhere.
+void check_extents(const Points& cloud, const MainAxes& scan) {
+  constexpr double most_ratio = 4;
+  const double ratio = main_axes(cloud).spread[0] / scan.spread[0];
+  if (ratio > 1 / most_ratio && ratio < most_ratio) return;
+  fail("the cloud is ", ratio, " times as large as the scan; it must show the same pothole, in the units that ",
+       "--cloud-unit-mm and --scan-unit-mm say");
+}
+
+void scan_cloud(const Arguments& arguments) {
+  const Points cloud = read_points(arguments.inputs[0], arguments.cloud_unit_mm);
+  const ScanModel scan(read_points(arguments.inputs[1], arguments.scan_unit_mm));
+  check_extents(cloud, scan.axes);
+  const Registration registration = register_cloud(cloud, scan, registration_options(arguments));
+  const std::vector<ScanDistance> distances = closest_distances(cloud, scan, registration.motion);
+  const std::size_t labelled = arguments.labelled == 0 ? cloud.size() : arguments.labelled;
+  print({{"cloud", "cloud", score_distances(distances, labelled), registration}}, arguments);
+  if (arguments.report.figure.empty()) return;
+  write_figure(arguments.report.figure, distance_plan(cloud, scan, registration.motion));
+}
+
+/// Runs the methods on one pair; adds their rows and, when asked, their distance maps.
+void scan_pair(const ScanFiles& files, const Arguments& arguments, std::vector<Row>& rows,
+               std::vector<io::SheetCell>* pictures) {
+  const StereoPair pair = read_pair(files.pair);
+  const Image<std::uint8_t> label = read_mask(files.label);
+  const ScanModel scan(read_points(files.scan, arguments.scan_unit_mm));
+  if (pictures != nullptr) pictures->push_back(pothole_picture(files.name, pair, label));
+  for (const std::string& method : arguments.compared) {
+    const Image<float> map = run_method(method, {pair, arguments.disparities}, arguments.methods);
+    const LabelledPoints found = labelled_points(map, label, *pair.calibration);
+    check_extents(found.points, scan.axes);
+    const Registration registration = register_cloud(found.points, scan, registration_options(arguments));
+    const std::vector<ScanDistance> distances = closest_distances(found.points, scan, registration.motion);
+    rows.push_back({files.name, method, score_distances(distances, found.labelled), registration});
+    if (pictures != nullptr) pictures->push_back(distance_picture(method, rows.back().score, found, distances, label));
+  }
+}
+
+void scan_pairs(const std::vector<ScanFiles>& frames, const Arguments& arguments) {
+  for (const std::string& method : arguments.compared) {
+    if (method_index(method) == method_names().size()) {
+      fail("--methods names \"", method, "\"; known are ", fmt::format("{}", fmt::join(method_names(), ", ")));
+    }
+  }
+  std::vector<Row> rows;
+  std::vector<std::vector<io::SheetCell>> sheet;
+  const bool drawn = !arguments.report.figure.empty();
+  for (const ScanFiles& files : frames) {
+    if (drawn) sheet.emplace_back();
+    scan_pair(files, arguments, rows, drawn ? &sheet.back() : nullptr);
+  }
+  print(rows, arguments);
+  constexpr int cell_width = 480;
+  if (drawn) write_figure(arguments.report.figure, io::picture_sheet(sheet, cell_width));
+}
+
+void scan(const Arguments& arguments) {
+  const bool is_pair = !arguments.label.empty() || !arguments.scan.empty() || !arguments.calibration.empty();
+  if (arguments.inputs.size() == 1) {
+    if (is_pair) fail("--calibration, --label and --scan belong to one pair: LEFT RIGHT");
+    scan_pairs(find_scan_frames(arguments.inputs[0]), arguments);
+  } else if (is_pair) {
+    if (arguments.label.empty() || arguments.scan.empty() || arguments.calibration.empty()) {
+      fail("a pair LEFT RIGHT needs --calibration, --label and --scan");
+    }
+    scan_pairs(
+        {{"pair", {arguments.inputs[0], arguments.inputs[1], arguments.calibration}, arguments.label, arguments.scan}},
+        arguments);
+  } else {
+    scan_cloud(arguments);
+  }
+}
+
+constexpr const char* scan_footer =
+    R"(One of
+  DIR          left/pM_NN.png, right/, label/ (mask of the pothole), scan/pM_*.ply, calibration_pM*.yaml
+  LEFT RIGHT   one pair, with --calibration, --label and --scan
+  CLOUD SCAN   the points of a pothole (PLY, metres) and its scan (PLY, millimetres)
+Any rigid motion, but no reflection, may lie between the cloud and the scan. It is found from many starts by robust
+iterated closest points, then polished for the least mean square, as published accuracies are (--robust leaves that
+out).
+
+Examples:
+  roadstereo evaluate scan potholes --figure scan.png
+  roadstereo evaluate scan cloud.ply scan.ply --labelled 25000)";
+
+void add_inputs(CLI::App& command, Arguments& arguments) {
+  command.add_option("INPUT", arguments.inputs, "DIR, or CLOUD SCAN, or LEFT RIGHT")->required()->expected(1, 2);
+  command.add_option("--calibration", arguments.calibration, "Calibration of the pair")
+      ->type_name("FILE")
+      ->expected(1)
+      ->allow_extra_args(false);
+  command.add_option("--label", arguments.label, "Mask of the pothole in the left image")->type_name("FILE");
+  command.add_option("--scan", arguments.scan, "Laser scan of the pothole")->type_name("FILE");
+  command.add_option("--labelled", arguments.labelled, "Pixels of the pothole that CLOUD was made from; 0: its points")
+      ->type_name("N");
+  command.add_option("--cloud-unit-mm", arguments.cloud_unit_mm, "Unit of CLOUD, millimetres")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command.add_option("--scan-unit-mm", arguments.scan_unit_mm, "Unit of the scan, millimetres")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+}
+
+}  // namespace
+
+void add_scan(CLI::App& evaluate) {
+  CLI::App* command = evaluate.add_subcommand("scan", "Potholes against laser scans of their casts");
+  command->footer(scan_footer);
+  const auto arguments = std::make_shared<Arguments>();
+  add_inputs(*command, *arguments);
+  command->add_option("--methods", arguments->compared, "Presets and OpenCV's matchers, with commas between")
+      ->delimiter(',')
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  command->add_option("--disparities", arguments->disparities, "Disparities that OpenCV's matchers search")
+      ->check(CLI::Range(16, 1024))
+      ->capture_default_str();
+  command->add_flag("--robust", arguments->robust, "Leave out the last, least-squares step of the registration");
+  add_method_options(*command, arguments->methods);
+  add_report_options(*command, arguments->report);
+  command->callback([arguments] { scan(*arguments); });
+}
+
+}  // namespace roadstereo::cli

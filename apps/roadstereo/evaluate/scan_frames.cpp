@@ -1,0 +1,100 @@
+#include "evaluate/scan_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/point_cloud.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Files of a folder with that beginning and ending, sorted.
+std::vector<fs::path> files_in(const fs::path& folder, const std::string& beginning, const std::string& ending) {
+  if (!fs::is_directory(folder)) fail(folder.string(), " is not a folder");
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(beginning) && name.ends_with(ending)) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// "p1" of "p1_05".
+std::string pothole_of(const std::string& name) {
+  return name.substr(0, name.find('_'));
+}
+
+std::string find_scan(const fs::path& root, const std::string& pothole) {
+  const auto scans = files_in(root / "scan", pothole + "_", ".ply");
+  if (scans.empty()) fail((root / "scan").string(), " has no scan called ", pothole, "_….ply");
+  return scans.front().string();
+}
+
+std::string find_calibration(const fs::path& root, const std::string& pothole) {
+  const std::string beginning = "calibration_p";
+  for (const fs::path& path : files_in(root, beginning, ".yaml")) {
+    const std::string served = path.stem().string().substr(beginning.size());
+    if (pothole.size() == 2 && served.find(pothole[1]) != std::string::npos) return path.string();
+  }
+  fail(root.string(), " has no calibration_p….yaml for ", pothole);
+}
+
+std::string require_file(const fs::path& path) {
+  if (!fs::is_regular_file(path)) fail("cannot read ", path.string());
+  return path.string();
+}
+
+}  // namespace
+
+std::vector<ScanFiles> find_scan_frames(const std::string& folder) {
+  const fs::path root = folder;
+  std::vector<ScanFiles> frames;
+  for (const fs::path& left : files_in(root / "left", "p", ".png")) {
+    const std::string file = left.filename().string();
+    const std::string pothole = pothole_of(left.stem().string());
+    frames.push_back({left.stem().string(),
+                      {left.string(), require_file(root / "right" / file), {find_calibration(root, pothole)}},
+                      require_file(root / "label" / file),
+                      find_scan(root, pothole)});
+  }
+  if (frames.empty()) fail((root / "left").string(), " has no pair pM_NN.png");
+  return frames;
+}
+
+Points read_points(const std::string& path, double to_mm) {
+  const io::PointCloud cloud = io::read_ply(path);
+  Points points;
+  points.reserve(cloud.points.size());
+  for (const auto& [x, y, z] : cloud.points) points.emplace_back(to_mm * x, to_mm * y, to_mm * z);
+  return points;
+}
+
+LabelledPoints labelled_points(ImageView<const float> disparity, ImageView<const std::uint8_t> label,
+                               const StereoCalibration& calibration) {
+  if (label.width() != disparity.width() || label.height() != disparity.height()) {
+    fail("the label has ", label.width(), "×", label.height(), " pixels and the image ", disparity.width(), "×",
+         disparity.height(), "; they must have the same size");
+  }
+  constexpr double to_mm = 1000;
+  LabelledPoints found;
+  for (int v = 0; v < label.height(); ++v) {
+    for (int u = 0; u < label.width(); ++u) {
+      if (label(u, v) == 0) continue;
+      ++found.labelled;
+      const double d = disparity(u, v);
+      if (!std::isfinite(d) || d + calibration.disparity_offset_px <= 0) continue;
+      const auto [x, y, z] = calibration.point_m(u, v, d);
+      found.points.emplace_back(to_mm * x, to_mm * y, to_mm * z);
+      found.pixels.push_back({u, v});
+    }
+  }
+  if (found.labelled == 0) fail("the label marks no pixel: there is nothing to score");
+  return found;
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,57 @@
+#include "evaluate/scan_score.hpp"
+
+#include <cmath>
+
+#include "finite_values.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+double mean_square(const std::vector<double>& values) {
+  double squares = 0;
+  for (const double value : values) squares += value * value;
+  return squares / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+std::vector<ScanDistance> closest_distances(const Points& cloud, const ScanModel& scan, const RigidMotion& motion) {
+  std::vector<ScanDistance> distances;
+  distances.reserve(cloud.size());
+  for (const Eigen::Vector3d& point : cloud) {
+    const Eigen::Vector3d moved = motion(point);
+    distances.push_back({scan.scan.nearest(moved).distance, scan.covers(moved)});
+  }
+  return distances;
+}
+
+ScanScore score_distances(const std::vector<ScanDistance>& distances, std::size_t labelled) {
+  if (distances.empty()) fail("no labelled pixel has a disparity");
+  if (labelled < distances.size()) {
+    fail("the number of labelled pixels is ", labelled, "; the cloud has ", distances.size(), " points");
+  }
+  std::vector<double> all, covered;
+  for (const ScanDistance& distance : distances) {
+    all.push_back(distance.mm);
+    if (distance.covered) covered.push_back(distance.mm);
+  }
+  constexpr double missing_mm = 10;
+  ScanScore score;
+  score.labelled = labelled;
+  score.measured = all.size();
+  score.covered = covered.size();
+  const auto measured = static_cast<double>(all.size());
+  const auto missing = static_cast<double>(labelled - all.size());
+  const double squares = mean_square(all) * measured + missing * missing_mm * missing_mm;
+  score.rms_mm = std::sqrt(mean_square(all));
+  score.rms_covered_mm = std::sqrt(mean_square(covered));
+  score.rms_or_missing_mm = std::sqrt(squares / static_cast<double>(labelled));
+  score.median_mm = median(all);
+  score.p90_mm = quantile(all, 0.9);
+  score.p99_mm = quantile(all, 0.99);
+  return score;
+}
+
+}  // namespace roadstereo::cli

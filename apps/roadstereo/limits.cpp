@@ -1,0 +1,207 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "commands.hpp"
+#include "evaluate/report.hpp"
+#include "evaluate/table.hpp"
+#include "image_size.hpp"
+#include "json_text.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/calibration_file.hpp"
+#include "roadstereo/io/plot.hpp"
+#include "roadstereo/resolution_limits.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+constexpr double mm = 1000;
+constexpr double to_radians = std::numbers::pi / 180;
+
+/// Depths at which ASTM D6433 grades potholes, metres.
+constexpr std::array<double, 3> astm_depths_m{0.013, 0.025, 0.050};
+
+struct Arguments {
+  std::vector<std::string> calibration;
+  double height_m = 0;
+  double pitch_deg = 90;
+  std::string size;
+  ResolutionOptions resolution;
+  int rows = 12;
+  bool json = false;
+  std::string figure;
+};
+
+StereoCalibration read_rig(const Arguments& arguments) {
+  const std::string& path = arguments.calibration.front();
+  const io::CalibrationFile file =
+      io::read_calibration(path, arguments.calibration.size() > 1 ? arguments.calibration[1] : "");
+  if (!file.rectified) fail(path, ": the rig is not rectified; give the calibration of the rectified pair");
+  StereoCalibration calibration = *file.rectified;
+  if (!arguments.size.empty()) {
+    const ImageSize size = parse_image_size(arguments.size);
+    calibration.validate(size.width, size.height, path);
+    calibration.width = size.width;
+    calibration.height = size.height;
+  }
+  if (calibration.width < 1) fail(path, " does not say the size of the images; give it with --size WIDTHxHEIGHT");
+  return calibration;
+}
+
+Table row_table(const ResolutionLimits& limits, int rows) {
+  constexpr double cm2 = 1e4;
+  Table table{"",
+              {{"row", "row_px"},
+               {"ahead m", "ahead_m"},
+               {"distance m", "distance_m"},
+               {"disparity px", "disparity_px"},
+               {"1 px mm", "step_mm"},
+               {"1 sigma mm", "std_error_mm"},
+               {"told apart mm", "resolvable_depth_mm"},
+               {"area cm2", "resolvable_area_cm2"},
+               {"GSD across mm", "across_mm"},
+               {"along mm", "along_mm"},
+               {"swath m", "swath_m"}},
+              {}};
+  for (const RowResolution& row : limits.rows(rows)) {
+    const auto finite = [](double value) { return std::isfinite(value) ? value : std::nan(""); };
+    table.rows.push_back({Cell(row.row_px, 0), Cell(row.ahead_m, 2), Cell(row.distance_m, 2), Cell(row.disparity_px, 1),
+                          Cell(finite(mm * row.step_m), 1), Cell(mm * row.std_error_m, 2),
+                          Cell(finite(mm * row.resolvable_depth_m), 1), Cell(cm2 * row.resolvable_area_m2, 1),
+                          Cell(mm * row.across_m, 2), Cell(mm * row.along_m, 2), Cell(row.swath_m, 2)});
+  }
+  return table;
+}
+
+/// What can be said of one of ASTM's depths.
+std::string verdict(const ResolutionLimits& limits, double depth_m) {
+  const std::optional<RowResolution> farthest = limits.farthest(depth_m);
+  const double highest = limits.highest_camera_m(depth_m);
+  const std::string from = highest > 0 ? fmt::format("; in the middle row up to a height of {:.2f} m", highest) : "";
+  if (!farthest)
+    return fmt::format("At this height {:.0f} mm can be told apart nowhere in view{}.", mm * depth_m, from);
+  if (farthest->row_px <= limits.first_row()) {
+    return fmt::format(
+        "At this height {:.0f} mm can be told apart everywhere in view, up to {:.2f} m from the camera{}.",
+        mm * depth_m, farthest->distance_m, from);
+  }
+  return fmt::format(
+      "At this height {:.0f} mm can be told apart up to {:.2f} m ahead, {:.2f} m from the camera (row {:.0f}){}.",
+      mm * depth_m, farthest->ahead_m, farthest->distance_m, farthest->row_px, from);
+}
+
+nlohmann::ordered_json limits_json(const Arguments& arguments, const ResolutionLimits& limits) {
+  nlohmann::ordered_json document = {{"height_m", arguments.height_m},
+                                     {"pitch_deg", arguments.pitch_deg},
+                                     {"sigma_px", arguments.resolution.sigma_px},
+                                     {"threshold_sigma", arguments.resolution.threshold_sigma},
+                                     {"rows", row_table(limits, arguments.rows).json()}};
+  document["astm"] = nlohmann::ordered_json::array();
+  for (const double depth : astm_depths_m) {
+    const std::optional<RowResolution> farthest = limits.farthest(depth);
+    document["astm"].push_back({{"depth_mm", mm * depth},
+                                {"up_to_ahead_m", json_number(farthest ? farthest->ahead_m : std::nan(""))},
+                                {"up_to_distance_m", json_number(farthest ? farthest->distance_m : std::nan(""))},
+                                {"up_to_height_m", limits.highest_camera_m(depth)}});
+  }
+  return document;
+}
+
+/// Depths against the place on the road, with ASTM's depths.
+Frame limits_figure(const Arguments& arguments, const ResolutionLimits& limits) {
+  constexpr int points = 200;
+  constexpr double most_mm = 1000;
+  io::Curve step{"one pixel of disparity", {}, {}}, error{"one standard error", {}, {}}, told{"told apart", {}, {}};
+  for (const RowResolution& row : limits.rows(points)) {
+    for (io::Curve* curve : {&step, &error, &told}) curve->x.push_back(row.ahead_m);
+    const auto shown = [&](double depth) { return mm * depth < most_mm ? mm * depth : std::nan(""); };
+    step.y.push_back(shown(row.step_m));
+    error.y.push_back(shown(row.std_error_m));
+    told.y.push_back(shown(row.resolvable_depth_m));
+  }
+  io::Panel panel{fmt::format("Height {:g} m, {:g} degrees below the horizon; lines: 13, 25, 50 mm (ASTM D6433)",
+                              arguments.height_m, arguments.pitch_deg),
+                  "ahead of the camera on the road, m",
+                  "depth below the road, mm",
+                  {step, error, told},
+                  false,
+                  true};
+  for (const double depth : astm_depths_m) panel.horizontal_lines.push_back(mm * depth);
+  constexpr double least_reach_mm = 70;  // ASTM's depths are always in the picture
+  double reach = least_reach_mm;
+  for (const double depth : step.y) reach = std::fmax(reach, depth);
+  panel.y_highest = reach;
+  constexpr int width = 900, height = 560;
+  return io::draw_plot({panel}, width, height);
+}
+
+void limits(Arguments arguments) {
+  const CameraPose pose{arguments.height_m, arguments.pitch_deg * to_radians};
+  const ResolutionLimits limits(read_rig(arguments), pose, arguments.resolution);
+  if (!arguments.figure.empty()) write_figure(arguments.figure, limits_figure(arguments, limits));
+  if (arguments.json) {
+    fmt::print("{}", json_text(limits_json(arguments, limits)));
+    return;
+  }
+  fmt::print("{}\n", row_table(limits, arguments.rows).text());
+  for (const double depth : astm_depths_m) fmt::print("{}\n", verdict(limits, depth));
+  fmt::print(
+      "Depths along the road's normal. Told apart: {:g} standard errors of {:g} px; area: the window of a disparity, "
+      "at "
+      "least {:g} cm2;\nswath: seen by both cameras.\n",
+      arguments.resolution.threshold_sigma, arguments.resolution.sigma_px, 1e4 * arguments.resolution.min_area_m2);
+}
+
+constexpr const char* limits_footer =
+    R"(For planning a flight or a mount: which depth and area the rig can tell apart, row by row, from the nearest to the
+farthest. The road is a plane, the camera's rows are level. Where the disparity falls by one pixel of D, the road lies
+height / (D - 1) deeper.
+
+Examples:
+  roadstereo limits --calibration calibration.yaml --height 2
+  roadstereo limits --calibration calibration.yaml --height 1.6 --pitch 35 --sigma-px 0.05 --figure limits.png)";
+
+}  // namespace
+
+void add_limits(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("limits", "Smallest depth and area that a rig can tell apart from a height");
+  command->footer(limits_footer);
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("--calibration", arguments->calibration, "Calibration of the rectified rig; twice for a ROS pair")
+      ->type_name("FILE")
+      ->required()
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+  command->add_option("--height", arguments->height_m, "Height of the camera above the road, m")
+      ->type_name("M")
+      ->required()
+      ->check(CLI::Range(0.05, 1000.0));
+  command->add_option("--pitch", arguments->pitch_deg, "Degrees below the horizon; 90 looks straight down")
+      ->type_name("DEG")
+      ->check(CLI::Range(-90.0, 90.0))
+      ->capture_default_str();
+  command
+      ->add_option("--sigma-px", arguments->resolution.sigma_px,
+                   "Standard error of a disparity, px; see sigma.tiff of inspect")
+      ->check(CLI::Range(0.001, 10.0))
+      ->capture_default_str();
+  command->add_option("--threshold", arguments->resolution.threshold_sigma, "Standard errors that tell a depth apart")
+      ->check(CLI::Range(0.1, 100.0))
+      ->capture_default_str();
+  command->add_option("--size", arguments->size, "Image size, when the calibration does not say it")
+      ->type_name("WIDTHxHEIGHT");
+  command->add_option("--rows", arguments->rows, "Rows of the table")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "Print the figures as JSON");
+  command->add_option("--figure", arguments->figure, "Also draw them: a PNG for people")->type_name("FILE");
+  command->callback([arguments] { limits(*arguments); });
+}
+
+}  // namespace roadstereo::cli

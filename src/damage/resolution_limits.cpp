@@ -1,0 +1,121 @@
+#include "roadstereo/resolution_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/require_range.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double farthest_m = 1000;
+constexpr double right_angle = std::numbers::pi / 2;
+constexpr double to_degrees = 180 / std::numbers::pi;
+
+/// The pixels that one disparity rests on: the ellipse of aggregation and the blocks around it.
+double window_pixels(const MatcherOptions& matcher) {
+  const double radius = matcher.aggregation_radius;
+  const double columns = 2 * (radius + matcher.block_radius) + 1;
+  const double rows = 2 * (matcher.aggregation_aspect * radius + matcher.block_radius) + 1;
+  return std::numbers::pi / 4 * columns * rows;
+}
+
+}  // namespace
+
+void CameraPose::validate() const {
+  require_range("camera_pose", "height_m", height_m, 0.05, 1000.0);
+  require_range("camera_pose", "pitch_rad", pitch_rad, -right_angle, right_angle);
+}
+
+void ResolutionOptions::validate() const {
+  require_range("resolution", "sigma_px", sigma_px, 0.001, 10.0);
+  require_range("resolution", "threshold_sigma", threshold_sigma, 0.1, 100.0);
+  require_range("resolution", "min_area_m2", min_area_m2, 0.0, 100.0);
+  matcher.validate();
+}
+
+ResolutionLimits::ResolutionLimits(const StereoCalibration& calibration, const CameraPose& pose,
+                                   const ResolutionOptions& options)
+    : calibration_(calibration), pose_(pose), options_(options) {
+  pose.validate();
+  options.validate();
+  if (calibration.width < 1 || calibration.height < 1) fail("the calibration says no image size; one is needed");
+  calibration.validate(calibration.width, calibration.height, "the calibration");
+  const double least_slant = pose.height_m / farthest_m;
+  if (slant(last_row()) < least_slant) {
+    fail("the road is not in view: the camera looks ", pose.pitch_rad * to_degrees,
+         "° below the horizon, and the last row of the image shows no road within ", farthest_m, " m");
+  }
+  while (first_row_ < last_row() && slant(first_row_) < least_slant) first_row_ += 1;
+}
+
+double ResolutionLimits::last_row() const {
+  return calibration_.height - 1;
+}
+
+double ResolutionLimits::slant(double v) const {
+  return std::cos(pose_.pitch_rad) * (v - calibration_.cy_px) / calibration_.focal_px + std::sin(pose_.pitch_rad);
+}
+
+double ResolutionLimits::road_disparity(double v) const {
+  return calibration_.focal_px * calibration_.baseline_m * slant(v) / pose_.height_m;
+}
+
+double ResolutionLimits::depth_m(double v, double change_px) const {
+  const double left = road_disparity(v) - change_px;
+  return left > 0 ? pose_.height_m * change_px / left : infinite;
+}
+
+RowResolution ResolutionLimits::at_row(double v) const {
+  const double z = pose_.height_m / slant(v);
+  const double tangent = (v - calibration_.cy_px) / calibration_.focal_px;
+  const double f = calibration_.focal_px;
+  RowResolution row;
+  row.row_px = v;
+  row.ahead_m = z * (std::cos(pose_.pitch_rad) - std::sin(pose_.pitch_rad) * tangent);
+  row.distance_m = z * std::hypot(1.0, tangent);
+  row.disparity_px = road_disparity(v) - calibration_.disparity_offset_px;
+  row.step_m = depth_m(v, 1);
+  row.std_error_m = pose_.height_m * options_.sigma_px / road_disparity(v);
+  row.resolvable_depth_m = depth_m(v, options_.threshold_sigma * options_.sigma_px);
+  row.across_m = z / f;
+  row.along_m = z * z / (pose_.height_m * f);
+  row.swath_m = std::clamp(calibration_.width - row.disparity_px, 0.0, double(calibration_.width)) * row.across_m;
+  row.resolvable_area_m2 = std::max(options_.min_area_m2, window_pixels(options_.matcher) * row.across_m * row.along_m);
+  return row;
+}
+
+std::vector<RowResolution> ResolutionLimits::rows(int count) const {
+  const int steps = std::max(count, 2) - 1;
+  std::vector<RowResolution> rows;
+  rows.reserve(static_cast<std::size_t>(steps) + 1);
+  for (int i = 0; i <= steps; ++i) rows.push_back(at_row(last_row() + (first_row_ - last_row()) * i / steps));
+  return rows;
+}
+
+std::optional<RowResolution> ResolutionLimits::farthest(double depth_m) const {
+  const double change = options_.threshold_sigma * options_.sigma_px;
+  const auto is_told_apart = [&](double v) { return this->depth_m(v, change) <= depth_m; };
+  double near = last_row(), far = first_row_;  // disparities fall from the last row to the first, if they change at all
+  if (!is_told_apart(near)) return std::nullopt;
+  if (is_told_apart(far)) return at_row(far);
+  constexpr double close_px = 0.01;
+  while (near - far > close_px) {
+    const double middle = (near + far) / 2;
+    (is_told_apart(middle) ? near : far) = middle;
+  }
+  return at_row(near);
+}
+
+double ResolutionLimits::highest_camera_m(double depth_m) const {
+  // h·δ / (D − δ) = depth with D = f·b·slant / h: h² / depth + h = f·b·slant / δ
+  const double change = options_.threshold_sigma * options_.sigma_px;
+  const double right =
+      calibration_.focal_px * calibration_.baseline_m * slant((calibration_.height - 1) / 2.0) / change;
+  return right > 0 ? depth_m / 2 * (std::sqrt(1 + 4 * right / depth_m) - 1) : 0;
+}
+
+}  // namespace roadstereo
