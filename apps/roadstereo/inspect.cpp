@@ -69,12 +69,24 @@ int used_threads(const PipelineOptions& options) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
+/// A pair that shows no road still has a disparity map: damage that cannot be looked for is a warning.
+void find_damage(const Pipeline& pipeline, Inspection& inspection) {
+  try {
+    inspection.damage = pipeline.find_damage();
+  } catch (const Error& error) {
+    const FrameResult& result = inspection.result;
+    inspection.damage = no_damage(result.disparity.width(), result.disparity.height(), "no road was found");
+    inspection.warnings.push_back(std::string("damage was not looked for: ") + error.what());
+  }
+}
+
 void process(Inspection& inspection) {
   Pipeline pipeline(inspection.options, inspection.pair.calibration);
   inspection.result = pipeline.process(inspection.pair.left.view(), inspection.pair.right.view());
   inspection.engine = pipeline.engine_name();
   inspection.threads = used_threads(inspection.options);
   inspection.warnings = inspection.result.warnings;
+  find_damage(pipeline, inspection);
   if (inspection.pair.calibration && inspection.result.geometry_found) {
     inspection.plane = road_plane(inspection.result.geometry.plane, *inspection.pair.calibration);
   }
@@ -118,7 +130,8 @@ std::string settings_help() {
 constexpr const char* inspect_footer =
     R"(Into the output folder: disparity.tiff, sigma.tiff (the standard error of disparity.tiff, px) and transformed.tiff
 (32-bit float, NaN invalid), disparity.png (16 bit, value / 256 px, 0 invalid), disparity_color.png, sigma_color.png,
-transformed_color.png, sheet.png, result.json.
+transformed_color.png, sheet.png, result.json; damages.json, damages.csv, damage.png (16 bit, ids), overlay.png and
+report.html; with a calibration also cloud.ply (camera frame, m) and road_cloud.ply (the road is z = 0).
 
 Calibration formats, recognised by content: plain YAML (focal_px, cx_px, cy_px, baseline_m, width, height),
 OpenCV stereo YAML or XML, ROS camera_info (two files, left then right), KITTI calib*.txt, Middlebury
@@ -173,7 +186,8 @@ void add_output_options(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 void add_inspect(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("inspect", "Disparity, roll and transformed disparity of one stereo pair");
+  CLI::App* command =
+      app.add_subcommand("inspect", "Disparity, roll, transformed disparity and damage of one stereo pair");
   command->footer(inspect_footer + settings_help());
   const auto arguments = std::make_shared<Arguments>();
   add_input_options(*command, *arguments);

@@ -19,6 +19,7 @@ struct Inspection {
   std::string engine;  ///< the engine that ran
   int threads = 0;     ///< the threads it ran on
   FrameResult result;
+  DamageMap damage;
   std::optional<RoadPlane> plane;     ///< in space; only with a calibration and a road
   std::vector<std::string> warnings;  ///< the pipeline's and the command's own
 };

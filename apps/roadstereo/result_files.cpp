@@ -5,8 +5,11 @@
 #include <filesystem>
 
 #include "kitti_range.hpp"
+#include "roadstereo/io/damage_files.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/io/pictures.hpp"
+#include "roadstereo/io/point_cloud.hpp"
+#include "summary.hpp"
 
 namespace roadstereo::cli {
 
@@ -24,6 +27,16 @@ void add_kitti_png(Inspection& inspection, io::OutputFolder& folder) {
 
 void add_picture(io::OutputFolder& folder, const std::string& name, const Frame& picture) {
   folder.add(name, io::encode_png(picture.view()));
+}
+
+/// The points of the pair in the camera's frame, and turned so that the road is z = 0.
+void add_clouds(const Inspection& inspection, io::OutputFolder& folder) {
+  if (!inspection.pair.calibration) return;
+  const io::PointCloud cloud = io::cloud_from_disparity(inspection.result.disparity, inspection.pair.left.view(),
+                                                        inspection.options.white_level, *inspection.pair.calibration);
+  folder.add("cloud.ply", io::encode_ply(cloud));
+  if (!inspection.plane) return;
+  folder.add("road_cloud.ply", io::encode_ply(io::to_road_frame(cloud, road_frame(*inspection.plane))));
 }
 
 std::optional<RoadGeometry> known_geometry(const FrameResult& result) {
@@ -46,9 +59,20 @@ void add_result_files(Inspection& inspection, io::OutputFolder& folder) {
   const io::ColourScale around_road = io::transformed_scale(result.transformed, result.delta_t);
   add_picture(folder, "transformed_color.png", io::colour_map(result.transformed, around_road));
   const std::string title = std::filesystem::path(inspection.files.left).filename().string();
-  add_picture(folder, "sheet.png",
-              io::result_sheet(inspection.pair.left.view(), result.disparity, result.transformed, result.delta_t,
-                               known_geometry(result), title));
+  const Frame sheet = io::result_sheet(inspection.pair.left.view(), result.disparity, result.transformed,
+                                       result.delta_t, known_geometry(result), title);
+  std::vector<std::uint8_t> sheet_bytes = io::encode_png(sheet.view());
+  folder.add("sheet.png", sheet_bytes);
+  add_clouds(inspection, folder);
+  io::DamageReportInput report{inspection.damage};
+  report.left = inspection.pair.left.view();
+  report.disparity = result.disparity;
+  report.transformed = result.transformed;
+  report.calibration = inspection.pair.calibration;
+  report.title = title;
+  report.facts = summary_facts(inspection);
+  report.sheet = std::move(sheet_bytes);
+  io::add_damage_files(folder, report);
 }
 
 }  // namespace roadstereo::cli

@@ -114,6 +114,8 @@ std::string result_json(const Inspection& inspection) {
   document["calibration"] = calibration_json(inspection.pair);
   add_geometry(document, result);
   add_plane(document, inspection.plane);
+  document["damages"] = inspection.damage.damages.size();  // each is in damages.json
+  document["road_noise_px"] = json_number(inspection.damage.noise_px);
   document["rows"] = rows_json(result.rows);
   document["road_model_before_matching"] = estimate_json(result.road);
   document["ms"] = times_json(result.ms);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -68,7 +69,9 @@ std::string time_text(const FrameResult& result) {
 }
 
 std::string picture_lines(const std::filesystem::path& folder) {
-  std::string lines = line("pictures", (folder / "sheet.png").string());
+  std::string lines = line("report", (folder / "report.html").string());
+  lines += line("pictures", (folder / "overlay.png").string());
+  lines += line("", (folder / "sheet.png").string());
   lines += line("", (folder / "disparity_color.png").string());
   lines += line("", (folder / "sigma_color.png").string());
   lines += line("", (folder / "transformed_color.png").string());
@@ -76,6 +79,37 @@ std::string picture_lines(const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+std::string damage_text(const DamageMap& map) {
+  if (map.damages.empty()) return "none found";
+  const auto depressions = std::count_if(map.damages.begin(), map.damages.end(),
+                                         [](const Damage& one) { return one.kind == DamageKind::depression; });
+  const auto protrusions = static_cast<std::ptrdiff_t>(map.damages.size()) - depressions;
+  const Damage& deepest = map.damages.front();
+  std::string text = fmt::format("{} depression{}, {} protrusion{}; ", depressions, depressions == 1 ? "" : "s",
+                                 protrusions, protrusions == 1 ? "" : "s");
+  if (deepest.metrics) {
+    constexpr double mm = 1000;
+    const DamageMetrics& metrics = *deepest.metrics;
+    return text + fmt::format("deepest {:.1f} ± {:.1f} mm, {:.0f} ± {:.0f} cm²", mm * metrics.max_depth_m.value,
+                              mm * metrics.max_depth_m.std_error, 1e4 * metrics.area_m2.value,
+                              1e4 * metrics.area_m2.std_error);
+  }
+  return text + fmt::format("deepest {:.2f} ± {:.2f} px", deepest.max_depth_px.value, deepest.max_depth_px.std_error);
+}
+
+std::vector<std::pair<std::string, std::string>> summary_facts(const Inspection& inspection) {
+  const FrameResult& result = inspection.result;
+  std::vector<std::pair<std::string, std::string>> facts{
+      {"Pair", pair_text(inspection)}, {"Roll", roll_text(result)}, {"Road", road_text(result)}};
+  if (inspection.plane) facts.emplace_back("Camera", camera_text(*inspection.plane));
+  facts.emplace_back("Pixels with a disparity", fmt::format("{:.1f} %", 100 * result.valid_share));
+  facts.emplace_back("Spread around the road", spread_text(result));
+  facts.emplace_back("Engine", engine_text(inspection));
+  facts.emplace_back("Time", time_text(result));
+  for (const std::string& warning : inspection.warnings) facts.emplace_back("Warning", warning);
+  return facts;
+}
 
 std::string summary(const Inspection& inspection, const std::filesystem::path& folder) {
   const FrameResult& result = inspection.result;
@@ -87,6 +121,7 @@ std::string summary(const Inspection& inspection, const std::filesystem::path& f
   if (inspection.plane) text += line("camera", camera_text(*inspection.plane));
   text += line("valid", fmt::format("{:.1f} % of the pixels", 100 * result.valid_share));
   text += line("sigma_d", spread_text(result));
+  text += line("damage", damage_text(inspection.damage));
   text += line("time", time_text(result));
   for (const std::string& warning : inspection.warnings) text += line("warning", warning);
   return text + picture_lines(folder);

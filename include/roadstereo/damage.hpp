@@ -111,4 +111,7 @@ struct DamageMap {
 /// Throws Error when the map has no disparities, one value only, or the views do not agree in size.
 DamageMap find_damage(const DamageInput& input, const DamageOptions& options = {}, int threads = 0);
 
+/// The result where nothing was found and no road either; `reason` says why nothing is metric.
+DamageMap no_damage(int width, int height, const std::string& reason);
+
 }  // namespace roadstereo

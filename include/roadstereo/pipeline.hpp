@@ -9,6 +9,7 @@
 #include "roadstereo/alignment.hpp"
 #include "roadstereo/calibration.hpp"
 #include "roadstereo/coarse_search.hpp"
+#include "roadstereo/damage.hpp"
 #include "roadstereo/image.hpp"
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/perspective.hpp"
@@ -31,6 +32,7 @@ struct PipelineOptions {
   MatcherOptions matcher;
   RefinementOptions refinement;
   RoadGeometryOptions road_geometry;
+  DamageOptions damage;  ///< of `Pipeline::find_damage`
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
@@ -87,6 +89,10 @@ class Pipeline {
   /// Throws Error when the pair cannot be one: sizes differ or are outside 32×32 … 8192×8192, an image has one
   /// colour, both images are the same, left and right look swapped, the calibration belongs to another size.
   const FrameResult& process(const FrameView& left, const FrameView& right);
+
+  /// Finds and measures damage in the last frame. Without a road there is none. Throws Error when no frame was
+  /// processed yet, or when hardly any disparity of it lies on a road.
+  DamageMap find_damage() const;
 
   /// Forgets the last frame: the next one starts afresh.
   void reset();

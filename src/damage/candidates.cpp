@@ -105,8 +105,8 @@ Surroundings surroundings_of(const Candidate& candidate, const DepthCells& relie
 
 class Search {
  public:
-  Search(const DepthCells& relief, const Image<std::uint8_t>& road, const Thresholds& thresholds, const Witness& witness,
-         DamageKind kind)
+  Search(const DepthCells& relief, const Image<std::uint8_t>& road, const Thresholds& thresholds,
+         const Witness& witness, DamageKind kind)
       : relief_(relief), road_(road), thresholds_(thresholds), witness_(witness), kind_(kind), depth_(relief.depth) {
     if (kind == DamageKind::protrusion) turn_over();
     allowed_ = relief.known;

@@ -8,8 +8,8 @@
 #include "core/require_range.hpp"
 #include "damage/candidates.hpp"
 #include "damage/cells.hpp"
-#include "damage/measurement.hpp"
 #include "damage/depth_cells.hpp"
+#include "damage/measurement.hpp"
 #include "damage/road_region.hpp"
 #include "damage/road_surface.hpp"
 #include "roadstereo/error.hpp"
@@ -105,6 +105,16 @@ void DamageOptions::validate() const {
   require_range("damage", "max_height_m", max_height_m, min_depth_m, 10.0);
   require_range("damage", "min_area_m2", min_area_m2, 0.0, 1e4);
   require_range("damage", "min_area_share", min_area_share, 0.0, 1.0);
+}
+
+DamageMap no_damage(int width, int height, const std::string& reason) {
+  DamageMap none;
+  none.ids.assign(width, height, 0);
+  none.road.assign(width, height, 0);
+  none.surface.assign(width, height, std::numeric_limits<float>::quiet_NaN());
+  none.depth = none.surface;
+  none.unmetric_reason = reason;
+  return none;
 }
 
 DamageMap find_damage(const DamageInput& input, const DamageOptions& options, int threads) {

@@ -47,16 +47,21 @@ class Geometry {
   double focal_px() const { return calibration_.focal_px; }
 
  private:
-  /// ℓ' = ℓ − road + δt holds everywhere: one pixel tells δt.
+  /// ℓ' = ℓ − road + δt: the median over a sample of pixels tells δt, whoever made the map.
   double find_delta_t(const DamageInput& input) const {
-    for (int v = input.disparity.height() - 1; v >= 0; --v) {
-      for (int u = 0; u < input.disparity.width(); ++u) {
+    constexpr int step = 7;
+    std::vector<double> deltas;
+    for (int v = step / 2; v < input.disparity.height(); v += step) {
+      for (int u = step / 2; u < input.disparity.width(); u += step) {
         const double delta =
             static_cast<double>(input.transformed(u, v)) - input.disparity(u, v) + model_.disparity(u, v);
-        if (std::isfinite(delta)) return delta;
+        if (std::isfinite(delta)) deltas.push_back(delta);
       }
     }
-    return 0;
+    if (deltas.empty()) return 0;
+    const auto middle = deltas.begin() + static_cast<std::ptrdiff_t>(deltas.size() / 2);
+    std::nth_element(deltas.begin(), middle, deltas.end());
+    return *middle;
   }
 
   StereoCalibration calibration_;

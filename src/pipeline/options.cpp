@@ -115,6 +115,15 @@ void visit_options(Options& o, Visitor visit) {
         "the roll is observable below this standard error, radians");
   visit("road_geometry.min_gradient_px", o.road_geometry.min_gradient_px,
         "... and when the road's disparity changes by this over the image, pixels");
+
+  visit("damage.threshold_sigma", o.damage.threshold_sigma,
+        "depth that counts as damage, standard deviations of the road");
+  visit("damage.min_depth_m", o.damage.min_depth_m, "... and metres, when calibrated");
+  visit("damage.max_depth_m", o.damage.max_depth_m, "what lies deeper is a ditch, metres");
+  visit("damage.max_height_m", o.damage.max_height_m, "what rises higher is a kerb or a vehicle, metres");
+  visit("damage.min_area_m2", o.damage.min_area_m2, "smallest damage on the road, square metres");
+  visit("damage.min_area_share", o.damage.min_area_share, "... and without a calibration, share of the image");
+  visit("damage.protrusions", o.damage.protrusions, "find bumps, heave and debris as well");
 }
 
 std::string to_text(const std::string& value) {

@@ -68,6 +68,7 @@ void PipelineOptions::validate() const {
   matcher.validate();
   refinement.validate();
   road_geometry.validate();
+  damage.validate();
 }
 
 }  // namespace roadstereo

@@ -29,6 +29,7 @@ void add_evaluate(CLI::App& app) {
   add_roll(*command);
   add_flatness(*command);
   add_blur(*command);
+  add_damage_accuracy(*command);
   add_scan(*command);
   add_runtime(*command);
 }

@@ -1,0 +1,124 @@
+#include "roadstereo/damage.hpp"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "grey_frame.hpp"
+#include "map_source.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/damage_files.hpp"
+#include "roadstereo/io/output_folder.hpp"
+#include "roadstereo/options.hpp"
+#include "settings.hpp"
+#include "summary.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+struct Arguments {
+  MapFiles files;
+  std::string output;
+  std::vector<std::string> settings;
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// Only options of damage have a meaning here.
+DamageOptions make_options(const std::vector<std::string>& settings) {
+  PipelineOptions options;
+  for (const std::string& setting : settings) {
+    const std::string key = split_setting(setting).first;
+    if (key.rfind("damage.", 0) != 0)
+      fail("\"", key, "\" has no effect here; damage takes keys that begin with damage.");
+  }
+  apply_settings(settings, options);
+  options.damage.validate();
+  return options.damage;
+}
+
+DamageMap find_in(const TransformedMap& map, const Arguments& arguments) {
+  const Image<std::uint8_t> grey = map.image ? grey_of(*map.image) : Image<std::uint8_t>();
+  DamageInput input;
+  input.transformed = map.transformed;
+  input.grey = grey;
+  if (map.disparity) input.disparity = *map.disparity;
+  input.plane = map.plane;
+  input.calibration = map.calibration;
+  try {
+    return find_damage(input, make_options(arguments.settings), arguments.threads);
+  } catch (const Error& error) {
+    fail(arguments.files.transformed, ": ", error.what());
+  }
+}
+
+void run(const Arguments& arguments) {
+  make_options(arguments.settings);  // refused before any work
+  const TransformedMap map = read_transformed_map(arguments.files);
+  io::OutputFolder folder(arguments.output);
+  const DamageMap damage = find_in(map, arguments);
+  io::DamageReportInput report{damage};
+  if (map.image) report.left = map.image->view();
+  if (map.disparity) report.disparity = *map.disparity;
+  report.transformed = map.transformed;
+  report.calibration = map.calibration;
+  report.title = std::filesystem::path(arguments.files.transformed).filename().string();
+  report.facts = {{"Transformed map", fmt::format("{}×{} px", map.transformed.width(), map.transformed.height())}};
+  io::add_damage_files(folder, report);
+  folder.commit();
+  if (arguments.quiet) return;
+  fmt::print("{}: {}\n", arguments.files.transformed, damage_text(damage));
+  if (!damage.metric) fmt::print("  figures are in pixels: {}\n", damage.unmetric_reason);
+  fmt::print("  report    {}\n  pictures  {}\n", (folder.path() / "report.html").string(),
+             (folder.path() / "overlay.png").string());
+}
+
+constexpr const char* damage_footer =
+    R"(Into the output folder: damages.json, damages.csv, damage.png (16 bit, ids), overlay.png, report.html.
+
+Depressions have smaller values than the road. Without --disparity and --calibration figures are in the map's own unit.
+
+Examples:
+  roadstereo damage transformed.tiff --image left.png --output out
+  roadstereo damage transformed.png --disparity disparity.tiff --calibration calibration.yaml --output out)";
+
+}  // namespace
+
+void add_damage(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("damage", "Finds and measures damage in a transformed disparity map");
+  command->footer(damage_footer);
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("TRANSFORMED", arguments->files.transformed,
+                   "Transformed disparity: float TIFF, PFM, or 16-bit PNG of any scale (0 invalid)")
+      ->required();
+  command->add_option("--image", arguments->files.image, "Left image: helps to draw outlines")->type_name("FILE");
+  command->add_option("--disparity", arguments->files.disparity, "Disparity map of the same view")->type_name("FILE");
+  command
+      ->add_option("--calibration", arguments->files.calibration,
+                   "Calibration of the rig: with --disparity, figures are in metres")
+      ->type_name("FILE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+  command->add_option("--output", arguments->output, "Folder for the results; made when it is missing")
+      ->type_name("DIR")
+      ->required();
+  command->add_option("--set", arguments->settings, "Sets one option, e.g. damage.min_depth_m=0.01; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+  command->add_option("--threads", arguments->threads, "Worker threads; 0 takes all cores")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_flag("--quiet", arguments->quiet, "Print nothing on success");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace roadstereo::cli

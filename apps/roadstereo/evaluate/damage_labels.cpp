@@ -1,0 +1,155 @@
+#include "evaluate/damage_labels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "evaluate/label_regions.hpp"
+#include "evaluate/mask_file.hpp"
+#include "evaluate/scan_frames.hpp"
+#include "grey_frame.hpp"
+#include "map_source.hpp"
+#include "roadstereo/damage.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/pipeline.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double least_share = 1.0 / 3;
+
+bool is_depression(const DamageMap& map, std::uint16_t id) {
+  return id != 0 && map.damages[id - 1U].kind == DamageKind::depression;
+}
+
+/// Labelled regions that are found, and depressions that no label knows.
+void count_regions(const DamageMap& map, const Image<std::uint8_t>& label, LabelResult& result) {
+  const LabelRegions regions = label_regions(label);
+  std::vector<std::size_t> covered(regions.sizes.size(), 0);
+  std::map<std::uint16_t, std::size_t> labelled_of;
+  for (int v = 0; v < label.height(); ++v) {
+    for (int u = 0; u < label.width(); ++u) {
+      const int region = regions.ids(u, v);
+      if (region == 0 || !is_depression(map, map.ids(u, v))) continue;
+      ++covered[static_cast<std::size_t>(region - 1)];
+      ++labelled_of[map.ids(u, v)];
+    }
+  }
+  result.labelled = regions.sizes.size();
+  for (std::size_t k = 0; k < covered.size(); ++k) {
+    const bool hit = static_cast<double>(covered[k]) >= least_share * static_cast<double>(regions.sizes[k]);
+    result.hit += hit ? 1U : 0U;
+  }
+  for (const Damage& damage : map.damages) {
+    if (damage.kind != DamageKind::depression) continue;
+    const double labelled = static_cast<double>(labelled_of[static_cast<std::uint16_t>(damage.id)]);
+    result.invented += labelled < least_share * static_cast<double>(damage.pixels) ? 1U : 0U;
+  }
+}
+
+LabelResult score_frame(const std::string& name, const DamageMap& map, const Image<std::uint8_t>& label,
+                        const Image<float>& measured, const std::string& label_file) {
+  if (label.width() != map.ids.width() || label.height() != map.ids.height()) {
+    fail(label_file, " has ", label.width(), "×", label.height(), " pixels and the map ", map.ids.width(), "×",
+         map.ids.height(), "; they must have one size");
+  }
+  LabelResult result;
+  result.frame = name;
+  for (int v = 0; v < label.height(); ++v) {
+    for (int u = 0; u < label.width(); ++u) {
+      result.score.add(is_depression(map, map.ids(u, v)), label(u, v) != 0);
+      result.measured += label(u, v) != 0 && !std::isnan(measured(u, v)) ? 1U : 0U;
+    }
+  }
+  count_regions(map, label, result);
+  return result;
+}
+
+std::string picture_of(const fs::path& root, const std::string& name) {
+  for (const char* ending : {".jpg", ".png"}) {
+    const fs::path path = root / "rgb" / (name + ending);
+    if (fs::is_regular_file(path)) return path.string();
+  }
+  return "";
+}
+
+std::vector<fs::path> maps_in(const fs::path& folder) {
+  std::vector<fs::path> maps;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".png") maps.push_back(entry.path());
+  }
+  std::sort(maps.begin(), maps.end());
+  if (maps.empty()) fail(folder.string(), " has no PNG in it");
+  return maps;
+}
+
+}  // namespace
+
+std::vector<LabelResult> score_labelled_maps(const std::string& folder) {
+  const fs::path root = folder;
+  std::vector<LabelResult> results;
+  for (const fs::path& path : maps_in(root / "disp_tg")) {
+    const std::string name = path.stem().string();
+    const TransformedMap source = read_transformed_map({path.string(), picture_of(root, name), "", {}});
+    const Image<std::uint8_t> grey = source.image ? grey_of(*source.image) : Image<std::uint8_t>();
+    DamageInput input;
+    input.transformed = source.transformed;
+    input.grey = grey;
+    const std::string label = (root / "label" / path.filename()).string();
+    results.push_back(score_frame(name, find_damage(input), read_mask(label), source.transformed, label));
+  }
+  return results;
+}
+
+std::vector<LabelResult> score_labelled_pairs(const std::string& folder, const std::string& preset_name) {
+  std::vector<LabelResult> results;
+  for (const ScanFiles& files : find_scan_frames(folder)) {
+    const StereoPair pair = read_pair(files.pair);
+    Pipeline pipeline(preset(preset_name), pair.calibration);
+    const FrameResult& frame = pipeline.process(pair.left.view(), pair.right.view());
+    results.push_back(
+        score_frame(files.name, pipeline.find_damage(), read_mask(files.label), frame.disparity, files.label));
+  }
+  return results;
+}
+
+Table label_table(const std::vector<LabelResult>& results) {
+  constexpr double percent = 100;
+  Table table{"Depressions against the labels",
+              {{"frame", "frame"},
+               {"precision", "precision"},
+               {"recall", "recall"},
+               {"F", "f"},
+               {"labels", "labels"},
+               {"found", "found"},
+               {"invented", "invented"},
+               {"measured %", "measured_percent"}},
+              {}};
+  const auto row = [&](const LabelResult& one) -> std::vector<Cell> {
+    return {Cell(one.frame),
+            Cell(one.score.precision(), 3),
+            Cell(one.score.recall(), 3),
+            Cell(one.score.f(), 3),
+            Cell(static_cast<double>(one.labelled), 0),
+            Cell(static_cast<double>(one.hit), 0),
+            Cell(static_cast<double>(one.invented), 0),
+            Cell(percent * static_cast<double>(one.measured) / static_cast<double>(one.score.truth), 1)};
+  };
+  LabelResult all;
+  all.frame = "all pixels";
+  for (const LabelResult& one : results) {
+    table.rows.push_back(row(one));
+    all.score.add(one.score);
+    all.labelled += one.labelled;
+    all.hit += one.hit;
+    all.invented += one.invented;
+    all.measured += one.measured;
+  }
+  table.rows.push_back(row(all));
+  return table;
+}
+
+}  // namespace roadstereo::cli
