@@ -22,6 +22,7 @@ synth::Scene sample_scene() {
   scene.rig.height = 540;
   scene.rig.focal_px = 525;
   scene.rig.pitch_deg = 62;
+  scene.supersampling = 2;
   scene.road.blobs.clear();
   scene.road.cracks.clear();
   return scene;
@@ -72,8 +73,8 @@ void wear(TrueDamage& truth) {
   }
 }
 
-void write_sample(const std::filesystem::path& folder, const synth::Scene& scene, bool calibrated, bool with_image) {
-  const synth::SyntheticPair pair = synth::render(scene);
+void write_sample(const std::filesystem::path& folder, const synth::SyntheticPair& pair, bool calibrated,
+                  bool with_image) {
   TrueDamage truth = damage_from_truth(pair, calibrated);
   wear(truth);
   io::DamageReportInput input{truth.map};
@@ -107,11 +108,14 @@ int main(int argc, char** argv) {
   }
   try {
     const std::filesystem::path folder = argv[1];
-    write_sample(folder / "none", sample_scene(), true, true);
-    write_sample(folder / "one", one_pothole(), true, true);
-    write_sample(folder / "many", many_damages(), true, true);
-    write_sample(folder / "uncalibrated", many_damages(), false, true);
-    write_sample(folder / "no_image", one_pothole(), false, false);
+    const synth::SyntheticPair intact = synth::render(sample_scene());
+    const synth::SyntheticPair one = synth::render(one_pothole());
+    const synth::SyntheticPair many = synth::render(many_damages());
+    write_sample(folder / "none", intact, true, true);
+    write_sample(folder / "one", one, true, true);
+    write_sample(folder / "many", many, true, true);
+    write_sample(folder / "uncalibrated", many, false, true);
+    write_sample(folder / "no_image", one, false, false);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

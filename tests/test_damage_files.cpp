@@ -371,49 +371,65 @@ TEST(DamageReport, RefusesWhatDoesNotFit) {
   EXPECT_THROW(damage_report(with_small_map), Error);
 }
 
-/// A road with 500 squares of damage.
-TrueDamage crowded_road() {
-  constexpr int columns = 25, rows = 20, cell = 40, side = 22;
-  TrueDamage truth{{}, Image<float>(columns * cell, rows * cell), Image<float>(columns * cell, rows * cell)};
-  DamageMap& map = truth.map;
-  map.ids.assign(columns * cell, rows * cell, 0);
-  map.road.assign(columns * cell, rows * cell, 255);
-  map.surface.assign(columns * cell, rows * cell, 30);
-  map.depth.assign(columns * cell, rows * cell, 0);
-  map.unmetric_reason = "made up";
-  std::mt19937 random(3);
-  for (int i = 0; i < columns * rows; ++i) {
-    const int left = (i % columns) * cell + 9, top = (i / columns) * cell + 9;
+/// A road with a grid of square damages, of noise all of it: the worst that pictures can be.
+struct CrowdedRoad {
+  TrueDamage truth;
+  Frame image;
+
+  CrowdedRoad(int columns, int rows, int cell) {
+    const int width = columns * cell, height = rows * cell;
+    truth = {{}, Image<float>(width, height), Image<float>(width, height, 30)};
+    truth.map.ids.assign(width, height, 0);
+    truth.map.road.assign(width, height, 255);
+    truth.map.surface.assign(width, height, 30);
+    truth.map.depth.assign(width, height, 0);
+    truth.map.unmetric_reason = "made up";
+    image = {std::vector<std::uint8_t>(truth.map.ids.pixels()), width, height};
+    std::generate(image.bytes.begin(), image.bytes.end(), [&] { return static_cast<std::uint8_t>(random()); });
+    for (int i = 0; i < columns * rows; ++i)
+      add(i + 1, (i % columns) * cell + cell / 5, (i / columns) * cell + cell / 5, cell * 3 / 5);
+  }
+
+  void add(int id, int left, int top, int side) {
     Damage damage;
-    damage.id = i + 1;
+    damage.id = id;
     damage.box_px = {left, top, left + side - 1, top + side - 1};
     damage.deepest_px = {left + side / 2, top + side / 2};
     damage.centroid_px = {left + 0.5 * (side - 1), top + 0.5 * (side - 1)};
     damage.max_depth_px = {3, 0.1};
-    damage.pixels = side * side;
     for (int v = top; v < top + side; ++v) {
       for (int u = left; u < left + side; ++u) {
-        map.ids(u, v) = static_cast<std::uint16_t>(damage.id);
-        map.depth(u, v) = static_cast<float>(random() % 1000) / 300;
+        truth.map.ids(u, v) = static_cast<std::uint16_t>(id);
+        truth.map.depth(u, v) = static_cast<float>(random() % 1000) / 300;
+        if (random() % 10 == 0) truth.transformed(u, v) = truth::nan_value;
       }
     }
-    map.damages.push_back(damage);
+    truth.map.damages.push_back(damage);
   }
-  return truth;
-}
+
+  std::string report() const {
+    DamageReportInput input{truth.map};
+    input.left = image.view();
+    input.transformed = truth.transformed;
+    return damage_report(input);
+  }
+
+  std::mt19937 random{3};
+};
 
 TEST(DamageReport, OfManyDamagesStaysSmall) {
-  const TrueDamage truth = crowded_road();
-  DamageReportInput input{truth.map};
-  std::mt19937 random(4);
-  Frame image{std::vector<std::uint8_t>(truth.map.ids.pixels()), truth.map.ids.width(), truth.map.ids.height()};
-  std::generate(image.bytes.begin(), image.bytes.end(), [&] { return static_cast<std::uint8_t>(random()); });
-  input.left = image.view();
-  const std::string html = damage_report(input);
+  const std::string html = CrowdedRoad(25, 20, 40).report();
   EXPECT_LT(html.size(), most_bytes);
   EXPECT_EQ(occurrences(html, "class=\"damage\""), 500U);
   EXPECT_EQ(occurrences(html, "<canvas"), 30U);
   EXPECT_NE(html.find("The 30 deepest of the 500 damages have a 3-D view"), std::string::npos);
+}
+
+TEST(DamageReport, OfLargeDamagesStaysSmall) {
+  const std::string html = CrowdedRoad(6, 5, 400).report();
+  EXPECT_LT(html.size(), most_bytes);
+  EXPECT_EQ(occurrences(html, "<canvas"), 30U);
+  EXPECT_EQ(html.find("deepest of the"), std::string::npos);
 }
 
 TEST(DamageFiles, AreAllThereAndHoldTheIds) {

@@ -49,17 +49,17 @@ std::string figure(const std::string& id, const std::string& title, const std::s
 }
 
 std::string sheet_figure(const DamageReportInput& input) {
-  constexpr int most_side = 1700;
+  constexpr PictureLimit limit{1700, 700000};
   if (input.sheet.empty()) return "";
-  return figure("sheet", "Result sheet", picture_uri(input.sheet, most_side),
+  return figure("sheet", "Result sheet", picture_uri(input.sheet, limit),
                 "Left image, disparity, transformed disparity (the intact road is flat) and v-disparity histogram.");
 }
 
 std::string overlay_figure(const DamageReportInput& input) {
-  constexpr int most_side = 1400;
+  constexpr PictureLimit limit{1400, 600000};
   if (input.map.damages.empty()) return "";
   const Frame overlay = damage_overlay(damage_background(input).view(), input.map);
-  return figure("overlay", "Where the damage is", picture_uri(mat_over(overlay.view()), most_side),
+  return figure("overlay", "Where the damage is", picture_uri(mat_over(overlay.view()), limit),
                 input.map.metric
                     ? "Every damage with its number and largest depth, coloured by severity; + is above the road."
                     : "Every damage with its number and largest change of disparity; + is above the road.");
@@ -95,7 +95,7 @@ std::string palette_json() {
 
 std::string ramp_uri() {
   constexpr int steps = 128;
-  return picture_uri(depth_ramp(steps), steps);
+  return picture_uri(depth_ramp(steps), {steps, 10000});
 }
 
 }  // namespace

@@ -99,15 +99,16 @@ std::optional<StereoCalibration> rig_of(const DamageReportInput& input) {
 }  // namespace
 
 SectionSize SectionSize::for_count(std::size_t damages) {
-  constexpr std::size_t few = 10;
-  if (damages <= few) return {480, 120};
-  return damages <= most_reliefs ? SectionSize{360, 80} : SectionSize{160, 80};
+  constexpr std::size_t few = 10, bytes_of_all = 900000;
+  const std::size_t bytes = bytes_of_all / std::max<std::size_t>(1, damages);
+  if (damages <= few) return {{480, bytes}, 120};
+  return {{damages <= most_reliefs ? 360 : 160, bytes}, 72};
 }
 
 std::string damage_section(const DamageReportInput& input, const cv::Mat& background, const Damage& damage,
                            const SectionSize& size, bool with_relief) {
   const DamageMap& map = input.map;
-  const Crop crop = crop_around(map, damage, size.picture_side);
+  const Crop crop = crop_around(map, damage, size.picture);
   const double reach = reach_of(map, damage);
   const CrossSection section = cross_section(map, damage, holes_of(input), rig_of(input));
   Fields fields;

@@ -3,13 +3,14 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "io/report/pictures.hpp"
 #include "roadstereo/io/damage_report.hpp"
 
 namespace roadstereo::io {
 
 /// How much a report of so many damages may show of each.
 struct SectionSize {
-  int picture_side = 0;   ///< longest side of a picture, pixels
+  PictureLimit picture;   ///< each of the two
   int relief_points = 0;  ///< points of a 3-D view along its longest side
 
   static SectionSize for_count(std::size_t damages);

@@ -49,18 +49,39 @@ std::string edge_path(const Mask& mask) {
   return path;
 }
 
-/// The mask's pixels as a path of bars along the rows.
-std::string area_path(const Mask& mask) {
+/// The mask's cells of `side` pixels as a path of bars along the rows.
+std::string area_path(const Mask& mask, int side) {
   std::ostringstream path;
   for (int v = 0; v < mask.height(); ++v) {
     int length = 0;
     for (int u = 0; u <= mask.width(); ++u) {
       const bool on = u < mask.width() && mask(u, v) != 0;
-      if (!on && length > 0) path << 'M' << u - length << ' ' << v << 'h' << length << "v1h-" << length << 'z';
+      if (!on && length > 0) {
+        path << 'M' << (u - length) * side << ' ' << v * side << 'h' << length * side << 'v' << side << "h-"
+             << length * side << 'z';
+      }
       length = on ? length + 1 : 0;
     }
   }
   return path.str();
+}
+
+/// Cells of `side` pixels, at least half of which are in the mask.
+Mask in_cells(const Mask& mask, int side) {
+  Mask cells((mask.width() + side - 1) / side, (mask.height() + side - 1) / side);
+  for (int row = 0; row < cells.height(); ++row) {
+    for (int column = 0; column < cells.width(); ++column) {
+      int in = 0, all = 0;
+      for (int v = row * side; v < std::min((row + 1) * side, mask.height()); ++v) {
+        for (int u = column * side; u < std::min((column + 1) * side, mask.width()); ++u) {
+          in += mask(u, v) != 0 ? 1 : 0;
+          ++all;
+        }
+      }
+      cells(column, row) = 2 * in >= all ? 255 : 0;
+    }
+  }
+  return cells;
 }
 
 /// A mask over the crop's scaled pixels of what holds at the nearest pixel of the map.
@@ -89,7 +110,7 @@ Fields crop_fields(const cv::Mat& picture, const DamageMap& map, const Damage& d
   return {{"width", std::to_string(crop.size.width)},
           {"height", std::to_string(crop.size.height)},
           {"ratio", number_text(static_cast<double>(crop.size.width) / crop.size.height, 3)},
-          {"picture", picture_uri(picture, std::max(crop.size.width, crop.size.height))},
+          {"picture", picture_uri(picture, {std::max(crop.size.width, crop.size.height), crop.bytes})},
           {"outline", outline(map, damage, crop)},
           {"colour", "rgb(" + std::to_string(red) + "," + std::to_string(green) + "," + std::to_string(blue) + ")"},
           {"id", std::to_string(damage.id)}};
@@ -125,34 +146,46 @@ cv::Mat shrunk(const cv::Mat& picture, int most_side) {
   return small;
 }
 
+std::vector<std::uint8_t> encoded(const char* format, const cv::Mat& picture, const std::vector<int>& options) {
+  std::vector<std::uint8_t> bytes;
+  if (!cv::imencode(format, picture, bytes, options)) {
+    fail<SystemError>("a picture of the report could not be encoded as ", format);
+  }
+  return bytes;
+}
+
 }  // namespace
 
-std::string picture_uri(const cv::Mat& picture, int most_side) {
-  constexpr int quality = 88;
-  const cv::Mat small = shrunk(picture, most_side);
-  std::vector<std::uint8_t> jpeg, png;
-  if (!cv::imencode(".jpg", small, jpeg, {cv::IMWRITE_JPEG_QUALITY, quality}) || !cv::imencode(".png", small, png)) {
-    fail<SystemError>("a picture of the report could not be encoded");
+std::string picture_uri(const cv::Mat& picture, const PictureLimit& limit) {
+  constexpr int good_quality = 88, least_quality = 60, quality_step = 14;
+  constexpr int least_side = 32;
+  const std::vector<std::uint8_t> png = encoded(".png", shrunk(picture, limit.side), {});
+  std::vector<std::uint8_t> jpeg;
+  for (int side = limit.side; jpeg.empty() || (jpeg.size() > limit.bytes && side > least_side); side = side * 3 / 4) {
+    for (int quality = good_quality; quality >= least_quality; quality -= quality_step) {
+      jpeg = encoded(".jpg", shrunk(picture, side), {cv::IMWRITE_JPEG_QUALITY, quality});
+      if (jpeg.size() <= limit.bytes) break;
+    }
   }
   if (png.size() < jpeg.size()) return "data:image/png;base64," + base64(png);
   return "data:image/jpeg;base64," + base64(jpeg);
 }
 
-std::string picture_uri(std::span<const std::uint8_t> encoded, int most_side) {
-  const std::vector<std::uint8_t> bytes(encoded.begin(), encoded.end());
+std::string picture_uri(std::span<const std::uint8_t> encoded_picture, const PictureLimit& limit) {
+  const std::vector<std::uint8_t> bytes(encoded_picture.begin(), encoded_picture.end());
   const cv::Mat picture = cv::imdecode(bytes, cv::IMREAD_COLOR);
-  if (picture.empty()) fail("the sheet for the report, ", encoded.size(), " bytes, is not a PNG or JPEG picture");
-  return picture_uri(picture, most_side);
+  if (picture.empty()) fail("the sheet for the report, ", bytes.size(), " bytes, is not a PNG or JPEG picture");
+  return picture_uri(picture, limit);
 }
 
-Crop crop_around(const DamageMap& map, const Damage& damage, int most_side) {
+Crop crop_around(const DamageMap& map, const Damage& damage, const PictureLimit& limit) {
   constexpr double share = 0.25;
   constexpr int least_margin_px = 8;
   const auto& [u0, v0, u1, v1] = damage.box_px;
   const int longer = std::max(u1 - u0, v1 - v0) + 1;  // a thin one still shows what is around it
   const PixelBox box = surroundings(map, damage, share, std::max(least_margin_px, longer / 8));
-  const double scale = std::min(1.0, static_cast<double>(most_side) / std::max(box.width(), box.height()));
-  return {box, {std::max(1, cvRound(scale * box.width())), std::max(1, cvRound(scale * box.height()))}};
+  const double scale = std::min(1.0, static_cast<double>(limit.side) / std::max(box.width(), box.height()));
+  return {box, {std::max(1, cvRound(scale * box.width())), std::max(1, cvRound(scale * box.height()))}, limit.bytes};
 }
 
 std::string crop_svg(const cv::Mat& picture, const DamageMap& map, const Damage& damage, const Crop& crop) {
@@ -166,7 +199,9 @@ std::string depth_svg(const DamageMap& map, const Damage& damage, const Crop& cr
   const Mask interpolated = crop_mask(crop, [&](int u, int v) {
     return !holes.empty() && std::isfinite(map.depth(u, v)) && !std::isfinite(holes(u, v));
   });
-  fields["holes"] = area_path(interpolated);
+  constexpr int most_cells = 200;  // along a side, so that many small holes do not swell the report
+  const int side = 1 + (std::max(crop.size.width, crop.size.height) - 1) / most_cells;
+  fields["holes"] = area_path(in_cells(interpolated, side), side);
   fields["cut"] = marks.section == nullptr ? "" : cut_path(*marks.section, crop);
   return fill(templates::depth, fields);
 }

@@ -12,19 +12,26 @@
 
 namespace roadstereo::io {
 
-/// An 8-bit BGR picture as the source of an image: JPEG, or PNG where that is smaller. Larger ones are shrunk to
-/// `most_side` pixels.
-std::string picture_uri(const cv::Mat& picture, int most_side);
+/// How large a picture in a report may be.
+struct PictureLimit {
+  int side = 0;           ///< longest side, pixels
+  std::size_t bytes = 0;  ///< of its file, about
+};
+
+/// An 8-bit BGR picture as the source of an image: JPEG, or PNG where that is smaller. Shrunk to the limit's side, and
+/// compressed or shrunk more until it keeps to its bytes.
+std::string picture_uri(const cv::Mat& picture, const PictureLimit& limit);
 
 /// The same of an encoded picture. Throws Error when it is none.
-std::string picture_uri(std::span<const std::uint8_t> encoded, int most_side);
+std::string picture_uri(std::span<const std::uint8_t> encoded, const PictureLimit& limit);
 
-/// The part of a frame that shows a damage, scaled by a whole-picture factor so that drawings on it stay small.
+/// The part of a frame that shows a damage, scaled as a whole so that drawings on it stay small.
 struct Crop {
   PixelBox box;
-  cv::Size size;  ///< pixels of the scaled picture
+  cv::Size size;          ///< pixels of the scaled picture
+  std::size_t bytes = 0;  ///< of its file, about
 };
-Crop crop_around(const DamageMap& map, const Damage& damage, int most_side);
+Crop crop_around(const DamageMap& map, const Damage& damage, const PictureLimit& limit);
 
 /// The crop of the picture with the damage's outline, as SVG.
 std::string crop_svg(const cv::Mat& picture, const DamageMap& map, const Damage& damage, const Crop& crop);

@@ -4,7 +4,7 @@
 
   const palette = JSON.parse(document.getElementById("palette").textContent);
   const UNKNOWN = -32768;
-  const START = { turn: -0.5, tilt: 0.75 };
+  const START = { turn: -0.5, tilt: 0.85 };
   const LIGHT = [-0.45, 0.35, 0.82];
   const SHADES = 12;
   const STEP = Math.PI / 36;
@@ -53,9 +53,9 @@
     return surface;
   }
 
-  /** Exaggeration at which the depth is a fifth of the width. */
+  /** Exaggeration at which the depth is about a seventh of the width. */
   function goodExaggeration(surface) {
-    const wanted = (0.4 * surface.radius) / surface.reach;
+    const wanted = (0.28 * surface.radius) / surface.reach;
     return Math.min(20, Math.max(1, Math.round(2 * wanted) / 2));
   }
 
