@@ -160,7 +160,8 @@ std::vector<RigidMotion> starts(const Points& cloud, const MainAxes& to) {
   const MainAxes from = main_axes(cloud);
   std::vector<RigidMotion> motions;
   for (int i = 0; i < 2 * turns; ++i) {
-    const double angle = 2 * std::numbers::pi * (i / 2) / turns;
+    const int turn = i / 2;
+    const double angle = 2 * std::numbers::pi * turn / turns;
     Eigen::Matrix3d local = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     if (i % 2 == 1) local *= Eigen::Vector3d(1, -1, -1).asDiagonal();
     RigidMotion motion;
@@ -205,7 +206,7 @@ std::vector<Pose> different_poses(const std::vector<Pose>& ranked, const MainAxe
 /// Follows a pose to its end. The last step, when there is one, is taken towards the points of `surface`.
 Pose refine(const Points& cloud, const ScanModel& scan, const ScanSurface& surface, const Pose& start,
             const RegistrationOptions& options) {
-  const Pose robust = fit_to_planes(cloud, scan, start, options.trimmed_share);
+  Pose robust = fit_to_planes(cloud, scan, start, options.trimmed_share);
   if (options.last_step == LastStep::robust) return robust;
   return fit_by_points(cloud, surface, robust, 1, polishing_steps);
 }
@@ -230,8 +231,8 @@ Registration register_cloud(const Points& cloud, const ScanModel& scan, const Re
   const Pose best = refine(every_nth(cloud, final_points), scan, scan.scan, poses.front(), options);
   Registration result{best.motion, best.rms, std::numeric_limits<double>::infinity()};
   for (const Pose& pose : poses) {
-    if (is_elsewhere(pose.motion, poses.front().motion, cloud_axes))
-      result.next_rms = std::min(result.next_rms, pose.rms);
+    const bool elsewhere = is_elsewhere(pose.motion, poses.front().motion, cloud_axes);
+    if (elsewhere) result.next_rms = std::min(result.next_rms, pose.rms);
   }
   return result;
 }
