@@ -82,8 +82,8 @@ Surroundings surroundings_of(const Candidate& candidate, const DepthCells& relie
   constexpr int least_reach = 3;
   const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
   const int reach = std::max(least_reach, static_cast<int>(half * radius));
-  const Image<std::uint8_t> grown = grow(candidate.cells, reach);
   const Box around = candidate.box.grown(reach, road.width(), road.height());
+  const Image<std::uint8_t> grown = grow(candidate.cells, reach, around);
   const float sign = candidate.kind == DamageKind::depression ? 1.0F : -1.0F;
   const float bowl = candidate.kind == DamageKind::depression
                          ? std::min(candidate.level, hollow * static_cast<float>(relief.noise))
@@ -189,15 +189,15 @@ class Search {
     if (outline.floor > largest(first % depth_.width(), first / depth_.width())) return candidate;
     candidate.level = outline.level;
     for (int i = 0; i < tries; ++i, candidate.level *= deeper) {
-      candidate.cells = flood(field, core.cells, candidate.level, {0, 0, depth_.width() - 1, depth_.height() - 1});
+      candidate.cells = flood(field, core.cells, candidate.level, whole(depth_));
       if (thresholds_.metric) {
         grow_to_foot(field, candidate.level, foot * static_cast<float>(relief_.noise), candidate.cells);
       }
-      fill_enclosed(candidate.cells, depth_.pixels() / 4);
+      fill_enclosed(candidate.cells, whole(depth_), depth_.pixels() / 4);
       if (!measure_extent(candidate, taken)) continue;
       if (kind_ == DamageKind::depression && !witness_.grey.empty()) {
         extend_by_image(witness_.grey, witness_.reach, candidate.box, candidate.cells);
-        fill_enclosed(candidate.cells, depth_.pixels() / 4);
+        fill_enclosed(candidate.cells, whole(depth_), depth_.pixels() / 4);
         if (!measure_extent(candidate, taken)) continue;
       }
       return candidate;

@@ -69,8 +69,9 @@ void require_values(ImageView<const float> transformed) {
 
 int cell_factor(int width, int height) {
   constexpr double most_cells = 300e3;
+  constexpr double least_pixels = 57e3;  // of a picture whose cells hold more than one: matching's window is wider
   const double pixels = static_cast<double>(width) * height;
-  return std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / most_cells))));
+  return std::max(pixels > least_pixels ? 2 : 1, static_cast<int>(std::ceil(std::sqrt(pixels / most_cells))));
 }
 
 Cells make_cells(ImageView<const float> transformed, int factor, int threads) {

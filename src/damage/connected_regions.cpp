@@ -51,14 +51,18 @@ std::vector<ConnectedRegion> connected_regions(const Image<std::uint8_t>& mask) 
   return regions;
 }
 
-void fill_enclosed(Image<std::uint8_t>& mask, std::size_t most_cells) {
-  Image<std::uint8_t> outside(mask.width(), mask.height());
-  for (int j = 0; j < mask.height(); ++j) {
-    for (int i = 0; i < mask.width(); ++i) outside(i, j) = mask(i, j) == 0 ? 255 : 0;
+void fill_enclosed(Image<std::uint8_t>& mask, const Box& box, std::size_t most_cells) {
+  Image<std::uint8_t> outside(box.last_column - box.first_column + 1, box.last_row - box.first_row + 1);
+  for (int j = 0; j < outside.height(); ++j) {
+    for (int i = 0; i < outside.width(); ++i) {
+      outside(i, j) = mask(box.first_column + i, box.first_row + j) == 0 ? 255 : 0;
+    }
   }
   for (const ConnectedRegion& region : connected_regions(outside)) {
     if (region.touches_border || region.cells.size() > most_cells) continue;
-    for (const std::int32_t cell : region.cells) mask(cell % mask.width(), cell / mask.width()) = 255;
+    for (const std::int32_t cell : region.cells) {
+      mask(box.first_column + cell % outside.width(), box.first_row + cell / outside.width()) = 255;
+    }
   }
 }
 
@@ -80,33 +84,38 @@ void spread_along(int length, int radius, std::uint8_t wanted, const At& at, std
   }
 }
 
-/// Gives every cell within `radius` of one that is `wanted` (set or not) that state.
-Image<std::uint8_t> spread(const Image<std::uint8_t>& mask, int radius, std::uint8_t wanted) {
+/// Gives every cell of the box within `radius` of one that is `wanted` (set or not) that state.
+Image<std::uint8_t> spread(const Image<std::uint8_t>& mask, int radius, const Box& box, std::uint8_t wanted) {
   const std::uint8_t other = wanted != 0 ? 0 : 255;
-  Image<std::uint8_t> rows(mask.width(), mask.height());
-  Image<std::uint8_t> result(mask.width(), mask.height());
+  const int columns = box.last_column - box.first_column + 1;
+  const int rows = box.last_row - box.first_row + 1;
+  Image<std::uint8_t> along(columns, rows);
+  Image<std::uint8_t> result(mask.width(), mask.height(), 0);
   std::vector<std::uint8_t> line;
-  for (int j = 0; j < mask.height(); ++j) {
+  for (int j = 0; j < rows; ++j) {
+    const std::uint8_t* row = mask.row(box.first_row + j) + box.first_column;
     spread_along(
-        mask.width(), radius, wanted, [&](int i) { return mask(i, j); }, line);
-    for (int i = 0; i < mask.width(); ++i) rows(i, j) = line[static_cast<std::size_t>(i)] != 0 ? wanted : other;
+        columns, radius, wanted, [row](int i) { return row[i]; }, line);
+    for (int i = 0; i < columns; ++i) along(i, j) = line[static_cast<std::size_t>(i)] != 0 ? wanted : other;
   }
-  for (int i = 0; i < mask.width(); ++i) {
+  for (int i = 0; i < columns; ++i) {
     spread_along(
-        mask.height(), radius, wanted, [&](int j) { return rows(i, j); }, line);
-    for (int j = 0; j < mask.height(); ++j) result(i, j) = line[static_cast<std::size_t>(j)] != 0 ? wanted : other;
+        rows, radius, wanted, [&](int j) { return along(i, j); }, line);
+    for (int j = 0; j < rows; ++j) {
+      result(box.first_column + i, box.first_row + j) = line[static_cast<std::size_t>(j)] != 0 ? wanted : other;
+    }
   }
   return result;
 }
 
 }  // namespace
 
-Image<std::uint8_t> grow(const Image<std::uint8_t>& mask, int radius) {
-  return spread(mask, radius, 255);
+Image<std::uint8_t> grow(const Image<std::uint8_t>& mask, int radius, const Box& box) {
+  return spread(mask, radius, box, 255);
 }
 
-Image<std::uint8_t> shrink_mask(const Image<std::uint8_t>& mask, int radius) {
-  return spread(mask, radius, 0);
+Image<std::uint8_t> shrink_mask(const Image<std::uint8_t>& mask, int radius, const Box& box) {
+  return spread(mask, radius, box, 0);
 }
 
 }  // namespace roadstereo

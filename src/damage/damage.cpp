@@ -49,10 +49,10 @@ std::string missing_for_metres(const DamageInput& input) {
 void find_road(const Cells& cells, const SurfaceCoordinates& coordinates, RoadSurface& surface,
                Image<std::uint8_t>& road) {
   constexpr int rounds = 2;
-  surface = fit_road_surface(cells, coordinates, std::nullopt);
+  surface = fit_road_surface(cells, coordinates);
   road = find_road_region(cells, surface);
   for (int i = 0; i < rounds; ++i) {
-    surface = fit_road_surface(cells, coordinates, road.view());
+    surface = refit_road_surface(cells, coordinates, road, surface);
     road = find_road_region(cells, surface);
   }
 }

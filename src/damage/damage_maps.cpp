@@ -16,50 +16,40 @@ float sign_of(DamageKind kind) {
   return kind == DamageKind::depression ? 1.0F : -1.0F;
 }
 
-enum class Place { outside, rim, inside };
-
-Place place_of(const Image<std::uint8_t>& region, int i, int j) {
-  int set = 0;
-  int near = 0;
-  for (int dj = -1; dj <= 1; ++dj) {
-    for (int di = -1; di <= 1; ++di) {
-      const int column = std::clamp(i + di, 0, region.width() - 1);
-      const int row = std::clamp(j + dj, 0, region.height() - 1);
-      near += region(column, row) != 0 ? 1 : 0;
-      set += (di == 0 || dj == 0) && region(column, row) != 0 ? 1 : 0;
+/// The region's cells within a box, 1 inside and 0 outside.
+Image<float> indicator_of(const Image<std::uint8_t>& region, const Box& box) {
+  Image<float> indicator(box.last_column - box.first_column + 1, box.last_row - box.first_row + 1);
+  for (int j = 0; j < indicator.height(); ++j) {
+    for (int i = 0; i < indicator.width(); ++i) {
+      indicator(i, j) = region(box.first_column + i, box.first_row + j) != 0 ? 1.0F : 0.0F;
     }
   }
-  constexpr int cross = 5;
-  if (set == cross) return Place::inside;
-  return near > 0 ? Place::rim : Place::outside;
+  return indicator;
 }
 
-/// The outline between the cells is where the interpolated depth passes the level.
-void paint_candidate(const Segmentation& found, const Candidate& candidate, std::uint16_t id,
-                     Image<std::uint16_t>& ids) {
-  const int factor = found.cells.factor;
-  const Box box = candidate.box.grown(1, found.cells.width(), found.cells.height());
-  for (int j = box.first_row; j <= box.last_row; ++j) {
-    for (int i = box.first_column; i <= box.last_column; ++i) {
-      const Place place = place_of(candidate.cells, i, j);
-      if (place == Place::outside) continue;
-      for (int v = j * factor; v < std::min((j + 1) * factor, ids.height()); ++v) {
-        for (int u = i * factor; u < std::min((i + 1) * factor, ids.width()); ++u) {
-          const bool deep = factor == 1 ? candidate.cells(i, j) != 0 : candidate.cells(i, j) != 0;
-          if ((place == Place::inside || deep) && ids(u, v) == 0) ids(u, v) = id;
-        }
-      }
+/// The outline runs where the cells, interpolated, are half inside.
+void paint_candidate(const Cells& cells, const Candidate& candidate, std::uint16_t id, Image<std::uint16_t>& ids) {
+  const int factor = cells.factor;
+  const Box box = candidate.box.grown(1, cells.width(), cells.height());
+  const Image<float> inside = indicator_of(candidate.cells, box);
+  const int first_u = box.first_column * factor;
+  const int first_v = box.first_row * factor;
+  const int end_u = std::min((box.last_column + 1) * factor, ids.width());
+  const int end_v = std::min((box.last_row + 1) * factor, ids.height());
+  for (int v = first_v; v < end_v; ++v) {
+    for (int u = first_u; u < end_u; ++u) {
+      if (ids(u, v) == 0 && at_pixel(inside, factor, u - first_u, v - first_v) > 0.5F) ids(u, v) = id;
     }
   }
 }
 
-/// DepthCells with the islands and gaps inside the damages replaced by what surrounds them.
 Image<float> relief_without_islands(const Segmentation& found) {
   Image<float> depth = found.relief.depth;
   Image<std::uint8_t> known = found.relief.known;
   for (const Candidate& candidate : found.candidates) {
     const float sign = sign_of(candidate.kind);
-    const Image<std::uint8_t> interior = shrink_mask(candidate.cells, 2);
+    const Image<std::uint8_t> interior =
+        shrink_mask(candidate.cells, 2, candidate.box.grown(1, depth.width(), depth.height()));
     for (int j = candidate.box.first_row; j <= candidate.box.last_row; ++j) {
       for (int i = candidate.box.first_column; i <= candidate.box.last_column; ++i) {
         if (interior(i, j) != 0 && sign * depth(i, j) < candidate.level) known(i, j) = 0;
@@ -82,7 +72,7 @@ void paint_maps(const DamageInput& input, const Segmentation& found, int threads
   result.surface.assign(width, height, nan);
   result.depth.assign(width, height, nan);
   for (std::size_t k = 0; k < found.candidates.size(); ++k) {
-    paint_candidate(found, found.candidates[k], static_cast<std::uint16_t>(k + 1), result.ids);
+    paint_candidate(found.cells, found.candidates[k], static_cast<std::uint16_t>(k + 1), result.ids);
   }
   const Image<float> relief = relief_without_islands(found);
   parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {

@@ -65,9 +65,9 @@ void extend_by_image(const Image<float>& grey, int reach, const Box& box, Image<
   constexpr std::size_t least_cells = 30;
   const Box around = box.grown(3 * reach, region.width(), region.height());
   const Image<float> tones = smoothed(grey, around);
-  const Image<std::uint8_t> band = grow(region, reach);
-  const Image<std::uint8_t> beyond = grow(region, 3 * reach);
-  const Tone inside = tone_of(tones, shrink_mask(region, 2), nullptr, around);
+  const Image<std::uint8_t> band = grow(region, reach, around);
+  const Image<std::uint8_t> beyond = grow(region, 3 * reach, around);
+  const Tone inside = tone_of(tones, shrink_mask(region, 2, around), nullptr, around);
   const Tone outside = tone_of(tones, beyond, &band, around);
   if (inside.cells < least_cells || outside.cells < least_cells) return;
   const double spread = std::sqrt(0.5 * (inside.deviation * inside.deviation + outside.deviation * outside.deviation));

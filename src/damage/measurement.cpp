@@ -118,7 +118,7 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
     if (result.metric) measure_in_metres(input, options, offset, k, result);
   }
   keep_significant(result);
-  if (result.metric) depth_to_metres(input, result);
+  if (result.metric) depth_to_metres(input, threads, result);
 }
 
 }  // namespace roadstereo

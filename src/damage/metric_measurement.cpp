@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/parallel.hpp"
 #include "damage/oriented_box.hpp"
 
 namespace roadstereo {
@@ -153,9 +154,9 @@ SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& c
   constexpr double independent = 6;  // undulations of the road around one damage that do not know of each other
   const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
   const int reach = gap + std::max(3, static_cast<int>(0.4 * radius));
-  const Image<std::uint8_t> inner = grow(candidate.cells, gap);
-  const Image<std::uint8_t> outer = grow(candidate.cells, reach);
-  const Box box = candidate.box.grown(reach, inner.width(), inner.height());
+  const Box box = candidate.box.grown(reach, found.cells.width(), found.cells.height());
+  const Image<std::uint8_t> inner = grow(candidate.cells, gap, box);
+  const Image<std::uint8_t> outer = grow(candidate.cells, reach, box);
   std::vector<double> values;
   const float most = noise_reach * static_cast<float>(found.relief.noise);
   for (int j = box.first_row; j <= box.last_row; ++j) {
@@ -214,17 +215,20 @@ void measure_in_metres(const DamageInput& input, const DamageOptions& options, c
   damage.metrics = metrics;
 }
 
-void depth_to_metres(const DamageInput& input, DamageMap& result) {
+void depth_to_metres(const DamageInput& input, int threads, DamageMap& result) {
+  constexpr int rows_per_band = 16;
   const Geometry geometry(input);
-  for (int v = 0; v < result.depth.height(); ++v) {
-    for (int u = 0; u < result.depth.width(); ++u) {
-      float& depth = result.depth(u, v);
-      if (std::isnan(depth)) continue;
-      const double on_road = geometry.road_disparity(u, v, result.surface(u, v));
-      depth = static_cast<float>(
-          geometry.depth_between(geometry.point(u, v, on_road), geometry.point(u, v, on_road - depth)));
+  parallel_rows(result.depth.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int v = first; v < last; ++v) {
+      for (int u = 0; u < result.depth.width(); ++u) {
+        float& depth = result.depth(u, v);
+        if (std::isnan(depth)) continue;
+        const double on_road = geometry.road_disparity(u, v, result.surface(u, v));
+        depth = static_cast<float>(
+            geometry.depth_between(geometry.point(u, v, on_road), geometry.point(u, v, on_road - depth)));
+      }
     }
-  }
+  });
 }
 
 }  // namespace roadstereo

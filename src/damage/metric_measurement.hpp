@@ -16,6 +16,6 @@ void measure_in_metres(const DamageInput& input, const DamageOptions& options, c
                        std::size_t index, DamageMap& result);
 
 /// Turns `result.depth` from pixels of ℓ' to metres along the road's normal.
-void depth_to_metres(const DamageInput& input, DamageMap& result);
+void depth_to_metres(const DamageInput& input, int threads, DamageMap& result);
 
 }  // namespace roadstereo

@@ -83,9 +83,9 @@ Box box_of(const Image<std::uint8_t>& region) {
 
 /// Median depth of the cells between two distances from a region; 0 where none is known.
 float median_around(const DepthField& field, const Image<std::uint8_t>& region, const Box& box, int near, int far) {
-  const Image<std::uint8_t> inner = grow(region, near);
-  const Image<std::uint8_t> outer = grow(region, far);
   const Box around = box.grown(far, region.width(), region.height());
+  const Image<std::uint8_t> inner = grow(region, near, around);
+  const Image<std::uint8_t> outer = grow(region, far, around);
   std::vector<float> depths;
   for (int j = around.first_row; j <= around.last_row; ++j) {
     for (int i = around.first_column; i <= around.last_column; ++i) {

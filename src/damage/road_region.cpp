@@ -38,8 +38,8 @@ Image<std::uint8_t> find_road_region(const Cells& cells, const RoadSurface& surf
   constexpr int bridge = 2;  // cells; narrower connections are none
   constexpr std::size_t speck = 30;
   Image<std::uint8_t> near = near_surface(cells, surface);
-  fill_enclosed(near, speck);
-  Image<std::uint8_t> region = grow(largest_part(shrink_mask(near, bridge)), bridge + 1);
+  fill_enclosed(near, whole(near), speck);
+  Image<std::uint8_t> region = grow(largest_part(shrink_mask(near, bridge, whole(near))), bridge + 1, whole(near));
   for (int j = 0; j < region.height(); ++j) {
     for (int i = 0; i < region.width(); ++i) {
       if (near(i, j) == 0) region(i, j) = 0;

@@ -31,10 +31,11 @@ Terms terms_at(const SurfaceCoordinates& c, int i, int j) {
   return terms * static_cast<double>(c.scale(i, j));
 }
 
-/// A regular sample of the cells that may be road.
+/// A regular sample of the cells that may be road. Residuals are against `earlier` where it is given.
 std::vector<Sample> draw_samples(const Cells& cells, const SurfaceCoordinates& coordinates,
-                                 const std::optional<ImageView<const std::uint8_t>>& region) {
-  constexpr int most_samples = 20'000;
+                                 const Image<std::uint8_t>* region, const RoadSurface* earlier) {
+  constexpr std::size_t least_samples = 32;
+  constexpr int most_samples = 6'000;
   const double share = static_cast<double>(cells.value.pixels()) / most_samples;
   const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(share))));
   std::vector<Sample> samples;
@@ -42,9 +43,14 @@ std::vector<Sample> draw_samples(const Cells& cells, const SurfaceCoordinates& c
   for (int j = step / 2; j < cells.height(); j += step) {
     for (int i = step / 2; i < cells.width(); i += step) {
       if (std::isnan(cells.value(i, j)) || std::isnan(coordinates.x(i, j))) continue;
-      if (region && (*region)(i, j) == 0) continue;
-      samples.push_back({terms_at(coordinates, i, j), cells.value(i, j), 0});
+      if (region != nullptr && (*region)(i, j) == 0) continue;
+      const double value = cells.value(i, j);
+      samples.push_back({terms_at(coordinates, i, j), value, earlier != nullptr ? value - earlier->value(i, j) : 0});
     }
+  }
+  if (samples.size() < least_samples) {
+    fail("the transformed map has ", samples.size(), " valid places on the road; at least ", least_samples,
+         " are needed");
   }
   return samples;
 }
@@ -101,33 +107,23 @@ Terms reweighted_fit(std::vector<Sample>& samples, int terms, double reach) {
   return solution;
 }
 
-}  // namespace
-
-RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
-                             const std::optional<ImageView<const std::uint8_t>>& region) {
-  constexpr std::size_t least_samples = 32;
-  constexpr int plane_steps = 6;
-  constexpr int quadratic_steps = 12;
+/// Steps of the fit with the first `terms` terms; `spread` is brought up to date.
+Terms iterate(std::vector<Sample>& samples, int terms, int steps, double& spread) {
   constexpr double tukey = 4.7;
   constexpr double widest = 3;  // of the spread, for what counts when it is measured anew
-  constexpr double least_spread = 1e-3;
-  std::vector<Sample> samples = draw_samples(cells, coordinates, region);
-  if (samples.size() < least_samples) {
-    fail("the transformed map has ", samples.size(), " valid places on the road; at least ", least_samples,
-         " are needed");
-  }
-  const Shorth start = shorth_of(samples);
-  for (Sample& sample : samples) sample.residual = sample.value - start.middle;
-  double spread = std::max({start.half_width, least_spread * std::abs(start.middle), 1e-9});
-  Terms solution;
-  for (int i = 0; i < plane_steps + quadratic_steps; ++i) {
-    solution = reweighted_fit(samples, i < plane_steps ? plane_terms : quadratic_terms, tukey * spread);
+  Terms solution = Terms::Zero();
+  for (int i = 0; i < steps; ++i) {
+    solution = reweighted_fit(samples, terms, tukey * spread);
     const double measured = spread_of(samples, widest * spread);
     spread = std::max(measured, 0.5 * spread);
     if (measured == 0) break;
   }
+  return solution;
+}
+
+RoadSurface evaluate(const Terms& solution, double noise, const Cells& cells, const SurfaceCoordinates& coordinates) {
   RoadSurface surface;
-  surface.noise = spread;
+  surface.noise = noise;
   surface.value.assign(cells.width(), cells.height(), std::numeric_limits<float>::quiet_NaN());
   for (int j = 0; j < cells.height(); ++j) {
     for (int i = 0; i < cells.width(); ++i) {
@@ -136,6 +132,30 @@ RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coord
     }
   }
   return surface;
+}
+
+}  // namespace
+
+RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates) {
+  constexpr int plane_steps = 6;
+  constexpr int quadratic_steps = 8;
+  constexpr double least_spread = 1e-3;
+  std::vector<Sample> samples = draw_samples(cells, coordinates, nullptr, nullptr);
+  const Shorth start = shorth_of(samples);
+  for (Sample& sample : samples) sample.residual = sample.value - start.middle;
+  double spread = std::max({start.half_width, least_spread * std::abs(start.middle), 1e-9});
+  iterate(samples, plane_terms, plane_steps, spread);
+  const Terms solution = iterate(samples, quadratic_terms, quadratic_steps, spread);
+  return evaluate(solution, spread, cells, coordinates);
+}
+
+RoadSurface refit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
+                               const Image<std::uint8_t>& region, const RoadSurface& earlier) {
+  constexpr int steps = 6;
+  std::vector<Sample> samples = draw_samples(cells, coordinates, &region, &earlier);
+  double spread = std::max(earlier.noise, 1e-9);
+  const Terms solution = iterate(samples, quadratic_terms, steps, spread);
+  return evaluate(solution, spread, cells, coordinates);
 }
 
 }  // namespace roadstereo

@@ -21,9 +21,12 @@ struct RoadSurface {
   double noise = 0;    ///< standard deviation of the cells around it, pixels, robust
 };
 
-/// Robust fit (Tukey's weights) to the cells of `region` (0 = leave out); without a region to the cells near the value
-/// that most cells have. Throws Error when fewer than 32 cells can be used.
-RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
-                             const std::optional<ImageView<const std::uint8_t>>& region);
+/// Robust fit (Tukey's weights) to the cells near the value that most of them have.
+/// Throws Error when fewer than 32 cells can be used.
+RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates);
+
+/// The same to the cells of `region` (0 = leave out), from an earlier fit on.
+RoadSurface refit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
+                               const Image<std::uint8_t>& region, const RoadSurface& earlier);
 
 }  // namespace roadstereo
