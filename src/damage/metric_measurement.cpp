@@ -135,13 +135,13 @@ void set_standard_errors(const Sums& sums, const SurfaceOffset& offset, double n
   const double at_deepest_m = metrics.max_depth_m.std_error;  // metres per pixel of disparity there
   damage.max_depth_px.std_error = std::hypot(damage.max_depth_px.std_error, sub_pixel_px);
   metrics.max_depth_m.std_error =
-      std::hypot(damage.max_depth_px.std_error * at_deepest_m, 0.15 * smear * metrics.max_depth_m.value);
+      std::hypot(damage.max_depth_px.std_error * at_deepest_m, 0.2 * smear * metrics.max_depth_m.value);
   // A gentle foot ends where it drops below what can be told from the road.
   const double foot_px =
       radius_px * std::min(1.0, 2 * std::hypot(noise_px, offset.std_error) / damage.max_depth_px.value);
   metrics.area_m2.std_error = sums.perimeter * std::hypot(outline * window_px, foot_px) * pixel_m;
   const double mean_m = std::hypot(surface_px, of_mean * sigma_px) * per_pixel;
-  metrics.mean_depth_m.std_error = std::hypot(mean_m, 0.4 * smear * metrics.mean_depth_m.value);
+  metrics.mean_depth_m.std_error = std::hypot(mean_m, 0.5 * smear * metrics.mean_depth_m.value);
   metrics.volume_m3.std_error = std::hypot(sums.area * mean_m, 0.25 * smear * metrics.volume_m3.value);
 }
 
