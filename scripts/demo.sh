@@ -12,7 +12,7 @@ build/bin/roadstereo inspect demo/road/left.png demo/road/right.png --calibratio
   --output demo/result
 
 echo
-echo "Pictures:"
-for picture in sheet disparity_color transformed_color; do
-  echo "  $PWD/demo/result/$picture.png"
+echo "Report (open it in a browser), and pictures:"
+for file in report.html overlay.png sheet.png disparity_color.png transformed_color.png; do
+  echo "  $PWD/demo/result/$file"
 done
