@@ -40,7 +40,9 @@ void find_deepest(const Segmentation& found, const Candidate& candidate, Damage&
       const float depth = sign * found.relief.depth(i, j);
       if (candidate.cells(i, j) == 0 || found.relief.known(i, j) == 0 || depth <= largest) continue;
       largest = depth;
-      damage.deepest_px = {static_cast<int>(found.cells.middle(i)), static_cast<int>(found.cells.middle(j))};
+      // The middle of a cell that the border cuts may lie outside the picture.
+      damage.deepest_px = {std::min(static_cast<int>(found.cells.middle(i)), found.cells.image_width - 1),
+                           std::min(static_cast<int>(found.cells.middle(j)), found.cells.image_height - 1)};
     }
   }
   damage.max_depth_px.value = largest;
