@@ -82,7 +82,7 @@ void paint_maps(const DamageInput& input, const Segmentation& found, int threads
         result.road(u, v) = id != 0 || found.road(u / factor, v / factor) != 0 ? 255 : 0;
         const float surface = at_pixel(found.surface.value, factor, u, v);
         result.surface(u, v) = surface;
-        float depth = surface - transformed(u, v);
+        float depth = std::isfinite(transformed(u, v)) ? surface - transformed(u, v) : nan;
         if (id != 0) {
           const Candidate& candidate = found.candidates[id - 1U];
           const float inside = at_pixel(relief, factor, u, v);

@@ -26,7 +26,7 @@ void add_pixel(const DamageInput& input, const DamageMap& maps, int u, int v, Pi
   sums.u += u;
   sums.v += v;
   if (u == 0 || v == 0 || u + 1 == maps.ids.width() || v + 1 == maps.ids.height()) damage.cut_by_border = true;
-  if (std::isnan(input.transformed(u, v))) return;
+  if (!std::isfinite(input.transformed(u, v))) return;
   ++sums.measured;
   sums.depth += std::abs(maps.depth(u, v));
 }
@@ -114,7 +114,7 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
     Damage& damage = result.damages[k];
     const auto [u, v] = damage.deepest_px;
     const double own = input.sigma.empty() ? result.noise_px : input.sigma(u, v);
-    const double sigma = std::isnan(own) ? result.noise_px : own;
+    const double sigma = std::isfinite(own) ? own : result.noise_px;
     damage.max_depth_px.value += damage.kind == DamageKind::depression ? offset.value : -offset.value;
     damage.max_depth_px.std_error = std::hypot(sigma, offset.std_error);
     if (result.metric) measure_in_metres(input, options, offset, k, result);

@@ -104,7 +104,7 @@ Sums add_up(const DamageInput& input, const Geometry& geometry, const DamageMap&
       sums.volume += (point[2] * point[2] * point[2] - road[2] * road[2] * road[2]) / (3 * f * f);
       for (std::size_t k = 0; k < 3; ++k) sums.centroid[k] += area * road[k];
       sums.metres_per_pixel += area * geometry.metres_per_pixel(point, seen);
-      if (!input.sigma.empty() && !std::isnan(input.sigma(u, v))) {
+      if (!input.sigma.empty() && std::isfinite(input.sigma(u, v))) {
         sums.sigma += static_cast<double>(input.sigma(u, v)) * input.sigma(u, v);
         ++sums.measured;
       }
