@@ -90,8 +90,8 @@ class Pipeline {
   /// colour, both images are the same, left and right look swapped, the calibration belongs to another size.
   const FrameResult& process(const FrameView& left, const FrameView& right);
 
-  /// Finds and measures damage in the last frame. Without a road there is none. Throws Error when no frame was
-  /// processed yet, or when hardly any disparity of it lies on a road.
+  /// Finds and measures damage in the last frame. Without a road there is none. Throws Error when there is no
+  /// last frame (none yet, refused, forgotten), or when hardly any disparity of it lies on a road.
   DamageMap find_damage() const;
 
   /// Forgets the last frame: the next one starts afresh.

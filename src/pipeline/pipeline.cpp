@@ -62,7 +62,8 @@ struct Pipeline::State {
   // What carries over from frame to frame.
   std::optional<RoadModel> last_road;
   double last_roll_rad = 0;
-  double row_offset = 0;  ///< of the target's rows, pixels; measured whenever the road model is estimated anew
+  double row_offset = 0;   ///< of the target's rows, pixels; measured whenever the road model is estimated anew
+  bool has_frame = false;  ///< whether `result` and the grey images belong to one frame, whole
 
   // Scratch memory.
   std::pmr::unsynchronized_pool_resource memory{{.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
@@ -240,6 +241,7 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 const FrameResult& Pipeline::process(const FrameView& left, const FrameView& right) {
   State& s = *state_;
   const ScratchScope scratch(s.memory);
+  s.has_frame = false;
   s.result.warnings.clear();
   Stopwatch watch;
   s.prepare(left, right);
@@ -259,13 +261,14 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
   s.transform();
   s.result.ms.transform = watch.lap();
   s.summarise();
+  s.has_frame = true;
   return s.result;
 }
 
 DamageMap Pipeline::find_damage() const {
   const State& s = *state_;
   const FrameResult& result = s.result;
-  if (result.disparity.empty()) fail("no frame was processed yet");
+  if (!s.has_frame) fail("no frame was processed yet, or the last one was refused");
   if (!result.geometry_found) {
     return no_damage(result.disparity.width(), result.disparity.height(), "no road was found");
   }
@@ -286,6 +289,7 @@ DamageMap Pipeline::find_damage() const {
 }
 
 void Pipeline::reset() {
+  state_->has_frame = false;
   state_->last_road.reset();
   state_->last_roll_rad = 0;
   state_->row_offset = 0;
