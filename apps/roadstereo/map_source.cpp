@@ -84,10 +84,18 @@ void scale_to_pixels(const MapFiles& files, TransformedMap& map) {
   }
 }
 
+RoadModel fit_road(const Image<float>& disparity, const std::string& file) {
+  try {
+    return fit_road_geometry(disparity, std::nullopt, std::nullopt, 0, {}).plane;
+  } catch (const Error& error) {
+    fail(file, ": ", error.what());
+  }
+}
+
 void read_disparity_map(const MapFiles& files, TransformedMap& map) {
   map.disparity = io::read_disparity(files.disparity);
   require_size(map.disparity->width(), map.disparity->height(), map.transformed, files.disparity, files);
-  map.plane = fit_road_geometry(*map.disparity, std::nullopt, std::nullopt, 0, {}).plane;
+  map.plane = fit_road(*map.disparity, files.disparity);
   scale_to_pixels(files, map);
 }
 
