@@ -198,6 +198,28 @@ TEST(FindDamage, HolesInTheRoadAreNoDamage) {
   }
 }
 
+/// What nobody saw is not the pothole's because the pothole ends there: a gap from the border of the picture into it,
+/// and one from it far into the road.
+TEST(FindDamage, GapThatLeavesThePotholeIsNoDamage) {
+  const auto [middle_u, middle_v] = label_centroid(damaged().pair, 1);
+  for (const bool to_border : {true, false}) {
+    ExactMaps maps = damaged();
+    const int first = to_border ? 0 : static_cast<int>(middle_u) + 30;
+    const int last = to_border ? static_cast<int>(middle_u) - 30 : static_cast<int>(middle_u) + 190;
+    const int row = static_cast<int>(middle_v);
+    for (int v = row - 25; v <= row + 25; ++v) {
+      for (int u = first; u <= last; ++u) maps.forget(u, v);
+    }
+    const DamageMap map = find_damage(maps.metric());
+    ASSERT_NE(find(map, maps.pair, 1), nullptr);
+    int invented = 0;
+    for (int v = row - 25; v <= row + 25; ++v) {
+      for (int u = first; u <= last; ++u) invented += map.ids(u, v) != 0 && maps.pair.labels(u, v) == 0 ? 1 : 0;
+    }
+    EXPECT_EQ(invented, 0) << (to_border ? "at the border" : "in the road");
+  }
+}
+
 TEST(FindDamage, InfinityIsInvalidAsNanIs) {
   ExactMaps missing = damaged();
   forget_disk(missing, 320, 40, 20);
