@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-slow='odd_large|large_windows|_100$|Peers.Fast|RoadScene|Evaluate\.(Ablation|Synth|Sigma|Roll|Lambda|Blur|Kitti|Flatness|Middlebury)'
+slow='DamageCommand.Evaluate|odd_large|large_windows|_100$|Peers.Fast|RoadScene|Evaluate\.(Ablation|Synth|Sigma|Roll|Lambda|Blur|Kitti|Flatness|Middlebury)'
 
 check() {
   local preset=$1

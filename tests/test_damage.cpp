@@ -181,6 +181,27 @@ TEST(FindDamage, HoleInTheWallBelongsToThePothole) {
   EXPECT_LT(find(map, maps.pair, 1)->measured_share, whole->measured_share);
 }
 
+/// Where the rim is missing, too, the hole is not enclosed by what was seen of the pothole.
+TEST(FindDamage, HoleOverTheRimBelongsToThePothole) {
+  ExactMaps maps = damaged();
+  const DamageMap before = find_damage(maps.metric());
+  const Damage* whole = find(before, maps.pair, 1);
+  ASSERT_NE(whole, nullptr);
+  const double u = whole->box_px[0] + 9, v = whole->centroid_px[1];
+  forget_disk(maps, u, v, 13);
+  const DamageMap map = find_damage(maps.metric());
+  double hidden = 0, found = 0;
+  for (int row = 0; row < map.ids.height(); ++row) {
+    for (int column = 0; column < map.ids.width(); ++column) {
+      if (std::hypot(column - u, row - v) > 13 || maps.pair.labels(column, row) != 1) continue;
+      ++hidden;
+      found += map.ids(column, row) != 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(found, 0.6 * hidden);
+  expect_truth(map, maps.pair);
+}
+
 TEST(FindDamage, HolesInTheRoadAreNoDamage) {
   ExactMaps maps = damaged();
   forget_disk(maps, 320, 40, 20);
