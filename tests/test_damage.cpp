@@ -458,7 +458,9 @@ TEST(FindDamage, ViewsWithAStrideGiveTheSame) {
   const Image<float> sigma(640, 360, 0.03F);
   Image<std::uint8_t> grey(640, 360);
   for (int v = 0; v < 360; ++v) {
-    for (int u = 0; u < 640; ++u) grey(u, v) = damaged().pair.left.bytes[static_cast<std::size_t>(640 * v + u)];
+    for (int u = 0; u < 640; ++u)
+      grey(u, v) =
+          damaged().pair.left.bytes[std::size_t{640} * static_cast<std::size_t>(v) + static_cast<std::size_t>(u)];
   }
   DamageInput dense = damaged().metric();
   dense.sigma = sigma;

@@ -18,10 +18,10 @@
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/io/point_cloud.hpp"
 
+namespace roadstereo {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace roadstereo;
 
 struct Outcome {
   int exit_code = -1;
@@ -325,3 +325,4 @@ TEST_F(DamageCommand, EvaluateRefusesOtherFolders) {
 }
 
 }  // namespace
+}  // namespace roadstereo
