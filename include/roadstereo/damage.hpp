@@ -100,10 +100,11 @@ struct DamageMap {
   Image<std::uint16_t> ids;     ///< of the damage at each pixel, 0 none
   Image<std::uint8_t> road;     ///< 255 on the road region (damage included), 0 off it
   Image<float> surface;         ///< ℓ' of the undamaged road, pixels, continued across damage and off the road
-  Image<float> depth;   ///< below the undamaged road, negative above: metres along the normal when calibrated, else
-                        ///< pixels of ℓ'; interpolated in the holes of damages; NaN elsewhere without a disparity
-  double noise_px = 0;  ///< standard deviation of the intact road around `surface`, pixels, robust
-  bool metric = false;  ///< whether `depth` is in metres
+  Image<float> depth;  ///< below the undamaged road, negative above: metres along the normal when calibrated, else
+                       ///< pixels of ℓ'; interpolated in the holes of damages; NaN elsewhere without a disparity
+  double noise_px =
+      0;  ///< standard deviation of the intact road, in means of a few pixels, around `surface`; pixels, robust
+  bool metric = false;          ///< whether `depth` is in metres
   std::string unmetric_reason;  ///< why not
 };
 

@@ -32,33 +32,44 @@ Level halve(const Level& fine) {
   return coarse;
 }
 
-/// Weighted mean with binomial weights (1 4 6 4 1)²/256 of the cells that have a weight.
-Image<float> smooth(const Level& level) {
-  constexpr int radius = 2;
+/// Sum and weight of the five cells around (i, j) along a row or a column, with weights 1 4 6 4 1.
+struct Weighted {
+  float sum = 0;
+  float weight = 0;
+};
+
+Weighted binomial_sum(const Level& level, int i, int j, bool along_row) {
   constexpr std::array<float, 5> binomial{1, 4, 6, 4, 1};
+  Weighted total;
+  int offset = -2;
+  for (const float share : binomial) {
+    const int column = along_row ? i + offset : i;
+    const int row = along_row ? j : j + offset;
+    ++offset;
+    if (column < 0 || column >= level.sum.width() || row < 0 || row >= level.sum.height()) continue;
+    total.sum += share * level.sum(column, row);
+    total.weight += share * level.weight(column, row);
+  }
+  return total;
+}
+
+/// Binomial mean, 5×5, of the cells that have a weight; 0 where none has.
+Image<float> smooth(const Level& level) {
   const int width = level.sum.width();
   const int height = level.sum.height();
   Level rows{Image<float>(width, height), Image<float>(width, height)};
-  const auto add = [&](const Level& from, int i, int j, bool along_row, float& sum, float& weight) {
-    for (int k = -radius; k <= radius; ++k) {
-      const int column = along_row ? i + k : i;
-      const int row = along_row ? j : j + k;
-      if (column < 0 || column >= width || row < 0 || row >= height) continue;
-      const float share = binomial[static_cast<std::size_t>(k + radius)];
-      sum += share * from.sum(column, row);
-      weight += share * from.weight(column, row);
-    }
-  };
-  Image<float> result(width, height);
-  for (int j = 0; j < height; ++j) {
-    for (int i = 0; i < width; ++i) add(level, i, j, true, rows.sum(i, j) = 0, rows.weight(i, j) = 0);
-  }
   for (int j = 0; j < height; ++j) {
     for (int i = 0; i < width; ++i) {
-      float sum = 0;
-      float weight = 0;
-      add(rows, i, j, false, sum, weight);
-      result(i, j) = weight > 0 ? sum / weight : 0;
+      const Weighted total = binomial_sum(level, i, j, true);
+      rows.sum(i, j) = total.sum;
+      rows.weight(i, j) = total.weight;
+    }
+  }
+  Image<float> result(width, height);
+  for (int j = 0; j < height; ++j) {
+    for (int i = 0; i < width; ++i) {
+      const Weighted total = binomial_sum(rows, i, j, false);
+      result(i, j) = total.weight > 0 ? total.sum / total.weight : 0;
     }
   }
   return result;
