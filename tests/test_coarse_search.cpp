@@ -12,6 +12,7 @@
 #include "roadstereo/error.hpp"
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/synth.hpp"
+#include "stereo/coarse/coarse_map.hpp"
 #include "stereo/coarse/coarse_search.hpp"
 #include "textured_pair.hpp"
 
@@ -164,6 +165,28 @@ TEST(CoarseSearch, WithoutTextureTheRoadIsThePriorAndElsewhereThePicture) {
   });
   EXPECT_GT(inside, 1000);
   EXPECT_GT(outside, 5000);
+}
+
+TEST(CoarseMap, AStreakOneRowHighGoesAndAStepStays) {
+  Image<float> map(6, 12, 8.0F), smoothed(6, 12);
+  for (int u = 0; u < 6; ++u) map(u, 3) = 20;  // the streak
+  for (int v = 7; v < 12; ++v) std::fill(map.row(v), map.row(v) + 6, 5.0F);
+  map(2, 9) = static_cast<float>(nan);
+  median_of_rows(map, 0, 12, smoothed);
+  for (int v = 0; v < 12; ++v) EXPECT_EQ(smoothed(0, v), v < 7 ? 8 : 5) << v;
+  EXPECT_TRUE(std::isnan(smoothed(2, 9)));
+  EXPECT_EQ(smoothed(2, 8), 5);
+}
+
+TEST(CoarseMap, WhatTheTargetDoesNotSeeIsTheFartherNeighbour) {
+  // A hole at 2 before a rim at 6: the target sees the rim at its pixels 10 and beyond, which hides the hole's last
+  // four columns, whatever was found there.
+  std::vector<float> row(24, 6.0F), nearest;
+  std::fill(row.begin() + 4, row.begin() + 13, 2.0F);
+  for (std::size_t u = 13; u < 16; ++u) row[u] = u % 2 == 0 ? 4.0F : 3.0F;
+  fill_hidden(row.data(), 24, nearest);
+  for (std::size_t u = 4; u < 16; ++u) EXPECT_EQ(row[u], 2) << u;
+  for (std::size_t u = 16; u < 24; ++u) EXPECT_EQ(row[u], 6) << u;
 }
 
 TEST(CoarseSearch, ThreadsChangeNothing) {

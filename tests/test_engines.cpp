@@ -59,6 +59,9 @@ std::vector<Case> cases() {
   MatcherOptions one_view;
   one_view.target_volume = false;
   all.push_back({"one_view", 150, 60, 35, one_view, true});
+  MatcherOptions strict;  // what fails the left-right check is invalid
+  strict.hidden_sigma_px = 0;
+  all.push_back({"strict_check", 150, 60, 35, strict, true});
   MatcherOptions sparse;
   sparse.aggregation_radius = 5;
   sparse.aggregation_step = 2;

@@ -26,6 +26,7 @@ TEST(Presets, PaperHasThePapersConstants) {
   EXPECT_EQ(paper.matcher.sigma_space, 1.5);
   EXPECT_EQ(paper.matcher.sigma_colour, 5.5);
   EXPECT_EQ(paper.matcher.consistency, 1);
+  EXPECT_EQ(paper.matcher.hidden_sigma_px, 0);
   EXPECT_EQ(paper.matcher.texture_noise, 0);
   EXPECT_EQ(paper.road_geometry.initial_lambda, 10);
   EXPECT_NEAR(paper.road_geometry.roll_threshold_rad, 3.14159265358979 / 1.8e6, 1e-18);

@@ -234,8 +234,11 @@ TEST(ReferenceEngine, LeftRightCheckRemovesWhatTheOtherViewSeesDifferently) {
   MatcherOptions options;
   options.block_radius = 2;
   options.aggregation_radius = 2;
-  MatchMaps checked, unchecked;
+  options.hidden_sigma_px = 0;
+  MatchMaps checked, unchecked, doubted;
   make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 20}, options, checked);
+  options.hidden_sigma_px = 1.5;
+  make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 20}, options, doubted);
   options.left_right_check = false;
   make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 20}, options, unchecked);
   int removed = 0;
@@ -245,6 +248,10 @@ TEST(ReferenceEngine, LeftRightCheckRemovesWhatTheOtherViewSeesDifferently) {
       const double difference = d - checked.target_winner(u - d, v);
       if (difference * difference > 1) {  // eq. lrc, δr = 1
         EXPECT_TRUE(std::isnan(checked.disparity(u, v)));
+        EXPECT_EQ(doubted.disparity(u, v), unchecked.disparity(u, v));
+        if (!std::isinf(unchecked.variance(u, v))) {
+          EXPECT_NEAR(doubted.variance(u, v), unchecked.variance(u, v) + 2.25, 1e-4);
+        }
         ++removed;
       } else {
         EXPECT_EQ(std::isnan(checked.disparity(u, v)), std::isnan(unchecked.disparity(u, v)));

@@ -28,8 +28,11 @@ struct MatcherOptions {
   bool target_volume = false;
   /// Cost that a disparity pays for each pixel away from the prior, in units of the correlation; 0 ignores the prior.
   double prior_slope = 0.08;
-  double prior_reach = 8.0;      ///< pixels away at which it stops growing, so that damage can leave the prior
-  double consistency = 1.0;      ///< δr of eq. lrc, pixels²
+  double prior_reach = 8.0;  ///< pixels away at which it stops growing, so that damage can leave the prior
+  double consistency = 1.0;  ///< δr of eq. lrc, pixels²
+  /// Standard error added to what fails the check: refinement keeps it where better-known neighbours agree. 0 makes it
+  /// invalid, as the paper does.
+  double hidden_sigma_px = 1.0;
   bool sub_pixel = true;         ///< eq. subpixel
   bool drop_range_ends = false;  ///< a winner at the end of its range, which may be no minimum, is invalid
 
@@ -76,7 +79,7 @@ struct MatchInput {
 
 /// What matching leaves. Sizes are those of the reference image.
 struct MatchMaps {
-  Image<float> disparity;      ///< sub-pixel, after the left–right check; NaN invalid
+  Image<float> disparity;      ///< sub-pixel; NaN invalid, as what fails the left–right check with hidden_sigma_px 0
   Image<std::int16_t> winner;  ///< winner-take-all on the reference volume; −1 where nothing can match
   /// Winner-take-all on the target volume, or the reference's winners projected, in target coordinates; −1 likewise.
   Image<std::int16_t> target_winner;

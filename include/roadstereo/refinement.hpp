@@ -13,8 +13,8 @@ struct RefinementOptions {
   double reach_sigmas = 2;     ///< a neighbour this many joint standard errors away has no weight, 0.5 … 100
   double most_sigma_px = 0.3;  ///< a disparity known less well agrees with its neighbours no more easily than this
   double least_sigma_px =
-      0.02;                   ///< standard error that no disparity falls below: interpolation, calibration, 0.001 … 1
-  double worst_sigma_px = 2;  ///< a disparity known less well than that is no measurement: invalid
+      0.02;  ///< standard error that no disparity falls below: interpolation, calibration, 0.001 … 1
+  double worst_sigma_px = 1.4;  ///< a disparity known less well than that is no measurement: invalid
 
   void validate() const;
   bool operator==(const RefinementOptions&) const = default;

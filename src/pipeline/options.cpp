@@ -89,6 +89,8 @@ void visit_options(Options& o, Visitor visit) {
   visit("matcher.prior_slope", o.matcher.prior_slope, "cost of a pixel away from the coarse map; 0 ignores it");
   visit("matcher.prior_reach", o.matcher.prior_reach, "pixels away at which that cost stops growing");
   visit("matcher.consistency", o.matcher.consistency, "delta r of the left-right check, pixels squared");
+  visit("matcher.hidden_sigma_px", o.matcher.hidden_sigma_px,
+        "standard error added to what fails the left-right check, pixels; 0 makes it invalid");
   visit("matcher.sub_pixel", o.matcher.sub_pixel, "refine the winner by a parabola");
   visit("matcher.drop_range_ends", o.matcher.drop_range_ends, "a winner at the end of its range is invalid");
 

@@ -22,6 +22,7 @@ PipelineOptions paper_preset() {
   options.matcher.sigma_colour = 5.5;  // σ1
   options.matcher.texture_noise = 0;   // eq. c as written
   options.matcher.consistency = 1;     // δr
+  options.matcher.hidden_sigma_px = 0;
   options.matcher.drop_range_ends = false;
   options.refinement.radius = 0;
   options.refinement.worst_sigma_px = 1000;  // the left-right check alone decides
@@ -36,6 +37,7 @@ PipelineOptions fast_preset() {
   PipelineOptions options;
   options.coarse_search.factor = 4;
   options.matcher.drop_range_ends = true;
+  options.matcher.hidden_sigma_px = 0;
   options.matcher.block_radius = 5;
   options.matcher.aggregation_radius = 0;
   options.refinement.radius = 0;

@@ -47,6 +47,7 @@ void MatcherOptions::validate() const {
   require_range("matcher", "prior_slope", prior_slope, 0.0, 100.0);
   require_range("matcher", "prior_reach", prior_reach, 0.0, 1000.0);
   require_range("matcher", "consistency", consistency, 0.0, 1000.0);
+  require_range("matcher", "hidden_sigma_px", hidden_sigma_px, 0.0, 10.0);
 }
 
 void SearchRanges::assign(int width, int height, int disparities) {

@@ -7,13 +7,14 @@
 #include "core/require_range.hpp"
 #include "core/shrink.hpp"
 #include "roadstereo/error.hpp"
+#include "stereo/coarse/coarse_map.hpp"
 #include "stereo/coarse/scanline.hpp"
 #include "stereo/window.hpp"
 
 namespace roadstereo {
 namespace {
 
-constexpr int most_columns = 800;       // of the coarse pair, when the factor is derived
+constexpr int most_columns = 1100;      // of the coarse pair, when the factor is derived
 constexpr int smallest_side = 64;       // pixels; below that there is nothing to gain
 constexpr int fewest_disparities = 12;  // below this narrowing saves nothing
 constexpr int fewest_rows = 24;         // of a band
@@ -24,6 +25,19 @@ int derived_factor(const CoarseSearchOptions& options, int width) {
   int factor = 2;
   while (factor < 8 && width / factor > most_columns) factor *= 2;
   return factor;
+}
+
+/// How far the costs of a pixel leave the road possible: 1 where they are as low within two coarse pixels of it as
+/// anywhere, 0 where they are so much lower elsewhere that the pixel shows something else.
+float chance_of_road(const float* costs, int count, float road) {
+  constexpr int near = 2;
+  constexpr float doubtful = 0.2F, impossible = 0.4F;  // in units of the correlation
+  const int centre = static_cast<int>(std::lround(road));
+  const int first = std::clamp(centre - near, 0, count), end = std::clamp(centre + near + 1, first, count);
+  float at_road = no_evidence, least = no_evidence;
+  for (int d = first; d < end; ++d) at_road = std::min(at_road, costs[d]);
+  for (int d = 0; d < count; ++d) least = std::min(least, costs[d]);
+  return std::clamp((impossible - (at_road - least)) / (impossible - doubtful), 0.0F, 1.0F);
 }
 
 }  // namespace
@@ -71,7 +85,7 @@ bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, doub
   const int disparities = std::max(2, (input.disparities - 1) / prior_.factor + 1);
   const MatchInput coarse{reference_, target_, first_column_.data(), disparities};
   block_first_columns(coarse, options_.block_radius, block_first_column_);
-  prior_.disparity.resize(reference_.width(), reference_.height());
+  for (Image<float>* map : {&along_rows_, &prior_.disparity}) map->resize(reference_.width(), reference_.height());
 
   MatcherOptions block;
   block.block_radius = options_.block_radius;
@@ -83,12 +97,16 @@ bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, doub
     worker.row.resize(1, 0, reference_.width() * pitch);
     worker.centre.resize(static_cast<std::size_t>(reference_.width()));
     worker.pull.resize(static_cast<std::size_t>(reference_.width()));
+    worker.nearest.reserve(static_cast<std::size_t>(reference_.width()));
     worker.scratch.resize(1, 0, static_cast<std::ptrdiff_t>(scanline_scratch(reference_.width(), pitch)));
   }
   // A band begins by filling its sums, so it should be high.
   const int rows = std::max(fewest_rows, (reference_.height() + 4 * threads_ - 1) / (4 * threads_));
   parallel_rows(reference_.height(), rows, threads_, [&](int first, int last, int worker) {
     match_rows(coarse, first, last, road, workers_[static_cast<std::size_t>(worker)]);
+  });
+  parallel_rows(reference_.height(), rows, threads_, [&](int first, int last, int worker) {
+    correct_rows(first, last, workers_[static_cast<std::size_t>(worker)]);
   });
   if (input.disparities < fewest_disparities) return true;
   tile_ranges_.find(prior_.disparity, prior_.factor, width, height, input.disparities);
@@ -117,18 +135,30 @@ void CoarseSearch::finish_row(const MatchInput& coarse, int v, FunctionRef<doubl
   const int width = reference_.width();
   const auto factor = static_cast<float>(prior_.factor);
   const std::vector<float>& ignorance = worker.evidence.next();
+  const int first_seen = block_first_column_[static_cast<std::size_t>(v)];
   for (int u = 0; u < width; ++u) {
     const auto column = static_cast<std::size_t>(u);
     worker.centre[column] = static_cast<float>(road(unshrink(u, prior_.factor), unshrink(v, prior_.factor))) / factor;
     worker.pull[column] = static_cast<float>(options_.road_pull) * ignorance[column];
+    const int count = std::min(coarse.disparities, u - first_seen + 1);
+    if (std::isnan(worker.centre[column]) || count <= 0) continue;
+    worker.pull[column] *= chance_of_road(worker.row.row(0) + u * worker.costs.pitch(), count, worker.centre[column]);
   }
-  float* out = prior_.disparity.row(v);
-  match_scanline({worker.row.row(0), worker.costs.pitch(), width, coarse.disparities,
-                  block_first_column_[static_cast<std::size_t>(v)]},
+  match_scanline({worker.row.row(0), worker.costs.pitch(), width, coarse.disparities, first_seen},
                  {worker.centre.data(), worker.pull.data(), static_cast<float>(options_.road_reach)},
                  {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)}, no_evidence,
-                 worker.scratch.row(0), out);
-  for (int u = 0; u < width; ++u) out[u] *= factor;
+                 worker.scratch.row(0), along_rows_.row(v));
+}
+
+/// The prior from what the rows found, each on its own.
+void CoarseSearch::correct_rows(int first, int last, Worker& worker) {
+  const auto factor = static_cast<float>(prior_.factor);
+  median_of_rows(along_rows_, first, last, prior_.disparity);
+  for (int v = first; v < last; ++v) {
+    float* row = prior_.disparity.row(v);
+    fill_hidden(row, prior_.disparity.width(), worker.nearest);
+    for (int u = 0; u < prior_.disparity.width(); ++u) row[u] *= factor;
+  }
 }
 
 }  // namespace roadstereo

@@ -33,17 +33,20 @@ class CoarseSearch {
     Evidence evidence;
     cpu::PaddedRows<float> row, scratch;
     std::vector<float> centre, pull;  ///< of the road, per column
+    std::vector<float> nearest;       ///< disparity that the target view sees, per column
   };
   void shrink_pair(const MatchInput& input, int factor);
   void match_rows(const MatchInput& coarse, int first, int last, FunctionRef<double(double, double)> road,
                   Worker& worker);
   void finish_row(const MatchInput& coarse, int v, FunctionRef<double(double, double)> road, Worker& worker);
+  void correct_rows(int first, int last, Worker& worker);
 
   CoarseSearchOptions options_;
   int threads_;
   GreyImage reference_, target_;
   std::vector<int> first_column_, block_first_column_;
   std::vector<Worker> workers_;
+  Image<float> along_rows_;  ///< what the paths along the rows found, coarse pixels
   DisparityPrior prior_;
   TileRanges tile_ranges_;
   bool ranges_found_ = false;

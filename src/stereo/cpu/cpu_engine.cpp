@@ -23,14 +23,18 @@ using cpu::ViewMatcher;
 void finish_row(int v, const MatcherOptions& options, MatchMaps& maps) {
   const std::int16_t* winner = maps.winner.row(v);
   const std::int16_t* target_winner = maps.target_winner.row(v);
-  float* disparity = maps.disparity.row(v);
+  float *disparity = maps.disparity.row(v), *variance = maps.variance.row(v);
+  const auto hidden = static_cast<float>(options.hidden_sigma_px * options.hidden_sigma_px);
   for (int u = 0; u < maps.winner.width(); ++u) {
     const float offset = disparity[u];
     disparity[u] = std::numeric_limits<float>::quiet_NaN();
     if (winner[u] < 0) continue;
     if (options.left_right_check) {
       const double difference = winner[u] - target_winner[u - winner[u]];
-      if (difference * difference > options.consistency) continue;
+      if (difference * difference > options.consistency) {
+        if (options.hidden_sigma_px == 0) continue;
+        variance[u] += hidden;
+      }
     }
     const bool bracketed = !std::isnan(offset);
     if (!bracketed && options.drop_range_ends) continue;

@@ -249,10 +249,12 @@ class ReferenceEngine final : public StereoEngine {
     for (int v = 0; v < scene.height(); ++v) {
       for (int u = 0; u < scene.width(); ++u) {
         if (maps.winner(u, v) < 0) continue;
-        if (options.left_right_check && !consistent(maps, u, v, options.consistency)) continue;
+        const bool hidden = options.left_right_check && !consistent(maps, u, v, options.consistency);
+        if (hidden && options.hidden_sigma_px == 0) continue;
         const Refined refined = refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v));
         maps.disparity(u, v) = static_cast<float>(refined.disparity);
-        maps.variance(u, v) = static_cast<float>(refined.variance);
+        const double doubt = hidden ? options.hidden_sigma_px * options.hidden_sigma_px : 0;
+        maps.variance(u, v) = static_cast<float>(refined.variance + doubt);
       }
     }
   }
