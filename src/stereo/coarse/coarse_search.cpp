@@ -14,7 +14,7 @@
 namespace roadstereo {
 namespace {
 
-constexpr int most_columns = 1100;      // of the coarse pair, when the factor is derived
+constexpr int most_columns = 800;       // of the coarse pair, when the factor is derived
 constexpr int smallest_side = 64;       // pixels; below that there is nothing to gain
 constexpr int fewest_disparities = 12;  // below this narrowing saves nothing
 constexpr int fewest_rows = 24;         // of a band
@@ -135,13 +135,14 @@ void CoarseSearch::finish_row(const MatchInput& coarse, int v, FunctionRef<doubl
   const int width = reference_.width();
   const auto factor = static_cast<float>(prior_.factor);
   const std::vector<float>& ignorance = worker.evidence.next();
+  constexpr float knows_enough = 0.1F;  // the road hardly pulls there
   const int first_seen = block_first_column_[static_cast<std::size_t>(v)];
   for (int u = 0; u < width; ++u) {
     const auto column = static_cast<std::size_t>(u);
     worker.centre[column] = static_cast<float>(road(unshrink(u, prior_.factor), unshrink(v, prior_.factor))) / factor;
     worker.pull[column] = static_cast<float>(options_.road_pull) * ignorance[column];
     const int count = std::min(coarse.disparities, u - first_seen + 1);
-    if (std::isnan(worker.centre[column]) || count <= 0) continue;
+    if (std::isnan(worker.centre[column]) || count <= 0 || ignorance[column] < knows_enough) continue;
     worker.pull[column] *= chance_of_road(worker.row.row(0) + u * worker.costs.pitch(), count, worker.centre[column]);
   }
   match_scanline({worker.row.row(0), worker.costs.pitch(), width, coarse.disparities, first_seen},
