@@ -146,7 +146,7 @@ Outline find_outline(const DepthField& field, const std::vector<std::int32_t>& s
 }
 
 void grow_to_foot(const DepthField& field, float level, float least, Image<std::uint8_t>& region) {
-  constexpr double beyond = 1.5;           // a foot is round
+  constexpr double beyond = 1.5;         // a foot is round
   constexpr float above_hollow = 0.15F;  // of the depth at the outline, over what lies around
   const Box box = box_of(region);
   const Contour contour = contour_of(field, region, box);
