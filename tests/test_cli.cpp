@@ -1,7 +1,5 @@
 // The command line from outside: exit code, what it prints, what it leaves on disk.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,29 +7,18 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "command_test.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/options.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Outcome {
-  int exit_code = -1;
-  std::string out;
-  std::string err;
-};
-
-std::string read_text(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using roadstereo::CommandTest, roadstereo::Outcome, roadstereo::expect_complaint, roadstereo::read_text;
 
 void write_text(const fs::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
@@ -43,28 +30,8 @@ std::set<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-class CommandLine : public testing::Test {
+class CommandLine : public CommandTest {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("roadstereo_cli_") + test->name() + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  /// Runs the binary in the test's folder; `before` is shell code that prepares its process.
-  Outcome run(const std::string& arguments, const std::string& before = "") const {
-    const fs::path out = folder_ / "stdout.txt";
-    const fs::path err = folder_ / "stderr.txt";
-    const std::string command = "cd '" + folder_.string() + "' && { " + before + " '" ROADSTEREO_BINARY "' " +
-                                arguments + " >'" + out.string() + "' 2>'" + err.string() + "'; }";
-    const int status = std::system(command.c_str());
-    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
-    fs::remove(out);
-    fs::remove(err);
-    return outcome;
-  }
-
   /// A small pair with calibration and truth in the folder "road".
   void make_road() const {
     const Outcome outcome = run("synth --scene demo --size 320x180 --output road --quiet");
@@ -74,24 +41,12 @@ class CommandLine : public testing::Test {
   Outcome inspect(const std::string& arguments = "--calibration road/calibration.yaml") const {
     return run("inspect road/left.png road/right.png --output result " + arguments);
   }
-
-  nlohmann::json json_file(const std::string& name) const { return nlohmann::json::parse(read_text(folder_ / name)); }
-
-  fs::path folder_;
 };
 
-/// One sentence on stderr, nothing on stdout.
-void expect_complaint(const Outcome& outcome, int exit_code, const std::string& part) {
-  EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err.rfind("roadstereo: ", 0), 0U) << outcome.err;
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_NE(outcome.err.find(part), std::string::npos) << "no \"" << part << "\" in: " << outcome.err;
-}
-
-const std::set<std::string> result_files = {"disparity.tiff",      "transformed.tiff",      "disparity.png",
-                                            "disparity_color.png", "transformed_color.png", "sheet.png",
-                                            "sigma.tiff",          "sigma_color.png",       "result.json"};
+const std::set<std::string> result_files = {
+    "disparity.tiff", "transformed.tiff", "disparity.png", "disparity_color.png", "transformed_color.png", "sheet.png",
+    "sigma.tiff",     "sigma_color.png",  "result.json",   "damages.json",        "damages.csv",           "damage.png",
+    "overlay.png",    "report.html",      "cloud.ply",     "road_cloud.ply"};
 
 TEST_F(CommandLine, HelpIsCompleteWithExamples) {
   const Outcome whole = run("--help");

@@ -1,19 +1,15 @@
 // Damage from the command line: maps in, files out; and its scores against labels.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_test.hpp"
 #include "damage_scene.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/io/point_cloud.hpp"
@@ -22,22 +18,6 @@ namespace roadstereo {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Outcome {
-  int exit_code = -1;
-  std::string out, err;
-};
-
-std::string read_text(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::optional<fs::path> data_folder(const std::string& part) {
-  const char* folder = std::getenv("ROADSTEREO_DATA");
-  if (folder == nullptr || !fs::is_directory(fs::path(folder) / part)) return std::nullopt;
-  return fs::path(folder) / part;
-}
 
 const ExactMaps& damaged() {
   static const ExactMaps maps(damaged_scene());
@@ -68,30 +48,8 @@ std::string calibration_text(const StereoCalibration& rig) {
          "\nwidth: " + std::to_string(rig.width) + "\nheight: " + std::to_string(rig.height) + "\n";
 }
 
-class DamageCommand : public testing::Test {
+class DamageCommand : public CommandTest {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("roadstereo_damage_") + test->name() + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" ROADSTEREO_BINARY "' " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout.txt"),
-            read_text(folder_ / "stderr.txt")};
-  }
-
-  void write(const std::string& name, const std::vector<std::uint8_t>& bytes) const {
-    std::ofstream file(folder_ / name, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
   void write_damaged() const {
     write("map.tiff", io::encode_float_tiff(damaged().transformed));
     write("disparity.tiff", io::encode_float_tiff(damaged().disparity));
@@ -112,15 +70,9 @@ class DamageCommand : public testing::Test {
   /// Exit code 2, nothing on stdout, one sentence that names the part, and no results.
   void refuse(const std::string& arguments, const std::vector<std::string>& parts) const {
     const Outcome outcome = run("damage " + arguments + " --output refused");
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(outcome.err.rfind("roadstereo: ", 0), 0U) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    for (const std::string& part : parts) EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+    for (const std::string& part : parts) expect_complaint(outcome, part);
     EXPECT_FALSE(fs::exists(folder_ / "refused" / "damages.json"));
   }
-
-  fs::path folder_;
 };
 
 double share_of_different(const std::vector<std::uint8_t>& one, const std::vector<std::uint8_t>& other) {

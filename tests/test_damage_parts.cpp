@@ -280,7 +280,7 @@ TEST(CellMeans, AreThoseOfTheValidPixels) {
   map(2, 2) = std::numeric_limits<float>::infinity();
   map(2, 3) = 3;
   map(6, 0) = 5;  // half of a cell that the border cuts
-  const Cells cells = make_cells(map, 2, 1);
+  const Cells cells = make_cells(map, {}, 2, 1);
   ASSERT_EQ(cells.width(), 4);
   ASSERT_EQ(cells.height(), 3);
   EXPECT_EQ(cells.value(0, 0), 3);

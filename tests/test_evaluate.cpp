@@ -1,20 +1,16 @@
 // `roadstereo evaluate` from outside: what it prints and writes, against maps whose scores are known by hand.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_test.hpp"
 #include "roadstereo/io/image_file.hpp"
 
 namespace {
@@ -25,56 +21,10 @@ using namespace roadstereo;
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
 constexpr int width = 40, height = 32;
 
-struct Outcome {
-  int exit_code = -1;
-  std::string out, err;
-};
-
-std::string read_text(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::optional<fs::path> data_folder(const std::string& part) {
-  const char* folder = std::getenv("ROADSTEREO_DATA");
-  if (folder == nullptr || !fs::is_directory(fs::path(folder) / part)) return std::nullopt;
-  return fs::path(folder) / part;
-}
-
-class Evaluate : public testing::Test {
+class Evaluate : public CommandTest {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("roadstereo_eval_") + test->name() + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" ROADSTEREO_BINARY "' evaluate " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout.txt"),
-            read_text(folder_ / "stderr.txt")};
-  }
-
-  void write(const std::string& name, const std::vector<std::uint8_t>& bytes) const {
-    std::ofstream file(folder_ / name, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  }
-
-  nlohmann::json json_file(const std::string& name) const { return nlohmann::json::parse(read_text(folder_ / name)); }
-
-  fs::path folder_;
+  Outcome run(const std::string& arguments) const { return CommandTest::run("evaluate " + arguments); }
 };
-
-/// Nothing on stdout, one sentence on stderr.
-void expect_complaint(const Outcome& outcome, const std::string& part) {
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
-}
 
 /// The truth is 20 px everywhere but in the first row, which is unlabelled. The map is right in the left half but for
 /// its first column, which is missing, and 2.5 px too high in the right half.

@@ -1,19 +1,15 @@
 // `roadstereo evaluate scan` from outside.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "command_test.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/io/point_cloud.hpp"
 
@@ -22,42 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 using namespace roadstereo;
 
-struct Outcome {
-  int exit_code = -1;
-  std::string out, err;
-};
-
-std::string read_text(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-class EvaluateScan : public testing::Test {
+class EvaluateScan : public CommandTest {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("roadstereo_scan_") + test->name() + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.string() + "' && '" ROADSTEREO_BINARY "' evaluate scan " + arguments +
-                                " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout.txt"),
-            read_text(folder_ / "stderr.txt")};
-  }
-
+  Outcome run(const std::string& arguments) const { return CommandTest::run("evaluate scan " + arguments); }
   void write(const std::string& name, const io::PointCloud& cloud) const {
-    const auto bytes = io::encode_ply(cloud);
-    std::ofstream file(folder_ / name, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    CommandTest::write(name, io::encode_ply(cloud));
   }
-
-  nlohmann::json json_file(const std::string& name) const { return nlohmann::json::parse(read_text(folder_ / name)); }
-
-  fs::path folder_;
 };
 
 /// An unsymmetric hollow on a grid: millimetres with scale 1.
@@ -74,13 +40,6 @@ io::PointCloud hollow(double scale, double step_mm) {
     }
   }
   return cloud;
-}
-
-void expect_complaint(const Outcome& outcome, const std::string& part) {
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
 }
 
 /// Metres against millimetres, turned upside down: (x, y, z) → (x, −y, 1 − z).

@@ -1,18 +1,16 @@
 // What a rig can tell apart: against closed forms, rendered roads, and the command from outside.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 
+#include "command_test.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/resolution_limits.hpp"
@@ -143,45 +141,17 @@ TEST(ResolutionLimits, BadInputIsRefused) {
   EXPECT_THROW(ResolutionLimits(sizeless, {2, 1}), Error);
 }
 
-struct Outcome {
-  int exit_code = -1;
-  std::string out, err;
-};
-
-std::string read_text(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-class LimitsCommand : public testing::Test {
+class LimitsCommand : public CommandTest {
  protected:
   void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("roadstereo_limits_") + test->name() + std::to_string(getpid()));
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / "rig.yaml")
-        << "focal_px: 500\ncx_px: 319.5\ncy_px: 179.5\nbaseline_m: 0.12\nwidth: 640\nheight: 360\n";
-    std::ofstream(folder_ / "K.txt") << "500 0 319.5 0 500 179.5 0 0 1\n0.12\n";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" ROADSTEREO_BINARY "' limits " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout.txt"),
-            read_text(folder_ / "stderr.txt")};
+    CommandTest::SetUp();
+    write("rig.yaml", "focal_px: 500\ncx_px: 319.5\ncy_px: 179.5\nbaseline_m: 0.12\nwidth: 640\nheight: 360\n");
+    write("K.txt", "500 0 319.5 0 500 179.5 0 0 1\n0.12\n");
   }
 
-  fs::path folder_;
+  Outcome run(const std::string& arguments) const { return CommandTest::run("limits " + arguments); }
+  using CommandTest::write;
 };
-
-void expect_complaint(const Outcome& outcome, const std::string& part) {
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
-}
 
 TEST_F(LimitsCommand, TableVerdictsAndFigure) {
   const Outcome outcome = run("--calibration rig.yaml --height 2 --figure limits.png");

@@ -18,31 +18,28 @@ struct Sum {
   int count = 0;
 };
 
-template <class Value>
-Sum sum_of_cell(ImageView<const Value> map, int i, int j, int factor) {
-  Sum cell;
-  const int last_v = std::min((j + 1) * factor, map.height());
-  const int last_u = std::min((i + 1) * factor, map.width());
-  for (int v = j * factor; v < last_v; ++v) {
-    const Value* row = map.row(v);
-    for (int u = i * factor; u < last_u; ++u) {
-      if (!std::isfinite(static_cast<float>(row[u]))) continue;
-      cell.sum += row[u];
-      ++cell.count;
+/// Means over cells of what `value_at` gives for each pixel; NaN is left out.
+template <class ValueAt>
+Image<float> mean_cells(int width, int height, int factor, int threads, const ValueAt& value_at) {
+  const auto sum_of_cell = [&](int i, int j) {
+    Sum cell;
+    for (int v = j * factor; v < std::min((j + 1) * factor, height); ++v) {
+      for (int u = i * factor; u < std::min((i + 1) * factor, width); ++u) {
+        const float value = value_at(u, v);
+        if (!std::isfinite(value)) continue;
+        cell.sum += value;
+        ++cell.count;
+      }
     }
-  }
-  return cell;
-}
-
-template <class Value>
-Image<float> mean_cells(ImageView<const Value> map, int factor, int threads) {
-  Image<float> cells((map.width() + factor - 1) / factor, (map.height() + factor - 1) / factor);
+    return cell;
+  };
+  Image<float> cells((width + factor - 1) / factor, (height + factor - 1) / factor);
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int j = first; j < last; ++j) {
       for (int i = 0; i < cells.width(); ++i) {
-        const Sum cell = sum_of_cell(map, i, j, factor);
-        const bool known = 2 * cell.count >= factor * factor || (factor > 1 && 4 * cell.count >= factor * factor &&
-                                                                 (i + 1 == cells.width() || j + 1 == cells.height()));
+        const Sum cell = sum_of_cell(i, j);
+        const bool cut = i + 1 == cells.width() || j + 1 == cells.height();  // by the border of the picture
+        const bool known = cell.count > 0 && (cut ? 4 : 2) * cell.count >= factor * factor;
         cells(i, j) = known ? static_cast<float>(cell.sum / cell.count) : std::numeric_limits<float>::quiet_NaN();
       }
     }
@@ -74,18 +71,23 @@ int cell_factor(int width, int height) {
   return std::max(pixels > least_pixels ? 2 : 1, static_cast<int>(std::ceil(std::sqrt(pixels / most_cells))));
 }
 
-Cells make_cells(ImageView<const float> transformed, int factor, int threads) {
+Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigma, int factor, int threads) {
+  constexpr float worst_sigma = 1;  // pixels
   require_values(transformed);
   Cells cells;
   cells.factor = factor;
   cells.image_width = transformed.width();
   cells.image_height = transformed.height();
-  cells.value = mean_cells(transformed, factor, threads);
+  cells.value = mean_cells(transformed.width(), transformed.height(), factor, threads, [&](int u, int v) {
+    const bool vague = !sigma.empty() && sigma(u, v) > worst_sigma;
+    return vague ? std::numeric_limits<float>::quiet_NaN() : transformed(u, v);
+  });
   return cells;
 }
 
 Image<float> make_grey_cells(ImageView<const std::uint8_t> grey, int factor, int threads) {
-  return mean_cells(grey, factor, threads);
+  return mean_cells(grey.width(), grey.height(), factor, threads,
+                    [&](int u, int v) { return static_cast<float>(grey(u, v)); });
 }
 
 float at_pixel(const Image<float>& cells, int factor, int u, int v) {

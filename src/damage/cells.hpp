@@ -22,8 +22,9 @@ struct Cells {
 /// The side of a cell that keeps a frame below some 300 000 cells.
 int cell_factor(int width, int height);
 
+/// A pixel whose `sigma` (may be empty) is above a pixel says nothing about the relief: it counts as invalid.
 /// Throws Error when no pixel of the map is valid, or all have one value.
-Cells make_cells(ImageView<const float> transformed, int factor, int threads);
+Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigma, int factor, int threads);
 
 /// The grey image in cells of the same side: mean grey levels, 0 … 255.
 Image<float> make_grey_cells(ImageView<const std::uint8_t> grey, int factor, int threads);

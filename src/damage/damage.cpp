@@ -120,8 +120,8 @@ DamageMap no_damage(int width, int height, const std::string& reason) {
 DamageMap find_damage(const DamageInput& input, const DamageOptions& options, int threads) {
   options.validate();
   require_input(input);
-  const Cells cells =
-      make_cells(input.transformed, cell_factor(input.transformed.width(), input.transformed.height()), threads);
+  const Cells cells = make_cells(input.transformed, input.sigma,
+                                 cell_factor(input.transformed.width(), input.transformed.height()), threads);
   const SurfaceCoordinates coordinates = surface_coordinates(cells, input);
   RoadSurface surface;
   Image<std::uint8_t> road;
