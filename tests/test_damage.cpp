@@ -456,18 +456,14 @@ struct Padded {
 
 TEST(FindDamage, ViewsWithAStrideGiveTheSame) {
   const Image<float> sigma(640, 360, 0.03F);
-  Image<std::uint8_t> grey(640, 360);
-  for (int v = 0; v < 360; ++v) {
-    for (int u = 0; u < 640; ++u)
-      grey(u, v) =
-          damaged().pair.left.bytes[std::size_t{640} * static_cast<std::size_t>(v) + static_cast<std::size_t>(u)];
-  }
+  GreyImage grey;
+  to_grey(damaged().pair.left.view(), 0, grey);
   DamageInput dense = damaged().metric();
   dense.sigma = sigma;
   dense.grey = grey;
   const Padded<float> transformed(damaged().transformed, 1e6F), disparity(damaged().disparity, -7.0F),
       noise(sigma, 9.0F);
-  const Padded<std::uint8_t> picture(grey, 255);
+  const Padded<std::int16_t> picture(grey, grey_max);
   DamageInput strided = dense;
   strided.transformed = transformed.view;
   strided.disparity = disparity.view;
@@ -505,7 +501,7 @@ TEST(FindDamage, RefusesMapsThatShowNothing) {
 
 TEST(FindDamage, RefusesViewsOfAnotherSize) {
   const Image<float> other(640, 359, 1.0F);
-  const Image<std::uint8_t> grey(639, 360, 1);
+  const GreyImage grey(639, 360, 1);
   DamageInput input = damaged().metric();
   input.disparity = other;
   expect_error([&] { find_damage(input); }, "disparity map has 640×359");

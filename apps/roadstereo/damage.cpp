@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "grey_frame.hpp"
 #include "map_source.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/damage_files.hpp"
@@ -43,7 +42,8 @@ DamageOptions make_options(const std::vector<std::string>& settings) {
 }
 
 DamageMap find_in(const TransformedMap& map, const Arguments& arguments) {
-  const Image<std::uint8_t> grey = map.image ? grey_of(*map.image) : Image<std::uint8_t>();
+  GreyImage grey;
+  if (map.image) to_grey(map.image->view(), 0, grey);
   DamageInput input;
   input.transformed = map.transformed;
   input.grey = grey;

@@ -50,8 +50,9 @@ struct DamageInput {
   ImageView<const float> transformed;  ///< ℓ', pixels; NaN invalid; depressions below the road, protrusions above it
   ImageView<const float> disparity;    ///< ℓ, pixels; needed for everything metric
   ImageView<const float> sigma;        ///< standard error of ℓ, pixels; without it noise is measured in the map
-  ImageView<const std::uint8_t> grey;  ///< left image, 8-bit grey: helps to draw outlines where matching left holes
-  std::optional<RoadModel> plane;      ///< the road's plane in ℓ; needed for everything metric
+  ImageView<const std::int16_t>
+      grey;  ///< left image as `to_grey` gives it: helps to draw outlines where matching left holes
+  std::optional<RoadModel> plane;                ///< the road's plane in ℓ; needed for everything metric
   std::optional<StereoCalibration> calibration;  ///< needed for everything metric
 };
 

@@ -84,7 +84,7 @@ Surroundings surroundings_of(const Candidate& candidate, const DepthCells& relie
   const int reach = std::max(least_reach, static_cast<int>(half * radius));
   const Box around = candidate.box.grown(reach, road.width(), road.height());
   const Image<std::uint8_t> grown = grow(candidate.cells, reach, around);
-  const float sign = candidate.kind == DamageKind::depression ? 1.0F : -1.0F;
+  const float sign = sign_of(candidate.kind);
   const float bowl = candidate.kind == DamageKind::depression
                          ? std::min(candidate.level, hollow * static_cast<float>(relief.noise))
                          : 0.0F;

@@ -8,6 +8,11 @@
 
 namespace roadstereo {
 
+/// Depths count positive inside a damage: 1 for depressions, −1 for protrusions.
+inline float sign_of(DamageKind kind) {
+  return kind == DamageKind::depression ? 1.0F : -1.0F;
+}
+
 /// A damage before it is measured.
 struct Candidate {
   DamageKind kind = DamageKind::depression;

@@ -85,7 +85,7 @@ Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigm
   return cells;
 }
 
-Image<float> make_grey_cells(ImageView<const std::uint8_t> grey, int factor, int threads) {
+Image<float> make_grey_cells(ImageView<const std::int16_t> grey, int factor, int threads) {
   return mean_cells(grey.width(), grey.height(), factor, threads,
                     [&](int u, int v) { return static_cast<float>(grey(u, v)); });
 }

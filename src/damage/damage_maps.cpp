@@ -12,10 +12,6 @@ namespace {
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr int rows_per_band = 16;
 
-float sign_of(DamageKind kind) {
-  return kind == DamageKind::depression ? 1.0F : -1.0F;
-}
-
 /// The region's cells within a box, 1 inside and 0 outside.
 Image<float> indicator_of(const Image<std::uint8_t>& region, const Box& box) {
   Image<float> indicator(box.last_column - box.first_column + 1, box.last_row - box.first_row + 1);
@@ -43,6 +39,7 @@ void paint_candidate(const Cells& cells, const Candidate& candidate, std::uint16
   }
 }
 
+/// Depths in which the gaps and islands inside the damages are replaced by what surrounds them.
 Image<float> relief_without_islands(const Segmentation& found) {
   Image<float> depth = found.relief.depth;
   Image<std::uint8_t> known = found.relief.known;

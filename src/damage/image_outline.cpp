@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/median.hpp"
+
 namespace roadstereo {
 namespace {
 
@@ -14,16 +16,9 @@ struct Tone {
   std::size_t cells = 0;
 };
 
-float take_median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Of the cells that are `inside` and not `without`.
 Tone tone_of(const Image<float>& grey, const Image<std::uint8_t>& inside, const Image<std::uint8_t>* without,
              const Box& box) {
-  constexpr double gaussian_mad = 1.4826;
   std::vector<float> values;
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {

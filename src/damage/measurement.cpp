@@ -33,7 +33,7 @@ void add_pixel(const DamageInput& input, const DamageMap& maps, int u, int v, Pi
 
 /// The largest depth of the smoothed relief, so that no single wrong pixel decides.
 void find_deepest(const Segmentation& found, const Candidate& candidate, Damage& damage) {
-  const float sign = candidate.kind == DamageKind::depression ? 1.0F : -1.0F;
+  const float sign = sign_of(candidate.kind);
   float largest = 0;
   for (int j = candidate.box.first_row; j <= candidate.box.last_row; ++j) {
     for (int i = candidate.box.first_column; i <= candidate.box.last_column; ++i) {
@@ -109,16 +109,18 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
                     DamageMap& result) {
   paint_maps(input, found, threads, result);
   result.damages = measure_in_pixels(input, found, result);
+  std::vector<SurfaceOffset> offsets;
+  offsets.reserve(result.damages.size());
   for (std::size_t k = 0; k < result.damages.size(); ++k) {
-    const SurfaceOffset offset = local_surface_offset(found, found.candidates[k]);
+    const SurfaceOffset offset = offsets.emplace_back(local_surface_offset(found, found.candidates[k]));
     Damage& damage = result.damages[k];
     const auto [u, v] = damage.deepest_px;
     const double own = input.sigma.empty() ? result.noise_px : input.sigma(u, v);
     const double sigma = std::isfinite(own) ? own : result.noise_px;
-    damage.max_depth_px.value += damage.kind == DamageKind::depression ? offset.value : -offset.value;
+    damage.max_depth_px.value += sign_of(damage.kind) * offset.value;
     damage.max_depth_px.std_error = std::hypot(sigma, offset.std_error);
-    if (result.metric) measure_in_metres(input, options, offset, k, result);
   }
+  if (result.metric) measure_in_metres(input, options, offsets, result);
   keep_significant(result);
   if (result.metric) depth_to_metres(input, threads, result);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/median.hpp"
 #include "core/parallel.hpp"
 #include "damage/oriented_box.hpp"
 
@@ -29,7 +30,6 @@ class Geometry {
 
   /// Disparity of the undamaged surface, whose ℓ' is `surface`.
   double road_disparity(int u, int v, double surface) const { return model_.disparity(u, v) + surface - delta_t_; }
-  double z(double disparity) const { return calibration_.depth_m(disparity); }
   Point point(int u, int v, double disparity) const { return calibration_.point_m(u, v, disparity); }
   /// Area of the road that one pixel covers where it lies at `road`: Z³ / (f²·n·P).
   double pixel_area(const Point& road) const {
@@ -59,10 +59,7 @@ class Geometry {
         if (std::isfinite(delta)) deltas.push_back(delta);
       }
     }
-    if (deltas.empty()) return 0;
-    const auto middle = deltas.begin() + static_cast<std::ptrdiff_t>(deltas.size() / 2);
-    std::nth_element(deltas.begin(), middle, deltas.end());
-    return *middle;
+    return deltas.empty() ? 0 : take_median(deltas);
   }
 
   StereoCalibration calibration_;
@@ -74,7 +71,7 @@ class Geometry {
 
 /// Sums over the pixels of one damage.
 struct Sums {
-  double area = 0, volume = 0, measured_depth = 0;
+  double area = 0, volume = 0;
   Point centroid{};
   double metres_per_pixel = 0, sigma = 0;
   std::size_t measured = 0;
@@ -122,7 +119,7 @@ Sums add_up(const DamageInput& input, const Geometry& geometry, const DamageMap&
 /// (docs/accuracy.md): matching sees through a window, so that a hollow of its size loses part of its depth and its
 /// outline is known to a fifth of it.
 void set_standard_errors(const Sums& sums, const SurfaceOffset& offset, double noise_px, double sigma_px,
-                         double per_pixel, DamageMetrics& metrics, Damage& damage) {
+                         double deepest_m_per_px, DamageMetrics& metrics, Damage& damage) {
   constexpr double window_px = 10;       // radius of the block and of the aggregation
   constexpr double sub_pixel_px = 0.03;  // bias that the phase of the sub-pixel step leaves
   constexpr double of_mean = 0.3;        // of the error of one pixel, for the mean of a region
@@ -132,25 +129,59 @@ void set_standard_errors(const Sums& sums, const SurfaceOffset& offset, double n
   const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
   const double surface_px = std::hypot(offset.std_error, sub_pixel_px);
 
-  const double at_deepest_m = metrics.max_depth_m.std_error;  // metres per pixel of disparity there
   damage.max_depth_px.std_error = std::hypot(damage.max_depth_px.std_error, sub_pixel_px);
   metrics.max_depth_m.std_error =
-      std::hypot(damage.max_depth_px.std_error * at_deepest_m, 0.2 * smear * metrics.max_depth_m.value);
+      std::hypot(damage.max_depth_px.std_error * deepest_m_per_px, 0.2 * smear * metrics.max_depth_m.value);
   // A gentle foot ends where it drops below what can be told from the road.
   const double foot_px =
       radius_px * std::min(1.0, 2 * std::hypot(noise_px, offset.std_error) / damage.max_depth_px.value);
   metrics.area_m2.std_error = sums.perimeter * std::hypot(outline * window_px, foot_px) * pixel_m;
-  const double mean_m = std::hypot(surface_px, of_mean * sigma_px) * per_pixel;
+  const double mean_m = std::hypot(surface_px, of_mean * sigma_px) * sums.metres_per_pixel / sums.area;
   metrics.mean_depth_m.std_error = std::hypot(mean_m, 0.5 * smear * metrics.mean_depth_m.value);
   metrics.volume_m3.std_error = std::hypot(sums.area * mean_m, 0.25 * smear * metrics.volume_m3.value);
+}
+
+/// Everything metric of one damage.
+DamageMetrics metrics_of(const DamageInput& input, const DamageOptions& options, const Geometry& geometry,
+                         const SurfaceOffset& offset, const DamageMap& maps, Damage& damage) {
+  const Sums sums = add_up(input, geometry, maps, damage, offset.value);
+  const double noise_px = maps.noise_px;
+  DamageMetrics metrics;
+  const double per_pixel = sums.metres_per_pixel / sums.area;
+  const double sigma_px = sums.measured > 0 ? std::sqrt(sums.sigma / static_cast<double>(sums.measured)) : noise_px;
+  metrics.area_m2.value = sums.area;
+  metrics.volume_m3.value = std::abs(sums.volume);
+  metrics.mean_depth_m.value = metrics.volume_m3.value / sums.area;
+  const auto [u, v] = damage.deepest_px;
+  const double signed_depth = sign_of(damage.kind) * damage.max_depth_px.value;
+  const double on_road = geometry.road_disparity(u, v, maps.surface(u, v) + offset.value);
+  const Point road = geometry.point(u, v, on_road);
+  const Point deepest = geometry.point(u, v, on_road - signed_depth);
+  metrics.max_depth_m.value = std::abs(geometry.depth_between(road, deepest));
+  set_standard_errors(sums, offset, noise_px, sigma_px, geometry.metres_per_pixel(deepest, on_road - signed_depth),
+                      metrics, damage);
+
+  const OrientedBox box = oriented_box(sums.rim);
+  metrics.length_m = box.length;
+  metrics.width_m = box.width;
+  metrics.angle_rad = box.angle_rad;
+  metrics.diameter_m = 2 * std::sqrt(sums.area / std::numbers::pi);
+  for (std::size_t k = 0; k < 3; ++k) metrics.centroid_m[k] = sums.centroid[k] / sums.area;
+  const Point flat = geometry.frame().to_road(metrics.centroid_m);
+  metrics.road_centroid_m = {flat[0], flat[1]};
+  metrics.distance_m = std::sqrt(dot(metrics.centroid_m, metrics.centroid_m));
+  metrics.resolvable_depth_m = options.threshold_sigma * std::hypot(sigma_px, offset.std_error) * per_pixel;
+  metrics.severity = metrics.max_depth_m.value < metrics.resolvable_depth_m
+                         ? Severity::unresolvable
+                         : astm_severity(metrics.max_depth_m.value, metrics.diameter_m);
+  return metrics;
 }
 
 }  // namespace
 
 SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& candidate) {
-  constexpr int gap = 3;            // cells; nearer the rim the wall is smeared
-  constexpr float noise_reach = 3;  // beyond it is another damage, or a hollow
-  constexpr double gaussian_mad = 1.4826;
+  constexpr int gap = 3;             // cells; nearer the rim the wall is smeared
+  constexpr float noise_reach = 3;   // beyond it is another damage, or a hollow
   constexpr double independent = 6;  // undulations of the road around one damage that do not know of each other
   const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
   const int reach = gap + std::max(3, static_cast<int>(0.4 * radius));
@@ -168,51 +199,18 @@ SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& c
   }
   constexpr std::size_t least_cells = 20;
   if (values.size() < least_cells) return {0, found.relief.noise};
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  const double median = *middle;
+  const double median = take_median(values);
   for (double& value : values) value = std::abs(value - median);
-  std::nth_element(values.begin(), middle, values.end());
-  return {median, gaussian_mad * *middle / std::sqrt(independent)};
+  return {median, gaussian_mad * take_median(values) / std::sqrt(independent)};
 }
 
-void measure_in_metres(const DamageInput& input, const DamageOptions& options, const SurfaceOffset& offset,
-                       std::size_t index, DamageMap& result) {
-  Damage& damage = result.damages[index];
-  if (damage.pixels == 0) return;
+void measure_in_metres(const DamageInput& input, const DamageOptions& options,
+                       const std::vector<SurfaceOffset>& offsets, DamageMap& result) {
   const Geometry geometry(input);
-  const Sums sums = add_up(input, geometry, result, damage, offset.value);
-  DamageMetrics metrics;
-  const double per_pixel = sums.metres_per_pixel / sums.area;
-  const double sigma_px =
-      sums.measured > 0 ? std::sqrt(sums.sigma / static_cast<double>(sums.measured)) : result.noise_px;
-  metrics.area_m2.value = sums.area;
-  metrics.volume_m3.value = std::abs(sums.volume);
-  metrics.mean_depth_m.value = metrics.volume_m3.value / sums.area;
-  const auto [u, v] = damage.deepest_px;
-  const double signed_depth =
-      damage.kind == DamageKind::depression ? damage.max_depth_px.value : -damage.max_depth_px.value;
-  const double on_road = geometry.road_disparity(u, v, result.surface(u, v) + offset.value);
-  const Point road = geometry.point(u, v, on_road);
-  const Point deepest = geometry.point(u, v, on_road - signed_depth);
-  metrics.max_depth_m.value = std::abs(geometry.depth_between(road, deepest));
-  metrics.max_depth_m.std_error = geometry.metres_per_pixel(deepest, on_road - signed_depth);
-  set_standard_errors(sums, offset, result.noise_px, sigma_px, per_pixel, metrics, damage);
-
-  const OrientedBox box = oriented_box(sums.rim);
-  metrics.length_m = box.length;
-  metrics.width_m = box.width;
-  metrics.angle_rad = box.angle_rad;
-  metrics.diameter_m = 2 * std::sqrt(sums.area / std::numbers::pi);
-  for (std::size_t k = 0; k < 3; ++k) metrics.centroid_m[k] = sums.centroid[k] / sums.area;
-  const Point flat = geometry.frame().to_road(metrics.centroid_m);
-  metrics.road_centroid_m = {flat[0], flat[1]};
-  metrics.distance_m = std::sqrt(dot(metrics.centroid_m, metrics.centroid_m));
-  metrics.resolvable_depth_m = options.threshold_sigma * std::hypot(sigma_px, offset.std_error) * per_pixel;
-  metrics.severity = metrics.max_depth_m.value < metrics.resolvable_depth_m
-                         ? Severity::unresolvable
-                         : astm_severity(metrics.max_depth_m.value, metrics.diameter_m);
-  damage.metrics = metrics;
+  for (std::size_t k = 0; k < offsets.size(); ++k) {
+    Damage& damage = result.damages[k];
+    if (damage.pixels > 0) damage.metrics = metrics_of(input, options, geometry, offsets[k], result, damage);
+  }
 }
 
 void depth_to_metres(const DamageInput& input, int threads, DamageMap& result) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "damage/measurement.hpp"
 
 namespace roadstereo {
@@ -11,9 +13,10 @@ struct SurfaceOffset {
 };
 SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& candidate);
 
-/// Fills the metric figures of damage number `index`; `result.depth` is in pixels.
-void measure_in_metres(const DamageInput& input, const DamageOptions& options, const SurfaceOffset& offset,
-                       std::size_t index, DamageMap& result);
+/// Fills the metric figures of every damage, each with the offset of the surface around it; `result.depth` is in
+/// pixels.
+void measure_in_metres(const DamageInput& input, const DamageOptions& options,
+                       const std::vector<SurfaceOffset>& offsets, DamageMap& result);
 
 /// Turns `result.depth` from pixels of ℓ' to metres along the road's normal.
 void depth_to_metres(const DamageInput& input, int threads, DamageMap& result);

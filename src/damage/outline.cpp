@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/median.hpp"
+
 namespace roadstereo {
 namespace {
 
@@ -92,10 +94,7 @@ float median_around(const DepthField& field, const Image<std::uint8_t>& region, 
       if (outer(i, j) != 0 && inner(i, j) == 0 && field.allowed(i, j) != 0) depths.push_back(field.depth(i, j));
     }
   }
-  if (depths.empty()) return 0;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return depths.empty() ? 0 : take_median(depths);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/median.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -15,7 +16,6 @@ constexpr int plane_terms = 3;
 constexpr int quadratic_terms = 6;
 using Terms = Eigen::Matrix<double, quadratic_terms, 1>;
 using Normal = Eigen::Matrix<double, quadratic_terms, quadratic_terms>;
-constexpr double gaussian_mad = 1.4826;
 
 struct Sample {
   Terms terms;
@@ -55,12 +55,6 @@ std::vector<Sample> draw_samples(const Cells& cells, const SurfaceCoordinates& c
   return samples;
 }
 
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Middle and half-width of the shortest interval that holds a third of the values: the road, whatever else is seen.
 struct Shorth {
   double middle = 0;
@@ -87,7 +81,7 @@ double spread_of(const std::vector<Sample>& samples, double reach) {
   for (const Sample& sample : samples) {
     if (std::abs(sample.residual) <= reach) sizes.push_back(std::abs(sample.residual));
   }
-  return sizes.empty() ? 0 : gaussian_mad * median_of(sizes);
+  return sizes.empty() ? 0 : gaussian_mad * take_median(sizes);
 }
 
 /// One step of the reweighted fit with the first `terms` terms; residuals are brought up to date.

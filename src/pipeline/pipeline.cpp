@@ -272,17 +272,11 @@ DamageMap Pipeline::find_damage() const {
   if (!result.geometry_found) {
     return no_damage(result.disparity.width(), result.disparity.height(), "no road was found");
   }
-  Image<std::uint8_t> grey(s.left.width(), s.left.height());
-  for (int v = 0; v < grey.height(); ++v) {
-    const std::int16_t* from = s.left.row(v);
-    std::transform(from, from + grey.width(), grey.row(v),
-                   [](std::int16_t value) { return static_cast<std::uint8_t>(value / grey_scale); });
-  }
   DamageInput input;
   input.transformed = result.transformed;
   input.disparity = result.disparity;
   input.sigma = result.sigma;
-  input.grey = grey;
+  input.grey = s.left;
   input.plane = result.geometry.plane;
   input.calibration = s.calibration;
   return roadstereo::find_damage(input, s.options.damage, s.threads);

@@ -8,7 +8,6 @@
 #include "evaluate/label_regions.hpp"
 #include "evaluate/mask_file.hpp"
 #include "evaluate/scan_frames.hpp"
-#include "grey_frame.hpp"
 #include "map_source.hpp"
 #include "roadstereo/damage.hpp"
 #include "roadstereo/error.hpp"
@@ -94,7 +93,8 @@ std::vector<LabelResult> score_labelled_maps(const std::string& folder) {
   for (const fs::path& path : maps_in(root / "disp_tg")) {
     const std::string name = path.stem().string();
     const TransformedMap source = read_transformed_map({path.string(), picture_of(root, name), "", {}});
-    const Image<std::uint8_t> grey = source.image ? grey_of(*source.image) : Image<std::uint8_t>();
+    GreyImage grey;
+    if (source.image) to_grey(source.image->view(), 0, grey);
     DamageInput input;
     input.transformed = source.transformed;
     input.grey = grey;

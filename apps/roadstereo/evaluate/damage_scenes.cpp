@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "finite_values.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
@@ -45,13 +46,6 @@ std::map<int, Cover> covers_of(const SceneCase& scene) {
   return covers;
 }
 
-double median_or(std::vector<double> values, double otherwise) {
-  if (values.empty()) return otherwise;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The damage that covers at least a third of the truth.
 std::uint16_t best_match(const Cover& cover) {
   std::uint16_t best = 0;
@@ -73,7 +67,8 @@ SceneDamage describe(const std::string& name, const SceneCase& scene, const synt
   damage.pixels = cover.pixels;
   damage.whole = cover.whole;
   damage.depth_px = truth.depth_m * cover.disparity / static_cast<double>(cover.pixels) / height_m;
-  damage.std_error_px = std::hypot(scene.map.noise_px, median_or(cover.sigmas, scene.map.noise_px), sub_pixel_px);
+  damage.std_error_px =
+      std::hypot(scene.map.noise_px, cover.sigmas.empty() ? scene.map.noise_px : median(cover.sigmas), sub_pixel_px);
   const std::uint16_t id = best_match(cover);
   if (id == 0) return damage;
   damage.found = scene.map.damages[id - 1U];
@@ -157,7 +152,7 @@ std::vector<Cell> figure_row(const Figure& figure, const SceneResults& results) 
   return {Cell(figure.name),
           Cell(count, 0),
           Cell(percent * within / count, 1),
-          Cell(percent * median_or(errors, std::nan("")), 1),
+          Cell(percent * median(errors), 1),
           Cell(good, 0),
           Cell(percent * good_errors / good, 1)};
 }
