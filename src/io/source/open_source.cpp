@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include "core/require_range.hpp"
+#include "io/source/sources.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace fs = std::filesystem;
+namespace {
+
+enum class Kind { folder, list, video, camera, gstreamer, bag };
+
+std::string lower_extension(const std::string& name) {
+  std::string extension = fs::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return extension;
+}
+
+template <std::size_t N>
+bool is_one_of(const std::string& word, const std::array<const char*, N>& words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+constexpr std::array list_extensions = {".txt", ".csv", ".lst"};
+constexpr std::array video_extensions = {".mp4", ".avi", ".mkv", ".mov", ".m4v", ".webm", ".ts", ".mjpg", ".mjpeg",
+                                         ".mpg", ".mpeg", ".h264", ".h265", ".hevc", ".y4m", ".wmv"};
+
+Kind kind_of(const std::string& name) {
+  if (name.find(" ! ") != std::string::npos) return Kind::gstreamer;
+  if (name.rfind("/dev/", 0) == 0) return Kind::camera;
+  std::error_code ignored;
+  if (fs::is_directory(name, ignored)) return Kind::folder;
+  if (!fs::exists(name, ignored)) fail(name, ": no such file, folder, camera (/dev/video0) or GStreamer pipeline (a ! b)");
+  const std::string extension = lower_extension(name);
+  if (extension == ".bag") return Kind::bag;
+  if (is_one_of(extension, list_extensions)) return Kind::list;
+  if (is_one_of(extension, video_extensions)) return Kind::video;
+  if (extension == ".svo" || extension == ".svo2") {
+    fail(name, ": ZED's own SVO format needs its SDK; export it as a side-by-side video (ZED Explorer or svo_export)");
+  }
+  fail(name, ": not a source: a folder, a list (.txt, .csv), a video (.mp4, .avi, .mkv, …), a ROS bag (.bag), a camera (",
+       "/dev/video0) or a GStreamer pipeline is taken");
+}
+
+std::unique_ptr<FrameSource> open_one(const std::string& name, const SourceOptions& options) {
+  switch (kind_of(name)) {
+    case Kind::folder:
+      return open_folder(name, options);
+    case Kind::list:
+      return open_list(name, options);
+    case Kind::video:
+      return open_video(name, options);
+    case Kind::camera:
+      return open_camera(name, options);
+    case Kind::gstreamer:
+      return open_gstreamer(name, options);
+    case Kind::bag:
+      return open_bag(name, options);
+  }
+  fail(name, ": not a source");
+}
+
+std::unique_ptr<FrameSource> open_two(const std::string& left, const std::string& right, const SourceOptions& options) {
+  const Kind kind = kind_of(left);
+  if (kind == kind_of(right)) {
+    if (kind == Kind::folder) return open_two_folders(left, right, options);
+    if (kind == Kind::video) return open_two_videos(left, right, options);
+  }
+  fail(left, " and ", right, ": two names must be two folders or two videos, left and right");
+}
+
+}  // namespace
+
+StereoLayout stereo_layout(const std::string& name) {
+  if (name == "auto") return StereoLayout::automatic;
+  if (name == "side-by-side") return StereoLayout::side_by_side;
+  if (name == "top-bottom") return StereoLayout::top_bottom;
+  fail("the layout is \"", name, "\"; it must be auto, side-by-side or top-bottom");
+}
+
+void SourceOptions::validate() const {
+  require_range("source", "max_time_difference_s", max_time_difference_s, 0.0, 10.0);
+  require_range("source", "rate_hz", rate_hz, 0.0, 10000.0);
+  if (!topics.empty() && topics.size() != 2) {
+    fail("source.topics has ", topics.size(), " names; it must be the left and the right image topic");
+  }
+}
+
+std::unique_ptr<FrameSource> open_source(const std::vector<std::string>& names, const SourceOptions& options) {
+  options.validate();
+  if (names.size() == 1) return open_one(names[0], options);
+  if (names.size() == 2) return open_two(names[0], names[1], options);
+  fail("a source is one name, or two: left and right; got ", names.size());
+}
+
+}  // namespace roadstereo::io
