@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <vector>
 
 #include "roadstereo/error.hpp"
@@ -142,6 +144,46 @@ TEST(Pipeline, SuccessiveFramesCarryTheRoadModelOver) {
   pipeline.reset();
   const synth::SyntheticPair pair = synth::render(s);
   EXPECT_FALSE(pipeline.process(pair.left.view(), pair.right.view()).road.carried_over);
+}
+
+bool same_bits(const Image<float>& one, const Image<float>& other) {
+  return one.pixels() == other.pixels() && std::memcmp(one.row(0), other.row(0), one.pixels() * sizeof(float)) == 0;
+}
+
+TEST(Pipeline, GoesOnWhereAnotherEndedToTheSameBits) {
+  const synth::Scene first = synth::named_scene("uav");
+  const synth::SyntheticPair one = synth::render(first);
+  const synth::SyntheticPair two = synth::render(synth::next_frame(first, 1));
+  Pipeline whole(preset("default"), one.calibration);
+  whole.process(one.left.view(), one.right.view());
+  Pipeline resumed(preset("default"), one.calibration);
+  resumed.carry_on(whole.carried());
+  const FrameResult& expected = whole.process(two.left.view(), two.right.view());
+  const FrameResult& result = resumed.process(two.left.view(), two.right.view());
+  EXPECT_TRUE(result.road.carried_over);
+  EXPECT_TRUE(same_bits(result.disparity, expected.disparity));
+  EXPECT_TRUE(same_bits(result.transformed, expected.transformed));
+  EXPECT_EQ(result.geometry.roll_rad, expected.geometry.roll_rad);
+}
+
+TEST(Pipeline, AResultHandedOutIsTheSameAndOutlivesTheNextFrame) {
+  const synth::Scene first = synth::named_scene("uav");
+  const synth::SyntheticPair one = synth::render(first);
+  const synth::SyntheticPair two = synth::render(synth::next_frame(first, 1));
+  Pipeline keeping(preset("fast"), one.calibration);
+  Pipeline handing(preset("fast"), one.calibration);
+  std::array<FrameResult, 2> handed;
+  handing.process(one.left.view(), one.right.view(), handed[0]);
+  handing.process(two.left.view(), two.right.view(), handed[1]);
+  EXPECT_TRUE(same_bits(handed[0].disparity, keeping.process(one.left.view(), one.right.view()).disparity));
+  const DamageMap expected = [&] {
+    keeping.process(two.left.view(), two.right.view());
+    return keeping.find_damage();
+  }();
+  const DamageMap damage = find_damage(handed[1], two.calibration);
+  ASSERT_EQ(damage.damages.size(), expected.damages.size());
+  EXPECT_EQ(damage.ids, expected.ids);
+  EXPECT_THROW(handing.find_damage(), Error);
 }
 
 TEST(Pipeline, AJumpIsNoticedWithinOneFrame) {

@@ -58,6 +58,7 @@ struct StageTimes {
 
 /// The paper's result for one pair.
 struct FrameResult {
+  GreyImage grey;            ///< the left image as matching saw it
   Image<float> disparity;    ///< ℓ: left-image disparities, pixels, NaN invalid
   Image<float> sigma;        ///< standard error of `disparity`, pixels, NaN where that is invalid
   Image<float> transformed;  ///< ℓ': the intact road lies at `delta_t`, damage below, bumps above; NaN invalid
@@ -72,6 +73,15 @@ struct FrameResult {
   StageTimes ms;
   double mde_per_s = 0;  ///< millions of disparity evaluations per second: W·H·D / total time
   std::vector<std::string> warnings;
+};
+
+/// What one frame hands to the next: all that is needed to go on where an earlier run ended, to the same bits.
+struct CarriedState {
+  int width = 0;                  ///< size of the frames, pixels; 0 before the first one
+  int height = 0;                 ///< pixels
+  std::optional<RoadModel> road;  ///< the last frame's road model; absent when it was not reliable
+  double roll_rad = 0;            ///< ψ(t), where the descent of ψ(t+1) starts; 0 when it could not be observed
+  double row_offset_px = 0;       ///< of the target's rows; measured whenever the road model is estimated anew
 };
 
 /// The way through, section 3 of the paper in order. Holds what carries over between frames (road model, ψ, scratch
@@ -90,9 +100,19 @@ class Pipeline {
   /// colour, both images are the same, left and right look swapped, the calibration belongs to another size.
   const FrameResult& process(const FrameView& left, const FrameView& right);
 
+  /// The same, but hands the result out, and takes the memory of the one that was in `result` before: with two or more
+  /// results in turn, a frame can be looked at while the next one is processed.
+  void process(const FrameView& left, const FrameView& right, FrameResult& result);
+
   /// Finds and measures damage in the last frame. Without a road there is none. Throws Error when there is no
-  /// last frame (none yet, refused, forgotten), or when hardly any disparity of it lies on a road.
+  /// last frame (none yet, refused, handed out, forgotten), or when hardly any disparity of it lies on a road.
   DamageMap find_damage() const;
+
+  /// What the next frame will start from.
+  const CarriedState& carried() const;
+
+  /// Goes on from there: the next frame starts from `carried`.
+  void carry_on(const CarriedState& carried);
 
   /// Forgets the last frame: the next one starts afresh.
   void reset();
@@ -104,5 +124,9 @@ class Pipeline {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Damage of a result that was handed out, as `Pipeline::find_damage` finds it.
+DamageMap find_damage(const FrameResult& result, const std::optional<StereoCalibration>& calibration,
+                      const DamageOptions& options = {}, int threads = 0);
 
 }  // namespace roadstereo

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <tuple>
 
 #include "io/calibration_formats.hpp"
 #include "io/frame_mat.hpp"
@@ -33,14 +34,10 @@ std::string size_text(int width, int height) {
   return std::to_string(width) + "×" + std::to_string(height);
 }
 
-void check_frames(const Frame& left, const Frame& right, const StereoRig& rig) {
-  if (left.width != right.width || left.height != right.height) {
-    fail("the left image has ", size_text(left.width, left.height), " pixels, the right one ",
-         size_text(right.width, right.height), "; both must have the same");
-  }
-  if (rig.width != 0 && (rig.width != left.width || rig.height != left.height)) {
+void check_size(const StereoRig& rig, int width, int height) {
+  if (rig.width != 0 && (rig.width != width || rig.height != height)) {
     fail("the calibration is for ", size_text(rig.width, rig.height), " pixels, but the images have ",
-         size_text(left.width, left.height));
+         size_text(width, height));
   }
 }
 
@@ -150,21 +147,53 @@ StereoCalibration calibration_of(const RectifiedCameras& cameras, cv::Size size)
 
 }  // namespace
 
-RectifiedPair rectify(const Frame& left, const Frame& right, const StereoRig& rig) {
-  check_frames(left, right, rig);
+struct Rectifier::Maps {
+  cv::Size size;
+  PixelMap left;
+  PixelMap right;
+  StereoCalibration calibration;
+};
+
+Rectifier::Rectifier(const StereoRig& rig, int width, int height) : maps_(std::make_unique<Maps>()) {
+  check_size(rig, width, height);
   StereoRig sized = rig;
-  sized.width = left.width;
-  sized.height = left.height;
+  sized.width = width;
+  sized.height = height;
   check_rig(sized, "the rig");
   check_arrangement(sized);
-  const cv::Size size(left.width, left.height);
+  maps_->size = cv::Size(width, height);
   try {
-    RectifiedCameras cameras = rectified_cameras(sized, size);
-    const auto [left_map, right_map] = inner_maps(sized, size, cameras);
-    return {resample(left, left_map), resample(right, right_map), calibration_of(cameras, size)};
+    RectifiedCameras cameras = rectified_cameras(sized, maps_->size);
+    std::tie(maps_->left, maps_->right) = inner_maps(sized, maps_->size, cameras);
+    maps_->calibration = calibration_of(cameras, maps_->size);
   } catch (const cv::Exception& error) {
     fail("the rig cannot be rectified: ", error.err);
   }
+}
+
+Rectifier::~Rectifier() = default;
+Rectifier::Rectifier(Rectifier&&) noexcept = default;
+Rectifier& Rectifier::operator=(Rectifier&&) noexcept = default;
+
+const StereoCalibration& Rectifier::calibration() const {
+  return maps_->calibration;
+}
+
+RectifiedPair Rectifier::rectify(const Frame& left, const Frame& right) const {
+  for (const Frame* frame : {&left, &right}) {
+    if (frame->width == maps_->size.width && frame->height == maps_->size.height) continue;
+    fail("the image has ", size_text(frame->width, frame->height), " pixels, but the rig ",
+         size_text(maps_->size.width, maps_->size.height));
+  }
+  return {resample(left, maps_->left), resample(right, maps_->right), maps_->calibration};
+}
+
+RectifiedPair rectify(const Frame& left, const Frame& right, const StereoRig& rig) {
+  if (left.width != right.width || left.height != right.height) {
+    fail("the left image has ", size_text(left.width, left.height), " pixels, the right one ",
+         size_text(right.width, right.height), "; both must have the same");
+  }
+  return Rectifier(rig, left.width, left.height).rectify(left, right);
 }
 
 }  // namespace roadstereo::io

@@ -59,15 +59,12 @@ struct Pipeline::State {
   std::unique_ptr<StereoEngine> engine;
   std::optional<CoarseSearch> coarse_search;
 
-  // What carries over from frame to frame.
-  std::optional<RoadModel> last_road;
-  double last_roll_rad = 0;
-  double row_offset = 0;   ///< of the target's rows, pixels; measured whenever the road model is estimated anew
-  bool has_frame = false;  ///< whether `result` and the grey images belong to one frame, whole
+  CarriedState carried;
+  bool has_frame = false;  ///< whether `result` belongs to one frame, whole
 
   // Scratch memory.
   std::pmr::unsynchronized_pool_resource memory{{.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
-  GreyImage left, right, transformed_target;
+  GreyImage right, transformed_target;
   std::vector<int> first_column;
   MatchInput match_input;
   MatchMaps maps;
@@ -93,23 +90,23 @@ void Pipeline::State::prepare(const FrameView& left_frame, const FrameView& righ
          right_frame.width, "×", right_frame.height, "; a pair must have one size");
   }
   if (calibration) calibration->validate(left_frame.width, left_frame.height, "calibration");
-  if (left.width() != left_frame.width || left.height() != left_frame.height) last_road.reset();
-  to_grey(left_frame, options.white_level, left);
+  if (carried.width != left_frame.width || carried.height != left_frame.height) carried.road.reset();
+  to_grey(left_frame, options.white_level, result.grey);
   to_grey(right_frame, options.white_level, right);
-  require_picture(left, "left");
+  require_picture(result.grey, "left");
   require_picture(right, "right");
-  if (left == right) fail("left and right are the same image");
+  if (result.grey == right) fail("left and right are the same image");
 }
 
 /// The road model Δu (eq. relation_vd): the last frame's when it still fits, else from the images.
 void Pipeline::State::find_road() {
   result.rows = {};
-  if (last_road) {
-    result.road = verify_road_model(left, right, *last_road, calibration, options.road_model, threads);
+  if (carried.road) {
+    result.road = verify_road_model(result.grey, right, *carried.road, calibration, options.road_model, threads);
     if (result.road.reliable) return;
     result.warnings.push_back(sentence("the road model was estimated anew: ", result.road.reason));
   }
-  result.road = estimate_road_model(left, right, calibration, options.road_model, threads);
+  result.road = estimate_road_model(result.grey, right, calibration, options.road_model, threads);
   if (!result.road.reliable) {
     result.warnings.push_back(sentence("no reliable road model (", result.road.reason,
                                        "): matched without perspective transformation over the full range"));
@@ -120,15 +117,15 @@ void Pipeline::State::find_road() {
 void Pipeline::State::measure_rows() {
   constexpr double largest_offset_px = 0.5;
   constexpr double largest_spread_px = 1.0;
-  result.rows = measure_row_alignment(left, right, threads);
-  row_offset = 0;
+  result.rows = measure_row_alignment(result.grey, right, threads);
+  carried.row_offset_px = 0;
   if (!result.rows.known()) return;
   constexpr double largest_correction_px = 2.0;
   constexpr double least_correction_px = 0.1;
   const double offset = std::abs(result.rows.median_px);
   if (options.correct_rows && offset >= least_correction_px && offset <= largest_correction_px &&
       result.rows.spread_px <= largest_spread_px) {
-    row_offset = result.rows.median_px;
+    carried.row_offset_px = result.rows.median_px;
   }
   if (std::abs(result.rows.median_px) > largest_offset_px || result.rows.spread_px > largest_spread_px) {
     result.warnings.push_back(sentence("the rows of the pair do not agree: vertical offset ", result.rows.median_px,
@@ -139,14 +136,15 @@ void Pipeline::State::measure_rows() {
 
 /// π_tar → π_tar', section 3.1.
 void Pipeline::State::transform_perspective() {
-  result.shift = plan_perspective(result.road, calibration, left.width(), left.height(), options.perspective);
-  result.shift.row_offset = row_offset;
+  result.shift =
+      plan_perspective(result.road, calibration, result.grey.width(), result.grey.height(), options.perspective);
+  result.shift.row_offset = carried.row_offset_px;
   transform_target(right, result.shift, threads, transformed_target, first_column);
 }
 
 /// Which disparities each tile can have, and a coarse map that matching leans on where the costs leave a choice.
 void Pipeline::State::look_coarsely() {
-  match_input = {left, transformed_target, first_column.data(), result.shift.disparities};
+  match_input = {result.grey, transformed_target, first_column.data(), result.shift.disparities};
   if (!coarse_search) return;
   // The road's disparity after the shift; beyond the horizon there is none.
   const auto road = [this](double u, double v) {
@@ -185,7 +183,7 @@ void Pipeline::State::find_geometry() {
   }
   const auto prior = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
   result.geometry =
-      fit_road_geometry(result.disparity, std::nullopt, prior, last_roll_rad, options.road_geometry, threads);
+      fit_road_geometry(result.disparity, std::nullopt, prior, carried.roll_rad, options.road_geometry, threads);
   result.geometry_found = true;
 }
 
@@ -194,7 +192,7 @@ void Pipeline::State::transform() {
   result.delta_t = 0;
   result.spread = {};
   if (!result.geometry_found) {
-    result.transformed.assign(left.width(), left.height(), std::numeric_limits<float>::quiet_NaN());
+    result.transformed.assign(result.grey.width(), result.grey.height(), std::numeric_limits<float>::quiet_NaN());
     return;
   }
   result.delta_t = transform_disparity(result.disparity, result.geometry, result.shift.delta_p, options.road_geometry,
@@ -212,12 +210,15 @@ void Pipeline::State::transform() {
 
 /// What the next frame starts from, and the figures of this one.
 void Pipeline::State::summarise() {
-  last_road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
-  last_roll_rad = result.geometry_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
+  carried.width = result.grey.width();
+  carried.height = result.grey.height();
+  carried.road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
+  carried.roll_rad = result.geometry_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   const StageTimes& ms = result.ms;
   result.ms.total = ms.prepare + ms.road_model + ms.perspective + ms.coarse + ms.match + ms.refinement +
                     ms.road_geometry + ms.transform;
-  result.mde_per_s = static_cast<double>(left.pixels()) * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
+  result.mde_per_s =
+      static_cast<double>(result.grey.pixels()) * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
 }
 
 Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
@@ -265,10 +266,20 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
   return s.result;
 }
 
+void Pipeline::process(const FrameView& left, const FrameView& right, FrameResult& result) {
+  process(left, right);
+  std::swap(state_->result, result);
+  state_->has_frame = false;
+}
+
 DamageMap Pipeline::find_damage() const {
   const State& s = *state_;
-  const FrameResult& result = s.result;
-  if (!s.has_frame) fail("no frame was processed yet, or the last one was refused");
+  if (!s.has_frame) fail("no frame was processed yet, or the last one was refused or handed out");
+  return roadstereo::find_damage(s.result, s.calibration, s.options.damage, s.threads);
+}
+
+DamageMap find_damage(const FrameResult& result, const std::optional<StereoCalibration>& calibration,
+                      const DamageOptions& options, int threads) {
   if (!result.geometry_found) {
     return no_damage(result.disparity.width(), result.disparity.height(), "no road was found");
   }
@@ -276,17 +287,23 @@ DamageMap Pipeline::find_damage() const {
   input.transformed = result.transformed;
   input.disparity = result.disparity;
   input.sigma = result.sigma;
-  input.grey = s.left;
+  input.grey = result.grey;
   input.plane = result.geometry.plane;
-  input.calibration = s.calibration;
-  return roadstereo::find_damage(input, s.options.damage, s.threads);
+  input.calibration = calibration;
+  return find_damage(input, options, threads);
+}
+
+const CarriedState& Pipeline::carried() const {
+  return state_->carried;
+}
+
+void Pipeline::carry_on(const CarriedState& carried) {
+  state_->has_frame = false;
+  state_->carried = carried;
 }
 
 void Pipeline::reset() {
-  state_->has_frame = false;
-  state_->last_road.reset();
-  state_->last_roll_rad = 0;
-  state_->row_offset = 0;
+  carry_on({});
 }
 
 const PipelineOptions& Pipeline::options() const {

@@ -34,9 +34,10 @@ struct SourceOptions {
 
 /// One pair as the source has it, not rectified yet; or the reason why there is none.
 struct SourcePair {
-  std::int64_t index = 0;                                   ///< its place in the source, from 0
-  std::string name;                                         ///< of the file, or the place in six digits
-  double time_s = std::numeric_limits<double>::quiet_NaN();  ///< since 1970 where the source knows, else since its start
+  std::int64_t index = 0;  ///< its place in the source, from 0
+  std::string name;        ///< of the file, or the place in six digits
+  double time_s =
+      std::numeric_limits<double>::quiet_NaN();  ///< since 1970 where the source knows, else since its start
   Frame left;
   Frame right;
   std::string refused;  ///< why the views are no pair: unreadable, no partner, too far apart in time; empty: they are

@@ -27,15 +27,16 @@ bool is_one_of(const std::string& word, const std::array<const char*, N>& words)
 }
 
 constexpr std::array list_extensions = {".txt", ".csv", ".lst"};
-constexpr std::array video_extensions = {".mp4", ".avi", ".mkv", ".mov", ".m4v", ".webm", ".ts", ".mjpg", ".mjpeg",
-                                         ".mpg", ".mpeg", ".h264", ".h265", ".hevc", ".y4m", ".wmv"};
+constexpr std::array video_extensions = {".mp4",   ".avi", ".mkv",  ".mov",  ".m4v",  ".webm", ".ts",  ".mjpg",
+                                         ".mjpeg", ".mpg", ".mpeg", ".h264", ".h265", ".hevc", ".y4m", ".wmv"};
 
 Kind kind_of(const std::string& name) {
   if (name.find(" ! ") != std::string::npos) return Kind::gstreamer;
   if (name.rfind("/dev/", 0) == 0) return Kind::camera;
   std::error_code ignored;
   if (fs::is_directory(name, ignored)) return Kind::folder;
-  if (!fs::exists(name, ignored)) fail(name, ": no such file, folder, camera (/dev/video0) or GStreamer pipeline (a ! b)");
+  if (!fs::exists(name, ignored))
+    fail(name, ": no such file, folder, camera (/dev/video0) or GStreamer pipeline (a ! b)");
   const std::string extension = lower_extension(name);
   if (extension == ".bag") return Kind::bag;
   if (is_one_of(extension, list_extensions)) return Kind::list;
@@ -43,7 +44,8 @@ Kind kind_of(const std::string& name) {
   if (extension == ".svo" || extension == ".svo2") {
     fail(name, ": ZED's own SVO format needs its SDK; export it as a side-by-side video (ZED Explorer or svo_export)");
   }
-  fail(name, ": not a source: a folder, a list (.txt, .csv), a video (.mp4, .avi, .mkv, …), a ROS bag (.bag), a camera (",
+  fail(name,
+       ": not a source: a folder, a list (.txt, .csv), a video (.mp4, .avi, .mkv, …), a ROS bag (.bag), a camera (",
        "/dev/video0) or a GStreamer pipeline is taken");
 }
 
