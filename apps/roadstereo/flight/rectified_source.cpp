@@ -1,0 +1,65 @@
+#include "flight/rectified_source.hpp"
+
+#include <utility>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/image_file.hpp"
+
+namespace roadstereo::cli {
+
+RectifiedSource::RectifiedSource(std::unique_ptr<io::FrameSource> source, const std::vector<std::string>& calibration)
+    : source_(std::move(source)) {
+  if (!calibration.empty()) {
+    file_ = io::read_calibration(calibration[0], calibration.size() > 1 ? calibration[1] : "");
+    file_name_ = calibration[0];
+  } else {
+    file_ = source_->calibration();
+    file_name_ = "the source's calibration";
+  }
+  if (!file_) return;
+  format_ = file_->format;
+  calibration_ = file_->rectified;
+  if (!file_->rectified && !file_->rig) fail(file_name_, ": no calibration of a stereo rig was found in it");
+  if (file_->rig && file_->rig->width > 0) {
+    rectifier_.emplace(*file_->rig, file_->rig->width, file_->rig->height);
+    calibration_ = rectifier_->calibration();
+  }
+}
+
+/// What the first good pair tells: the size of the frames, and white.
+void RectifiedSource::prepare(const io::SourcePair& first) {
+  if (first.left.sample == SampleType::u16 && first.right.sample == SampleType::u16) {
+    white_level_ = io::find_white_level(first.left.view(), first.right.view());
+  }
+  if (file_ && file_->rig && !rectifier_) {
+    rectifier_.emplace(*file_->rig, first.left.width, first.left.height);
+    calibration_ = rectifier_->calibration();
+  }
+  prepared_ = true;
+}
+
+void RectifiedSource::rectify(io::SourcePair& pair) {
+  if (!pair.refused.empty()) return;
+  try {
+    if (!prepared_) prepare(pair);
+    if (rectifier_) {
+      io::RectifiedPair rectified = rectifier_->rectify(pair.left, pair.right);
+      pair.left = std::move(rectified.left);
+      pair.right = std::move(rectified.right);
+    } else if (calibration_) {
+      calibration_->validate(pair.left.width, pair.left.height, file_name_);
+    }
+  } catch (const SystemError&) {
+    throw;
+  } catch (const Error& error) {
+    pair.refused = error.what();
+  }
+}
+
+std::optional<io::SourcePair> RectifiedSource::next() {
+  std::optional<io::SourcePair> pair = source_->next();
+  if (pair) rectify(*pair);
+  return pair;
+}
+
+}  // namespace roadstereo::cli
