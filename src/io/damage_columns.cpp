@@ -46,6 +46,15 @@ DamageValue pixel(const Damage& damage) {
   return static_cast<std::int64_t>((damage.*Member)[Index]);
 }
 
+struct AddCell {
+  CsvLine& line;
+  void operator()(std::monostate) const { line.add_nothing(); }
+  template <class Value>
+  void operator()(const Value& value) const {
+    line.add(value);
+  }
+};
+
 std::vector<DamageColumn> identity_columns() {
   return {{"id", [](const Damage& d) -> DamageValue { return std::int64_t{d.id}; }},
           {"kind", [](const Damage& d) -> DamageValue { return std::string(name_of(d.kind)); }},
@@ -105,6 +114,14 @@ const std::vector<DamageColumn>& damage_columns() {
     return all;
   }();
   return columns;
+}
+
+void add_damage_names(CsvLine& line) {
+  for (const DamageColumn& column : damage_columns()) line.add(column.name);
+}
+
+void add_damage_cells(const Damage& damage, CsvLine& line) {
+  for (const DamageColumn& column : damage_columns()) std::visit(AddCell{line}, column.value(damage));
 }
 
 }  // namespace roadstereo::io

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "io/csv.hpp"
 #include "roadstereo/damage.hpp"
 
 namespace roadstereo::io {
@@ -20,5 +21,9 @@ struct DamageColumn {
 
 /// All of them, in their order.
 const std::vector<DamageColumn>& damage_columns();
+
+/// Their names, and their values of one damage, as cells of a line. What is not known is empty.
+void add_damage_names(CsvLine& line);
+void add_damage_cells(const Damage& damage, CsvLine& line);
 
 }  // namespace roadstereo::io

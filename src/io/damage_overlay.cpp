@@ -6,7 +6,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "io/damage_colours.hpp"
+#include "io/damage_outline.hpp"
 #include "io/drawing.hpp"
 #include "io/frame_mat.hpp"
 #include "roadstereo/error.hpp"
@@ -16,14 +16,6 @@ namespace roadstereo::io {
 namespace {
 
 const cv::Scalar dark{20, 20, 20};
-
-cv::Scalar bgr(const Rgb& colour) {
-  return {static_cast<double>(colour[2]), static_cast<double>(colour[1]), static_cast<double>(colour[0])};
-}
-
-cv::Scalar colour_of(const Damage& damage) {
-  return bgr(damage_colour(damage.kind, severity_of(damage)));
-}
 
 std::string label_of(const Damage& damage) {
   const bool metric = damage.metrics.has_value();
@@ -36,20 +28,6 @@ std::string label_of(const Damage& damage) {
 cv::Rect box_of(const Damage& damage) {
   const auto& [u0, v0, u1, v1] = damage.box_px;
   return {cv::Point(u0, v0), cv::Point(u1 + 1, v1 + 1)};
-}
-
-/// Outlines of the region in the image's pixels; holes have theirs.
-std::vector<std::vector<cv::Point>> outlines(const DamageMap& map, const Damage& damage) {
-  const cv::Rect box = box_of(damage);
-  cv::Mat mask(box.height, box.width, CV_8UC1);
-  for (int v = 0; v < box.height; ++v) {
-    for (int u = 0; u < box.width; ++u) {
-      mask.at<std::uint8_t>(v, u) = map.ids(box.x + u, box.y + v) == damage.id ? 255 : 0;
-    }
-  }
-  std::vector<std::vector<cv::Point>> contours;
-  cv::findContours(mask, contours, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE, box.tl());
-  return contours;
 }
 
 /// Puts labels next to boxes where no label is yet.
@@ -122,11 +100,7 @@ Frame damage_overlay(const FrameView& picture, const DamageMap& map) {
   cv::Mat canvas = to_bgr(picture, find_white_level(picture, picture));
   const int letters = text_height_for(std::min(canvas.rows, canvas.cols));
   const int line = std::max(1, cvRound(letters / 7.0));
-  for (const Damage& damage : map.damages) {
-    const auto contours = outlines(map, damage);
-    cv::polylines(canvas, contours, true, dark, line + std::max(2, line), cv::LINE_AA);
-    cv::polylines(canvas, contours, true, colour_of(damage), line, cv::LINE_AA);
-  }
+  for (const Damage& damage : map.damages) draw_outline(canvas, map, damage, line);
   LabelPlaces places(canvas.size(), line + 2);
   const cv::Scalar white{255, 255, 255};
   for (const Damage& damage : map.damages) {

@@ -1,10 +1,9 @@
 #include "roadstereo/io/damage_table.hpp"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "io/csv.hpp"
 #include "io/damage_columns.hpp"
 #include "roadstereo/version.hpp"
 
@@ -18,19 +17,6 @@ struct ToJson {
   template <class Value>
   Json operator()(const Value& value) const {
     return value;
-  }
-};
-
-/// A value as a cell of CSV: the shortest digits that are read back as the same number. Texts are names of kinds and
-/// severities, which need no quotes.
-struct ToCell {
-  std::string operator()(std::monostate) const { return {}; }
-  std::string operator()(std::int64_t value) const { return std::to_string(value); }
-  std::string operator()(bool value) const { return value ? "true" : "false"; }
-  std::string operator()(const std::string& value) const { return value; }
-  std::string operator()(double value) const {
-    std::array<char, 32> digits{};
-    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
   }
 };
 
@@ -57,16 +43,13 @@ std::string damages_json(const DamageMap& map) {
 }
 
 std::string damages_csv(const DamageMap& map) {
-  std::string text;
-  const auto end_line = [&text] {
-    text.back() = '\r';  // in the place of the last comma
-    text += '\n';
-  };
-  for (const DamageColumn& column : damage_columns()) text += std::string(column.name) + ",";
-  end_line();
+  CsvLine names;
+  add_damage_names(names);
+  std::string text = names.end();
   for (const Damage& damage : map.damages) {
-    for (const DamageColumn& column : damage_columns()) text += std::visit(ToCell{}, column.value(damage)) + ",";
-    end_line();
+    CsvLine line;
+    add_damage_cells(damage, line);
+    text += line.end();
   }
   return text;
 }

@@ -1,0 +1,59 @@
+#include "io/csv.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+namespace roadstereo::io {
+
+CsvLine& CsvLine::add(std::string_view text) {
+  const bool quoted = text.find_first_of(",\"\r\n") != std::string_view::npos;
+  if (quoted) text_ += '"';
+  for (const char letter : text) {
+    if (letter == '"') text_ += '"';
+    text_ += letter;
+  }
+  text_ += quoted ? "\"," : ",";
+  return *this;
+}
+
+CsvLine& CsvLine::add(std::int64_t value) {
+  text_ += std::to_string(value) + ",";
+  return *this;
+}
+
+CsvLine& CsvLine::add(bool value) {
+  text_ += value ? "true," : "false,";
+  return *this;
+}
+
+CsvLine& CsvLine::add(double value) {
+  if (!std::isfinite(value)) return add_nothing();
+  std::array<char, 32> digits{};
+  text_.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+  text_ += ',';
+  return *this;
+}
+
+CsvLine& CsvLine::add(double value, int decimals) {
+  if (!std::isfinite(value)) return add_nothing();
+  std::array<char, 400> digits{};
+  char* const end = digits.data() + digits.size();
+  text_.append(digits.data(), std::to_chars(digits.data(), end, value, std::chars_format::fixed, decimals).ptr);
+  text_ += ',';
+  return *this;
+}
+
+CsvLine& CsvLine::add_nothing() {
+  text_ += ',';
+  return *this;
+}
+
+std::string CsvLine::end() {
+  text_.back() = '\r';  // in the place of the last comma
+  text_ += '\n';
+  return std::exchange(text_, {});
+}
+
+}  // namespace roadstereo::io

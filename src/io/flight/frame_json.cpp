@@ -1,0 +1,221 @@
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/flight_frame.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Puts fields into a document.
+class Writer {
+ public:
+  Json take() { return std::move(document_); }
+
+  void operator()(const char* name, double value) {
+    document_[name] = std::isfinite(value) ? Json(value) : Json(nullptr);
+  }
+  template <class Value>
+  void operator()(const char* name, const Value& value) {
+    document_[name] = written(value);
+  }
+
+ private:
+  template <class Value>
+  static Json written(const Value& value);
+
+  Json document_ = Json::object();
+};
+
+/// Takes fields out of a document.
+class Reader {
+ public:
+  explicit Reader(const Json& document) : document_(document) {}
+
+  void operator()(const char* name, double& value) {
+    const Json& field = document_.at(name);
+    value = field.is_null() ? std::numeric_limits<double>::quiet_NaN() : field.get<double>();
+  }
+  template <class Value>
+  void operator()(const char* name, Value& value) {
+    read(document_.at(name), value);
+  }
+
+ private:
+  template <class Value>
+  static void read(const Json& field, Value& value);
+
+  const Json& document_;
+};
+
+template <class Visit>
+void each_field(Measured& figure, Visit& visit) {
+  visit("value", figure.value);
+  visit("std_error", figure.std_error);
+}
+
+template <class Visit>
+void each_field(RoadModel& model, Visit& visit) {
+  visit("a0", model.a0);
+  visit("a1", model.a1);
+  visit("a2", model.a2);
+}
+
+template <class Visit>
+void each_field(CarriedState& state, Visit& visit) {
+  visit("width", state.width);
+  visit("height", state.height);
+  visit("road", state.road);
+  visit("roll_rad", state.roll_rad);
+  visit("row_offset_px", state.row_offset_px);
+}
+
+template <class Visit>
+void each_field(DamageMetrics& metrics, Visit& visit) {
+  visit("area_m2", metrics.area_m2);
+  visit("max_depth_m", metrics.max_depth_m);
+  visit("mean_depth_m", metrics.mean_depth_m);
+  visit("volume_m3", metrics.volume_m3);
+  visit("length_m", metrics.length_m);
+  visit("width_m", metrics.width_m);
+  visit("angle_rad", metrics.angle_rad);
+  visit("diameter_m", metrics.diameter_m);
+  visit("centroid_m", metrics.centroid_m);
+  visit("road_centroid_m", metrics.road_centroid_m);
+  visit("distance_m", metrics.distance_m);
+  visit("resolvable_depth_m", metrics.resolvable_depth_m);
+  visit("severity", metrics.severity);
+}
+
+template <class Visit>
+void each_field(Damage& damage, Visit& visit) {
+  visit("id", damage.id);
+  visit("kind", damage.kind);
+  visit("pixels", damage.pixels);
+  visit("measured_share", damage.measured_share);
+  visit("centroid_px", damage.centroid_px);
+  visit("box_px", damage.box_px);
+  visit("deepest_px", damage.deepest_px);
+  visit("max_depth_px", damage.max_depth_px);
+  visit("mean_depth_px", damage.mean_depth_px);
+  visit("cut_by_border", damage.cut_by_border);
+  visit("metrics", damage.metrics);
+}
+
+template <class Visit>
+void each_field(FlightFrame& frame, Visit& visit) {
+  visit("frame", frame.index);
+  visit("name", frame.name);
+  visit("time_s", frame.time_s);
+  visit("status", frame.status);
+  visit("reason", frame.reason);
+  visit("road_reliable", frame.road_reliable);
+  visit("road_carried_over", frame.road_carried_over);
+  visit("roll_rad", frame.roll_rad);
+  visit("roll_stderr_rad", frame.roll_stderr_rad);
+  visit("roll_observable", frame.roll_observable);
+  visit("alpha0", frame.alpha0);
+  visit("alpha1", frame.alpha1);
+  visit("road", frame.road);
+  visit("height_m", frame.height_m);
+  visit("pitch_rad", frame.pitch_rad);
+  visit("sigma_d_px", frame.sigma_d_px);
+  visit("valid_share", frame.valid_share);
+  visit("noise_px", frame.noise_px);
+  visit("matching_ms", frame.matching_ms);
+  visit("damage_ms", frame.damage_ms);
+  visit("damages", frame.damages);
+  visit("warnings", frame.warnings);
+  visit("carried", frame.carried);
+}
+
+template <class Value>
+struct is_list : std::false_type {};
+template <class Item>
+struct is_list<std::vector<Item>> : std::true_type {};
+template <class Item, std::size_t N>
+struct is_list<std::array<Item, N>> : std::true_type {};
+
+template <class Value>
+struct is_optional : std::false_type {};
+template <class Item>
+struct is_optional<std::optional<Item>> : std::true_type {};
+
+template <class Value>
+constexpr bool is_plain = std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>;
+
+template <class Value>
+Json Writer::written(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return static_cast<int>(value);
+  } else if constexpr (is_plain<Value>) {
+    return value;
+  } else if constexpr (is_optional<Value>::value) {
+    return value ? written(*value) : Json(nullptr);
+  } else if constexpr (is_list<Value>::value) {
+    Json list = Json::array();
+    for (const auto& item : value) list.push_back(written(item));
+    return list;
+  } else {
+    Writer part;
+    each_field(const_cast<Value&>(value), part);  // the list of fields serves reading, too
+    return part.take();
+  }
+}
+
+template <class Value>
+void Reader::read(const Json& field, Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    value = static_cast<Value>(field.get<int>());
+  } else if constexpr (is_plain<Value>) {
+    value = field.get<Value>();
+  } else if constexpr (is_optional<Value>::value) {
+    value.reset();
+    if (!field.is_null()) read(field, value.emplace());
+  } else if constexpr (is_list<Value>::value) {
+    if constexpr (requires { value.resize(field.size()); }) value.resize(field.size());
+    for (std::size_t i = 0; i < value.size(); ++i) read(field.at(i), value[i]);
+  } else {
+    Reader part(field);
+    each_field(value, part);
+  }
+}
+
+}  // namespace
+
+const char* name_of(FrameStatus status) {
+  switch (status) {
+    case FrameStatus::good:
+      return "good";
+    case FrameStatus::refused:
+      return "refused";
+    case FrameStatus::failed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+std::string flight_frame_json(const FlightFrame& frame) {
+  FlightFrame copy = frame;
+  Writer writer;
+  each_field(copy, writer);
+  return writer.take().dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+FlightFrame read_flight_frame(const std::string& json) {
+  try {
+    const Json document = Json::parse(json);
+    FlightFrame frame;
+    Reader reader(document);
+    each_field(frame, reader);
+    return frame;
+  } catch (const Json::exception& error) {
+    fail("no record of a frame: ", error.what());
+  }
+}
+
+}  // namespace roadstereo::io

@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/median.hpp"
+#include "io/damage_colours.hpp"
+#include "roadstereo/io/flight_inventory.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+/// Frames that a damage may be missed in between.
+constexpr std::int64_t longest_gap = 2;
+
+double depth_of(const Damage& damage) {
+  return damage.metrics ? damage.metrics->max_depth_m.value : damage.max_depth_px.value;
+}
+
+double error_of(const Damage& damage) {
+  return damage.metrics ? damage.metrics->max_depth_m.std_error : damage.max_depth_px.std_error;
+}
+
+/// Whether the damage is measured better: whole before cut by the border, then with less error.
+bool is_better(const Damage& one, const Damage& other) {
+  return std::tuple(one.cut_by_border, error_of(one)) < std::tuple(other.cut_by_border, error_of(other));
+}
+
+/// Share of the smaller of two boxes that lies in the other when `box` is moved.
+double overlap(const std::array<int, 4>& box, const std::array<double, 2>& move, const std::array<int, 4>& other) {
+  const auto length = [](double first, double last) { return std::max(0.0, last - first + 1); };
+  const double width =
+      length(std::max(box[0] + move[0], double(other[0])), std::min(box[2] + move[0], double(other[2])));
+  const double height =
+      length(std::max(box[1] + move[1], double(other[1])), std::min(box[3] + move[1], double(other[3])));
+  const double smaller = std::min(length(box[0], box[2]) * length(box[1], box[3]),
+                                  length(other[0], other[2]) * length(other[1], other[3]));
+  return width * height / smaller;
+}
+
+}  // namespace
+
+bool is_worse(const RoadDamage& one, const RoadDamage& other) {
+  const auto rank = [](const RoadDamage& damage) {
+    return std::tuple(-static_cast<int>(severity_of(damage.best)), -depth_of(damage.best), damage.id);
+  };
+  return rank(one) < rank(other);
+}
+
+/// The recent sighting that lies most under the damage, or none.
+const FlightInventory::Sighting* FlightInventory::seen_before(const Damage& damage,
+                                                              const std::vector<std::int64_t>& taken) const {
+  constexpr double least_overlap = 0.2;
+  const Sighting* best = nullptr;
+  double most = least_overlap;
+  for (const Sighting& sighting : recent_) {
+    if (sighting.damage.kind != damage.kind) continue;
+    if (std::find(taken.begin(), taken.end(), sighting.id) != taken.end()) continue;
+    const auto frames = static_cast<double>(place_ - sighting.place);
+    const double share =
+        overlap(sighting.damage.box_px, {frames * motion_px_[0], frames * motion_px_[1]}, damage.box_px);
+    if (share <= most) continue;
+    most = share;
+    best = &sighting;
+  }
+  return best;
+}
+
+/// Keeps the sightings for the frames to come, and takes the motion of the picture from those that were seen before.
+void FlightInventory::remember(const std::vector<Sighting>& sightings) {
+  std::vector<double> along_u, along_v;
+  for (const Sighting& now : sightings) {
+    const auto before = std::find_if(recent_.begin(), recent_.end(), [&](const Sighting& s) { return s.id == now.id; });
+    if (before == recent_.end()) continue;
+    const auto frames = static_cast<double>(now.place - before->place);
+    along_u.push_back((now.damage.centroid_px[0] - before->damage.centroid_px[0]) / frames);
+    along_v.push_back((now.damage.centroid_px[1] - before->damage.centroid_px[1]) / frames);
+  }
+  if (!along_u.empty()) motion_px_ = {take_median(along_u), take_median(along_v)};
+  const auto outdated = [&](const Sighting& old) {
+    return place_ - old.place > longest_gap ||
+           std::any_of(sightings.begin(), sightings.end(), [&](const Sighting& now) { return now.id == old.id; });
+  };
+  recent_.erase(std::remove_if(recent_.begin(), recent_.end(), outdated), recent_.end());
+  recent_.insert(recent_.end(), sightings.begin(), sightings.end());
+}
+
+std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
+  ++place_;
+  std::vector<std::int64_t> ids;
+  std::vector<Sighting> sightings;
+  for (const Damage& damage : frame.damages) {
+    const Sighting* const before = seen_before(damage, ids);
+    const std::int64_t id = before == nullptr ? static_cast<std::int64_t>(damages_.size()) + 1 : before->id;
+    if (before == nullptr) damages_.push_back({id, 0, frame.index, frame.name, frame.time_s, damage});
+    RoadDamage& known = damages_[static_cast<std::size_t>(id) - 1];
+    ++known.sightings;
+    if (is_better(damage, known.best)) {
+      known.frame = frame.index;
+      known.frame_name = frame.name;
+      known.time_s = frame.time_s;
+      known.best = damage;
+    }
+    ids.push_back(id);
+    sightings.push_back({id, place_, damage});
+  }
+  remember(sightings);
+  return ids;
+}
+
+std::vector<RoadDamage> FlightInventory::worst(std::size_t most) const {
+  std::vector<RoadDamage> sorted = damages_;
+  const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(most, sorted.size()));
+  std::partial_sort(sorted.begin(), end, sorted.end(), is_worse);
+  sorted.erase(end, sorted.end());
+  return sorted;
+}
+
+}  // namespace roadstereo::io

@@ -1,0 +1,127 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/flight_journal.hpp"
+
+namespace roadstereo::io {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void fail_write(const fs::path& file, int error) {
+  fail<SystemError>("cannot write ", file.string(), ": ", std::generic_category().message(error));
+}
+
+int open_file(const fs::path& file, int flags) {
+  constexpr mode_t readable = 0644;
+  const int descriptor = ::open(file.c_str(), flags | O_WRONLY | O_APPEND | O_CLOEXEC, readable);
+  if (descriptor < 0) fail_write(file, errno);
+  return descriptor;
+}
+
+std::string facts_line(const FlightFacts& facts) {
+  Json document = Json::object();
+  for (const auto& [name, value] : facts) document[name] = value;
+  return document.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Whole lines of a file, in order, with the place behind each.
+template <class Visit>
+void for_each_line(const fs::path& file, const Visit& visit) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail(file.string(), ": there is no flight to go on with");
+  std::string line;
+  std::uintmax_t end = 0;
+  while (std::getline(stream, line) && !stream.eof()) {  // without its line end it was cut short
+    end += line.size() + 1;
+    visit(line, end);
+  }
+}
+
+void require_same(const std::string& begun_with, const FlightFacts& facts, const fs::path& file) {
+  const Json begun = Json::parse(begun_with, nullptr, false);
+  if (!begun.is_object()) fail(file.string(), ": is no journal of a flight");
+  for (const auto& [name, value] : facts) {
+    const std::string before = begun.contains(name) && begun[name].is_string() ? begun[name].get<std::string>() : "";
+    if (before == value) continue;
+    fail(file.string(), ": this flight was begun with ", name, " \"", before, "\", not \"", value,
+         "\"; go on with the same, or begin anew without --resume");
+  }
+}
+
+}  // namespace
+
+FlightJournal::FlightJournal(fs::path file, int descriptor) : file_(std::move(file)), descriptor_(descriptor) {}
+
+FlightJournal::FlightJournal(FlightJournal&& other) noexcept
+    : file_(std::move(other.file_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      frames_(other.frames_),
+      last_(std::move(other.last_)) {}
+
+FlightJournal::~FlightJournal() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void FlightJournal::write_line(const std::string& line) {
+  const std::string text = line + "\n";
+  std::size_t written = 0;
+  while (written < text.size()) {
+    const ssize_t part = ::write(descriptor_, text.data() + written, text.size() - written);
+    if (part < 0 && errno == EINTR) continue;
+    if (part < 0) fail_write(file_, errno);
+    written += static_cast<std::size_t>(part);
+  }
+}
+
+FlightJournal FlightJournal::begin(const fs::path& file, const FlightFacts& facts) {
+  FlightJournal journal(file, open_file(file, O_CREAT | O_TRUNC));
+  journal.write_line(facts_line(facts));
+  return journal;
+}
+
+FlightJournal FlightJournal::resume(const fs::path& file, const FlightFacts& facts) {
+  std::uintmax_t good_end = 0;
+  std::int64_t lines = 0;
+  std::optional<FlightFrame> last;
+  for_each_line(file, [&](const std::string& line, std::uintmax_t end) {
+    if (lines == 0) require_same(line, facts, file);
+    if (lines > 0) last = read_flight_frame(line);
+    ++lines;
+    good_end = end;
+  });
+  if (lines == 0) fail(file.string(), ": is no journal of a flight");
+  std::error_code error;
+  fs::resize_file(file, good_end, error);
+  if (error) fail_write(file, error.value());
+  FlightJournal journal(file, open_file(file, 0));
+  journal.frames_ = lines - 1;
+  journal.last_ = std::move(last);
+  return journal;
+}
+
+void FlightJournal::append(const FlightFrame& frame) {
+  write_line(flight_frame_json(frame));
+  ++frames_;
+  last_ = frame;
+}
+
+void FlightJournal::for_each(const std::function<void(const FlightFrame&)>& visit) const {
+  read_flight_journal(file_, visit);
+}
+
+void read_flight_journal(const fs::path& file, const std::function<void(const FlightFrame&)>& visit) {
+  std::int64_t lines = 0;
+  for_each_line(file, [&](const std::string& line, std::uintmax_t) {
+    if (lines++ > 0) visit(read_flight_frame(line));
+  });
+}
+
+}  // namespace roadstereo::io

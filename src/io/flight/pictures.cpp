@@ -1,0 +1,60 @@
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "io/damage_outline.hpp"
+#include "io/frame_mat.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/flight_pictures.hpp"
+#include "roadstereo/io/image_file.hpp"
+#include "roadstereo/surroundings.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+std::vector<std::uint8_t> jpeg_of(const cv::Mat& picture) {
+  constexpr int quality = 82;
+  std::vector<std::uint8_t> bytes;
+  if (!cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, quality})) {
+    fail<SystemError>("a picture of the flight could not be encoded as JPEG");
+  }
+  return bytes;
+}
+
+/// The part of the frame in 8 bits and colour; white is the largest value of a deeper frame.
+cv::Mat part_of(const FrameView& frame, const PixelBox& box) {
+  const int channels = channel_count(frame.order);
+  const std::ptrdiff_t sample_bytes = frame.sample == SampleType::u16 ? 2 : 1;
+  FrameView part = frame;
+  part.data =
+      static_cast<const std::uint8_t*>(frame.data) + box.v0 * frame.stride_bytes + box.u0 * channels * sample_bytes;
+  part.width = box.width();
+  part.height = box.height();
+  const double white = frame.sample == SampleType::u16 ? find_white_level(frame, frame) : 255;
+  return to_bgr(part, white);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> frame_thumbnail(const FrameView& left, const DamageMap& map, int width) {
+  const double scale = std::min(1.0, static_cast<double>(width) / left.width);
+  const cv::Size size(std::max(1, cvRound(scale * left.width)), std::max(1, cvRound(scale * left.height)));
+  cv::Mat small;
+  cv::resize(part_of(left, {0, 0, left.width - 1, left.height - 1}), small, size, 0, 0, cv::INTER_AREA);
+  for (const Damage& damage : map.damages) draw_outline(small, map, damage, 1, {}, scale);
+  return jpeg_of(small);
+}
+
+std::vector<std::uint8_t> damage_picture(const FrameView& left, const DamageMap& map, const Damage& damage, int side) {
+  constexpr double margin_share = 0.4;
+  constexpr int least_margin_px = 16;
+  const PixelBox box = surroundings(map, damage, margin_share, least_margin_px);
+  const double scale = std::min(1.0, static_cast<double>(side) / std::max(box.width(), box.height()));
+  cv::Mat picture = part_of(left, box);
+  const cv::Size size(std::max(1, cvRound(scale * box.width())), std::max(1, cvRound(scale * box.height())));
+  if (scale < 1) cv::resize(picture, picture, size, 0, 0, cv::INTER_AREA);
+  draw_outline(picture, map, damage, 1, {box.u0, box.v0}, scale);
+  return jpeg_of(picture);
+}
+
+}  // namespace roadstereo::io

@@ -1,0 +1,90 @@
+#include <numbers>
+
+#include "io/csv.hpp"
+#include "io/damage_columns.hpp"
+#include "roadstereo/io/flight_tables.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;  // in a radian
+
+/// What the pipeline had to say, in one cell.
+std::string remarks(const FlightFrame& frame) {
+  std::string text = frame.reason;
+  for (const std::string& warning : frame.warnings) text += (text.empty() ? "" : "; ") + warning;
+  return text;
+}
+
+/// How the road was known before matching.
+const char* road_source(const FlightFrame& frame) {
+  if (frame.status != FrameStatus::good) return "";
+  if (!frame.road_reliable) return "unknown";
+  return frame.road_carried_over ? "carried over" : "estimated";
+}
+
+}  // namespace
+
+std::string frames_csv_names() {
+  CsvLine line;
+  for (const char* name : {"frame",
+                           "name",
+                           "time_s",
+                           "status",
+                           "roll_deg",
+                           "roll_stderr_deg",
+                           "roll_observable",
+                           "road",
+                           "alpha0_px",
+                           "alpha1",
+                           "a0_px",
+                           "a1",
+                           "a2",
+                           "height_m",
+                           "pitch_deg",
+                           "sigma_d_px",
+                           "road_noise_px",
+                           "valid_percent",
+                           "damages",
+                           "matching_ms",
+                           "damage_ms",
+                           "remarks"}) {
+    line.add(name);
+  }
+  return line.end();
+}
+
+std::string frames_csv_row(const FlightFrame& frame) {
+  const bool good = frame.status == FrameStatus::good;
+  CsvLine line;
+  line.add(frame.index).add(frame.name).add(frame.time_s).add(name_of(frame.status));
+  line.add(frame.roll_rad * degrees).add(frame.roll_stderr_rad * degrees);
+  good ? line.add(frame.roll_observable) : line.add_nothing();
+  line.add(road_source(frame)).add(frame.alpha0).add(frame.alpha1);
+  line.add(frame.road.a0).add(frame.road.a1).add(frame.road.a2);
+  line.add(frame.height_m).add(frame.pitch_rad * degrees).add(frame.sigma_d_px).add(frame.noise_px);
+  line.add(100 * frame.valid_share);
+  good ? line.add(static_cast<std::int64_t>(frame.damages.size())) : line.add_nothing();
+  line.add(frame.matching_ms, 2).add(frame.damage_ms, 2).add(remarks(frame));
+  return line.end();
+}
+
+std::string flight_damages_csv_names() {
+  CsvLine line;
+  line.add("road_damage").add("frame").add("name").add("time_s");
+  add_damage_names(line);
+  return line.end();
+}
+
+std::string flight_damages_csv_rows(const FlightFrame& frame, const std::vector<std::int64_t>& road_damages) {
+  std::string rows;
+  for (std::size_t i = 0; i < frame.damages.size(); ++i) {
+    CsvLine line;
+    line.add(road_damages[i]).add(frame.index).add(frame.name).add(frame.time_s);
+    add_damage_cells(frame.damages[i], line);
+    rows += line.end();
+  }
+  return rows;
+}
+
+}  // namespace roadstereo::io

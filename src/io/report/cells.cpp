@@ -1,0 +1,53 @@
+#include "io/report/cells.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "io/damage_colours.hpp"
+#include "io/drawing.hpp"
+#include "io/report/figures.hpp"
+#include "io/report/markup.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+/// The attribute that a cell is sorted by; empty for what is not known.
+std::string key_attribute(const ReportCell& cell) {
+  if (!cell.key) return "";
+  if (!std::isfinite(*cell.key)) return " data-key=\"\"";
+  std::array<char, 32> digits{};
+  const auto* const end = std::to_chars(digits.data(), digits.data() + digits.size(), *cell.key).ptr;
+  return " data-key=\"" + std::string(digits.data(), static_cast<std::size_t>(end - digits.data())) + "\"";
+}
+
+}  // namespace
+
+ReportCell measured_cell(const Measured& figure) {
+  return {escaped(measured_text(figure, "")), figure.value};
+}
+
+ReportCell plain_cell(double value) {
+  return {escaped(value_text(value, "")), value};
+}
+
+ReportCell fixed_cell(double value, int decimals) {
+  return {number_text(value, decimals), value};
+}
+
+ReportCell severity_cell(const Damage& damage) {
+  const std::string name = name_of(severity_of(damage));
+  return {"<span class=\"chip " + name + " " + name_of(damage.kind) + "\">" + name + "</span>",
+          static_cast<double>(severity_of(damage))};
+}
+
+std::string report_heading(const std::string& title, const std::string& unit) {
+  const std::string small = unit.empty() ? "" : " <small>" + escaped(unit) + "</small>";
+  return "<th scope=\"col\" aria-sort=\"none\"><button type=\"button\">" + escaped(title) + small + "</button></th>";
+}
+
+std::string report_cell(const ReportCell& cell) {
+  return "<td" + key_attribute(cell) + ">" + cell.html + "</td>";
+}
+
+}  // namespace roadstereo::io

@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <unordered_set>
+
+#include "io/source/frame_times.hpp"
+#include "io/source/pairing.hpp"
+#include "io/source/sources.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace fs = std::filesystem;
+namespace {
+
+struct SubFolders {
+  const char* left;
+  const char* right;
+};
+
+/// Colour before grey where a recording has both.
+constexpr std::array layouts = {SubFolders{"left", "right"},
+                                SubFolders{"image_2", "image_3"},
+                                SubFolders{"image_02/data", "image_03/data"},
+                                SubFolders{"image_0", "image_1"},
+                                SubFolders{"image_00/data", "image_01/data"},
+                                SubFolders{"cam0/data", "cam1/data"},
+                                SubFolders{"mav0/cam0/data", "mav0/cam1/data"}};
+
+/// How names in one folder tell the side.
+struct SideNames {
+  const char* left;
+  const char* right;
+  bool at_end;
+};
+constexpr std::array side_names = {SideNames{"left", "right", false}, SideNames{"L", "R", false},
+                                   SideNames{"left", "right", true}, SideNames{"_L", "_R", true}};
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return text;
+}
+
+bool is_image(const fs::path& file) {
+  constexpr std::array extensions = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".pgm", ".ppm"};
+  const std::string extension = lower(file.extension().string());
+  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+}
+
+std::vector<ViewFile> images_in(const fs::path& folder) {
+  std::vector<ViewFile> views;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path& file = entry->path();
+    if (!is_image(file) || file.filename().string()[0] == '.') continue;
+    const std::string stem = file.stem().string();
+    views.push_back({file.string(), stem, stem, time_of_name(stem)});
+  }
+  if (error) fail(folder.string(), ": cannot be read: ", error.message());
+  return views;
+}
+
+/// What is left of a name without its side ("L0001" and "R0001" are both "0001"), or nothing when it names the other.
+std::optional<std::string> without_side(const std::string& stem, const std::string& side, bool at_end) {
+  if (stem.size() < side.size()) return std::nullopt;
+  const std::size_t at = at_end ? stem.size() - side.size() : 0;
+  if (lower(stem.substr(at, side.size())) != lower(side)) return std::nullopt;
+  return at_end ? stem.substr(0, at) : stem.substr(side.size());
+}
+
+std::vector<ViewFile> views_of_side(const std::vector<ViewFile>& images, const char* side, bool at_end) {
+  std::vector<ViewFile> views;
+  for (const ViewFile& image : images) {
+    const auto key = without_side(image.stem, side, at_end);
+    if (!key) continue;
+    views.push_back({image.path, image.stem, *key, time_of_name(*key)});
+  }
+  return views;
+}
+
+bool share_a_key(const std::vector<ViewFile>& left, const std::vector<ViewFile>& right) {
+  std::unordered_set<std::string> keys;
+  for (const ViewFile& view : right) keys.insert(view.key);
+  return std::any_of(left.begin(), left.end(), [&](const ViewFile& view) { return keys.count(view.key) > 0; });
+}
+
+/// Names that differ by the camera ("left0001", "right0001") have their numbers in common.
+void key_by_number(std::vector<ViewFile>& views) {
+  for (ViewFile& view : views) {
+    const auto last = view.stem.find_last_of("0123456789");
+    const auto before = last == std::string::npos ? last : view.stem.find_last_not_of("0123456789", last);
+    if (last == std::string::npos) continue;
+    const std::size_t first = before == std::string::npos ? 0 : before + 1;
+    view.key = view.stem.substr(first, last - first + 1);
+  }
+}
+
+/// Times that lie beside the images: times.txt of KITTI's odometry and of `synth`, timestamps.txt of KITTI's raw data.
+std::optional<fs::path> times_file(const fs::path& folder, const fs::path& left) {
+  for (const fs::path& file :
+       {folder / "times.txt", left / "times.txt", left.parent_path() / "timestamps.txt", left / "timestamps.txt"}) {
+    if (fs::is_regular_file(file)) return file;
+  }
+  return std::nullopt;
+}
+
+/// Times of the left images, in their order. A pair without a left image has none.
+void set_times(std::vector<ImagePair>& pairs, const std::vector<double>& times) {
+  auto time = times.begin();
+  for (ImagePair& pair : pairs) {
+    if (!pair.left.empty()) pair.time_s = *time++;
+  }
+}
+
+void add_times(std::vector<ImagePair>& pairs, std::size_t left_images, const std::optional<fs::path>& file,
+               const SourceOptions& options) {
+  if (options.rate_hz > 0) {
+    double place = 0;
+    for (ImagePair& pair : pairs) pair.time_s = place++ / options.rate_hz;
+  } else if (file) {
+    set_times(pairs, read_times(*file, left_images));
+  }
+}
+
+std::unique_ptr<FrameSource> folder_pair(const fs::path& folder, const fs::path& left_folder,
+                                         const fs::path& right_folder, const SourceOptions& options) {
+  std::vector<ViewFile> left = images_in(left_folder);
+  std::vector<ViewFile> right = images_in(right_folder);
+  for (const auto& [views, in] : {std::pair(&left, &left_folder), std::pair(&right, &right_folder)}) {
+    if (views->empty()) fail(in->string(), ": holds no image (PNG, JPEG, TIFF, PGM or PPM)");
+  }
+  const bool by_time = left[0].time_s && right[0].time_s;
+  if (!by_time && !share_a_key(left, right)) {
+    key_by_number(left);
+    key_by_number(right);
+    if (!share_a_key(left, right)) {
+      fail(left_folder.string(), " and ", right_folder.string(), " have no names in common, ", left[0].stem, " and ",
+           right[0].stem, " for example; images of a pair must have one name or one number");
+    }
+  }
+  const std::size_t left_images = left.size();
+  std::vector<ImagePair> pairs = pair_views(std::move(left), std::move(right), options.max_time_difference_s);
+  add_times(pairs, left_images, times_file(folder, left_folder), options);
+  return std::make_unique<ImagePairs>(
+      std::move(pairs), "folders " + left_folder.filename().string() + " and " + right_folder.filename().string());
+}
+
+std::unique_ptr<FrameSource> one_folder(const fs::path& folder, const SourceOptions& options) {
+  const std::vector<ViewFile> images = images_in(folder);
+  for (const SideNames& names : side_names) {
+    std::vector<ViewFile> left = views_of_side(images, names.left, names.at_end);
+    std::vector<ViewFile> right = views_of_side(images, names.right, names.at_end);
+    if (!share_a_key(left, right)) continue;
+    const std::size_t left_images = left.size();
+    std::vector<ImagePair> pairs = pair_views(std::move(left), std::move(right), options.max_time_difference_s);
+    add_times(pairs, left_images, times_file(folder, folder), options);
+    return std::make_unique<ImagePairs>(std::move(pairs), "folder");
+  }
+  fail(folder.string(), ": no stereo pairs were found in it; there must be folders left/ right/, image_2/ image_3/, ",
+       "image_0/ image_1/ or cam0/data cam1/data, or images named L… and R…");
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_folder(const std::string& folder, const SourceOptions& options) {
+  const fs::path path(folder);
+  for (const SubFolders& layout : layouts) {
+    if (fs::is_directory(path / layout.left) && fs::is_directory(path / layout.right)) {
+      return folder_pair(path, path / layout.left, path / layout.right, options);
+    }
+  }
+  return one_folder(path, options);
+}
+
+std::unique_ptr<FrameSource> open_two_folders(const std::string& left, const std::string& right,
+                                              const SourceOptions& options) {
+  const fs::path left_path = fs::path(left).lexically_normal();
+  return folder_pair(left_path.parent_path(), left_path, fs::path(right).lexically_normal(), options);
+}
+
+}  // namespace roadstereo::io

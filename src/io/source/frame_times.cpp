@@ -1,0 +1,83 @@
+#include "io/source/frame_times.hpp"
+
+#include <time.h>  // timegm is POSIX
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+bool is_digits(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+std::optional<double> whole_number(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// "2011-09-26 13:02:25.964389445", or with a T between.
+std::optional<double> date_time(const std::string& text) {
+  tm date{};
+  const char* rest = ::strptime(text.c_str(), "%Y-%m-%d", &date);
+  if (rest == nullptr || (*rest != ' ' && *rest != 'T')) return std::nullopt;
+  rest = ::strptime(rest + 1, "%H:%M:%S", &date);
+  if (rest == nullptr) return std::nullopt;
+  std::string fraction = rest;
+  if (!fraction.empty() && fraction.back() == 'Z') fraction.pop_back();
+  if (!fraction.empty() && fraction[0] != '.') return std::nullopt;
+  const auto part = fraction.empty() ? std::optional(0.0) : whole_number("0" + fraction);
+  if (!part) return std::nullopt;
+  return static_cast<double>(::timegm(&date)) + *part;
+}
+
+std::string trimmed(const std::string& line) {
+  const auto first = line.find_first_not_of(" \t\r");
+  if (first == std::string::npos) return {};
+  return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
+}
+
+}  // namespace
+
+std::optional<double> time_of_name(const std::string& stem) {
+  constexpr std::size_t digits_of_seconds = 10;
+  const auto point = stem.find('.');
+  if (point == digits_of_seconds && is_digits(stem.substr(0, point)) && is_digits(stem.substr(point + 1))) {
+    return whole_number(stem);
+  }
+  if (!is_digits(stem)) return std::nullopt;
+  const std::size_t decimals = stem.size() - std::min(stem.size(), digits_of_seconds);
+  if (decimals != 3 && decimals != 6 && decimals != 9) return std::nullopt;
+  return whole_number(stem.substr(0, digits_of_seconds) + "." + stem.substr(digits_of_seconds));
+}
+
+std::vector<double> read_times(const std::filesystem::path& file, std::size_t count) {
+  std::ifstream stream(file);
+  if (!stream) fail(file.string(), ": cannot be read");
+  std::vector<double> times;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    const std::string text = trimmed(line);
+    if (text.empty() || text[0] == '#') continue;
+    const auto seconds = whole_number(text);
+    const auto time = seconds ? seconds : date_time(text);
+    if (!time) {
+      fail(file.string(), ", line ", number, ": \"", text,
+           "\" is no time; seconds or YYYY-MM-DD hh:mm:ss.fff are taken");
+    }
+    times.push_back(*time);
+  }
+  if (times.size() != count) {
+    fail(file.string(), " has ", times.size(), " times, but there are ", count, " left images");
+  }
+  return times;
+}
+
+}  // namespace roadstereo::io

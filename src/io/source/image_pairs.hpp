@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "roadstereo/io/frame_source.hpp"
+
+namespace roadstereo::io {
+
+/// One pair of image files, or the reason why there is none.
+struct ImagePair {
+  std::string name;
+  std::string left;
+  std::string right;
+  double time_s = std::numeric_limits<double>::quiet_NaN();
+  std::string refused;
+};
+
+/// Pairs of image files, decoded one after the other.
+class ImagePairs final : public FrameSource {
+ public:
+  ImagePairs(std::vector<ImagePair> pairs, std::string kind);
+
+  std::optional<SourcePair> next() override;
+  void skip(std::int64_t pairs) override;
+  std::optional<std::int64_t> size() const override { return static_cast<std::int64_t>(pairs_.size()); }
+  std::string description() const override;
+
+ private:
+  std::vector<ImagePair> pairs_;
+  std::string kind_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace roadstereo::io

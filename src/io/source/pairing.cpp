@@ -1,0 +1,126 @@
+#include "io/source/pairing.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <sstream>
+
+namespace roadstereo::io {
+namespace {
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// The digits that begin at `at`, leading zeros left out; moves `at` behind them.
+std::string number_at(const std::string& text, std::size_t& at) {
+  const std::size_t first = at;
+  while (at < text.size() && is_digit(text[at])) ++at;
+  const std::size_t significant = text.find_first_not_of('0', first);
+  if (significant >= at) return {};
+  return text.substr(significant, at - significant);
+}
+
+bool named_by_time(const std::vector<ViewFile>& views) {
+  return std::all_of(views.begin(), views.end(), [](const ViewFile& view) { return view.time_s.has_value(); });
+}
+
+ImagePair whole_pair(const ViewFile& left, const ViewFile& right) {
+  return {left.stem, left.path, right.path, left.time_s.value_or(std::numeric_limits<double>::quiet_NaN()), {}};
+}
+
+enum class Side { left, right };
+
+ImagePair lonely(const ViewFile& view, Side side) {
+  const bool left = side == Side::left;
+  ImagePair pair;
+  pair.name = view.stem;
+  (left ? pair.left : pair.right) = view.path;
+  pair.time_s = view.time_s.value_or(pair.time_s);
+  pair.refused = view.path + (left ? " has no right image" : " has no left image");
+  return pair;
+}
+
+std::vector<ImagePair> pair_by_key(const std::vector<ViewFile>& left, const std::vector<ViewFile>& right) {
+  std::vector<ImagePair> pairs;
+  auto l = left.begin();
+  auto r = right.begin();
+  while (l != left.end() || r != right.end()) {
+    if (r == right.end() || (l != left.end() && comes_before(l->key, r->key))) {
+      pairs.push_back(lonely(*l++, Side::left));
+    } else if (l == left.end() || comes_before(r->key, l->key)) {
+      pairs.push_back(lonely(*r++, Side::right));
+    } else {
+      pairs.push_back(whole_pair(*l++, *r++));
+    }
+  }
+  return pairs;
+}
+
+/// Whether the image after `view` is nearer to `time` than `view` is.
+bool next_is_nearer(std::vector<ViewFile>::const_iterator view, std::vector<ViewFile>::const_iterator end,
+                    double time) {
+  const auto after = std::next(view);
+  return after != end && std::abs(*after->time_s - time) < std::abs(*view->time_s - time);
+}
+
+std::string apart_text(double difference_s, double limit_s) {
+  std::ostringstream text;
+  text << "the views were taken " << 1e3 * std::abs(difference_s) << " ms apart; at most " << 1e3 * limit_s
+       << " ms are taken for a pair";
+  return text.str();
+}
+
+std::vector<ImagePair> pair_by_time(const std::vector<ViewFile>& left, const std::vector<ViewFile>& right,
+                                    double limit_s) {
+  std::vector<ImagePair> pairs;
+  auto l = left.begin();
+  auto r = right.begin();
+  while (l != left.end() && r != right.end()) {
+    const double difference = *l->time_s - *r->time_s;
+    if (difference < 0 && next_is_nearer(l, left.end(), *r->time_s)) {
+      pairs.push_back(lonely(*l++, Side::left));
+    } else if (difference > 0 && next_is_nearer(r, right.end(), *l->time_s)) {
+      pairs.push_back(lonely(*r++, Side::right));
+    } else {
+      pairs.push_back(whole_pair(*l, *r));
+      if (std::abs(difference) > limit_s) pairs.back().refused = apart_text(difference, limit_s);
+      ++l;
+      ++r;
+    }
+  }
+  for (; l != left.end(); ++l) pairs.push_back(lonely(*l, Side::left));
+  for (; r != right.end(); ++r) pairs.push_back(lonely(*r, Side::right));
+  return pairs;
+}
+
+}  // namespace
+
+bool comes_before(const std::string& one, const std::string& other) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < one.size() && j < other.size()) {
+    if (is_digit(one[i]) && is_digit(other[j])) {
+      const std::string a = number_at(one, i);
+      const std::string b = number_at(other, j);
+      if (a.size() != b.size()) return a.size() < b.size();
+      if (a != b) return a < b;
+    } else {
+      if (one[i] != other[j]) return one[i] < other[j];
+      ++i;
+      ++j;
+    }
+  }
+  return one.size() - i < other.size() - j;
+}
+
+std::vector<ImagePair> pair_views(std::vector<ViewFile> left, std::vector<ViewFile> right,
+                                  double max_time_difference_s) {
+  const auto by_key = [](const ViewFile& a, const ViewFile& b) { return comes_before(a.key, b.key); };
+  std::sort(left.begin(), left.end(), by_key);
+  std::sort(right.begin(), right.end(), by_key);
+  if (!named_by_time(left) || !named_by_time(right)) return pair_by_key(left, right);
+  return pair_by_time(left, right, max_time_difference_s);
+}
+
+}  // namespace roadstereo::io
