@@ -1,20 +1,18 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "commands.hpp"
+#include "inspect_flight.hpp"
 #include "inspection.hpp"
 #include "result_files.hpp"
 #include "result_json.hpp"
 #include "roadstereo/error.hpp"
+#include "roadstereo/io/frame_source.hpp"
 #include "roadstereo/io/output_folder.hpp"
-#include "roadstereo/options.hpp"
-#include "settings.hpp"
 #include "summary.hpp"
 
 namespace roadstereo::cli {
@@ -23,50 +21,39 @@ namespace {
 
 /// The command line of `inspect`.
 struct Arguments {
-  PairFiles files;
-  std::string output;
-  std::string preset = "default";
-  std::string engine = "auto";
-  int threads = 0;
-  std::vector<std::string> settings;
-  std::vector<std::string> rest;
-  bool quiet = false;
-  bool json = false;
+  std::vector<std::string> names;  ///< SOURCE, or LEFT and RIGHT; further words belong to options
+  FlightSettings settings;
 };
 
-/// An option takes one value, so that it never swallows LEFT and RIGHT. What follows `--set a=1` as `b=2` and
-/// `--calibration left.yaml` as `right.yaml` arrives as further positional arguments, and is put in its place
-/// here.
-void place_rest(Arguments& arguments) {
-  for (const std::string& word : arguments.rest) {
-    if (word.find('=') != std::string::npos) {
-      arguments.settings.push_back(word);
-    } else if (arguments.files.calibration.size() == 1) {
-      arguments.files.calibration.push_back(word);
+bool is_setting(const std::string& word) {
+  return word.find('=') != std::string::npos && word.find(" ! ") == std::string::npos;
+}
+
+/// An option takes one value, so that it never swallows the names of the input. What follows `--set a=1` as `b=2` and
+/// `--calibration left.yaml` as `right.yaml` arrives as further names, and is put in its place here.
+void place_names(Arguments& arguments) {
+  FlightSettings& settings = arguments.settings;
+  settings.source.clear();
+  for (const std::string& word : arguments.names) {
+    const bool one_is_enough = !settings.source.empty() && io::is_recording(settings.source[0]);
+    if (settings.source.empty()) {
+      settings.source.push_back(word);
+    } else if (is_setting(word)) {
+      settings.treatment.settings.push_back(word);
+    } else if (settings.source.size() == 1 && (!one_is_enough || io::is_recording(word))) {
+      settings.source.push_back(word);
+    } else if (settings.calibration.size() == 1) {
+      settings.calibration.push_back(word);
     } else {
-      fail("unexpected argument \"", word, "\": inspect takes LEFT and RIGHT (see roadstereo inspect --help)");
+      fail("unexpected argument \"", word,
+           "\": inspect takes SOURCE, or LEFT and RIGHT (see roadstereo inspect --help)");
     }
   }
-  if (arguments.files.calibration.size() > 2) fail("--calibration takes one file, or the two of a ROS pair");
+  if (settings.calibration.size() > 2) fail("--calibration takes one file, or the two of a ROS pair");
 }
 
-PipelineOptions make_options(const Arguments& arguments) {
-  PipelineOptions options = preset(arguments.preset);
-  options.engine = arguments.engine;
-  options.threads = arguments.threads;
-  apply_settings(arguments.settings, options);
-  options.validate();
-  return options;
-}
-
-bool sets_white_level(const std::vector<std::string>& settings) {
-  return std::any_of(settings.begin(), settings.end(),
-                     [](const std::string& setting) { return split_setting(setting).first == "white_level"; });
-}
-
-int used_threads(const PipelineOptions& options) {
-  if (options.threads > 0) return options.threads;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+bool is_one_pair(const FlightSettings& settings) {
+  return settings.source.size() == 2 && !io::is_recording(settings.source[0]);
 }
 
 /// A pair that shows no road still has a disparity map: damage that cannot be looked for is a warning.
@@ -92,46 +79,53 @@ void process(Inspection& inspection) {
   }
 }
 
-void inspect(Arguments arguments) {
-  place_rest(arguments);
-  Inspection inspection;
-  inspection.options = make_options(arguments);
-  inspection.preset = arguments.preset;
-  inspection.files = arguments.files;
-  inspection.pair = read_pair(arguments.files);
-  if (!sets_white_level(arguments.settings)) inspection.options.white_level = inspection.pair.white_level;
+void refuse_flight_options(const FlightSettings& settings) {
+  const auto refuse = [](const char* option) { fail(option, " belongs to a recording; LEFT and RIGHT are one pair"); };
+  if (settings.resume) refuse("--resume");
+  if (settings.from != 0) refuse("--from");
+  if (settings.to) refuse("--to");
+  if (settings.every != 1) refuse("--every");
+  if (!settings.write.empty()) refuse("--write");
+}
 
-  io::OutputFolder folder(arguments.output);  // before the work, which would be lost on a folder that takes nothing
+void inspect_pair(const FlightSettings& settings) {
+  refuse_flight_options(settings);
+  Inspection inspection;
+  inspection.options = make_options(settings.treatment);
+  inspection.preset = settings.treatment.preset;
+  inspection.files = {settings.source[0], settings.source[1], settings.calibration};
+  inspection.pair = read_pair(inspection.files);
+  if (!sets_white_level(settings.treatment)) inspection.options.white_level = inspection.pair.white_level;
+
+  io::OutputFolder folder(settings.output);  // before the work, which would be lost on a folder that takes nothing
   process(inspection);
   add_result_files(inspection, folder);
   const std::string result = result_json(inspection);
   folder.add("result.json", result);
   folder.commit();
 
-  if (arguments.json) fmt::print("{}", result);
-  if (!arguments.json && !arguments.quiet) fmt::print("{}", summary(inspection, folder.path()));
+  if (settings.json) fmt::print("{}", result);
+  if (!settings.json && !settings.quiet) fmt::print("{}", summary(inspection, folder.path()));
 }
 
-std::string joined_presets() {
-  std::string names;
-  for (const std::string& name : preset_names()) names += (names.empty() ? "" : ", ") + name;
-  return names;
-}
-
-/// Every key of --set with its default and its meaning.
-std::string settings_help() {
-  std::string text = "Keys of --set, with the values of the default preset:\n";
-  for (const OptionText& option : list_options(preset("default"))) {
-    text += fmt::format("  {:<38} {:<12} {}\n", option.key, option.value, option.description);
-  }
-  return text;
+void inspect(Arguments arguments) {
+  place_names(arguments);
+  is_one_pair(arguments.settings) ? inspect_pair(arguments.settings) : inspect_flight(arguments.settings);
 }
 
 constexpr const char* inspect_footer =
-    R"(Into the output folder: disparity.tiff, sigma.tiff (the standard error of disparity.tiff, px) and transformed.tiff
-(32-bit float, NaN invalid), disparity.png (16 bit, value / 256 px, 0 invalid), disparity_color.png, sigma_color.png,
-transformed_color.png, sheet.png, result.json; damages.json, damages.csv, damage.png (16 bit, ids), overlay.png and
-report.html; with a calibration also cloud.ply (camera frame, m) and road_cloud.ply (the road is z = 0).
+    R"(Of one pair the output folder gets disparity.tiff, sigma.tiff (the standard error of disparity.tiff, px) and
+transformed.tiff (32-bit float, NaN invalid), disparity.png (16 bit, value / 256 px, 0 invalid), disparity_color.png,
+sigma_color.png, transformed_color.png, sheet.png, result.json; damages.json, damages.csv, damage.png (16 bit, ids),
+overlay.png and report.html; with a calibration also cloud.ply (camera frame, m) and road_cloud.ply (the road is z = 0).
+
+Of a recording: frames.csv (a row a frame), damages.csv (a row a sighting), summary.json, report.html, a picture of each
+damage in damages/, and what --write asks for of every frame. Nothing is dropped; a frame without a result is a row with
+its reason. Ctrl-C ends after the frames in flight; --resume goes on there, after a kill, too.
+
+SOURCE is a folder (left/ right/, image_2/ image_3/, image_0/ image_1/, cam0/data cam1/data, or images named L… and R…;
+times from times.txt or EuRoC names), a list (.txt or .csv: "left right [seconds]" a line), a video with both views in
+one picture, or a ROS 1 bag; or two folders or two videos, left and right.
 
 Calibration formats, recognised by content: plain YAML (focal_px, cx_px, cy_px, baseline_m, width, height),
 OpenCV stereo YAML or XML, ROS camera_info (two files, left then right), KITTI calib*.txt, Middlebury
@@ -142,57 +136,54 @@ Examples:
   roadstereo inspect left.png right.png --calibration calibration.yaml --output out
   roadstereo inspect left.png right.png --output out --preset paper --set matcher.sigma_space=2
   roadstereo inspect left.png right.png --calibration left.yaml --calibration right.yaml --output out
+  roadstereo inspect flight/ --calibration flight/calibration.yaml --output out
+  roadstereo inspect zed.mp4 --calibration zed.yaml --every 5 --write sheet --output out
 
 )";
 
 void add_input_options(CLI::App& command, Arguments& arguments) {
-  command.add_option("LEFT", arguments.files.left, "Left image: PNG, JPEG, TIFF, PGM or PPM; 8 or 16 bit")->required();
-  command.add_option("RIGHT", arguments.files.right, "Right image, of the same size")->required();
-  command.add_option("REST", arguments.rest)->group("");
   command
-      .add_option("--calibration", arguments.files.calibration,
-                  "Calibration of the rig; give it twice (left, right) for a ROS pair")
-      ->type_name("FILE")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
+      .add_option("SOURCE", arguments.names,
+                  "A recording; or LEFT and RIGHT: two images of one size (PNG, JPEG, TIFF, PGM or PPM; 8 or 16 bit)")
+      ->required();
+  add_calibration_option(command, arguments.settings.calibration);
 }
 
-void add_treatment_options(CLI::App& command, Arguments& arguments) {
-  command.add_option("--preset", arguments.preset, "Where the options start from: " + joined_presets())
-      ->type_name("NAME")
-      ->capture_default_str();
-  command.add_option("--engine", arguments.engine, "Matching engine, see roadstereo engines")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command.add_option("--threads", arguments.threads, "Worker threads; 0 takes all cores")
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_option("--set", arguments.settings, "Sets one option; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
-}
-
-void add_output_options(CLI::App& command, Arguments& arguments) {
-  command.add_option("--output", arguments.output, "Folder for the results; made when it is missing")
+void add_output_options(CLI::App& command, FlightSettings& settings) {
+  command.add_option("--output", settings.output, "Folder for the results; made when it is missing")
       ->type_name("DIR")
       ->required();
-  command.add_flag("--quiet", arguments.quiet, "Print nothing on success");
-  command.add_flag("--json", arguments.json, "Print result.json instead of the summary");
+  command.add_flag("--quiet", settings.quiet, "Print nothing on success");
+  command.add_flag("--json", settings.json, "Print result.json (summary.json of a recording) instead of the summary");
+}
+
+void add_flight_options(CLI::App& command, FlightSettings& settings) {
+  command.add_flag("--resume", settings.resume, "Go on with the flight that the output folder holds");
+  command.add_option("--from", settings.from, "First frame of the recording, from 0")->type_name("N");
+  command.add_option("--to", settings.to, "Last frame of the recording, included")->type_name("N");
+  command.add_option("--every", settings.every, "Take each N-th frame only")->type_name("N");
+  command
+      .add_option("--write", settings.write,
+                  "What to write of every frame: disparity, transformed, sheet, cloud, overlay, with commas between")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
 }
 
 }  // namespace
 
 void add_inspect(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("inspect", "Disparity, roll, transformed disparity and damage of one stereo pair");
+  CLI::App* command = app.add_subcommand(
+      "inspect", "Disparity, roll, transformed disparity and damage of one stereo pair, or of a whole recording");
   command->footer(inspect_footer + settings_help());
   const auto arguments = std::make_shared<Arguments>();
   add_input_options(*command, *arguments);
-  add_output_options(*command, *arguments);
-  add_treatment_options(*command, *arguments);
+  add_output_options(*command, arguments->settings);
+  add_flight_options(*command, arguments->settings);
+  add_source_options(*command, arguments->settings.choice);
+  add_treatment_options(*command, arguments->settings.treatment);
   command->callback([arguments] { inspect(*arguments); });
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "inspect_flight.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/version.hpp"
 
@@ -15,13 +16,15 @@ namespace {
 
 constexpr int exit_bad_input = 2;
 constexpr int exit_failure = 1;
+constexpr int exit_interrupted = 130;  // as shells have it for Ctrl-C
 
 constexpr const char* footer =
     "Example: make a road, inspect it, look at the sheet\n"
     "  roadstereo synth --scene demo --output road\n"
     "  roadstereo inspect road/left.png road/right.png --calibration road/calibration.yaml --output out\n"
     "\n"
-    "Exit code: 0 success; 2 wrong usage or unreadable input; 1 anything else (a full disk, for one).";
+    "Exit code: 0 success; 2 wrong usage or unreadable input; 1 anything else (a full disk, for one);\n"
+    "130 a flight that Ctrl-C ended.";
 
 /// Says what went wrong in one line, whatever the message's own line breaks.
 int complain(std::string message, int exit_code) {
@@ -83,6 +86,8 @@ int main(int argc, char** argv) {
     return complain(error.what(), exit_failure);
   } catch (const roadstereo::Error& error) {
     return complain(error.what(), exit_bad_input);
+  } catch (const roadstereo::cli::Interrupted&) {
+    return complain("stopped; go on with --resume", exit_interrupted);
   } catch (const std::bad_alloc&) {
     return complain("out of memory", exit_failure);
   } catch (const std::exception& error) {

@@ -26,12 +26,6 @@ Json option_value(const OptionText& option) {
   return value.is_discarded() ? Json(option.value) : value;
 }
 
-Json options_json(const PipelineOptions& options) {
-  Json list = Json::object();
-  for (const OptionText& option : list_options(options)) list[option.key] = option_value(option);
-  return list;
-}
-
 Json calibration_json(const StereoPair& pair) {
   if (!pair.calibration) return nullptr;
   const StereoCalibration& rig = *pair.calibration;
@@ -102,6 +96,12 @@ void add_plane(Json& document, const std::optional<RoadPlane>& plane) {
 }
 
 }  // namespace
+
+Json options_json(const PipelineOptions& options) {
+  Json list = Json::object();
+  for (const OptionText& option : list_options(options)) list[option.key] = option_value(option);
+  return list;
+}
 
 std::string result_json(const Inspection& inspection) {
   const FrameResult& result = inspection.result;

@@ -28,7 +28,7 @@ RectifiedSource::RectifiedSource(std::unique_ptr<io::FrameSource> source, const 
 
 /// What the first good pair tells: the size of the frames, and white.
 void RectifiedSource::prepare(const io::SourcePair& first) {
-  if (first.left.sample == SampleType::u16 && first.right.sample == SampleType::u16) {
+  if (!white_known_ && first.left.sample == SampleType::u16 && first.right.sample == SampleType::u16) {
     white_level_ = io::find_white_level(first.left.view(), first.right.view());
   }
   if (file_ && file_->rig && !rectifier_) {
@@ -36,6 +36,11 @@ void RectifiedSource::prepare(const io::SourcePair& first) {
     calibration_ = rectifier_->calibration();
   }
   prepared_ = true;
+}
+
+void RectifiedSource::set_white_level(double level) {
+  white_level_ = level;
+  white_known_ = true;
 }
 
 void RectifiedSource::rectify(io::SourcePair& pair) {

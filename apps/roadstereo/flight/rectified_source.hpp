@@ -15,8 +15,8 @@ namespace roadstereo::cli {
 /// A source together with its calibration: its pairs come out rectified.
 class RectifiedSource {
  public:
-  /// `calibration`: none (then the source's own, if it has one), one file, or the two of a ROS pair. Throws Error naming
-  /// a file that is no calibration.
+  /// `calibration`: none (then the source's own, if it has one), one file, or the two of a ROS pair. Throws Error
+  /// naming a file that is no calibration.
   RectifiedSource(std::unique_ptr<io::FrameSource> source, const std::vector<std::string>& calibration);
 
   /// The next pair, rectified; one that cannot be (another size, say) carries its reason. Nothing at the end.
@@ -35,6 +35,9 @@ class RectifiedSource {
   /// Sample value of white, found on the first good pair of a 16-bit source; 0 takes the largest of the sample type.
   double white_level() const { return white_level_; }
 
+  /// Takes white as found earlier instead of looking for it.
+  void set_white_level(double level);
+
  private:
   void prepare(const io::SourcePair& first);
 
@@ -45,6 +48,7 @@ class RectifiedSource {
   std::optional<StereoCalibration> calibration_;
   std::optional<io::Rectifier> rectifier_;
   double white_level_ = 0;
+  bool white_known_ = false;
   bool prepared_ = false;
 };
 

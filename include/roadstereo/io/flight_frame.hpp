@@ -44,7 +44,8 @@ struct FlightFrame {
   double damage_ms = unknown;                 ///< time in finding and measuring damage
   std::vector<Damage> damages;                ///< deepest first
   std::vector<std::string> warnings;
-  CarriedState carried;  ///< what the next frame starts from
+  double white_level = 0;  ///< sample value of white that the frame was taken with; 0 is the largest of the sample type
+  CarriedState carried;    ///< what the next frame starts from
 };
 
 /// One line of JSON without a line end; numbers are read back to the same bits.

@@ -83,4 +83,7 @@ class FrameSource {
 /// Throws Error when it is none of these or cannot be opened.
 std::unique_ptr<FrameSource> open_source(const std::vector<std::string>& names, const SourceOptions& options = {});
 
+/// Whether `open_source` would take that name; an image, or what does not exist, is none.
+bool is_recording(const std::string& name);
+
 }  // namespace roadstereo::io

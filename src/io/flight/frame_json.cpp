@@ -130,6 +130,7 @@ void each_field(FlightFrame& frame, Visit& visit) {
   visit("damage_ms", frame.damage_ms);
   visit("damages", frame.damages);
   visit("warnings", frame.warnings);
+  visit("white_level", frame.white_level);
   visit("carried", frame.carried);
 }
 

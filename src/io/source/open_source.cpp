@@ -30,23 +30,31 @@ constexpr std::array list_extensions = {".txt", ".csv", ".lst"};
 constexpr std::array video_extensions = {".mp4",   ".avi", ".mkv",  ".mov",  ".m4v",  ".webm", ".ts",  ".mjpg",
                                          ".mjpeg", ".mpg", ".mpeg", ".h264", ".h265", ".hevc", ".y4m", ".wmv"};
 
-Kind kind_of(const std::string& name) {
+std::optional<Kind> known_kind(const std::string& name) {
   if (name.find(" ! ") != std::string::npos) return Kind::gstreamer;
   if (name.rfind("/dev/", 0) == 0) return Kind::camera;
   std::error_code ignored;
   if (fs::is_directory(name, ignored)) return Kind::folder;
-  if (!fs::exists(name, ignored))
-    fail(name, ": no such file, folder, camera (/dev/video0) or GStreamer pipeline (a ! b)");
+  if (!fs::exists(name, ignored)) return std::nullopt;
   const std::string extension = lower_extension(name);
   if (extension == ".bag") return Kind::bag;
   if (is_one_of(extension, list_extensions)) return Kind::list;
   if (is_one_of(extension, video_extensions)) return Kind::video;
-  if (extension == ".svo" || extension == ".svo2") {
-    fail(name, ": ZED's own SVO format needs its SDK; export it as a side-by-side video (ZED Explorer or svo_export)");
+  return std::nullopt;
+}
+
+Kind kind_of(const std::string& name) {
+  if (const auto kind = known_kind(name)) return *kind;
+  const std::string extension = lower_extension(name);
+  std::error_code ignored;
+  if (!fs::exists(name, ignored)) {
+    fail(name, ": no such file, folder, camera (/dev/video0) or GStreamer pipeline (a ! b)");
   }
-  fail(name,
-       ": not a source: a folder, a list (.txt, .csv), a video (.mp4, .avi, .mkv, …), a ROS bag (.bag), a camera (",
-       "/dev/video0) or a GStreamer pipeline is taken");
+  if (extension == ".svo" || extension == ".svo2") {
+    fail(name, ": ZED's own SVO format needs its SDK; export it as a side-by-side video first");
+  }
+  fail(name, ": is no recording: a folder, a list (.txt, .csv), a video (.mp4, .avi, .mkv, …), a ROS bag (.bag), a ",
+       "camera (/dev/video0) or a GStreamer pipeline is taken; of one pair give both images, left and right");
 }
 
 std::unique_ptr<FrameSource> open_one(const std::string& name, const SourceOptions& options) {
@@ -91,6 +99,10 @@ void SourceOptions::validate() const {
   if (!topics.empty() && topics.size() != 2) {
     fail("source.topics has ", topics.size(), " names; it must be the left and the right image topic");
   }
+}
+
+bool is_recording(const std::string& name) {
+  return known_kind(name).has_value();
 }
 
 std::unique_ptr<FrameSource> open_source(const std::vector<std::string>& names, const SourceOptions& options) {

@@ -1,0 +1,112 @@
+#include "flight/flight_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "flight/frame_files.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/flight_journal.hpp"
+
+namespace roadstereo::cli {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::int64_t most_thumbnails = 32;
+
+/// Frames from one small picture to the next, for a flight that has come as far as `place`.
+std::int64_t thumbnail_step(std::int64_t place) {
+  std::int64_t step = 1;
+  while (place >= step * most_thumbnails) step *= 2;
+  return step;
+}
+
+int lock_folder(const fs::path& folder) {
+  constexpr mode_t readable = 0644;
+  const fs::path file = folder / "lock";
+  const int descriptor = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, readable);
+  if (descriptor < 0) {
+    fail("cannot write to folder ", folder.string(), ": ", std::generic_category().message(errno));
+  }
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  ::close(descriptor);
+  fail(folder.parent_path().string(), ": another program is writing a flight into this folder");
+}
+
+/// What runs into this folder stage their files in.
+std::vector<fs::path> hidden_folders(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().filename().string().rfind(".roadstereo-", 0) == 0) found.push_back(entry.path());
+  }
+  return found;
+}
+
+}  // namespace
+
+FlightFolder::FlightFolder(const fs::path& folder) : before_(hidden_folders(folder)), files_(folder) {
+  const fs::path own = folder / "flight";
+  std::error_code error;
+  fs::create_directories(own, error);
+  if (error) fail("cannot write to folder ", own.string(), ": ", error.message());
+  lock_ = lock_folder(own);
+  // Whoever holds the lock is the only one who writes: what was there before belongs to runs that were killed.
+  for (const fs::path& stale : before_) fs::remove_all(stale, error);
+}
+
+FlightFolder::~FlightFolder() {
+  if (lock_ >= 0) ::close(lock_);
+}
+
+fs::path FlightFolder::journal() const {
+  return path() / "flight" / "journal.jsonl";
+}
+
+void FlightFolder::remove_earlier_flight() {
+  std::error_code ignored;
+  if (!fs::exists(journal(), ignored)) return;
+  try {
+    io::read_flight_journal(journal(), [&](const io::FlightFrame& frame) {
+      for (const std::string& name : frame_file_names(frame.index)) fs::remove(path() / name, ignored);
+    });
+  } catch (const Error&) {  // what is no journal names no files
+  }
+  for (const char* name : {"frames.csv", "damages.csv", "summary.json", "report.html", "damages", "flight/thumbnails",
+                           "flight/journal.jsonl"}) {
+    fs::remove_all(path() / name, ignored);
+  }
+}
+
+void FlightFolder::write(const std::vector<StagedFile>& files) {
+  if (files.empty()) return;
+  for (const StagedFile& file : files) files_.add(file.name, file.bytes);
+  files_.commit();
+}
+
+std::vector<std::uint8_t> FlightFolder::read(const std::string& name) const {
+  std::ifstream file(path() / name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::optional<std::string> thumbnail_name(std::int64_t place) {
+  if (place % thumbnail_step(place) != 0) return std::nullopt;
+  return fmt::format("flight/thumbnails/{:06}.jpg", place);
+}
+
+bool is_shown(std::int64_t place, std::int64_t frames) {
+  return place % thumbnail_step(frames - 1) == 0;
+}
+
+std::string damage_picture_name(std::int64_t road_damage) {
+  return fmt::format("damages/{:05}.jpg", road_damage);
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,94 @@
+#include "flight/flight_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "finite_values.hpp"
+#include "json_text.hpp"
+#include "result_json.hpp"
+#include "roadstereo/version.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Least, middle and largest of the figures that are known.
+Json range_json(std::vector<double> values) {
+  values.erase(std::remove_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); }),
+               values.end());
+  if (values.empty()) return nullptr;
+  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
+  Json range = {{"min", *least}, {"median", 0}, {"max", *largest}};
+  range["median"] = median(values);
+  return range;
+}
+
+Json frames_json(const FlightSummary& summary) {
+  return {{"total", summary.frames},
+          {"good", summary.good},
+          {"refused", summary.refused},
+          {"failed", summary.failed},
+          {"road_estimated_anew", summary.road_estimated},
+          {"road_unknown", summary.road_unknown},
+          {"reasons", summary.reasons}};
+}
+
+Json damages_json(const FlightSummary& summary, const io::FlightInventory& inventory, bool metric) {
+  std::int64_t depressions = 0;
+  Json severities = Json::object();
+  for (const Severity severity :
+       {Severity::high, Severity::medium, Severity::low, Severity::minor, Severity::unresolvable}) {
+    severities[name_of(severity)] = 0;
+  }
+  for (const io::RoadDamage& damage : inventory.damages()) {
+    depressions += damage.best.kind == DamageKind::depression ? 1 : 0;
+    if (!damage.best.metrics) continue;
+    Json& count = severities[name_of(damage.best.metrics->severity)];
+    count = count.get<std::int64_t>() + 1;
+  }
+  const auto all = static_cast<std::int64_t>(inventory.damages().size());
+  return {{"total", all},
+          {"depressions", depressions},
+          {"protrusions", all - depressions},
+          {"sightings", summary.sightings},
+          {"by_severity", metric ? severities : Json(nullptr)}};
+}
+
+Json run_json(const FlightRun& run) {
+  return {{"complete", run.complete},
+          {"seconds", json_number(run.seconds)},
+          {"frames_per_second", json_number(run.frames_per_second)},
+          {"resumed_at_frame", run.resumed_at},
+          {"threads", run.threads}};
+}
+
+}  // namespace
+
+std::string flight_json(const FlightSettings& settings, const FlightRun& run, const FlightSummary& summary,
+                        const io::FlightInventory& inventory) {
+  Json document = {{"version", version}, {"source", settings.source}, {"source_kind", run.source}};
+  document["calibration"] = settings.calibration.empty() ? Json(nullptr) : Json(settings.calibration);
+  document["calibration_format"] = run.calibration_format.empty() ? Json(nullptr) : Json(run.calibration_format);
+  document["from"] = settings.from;
+  document["to"] = settings.to ? Json(*settings.to) : Json(nullptr);
+  document["every"] = settings.every;
+  document["preset"] = settings.treatment.preset;
+  document["engine"] = run.engine;
+  document["options"] = options_json(run.options);
+  document["frames"] = frames_json(summary);
+  document["first_time_s"] = json_number(summary.first_time_s);
+  document["last_time_s"] = json_number(summary.last_time_s);
+  document["damages"] = damages_json(summary, inventory, !run.calibration_format.empty());
+  document["roll_deg"] = range_json(summary.curves.roll_deg);
+  document["height_m"] = range_json(summary.curves.height_m);
+  document["sigma_d_px"] = range_json(summary.curves.sigma_d_px);
+  document["valid_share"] = range_json(summary.valid_share);
+  document["matching_ms"] = range_json(summary.matching_ms);
+  document["damage_ms"] = range_json(summary.damage_ms);
+  document["run"] = run_json(run);
+  return json_text(document);
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "flight/flight_folder.hpp"
+#include "flight/flight_settings.hpp"
+#include "flight/flight_summary.hpp"
+#include "flight/rectified_source.hpp"
+#include "roadstereo/io/flight_journal.hpp"
+
+namespace roadstereo::cli {
+
+/// How a run of the program over a flight went.
+struct FlightRun {
+  bool complete = false;           ///< the end of the source was reached
+  std::string source;              ///< what it is, for people
+  std::string calibration_format;  ///< empty without a calibration
+  std::string engine;              ///< the one that ran
+  int threads = 0;                 ///< of matching
+  PipelineOptions options;
+  double seconds = 0;            ///< of this run
+  double frames_per_second = 0;  ///< of this run, from the first frame to the last
+  std::int64_t resumed_at = 0;   ///< frames that earlier runs had done
+};
+
+/// Writes frames.csv, damages.csv, summary.json and report.html from the journal; returns the text of summary.json.
+std::string write_flight_results(const FlightSettings& settings, const FlightRun& run, const io::FlightJournal& journal,
+                                 const io::FlightInventory& inventory, FlightFolder& folder, FlightSummary& summary);
+
+}  // namespace roadstereo::cli

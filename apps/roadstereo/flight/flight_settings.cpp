@@ -1,0 +1,36 @@
+#include "flight/flight_settings.hpp"
+
+#include <array>
+#include <utility>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+constexpr std::array names = {std::pair{"disparity", FrameFile::disparity},
+                              std::pair{"transformed", FrameFile::transformed}, std::pair{"sheet", FrameFile::sheet},
+                              std::pair{"cloud", FrameFile::cloud}, std::pair{"overlay", FrameFile::overlay}};
+
+}  // namespace
+
+FrameFile frame_file(const std::string& name) {
+  for (const auto& [known, file] : names) {
+    if (name == known) return file;
+  }
+  fail("--write has \"", name, "\"; it takes disparity, transformed, sheet, cloud and overlay, with commas between");
+}
+
+void FlightSettings::validate() const {
+  if (from < 0) fail("--from is ", from, "; frames count from 0");
+  if (to && *to < from) fail("--to is ", *to, "; it must not lie before --from, which is ", from);
+  if (every < 1) fail("--every is ", every, "; it must be 1 or more");
+  for (const std::string& name : write) {
+    if (frame_file(name) == FrameFile::cloud && calibration.empty()) {
+      fail("--write cloud needs --calibration: without it no point has a place in space");
+    }
+  }
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "source_options.hpp"
+#include "treatment_options.hpp"
+
+namespace roadstereo::cli {
+
+/// What can be written of every frame.
+enum class FrameFile { disparity, transformed, sheet, cloud, overlay };
+
+/// The file of that name. Throws Error naming those that exist.
+FrameFile frame_file(const std::string& name);
+
+/// What the command line says about a flight.
+struct FlightSettings {
+  std::vector<std::string> source;  ///< one name, or left and right
+  std::vector<std::string> calibration;
+  std::string output;
+  Treatment treatment;
+  SourceChoice choice;
+  bool resume = false;
+  std::int64_t from = 0;           ///< first frame of the source, from 0
+  std::optional<std::int64_t> to;  ///< last frame, included; absent: the end
+  std::int64_t every = 1;          ///< takes each so-manieth frame
+  std::vector<std::string> write;  ///< names of FrameFile
+  bool quiet = false;
+  bool json = false;
+
+  /// Throws Error naming what is out of range.
+  void validate() const;
+};
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,45 @@
+#include "flight/flight_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace roadstereo::cli {
+
+void FlightSummary::add(const io::FlightFrame& frame) {
+  constexpr std::size_t most_reasons = 5;
+  constexpr double degrees = 180 / std::numbers::pi;  // in a radian
+  ++frames;
+  good += frame.status == io::FrameStatus::good ? 1 : 0;
+  refused += frame.status == io::FrameStatus::refused ? 1 : 0;
+  failed += frame.status == io::FrameStatus::failed ? 1 : 0;
+  if (frame.status == io::FrameStatus::good) {
+    road_unknown += frame.road_reliable ? 0 : 1;
+    road_estimated += frame.road_reliable && !frame.road_carried_over ? 1 : 0;
+    matching_ms.push_back(frame.matching_ms);
+    damage_ms.push_back(frame.damage_ms);
+    valid_share.push_back(frame.valid_share);
+  } else if (reasons.size() < most_reasons) {
+    reasons.push_back(frame.name + ": " + frame.reason);
+  }
+  sightings += static_cast<std::int64_t>(frame.damages.size());
+  if (std::isnan(first_time_s)) first_time_s = frame.time_s;
+  if (std::isfinite(frame.time_s)) last_time_s = frame.time_s;
+  curves.time.push_back(frame.time_s);
+  curves.roll_deg.push_back(frame.roll_observable ? frame.roll_rad * degrees : io::FlightFrame::unknown);
+  curves.height_m.push_back(frame.height_m);
+  curves.sigma_d_px.push_back(frame.sigma_d_px);
+}
+
+void FlightSummary::settle_times() {
+  curves.in_seconds = !curves.time.empty() && std::all_of(curves.time.begin(), curves.time.end(),
+                                                          [](double time) { return std::isfinite(time); });
+  if (curves.in_seconds) {
+    for (double& time : curves.time) time -= first_time_s;
+  } else {
+    std::iota(curves.time.begin(), curves.time.end(), 0.0);
+  }
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,68 @@
+#include "flight/match_frame.hpp"
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/road_plane.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+void record(const FrameResult& result, const std::optional<StereoCalibration>& calibration, io::FlightFrame& frame) {
+  frame.road_reliable = result.road.reliable;
+  frame.road_carried_over = result.road.carried_over;
+  frame.valid_share = result.valid_share;
+  frame.matching_ms = result.ms.total;
+  frame.warnings = result.warnings;
+  if (!result.geometry_found) return;
+  const RoadGeometry& geometry = result.geometry;
+  frame.roll_rad = geometry.roll_rad;
+  frame.roll_stderr_rad = geometry.roll_stderr_rad;
+  frame.roll_observable = geometry.roll_observable;
+  frame.alpha0 = geometry.alpha0;
+  frame.alpha1 = geometry.alpha1;
+  frame.road = geometry.plane;
+  frame.sigma_d_px = result.spread.road_px;
+  if (!calibration) return;
+  const RoadPlane plane = road_plane(geometry.plane, *calibration);
+  frame.height_m = plane.height_m;
+  frame.pitch_rad = plane.pitch_rad;
+}
+
+/// What is known of a frame before it is matched.
+void begin(FlightJob& job) {
+  io::FlightFrame& frame = job.frame;
+  frame = {};
+  frame.index = job.pair.index;
+  frame.name = job.pair.name;
+  frame.time_s = job.pair.time_s;
+  frame.reason = job.pair.refused;
+  if (!frame.reason.empty()) frame.status = io::FrameStatus::refused;
+  job.damage = {};
+  job.files.clear();
+}
+
+}  // namespace
+
+void match_frame(Pipeline& pipeline, const std::optional<StereoCalibration>& calibration, FlightJob& job) {
+  begin(job);
+  if (job.frame.status == io::FrameStatus::good) {
+    try {
+      pipeline.process(job.pair.left.view(), job.pair.right.view(), job.result);
+      record(job.result, calibration, job.frame);
+    } catch (const Error& error) {
+      job.frame.status = io::FrameStatus::failed;
+      job.frame.reason = error.what();
+    }
+  }
+  job.frame.white_level = pipeline.options().white_level;
+  job.frame.carried = pipeline.carried();
+}
+
+void record_refused(const std::optional<io::FlightFrame>& before, FlightJob& job) {
+  begin(job);
+  if (!before) return;
+  job.frame.white_level = before->white_level;
+  job.frame.carried = before->carried;
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace roadstereo::cli {
+
+/// How far a flight is, on standard error: a bar that is redrawn on a terminal, else a line every few seconds.
+class Progress {
+ public:
+  /// `total` frames, of which `done` were done by an earlier run. A quiet one shows nothing.
+  Progress(std::optional<std::int64_t> total, std::int64_t done, bool quiet);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void frame_done(bool good);
+
+  /// Leaves the line that was drawn.
+  void end();
+
+  double seconds() const;
+  double frames_per_second() const;
+
+ private:
+  void show();
+  std::string line() const;
+  std::string bar() const;
+
+  std::optional<std::int64_t> total_;
+  std::int64_t before_;  ///< frames of an earlier run
+  std::int64_t done_ = 0;
+  std::int64_t bad_ = 0;
+  bool quiet_;
+  bool terminal_;
+  bool drawn_ = false;
+  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point shown_;
+};
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,105 @@
+#include "inspect_flight.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "flight/flight_results.hpp"
+#include "flight/run_flight.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/options.hpp"
+#include "roadstereo/version.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+/// All that the results depend on: a flight goes on only with the same.
+io::FlightFacts facts_of(const FlightSettings& settings, const PipelineOptions& options) {
+  io::FlightFacts facts{{"version", version},
+                        {"source", joined(settings.source)},
+                        {"calibration", joined(settings.calibration)},
+                        {"--from", std::to_string(settings.from)},
+                        {"--every", std::to_string(settings.every)},
+                        {"--write", joined(settings.write)},
+                        {"--layout", settings.choice.layout},
+                        {"--topics", joined(settings.choice.topics)},
+                        {"--max-time-difference", fmt::format("{}", settings.choice.max_time_difference_ms)},
+                        {"--rate", fmt::format("{}", settings.choice.rate_hz)}};
+  for (const OptionText& option : list_options(options)) {
+    if (option.key != "threads") facts.emplace_back(option.key, option.value);
+  }
+  return facts;
+}
+
+std::optional<std::int64_t> frames_to_do(const FlightSettings& settings, const io::FrameSource& source) {
+  const std::optional<std::int64_t> size = source.size();
+  if (!size) return std::nullopt;
+  const std::int64_t end = settings.to ? std::min(*settings.to + 1, *size) : *size;
+  return std::max<std::int64_t>(0, (end - settings.from + settings.every - 1) / settings.every);
+}
+
+io::FlightJournal open_journal(const FlightSettings& settings, const PipelineOptions& options, FlightFolder& folder) {
+  const io::FlightFacts facts = facts_of(settings, options);
+  if (settings.resume && std::filesystem::exists(folder.journal())) {
+    return io::FlightJournal::resume(folder.journal(), facts);
+  }
+  folder.remove_earlier_flight();
+  return io::FlightJournal::begin(folder.journal(), facts);
+}
+
+std::string flight_text(const FlightRun& run, const FlightSummary& summary, const io::FlightInventory& inventory,
+                        const FlightFolder& folder) {
+  std::string text = fmt::format("roadstereo {}: {}\n", version, run.source);
+  text += fmt::format("  frames    {} ({} refused, {} failed), road estimated anew in {}\n", summary.frames,
+                      summary.refused, summary.failed, summary.road_estimated);
+  text += fmt::format("  damage    {} damages in {} sightings\n", inventory.damages().size(), summary.sightings);
+  text += fmt::format("  time      {:.1f} s, {:.1f} frames/s\n", run.seconds, run.frames_per_second);
+  for (const std::string& reason : summary.reasons) text += fmt::format("  no result {}\n", reason);
+  return text + fmt::format("  report    {}\n", (folder.path() / "report.html").string());
+}
+
+}  // namespace
+
+void inspect_flight(const FlightSettings& settings) {
+  settings.validate();
+  FlightRun run;
+  run.options = make_options(settings.treatment);
+  RectifiedSource source(io::open_source(settings.source, make_source_options(settings.choice)), settings.calibration);
+  if (source.source().live()) fail(settings.source[0], ": a camera has no end; see roadstereo live");
+  FlightFolder folder(settings.output);
+  io::FlightJournal journal = open_journal(settings, run.options, folder);
+  io::FlightInventory inventory;
+  journal.for_each([&](const io::FlightFrame& frame) { inventory.add(frame); });
+  if (journal.last() && journal.last()->white_level > 0) source.set_white_level(journal.last()->white_level);
+  run.resumed_at = journal.frames();
+
+  Progress progress(frames_to_do(settings, source.source()), journal.frames(), settings.quiet);
+  Flight flight{source, folder, journal, inventory, run.options, progress};
+  run.complete = run_flight(settings, flight);
+  run.options = flight.options;
+  run.seconds = progress.seconds();
+  run.frames_per_second = progress.frames_per_second();
+  run.source = source.source().description();
+  run.calibration_format = source.calibration_format();
+  run.engine = resolve_engine_name(run.options.engine);
+  run.threads = used_threads(run.options);
+
+  FlightSummary summary;
+  const std::string json = write_flight_results(settings, run, journal, inventory, folder, summary);
+  progress.end();
+  if (settings.json) fmt::print("{}", json);
+  if (!settings.json && !settings.quiet) fmt::print("{}", flight_text(run, summary, inventory, folder));
+  if (!run.complete) throw Interrupted{};
+  if (summary.frames == 0) fail(joined(settings.source), ": holds no frame between --from and --to");
+  if (summary.good == 0) fail("none of the ", summary.frames, " frames could be matched: ", summary.reasons.front());
+}
+
+}  // namespace roadstereo::cli

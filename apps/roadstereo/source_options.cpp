@@ -1,0 +1,47 @@
+#include "source_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace roadstereo::cli {
+
+void add_calibration_option(CLI::App& command, std::vector<std::string>& calibration) {
+  command
+      .add_option("--calibration", calibration, "Calibration of the rig; give it twice (left, right) for a ROS pair")
+      ->type_name("FILE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
+void add_source_options(CLI::App& command, SourceChoice& choice) {
+  command
+      .add_option("--layout", choice.layout,
+                  "How one picture holds both views: side-by-side, top-bottom, or auto (from its shape)")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--topics", choice.topics, "Left and right image topic of a ROS bag")
+      ->type_name("LEFT,RIGHT")
+      ->delimiter(',')
+      ->expected(1, 2)
+      ->allow_extra_args(false);
+  command
+      .add_option("--max-time-difference", choice.max_time_difference_ms,
+                  "Views taken further apart are no pair, milliseconds")
+      ->type_name("MS")
+      ->capture_default_str();
+  command.add_option("--rate", choice.rate_hz, "Pairs a second, in the place of the source's own times")
+      ->type_name("HZ");
+}
+
+io::SourceOptions make_source_options(const SourceChoice& choice) {
+  constexpr double ms = 1e-3;
+  io::SourceOptions options;
+  options.layout = io::stereo_layout(choice.layout);
+  options.topics = choice.topics;
+  options.max_time_difference_s = choice.max_time_difference_ms * ms;
+  options.rate_hz = choice.rate_hz;
+  options.validate();
+  return options;
+}
+
+}  // namespace roadstereo::cli
