@@ -92,7 +92,8 @@ void key_by_number(std::vector<ViewFile>& views) {
     const auto before = last == std::string::npos ? last : view.stem.find_last_not_of("0123456789", last);
     if (last == std::string::npos) continue;
     const std::size_t first = before == std::string::npos ? 0 : before + 1;
-    view.key = view.stem.substr(first, last - first + 1);
+    const std::size_t significant = std::min(view.stem.find_first_not_of('0', first), last);
+    view.key = view.stem.substr(significant, last - significant + 1);
   }
 }
 

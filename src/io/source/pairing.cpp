@@ -65,8 +65,9 @@ bool next_is_nearer(std::vector<ViewFile>::const_iterator view, std::vector<View
 }
 
 std::string apart_text(double difference_s, double limit_s) {
+  const double difference_ms = std::round(1e5 * std::abs(difference_s)) / 100;  // as exact as seconds since 1970 are
   std::ostringstream text;
-  text << "the views were taken " << 1e3 * std::abs(difference_s) << " ms apart; at most " << 1e3 * limit_s
+  text << "the views were taken " << difference_ms << " ms apart; at most " << 1e3 * limit_s
        << " ms are taken for a pair";
   return text.str();
 }
