@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
 # Installs with apt what the build needs and is missing, and says what that is. Debian 12, Ubuntu 22.04 or later.
 #   scripts/install_deps.sh            compiler, CMake, libraries
-#   scripts/install_deps.sh --checks   also what the format, tidy and aarch64 checks and the tests in a browser need
+#   scripts/install_deps.sh --checks   also what the format, tidy and aarch64 checks and the tests in a browser and in GDAL need
 set -euo pipefail
 
+geographiclib=libgeographiclib-dev
+[ "$(. /etc/os-release; echo "$ID $VERSION_ID")" != "ubuntu 22.04" ] || geographiclib=libgeographic-dev  # its name there
 packages=(build-essential cmake ninja-build pkg-config
           libopencv-dev libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
           libeigen3-dev libnanoflann-dev
+          libgdal-dev libpugixml-dev "$geographiclib"
           libgtest-dev libbenchmark-dev)
 case "${1:-}" in
   "") ;;
   --checks) packages+=(clang-format-14 clang-tidy g++-aarch64-linux-gnu qemu-user googletest
-                       chromium chromium-driver python3-selenium) ;;
+                       chromium chromium-driver python3-selenium gdal-bin) ;;
   *) echo "usage: $0 [--checks]" >&2; exit 2 ;;
 esac
 

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cpl_error.h>
+
+#include <string>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+
+/// While it lives, GDAL's errors of this thread come here, not to stderr.
+class GdalErrors {
+ public:
+  GdalErrors() { CPLPushErrorHandlerEx(&GdalErrors::collect, this); }
+  ~GdalErrors() { CPLPopErrorHandler(); }
+  GdalErrors(const GdalErrors&) = delete;
+  GdalErrors& operator=(const GdalErrors&) = delete;
+
+  /// Throws SystemError with GDAL's first reason unless `done` and nothing failed so far.
+  void require(bool done, const char* what) const {
+    if (done && first_.empty()) return;
+    fail<SystemError>("cannot make the GeoPackage: ", what,
+                      " failed: ", first_.empty() ? "GDAL gave no reason" : first_);
+  }
+
+ private:
+  static void CPL_STDCALL collect(CPLErr kind, CPLErrorNum /*number*/, const char* text) {
+    auto& errors = *static_cast<GdalErrors*>(CPLGetErrorHandlerUserData());
+    if (kind >= CE_Failure && errors.first_.empty()) errors.first_ = text;
+  }
+
+  std::string first_;
+};
+
+}  // namespace roadstereo::io

@@ -1,0 +1,161 @@
+#include <cpl_vsi.h>
+#include <ogrsf_frmts.h>
+
+#include <memory>
+#include <mutex>
+#include <sstream>
+
+#include "io/geo/gdal_errors.hpp"
+#include "io/geo/geo_columns.hpp"
+#include "io/geo/track_stretches.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+GDALDriver* geopackage_driver() {
+  static std::once_flag once;
+  std::call_once(once, RegisterOGRGeoPackage);  // this one only: the others load plugins and take their time
+  return GetGDALDriverManager()->GetDriverByName("GPKG");
+}
+
+/// A file in GDAL's memory.
+class MemoryFile {
+ public:
+  MemoryFile() {
+    std::ostringstream name;
+    name << "/vsimem/roadstereo-" << this << ".gpkg";  // nobody else has this address
+    name_ = name.str();
+  }
+  ~MemoryFile() { VSIUnlink(name_.c_str()); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  const char* name() const { return name_.c_str(); }
+  std::vector<std::uint8_t> bytes() const {
+    vsi_l_offset size = 0;
+    const GByte* data = VSIGetMemFileBuffer(name(), &size, FALSE);
+    if (data == nullptr) return {};
+    return {data, data + size};
+  }
+
+ private:
+  std::string name_;
+};
+
+struct FieldType {
+  OGRFieldType type;
+  OGRFieldSubType part = OFSTNone;
+};
+
+FieldType field_type(GeoType type) {
+  switch (type) {
+    case GeoType::whole:
+      return {OFTInteger64};
+    case GeoType::number:
+      return {OFTReal};
+    case GeoType::flag:
+      return {OFTInteger, OFSTBoolean};
+    case GeoType::time:
+      return {OFTDateTime};
+    case GeoType::text:
+      break;
+  }
+  return {OFTString};
+}
+
+/// Sets one field of a feature.
+struct SetField {
+  OGRFeature& feature;
+  int field;
+
+  void operator()(std::monostate) const { feature.SetFieldNull(field); }
+  void operator()(std::int64_t value) const { feature.SetField(field, GIntBig{value}); }
+  void operator()(double value) const { feature.SetField(field, value); }
+  void operator()(bool value) const { feature.SetField(field, value ? 1 : 0); }
+  void operator()(const std::string& value) const { feature.SetField(field, value.c_str()); }
+  void operator()(const UtcTime& time) const {
+    constexpr int utc = 100;  // GDAL's number of this zone
+    feature.SetField(field, time.year, time.month, time.day, time.hour, time.minute,
+                     static_cast<float>(time.millisecond) / 1000, utc);
+  }
+};
+
+std::unique_ptr<OGRGeometry> shape_of(const TrackStretch& stretch) {
+  auto line = std::make_unique<OGRLineString>();
+  for (const TrackPoint& point : stretch.points) line->addPoint(point.lon_deg, point.lat_deg);
+  return line;
+}
+
+/// Null without a place.
+template <class Row>
+std::unique_ptr<OGRGeometry> shape_of(const Row& row) {
+  if (!row.place) return nullptr;
+  return std::make_unique<OGRPoint>(row.place->lon_deg, row.place->lat_deg);
+}
+
+/// A GeoPackage that is being made.
+class Package {
+ public:
+  explicit Package(const GdalErrors& errors) : errors_(errors) {
+    GDALDriver* driver = geopackage_driver();
+    errors_.require(driver != nullptr, "finding the driver GPKG");
+    dataset_.reset(driver->Create(file_.name(), 0, 0, 0, GDT_Unknown, nullptr));
+    errors_.require(dataset_ != nullptr, "making the file");
+    errors_.require(wgs84_.importFromEPSG(4326) == OGRERR_NONE, "looking up EPSG:4326");
+    wgs84_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    errors_.require(dataset_->StartTransaction() == OGRERR_NONE, "beginning the transaction");
+  }
+
+  template <class Row>
+  void add(const char* name, OGRwkbGeometryType shape, const std::vector<GeoColumn<Row>>& columns,
+           std::span<const Row> rows) {
+    OGRLayer* layer = dataset_->CreateLayer(name, &wgs84_, shape, nullptr);
+    errors_.require(layer != nullptr, "making a layer");
+    for (const GeoColumn<Row>& column : columns) {
+      const FieldType type = field_type(column.type);
+      OGRFieldDefn field(column.name.c_str(), type.type);
+      field.SetSubType(type.part);
+      errors_.require(layer->CreateField(&field) == OGRERR_NONE, "making a column");
+    }
+    for (const Row& row : rows) add_row(*layer, columns, row);
+  }
+
+  std::vector<std::uint8_t> finish() {
+    errors_.require(dataset_->CommitTransaction() == OGRERR_NONE, "ending the transaction");
+    dataset_.reset();  // the last bytes are written here
+    std::vector<std::uint8_t> bytes = file_.bytes();
+    errors_.require(!bytes.empty(), "writing");
+    return bytes;
+  }
+
+ private:
+  template <class Row>
+  void add_row(OGRLayer& layer, const std::vector<GeoColumn<Row>>& columns, const Row& row) {
+    const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer.GetLayerDefn()));
+    errors_.require(feature != nullptr, "making a feature");
+    int field = 0;
+    for (const GeoColumn<Row>& column : columns) std::visit(SetField{*feature, field++}, column.value(row));
+    feature->SetGeometryDirectly(shape_of(row).release());
+    errors_.require(layer.CreateFeature(feature.get()) == OGRERR_NONE, "writing a feature");
+  }
+
+  const GdalErrors& errors_;
+  MemoryFile file_;  // outlives the dataset
+  GDALDatasetUniquePtr dataset_;
+  OGRSpatialReference wgs84_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> geopackage(std::span<const GeoFrame> frames, std::span<const GeoDamage> damages,
+                                     const Track& track) {
+  const GdalErrors errors;
+  Package package(errors);
+  package.add("frames", wkbPoint, geo_frame_columns(), frames);
+  package.add("damages", wkbPoint, geo_damage_columns(), damages);
+  const std::vector<TrackStretch> stretches = track_stretches(track);
+  package.add("track", wkbLineString, track_stretch_columns(), std::span<const TrackStretch>(stretches));
+  return package.finish();
+}
+
+}  // namespace roadstereo::io

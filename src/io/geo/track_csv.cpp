@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <span>
+
+#include "io/geo/track_formats.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+constexpr std::array time_names = {"time", "timestamp", "time_s", "time_utc", "datetime", "utc"};
+constexpr std::array lat_names = {"lat", "latitude", "lat_deg"};
+constexpr std::array lon_names = {"lon", "lng", "long", "longitude", "lon_deg"};
+constexpr std::array alt_names = {"alt", "altitude", "ele", "elevation", "alt_m"};
+constexpr std::array heading_names = {"heading", "yaw", "course", "bearing", "heading_deg"};
+
+std::string_view bare(std::string_view cell) {
+  constexpr std::string_view around = " \t\r";
+  const auto trim = [](std::string_view text, std::string_view letters) -> std::string_view {
+    const std::size_t first = text.find_first_not_of(letters);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(letters) - first + 1);
+  };
+  return trim(trim(cell, around), "\"");
+}
+
+/// Cells of a line; separators between quotes are none.
+void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells) {
+  cells.clear();
+  bool quoted = false;
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') quoted = !quoted;
+    if (line[i] != separator || quoted) continue;
+    cells.push_back(bare(line.substr(from, i - from)));
+    from = i + 1;
+  }
+  cells.push_back(bare(line.substr(from)));
+}
+
+/// Lines that say something, with their numbers.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+
+  std::optional<std::string_view> next() {
+    while (!rest_.empty()) {
+      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+      const std::string_view line = rest_.substr(0, end);
+      rest_.remove_prefix(std::min(end + 1, rest_.size()));
+      ++number_;
+      if (line.find_first_not_of(" \t\r") != std::string_view::npos && line.front() != '#') return line;
+    }
+    return std::nullopt;
+  }
+  std::size_t number() const { return number_; }
+
+ private:
+  std::string_view rest_;
+  std::size_t number_ = 0;
+};
+
+struct Column {
+  std::string name;  ///< as in the file
+  std::size_t index = 0;
+};
+
+/// Where the columns are.
+struct Columns {
+  Column time, lat, lon;
+  std::optional<Column> alt, heading;
+  std::size_t count = 0;
+};
+
+std::optional<Column> find_column(const std::vector<std::string_view>& header, std::span<const char* const> names) {
+  const auto same = [](std::string_view one, std::string_view other) {
+    return std::equal(one.begin(), one.end(), other.begin(), other.end(),
+                      [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); });
+  };
+  for (const char* name : names) {
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      if (same(header[i], name)) return Column{std::string(header[i]), i};
+    }
+  }
+  return std::nullopt;
+}
+
+char separator_of(std::string_view header) {
+  constexpr std::string_view separators = ",;\t";
+  return *std::max_element(separators.begin(), separators.end(), [&](char one, char other) {
+    return std::count(header.begin(), header.end(), one) < std::count(header.begin(), header.end(), other);
+  });
+}
+
+Columns find_columns(const std::string& where, const std::vector<std::string_view>& header) {
+  const auto needed = [&](std::span<const char* const> names) {
+    std::optional<Column> column = find_column(header, names);
+    if (!column) {
+      fail(where, ": there is no column ", names.front(),
+           "; a track is GPX, or CSV with the columns time, lat, lon and ", "perhaps alt, heading");
+    }
+    return *std::move(column);
+  };
+  return {needed(time_names),
+          needed(lat_names),
+          needed(lon_names),
+          find_column(header, alt_names),
+          find_column(header, heading_names),
+          header.size()};
+}
+
+/// Nothing where the receiver had no fix.
+std::optional<TrackPoint> read_row(const std::string& where, const Columns& columns,
+                                   const std::vector<std::string_view>& cells) {
+  if (cells.size() != columns.count) {
+    fail(where, ": the line has ", cells.size(), " cells; the line of names has ", columns.count);
+  }
+  if (cells[columns.lat.index].empty() && cells[columns.lon.index].empty()) return std::nullopt;
+  TrackPoint point;
+  point.time_s = parse_any_time(where, columns.time.name, cells[columns.time.index]);
+  point.lat_deg = parse_latitude(where, columns.lat.name, cells[columns.lat.index]);
+  point.lon_deg = parse_longitude(where, columns.lon.name, cells[columns.lon.index]);
+  if (columns.alt) point.alt_m = parse_altitude(where, columns.alt->name, cells[columns.alt->index]);
+  if (columns.heading) point.heading_deg = parse_heading(where, columns.heading->name, cells[columns.heading->index]);
+  return point;
+}
+
+}  // namespace
+
+std::vector<TrackLine> read_track_csv(const TrackText& file) {
+  Lines lines(file.text);
+  const std::optional<std::string_view> header = lines.next();
+  if (!header) fail(file.path, ": the file has no line of names; a track is GPX, or CSV with time, lat, lon");
+  const char separator = separator_of(*header);
+  std::vector<std::string_view> cells;
+  split_cells(*header, separator, cells);
+  const Columns columns = find_columns(name_line(file.path, lines.number()), cells);
+  std::vector<TrackLine> points;
+  while (const std::optional<std::string_view> line = lines.next()) {
+    split_cells(*line, separator, cells);
+    const std::optional<TrackPoint> point = read_row(name_line(file.path, lines.number()), columns, cells);
+    if (point) points.push_back({*point, lines.number()});
+  }
+  return points;
+}
+
+}  // namespace roadstereo::io

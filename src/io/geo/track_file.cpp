@@ -1,0 +1,54 @@
+#include <algorithm>
+
+#include "io/file_bytes.hpp"
+#include "io/geo/track_formats.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{1} << 28U;  // a day at 10 Hz is some 100 MB of GPX
+
+TrackText read_text(const std::string& path) {
+  const std::vector<std::uint8_t> bytes = read_file(path, most_bytes);
+  if (std::find(bytes.begin(), bytes.end(), std::uint8_t{0}) != bytes.end()) {
+    fail(path, ": this is not a text file; a track is one: GPX or CSV");
+  }
+  std::string text(bytes.begin(), bytes.end());
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // the byte order mark that some editors leave
+  return {path, std::move(text)};
+}
+
+std::vector<TrackLine> read_lines(const TrackText& file) {
+  const std::size_t first = file.text.find_first_not_of(" \t\r\n");
+  const bool xml = first != std::string::npos && file.text[first] == '<';
+  return xml ? read_gpx(file) : read_track_csv(file);
+}
+
+void check_times(const std::string& path, const std::vector<TrackLine>& lines) {
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const double step = lines[i].point.time_s - lines[i - 1].point.time_s;
+    if (step < 0) {
+      fail(name_line(path, lines[i].line), ": the time is ", -step, " s before that of line ", lines[i - 1].line,
+           "; times must increase");
+    }
+  }
+  if (lines.empty()) fail(path, ": the track has no points with a time; at least two are needed");
+  if (lines.front().point.time_s == lines.back().point.time_s) {
+    fail(path, ": the track has ", lines.size(), " point(s) of one time; at least two times are needed");
+  }
+}
+
+}  // namespace
+
+Track read_track(const std::string& path, const TrackOptions& options) {
+  options.validate();
+  const std::vector<TrackLine> lines = read_lines(read_text(path));
+  check_times(path, lines);
+  std::vector<TrackPoint> points;
+  points.reserve(lines.size());
+  for (const TrackLine& line : lines) points.push_back(line.point);
+  return Track(std::move(points), options);
+}
+
+}  // namespace roadstereo::io

@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <array>
+#include <pugixml.hpp>
+
+#include "io/geo/track_formats.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+/// The name without its namespace's prefix.
+std::string_view local_name(std::string_view name) {
+  return name.substr(name.find(':') + 1);  // npos + 1 is 0
+}
+
+bool is_called(const pugi::xml_node& node, std::string_view name) {
+  return local_name(node.name()) == name;
+}
+
+pugi::xml_node child_called(const pugi::xml_node& node, std::string_view name) {
+  return node.find_child([name](const pugi::xml_node& child) { return is_called(child, name); });
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view white_space = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(white_space);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(white_space) - first + 1);
+}
+
+std::string_view text_of(const pugi::xml_node& node) {
+  return trimmed(node.child_value());
+}
+
+/// Lines of places that are asked for in their order.
+class LineCount {
+ public:
+  explicit LineCount(std::string_view text) : text_(text) {}
+
+  std::size_t line_at(std::ptrdiff_t offset) {
+    const std::size_t to = std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0)), text_.size());
+    for (; at_ < to; ++at_) line_ += text_[at_] == '\n' ? 1 : 0;
+    return line_;
+  }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::size_t line_ = 1;
+};
+
+std::string_view attribute(const std::string& where, const pugi::xml_node& node, const char* name) {
+  const pugi::xml_attribute found = node.attribute(name);
+  if (!found) fail(where, ": this ", node.name(), " has no ", name);
+  return found.value();
+}
+
+/// GPX 1.0 has <course> in the point, 1.1 has it in extensions of many makers.
+double heading_of(const std::string& where, const pugi::xml_node& node) {
+  for (const char* name : {"heading", "yaw", "course"}) {
+    const pugi::xml_node found = node.find_node([name](const pugi::xml_node& each) { return is_called(each, name); });
+    if (found) return parse_heading(where, name, text_of(found));
+  }
+  return parse_heading(where, "course", "");
+}
+
+TrackLine read_point(const std::string& path, const pugi::xml_node& node, LineCount& lines) {
+  TrackLine read;
+  read.line = lines.line_at(node.offset_debug());
+  const std::string where = name_line(path, read.line);
+  read.point.lat_deg = parse_latitude(where, "lat", attribute(where, node, "lat"));
+  read.point.lon_deg = parse_longitude(where, "lon", attribute(where, node, "lon"));
+  const pugi::xml_node time = child_called(node, "time");
+  if (!time) fail(where, ": this trkpt has no <time>; without it no frame can be placed");
+  read.point.time_s = parse_date_time(where, "time", text_of(time), true);
+  read.point.alt_m = parse_altitude(where, "ele", text_of(child_called(node, "ele")));
+  read.point.heading_deg = heading_of(where, node);
+  return read;
+}
+
+pugi::xml_document parse(const TrackText& file) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result result = document.load_buffer(file.text.data(), file.text.size());
+  if (!result) {
+    fail(name_line(file.path, LineCount(file.text).line_at(result.offset)),
+         ": this is no valid XML: ", result.description());
+  }
+  return document;
+}
+
+}  // namespace
+
+std::vector<TrackLine> read_gpx(const TrackText& file) {
+  const pugi::xml_document document = parse(file);
+  const pugi::xml_node root = document.document_element();
+  if (!is_called(root, "gpx"))
+    fail(file.path, ": this is <", root.name(), ">, not GPX or CSV; a track is one of these");
+  LineCount lines(file.text);
+  std::vector<std::vector<TrackLine>> segments;
+  for (const pugi::xml_node& track : root.children()) {
+    if (!is_called(track, "trk")) continue;
+    for (const pugi::xml_node& segment : track.children()) {
+      if (!is_called(segment, "trkseg")) continue;
+      std::vector<TrackLine> points;
+      for (const pugi::xml_node& node : segment.children()) {
+        if (is_called(node, "trkpt")) points.push_back(read_point(file.path, node, lines));
+      }
+      if (!points.empty()) segments.push_back(std::move(points));
+    }
+  }
+  std::stable_sort(segments.begin(), segments.end(), [](const auto& one, const auto& other) {
+    return one.front().point.time_s < other.front().point.time_s;
+  });
+  std::vector<TrackLine> all;
+  for (const std::vector<TrackLine>& segment : segments) all.insert(all.end(), segment.begin(), segment.end());
+  return all;
+}
+
+}  // namespace roadstereo::io

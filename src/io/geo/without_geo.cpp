@@ -1,0 +1,37 @@
+// Stands in where the program is built without GDAL, GeographicLib and pugixml.
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/geo_files.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+[[noreturn]] void fail_without_geo() {
+  fail("this program was built without tracks and maps; they need the packages libgdal-dev, libgeographiclib-dev ",
+       "(libgeographic-dev on Ubuntu 22.04) and libpugixml-dev, and CMake's -DROADSTEREO_GEO=ON");
+}
+
+}  // namespace
+
+Track::Track(std::vector<TrackPoint> /*points*/, const TrackOptions& /*options*/) {
+  fail_without_geo();
+}
+
+Track read_track(const std::string& /*path*/, const TrackOptions& /*options*/) {
+  fail_without_geo();
+}
+
+std::optional<Place> place_at(const Track& /*track*/, double /*time_s*/) {
+  fail_without_geo();
+}
+
+std::optional<Place> offset_place(const Place& /*from*/, double /*right_m*/, double /*forward_m*/, double /*up_m*/) {
+  fail_without_geo();
+}
+
+std::vector<std::uint8_t> geopackage(std::span<const GeoFrame> /*frames*/, std::span<const GeoDamage> /*damages*/,
+                                     const Track& /*track*/) {
+  fail_without_geo();
+}
+
+}  // namespace roadstereo::io
