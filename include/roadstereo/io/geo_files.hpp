@@ -37,7 +37,8 @@ struct GeoDamage {
 };
 
 // RFC 7946: WGS84, longitude before latitude, seven decimals (a centimetre); the altitude where it is known. A feature
-// without a place has the geometry null. Properties are named with their units and null where they are not known.
+// without a place has the geometry null; its id is its number from 1. Properties are named with their units and null
+// where they are not known.
 
 /// Properties: frame, name, time_utc (ISO 8601), time_s, status, damages, heading_deg, alt_m, roll_deg, height_m,
 /// sigma_d_px, valid_share.

@@ -32,15 +32,18 @@ Json geometry(const std::optional<Place>& place) {
   return {{"type", "Point"}, {"coordinates", position}};
 }
 
-/// A feature to the line, so that files of two runs can be compared.
+/// A feature to the line, so that files of two runs can be compared. Numbered: GDAL takes a property "id", which counts
+/// within a frame, for the feature's own unless it has one.
 template <class Row>
 std::string features(std::span<const Row> rows, const std::vector<GeoColumn<Row>>& columns) {
   std::string text = "{\"type\": \"FeatureCollection\", \"features\": [";
   const char* before = "\n";
+  std::int64_t id = 0;
   for (const Row& row : rows) {
     Json properties = Json::object();
     for (const GeoColumn<Row>& column : columns) properties[column.name] = std::visit(ToJson{}, column.value(row));
-    const Json feature = {{"type", "Feature"}, {"geometry", geometry(row.place)}, {"properties", properties}};
+    const Json feature = {
+        {"type", "Feature"}, {"id", ++id}, {"geometry", geometry(row.place)}, {"properties", properties}};
     text += before + feature.dump(-1, ' ', false, Json::error_handler_t::replace);
     before = ",\n";
   }

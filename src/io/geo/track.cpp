@@ -3,7 +3,9 @@
 #include <GeographicLib/Geodesic.hpp>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <utility>
 
 #include "io/geo/travel_heading.hpp"
 #include "io/geo/utc_time.hpp"

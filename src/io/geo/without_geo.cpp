@@ -1,5 +1,7 @@
 // Stands in where the program is built without GDAL, GeographicLib and pugixml.
 
+#include <utility>
+
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/geo_files.hpp"
 
@@ -13,7 +15,8 @@ namespace {
 
 }  // namespace
 
-Track::Track(std::vector<TrackPoint> /*points*/, const TrackOptions& /*options*/) {
+Track::Track(std::vector<TrackPoint> points, const TrackOptions& options)
+    : points_(std::move(points)), options_(options) {
   fail_without_geo();
 }
 
