@@ -7,8 +7,9 @@
 
 namespace roadstereo::io {
 
-// Where the camera was. WGS84 throughout; angles in degrees, as in the files. Needs a build with GDAL, GeographicLib
-// and pugixml (CMake's ROADSTEREO_GEO); without it every function here throws Error naming the packages.
+// Where the left camera was: the receiver is taken to be there. WGS84 throughout; angles in degrees, as in the files.
+// Needs a build with GDAL, GeographicLib and pugixml (CMake's ROADSTEREO_GEO); without it every function here throws
+// Error naming the packages.
 
 /// One fix of a receiver.
 struct TrackPoint {
