@@ -10,11 +10,13 @@ packages=(build-essential cmake ninja-build pkg-config
           libopencv-dev libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
           libeigen3-dev libnanoflann-dev
           libgdal-dev libpugixml-dev "$geographiclib"
+          libgstreamer1.0-dev librosbag-storage-dev
           libgtest-dev libbenchmark-dev)
 case "${1:-}" in
   "") ;;
   --checks) packages+=(clang-format-14 clang-tidy g++-aarch64-linux-gnu qemu-user googletest
-                       chromium chromium-driver python3-selenium gdal-bin) ;;
+                       chromium chromium-driver python3-selenium gdal-bin
+                       libsensor-msgs-dev gstreamer1.0-plugins-base) ;;
   *) echo "usage: $0 [--checks]" >&2; exit 2 ;;
 esac
 

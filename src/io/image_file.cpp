@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "io/encoded_frame.hpp"
 #include "io/file_bytes.hpp"
 #include "io/frame_mat.hpp"
 #include "io/image_check.hpp"
@@ -139,8 +140,7 @@ std::uint16_t kitti_value(float disparity) {
 
 }  // namespace
 
-Frame read_frame(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_file(path, most_bytes);
+Frame decode_frame(const std::string& path, const std::vector<std::uint8_t>& bytes) {
   if (is_netpbm(bytes)) return read_netpbm(path, bytes);
   if (!is_png(bytes) && !is_jpeg(bytes) && !is_tiff(bytes)) {
     fail(path, ": this is not a PNG, JPEG, TIFF, PGM or PPM image");
@@ -150,6 +150,10 @@ Frame read_frame(const std::string& path) {
   const cv::Mat mat = decode_checked(path, bytes, least_side, header);
   check_frame_depth(path, mat);
   return frame_from(mat, order_of(mat));
+}
+
+Frame read_frame(const std::string& path) {
+  return decode_frame(path, read_file(path, most_bytes));
 }
 
 double find_white_level(const FrameView& left, const FrameView& right) {

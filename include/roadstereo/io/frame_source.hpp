@@ -14,7 +14,7 @@ namespace roadstereo::io {
 
 /// How one picture holds both views.
 enum class StereoLayout {
-  automatic,     ///< from the picture's shape: wider than 2:1 is side by side, else one above the other
+  automatic,     ///< the one whose views have the shape of a camera's, 5:4 … 2.4:1; Error where none has
   side_by_side,  ///< left view in the left half
   top_bottom     ///< left view in the upper half
 };
@@ -26,6 +26,8 @@ struct SourceOptions {
   StereoLayout layout = StereoLayout::automatic;  ///< of videos and cameras
   std::vector<std::string> topics;                ///< left and right image topic of a ROS bag; empty: the only two
   double max_time_difference_s = 0.005;           ///< between the views of a pair; more is refused, 0 … 10
+  int camera_width = 2560;  ///< of the whole picture, asked of a V4L2 camera, which takes its nearest; 64 … 16384
+  int camera_height = 720;  ///< likewise
   double rate_hz = 0;  ///< pairs a second where the source has no times, 0 … 10000; 0: the source's own, or no times
 
   /// Throws Error naming the first option that is out of range.
@@ -78,7 +80,8 @@ class FrameSource {
 ///   video          both views in one picture, see StereoLayout
 ///   two names      left and right: two folders or two videos
 ///   /dev/video*    V4L2 camera with both views in one picture
-///   GStreamer      a pipeline: a text with " ! "
+///   GStreamer      a pipeline: a text with " ! "; its end, " ! videoconvert ! appsink drop=true max-buffers=2
+///                  sync=false", is added when it has no appsink
 ///   .bag           ROS 1 bag with two image topics
 /// Throws Error when it is none of these or cannot be opened.
 std::unique_ptr<FrameSource> open_source(const std::vector<std::string>& names, const SourceOptions& options = {});

@@ -96,6 +96,8 @@ StereoLayout stereo_layout(const std::string& name) {
 void SourceOptions::validate() const {
   require_range("source", "max_time_difference_s", max_time_difference_s, 0.0, 10.0);
   require_range("source", "rate_hz", rate_hz, 0.0, 10000.0);
+  require_range("source", "camera_width", camera_width, 64, 16384);
+  require_range("source", "camera_height", camera_height, 64, 16384);
   if (!topics.empty() && topics.size() != 2) {
     fail("source.topics has ", topics.size(), " names; it must be the left and the right image topic");
   }

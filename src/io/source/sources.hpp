@@ -14,13 +14,16 @@ std::unique_ptr<FrameSource> open_two_folders(const std::string& left, const std
                                               const SourceOptions& options);
 std::unique_ptr<FrameSource> open_list(const std::string& file, const SourceOptions& options);
 
-/// Both views in one picture.
+/// Both views in one picture. Times are those of a constant rate, `rate_hz` or the video's own.
 std::unique_ptr<FrameSource> open_video(const std::string& file, const SourceOptions& options);
+/// Paired by number; what one has more than the other is refused.
 std::unique_ptr<FrameSource> open_two_videos(const std::string& left, const std::string& right,
                                              const SourceOptions& options);
 
-/// V4L2, both views in one picture.
+/// V4L2, both views in one picture; `next` throws Error when the camera is gone.
 std::unique_ptr<FrameSource> open_camera(const std::string& device, const SourceOptions& options);
+/// Both views in one picture, times are those of arrival. Adds " ! videoconvert ! appsink drop=true max-buffers=2
+/// sync=false" to a pipeline without appsink. Where the pipeline ends, `next` returns nothing.
 std::unique_ptr<FrameSource> open_gstreamer(const std::string& pipeline, const SourceOptions& options);
 
 /// ROS 1. Throws Error, too, when the program was built without it.

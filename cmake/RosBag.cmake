@@ -1,0 +1,35 @@
+# ROS 1 bags: ROSBAG_FOUND, ROSBAG_INCLUDE_DIRS, ROSBAG_LIBRARIES (names, so that an installed package links them by name).
+# rosbag_storage's own files for pkg-config and CMake name packages that Debian does not have.
+set(ROADSTEREO_ROSBAG AUTO CACHE STRING "Read ROS 1 bags: AUTO (when librosbag-storage-dev is there), ON, OFF")
+set_property(CACHE ROADSTEREO_ROSBAG PROPERTY STRINGS AUTO ON OFF)
+
+set(ROSBAG_FOUND FALSE)
+if(NOT ROADSTEREO_ROSBAG STREQUAL "OFF")
+  set(ROSBAG_FOUND TRUE)
+  set(ROSBAG_INCLUDE_DIRS)
+  # Each of these packages has its headers in a folder of its own.
+  foreach(header rosbag/bag.h ros/serialization.h console_bridge/console.h boost/format.hpp pluginlib/class_loader.hpp
+                 class_loader/class_loader.hpp rcpputils/shared_library.hpp rcutils/shared_library.h
+                 ament_index_cpp/get_package_prefix.hpp)
+    get_filename_component(package ${header} DIRECTORY)
+    find_path(ROSBAG_${package}_INCLUDE_DIR ${header} PATH_SUFFIXES ${package})
+    mark_as_advanced(ROSBAG_${package}_INCLUDE_DIR)
+    if(ROSBAG_${package}_INCLUDE_DIR)
+      list(APPEND ROSBAG_INCLUDE_DIRS ${ROSBAG_${package}_INCLUDE_DIR})
+    else()
+      set(ROSBAG_FOUND FALSE)
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES ROSBAG_INCLUDE_DIRS)
+  set(ROSBAG_LIBRARIES rosbag_storage roscpp_serialization rostime cpp_common class_loader console_bridge)
+  foreach(library ${ROSBAG_LIBRARIES})
+    find_library(ROSBAG_${library}_LIBRARY ${library})
+    mark_as_advanced(ROSBAG_${library}_LIBRARY)
+    if(NOT ROSBAG_${library}_LIBRARY)
+      set(ROSBAG_FOUND FALSE)
+    endif()
+  endforeach()
+  if(ROADSTEREO_ROSBAG STREQUAL "ON" AND NOT ROSBAG_FOUND)
+    message(FATAL_ERROR "ROADSTEREO_ROSBAG is ON, but librosbag-storage-dev is not installed")
+  endif()
+endif()

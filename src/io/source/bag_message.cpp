@@ -1,0 +1,175 @@
+#include "io/source/bag_message.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <opencv2/imgproc.hpp>
+#include <span>
+#include <string_view>
+
+#include "io/encoded_frame.hpp"
+#include "io/frame_mat.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "messages are read as they lie in memory");
+
+class MessageReader {
+ public:
+  MessageReader(const std::string& source, std::span<const std::uint8_t> rest) : source_(source), rest_(rest) {}
+
+  std::span<const std::uint8_t> bytes(std::size_t count) {
+    if (count > rest_.size()) fail(source_, ": the message is cut short");
+    const auto taken = rest_.first(count);
+    rest_ = rest_.subspan(count);
+    return taken;
+  }
+  template <class Value>
+  Value value() {
+    Value value{};
+    std::memcpy(&value, bytes(sizeof value).data(), sizeof value);
+    return value;
+  }
+  template <class Value, int Count>
+  void values(Value (&target)[Count]) {
+    std::memcpy(target, bytes(sizeof target).data(), sizeof target);
+  }
+  std::span<const std::uint8_t> list(std::size_t bytes_each = 1) {
+    return bytes(bytes_each * std::size_t{value<std::uint32_t>()});
+  }
+  std::string text() {
+    const auto letters = list();
+    return {letters.begin(), letters.end()};
+  }
+  std::int64_t header() {
+    value<std::uint32_t>();  // sequence number
+    const std::int64_t seconds = value<std::uint32_t>();
+    const std::int64_t nanoseconds = value<std::uint32_t>();
+    text();  // frame_id
+    return 1'000'000'000 * seconds + nanoseconds;
+  }
+  int side(const char* name) {
+    constexpr std::uint32_t most = 65535;
+    const auto pixels = value<std::uint32_t>();
+    if (pixels > most) fail(source_, ": ", name, " is ", pixels, "; it must be at most ", most);
+    return static_cast<int>(pixels);
+  }
+
+ private:
+  const std::string& source_;
+  std::span<const std::uint8_t> rest_;
+};
+
+constexpr int no_mosaic = -1;
+
+struct Encoding {
+  std::string_view name;
+  int type;            // OpenCV's, as the samples lie in the message
+  ChannelOrder order;  // of the frame
+  int mosaic;          // OpenCV's conversion of a colour mosaic
+};
+
+constexpr std::array encodings = {
+    Encoding{"mono8", CV_8UC1, ChannelOrder::grey, no_mosaic},
+    Encoding{"8UC1", CV_8UC1, ChannelOrder::grey, no_mosaic},
+    Encoding{"mono16", CV_16UC1, ChannelOrder::grey, no_mosaic},
+    Encoding{"16UC1", CV_16UC1, ChannelOrder::grey, no_mosaic},
+    Encoding{"bgr8", CV_8UC3, ChannelOrder::bgr, no_mosaic},
+    Encoding{"8UC3", CV_8UC3, ChannelOrder::bgr, no_mosaic},
+    Encoding{"rgb8", CV_8UC3, ChannelOrder::rgb, no_mosaic},
+    Encoding{"bgra8", CV_8UC4, ChannelOrder::bgra, no_mosaic},
+    Encoding{"rgba8", CV_8UC4, ChannelOrder::rgba, no_mosaic},
+    Encoding{"bgr16", CV_16UC3, ChannelOrder::bgr, no_mosaic},
+    Encoding{"rgb16", CV_16UC3, ChannelOrder::rgb, no_mosaic},
+    Encoding{"bgra16", CV_16UC4, ChannelOrder::bgra, no_mosaic},
+    Encoding{"rgba16", CV_16UC4, ChannelOrder::rgba, no_mosaic},
+    // OpenCV calls a mosaic by its second row's second and third pixel.
+    Encoding{"bayer_rggb8", CV_8UC1, ChannelOrder::bgr, cv::COLOR_BayerBG2BGR},
+    Encoding{"bayer_bggr8", CV_8UC1, ChannelOrder::bgr, cv::COLOR_BayerRG2BGR},
+    Encoding{"bayer_gbrg8", CV_8UC1, ChannelOrder::bgr, cv::COLOR_BayerGR2BGR},
+    Encoding{"bayer_grbg8", CV_8UC1, ChannelOrder::bgr, cv::COLOR_BayerGB2BGR},
+    Encoding{"bayer_rggb16", CV_16UC1, ChannelOrder::bgr, cv::COLOR_BayerBG2BGR},
+    Encoding{"bayer_bggr16", CV_16UC1, ChannelOrder::bgr, cv::COLOR_BayerRG2BGR},
+    Encoding{"bayer_gbrg16", CV_16UC1, ChannelOrder::bgr, cv::COLOR_BayerGR2BGR},
+    Encoding{"bayer_grbg16", CV_16UC1, ChannelOrder::bgr, cv::COLOR_BayerGB2BGR},
+};
+
+const Encoding& find_encoding(const std::string& source, const std::string& name) {
+  const auto found =
+      std::find_if(encodings.begin(), encodings.end(), [&](const Encoding& e) { return e.name == name; });
+  if (found != encodings.end()) return *found;
+  fail(source, ": the encoding is \"", name, "\"; mono, rgb, bgr, rgba, bgra and bayer of 8 or 16 bits are taken");
+}
+
+void swap_bytes(Frame& frame) {
+  for (std::size_t i = 0; i + 1 < frame.bytes.size(); i += 2) std::swap(frame.bytes[i], frame.bytes[i + 1]);
+}
+
+}  // namespace
+
+std::int64_t stamp_ns(const std::string& source, const std::vector<std::uint8_t>& message) {
+  return MessageReader(source, message).header();
+}
+
+Frame read_image(const std::string& source, const std::vector<std::uint8_t>& message) {
+  MessageReader reader(source, message);
+  reader.header();
+  const int height = reader.side("height");
+  const int width = reader.side("width");
+  const Encoding& encoding = find_encoding(source, reader.text());
+  const bool big_endian = reader.value<std::uint8_t>() != 0;
+  const std::size_t step = reader.value<std::uint32_t>();
+  const auto data = reader.list();
+  const std::size_t row = static_cast<std::size_t>(width) * static_cast<std::size_t>(CV_ELEM_SIZE(encoding.type));
+  if (width == 0 || height == 0 || step < row || data.size() < step * static_cast<std::size_t>(height)) {
+    fail(source, ": ", data.size(), " bytes in rows of ", step, " are no picture of ", width, "×", height, " pixels (",
+         encoding.name, ")");
+  }
+  const cv::Mat samples(height, width, encoding.type, const_cast<std::uint8_t*>(data.data()), step);
+  const ChannelOrder order = encoding.mosaic == no_mosaic ? encoding.order : ChannelOrder::grey;
+  Frame frame = frame_from(samples, order);
+  if (big_endian && frame.sample == SampleType::u16) swap_bytes(frame);
+  if (encoding.mosaic == no_mosaic) return frame;
+  cv::Mat colours;
+  cv::cvtColor(mat_over(frame.view()), colours, encoding.mosaic);
+  return frame_from(colours, encoding.order);
+}
+
+Frame read_compressed_image(const std::string& source, const std::vector<std::uint8_t>& message) {
+  MessageReader reader(source, message);
+  reader.header();
+  reader.text();  // format: free text; the bytes tell
+  const auto data = reader.list();
+  return decode_frame(source, {data.begin(), data.end()});
+}
+
+CameraInfo read_camera_info(const std::string& source, const std::vector<std::uint8_t>& message) {
+  MessageReader reader(source, message);
+  reader.header();
+  CameraInfo camera;
+  camera.source = source;
+  camera.height = reader.side("height");
+  camera.width = reader.side("width");
+  camera.distortion_model = reader.text();
+  const auto distortion = reader.list(sizeof(double));
+  camera.d.resize(distortion.size() / sizeof(double));
+  if (!distortion.empty()) std::memcpy(camera.d.data(), distortion.data(), distortion.size());
+  reader.values(camera.k.val);
+  reader.values(camera.r.val);
+  reader.values(camera.p.val);
+  const auto binning_x = reader.value<std::uint32_t>();
+  const auto binning_y = reader.value<std::uint32_t>();
+  const auto left = reader.value<std::uint32_t>();
+  const auto top = reader.value<std::uint32_t>();
+  if (binning_x > 1 || binning_y > 1 || left > 0 || top > 0) {
+    fail(source,
+         ": the pictures are binned or a part of the sensor's, which is not taken; a calibration file of these ",
+         "pictures is");
+  }
+  return camera;
+}
+
+}  // namespace roadstereo::io

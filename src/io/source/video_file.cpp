@@ -1,0 +1,74 @@
+#include "io/source/video_file.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <opencv2/videoio/registry.hpp>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check_ordinary_file(const std::string& name) {
+  std::error_code error;
+  const fs::file_status status = fs::status(name, error);
+  if (status.type() == fs::file_type::not_found) fail(name, ": the file does not exist");
+  if (error) fail(name, ": the file cannot be read: ", error.message());
+  if (!fs::is_regular_file(status)) fail(name, ": this is not an ordinary file");
+  if (fs::file_size(name, error) == 0) fail(name, ": the file is empty");
+}
+
+bool is_grey(const cv::VideoCapture& capture) {
+  const auto format = static_cast<int>(capture.get(cv::CAP_PROP_CODEC_PIXEL_FORMAT));
+  return format == cv::VideoWriter::fourcc('Y', '8', '0', '0');
+}
+
+}  // namespace
+
+VideoFile::VideoFile(std::string name) : name_(std::move(name)) {
+  if (!cv::videoio_registry::hasBackend(cv::CAP_FFMPEG)) {
+    fail(name_, ": this OpenCV was built without FFmpeg, which reads videos");
+  }
+  check_ordinary_file(name_);
+  // An absolute path, since FFmpeg takes "a:b.mp4" for a protocol.
+  if (!capture_.open(fs::absolute(name_).string(), cv::CAP_FFMPEG)) {
+    fail(name_,
+         ": the video cannot be opened; it is damaged, was cut short while it was written, or is of a kind that ",
+         "FFmpeg does not know here");
+  }
+  width_ = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH));
+  height_ = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT));
+  if (width_ <= 0 || height_ <= 0) fail(name_, ": there are no pictures in the video");
+  constexpr double most_hz = 10000;  // beyond are the ticks of a clock
+  const double rate = capture_.get(cv::CAP_PROP_FPS);
+  if (rate > 0 && rate <= most_hz) rate_hz_ = rate;
+  constexpr double most_pictures = 1e12;
+  const double pictures = capture_.get(cv::CAP_PROP_FRAME_COUNT);
+  if (pictures > 0 && pictures < most_pictures) stated_ = std::llround(pictures);
+  grey_ = is_grey(capture_);
+}
+
+bool VideoFile::grab() {
+  if (!capture_.grab()) return false;
+  ++grabbed_;
+  return true;
+}
+
+cv::Mat VideoFile::picture() {
+  cv::Mat picture;
+  if (!capture_.retrieve(picture)) return {};
+  if (!grey_ || picture.channels() == 1) return picture;
+  cv::Mat grey;
+  cv::extractChannel(picture, grey, 0);
+  return grey;
+}
+
+std::int64_t VideoFile::missing_pictures() const {
+  constexpr std::int64_t tolerated = 2;
+  const std::int64_t missing = stated_.value_or(0) - grabbed_;
+  return missing > tolerated ? missing : 0;
+}
+
+}  // namespace roadstereo::io
