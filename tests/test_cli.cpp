@@ -116,6 +116,30 @@ TEST_F(CommandLine, SynthFramesAreNumbered) {
   EXPECT_NE(read_text(folder_ / "flight/left/000000.png"), read_text(folder_ / "flight/left/000001.png"));
 }
 
+TEST_F(CommandLine, SynthFliesAsItIsTold) {
+  const Outcome outcome = run(
+      "synth --scene flat --frames 3 --size 64x36 --flight roll=8,period=4,climb=0,jump=2,jump_roll=-3,jump_pitch=0 "
+      "--rate 20 --output flight");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(read_text(folder_ / "flight/times.txt"), "0.000000\n0.050000\n0.100000\n");
+  const double roll = json_file("flight/truth/000000.json")["rig"]["roll_deg"];
+  const double quarter = json_file("flight/truth/000001.json")["rig"]["roll_deg"];
+  const double jumped = json_file("flight/truth/000002.json")["rig"]["roll_deg"];
+  EXPECT_NEAR(quarter - roll, 8, 1e-9);
+  EXPECT_NEAR(jumped - roll, -3, 1e-9);
+}
+
+TEST_F(CommandLine, SynthSaysWhatIsWrongWithAFlight) {
+  const std::string synth = "synth --frames 9 --size 64x36 --output flight --flight ";
+  expect_complaint(run(synth + "rol=3"), "knows no 'rol'");
+  expect_complaint(run(synth + "roll"), "key=value");
+  expect_complaint(run(synth + "roll=3,step=fast"), "'fast' is no value for step");
+  expect_complaint(run(synth + "roll=90"), "roll_deg is 90; it must be between 0 and 45");
+  expect_complaint(run(synth + "jump=8,jump_climb=-9"), "camera_height_m is -");
+  expect_complaint(run(synth + "default --rate 0"), "--rate is 0");
+  EXPECT_TRUE(names_in(folder_).empty());
+}
+
 TEST_F(CommandLine, SynthIsRepeatable) {
   for (const std::string name : {"one --threads 1", "two --threads 2"}) {
     ASSERT_EQ(run("synth --seed 9 --size 160x120 --output " + name).exit_code, 0);

@@ -4,9 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "commands.hpp"
+#include "flight_path.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/output_folder.hpp"
 #include "scene_options.hpp"
@@ -17,12 +20,16 @@ namespace roadstereo::cli {
 namespace {
 
 constexpr int most_frames = 1'000'000;
+constexpr double least_rate_hz = 0.001;
+constexpr double largest_rate_hz = 100'000;
 
 /// The command line of `synth`.
 struct Arguments {
   std::string output;
   SceneOptions scene;
   int frames = 1;
+  std::string flight;  ///< empty: a little sway
+  double rate_hz = 30;
   int threads = 0;
   bool list = false;
   bool quiet = false;
@@ -38,16 +45,42 @@ std::string made_text(const Arguments& arguments, const synth::Scene& scene, con
                      scene.rig.height, folder.path().string());
 }
 
+/// The scenes of the frames, one after the other.
+class Frames {
+ public:
+  Frames(synth::Scene first, const Arguments& arguments) : first_(std::move(first)) {
+    if (arguments.flight.empty()) return;
+    path_ = parse_flight(arguments.flight);
+    // A flight that ends in the ground is refused before anything is rendered.
+    for (int frame = 0; frame < arguments.frames; ++frame) scene(frame);
+  }
+
+  synth::Scene scene(int frame) const {
+    if (path_) return synth::flight_frame(first_, *path_, frame);
+    return frame == 0 ? first_ : synth::next_frame(first_, frame);
+  }
+
+ private:
+  synth::Scene first_;
+  std::optional<synth::FlightPath> path_;
+};
+
 void make_frames(const Arguments& arguments) {
   if (arguments.output.empty()) fail("synth needs --output DIR (see roadstereo synth --help)");
   if (arguments.frames < 1 || arguments.frames > most_frames) {
     fail("--frames is ", arguments.frames, "; it must be between 1 and ", most_frames);
   }
+  if (!(arguments.rate_hz >= least_rate_hz && arguments.rate_hz <= largest_rate_hz)) {
+    fail("--rate is ", arguments.rate_hz, "; it must be between ", least_rate_hz, " and ", largest_rate_hz,
+         " frames per second");
+  }
   const synth::Scene first = make_scene(arguments.scene);
+  const Frames frames(first, arguments);
   io::OutputFolder folder(arguments.output);
   folder.add("calibration.yaml", plain_yaml(first.rig.calibration()));
+  if (arguments.frames > 1) folder.add("times.txt", frame_times(arguments.frames, arguments.rate_hz));
   for (int frame = 0; frame < arguments.frames; ++frame) {
-    const synth::Scene scene = frame == 0 ? first : synth::next_frame(first, frame);
+    const synth::Scene scene = frames.scene(frame);
     const synth::SyntheticPair pair = synth::render(scene, arguments.threads);
     add_synthetic_pair(scene, pair, {frame, arguments.frames}, folder);
   }
@@ -59,21 +92,27 @@ constexpr const char* synth_footer =
     R"(Into the output folder: left.png, right.png, calibration.yaml, truth_disparity.tiff (32-bit float, NaN
 above the horizon), truth_visible.png (255 where the right camera sees the point too), truth_labels.png
 (16 bit, id of the damage), truth.json (plane, roll, rig, damages). With several frames left/000000.png
-and so on.
+and so on, and times.txt (seconds, a line per frame).
 
 Examples:
   roadstereo synth --scene demo --output road
-  roadstereo synth --seed 7 --degraded --frames 10 --output flight)";
+  roadstereo synth --seed 7 --degraded --frames 10 --output drive
+  roadstereo synth --frames 300 --flight roll=6,pitch=4,climb=0.5,jump=150 --output flight)";
 
 }  // namespace
 
 void add_synth(CLI::App& app) {
   CLI::App* command = app.add_subcommand("synth", "Make stereo pairs of a road with exact truth");
-  command->footer(synth_footer);
+  command->footer(flight_help() + "\n" + synth_footer);
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("--output", arguments->output, "Folder for the pairs; made when it is missing")->type_name("DIR");
   add_scene_options(*command, arguments->scene);
   command->add_option("--frames", arguments->frames, "Pairs along the road")->type_name("N")->capture_default_str();
+  command->add_option("--flight", arguments->flight, "How the rig rolls, pitches and climbs; a little sway without")
+      ->type_name("SPEC");
+  command->add_option("--rate", arguments->rate_hz, "Frames per second, for times.txt")
+      ->type_name("HZ")
+      ->capture_default_str();
   command->add_option("--threads", arguments->threads, "Worker threads; 0 takes all cores")
       ->type_name("N")
       ->capture_default_str();

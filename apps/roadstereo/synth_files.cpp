@@ -47,4 +47,10 @@ std::string plain_yaml(const StereoCalibration& calibration) {
       calibration.height);
 }
 
+std::string frame_times(int frames, double rate_hz) {
+  std::string text;
+  for (int frame = 0; frame < frames; ++frame) text += fmt::format("{:.6f}\n", frame / rate_hz);
+  return text;
+}
+
 }  // namespace roadstereo::cli

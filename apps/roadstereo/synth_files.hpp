@@ -23,4 +23,7 @@ void add_synthetic_pair(const synth::Scene& scene, const synth::SyntheticPair& p
 /// A calibration as plain YAML.
 std::string plain_yaml(const StereoCalibration& calibration);
 
+/// The time of every frame in seconds, a line each; the first is at 0.
+std::string frame_times(int frames, double rate_hz);
+
 }  // namespace roadstereo::cli

@@ -129,4 +129,29 @@ Scene random_scene(std::uint64_t seed, bool degraded = false);
 /// The road with its damage stays where it is; frame 0 is the scene itself.
 Scene next_frame(const Scene& scene, int frame, double step_m = 0.1);
 
+/// How a rig flies along the road, relative to the pose it has in the scene. Rolling and pitching are sine waves, the
+/// height rises from the scene's and comes back; periods are in frames. From each frame of `jumps` on the pose is
+/// another one at once, as after a bump, a turn or a cut: the first jump leads there, the second back, and so on.
+struct FlightPath {
+  double roll_deg = 6;        ///< amplitude, 0 … 45
+  double roll_period = 100;   ///< 2 … 1e6
+  double pitch_deg = 4;       ///< amplitude, 0 … 45; the optical axis stays between the horizon and straight down
+  double pitch_period = 130;  ///< 2 … 1e6
+  double climb_m = 0.5;       ///< highest above the scene's height, 0 … 100
+  double climb_period = 170;  ///< 2 … 1e6
+  double step_m = 0.1;        ///< along the road per frame, −10 … 10
+  std::vector<int> jumps;     ///< frames, at least 1, each at most once
+  double jump_roll_deg = 5;   ///< what a jump adds, −45 … 45
+  double jump_pitch_deg = 4;  ///< −45 … 45
+  double jump_climb_m = 0.3;  ///< −100 … 100
+  double jump_step_m = 0;     ///< every jump, along the road; −1000 … 1000
+
+  /// Throws Error naming the first figure that is out of range.
+  void validate() const;
+};
+
+/// The scene as the rig sees it `frame` frames into the flight. The road with its damage stays where it is; frame 0 is
+/// the scene itself. Throws Error when the flight leads where no rig can be, into the ground for example.
+Scene flight_frame(const Scene& scene, const FlightPath& path, int frame);
+
 }  // namespace roadstereo::synth
