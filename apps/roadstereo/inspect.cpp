@@ -86,6 +86,7 @@ void refuse_flight_options(const FlightSettings& settings) {
   if (settings.to) refuse("--to");
   if (settings.every != 1) refuse("--every");
   if (!settings.write.empty()) refuse("--write");
+  if (!settings.track.file.empty()) refuse("--track");
 }
 
 void inspect_pair(const FlightSettings& settings) {
@@ -120,7 +121,8 @@ sigma_color.png, transformed_color.png, sheet.png, result.json; damages.json, da
 overlay.png and report.html; with a calibration also cloud.ply (camera frame, m) and road_cloud.ply (the road is z = 0).
 
 Of a recording: frames.csv (a row a frame), damages.csv (a row a sighting), summary.json, report.html, a picture of each
-damage in damages/, and what --write asks for of every frame. Nothing is dropped; a frame without a result is a row with
+damage in damages/, and what --write asks for of every frame; with --track also frames.geojson, damages.geojson and
+flight.gpkg. Nothing is dropped; a frame without a result is a row with
 its reason. Ctrl-C ends after the frames in flight; --resume goes on there, after a kill, too.
 
 SOURCE is a folder (left/ right/, image_2/ image_3/, image_0/ image_1/, cam0/data cam1/data, or images named L… and R…;
@@ -157,6 +159,20 @@ void add_output_options(CLI::App& command, FlightSettings& settings) {
   command.add_flag("--json", settings.json, "Print result.json (summary.json of a recording) instead of the summary");
 }
 
+void add_track_options(CLI::App& command, TrackSettings& track) {
+  command
+      .add_option("--track", track.file,
+                  "GPX, or CSV with time,lat,lon[,alt,heading]: frames and damages get a place on the map")
+      ->type_name("FILE");
+  command
+      .add_option("--track-offset", track.offset_s,
+                  "Added to the frames' times to have the track's: when a recording counts from its start, that start "
+                  "in seconds since 1970")
+      ->type_name("S");
+  command.add_option("--mount-yaw", track.mount_yaw_deg, "The camera's forward against the heading, clockwise")
+      ->type_name("DEG");
+}
+
 void add_flight_options(CLI::App& command, FlightSettings& settings) {
   command.add_flag("--resume", settings.resume, "Go on with the flight that the output folder holds");
   command.add_option("--from", settings.from, "First frame of the recording, from 0")->type_name("N");
@@ -182,6 +198,7 @@ void add_inspect(CLI::App& app) {
   add_input_options(*command, *arguments);
   add_output_options(*command, arguments->settings);
   add_flight_options(*command, arguments->settings);
+  add_track_options(*command, arguments->settings.track);
   add_source_options(*command, arguments->settings.choice);
   add_treatment_options(*command, arguments->settings.treatment);
   command->callback([arguments] { inspect(*arguments); });

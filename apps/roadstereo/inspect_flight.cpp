@@ -61,6 +61,8 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   text += fmt::format("  frames    {} ({} refused, {} failed), road estimated anew in {}\n", summary.frames,
                       summary.refused, summary.failed, summary.road_estimated);
   text += fmt::format("  damage    {} damages in {} sightings\n", inventory.damages().size(), summary.sightings);
+  if (summary.placed)
+    text += fmt::format("  map       {} of {} frames have a place\n", *summary.placed, summary.frames);
   text += fmt::format("  time      {:.1f} s, {:.1f} frames/s\n", run.seconds, run.frames_per_second);
   for (const std::string& reason : summary.reasons) text += fmt::format("  no result {}\n", reason);
   return text + fmt::format("  report    {}\n", (folder.path() / "report.html").string());
@@ -72,6 +74,8 @@ void inspect_flight(const FlightSettings& settings) {
   settings.validate();
   FlightRun run;
   run.options = make_options(settings.treatment);
+  std::optional<FlightPlaces> places;
+  if (!settings.track.file.empty()) places.emplace(settings.track);
   RectifiedSource source(io::open_source(settings.source, make_source_options(settings.choice)), settings.calibration);
   if (source.source().live()) fail(settings.source[0], ": a camera has no end; see roadstereo live");
   FlightFolder folder(settings.output);
@@ -93,7 +97,7 @@ void inspect_flight(const FlightSettings& settings) {
   run.threads = used_threads(run.options);
 
   FlightSummary summary;
-  const std::string json = write_flight_results(settings, run, journal, inventory, folder, summary);
+  const std::string json = write_flight_results(settings, run, journal, inventory, places, folder, summary);
   progress.end();
   if (settings.json) fmt::print("{}", json);
   if (!settings.json && !settings.quiet) fmt::print("{}", flight_text(run, summary, inventory, folder));

@@ -79,8 +79,8 @@ void FlightFolder::remove_earlier_flight() {
     });
   } catch (const Error&) {  // what is no journal names no files
   }
-  for (const char* name : {"frames.csv", "damages.csv", "summary.json", "report.html", "damages", "flight/thumbnails",
-                           "flight/journal.jsonl"}) {
+  for (const char* name : {"frames.csv", "damages.csv", "summary.json", "report.html", "frames.geojson",
+                           "damages.geojson", "flight.gpkg", "damages", "flight/thumbnails", "flight/journal.jsonl"}) {
     fs::remove_all(path() / name, ignored);
   }
 }

@@ -32,6 +32,7 @@ Json frames_json(const FlightSummary& summary) {
           {"failed", summary.failed},
           {"road_estimated_anew", summary.road_estimated},
           {"road_unknown", summary.road_unknown},
+          {"placed_on_track", summary.placed ? Json(*summary.placed) : Json(nullptr)},
           {"reasons", summary.reasons}};
 }
 

@@ -48,6 +48,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const FlightRun& run, 
   facts.emplace_back("Road estimated anew", fmt::format("in {} of {} frames", summary.road_estimated, summary.good));
   facts.emplace_back("Time of a frame", fmt::format("{} matching, {} damage", range_text(summary.matching_ms, "ms", 1),
                                                     range_text(summary.damage_ms, "ms", 1)));
+  if (summary.placed) facts.emplace_back("On the map", fmt::format("{} of {} frames", *summary.placed, summary.frames));
   facts.emplace_back("Engine", fmt::format("{}, {} threads", run.engine, run.threads));
   return facts;
 }
@@ -98,19 +99,9 @@ std::string title_of(const FlightSettings& settings) {
   return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
 }
 
-}  // namespace
-
-std::string write_flight_results(const FlightSettings& settings, const FlightRun& run, const io::FlightJournal& journal,
-                                 const io::FlightInventory& inventory, FlightFolder& folder, FlightSummary& summary) {
-  std::string frames = io::frames_csv_names();
-  std::string damages = io::flight_damages_csv_names();
-  io::FlightInventory again;  // to tell which damage of the road each sighting is
-  journal.for_each([&](const io::FlightFrame& frame) {
-    summary.add(frame);
-    frames += io::frames_csv_row(frame);
-    damages += io::flight_damages_csv_rows(frame, again.add(frame));
-  });
-  summary.settle_times();
+std::string report_of(const FlightSettings& settings, const FlightRun& run, const FlightSummary& summary,
+                      const io::FlightJournal& journal, const io::FlightInventory& inventory,
+                      const FlightFolder& folder) {
   io::FlightReportInput report;
   report.title = title_of(settings);
   report.facts = facts_of(run, summary, inventory);
@@ -120,9 +111,32 @@ std::string write_flight_results(const FlightSettings& settings, const FlightRun
   report.worst = worst_of(inventory, folder);
   report.damages = inventory.damages().size();
   report.metric = !run.calibration_format.empty();
-  std::string json = flight_json(settings, run, summary, inventory);
-  folder.write({text_file("frames.csv", frames), text_file("damages.csv", damages),
-                text_file("report.html", io::flight_report(report)), text_file("summary.json", json)});
+  return io::flight_report(report);
+}
+
+}  // namespace
+
+std::string write_flight_results(const FlightSettings& settings, const FlightRun& run, const io::FlightJournal& journal,
+                                 const io::FlightInventory& inventory, std::optional<FlightPlaces>& places,
+                                 FlightFolder& folder, FlightSummary& summary) {
+  std::string frames = io::frames_csv_names();
+  std::string damages = io::flight_damages_csv_names();
+  io::FlightInventory again;  // to tell which damage of the road each sighting is
+  journal.for_each([&](const io::FlightFrame& frame) {
+    summary.add(frame);
+    frames += io::frames_csv_row(frame);
+    damages += io::flight_damages_csv_rows(frame, again.add(frame));
+    if (places) places->add(frame);
+  });
+  summary.settle_times();
+  if (places) summary.placed = static_cast<std::int64_t>(places->placed());
+  const std::string json = flight_json(settings, run, summary, inventory);
+  std::vector<StagedFile> files = places ? places->files() : std::vector<StagedFile>{};
+  files.push_back(text_file("frames.csv", frames));
+  files.push_back(text_file("damages.csv", damages));
+  files.push_back(text_file("report.html", report_of(settings, run, summary, journal, inventory, folder)));
+  files.push_back(text_file("summary.json", json));
+  folder.write(files);
   return json;
 }
 

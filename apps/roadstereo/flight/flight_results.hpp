@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "flight/flight_folder.hpp"
+#include "flight/flight_places.hpp"
 #include "flight/flight_settings.hpp"
 #include "flight/flight_summary.hpp"
 #include "flight/rectified_source.hpp"

@@ -1,6 +1,7 @@
 #include "flight/flight_settings.hpp"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "roadstereo/error.hpp"
@@ -25,6 +26,7 @@ FrameFile frame_file(const std::string& name) {
 void FlightSettings::validate() const {
   if (from < 0) fail("--from is ", from, "; frames count from 0");
   if (to && *to < from) fail("--to is ", *to, "; it must not lie before --from, which is ", from);
+  if (!std::isfinite(track.offset_s)) fail("--track-offset is ", track.offset_s, "; it must be a number of seconds");
   if (every < 1) fail("--every is ", every, "; it must be 1 or more");
   for (const std::string& name : write) {
     if (frame_file(name) == FrameFile::cloud && calibration.empty()) {

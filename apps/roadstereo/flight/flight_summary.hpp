@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,11 @@ struct FlightSummary {
   std::int64_t good = 0;
   std::int64_t refused = 0;
   std::int64_t failed = 0;
-  std::int64_t road_estimated = 0;   ///< frames whose road was estimated anew
-  std::int64_t road_unknown = 0;     ///< ... or not found before matching
-  std::int64_t sightings = 0;        ///< of damages, over all frames
-  std::vector<std::string> reasons;  ///< why frames are not good, each once, the first few
+  std::int64_t road_estimated = 0;     ///< frames whose road was estimated anew
+  std::int64_t road_unknown = 0;       ///< ... or not found before matching
+  std::optional<std::int64_t> placed;  ///< frames that the track has a place for; absent without a track
+  std::int64_t sightings = 0;          ///< of damages, over all frames
+  std::vector<std::string> reasons;    ///< why frames are not good, each once, the first few
   double first_time_s = io::FlightFrame::unknown;
   double last_time_s = io::FlightFrame::unknown;
   io::FlightCurves curves;  ///< of every frame

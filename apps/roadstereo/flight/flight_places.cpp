@@ -1,0 +1,56 @@
+#include "flight/flight_places.hpp"
+
+#include <cmath>
+
+namespace roadstereo::cli {
+
+namespace {
+
+io::TrackOptions options_of(const TrackSettings& settings) {
+  io::TrackOptions options;
+  options.mount_yaw_deg = settings.mount_yaw_deg;
+  return options;
+}
+
+StagedFile text_file(const std::string& name, const std::string& text) {
+  return {name, {text.begin(), text.end()}};
+}
+
+/// A damage lies where the frame puts it on the road; without metres it has no place of its own.
+std::optional<io::Place> place_of(const Damage& damage, const std::optional<io::Place>& camera, double height_m) {
+  if (!camera || !damage.metrics) return std::nullopt;
+  const auto& [right_m, forward_m] = damage.metrics->road_centroid_m;
+  return io::offset_place(*camera, right_m, forward_m, -height_m);
+}
+
+}  // namespace
+
+FlightPlaces::FlightPlaces(const TrackSettings& settings)
+    : offset_s_(settings.offset_s), track_(io::read_track(settings.file, options_of(settings))) {}
+
+void FlightPlaces::add(const io::FlightFrame& frame) {
+  io::GeoFrame geo;
+  geo.index = frame.index;
+  geo.name = frame.name;
+  geo.time_s = frame.time_s + offset_s_;
+  if (std::isfinite(geo.time_s)) geo.place = io::place_at(track_, geo.time_s);
+  geo.roll_rad = frame.roll_rad;
+  geo.height_m = frame.height_m;
+  geo.sigma_d_px = frame.sigma_d_px;
+  geo.valid_share = frame.valid_share;
+  geo.damages = static_cast<int>(frame.damages.size());
+  geo.status = name_of(frame.status);
+  placed_ += geo.place ? 1 : 0;
+  for (const Damage& damage : frame.damages) {
+    damages_.push_back({geo.index, geo.name, geo.time_s, damage, place_of(damage, geo.place, frame.height_m)});
+  }
+  frames_.push_back(std::move(geo));
+}
+
+std::vector<StagedFile> FlightPlaces::files() const {
+  return {text_file("frames.geojson", io::frames_geojson(frames_)),
+          text_file("damages.geojson", io::damages_geojson(damages_)),
+          {"flight.gpkg", io::geopackage(frames_, damages_, track_)}};
+}
+
+}  // namespace roadstereo::cli
