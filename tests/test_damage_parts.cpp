@@ -14,6 +14,7 @@
 #include "damage/cells.hpp"
 #include "damage/connected_regions.hpp"
 #include "damage/depth_cells.hpp"
+#include "damage/grow.hpp"
 #include "damage/oriented_box.hpp"
 #include "damage/road_surface.hpp"
 #include "roadstereo/error.hpp"
@@ -75,7 +76,7 @@ class RandomMasks : public testing::TestWithParam<int> {
 TEST_P(RandomMasks, RegionsAreThoseOfBruteForce) {
   const Image<std::uint8_t> cells = mask();
   const Image<int> number = spread_numbers(cells, true);
-  const std::vector<ConnectedRegion> regions = connected_regions(cells);
+  const ConnectedRegions regions(cells);
   std::set<int> numbers;
   std::size_t set = 0;
   for (int j = 0; j < cells.height(); ++j) {
@@ -89,19 +90,23 @@ TEST_P(RandomMasks, RegionsAreThoseOfBruteForce) {
   std::size_t total = 0;
   int last_first = -1;
   for (const ConnectedRegion& region : regions) {
-    total += region.cells.size();
-    EXPECT_GT(region.cells.front(), last_first) << "in the order of their first cells";
-    last_first = region.cells.front();
+    total += region.size;
+    const int first = region.runs.front().row * cells.width() + region.runs.front().first;
+    EXPECT_GT(first, last_first) << "in the order of their first cells";
+    last_first = first;
     int u0 = 1000, v0 = 1000, u1 = -1, v1 = -1;
-    for (const std::int32_t cell : region.cells) {
-      const int i = cell % cells.width(), j = cell / cells.width();
-      EXPECT_EQ(number(i, j), region.cells.front());
-      u0 = std::min(u0, i);
-      v0 = std::min(v0, j);
-      u1 = std::max(u1, i);
-      v1 = std::max(v1, j);
+    std::set<int> held;
+    for (const CellRun& run : region.runs) {
+      for (int i = run.first; i <= run.last; ++i) {
+        EXPECT_EQ(number(i, run.row), first);
+        held.insert(run.row * cells.width() + i);
+      }
+      u0 = std::min(u0, run.first);
+      v0 = std::min(v0, run.row);
+      u1 = std::max(u1, run.last);
+      v1 = std::max(v1, run.row);
     }
-    EXPECT_EQ(std::set<std::int32_t>(region.cells.begin(), region.cells.end()).size(), region.cells.size());
+    EXPECT_EQ(held.size(), region.size);
     EXPECT_EQ(region.box.first_column, u0);
     EXPECT_EQ(region.box.first_row, v0);
     EXPECT_EQ(region.box.last_column, u1);
@@ -116,7 +121,7 @@ TEST_P(RandomMasks, EnclosedPartsAreFilledUpToTheirSize) {
   const Image<int> number = spread_numbers(before, false);
   for (const std::size_t most : {std::size_t{0}, std::size_t{1}, std::size_t{3}, std::size_t{10'000}}) {
     Image<std::uint8_t> filled = before;
-    fill_enclosed(filled, whole(filled), most);
+    fill_enclosed(filled, most);
     for (int j = 0; j < before.height(); ++j) {
       for (int i = 0; i < before.width(); ++i) {
         if (before(i, j) != 0) {
@@ -141,8 +146,8 @@ TEST_P(RandomMasks, EnclosedPartsAreFilledUpToTheirSize) {
 TEST_P(RandomMasks, GrowAndShrinkAreThoseOfBruteForce) {
   const Image<std::uint8_t> cells = mask();
   for (const int radius : {0, 1, 2, 5, 60}) {
-    const Image<std::uint8_t> grown = grow(cells, radius, whole(cells));
-    const Image<std::uint8_t> shrunk = shrink_mask(cells, radius, whole(cells));
+    const Image<std::uint8_t> grown = grow(cells, radius);
+    const Image<std::uint8_t> shrunk = shrink_mask(cells, radius);
     for (int j = 0; j < cells.height(); ++j) {
       for (int i = 0; i < cells.width(); ++i) {
         bool any = false, all = true;

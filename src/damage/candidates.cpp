@@ -4,43 +4,37 @@
 #include <cmath>
 #include <numbers>
 
-#include "damage/image_outline.hpp"
+#include "damage/connected_regions.hpp"
+#include "damage/contours.hpp"
+#include "damage/grow.hpp"
 #include "damage/outline.hpp"
 
 namespace roadstereo {
 namespace {
 
-/// Cells without a measurement that belong to the depressions around them: what a steep, dark wall leaves. A gap that
-/// reaches the border of the picture, or lies in the road, belongs to none.
-Image<std::uint8_t> holes_of(const Image<float>& depth, const Image<std::uint8_t>& known,
-                             const Thresholds& thresholds) {
+/// Adds to `allowed` the cells without a measurement that belong to the depressions around them: what a steep, dark
+/// wall leaves. A gap that reaches the border of the picture, or lies in the road, belongs to none.
+void allow_holes(const DepthCells& relief, const Thresholds& thresholds, Image<std::uint8_t>& allowed) {
   constexpr double least_share = 0.35;  // of its surroundings that is deep
-  Image<std::uint8_t> gaps(known.width(), known.height());
-  for (int j = 0; j < known.height(); ++j) {
-    for (int i = 0; i < known.width(); ++i) gaps(i, j) = known(i, j) == 0 ? 255 : 0;
-  }
-  Image<std::uint8_t> holes(known.width(), known.height(), 0);
-  for (const ConnectedRegion& gap : connected_regions(gaps)) {
+  for (const ConnectedRegion& gap : ConnectedRegions(relief.known, ConnectedRegions::Of::unset)) {
     if (gap.touches_border) continue;
     int around = 0;
     int deep = 0;
     const auto look = [&](int i, int j) {
-      if (known(i, j) == 0) return;
+      if (relief.known(i, j) == 0) return;
       ++around;
-      deep += depth(i, j) > 0.5F * thresholds.depth(i, j) ? 1 : 0;
+      deep += relief.depth(i, j) > 0.5F * thresholds.depth(i, j) ? 1 : 0;
     };
-    for (const std::int32_t cell : gap.cells) {
-      const int i = cell % known.width();
-      const int j = cell / known.width();
-      look(i - 1, j);
-      look(i + 1, j);
-      look(i, j - 1);
-      look(i, j + 1);
+    for (const CellRun& run : gap.runs) {
+      look(run.first - 1, run.row);
+      look(run.last + 1, run.row);
+      for (int i = run.first; i <= run.last; ++i) {
+        look(i, run.row - 1);
+        look(i, run.row + 1);
+      }
     }
-    if (deep < least_share * around) continue;
-    for (const std::int32_t cell : gap.cells) holes(cell % known.width(), cell / known.width()) = 255;
+    if (deep >= least_share * around) paint(gap, 255, allowed);
   }
-  return holes;
 }
 
 /// What the cells of a damage of this kind are marked with.
@@ -55,19 +49,15 @@ struct Surroundings {
 };
 
 /// Share of the rim of a region that is the border of the picture.
-double open_share(const Image<std::uint8_t>& region, const Box& box) {
-  const int right = region.width() - 1;
-  const int bottom = region.height() - 1;
+double open_share(const BoxMask& region, int columns, int rows) {
+  const Box& box = region.box();
   double rim = 0;
   double open = 0;
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
-      if (region(i, j) == 0) continue;
-      const bool at_border = i == 0 || j == 0 || i == right || j == bottom;
-      if (!at_border && region(i - 1, j) != 0 && region(i + 1, j) != 0 && region(i, j - 1) != 0 &&
-          region(i, j + 1) != 0) {
-        continue;
-      }
+      if (!region(i, j)) continue;
+      const bool at_border = i == 0 || j == 0 || i + 1 == columns || j + 1 == rows;
+      if (!at_border && !on_contour(region, i, j, columns, rows)) continue;
       ++rim;
       open += at_border ? 1 : 0;
     }
@@ -82,8 +72,8 @@ Surroundings surroundings_of(const Candidate& candidate, const DepthCells& relie
   constexpr int least_reach = 3;
   const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
   const int reach = std::max(least_reach, static_cast<int>(half * radius));
-  const Box around = candidate.box.grown(reach, road.width(), road.height());
-  const Image<std::uint8_t> grown = grow(candidate.cells, reach, around);
+  const Box around = candidate.box().grown(reach, road.width(), road.height());
+  const BoxMask grown = grow(candidate.cells, reach, around);
   const float sign = sign_of(candidate.kind);
   const float bowl = candidate.kind == DamageKind::depression
                          ? std::min(candidate.level, hollow * static_cast<float>(relief.noise))
@@ -92,60 +82,57 @@ Surroundings surroundings_of(const Candidate& candidate, const DepthCells& relie
   double on_road = 0;
   for (int j = around.first_row; j <= around.last_row; ++j) {
     for (int i = around.first_column; i <= around.last_column; ++i) {
-      if (grown(i, j) == 0 || candidate.cells(i, j) != 0 || taken(i, j) != 0) continue;
+      if (!grown(i, j) || candidate.cells(i, j) || taken(i, j) != 0) continue;
       ++cells;
       if (relief.known(i, j) == 0) continue;
       const float depth = sign * relief.depth(i, j);
       on_road += road(i, j) != 0 || (depth > 0 && depth <= bowl) ? 1 : 0;
     }
   }
-  if (cells == 0) return {1, open_share(candidate.cells, candidate.box)};
-  return {on_road / cells, open_share(candidate.cells, candidate.box)};
+  return {cells == 0 ? 1 : on_road / cells, open_share(candidate.cells, road.width(), road.height())};
 }
 
 class Search {
  public:
   Search(const DepthCells& relief, const Image<std::uint8_t>& road, const Thresholds& thresholds,
          const Witness& witness, DamageKind kind)
-      : relief_(relief), road_(road), thresholds_(thresholds), witness_(witness), kind_(kind), depth_(relief.depth) {
+      : relief_(relief),
+        road_(road),
+        thresholds_(thresholds),
+        witness_(witness),
+        kind_(kind),
+        depth_(relief.depth),
+        allowed_(relief.known) {
     if (kind == DamageKind::protrusion) turn_over();
-    allowed_ = relief.known;
-    if (kind == DamageKind::depression) allow(holes_of(depth_, relief.known, thresholds));
+    if (kind == DamageKind::depression) allow_holes(relief, thresholds, allowed_);
   }
 
   /// Adds what is found to `found`; cells of `taken` belong to others.
   void run(std::vector<Candidate>& found, Image<std::uint8_t>& taken) const {
-    std::vector<ConnectedRegion> cores = connected_regions(cores_of_depth());
-    std::sort(cores.begin(), cores.end(),
-              [](const auto& one, const auto& other) { return one.cells.size() > other.cells.size(); });
+    const ConnectedRegions regions(cores_of_depth());
+    std::vector<ConnectedRegion> cores(regions.begin(), regions.end());
+    std::sort(cores.begin(), cores.end(), [](const auto& one, const auto& other) { return one.size > other.size; });
     for (const ConnectedRegion& core : cores) {
-      const int i = core.cells.front() % depth_.width();
-      const int j = core.cells.front() / depth_.width();
-      if (taken(i, j) != 0) continue;
-      add(core, found, taken);
+      const CellRun& first = core.runs.front();
+      if (taken(first.first, first.row) == 0) add(core, found, taken);
     }
   }
 
  private:
   void turn_over() {
-    for (int j = 0; j < depth_.height(); ++j) {
-      for (int i = 0; i < depth_.width(); ++i) depth_(i, j) = -depth_(i, j);
-    }
-  }
-
-  void allow(const Image<std::uint8_t>& holes) {
-    for (int j = 0; j < holes.height(); ++j) {
-      for (int i = 0; i < holes.width(); ++i) {
-        if (holes(i, j) != 0) allowed_(i, j) = 255;
-      }
-    }
+    float* const depths = depth_.row(0);
+    for (std::size_t k = 0; k < depth_.pixels(); ++k) depths[k] = -depths[k];
   }
 
   Image<std::uint8_t> cores_of_depth() const {
     Image<std::uint8_t> cores(depth_.width(), depth_.height());
     for (int j = 0; j < depth_.height(); ++j) {
+      const float* const depths = depth_.row(j);
+      const std::uint8_t* const allowed = allowed_.row(j);
+      std::uint8_t* const row = cores.row(j);
       for (int i = 0; i < depth_.width(); ++i) {
-        cores(i, j) = allowed_(i, j) != 0 && depth_(i, j) > thresholds_.depth(i, j) ? 255 : 0;
+        const std::uint8_t deep = depths[i] > thresholds_.depth(i, j) ? 255 : 0;
+        row[i] = allowed[i] & deep;
       }
     }
     return cores;
@@ -154,20 +141,26 @@ class Search {
   void add(const ConnectedRegion& core, std::vector<Candidate>& found, Image<std::uint8_t>& taken) const {
     constexpr double least_on_road = 0.6;
     constexpr double most_open = 0.25;
-    const int i = core.cells.front() % depth_.width();
-    const int j = core.cells.front() / depth_.width();
-    const float least = thresholds_.least_cells(i, j);
-    if (static_cast<float>(core.cells.size()) < 0.1F * least) return;
+    const float least = thresholds_.least_cells(core.runs.front().first, core.runs.front().row);
+    if (static_cast<float>(core.size) < 0.1F * least) return;
     Candidate candidate = draw(core, taken);
     if (candidate.size == 0 || static_cast<float>(candidate.size) < least) return;
     const Surroundings around = surroundings_of(candidate, relief_, road_, taken);
     if (around.on_road < least_on_road || around.open > most_open) return;
-    for (int row = candidate.box.first_row; row <= candidate.box.last_row; ++row) {
-      for (int column = candidate.box.first_column; column <= candidate.box.last_column; ++column) {
-        if (candidate.cells(column, row) != 0) taken(column, row) = mark_of(kind_);
+    const Box& box = candidate.box();
+    for (int row = box.first_row; row <= box.last_row; ++row) {
+      for (int column = box.first_column; column <= box.last_column; ++column) {
+        if (candidate.cells(column, row)) taken(column, row) = mark_of(kind_);
       }
     }
     found.push_back(std::move(candidate));
+  }
+
+  /// No damage is as deep, or as high.
+  float most_depth(const ConnectedRegion& core) const {
+    const CellRun& first = core.runs.front();
+    return kind_ == DamageKind::depression ? thresholds_.deepest(first.first, first.row)
+                                           : thresholds_.highest(first.first, first.row);
   }
 
   /// The region around a core. Where it would run into another damage, only what lies deeper than the saddle between
@@ -176,52 +169,57 @@ class Search {
     constexpr int tries = 8;
     constexpr float deeper = 1.25F;
     constexpr float noise_floor = 2;  // standard deviations of the road
-    constexpr float foot = 0.5F;      // likewise, where the region is known to hang together
     constexpr double bowl = 2;        // a paraboloid's rim is twice as steep as the cone
     const DepthField field{depth_, allowed_};
     Candidate candidate;
     candidate.kind = kind_;
+    const float floor = floor_depth(field, core);
+    if (floor > most_depth(core)) return candidate;
     const Outline outline =
-        find_outline(field, core.cells, noise_floor * static_cast<float>(relief_.noise), thresholds_.metric);
-    if (!thresholds_.metric && outline.steepness < bowl) return candidate;
-    const std::int32_t first = core.cells.front();
-    const Image<float>& largest = kind_ == DamageKind::depression ? thresholds_.deepest : thresholds_.highest;
-    if (outline.floor > largest(first % depth_.width(), first / depth_.width())) return candidate;
+        find_outline(field, core, floor, noise_floor * static_cast<float>(relief_.noise), thresholds_.metric());
+    if (!thresholds_.metric() && outline.steepness < bowl) return candidate;
     candidate.level = outline.level;
     for (int i = 0; i < tries; ++i, candidate.level *= deeper) {
-      candidate.cells = flood(field, core.cells, candidate.level, whole(depth_));
-      if (thresholds_.metric) {
-        grow_to_foot(field, candidate.level, foot * static_cast<float>(relief_.noise), candidate.cells);
-      }
-      fill_enclosed(candidate.cells, whole(depth_), depth_.pixels() / 4);
-      if (!measure_extent(candidate, taken)) continue;
-      if (kind_ == DamageKind::depression && !witness_.grey.empty()) {
-        extend_by_image(witness_.grey, witness_.reach, candidate.box, candidate.cells);
-        fill_enclosed(candidate.cells, whole(depth_), depth_.pixels() / 4);
-        if (!measure_extent(candidate, taken)) continue;
-      }
-      return candidate;
+      candidate.cells = flood(field, core, candidate.level);
+      if (candidate.box().empty()) break;
+      if (fill_out(field, taken, candidate)) return candidate;
     }
     candidate.size = 0;
     return candidate;
   }
 
+  /// Grows what was flooded to the region that is measured. False when it runs into another damage.
+  bool fill_out(const DepthField& field, const Image<std::uint8_t>& taken, Candidate& candidate) const {
+    constexpr float foot = 0.5F;  // standard deviations of the road, where the region is known to hang together
+    if (thresholds_.metric()) {
+      grow_to_foot(field, candidate.level, foot * static_cast<float>(relief_.noise), candidate.cells);
+    }
+    fill_enclosed(candidate.cells.cells(), depth_.pixels() / 4);
+    if (!measure_extent(candidate, taken)) return false;
+    if (candidate.size == 0 || kind_ == DamageKind::protrusion || witness_.grey.empty()) return true;
+    extend_by_image(witness_, depth_.width(), depth_.height(), candidate.cells);
+    fill_enclosed(candidate.cells.cells(), depth_.pixels() / 4);
+    return measure_extent(candidate, taken);
+  }
+
   /// Box and size. False when the region has cells of another damage of its kind; those of the other kind it gives up.
   static bool measure_extent(Candidate& candidate, const Image<std::uint8_t>& taken) {
-    candidate.box = {};
+    const Box around = candidate.box();
+    Box box;
     candidate.size = 0;
-    for (int j = 0; j < taken.height(); ++j) {
-      for (int i = 0; i < taken.width(); ++i) {
-        if (candidate.cells(i, j) == 0) continue;
+    for (int j = around.first_row; j <= around.last_row; ++j) {
+      for (int i = around.first_column; i <= around.last_column; ++i) {
+        if (!candidate.cells(i, j)) continue;
         if (taken(i, j) == mark_of(candidate.kind)) return false;
         if (taken(i, j) != 0) {
-          candidate.cells(i, j) = 0;
+          candidate.cells.set(i, j, false);
           continue;
         }
-        candidate.box.add(i, j);
+        box.add(i, j);
         ++candidate.size;
       }
     }
+    candidate.cells = candidate.cells.within(box);
     return true;
   }
 

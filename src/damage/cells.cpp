@@ -85,26 +85,4 @@ Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigm
   return cells;
 }
 
-Image<float> make_grey_cells(ImageView<const std::int16_t> grey, int factor, int threads) {
-  return mean_cells(grey.width(), grey.height(), factor, threads,
-                    [&](int u, int v) { return static_cast<float>(grey(u, v)); });
-}
-
-float at_pixel(const Image<float>& cells, int factor, int u, int v) {
-  const float half = 0.5F * static_cast<float>(factor - 1);
-  const float x = std::clamp((static_cast<float>(u) - half) / static_cast<float>(factor), 0.0F,
-                             static_cast<float>(cells.width() - 1));
-  const float y = std::clamp((static_cast<float>(v) - half) / static_cast<float>(factor), 0.0F,
-                             static_cast<float>(cells.height() - 1));
-  const int i = std::min(static_cast<int>(x), std::max(0, cells.width() - 2));
-  const int j = std::min(static_cast<int>(y), std::max(0, cells.height() - 2));
-  const int right = std::min(i + 1, cells.width() - 1);
-  const int below = std::min(j + 1, cells.height() - 1);
-  const float s = x - static_cast<float>(i);
-  const float t = y - static_cast<float>(j);
-  if (s == 0 && t == 0) return cells(i, j);
-  return (1 - t) * ((1 - s) * cells(i, j) + s * cells(right, j)) +
-         t * ((1 - s) * cells(i, below) + s * cells(right, below));
-}
-
 }  // namespace roadstereo

@@ -26,10 +26,4 @@ int cell_factor(int width, int height);
 /// Throws Error when no pixel of the map is valid, or all have one value.
 Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigma, int factor, int threads);
 
-/// The grey image in cells of the same side: mean grey levels in sixteenths.
-Image<float> make_grey_cells(ImageView<const std::int16_t> grey, int factor, int threads);
-
-/// A map of cells between their middles, at pixel (u, v): bilinear, continued at the border. NaN where a neighbour is.
-float at_pixel(const Image<float>& cells, int factor, int u, int v);
-
 }  // namespace roadstereo

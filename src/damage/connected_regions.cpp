@@ -1,121 +1,128 @@
 #include "damage/connected_regions.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace roadstereo {
-
-void Box::add(int column, int row) {
-  if (empty()) {
-    *this = {column, row, column, row};
-    return;
-  }
-  first_column = std::min(first_column, column);
-  first_row = std::min(first_row, row);
-  last_column = std::max(last_column, column);
-  last_row = std::max(last_row, row);
-}
-
-Box Box::grown(int by, int width, int height) const {
-  return {std::max(0, first_column - by), std::max(0, first_row - by), std::min(width - 1, last_column + by),
-          std::min(height - 1, last_row + by)};
-}
-
-std::vector<ConnectedRegion> connected_regions(const Image<std::uint8_t>& mask) {
-  const int width = mask.width();
-  const int height = mask.height();
-  Image<std::uint8_t> open = mask;
-  std::vector<ConnectedRegion> regions;
-  for (int j = 0; j < height; ++j) {
-    for (int i = 0; i < width; ++i) {
-      if (open(i, j) == 0) continue;
-      ConnectedRegion& region = regions.emplace_back();
-      const auto take = [&](int column, int row) {
-        if (open(column, row) == 0) return;
-        open(column, row) = 0;
-        region.cells.push_back(row * width + column);
-      };
-      take(i, j);
-      for (std::size_t next = 0; next < region.cells.size(); ++next) {
-        const int column = region.cells[next] % width;
-        const int row = region.cells[next] / width;
-        region.box.add(column, row);
-        if (column > 0) take(column - 1, row);
-        if (column + 1 < width) take(column + 1, row);
-        if (row > 0) take(column, row - 1);
-        if (row + 1 < height) take(column, row + 1);
-      }
-      region.touches_border = region.box.first_column == 0 || region.box.first_row == 0 ||
-                              region.box.last_column == width - 1 || region.box.last_row == height - 1;
-    }
-  }
-  return regions;
-}
-
-void fill_enclosed(Image<std::uint8_t>& mask, const Box& box, std::size_t most_cells) {
-  Image<std::uint8_t> outside(box.last_column - box.first_column + 1, box.last_row - box.first_row + 1);
-  for (int j = 0; j < outside.height(); ++j) {
-    for (int i = 0; i < outside.width(); ++i) {
-      outside(i, j) = mask(box.first_column + i, box.first_row + j) == 0 ? 255 : 0;
-    }
-  }
-  for (const ConnectedRegion& region : connected_regions(outside)) {
-    if (region.touches_border || region.cells.size() > most_cells) continue;
-    for (const std::int32_t cell : region.cells) {
-      mask(box.first_column + cell % outside.width(), box.first_row + cell / outside.width()) = 255;
-    }
-  }
-}
-
 namespace {
 
-/// Whether any cell within `radius` along one line is `wanted`: distances from the last such cell, forth and back.
-template <class At>
-void spread_along(int length, int radius, std::uint8_t wanted, const At& at, std::vector<std::uint8_t>& result) {
-  result.assign(static_cast<std::size_t>(length), 0);
-  int last = -radius - 1;
-  for (int i = 0; i < length; ++i) {
-    if ((at(i) != 0) == (wanted != 0)) last = i;
-    if (i - last <= radius) result[static_cast<std::size_t>(i)] = 1;
+/// The first cell from `i` on that is not 0.
+int next_set(const std::uint8_t* row, int i, int width) {
+  std::uint64_t eight = 0;
+  for (; i + 8 <= width; i += 8) {
+    std::memcpy(&eight, row + i, sizeof eight);
+    if (eight != 0) break;
   }
-  last = length + radius;
-  for (int i = length - 1; i >= 0; --i) {
-    if ((at(i) != 0) == (wanted != 0)) last = i;
-    if (last - i <= radius) result[static_cast<std::size_t>(i)] = 1;
-  }
+  while (i < width && row[i] == 0) ++i;
+  return i;
 }
 
-/// Gives every cell of the box within `radius` of one that is `wanted` (set or not) that state.
-Image<std::uint8_t> spread(const Image<std::uint8_t>& mask, int radius, const Box& box, std::uint8_t wanted) {
-  const std::uint8_t other = wanted != 0 ? 0 : 255;
-  const int columns = box.last_column - box.first_column + 1;
-  const int rows = box.last_row - box.first_row + 1;
-  Image<std::uint8_t> along(columns, rows);
-  Image<std::uint8_t> result(mask.width(), mask.height(), 0);
-  std::vector<std::uint8_t> line;
-  for (int j = 0; j < rows; ++j) {
-    const std::uint8_t* row = mask.row(box.first_row + j) + box.first_column;
-    spread_along(
-        columns, radius, wanted, [row](int i) { return row[i]; }, line);
-    for (int i = 0; i < columns; ++i) along(i, j) = line[static_cast<std::size_t>(i)] != 0 ? wanted : other;
+/// The first cell from `i` on that is 0.
+int next_unset(const std::uint8_t* row, int i, int width) {
+  const void* found = i < width ? std::memchr(row + i, 0, static_cast<std::size_t>(width - i)) : nullptr;
+  return found == nullptr ? width : static_cast<int>(static_cast<const std::uint8_t*>(found) - row);
+}
+
+/// The runs of a mask, row by row, and what hangs together of them: every run points to an earlier one of its region,
+/// or to itself.
+class LinkedRuns {
+ public:
+  LinkedRuns(const Image<std::uint8_t>& mask, ConnectedRegions::Of which) {
+    const bool set = which == ConnectedRegions::Of::set;
+    std::size_t above = 0;
+    for (int j = 0; j < mask.height(); ++j) {
+      const std::size_t here = runs.size();
+      add_row(mask.row(j), j, mask.width(), set);
+      link(above, here);
+      above = here;
+    }
+    // Earlier runs know their region by the time that later ones ask them.
+    for (std::size_t k = 0; k < runs.size(); ++k) earlier[k] = earlier[earlier[k]];
   }
-  for (int i = 0; i < columns; ++i) {
-    spread_along(
-        rows, radius, wanted, [&](int j) { return along(i, j); }, line);
-    for (int j = 0; j < rows; ++j) {
-      result(box.first_column + i, box.first_row + j) = line[static_cast<std::size_t>(j)] != 0 ? wanted : other;
+
+  std::vector<CellRun> runs;
+  std::vector<std::uint32_t> earlier;  ///< in the end, the first run of the region
+
+ private:
+  void add_row(const std::uint8_t* row, int j, int width, bool set) {
+    for (int i = set ? next_set(row, 0, width) : next_unset(row, 0, width); i < width;) {
+      const int end = set ? next_unset(row, i, width) : next_set(row, i, width);
+      earlier.push_back(static_cast<std::uint32_t>(runs.size()));
+      runs.push_back({j, i, end - 1});
+      i = set ? next_set(row, end, width) : next_unset(row, end, width);
     }
   }
-  return result;
-}
+
+  /// Links the runs from `here` on with those of the row above that lie beside them.
+  void link(std::size_t above, std::size_t here) {
+    const std::size_t end_above = here;
+    for (std::size_t below = here; below < runs.size() && above < end_above;) {
+      if (runs[above].first <= runs[below].last && runs[below].first <= runs[above].last) unite(above, below);
+      if (runs[above].last < runs[below].last) {
+        ++above;
+      } else {
+        ++below;
+      }
+    }
+  }
+
+  std::uint32_t first_of(std::size_t run) {
+    auto k = static_cast<std::uint32_t>(run);
+    while (earlier[k] != k) k = earlier[k] = earlier[earlier[k]];
+    return k;
+  }
+
+  void unite(std::size_t one, std::size_t other) {
+    const std::uint32_t a = first_of(one);
+    const std::uint32_t b = first_of(other);
+    earlier[std::max(a, b)] = std::min(a, b);
+  }
+};
 
 }  // namespace
 
-Image<std::uint8_t> grow(const Image<std::uint8_t>& mask, int radius, const Box& box) {
-  return spread(mask, radius, box, 255);
+ConnectedRegions::ConnectedRegions(const Image<std::uint8_t>& mask, Of which) {
+  const LinkedRuns linked(mask, which);
+  const std::size_t count = linked.runs.size();
+  std::vector<std::uint32_t> region(count);  // of each run
+  std::vector<std::size_t> runs_in;          // of each region
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t first = linked.earlier[k];
+    region[k] = first == k ? static_cast<std::uint32_t>(runs_in.size()) : region[first];
+    if (first == k) runs_in.push_back(0);
+    ++runs_in[region[k]];
+  }
+  runs_.resize(count);
+  regions_.resize(runs_in.size());
+  std::vector<CellRun*> next(runs_in.size());
+  CellRun* place = runs_.data();
+  for (std::size_t r = 0; r < runs_in.size(); ++r) {
+    regions_[r].runs = {place, runs_in[r]};
+    next[r] = place;
+    place += runs_in[r];
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const CellRun& run = linked.runs[k];
+    *next[region[k]]++ = run;
+    regions_[region[k]].size += static_cast<std::size_t>(run.last - run.first + 1);
+    regions_[region[k]].box.add_run(run.row, run.first, run.last);
+  }
+  for (ConnectedRegion& part : regions_) {
+    part.touches_border = part.box.first_column == 0 || part.box.first_row == 0 ||
+                          part.box.last_column == mask.width() - 1 || part.box.last_row == mask.height() - 1;
+  }
 }
 
-Image<std::uint8_t> shrink_mask(const Image<std::uint8_t>& mask, int radius, const Box& box) {
-  return spread(mask, radius, box, 0);
+void paint(const ConnectedRegion& region, std::uint8_t value, Image<std::uint8_t>& mask) {
+  for (const CellRun& run : region.runs) {
+    std::fill(mask.row(run.row) + run.first, mask.row(run.row) + run.last + 1, value);
+  }
+}
+
+void fill_enclosed(Image<std::uint8_t>& mask, std::size_t most_cells) {
+  for (const ConnectedRegion& gap : ConnectedRegions(mask, ConnectedRegions::Of::unset)) {
+    if (!gap.touches_border && gap.size <= most_cells) paint(gap, 255, mask);
+  }
 }
 
 }  // namespace roadstereo

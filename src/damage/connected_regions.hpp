@@ -1,43 +1,47 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "roadstereo/image.hpp"
+#include "damage/box.hpp"
 
 namespace roadstereo {
 
-/// First and last column and row, both inside.
-struct Box {
-  int first_column = 0, first_row = 0, last_column = -1, last_row = -1;
-
-  bool empty() const { return last_column < first_column; }
-  void add(int column, int row);
-  Box grown(int by, int width, int height) const;  ///< within an image of that size
+/// Cells of one row that hang together, from the first to the last.
+struct CellRun {
+  int row = 0, first = 0, last = 0;
 };
 
 /// Cells of a mask that hang together, by their sides.
 struct ConnectedRegion {
-  std::vector<std::int32_t> cells;  ///< row · width + column
+  std::span<const CellRun> runs;  ///< row by row, from the left to the right
+  std::size_t size = 0;           ///< cells
   Box box;
   bool touches_border = false;
 };
 
-/// The regions of the cells that are not 0, in the order of their first cells.
-std::vector<ConnectedRegion> connected_regions(const Image<std::uint8_t>& mask);
+/// The regions of the cells that are not 0, or of those that are, in the order of their first cells.
+class ConnectedRegions {
+ public:
+  enum class Of { set, unset };
+  explicit ConnectedRegions(const Image<std::uint8_t>& mask, Of which = Of::set);
+  ConnectedRegions(ConnectedRegions&&) = default;
+  ConnectedRegions& operator=(ConnectedRegions&&) = default;
 
-/// Sets every part of `mask` that is 0 and enclosed by it within `box`, when it has at most `most_cells`.
-void fill_enclosed(Image<std::uint8_t>& mask, const Box& box, std::size_t most_cells);
+  std::size_t size() const { return regions_.size(); }
+  auto begin() const { return regions_.begin(); }
+  auto end() const { return regions_.end(); }
 
-/// Every cell within `radius` columns and rows of one that is not 0 (grow), or away from one that is 0 (shrink; the
-/// border does not shrink it). Looks at `box` only; outside it the result is 0.
-Image<std::uint8_t> grow(const Image<std::uint8_t>& mask, int radius, const Box& box);
-Image<std::uint8_t> shrink_mask(const Image<std::uint8_t>& mask, int radius, const Box& box);
+ private:
+  std::vector<CellRun> runs_;  ///< region by region
+  std::vector<ConnectedRegion> regions_;
+};
 
-/// The box of a whole image.
-template <class Value>
-Box whole(const Image<Value>& image) {
-  return {0, 0, image.width() - 1, image.height() - 1};
-}
+/// Gives the cells of a region a value.
+void paint(const ConnectedRegion& region, std::uint8_t value, Image<std::uint8_t>& mask);
+
+/// Sets every part of `mask` that is 0 and enclosed by it, when it has at most `most_cells`.
+void fill_enclosed(Image<std::uint8_t>& mask, std::size_t most_cells);
 
 }  // namespace roadstereo

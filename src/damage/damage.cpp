@@ -1,10 +1,7 @@
 #include "roadstereo/damage.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
-#include "core/parallel.hpp"
 #include "core/require_range.hpp"
 #include "damage/candidates.hpp"
 #include "damage/cells.hpp"
@@ -57,43 +54,9 @@ void find_road(const Cells& cells, const SurfaceCoordinates& coordinates, RoadSu
   }
 }
 
-/// Depth that counts at each cell: standard errors, or metres where they are more.
-Thresholds make_thresholds(const DepthCells& relief, const SurfaceCoordinates& coordinates, const Cells& cells,
-                           const DamageInput& input, const DamageOptions& options, bool metric) {
-  Thresholds thresholds;
-  const auto noise = static_cast<float>(options.threshold_sigma * relief.noise);
-  const auto of_image = static_cast<float>(options.min_area_share * static_cast<double>(cells.value.pixels()));
-  thresholds.depth.assign(cells.width(), cells.height(), noise);
-  thresholds.least_cells.assign(cells.width(), cells.height(), of_image);
-  thresholds.deepest.assign(cells.width(), cells.height(), std::numeric_limits<float>::infinity());
-  thresholds.highest = thresholds.deepest;
-  thresholds.metric = metric;
-  if (!metric) return thresholds;
-  const RoadPlane plane = road_plane(*input.plane, *input.calibration);
-  constexpr double least_pixels = 64;  // fewer is less than matching's window
-  const double cell_share = 1.0 / (cells.factor * cells.factor);
-  for (int j = 0; j < cells.height(); ++j) {
-    for (int i = 0; i < cells.width(); ++i) {
-      const auto least = static_cast<float>(options.min_depth_m * coordinates.scale(i, j));
-      if (std::isnan(least)) continue;
-      thresholds.depth(i, j) = std::max(noise, least);
-      thresholds.deepest(i, j) = static_cast<float>(options.max_depth_m * coordinates.scale(i, j));
-      thresholds.highest(i, j) = static_cast<float>(options.max_height_m * coordinates.scale(i, j));
-      const double u = cells.middle(i);
-      const double v = cells.middle(j);
-      const double z = input.calibration->depth_m(input.plane->disparity(u, v));
-      const double pixel_m2 = z * z * z / (input.calibration->focal_px * input.calibration->focal_px * plane.height_m);
-      thresholds.least_cells(i, j) =
-          static_cast<float>(std::max(options.min_area_m2 / pixel_m2, least_pixels) * cell_share);
-    }
-  }
-  return thresholds;
-}
-
-Witness make_witness(const DamageInput& input, const Cells& cells, int threads) {
+Witness make_witness(const DamageInput& input, const Cells& cells) {
   constexpr int window_px = 10;  // radius of the block and of the aggregation
-  if (input.grey.empty()) return {};
-  return {make_grey_cells(input.grey, cells.factor, threads), (window_px + cells.factor - 1) / cells.factor};
+  return {input.grey, cells.factor, (window_px + cells.factor - 1) / cells.factor};
 }
 
 }  // namespace
@@ -130,11 +93,10 @@ DamageMap find_damage(const DamageInput& input, const DamageOptions& options, in
   DamageMap result;
   result.unmetric_reason = missing_for_metres(input);
   result.metric = result.unmetric_reason.empty();
-  const Thresholds thresholds = make_thresholds(relief, coordinates, cells, input, options, result.metric);
   result.noise_px = surface.noise;
-  const Segmentation found{
-      cells, surface, road, relief,
-      find_candidates(relief, road, thresholds, make_witness(input, cells, threads), options.protrusions)};
+  const Thresholds thresholds(input, options, cells, coordinates, relief.noise, result.metric);
+  const Segmentation found{cells, surface, road, relief,
+                           find_candidates(relief, road, thresholds, make_witness(input, cells), options.protrusions)};
   measure_damage(input, options, found, threads, result);
   return result;
 }

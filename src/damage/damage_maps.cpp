@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "core/parallel.hpp"
+#include "damage/cell_interpolation.hpp"
+#include "damage/grow.hpp"
 
 namespace roadstereo {
 namespace {
@@ -12,29 +15,33 @@ namespace {
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr int rows_per_band = 16;
 
-/// The region's cells within a box, 1 inside and 0 outside.
-Image<float> indicator_of(const Image<std::uint8_t>& region, const Box& box) {
-  Image<float> indicator(box.last_column - box.first_column + 1, box.last_row - box.first_row + 1);
+/// The cells of a box, 1 inside the region and 0 outside.
+Image<float> indicator_of(const BoxMask& region, const Box& box) {
+  Image<float> indicator(box.columns(), box.rows());
   for (int j = 0; j < indicator.height(); ++j) {
     for (int i = 0; i < indicator.width(); ++i) {
-      indicator(i, j) = region(box.first_column + i, box.first_row + j) != 0 ? 1.0F : 0.0F;
+      indicator(i, j) = region(box.first_column + i, box.first_row + j) ? 1.0F : 0.0F;
     }
   }
   return indicator;
 }
 
+/// A cell more on each side: there the interpolated cells may still be half inside.
+Box box_around(const Candidate& candidate, const Cells& cells) {
+  return candidate.box().grown(1, cells.width(), cells.height());
+}
+
 /// The outline runs where the cells, interpolated, are half inside.
 void paint_candidate(const Cells& cells, const Candidate& candidate, std::uint16_t id, Image<std::uint16_t>& ids) {
-  const int factor = cells.factor;
-  const Box box = candidate.box.grown(1, cells.width(), cells.height());
-  const Image<float> inside = indicator_of(candidate.cells, box);
-  const int first_u = box.first_column * factor;
-  const int first_v = box.first_row * factor;
-  const int end_u = std::min((box.last_column + 1) * factor, ids.width());
-  const int end_v = std::min((box.last_row + 1) * factor, ids.height());
-  for (int v = first_v; v < end_v; ++v) {
-    for (int u = first_u; u < end_u; ++u) {
-      if (ids(u, v) == 0 && at_pixel(inside, factor, u - first_u, v - first_v) > 0.5F) ids(u, v) = id;
+  const Image<float> inside = indicator_of(candidate.cells, box_around(candidate, cells));
+  const PixelBox box = pixels_of(candidate, cells);
+  PixelRows rows(inside, cells.factor, box.width());
+  std::vector<float> share(static_cast<std::size_t>(box.width()));
+  for (int v = box.v0; v <= box.v1; ++v) {
+    rows.read(v - box.v0, share.data());
+    std::uint16_t* const row = ids.row(v) + box.u0;
+    for (std::size_t k = 0; k < share.size(); ++k) {
+      if (row[k] == 0 && share[k] > 0.5F) row[k] = id;
     }
   }
 }
@@ -43,54 +50,92 @@ void paint_candidate(const Cells& cells, const Candidate& candidate, std::uint16
 Image<float> relief_without_islands(const Segmentation& found) {
   Image<float> depth = found.relief.depth;
   Image<std::uint8_t> known = found.relief.known;
+  bool any = false;
   for (const Candidate& candidate : found.candidates) {
     const float sign = sign_of(candidate.kind);
-    const Image<std::uint8_t> interior =
-        shrink_mask(candidate.cells, 2, candidate.box.grown(1, depth.width(), depth.height()));
-    for (int j = candidate.box.first_row; j <= candidate.box.last_row; ++j) {
-      for (int i = candidate.box.first_column; i <= candidate.box.last_column; ++i) {
-        if (interior(i, j) != 0 && sign * depth(i, j) < candidate.level) known(i, j) = 0;
+    const BoxMask interior = shrink_mask(candidate.cells, 2, box_around(candidate, found.cells));
+    const Box& box = candidate.box();
+    for (int j = box.first_row; j <= box.last_row; ++j) {
+      for (int i = box.first_column; i <= box.last_column; ++i) {
+        if (!interior(i, j) || sign * depth(i, j) >= candidate.level) continue;
+        any |= known(i, j) != 0;
+        known(i, j) = 0;
       }
     }
   }
-  interpolate_gaps(depth, known);
+  if (any) interpolate_gaps(depth, known);
   return depth;
+}
+
+/// Writes the cells of a row as pixels.
+void spread_row(const std::uint8_t* cells, int factor, int width, std::uint8_t* pixels) {
+  for (int i = 0, u = 0; u < width; ++i) {
+    for (const int end = std::min(u + factor, width); u < end; ++u) pixels[u] = cells[i];
+  }
+}
+
+/// Road, surface and depth as they are without any damage.
+void paint_road(const DamageInput& input, const Segmentation& found, int threads, DamageMap& result) {
+  const int width = input.transformed.width();
+  const int factor = found.cells.factor;
+  parallel_rows(input.transformed.height(), rows_per_band, threads, [&](int first, int last, int) {
+    PixelRows surfaces(found.surface.value, factor, width);
+    for (int v = first; v < last; ++v) {
+      if (v == first || v % factor == 0) {
+        spread_row(found.road.row(v / factor), factor, width, result.road.row(v));
+      } else {
+        std::copy_n(result.road.row(v - 1), width, result.road.row(v));
+      }
+      const float* const seen = input.transformed.row(v);
+      float* const surface = result.surface.row(v);
+      float* const depth = result.depth.row(v);
+      surfaces.read(v, surface);
+      for (int u = 0; u < width; ++u) depth[u] = std::isfinite(seen[u]) ? surface[u] - seen[u] : nan;
+    }
+  });
+}
+
+/// A damage is part of the road; its gaps and islands are as deep as what surrounds them.
+void paint_inside(const Candidate& candidate, std::uint16_t id, const Cells& cells, const Image<float>& relief,
+                  DamageMap& result) {
+  const float sign = sign_of(candidate.kind);
+  const PixelBox box = pixels_of(candidate, cells);
+  for (int v = box.v0; v <= box.v1; ++v) {
+    for (int u = box.u0; u <= box.u1; ++u) {
+      if (result.ids(u, v) != id) continue;
+      result.road(u, v) = 255;
+      float& depth = result.depth(u, v);
+      if (sign * depth >= candidate.level) continue;
+      const float inside = at_pixel(relief, cells.factor, u, v);
+      if (std::isnan(depth) || sign * inside > candidate.level) depth = inside;
+    }
+  }
 }
 
 }  // namespace
 
+PixelBox pixels_of(const Candidate& candidate, const Cells& cells) {
+  const Box box = box_around(candidate, cells);
+  return {box.first_column * cells.factor, box.first_row * cells.factor,
+          std::min((box.last_column + 1) * cells.factor, cells.image_width) - 1,
+          std::min((box.last_row + 1) * cells.factor, cells.image_height) - 1};
+}
+
 void paint_maps(const DamageInput& input, const Segmentation& found, int threads, DamageMap& result) {
-  const auto& transformed = input.transformed;
-  const int width = transformed.width();
-  const int height = transformed.height();
-  const int factor = found.cells.factor;
+  const int width = input.transformed.width();
+  const int height = input.transformed.height();
   result.ids.assign(width, height, 0);
-  result.road.assign(width, height, 0);
-  result.surface.assign(width, height, nan);
-  result.depth.assign(width, height, nan);
-  for (std::size_t k = 0; k < found.candidates.size(); ++k) {
-    paint_candidate(found.cells, found.candidates[k], static_cast<std::uint16_t>(k + 1), result.ids);
-  }
+  result.road.resize(width, height);
+  result.surface.resize(width, height);
+  result.depth.resize(width, height);
+  paint_road(input, found, threads, result);
+  if (found.candidates.empty()) return;
   const Image<float> relief = relief_without_islands(found);
-  parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {
-    for (int v = first; v < last; ++v) {
-      for (int u = 0; u < width; ++u) {
-        const std::uint16_t id = result.ids(u, v);
-        result.road(u, v) = id != 0 || found.road(u / factor, v / factor) != 0 ? 255 : 0;
-        const float surface = at_pixel(found.surface.value, factor, u, v);
-        result.surface(u, v) = surface;
-        float depth = std::isfinite(transformed(u, v)) ? surface - transformed(u, v) : nan;
-        if (id != 0) {
-          const Candidate& candidate = found.candidates[id - 1U];
-          const float inside = at_pixel(relief, factor, u, v);
-          const float sign = sign_of(candidate.kind);
-          const bool island = sign * depth < candidate.level && sign * inside > candidate.level;
-          if (std::isnan(depth) || island) depth = inside;
-        }
-        result.depth(u, v) = depth;
-      }
-    }
-  });
+  for (std::size_t k = 0; k < found.candidates.size(); ++k) {
+    const auto id = static_cast<std::uint16_t>(k + 1);
+    paint_candidate(found.cells, found.candidates[k], id, result.ids);
+    paint_inside(found.candidates[k], id, found.cells, relief, result);
+  }
 }
 
 }  // namespace roadstereo

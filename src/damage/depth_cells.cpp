@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "damage/cell_interpolation.hpp"
+
 namespace roadstereo {
 namespace {
 

@@ -35,10 +35,11 @@ void add_pixel(const DamageInput& input, const DamageMap& maps, int u, int v, Pi
 void find_deepest(const Segmentation& found, const Candidate& candidate, Damage& damage) {
   const float sign = sign_of(candidate.kind);
   float largest = 0;
-  for (int j = candidate.box.first_row; j <= candidate.box.last_row; ++j) {
-    for (int i = candidate.box.first_column; i <= candidate.box.last_column; ++i) {
+  const Box& box = candidate.box();
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
       const float depth = sign * found.relief.depth(i, j);
-      if (candidate.cells(i, j) == 0 || found.relief.known(i, j) == 0 || depth <= largest) continue;
+      if (!candidate.cells(i, j) || found.relief.known(i, j) == 0 || depth <= largest) continue;
       largest = depth;
       // The middle of a cell that the border cuts may lie outside the picture.
       damage.deepest_px = {std::min(static_cast<int>(found.cells.middle(i)), found.cells.image_width - 1),
@@ -48,30 +49,41 @@ void find_deepest(const Segmentation& found, const Candidate& candidate, Damage&
   damage.max_depth_px.value = largest;
 }
 
-std::vector<Damage> measure_in_pixels(const DamageInput& input, const Segmentation& found, const DamageMap& maps) {
-  std::vector<PixelSums> sums(found.candidates.size());
-  for (int v = 0; v < maps.ids.height(); ++v) {
-    for (int u = 0; u < maps.ids.width(); ++u) {
-      const std::uint16_t id = maps.ids(u, v);
-      if (id != 0) add_pixel(input, maps, u, v, sums[id - 1U]);
+Damage measure_in_pixels(const DamageInput& input, const Segmentation& found, std::size_t k, const DamageMap& maps) {
+  const Candidate& candidate = found.candidates[k];
+  PixelSums sums;
+  Damage& damage = sums.damage;
+  damage.id = static_cast<int>(k + 1);
+  damage.kind = candidate.kind;
+  const PixelBox box = pixels_of(candidate, found.cells);
+  for (int v = box.v0; v <= box.v1; ++v) {
+    for (int u = box.u0; u <= box.u1; ++u) {
+      if (maps.ids(u, v) == damage.id) add_pixel(input, maps, u, v, sums);
     }
   }
-  std::vector<Damage> damages;
-  damages.reserve(sums.size());
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    Damage& damage = sums[k].damage;
-    damage.id = static_cast<int>(k + 1);
-    damage.kind = found.candidates[k].kind;
-    if (damage.pixels > 0) {
-      const auto pixels = static_cast<double>(damage.pixels);
-      damage.centroid_px = {sums[k].u / pixels, sums[k].v / pixels};
-      damage.measured_share = static_cast<double>(sums[k].measured) / pixels;
-      damage.mean_depth_px = sums[k].measured > 0 ? sums[k].depth / static_cast<double>(sums[k].measured) : 0;
-    }
-    find_deepest(found, found.candidates[k], damage);
-    damages.push_back(damage);
+  if (damage.pixels > 0) {
+    const auto pixels = static_cast<double>(damage.pixels);
+    damage.centroid_px = {sums.u / pixels, sums.v / pixels};
+    damage.measured_share = static_cast<double>(sums.measured) / pixels;
+    damage.mean_depth_px = sums.measured > 0 ? sums.depth / static_cast<double>(sums.measured) : 0;
   }
-  return damages;
+  find_deepest(found, candidate, damage);
+  return damage;
+}
+
+/// Gives every pixel of the damages its new number.
+void renumber(const std::vector<Damage>& damages, const std::vector<std::uint16_t>& new_id, Image<std::uint16_t>& ids) {
+  int top = ids.height();
+  int bottom = -1;
+  for (const Damage& damage : damages) {
+    if (damage.pixels == 0) continue;
+    top = std::min(top, damage.box_px[1]);
+    bottom = std::max(bottom, damage.box_px[3]);
+  }
+  for (int v = top; v <= bottom; ++v) {
+    std::uint16_t* const row = ids.row(v);
+    for (int u = 0; u < ids.width(); ++u) row[u] = new_id[row[u]];
+  }
 }
 
 /// Drops what is not deeper than its own standard error says it must be, or reaches beyond the road, and numbers the
@@ -96,10 +108,7 @@ void keep_significant(DamageMap& result) {
     new_id[static_cast<std::size_t>(kept[k].id)] = static_cast<std::uint16_t>(k + 1);
     kept[k].id = static_cast<int>(k + 1);
   }
-  for (int v = 0; v < result.ids.height(); ++v) {
-    std::uint16_t* row = result.ids.row(v);
-    for (int u = 0; u < result.ids.width(); ++u) row[u] = new_id[row[u]];
-  }
+  renumber(result.damages, new_id, result.ids);
   result.damages = std::move(kept);
 }
 
@@ -108,21 +117,22 @@ void keep_significant(DamageMap& result) {
 void measure_damage(const DamageInput& input, const DamageOptions& options, const Segmentation& found, int threads,
                     DamageMap& result) {
   paint_maps(input, found, threads, result);
-  result.damages = measure_in_pixels(input, found, result);
   std::vector<SurfaceOffset> offsets;
-  offsets.reserve(result.damages.size());
-  for (std::size_t k = 0; k < result.damages.size(); ++k) {
+  offsets.reserve(found.candidates.size());
+  for (std::size_t k = 0; k < found.candidates.size(); ++k) {
     const SurfaceOffset offset = offsets.emplace_back(local_surface_offset(found, found.candidates[k]));
-    Damage& damage = result.damages[k];
+    Damage& damage = result.damages.emplace_back(measure_in_pixels(input, found, k, result));
     const auto [u, v] = damage.deepest_px;
     const double own = input.sigma.empty() ? result.noise_px : input.sigma(u, v);
     const double sigma = std::isfinite(own) ? own : result.noise_px;
     damage.max_depth_px.value += sign_of(damage.kind) * offset.value;
     damage.max_depth_px.std_error = std::hypot(sigma, offset.std_error);
   }
-  if (result.metric) measure_in_metres(input, options, offsets, result);
+  std::optional<FrameGeometry> geometry;
+  if (result.metric) geometry.emplace(input);
+  if (geometry) measure_in_metres(input, options, *geometry, offsets, result);
   keep_significant(result);
-  if (result.metric) depth_to_metres(input, threads, result);
+  if (geometry) depth_to_metres(*geometry, threads, result);
 }
 
 }  // namespace roadstereo

@@ -6,68 +6,13 @@
 
 #include "core/median.hpp"
 #include "core/parallel.hpp"
+#include "damage/grow.hpp"
 #include "damage/oriented_box.hpp"
 
 namespace roadstereo {
 namespace {
 
-using Point = std::array<double, 3>;
-
-double dot(const Point& one, const Point& other) {
-  return one[0] * other[0] + one[1] * other[1] + one[2] * other[2];
-}
-
-/// Rays of one frame against its road.
-class Geometry {
- public:
-  explicit Geometry(const DamageInput& input)
-      : calibration_(*input.calibration),
-        model_(*input.plane),
-        plane_(road_plane(*input.plane, *input.calibration)),
-        frame_(road_frame(plane_)) {
-    delta_t_ = find_delta_t(input);
-  }
-
-  /// Disparity of the undamaged surface, whose ℓ' is `surface`.
-  double road_disparity(int u, int v, double surface) const { return model_.disparity(u, v) + surface - delta_t_; }
-  Point point(int u, int v, double disparity) const { return calibration_.point_m(u, v, disparity); }
-  /// Area of the road that one pixel covers where it lies at `road`: Z³ / (f²·n·P).
-  double pixel_area(const Point& road) const {
-    const double f = calibration_.focal_px;
-    return road[2] * road[2] * road[2] / (f * f * dot(plane_.normal, road));
-  }
-  /// Depth along the normal between two points of one ray.
-  double depth_between(const Point& road, const Point& seen) const {
-    return dot(plane_.normal, seen) - dot(plane_.normal, road);
-  }
-  /// Metres of depth per pixel of disparity: n·P / (d + doffs).
-  double metres_per_pixel(const Point& seen, double disparity) const {
-    return dot(plane_.normal, seen) / (disparity + calibration_.disparity_offset_px);
-  }
-  const RoadFrame& frame() const { return frame_; }
-  double focal_px() const { return calibration_.focal_px; }
-
- private:
-  /// ℓ' = ℓ − road + δt: the median over a sample of pixels tells δt, whoever made the map.
-  double find_delta_t(const DamageInput& input) const {
-    constexpr int step = 7;
-    std::vector<double> deltas;
-    for (int v = step / 2; v < input.disparity.height(); v += step) {
-      for (int u = step / 2; u < input.disparity.width(); u += step) {
-        const double delta =
-            static_cast<double>(input.transformed(u, v)) - input.disparity(u, v) + model_.disparity(u, v);
-        if (std::isfinite(delta)) deltas.push_back(delta);
-      }
-    }
-    return deltas.empty() ? 0 : take_median(deltas);
-  }
-
-  StereoCalibration calibration_;
-  RoadModel model_;
-  RoadPlane plane_;
-  RoadFrame frame_;
-  double delta_t_ = 0;
-};
+using Point = FrameGeometry::Point;
 
 /// Sums over the pixels of one damage.
 struct Sums {
@@ -85,7 +30,7 @@ bool on_rim(const Image<std::uint16_t>& ids, int u, int v) {
          ids(u + 1, v) != id || ids(u, v - 1) != id || ids(u, v + 1) != id;
 }
 
-Sums add_up(const DamageInput& input, const Geometry& geometry, const DamageMap& maps, const Damage& damage,
+Sums add_up(const DamageInput& input, const FrameGeometry& geometry, const DamageMap& maps, const Damage& damage,
             double offset) {
   Sums sums;
   const double f = geometry.focal_px();
@@ -142,7 +87,7 @@ void set_standard_errors(const Sums& sums, const SurfaceOffset& offset, double n
 }
 
 /// Everything metric of one damage.
-DamageMetrics metrics_of(const DamageInput& input, const DamageOptions& options, const Geometry& geometry,
+DamageMetrics metrics_of(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
                          const SurfaceOffset& offset, const DamageMap& maps, Damage& damage) {
   const Sums sums = add_up(input, geometry, maps, damage, offset.value);
   const double noise_px = maps.noise_px;
@@ -169,7 +114,7 @@ DamageMetrics metrics_of(const DamageInput& input, const DamageOptions& options,
   for (std::size_t k = 0; k < 3; ++k) metrics.centroid_m[k] = sums.centroid[k] / sums.area;
   const Point flat = geometry.frame().to_road(metrics.centroid_m);
   metrics.road_centroid_m = {flat[0], flat[1]};
-  metrics.distance_m = std::sqrt(dot(metrics.centroid_m, metrics.centroid_m));
+  metrics.distance_m = std::hypot(metrics.centroid_m[0], metrics.centroid_m[1], metrics.centroid_m[2]);
   metrics.resolvable_depth_m = options.threshold_sigma * std::hypot(sigma_px, offset.std_error) * per_pixel;
   metrics.severity = metrics.max_depth_m.value < metrics.resolvable_depth_m
                          ? Severity::unresolvable
@@ -185,14 +130,14 @@ SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& c
   constexpr double independent = 6;  // undulations of the road around one damage that do not know of each other
   const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
   const int reach = gap + std::max(3, static_cast<int>(0.4 * radius));
-  const Box box = candidate.box.grown(reach, found.cells.width(), found.cells.height());
-  const Image<std::uint8_t> inner = grow(candidate.cells, gap, box);
-  const Image<std::uint8_t> outer = grow(candidate.cells, reach, box);
+  const Box box = candidate.box().grown(reach, found.cells.width(), found.cells.height());
+  const BoxMask inner = grow(candidate.cells, gap, box);
+  const BoxMask outer = grow(candidate.cells, reach, box);
   std::vector<double> values;
   const float most = noise_reach * static_cast<float>(found.relief.noise);
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
-      if (outer(i, j) == 0 || inner(i, j) != 0 || found.relief.known(i, j) == 0) continue;
+      if (!outer(i, j) || inner(i, j) || found.relief.known(i, j) == 0) continue;
       const float depth = found.relief.depth(i, j);
       if (std::abs(depth) <= most) values.push_back(-depth);
     }
@@ -204,27 +149,19 @@ SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& c
   return {median, gaussian_mad * take_median(values) / std::sqrt(independent)};
 }
 
-void measure_in_metres(const DamageInput& input, const DamageOptions& options,
+void measure_in_metres(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
                        const std::vector<SurfaceOffset>& offsets, DamageMap& result) {
-  const Geometry geometry(input);
   for (std::size_t k = 0; k < offsets.size(); ++k) {
     Damage& damage = result.damages[k];
     if (damage.pixels > 0) damage.metrics = metrics_of(input, options, geometry, offsets[k], result, damage);
   }
 }
 
-void depth_to_metres(const DamageInput& input, int threads, DamageMap& result) {
+void depth_to_metres(const FrameGeometry& geometry, int threads, DamageMap& result) {
   constexpr int rows_per_band = 16;
-  const Geometry geometry(input);
   parallel_rows(result.depth.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
-      for (int u = 0; u < result.depth.width(); ++u) {
-        float& depth = result.depth(u, v);
-        if (std::isnan(depth)) continue;
-        const double on_road = geometry.road_disparity(u, v, result.surface(u, v));
-        depth = static_cast<float>(
-            geometry.depth_between(geometry.point(u, v, on_road), geometry.point(u, v, on_road - depth)));
-      }
+      geometry.depths_to_metres(v, result.depth.width(), result.surface.row(v), result.depth.row(v));
     }
   });
 }

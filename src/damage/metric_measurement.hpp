@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "damage/frame_geometry.hpp"
 #include "damage/measurement.hpp"
 
 namespace roadstereo {
@@ -15,10 +16,10 @@ SurfaceOffset local_surface_offset(const Segmentation& found, const Candidate& c
 
 /// Fills the metric figures of every damage, each with the offset of the surface around it; `result.depth` is in
 /// pixels.
-void measure_in_metres(const DamageInput& input, const DamageOptions& options,
+void measure_in_metres(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
                        const std::vector<SurfaceOffset>& offsets, DamageMap& result);
 
 /// Turns `result.depth` from pixels of ℓ' to metres along the road's normal.
-void depth_to_metres(const DamageInput& input, int threads, DamageMap& result);
+void depth_to_metres(const FrameGeometry& geometry, int threads, DamageMap& result);
 
 }  // namespace roadstereo

@@ -1,0 +1,19 @@
+#include "damage/box_mask.hpp"
+
+#include <algorithm>
+
+namespace roadstereo {
+
+BoxMask BoxMask::within(const Box& box) const {
+  BoxMask part(box);
+  const int first_column = std::max(box.first_column, box_.first_column);
+  const int last_column = std::min(box.last_column, box_.last_column);
+  if (last_column < first_column) return part;
+  for (int j = std::max(box.first_row, box_.first_row); j <= std::min(box.last_row, box_.last_row); ++j) {
+    std::copy_n(cells_.row(j - box_.first_row) + (first_column - box_.first_column), last_column - first_column + 1,
+                part.cells_.row(j - box.first_row) + (first_column - box.first_column));
+  }
+  return part;
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,54 @@
+#include "damage/cell_interpolation.hpp"
+
+#include <algorithm>
+
+namespace roadstereo {
+
+Between between(int pixel, int factor, int count) {
+  const float half = 0.5F * static_cast<float>(factor - 1);
+  const float x =
+      std::clamp((static_cast<float>(pixel) - half) / static_cast<float>(factor), 0.0F, static_cast<float>(count - 1));
+  const int first = static_cast<int>(x);
+  const float share = x - static_cast<float>(first);
+  return {first, share > 0 ? first + 1 : first, share};
+}
+
+float at_pixel(const Image<float>& cells, int factor, int u, int v) {
+  const auto [left, right, s] = between(u, factor, cells.width());
+  const auto [above, below, t] = between(v, factor, cells.height());
+  return (1 - t) * ((1 - s) * cells(left, above) + s * cells(right, above)) +
+         t * ((1 - s) * cells(left, below) + s * cells(right, below));
+}
+
+PixelRows::PixelRows(const Image<float>& cells, int factor, int width) : cells_(cells), factor_(factor) {
+  columns_.reserve(static_cast<std::size_t>(width));
+  for (int u = 0; u < width; ++u) columns_.push_back(between(u, factor, cells.width()));
+}
+
+void PixelRows::spread(int row, Spread& into) const {
+  if (into.row == row) return;
+  into.row = row;
+  into.values.resize(columns_.size());
+  const float* const cells = cells_.row(row);
+  for (std::size_t u = 0; u < columns_.size(); ++u) {
+    const auto& [left, right, share] = columns_[u];
+    into.values[u] = (1 - share) * cells[left] + share * cells[right];
+  }
+}
+
+void PixelRows::read(int v, float* values) {
+  const auto [above, below, share] = between(v, factor_, cells_.height());
+  if (below_.row == above) std::swap(above_, below_);
+  spread(above, above_);
+  if (below == above) {
+    std::copy(above_.values.begin(), above_.values.end(), values);
+    return;
+  }
+  spread(below, below_);
+  const float* const one = above_.values.data();
+  const float* const other = below_.values.data();
+  const auto width = static_cast<int>(columns_.size());
+  for (int u = 0; u < width; ++u) values[u] = (1 - share) * one[u] + share * other[u];
+}
+
+}  // namespace roadstereo

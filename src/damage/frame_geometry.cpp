@@ -1,0 +1,64 @@
+#include "damage/frame_geometry.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "core/median.hpp"
+
+namespace roadstereo {
+namespace {
+
+double dot(const FrameGeometry::Point& one, const FrameGeometry::Point& other) {
+  return one[0] * other[0] + one[1] * other[1] + one[2] * other[2];
+}
+
+/// ℓ' = ℓ − road + δt: the median over a sample of pixels tells δt, whoever made the map.
+double find_delta_t(const DamageInput& input) {
+  constexpr int step = 7;
+  std::vector<double> deltas;
+  for (int v = step / 2; v < input.disparity.height(); v += step) {
+    for (int u = step / 2; u < input.disparity.width(); u += step) {
+      const double delta =
+          static_cast<double>(input.transformed(u, v)) - input.disparity(u, v) + input.plane->disparity(u, v);
+      if (std::isfinite(delta)) deltas.push_back(delta);
+    }
+  }
+  return deltas.empty() ? 0 : take_median(deltas);
+}
+
+}  // namespace
+
+FrameGeometry::FrameGeometry(const DamageInput& input)
+    : calibration_(*input.calibration),
+      model_(*input.plane),
+      plane_(road_plane(*input.plane, *input.calibration)),
+      frame_(road_frame(plane_)),
+      delta_t_(find_delta_t(input)) {}
+
+double FrameGeometry::pixel_area(const Point& road) const {
+  const double f = calibration_.focal_px;
+  return road[2] * road[2] * road[2] / (f * f * dot(plane_.normal, road));
+}
+
+double FrameGeometry::depth_between(const Point& road, const Point& seen) const {
+  return dot(plane_.normal, seen) - dot(plane_.normal, road);
+}
+
+double FrameGeometry::metres_per_pixel(const Point& seen, double disparity) const {
+  return dot(plane_.normal, seen) / (disparity + calibration_.disparity_offset_px);
+}
+
+void FrameGeometry::depths_to_metres(int v, int width, const float* surface, float* depths) const {
+  // On the ray of a pixel n·P = h·D / (d + doffs), where D is the plane's own d + doffs there.
+  const auto height = static_cast<float>(plane_.height_m);
+  const auto first = static_cast<float>(model_.disparity(0, v) + calibration_.disparity_offset_px);
+  const auto slope = static_cast<float>(model_.a2);
+  const auto delta_t = static_cast<float>(delta_t_);
+  for (int u = 0; u < width; ++u) {
+    const float plane = first + slope * static_cast<float>(u);
+    const float road = plane + (surface[u] - delta_t);
+    depths[u] *= height * plane / (road * (road - depths[u]));
+  }
+}
+
+}  // namespace roadstereo

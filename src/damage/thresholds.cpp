@@ -1,0 +1,40 @@
+#include "damage/thresholds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "roadstereo/road_plane.hpp"
+
+namespace roadstereo {
+
+Thresholds::Thresholds(const DamageInput& input, const DamageOptions& options, const Cells& cells,
+                       const SurfaceCoordinates& coordinates, double noise, bool metric)
+    : input_(input),
+      options_(options),
+      cells_(cells),
+      scale_(coordinates.scale),
+      metric_(metric),
+      noise_(static_cast<float>(options.threshold_sigma * noise)),
+      min_depth_m_(metric ? options.min_depth_m : 0) {
+  if (metric) height_m_ = road_plane(*input.plane, *input.calibration).height_m;
+}
+
+float Thresholds::in_pixels(double metres, int i, int j) const {
+  const float scale = scale_(i, j);
+  return metric_ && !std::isnan(scale) ? static_cast<float>(metres * scale) : std::numeric_limits<float>::infinity();
+}
+
+float Thresholds::least_cells(int i, int j) const {
+  constexpr double least_pixels = 64;  // fewer is less than matching's window
+  if (!metric_ || std::isnan(scale_(i, j))) {
+    return static_cast<float>(options_.min_area_share * static_cast<double>(cells_.value.pixels()));
+  }
+  const StereoCalibration& calibration = *input_.calibration;
+  const double z = calibration.depth_m(input_.plane->disparity(cells_.middle(i), cells_.middle(j)));
+  const double pixel_m2 = z * z * z / (calibration.focal_px * calibration.focal_px * height_m_);
+  const double cell_share = 1.0 / (cells_.factor * cells_.factor);
+  return static_cast<float>(std::max(options_.min_area_m2 / pixel_m2, least_pixels) * cell_share);
+}
+
+}  // namespace roadstereo
