@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "core/parallel.hpp"
 #include "roadstereo/error.hpp"
@@ -10,56 +12,58 @@
 namespace roadstereo {
 namespace {
 
-constexpr int rows_per_band = 16;
+/// Sums over the rows of one row of cells, column by column.
+struct ColumnSums {
+  std::vector<double> sum;
+  std::vector<int> count;  ///< of the valid pixels
 
-/// Sum and number of the valid pixels of one cell.
-struct Sum {
-  double sum = 0;
-  int count = 0;
+  explicit ColumnSums(int columns) : sum(static_cast<std::size_t>(columns)), count(static_cast<std::size_t>(columns)) {}
+  void clear() {
+    std::fill(sum.begin(), sum.end(), 0.0);
+    std::fill(count.begin(), count.end(), 0);
+  }
+  /// Adds a row of the picture; `sigma` may be null.
+  void add(const float* values, const float* sigma, int width) {
+    constexpr float worst_sigma = 1;  // pixels
+    constexpr float largest = std::numeric_limits<float>::max();
+    for (int u = 0; u < width; ++u) {
+      const auto k = static_cast<std::size_t>(u);
+      const bool vague = sigma != nullptr && sigma[u] > worst_sigma;
+      const float value = vague ? std::numeric_limits<float>::quiet_NaN() : values[u];
+      const bool valid = std::abs(value) <= largest;
+      sum[k] += valid ? value : 0.0F;
+      count[k] += valid ? 1 : 0;
+    }
+  }
 };
 
-/// Means over cells of what `value_at` gives for each pixel; NaN is left out.
-template <class ValueAt>
-Image<float> mean_cells(int width, int height, int factor, int threads, const ValueAt& value_at) {
-  const auto sum_of_cell = [&](int i, int j) {
-    Sum cell;
-    for (int v = j * factor; v < std::min((j + 1) * factor, height); ++v) {
-      for (int u = i * factor; u < std::min((i + 1) * factor, width); ++u) {
-        const float value = value_at(u, v);
-        if (!std::isfinite(value)) continue;
-        cell.sum += value;
-        ++cell.count;
-      }
+/// Means of the cells of a row, from sums whose columns fill them all.
+void mean_row(const ColumnSums& columns, int factor, bool last_row, int cells, float* means) {
+  for (int i = 0; i < cells; ++i) {
+    double sum = 0;
+    int count = 0;
+    for (int k = i * factor; k < (i + 1) * factor; ++k) {
+      sum += columns.sum[static_cast<std::size_t>(k)];
+      count += columns.count[static_cast<std::size_t>(k)];
     }
-    return cell;
-  };
-  Image<float> cells((width + factor - 1) / factor, (height + factor - 1) / factor);
-  parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
-    for (int j = first; j < last; ++j) {
-      for (int i = 0; i < cells.width(); ++i) {
-        const Sum cell = sum_of_cell(i, j);
-        const bool cut = i + 1 == cells.width() || j + 1 == cells.height();  // by the border of the picture
-        const bool known = cell.count > 0 && (cut ? 4 : 2) * cell.count >= factor * factor;
-        cells(i, j) = known ? static_cast<float>(cell.sum / cell.count) : std::numeric_limits<float>::quiet_NaN();
-      }
-    }
-  });
-  return cells;
+    const bool cut = last_row || i + 1 == cells;  // by the border of the picture
+    const bool known = count > 0 && (cut ? 4 : 2) * count >= factor * factor;
+    means[i] = known ? static_cast<float>(sum / count) : std::numeric_limits<float>::quiet_NaN();
+  }
 }
 
 void require_values(ImageView<const float> transformed) {
-  float lowest = std::numeric_limits<float>::infinity();
-  float highest = -lowest;
+  std::optional<float> one;
   for (int v = 0; v < transformed.height(); ++v) {
     const float* row = transformed.row(v);
     for (int u = 0; u < transformed.width(); ++u) {
       if (!std::isfinite(row[u])) continue;
-      lowest = std::min(lowest, row[u]);
-      highest = std::max(highest, row[u]);
+      if (one && *one != row[u]) return;
+      one = row[u];
     }
   }
-  if (lowest > highest) fail("the transformed map has no valid pixel");
-  if (lowest == highest) fail("the transformed map shows nothing: every valid pixel is ", lowest);
+  if (!one) fail("the transformed map has no valid pixel");
+  fail("the transformed map shows nothing: every valid pixel is ", *one);
 }
 
 }  // namespace
@@ -72,15 +76,23 @@ int cell_factor(int width, int height) {
 }
 
 Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigma, int factor, int threads) {
-  constexpr float worst_sigma = 1;  // pixels
+  constexpr int rows_per_band = 16;
   require_values(transformed);
+  const int height = transformed.height();
   Cells cells;
   cells.factor = factor;
   cells.image_width = transformed.width();
-  cells.image_height = transformed.height();
-  cells.value = mean_cells(transformed.width(), transformed.height(), factor, threads, [&](int u, int v) {
-    const bool vague = !sigma.empty() && sigma(u, v) > worst_sigma;
-    return vague ? std::numeric_limits<float>::quiet_NaN() : transformed(u, v);
+  cells.image_height = height;
+  cells.value.resize((transformed.width() + factor - 1) / factor, (height + factor - 1) / factor);
+  parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
+    ColumnSums columns(cells.width() * factor);
+    for (int j = first; j < last; ++j) {
+      columns.clear();
+      for (int v = j * factor; v < std::min((j + 1) * factor, height); ++v) {
+        columns.add(transformed.row(v), sigma.empty() ? nullptr : sigma.row(v), transformed.width());
+      }
+      mean_row(columns, factor, j + 1 == cells.height(), cells.width(), cells.value.row(j));
+    }
   });
   return cells;
 }

@@ -1,7 +1,7 @@
 #include "damage/depth_cells.hpp"
 
-#include <array>
-#include <cmath>
+#include <algorithm>
+#include <vector>
 
 #include "damage/cell_interpolation.hpp"
 
@@ -13,109 +13,117 @@ struct Level {
   Image<float> sum, weight;
 };
 
+/// Adds neighbouring cells of a row in twos.
+void add_in_twos(const float* fine, int width, float* coarse) {
+  for (int i = 0; i < width / 2; ++i) coarse[i] = coarse[i] + fine[2 * i] + fine[2 * i + 1];
+  if (width % 2 != 0) coarse[width / 2] += fine[width - 1];
+}
+
 Level halve(const Level& fine) {
+  const int width = fine.sum.width();
   Level coarse;
-  coarse.sum.assign((fine.sum.width() + 1) / 2, (fine.sum.height() + 1) / 2, 0.0F);
+  coarse.sum.assign((width + 1) / 2, (fine.sum.height() + 1) / 2, 0.0F);
   coarse.weight.assign(coarse.sum.width(), coarse.sum.height(), 0.0F);
   for (int j = 0; j < fine.sum.height(); ++j) {
-    for (int i = 0; i < fine.sum.width(); ++i) {
-      coarse.sum(i / 2, j / 2) += fine.sum(i, j);
-      coarse.weight(i / 2, j / 2) += fine.weight(i, j);
-    }
+    add_in_twos(fine.sum.row(j), width, coarse.sum.row(j / 2));
+    add_in_twos(fine.weight.row(j), width, coarse.weight.row(j / 2));
   }
   // A coarse cell that knows anything knows it fully: weights would else fade with every step.
-  for (int j = 0; j < coarse.sum.height(); ++j) {
-    for (int i = 0; i < coarse.sum.width(); ++i) {
-      if (coarse.weight(i, j) <= 1) continue;
-      coarse.sum(i, j) /= coarse.weight(i, j);
-      coarse.weight(i, j) = 1;
-    }
+  float* const sums = coarse.sum.row(0);
+  float* const weights = coarse.weight.row(0);
+  for (std::size_t k = 0; k < coarse.sum.pixels(); ++k) {
+    const float most = std::max(weights[k], 1.0F);
+    sums[k] /= most;
+    weights[k] = std::min(weights[k], 1.0F);
   }
   return coarse;
 }
 
-/// Sum and weight of the five cells around (i, j) along a row or a column, with weights 1 4 6 4 1.
-struct Weighted {
-  float sum = 0;
-  float weight = 0;
-};
-
-Weighted binomial_sum(const Level& level, int i, int j, bool along_row) {
-  constexpr std::array<float, 5> binomial{1, 4, 6, 4, 1};
-  Weighted total;
-  int offset = -2;
-  for (const float share : binomial) {
-    const int column = along_row ? i + offset : i;
-    const int row = along_row ? j : j + offset;
-    ++offset;
-    if (column < 0 || column >= level.sum.width() || row < 0 || row >= level.sum.height()) continue;
-    total.sum += share * level.sum(column, row);
-    total.weight += share * level.weight(column, row);
+/// Fills what is missing in a level from the next coarser one.
+void fill_from(const Level& coarse, Level& fine) {
+  const int width = fine.sum.width();
+  PixelRows rows(coarse.sum, 2, width);
+  std::vector<float> filling(static_cast<std::size_t>(width));
+  for (int j = 0; j < fine.sum.height(); ++j) {
+    float* const weights = fine.weight.row(j);
+    float* const sums = fine.sum.row(j);
+    if (std::all_of(weights, weights + width, [](float weight) { return weight >= 1; })) continue;
+    rows.read(j, filling.data());
+    for (int i = 0; i < width; ++i) sums[i] += (1 - weights[i]) * filling[static_cast<std::size_t>(i)];
+    std::fill(weights, weights + width, 1.0F);
   }
-  return total;
+}
+
+/// Sums of five neighbours with the weights 1 4 6 4 1, along the rows and across them; nothing lies beyond the border.
+Image<float> binomial_sums(const Image<float>& values) {
+  const int width = values.width();
+  const int height = values.height();
+  Image<float> along(width, height + 4, 0.0F);  // two empty rows above and below
+  std::vector<float> line(static_cast<std::size_t>(width) + 4, 0.0F);
+  for (int j = 0; j < height; ++j) {
+    std::copy_n(values.row(j), width, line.begin() + 2);
+    const float* const cell = line.data();
+    float* const row = along.row(j + 2);
+    for (int i = 0; i < width; ++i) {
+      row[i] = cell[i] + 4 * cell[i + 1] + 6 * cell[i + 2] + 4 * cell[i + 3] + cell[i + 4];
+    }
+  }
+  Image<float> sums(width, height);
+  for (int j = 0; j < height; ++j) {
+    const float* const first = along.row(j);
+    const float* const second = along.row(j + 1);
+    const float* const middle = along.row(j + 2);
+    const float* const fourth = along.row(j + 3);
+    const float* const last = along.row(j + 4);
+    float* const row = sums.row(j);
+    for (int i = 0; i < width; ++i) row[i] = first[i] + 4 * second[i] + 6 * middle[i] + 4 * fourth[i] + last[i];
+  }
+  return sums;
 }
 
 /// Binomial mean, 5×5, of the cells that have a weight; 0 where none has.
 Image<float> smooth(const Level& level) {
-  const int width = level.sum.width();
-  const int height = level.sum.height();
-  Level rows{Image<float>(width, height), Image<float>(width, height)};
-  for (int j = 0; j < height; ++j) {
-    for (int i = 0; i < width; ++i) {
-      const Weighted total = binomial_sum(level, i, j, true);
-      rows.sum(i, j) = total.sum;
-      rows.weight(i, j) = total.weight;
-    }
-  }
-  Image<float> result(width, height);
-  for (int j = 0; j < height; ++j) {
-    for (int i = 0; i < width; ++i) {
-      const Weighted total = binomial_sum(rows, i, j, false);
-      result(i, j) = total.weight > 0 ? total.sum / total.weight : 0;
-    }
-  }
-  return result;
+  Image<float> means = binomial_sums(level.sum);
+  const Image<float> weights = binomial_sums(level.weight);
+  float* const mean = means.row(0);
+  const float* const weight = weights.row(0);
+  for (std::size_t k = 0; k < means.pixels(); ++k) mean[k] /= std::max(weight[k], 1.0F);
+  return means;
 }
 
 }  // namespace
 
 void interpolate_gaps(Image<float>& values, const Image<std::uint8_t>& known) {
-  Level level{values, Image<float>(values.width(), values.height())};
-  for (int j = 0; j < values.height(); ++j) {
-    for (int i = 0; i < values.width(); ++i) {
-      level.weight(i, j) = known(i, j) != 0 ? 1.0F : 0.0F;
-      if (known(i, j) == 0) level.sum(i, j) = 0;
+  Level level{std::move(values), Image<float>(known.width(), known.height())};
+  for (int j = 0; j < known.height(); ++j) {
+    const std::uint8_t* const is_known = known.row(j);
+    float* const sums = level.sum.row(j);
+    float* const weights = level.weight.row(j);
+    for (int i = 0; i < known.width(); ++i) {
+      weights[i] = is_known[i] != 0 ? 1.0F : 0.0F;
+      sums[i] = is_known[i] != 0 ? sums[i] : 0.0F;
     }
   }
   std::vector<Level> pyramid{std::move(level)};
   while (pyramid.back().sum.width() > 1 || pyramid.back().sum.height() > 1) pyramid.push_back(halve(pyramid.back()));
-  for (std::size_t k = pyramid.size() - 1; k-- > 0;) {
-    Level& fine = pyramid[k];
-    const Level& coarse = pyramid[k + 1];
-    for (int j = 0; j < fine.sum.height(); ++j) {
-      for (int i = 0; i < fine.sum.width(); ++i) {
-        const float missing = 1 - fine.weight(i, j);
-        if (missing <= 0) continue;
-        fine.sum(i, j) += missing * at_pixel(coarse.sum, 2, i, j);
-        fine.weight(i, j) = 1;
-      }
-    }
-  }
+  for (std::size_t k = pyramid.size() - 1; k-- > 0;) fill_from(pyramid[k + 1], pyramid[k]);
   values = std::move(pyramid.front().sum);
 }
 
 DepthCells make_depth_cells(const Cells& cells, const RoadSurface& surface) {
   DepthCells relief;
   relief.noise = surface.noise;
-  Level measured{Image<float>(cells.width(), cells.height(), 0.0F), Image<float>(cells.width(), cells.height(), 0.0F)};
-  relief.known.assign(cells.width(), cells.height(), 0);
+  Level measured{Image<float>(cells.width(), cells.height()), Image<float>(cells.width(), cells.height())};
+  relief.known.resize(cells.width(), cells.height());
   for (int j = 0; j < cells.height(); ++j) {
+    const float* const road = surface.value.row(j);
+    const float* const seen = cells.value.row(j);
     for (int i = 0; i < cells.width(); ++i) {
-      const float depth = surface.value(i, j) - cells.value(i, j);
-      if (std::isnan(depth)) continue;
-      measured.sum(i, j) = depth;
-      measured.weight(i, j) = 1;
-      relief.known(i, j) = 255;
+      const float depth = road[i] - seen[i];
+      const bool known = depth == depth;  // not NaN
+      measured.sum.row(j)[i] = known ? depth : 0.0F;
+      measured.weight.row(j)[i] = known ? 1.0F : 0.0F;
+      relief.known.row(j)[i] = known ? 255 : 0;
     }
   }
   relief.depth = smooth(measured);

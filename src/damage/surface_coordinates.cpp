@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -21,6 +23,18 @@ SurfaceCoordinates image_coordinates(const Cells& cells) {
   return c;
 }
 
+/// A coordinate of the ray through column u of a row, at z = 1, along an axis of the road: first + step·u.
+struct AlongRow {
+  double first = 0;
+  double step = 0;
+};
+
+AlongRow along_row(const StereoCalibration& calibration, const std::array<double, 3>& axis, double v) {
+  const double f = calibration.focal_px;
+  const double down = axis[1] * (v - calibration.cy_px) / f;
+  return {axis[2] + down - axis[0] * calibration.cx_px / f, axis[0] / f};
+}
+
 /// A point on the plane has n·p = h; lifting it by z at a fixed pixel brings it nearer by the factor 1 − z/h, so that
 /// its disparity grows by (d + doffs)·z/h to first order.
 SurfaceCoordinates road_coordinates(const Cells& cells, const RoadModel& model, const StereoCalibration& calibration) {
@@ -28,23 +42,30 @@ SurfaceCoordinates road_coordinates(const Cells& cells, const RoadModel& model, 
   constexpr double longest_row_m = 1;  // of the road that a row of pixels covers: farther away nothing can be measured
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   SurfaceCoordinates c;
-  c.x.assign(cells.width(), cells.height(), nan);
-  c.y.assign(cells.width(), cells.height(), nan);
-  c.scale.assign(cells.width(), cells.height(), nan);
+  c.x.resize(cells.width(), cells.height());
+  c.y.resize(cells.width(), cells.height());
+  c.scale.resize(cells.width(), cells.height());
   const RoadPlane plane = road_plane(model, calibration);
   const RoadFrame frame = road_frame(plane);
+  const std::array<double, 3> camera = frame.to_road({0, 0, 0});
+  const double fb = calibration.focal_px * calibration.baseline_m;
+  const double farthest_m = std::sqrt(longest_row_m * calibration.focal_px * plane.height_m);
+  const double least = std::max(least_disparity_px, fb / farthest_m);
   for (int j = 0; j < cells.height(); ++j) {
+    const double v = cells.middle(j);
+    const AlongRow x = along_row(calibration, frame.x, v);
+    const AlongRow y = along_row(calibration, frame.y, v);
+    float* const to_x = c.x.row(j);
+    float* const to_y = c.y.row(j);
+    float* const to_scale = c.scale.row(j);
     for (int i = 0; i < cells.width(); ++i) {
       const double u = cells.middle(i);
-      const double v = cells.middle(j);
-      const double disparity = model.disparity(u, v);
-      if (disparity + calibration.disparity_offset_px < least_disparity_px) continue;
-      const double z = calibration.depth_m(disparity);
-      if (z * z > longest_row_m * calibration.focal_px * plane.height_m) continue;
-      const std::array<double, 3> point = frame.to_road(calibration.point_m(u, v, disparity));
-      c.x(i, j) = static_cast<float>(point[0]);
-      c.y(i, j) = static_cast<float>(point[1]);
-      c.scale(i, j) = static_cast<float>((disparity + calibration.disparity_offset_px) / plane.height_m);
+      const double disparity = model.disparity(u, v) + calibration.disparity_offset_px;
+      const double z = fb / disparity;
+      const bool measurable = disparity >= least;
+      to_x[i] = measurable ? static_cast<float>(camera[0] + z * (x.first + x.step * u)) : nan;
+      to_y[i] = measurable ? static_cast<float>(camera[1] + z * (y.first + y.step * u)) : nan;
+      to_scale[i] = measurable ? static_cast<float>(disparity / plane.height_m) : nan;
     }
   }
   return c;
