@@ -387,15 +387,21 @@ TEST(RoadSurfaceFit, IsExactBelowOutliersOfOneSide) {
   }
 }
 
-/// Six coefficients from n samples: the standard error of a value is σ·√(6/n) on average, thrice that in a corner.
+/// Six coefficients from n samples: the standard error of a value is σ·√(6/n) on average, thrice that in a corner; that
+/// of a normal distribution's median absolute deviation is 1.17/√n of it.
 TEST(RoadSurfaceFit, IsAsGoodAsTheNoiseAllows) {
   constexpr double noise = 0.05, spoilt = 0.3;
-  const double samples = 300.0 * 200 / 16 * (1 - spoilt);
+  const Image<std::uint8_t> everywhere(300, 200, 255);
   for (const bool metric : {true, false}) {
     const QuadraticRoad road(metric ? calibrated() : DamageInput{}, metric ? camber_m : camber_px, noise, spoilt);
-    const RoadSurface surface = fit_road_surface(road.cells, road.coordinates);
-    EXPECT_LT(road.worst(surface), 4 * 3 * noise * std::sqrt(6 / samples)) << metric;
-    EXPECT_NEAR(surface.noise, noise, 0.05 * noise) << metric;
+    const auto check = [&](const RoadSurface& surface, int step) {
+      const double samples = 300.0 * 200 / (step * step) * (1 - spoilt);
+      EXPECT_LT(road.worst(surface), 4 * 3 * noise * std::sqrt(6 / samples)) << metric << ", step " << step;
+      EXPECT_NEAR(surface.noise, noise, 3 * 1.17 / std::sqrt(samples) * noise) << metric << ", step " << step;
+    };
+    const RoadSurface rough = fit_road_surface(road.cells, road.coordinates);
+    check(rough, 7);
+    check(refit_road_surface(road.cells, road.coordinates, everywhere, rough, Sampling::fine), 4);
   }
 }
 
@@ -410,9 +416,9 @@ TEST(RoadSurfaceFit, LooksOnlyAtTheRegion) {
       road.cells.value(i, j) += 0.3F;  // two thirds of the picture, within the reach of the weights
     }
   }
-  EXPECT_LT(road.worst(refit_road_surface(road.cells, road.coordinates, region, earlier)), 1e-3);
+  EXPECT_LT(road.worst(refit_road_surface(road.cells, road.coordinates, region, earlier, Sampling::fine)), 1e-3);
   region.assign(300, 200, 0);
-  EXPECT_THROW(refit_road_surface(road.cells, road.coordinates, region, earlier), Error);
+  EXPECT_THROW(refit_road_surface(road.cells, road.coordinates, region, earlier, Sampling::fine), Error);
 }
 
 double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {

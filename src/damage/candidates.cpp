@@ -125,13 +125,17 @@ class Search {
   }
 
   Image<std::uint8_t> cores_of_depth() const {
-    Image<std::uint8_t> cores(depth_.width(), depth_.height());
+    const int width = depth_.width();
+    Image<std::uint8_t> cores(width, depth_.height());
+    std::vector<float> least(static_cast<std::size_t>(width));
     for (int j = 0; j < depth_.height(); ++j) {
+      thresholds_.depths(j, least.data());
       const float* const depths = depth_.row(j);
+      const float* const limits = least.data();
       const std::uint8_t* const allowed = allowed_.row(j);
       std::uint8_t* const row = cores.row(j);
-      for (int i = 0; i < depth_.width(); ++i) {
-        const std::uint8_t deep = depths[i] > thresholds_.depth(i, j) ? 255 : 0;
+      for (int i = 0; i < width; ++i) {
+        const std::uint8_t deep = depths[i] > limits[i] ? 255 : 0;
         row[i] = allowed[i] & deep;
       }
     }

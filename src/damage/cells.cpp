@@ -22,17 +22,19 @@ struct ColumnSums {
     std::fill(sum.begin(), sum.end(), 0.0);
     std::fill(count.begin(), count.end(), 0);
   }
-  /// Adds a row of the picture; `sigma` may be null.
+  /// Adds a row of the picture.
   void add(const float* values, const float* sigma, int width) {
     constexpr float worst_sigma = 1;  // pixels
     constexpr float largest = std::numeric_limits<float>::max();
+    double* const sums = sum.data();
+    int* const counts = count.data();
     for (int u = 0; u < width; ++u) {
-      const auto k = static_cast<std::size_t>(u);
-      const bool vague = sigma != nullptr && sigma[u] > worst_sigma;
-      const float value = vague ? std::numeric_limits<float>::quiet_NaN() : values[u];
-      const bool valid = std::abs(value) <= largest;
-      sum[k] += valid ? value : 0.0F;
-      count[k] += valid ? 1 : 0;
+      const int finite = std::abs(values[u]) <= largest ? 1 : 0;
+      const int vague = sigma[u] > worst_sigma ? 1 : 0;
+      const int valid = finite & ~vague;
+      const float value = valid != 0 ? values[u] : 0.0F;
+      counts[u] += valid;
+      sums[u] += static_cast<double>(value);
     }
   }
 };
@@ -86,10 +88,11 @@ Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigm
   cells.value.resize((transformed.width() + factor - 1) / factor, (height + factor - 1) / factor);
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     ColumnSums columns(cells.width() * factor);
+    const std::vector<float> exact(sigma.empty() ? static_cast<std::size_t>(transformed.width()) : 0, 0.0F);
     for (int j = first; j < last; ++j) {
       columns.clear();
       for (int v = j * factor; v < std::min((j + 1) * factor, height); ++v) {
-        columns.add(transformed.row(v), sigma.empty() ? nullptr : sigma.row(v), transformed.width());
+        columns.add(transformed.row(v), sigma.empty() ? exact.data() : sigma.row(v), transformed.width());
       }
       mean_row(columns, factor, j + 1 == cells.height(), cells.width(), cells.value.row(j));
     }

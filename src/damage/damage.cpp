@@ -45,11 +45,10 @@ std::string missing_for_metres(const DamageInput& input) {
 /// The road region and the surface: each is found with the other's help.
 void find_road(const Cells& cells, const SurfaceCoordinates& coordinates, RoadSurface& surface,
                Image<std::uint8_t>& road) {
-  constexpr int rounds = 2;
   surface = fit_road_surface(cells, coordinates);
   road = find_road_region(cells, surface);
-  for (int i = 0; i < rounds; ++i) {
-    surface = refit_road_surface(cells, coordinates, road, surface);
+  for (const Sampling sampling : {Sampling::rough, Sampling::fine}) {
+    surface = refit_road_surface(cells, coordinates, road, surface, sampling);
     road = find_road_region(cells, surface);
   }
 }

@@ -78,6 +78,7 @@ void spread_row(const std::uint8_t* cells, int factor, int width, std::uint8_t* 
 void paint_road(const DamageInput& input, const Segmentation& found, int threads, DamageMap& result) {
   const int width = input.transformed.width();
   const int factor = found.cells.factor;
+  constexpr float largest = std::numeric_limits<float>::max();
   parallel_rows(input.transformed.height(), rows_per_band, threads, [&](int first, int last, int) {
     PixelRows surfaces(found.surface.value, factor, width);
     for (int v = first; v < last; ++v) {
@@ -90,7 +91,10 @@ void paint_road(const DamageInput& input, const Segmentation& found, int threads
       float* const surface = result.surface.row(v);
       float* const depth = result.depth.row(v);
       surfaces.read(v, surface);
-      for (int u = 0; u < width; ++u) depth[u] = std::isfinite(seen[u]) ? surface[u] - seen[u] : nan;
+      for (int u = 0; u < width; ++u) {
+        const float below = surface[u] - seen[u];
+        depth[u] = std::abs(seen[u]) <= largest ? below : nan;
+      }
     }
   });
 }

@@ -95,14 +95,13 @@ Image<float> smooth(const Level& level) {
 
 void interpolate_gaps(Image<float>& values, const Image<std::uint8_t>& known) {
   Level level{std::move(values), Image<float>(known.width(), known.height())};
-  for (int j = 0; j < known.height(); ++j) {
-    const std::uint8_t* const is_known = known.row(j);
-    float* const sums = level.sum.row(j);
-    float* const weights = level.weight.row(j);
-    for (int i = 0; i < known.width(); ++i) {
-      weights[i] = is_known[i] != 0 ? 1.0F : 0.0F;
-      sums[i] = is_known[i] != 0 ? sums[i] : 0.0F;
-    }
+  const std::uint8_t* const is_known = known.row(0);
+  float* const sums = level.sum.row(0);
+  float* const weights = level.weight.row(0);
+  const std::size_t count = known.pixels();
+  for (std::size_t k = 0; k < count; ++k) {
+    weights[k] = is_known[k] != 0 ? 1.0F : 0.0F;
+    sums[k] = is_known[k] != 0 ? sums[k] : 0.0F;
   }
   std::vector<Level> pyramid{std::move(level)};
   while (pyramid.back().sum.width() > 1 || pyramid.back().sum.height() > 1) pyramid.push_back(halve(pyramid.back()));
@@ -115,16 +114,18 @@ DepthCells make_depth_cells(const Cells& cells, const RoadSurface& surface) {
   relief.noise = surface.noise;
   Level measured{Image<float>(cells.width(), cells.height()), Image<float>(cells.width(), cells.height())};
   relief.known.resize(cells.width(), cells.height());
-  for (int j = 0; j < cells.height(); ++j) {
-    const float* const road = surface.value.row(j);
-    const float* const seen = cells.value.row(j);
-    for (int i = 0; i < cells.width(); ++i) {
-      const float depth = road[i] - seen[i];
-      const bool known = depth == depth;  // not NaN
-      measured.sum.row(j)[i] = known ? depth : 0.0F;
-      measured.weight.row(j)[i] = known ? 1.0F : 0.0F;
-      relief.known.row(j)[i] = known ? 255 : 0;
-    }
+  const float* const road = surface.value.row(0);
+  const float* const seen = cells.value.row(0);
+  float* const sums = measured.sum.row(0);
+  float* const weights = measured.weight.row(0);
+  std::uint8_t* const known = relief.known.row(0);
+  const std::size_t count = relief.known.pixels();
+  for (std::size_t k = 0; k < count; ++k) {
+    const float depth = road[k] - seen[k];
+    const bool is_known = depth == depth;  // not NaN
+    sums[k] = is_known ? depth : 0.0F;
+    weights[k] = is_known ? 1.0F : 0.0F;
+    known[k] = is_known ? 255 : 0;
   }
   relief.depth = smooth(measured);
   interpolate_gaps(relief.depth, relief.known);

@@ -12,12 +12,13 @@ namespace {
 Image<std::uint8_t> near_surface(const Cells& cells, const RoadSurface& surface) {
   constexpr double reach = 3;  // standard deviations of the road
   const auto most = static_cast<float>(reach * surface.noise);
-  Image<std::uint8_t> near(cells.width(), cells.height());
+  const int width = cells.width();
+  Image<std::uint8_t> near(width, cells.height());
   for (int j = 0; j < cells.height(); ++j) {
     const float* const seen = cells.value.row(j);
     const float* const road = surface.value.row(j);
     std::uint8_t* const row = near.row(j);
-    for (int i = 0; i < cells.width(); ++i) row[i] = std::abs(seen[i] - road[i]) <= most ? 255 : 0;
+    for (int i = 0; i < width; ++i) row[i] = std::abs(seen[i] - road[i]) <= most ? 255 : 0;
   }
   return near;
 }
@@ -40,11 +41,10 @@ Image<std::uint8_t> find_road_region(const Cells& cells, const RoadSurface& surf
   Image<std::uint8_t> near = near_surface(cells, surface);
   fill_enclosed(near, speck);
   const Image<std::uint8_t> region = grow(largest_part(shrink_mask(near, bridge)), bridge + 1);
-  for (int j = 0; j < region.height(); ++j) {
-    const std::uint8_t* const within = region.row(j);
-    std::uint8_t* const row = near.row(j);
-    for (int i = 0; i < region.width(); ++i) row[i] &= within[i];
-  }
+  const std::uint8_t* const within = region.row(0);
+  std::uint8_t* const road = near.row(0);
+  const std::size_t count = near.pixels();
+  for (std::size_t k = 0; k < count; ++k) road[k] &= within[k];
   return near;
 }
 

@@ -2,8 +2,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "core/median.hpp"
@@ -16,42 +16,44 @@ constexpr int plane_terms = 3;
 constexpr int quadratic_terms = 6;
 using Terms = Eigen::Matrix<double, quadratic_terms, 1>;
 using Normal = Eigen::Matrix<double, quadratic_terms, quadratic_terms>;
+using Values = Eigen::ArrayXd;
 
-struct Sample {
-  Terms terms;
-  double value = 0;
-  double residual = 0;
+/// Cells that may be road, one coefficient each. `residual` is the value less the fit so far.
+struct Samples {
+  Values x, y, scale, value, residual;
+
+  explicit Samples(Eigen::Index count) : x(count), y(count), scale(count), value(count), residual(count) {}
+  Eigen::Index size() const { return value.size(); }
+  void resize(Eigen::Index count) {
+    for (Values* values : {&x, &y, &scale, &value, &residual}) values->conservativeResize(count);
+  }
 };
 
-Terms terms_at(const SurfaceCoordinates& c, int i, int j) {
-  const double x = c.x(i, j);
-  const double y = c.y(i, j);
-  Terms terms;
-  terms << 1, x, y, x * x, x * y, y * y;
-  return terms * static_cast<double>(c.scale(i, j));
-}
-
 /// A regular sample of the cells that may be road. Residuals are against `earlier` where it is given.
-std::vector<Sample> draw_samples(const Cells& cells, const SurfaceCoordinates& coordinates,
-                                 const Image<std::uint8_t>* region, const RoadSurface* earlier) {
-  constexpr std::size_t least_samples = 32;
-  constexpr int most_samples = 6'000;
+Samples draw_samples(const Cells& cells, const SurfaceCoordinates& coordinates, const Image<std::uint8_t>* region,
+                     const RoadSurface* earlier, Sampling sampling) {
+  constexpr Eigen::Index least_samples = 32;
+  const int most_samples = sampling == Sampling::rough ? 1'500 : 6'000;
   const double share = static_cast<double>(cells.value.pixels()) / most_samples;
   const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(share))));
-  std::vector<Sample> samples;
-  samples.reserve(most_samples);
+  Samples samples((cells.width() / step + 1) * (cells.height() / step + 1));
+  Eigen::Index count = 0;
   for (int j = step / 2; j < cells.height(); j += step) {
     for (int i = step / 2; i < cells.width(); i += step) {
       if (std::isnan(cells.value(i, j)) || std::isnan(coordinates.x(i, j))) continue;
       if (region != nullptr && (*region)(i, j) == 0) continue;
-      const double value = cells.value(i, j);
-      samples.push_back({terms_at(coordinates, i, j), value, earlier != nullptr ? value - earlier->value(i, j) : 0});
+      samples.x[count] = coordinates.x(i, j);
+      samples.y[count] = coordinates.y(i, j);
+      samples.scale[count] = coordinates.scale(i, j);
+      samples.value[count] = cells.value(i, j);
+      samples.residual[count] = earlier != nullptr ? samples.value[count] - earlier->value(i, j) : 0;
+      ++count;
     }
   }
-  if (samples.size() < least_samples) {
-    fail("the transformed map has ", samples.size(), " valid places on the road; at least ", least_samples,
-         " are needed");
+  if (count < least_samples) {
+    fail("the transformed map has ", count, " valid places on the road; at least ", least_samples, " are needed");
   }
+  samples.resize(count - count % 2);  // they are added up in twos
   return samples;
 }
 
@@ -61,10 +63,8 @@ struct Shorth {
   double half_width = 0;
 };
 
-Shorth shorth_of(const std::vector<Sample>& samples) {
-  std::vector<double> values;
-  values.reserve(samples.size());
-  for (const Sample& sample : samples) values.push_back(sample.value);
+Shorth shorth_of(const Values& all) {
+  std::vector<double> values(all.begin(), all.end());
   std::sort(values.begin(), values.end());
   const std::size_t held = values.size() / 3;
   std::size_t best = 0;
@@ -75,40 +75,85 @@ Shorth shorth_of(const std::vector<Sample>& samples) {
 }
 
 /// Robust standard deviation of the residuals that are not far out.
-double spread_of(const std::vector<Sample>& samples, double reach) {
-  std::vector<double> sizes;
-  sizes.reserve(samples.size());
-  for (const Sample& sample : samples) {
-    if (std::abs(sample.residual) <= reach) sizes.push_back(std::abs(sample.residual));
+double spread_of(const Values& residuals, double reach) {
+  std::vector<float> sizes;
+  sizes.reserve(static_cast<std::size_t>(residuals.size()));
+  for (const double residual : residuals) {
+    if (std::abs(residual) <= reach) sizes.push_back(static_cast<float>(std::abs(residual)));
   }
-  return sizes.empty() ? 0 : gaussian_mad * take_median(sizes);
+  return sizes.empty() ? 0 : gaussian_mad * static_cast<double>(take_median(sizes));
 }
 
-/// One step of the reweighted fit with the first `terms` terms; residuals are brought up to date.
-Terms reweighted_fit(std::vector<Sample>& samples, int terms, double reach) {
+/// The normal equations of a weighted fit.
+struct Equations {
   Normal normal = Normal::Zero();
   Terms right = Terms::Zero();
-  for (const Sample& sample : samples) {
-    const double r = sample.residual / reach;
-    if (std::abs(r) >= 1) continue;
-    const double weight = (1 - r * r) * (1 - r * r);
-    normal.noalias() += weight * sample.terms * sample.terms.transpose();
-    right.noalias() += weight * sample.value * sample.terms;
+
+  Terms solve(int terms) const {
+    Terms solution = Terms::Zero();
+    solution.head(terms) = normal.topLeftCorner(terms, terms).ldlt().solve(right.head(terms));
+    return solution;
   }
-  Terms solution = Terms::Zero();
-  solution.head(terms) = normal.topLeftCorner(terms, terms).ldlt().solve(right.head(terms));
-  for (Sample& sample : samples) sample.residual = sample.value - solution.dot(sample.terms);
-  return solution;
+};
+
+/// Sums over the samples with Tukey's weights. The terms are scale · (1, x, y, x², xy, y²), so that the normal matrix
+/// holds no more than the sums of weight · scale² · x^a·y^b for a + b ≤ 4.
+Equations add_up(const Samples& samples, double reach) {
+  using Two = Eigen::Array2d;  // samples side by side
+  constexpr std::size_t powers = 15;
+  std::array<Two, powers> left;
+  std::array<Two, quadratic_terms> right;
+  left.fill(Two::Zero());
+  right.fill(Two::Zero());
+  for (Eigen::Index k = 0; k < samples.size(); k += 2) {
+    const auto two = [k](const Values& values) -> Two { return values.segment<2>(k); };
+    const Two x = two(samples.x), y = two(samples.y), scale = two(samples.scale), r = two(samples.residual) / reach;
+    const Two root = (1 - r * r).max(0.0);
+    const Two once = root * root * scale, twice = once * scale, seen = once * two(samples.value);
+    const Two xx = x * x, xy = x * y, yy = y * y;
+    const std::array<Two, quadratic_terms> basis{Two::Ones(), x, y, xx, xy, yy};
+    for (std::size_t i = 0; i < basis.size(); ++i) {
+      left[i] += twice * basis[i];
+      right[i] += seen * basis[i];
+    }
+    const Two cube = twice * xx, mixed = twice * xy, other = twice * yy;
+    const std::array<Two, powers - quadratic_terms> higher{cube * x,  cube * y,  other * x,  other * y, cube * xx,
+                                                           cube * xy, cube * yy, mixed * yy, other * yy};
+    for (std::size_t i = 0; i < higher.size(); ++i) left[quadratic_terms + i] += higher[i];
+  }
+  // Which power of x and y is the product of two terms.
+  constexpr std::array<std::array<std::size_t, quadratic_terms>, quadratic_terms> product{{{0, 1, 2, 3, 4, 5},
+                                                                                           {1, 3, 4, 6, 7, 8},
+                                                                                           {2, 4, 5, 7, 8, 9},
+                                                                                           {3, 6, 7, 10, 11, 12},
+                                                                                           {4, 7, 8, 11, 12, 13},
+                                                                                           {5, 8, 9, 12, 13, 14}}};
+  Equations equations;
+  for (std::size_t i = 0; i < quadratic_terms; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    equations.right[row] = right[i].sum();
+    for (std::size_t j = 0; j < quadratic_terms; ++j) {
+      equations.normal(row, static_cast<Eigen::Index>(j)) = left[product[i][j]].sum();
+    }
+  }
+  return equations;
 }
 
-/// Steps of the fit with the first `terms` terms; `spread` is brought up to date.
-Terms iterate(std::vector<Sample>& samples, int terms, int steps, double& spread) {
+/// What a solution gives at places of the road.
+template <class Coordinates>
+auto quadratic(const Terms& c, const Coordinates& x, const Coordinates& y, const Coordinates& scale) {
+  return scale * (c[0] + x * (c[1] + c[3] * x + c[4] * y) + y * (c[2] + c[5] * y));
+}
+
+/// Steps of the reweighted fit with the first `terms` terms; `spread` and the residuals are brought up to date.
+Terms iterate(Samples& samples, int terms, int steps, double& spread) {
   constexpr double tukey = 4.7;
   constexpr double widest = 3;  // of the spread, for what counts when it is measured anew
   Terms solution = Terms::Zero();
   for (int i = 0; i < steps; ++i) {
-    solution = reweighted_fit(samples, terms, tukey * spread);
-    const double measured = spread_of(samples, widest * spread);
+    solution = add_up(samples, tukey * spread).solve(terms);
+    samples.residual = samples.value - quadratic(solution, samples.x, samples.y, samples.scale);
+    const double measured = spread_of(samples.residual, widest * spread);
     spread = std::max(measured, 0.5 * spread);
     if (measured == 0) break;
   }
@@ -118,12 +163,14 @@ Terms iterate(std::vector<Sample>& samples, int terms, int steps, double& spread
 RoadSurface evaluate(const Terms& solution, double noise, const Cells& cells, const SurfaceCoordinates& coordinates) {
   RoadSurface surface;
   surface.noise = noise;
-  surface.value.assign(cells.width(), cells.height(), std::numeric_limits<float>::quiet_NaN());
+  surface.value.resize(cells.width(), cells.height());
+  const Eigen::Index width = cells.width();
   for (int j = 0; j < cells.height(); ++j) {
-    for (int i = 0; i < cells.width(); ++i) {
-      if (std::isnan(coordinates.x(i, j))) continue;
-      surface.value(i, j) = static_cast<float>(solution.dot(terms_at(coordinates, i, j)));
-    }
+    const auto row = [j, width](const Image<float>& image) {
+      return Eigen::Map<const Eigen::ArrayXf>(image.row(j), width).cast<double>();
+    };
+    Eigen::Map<Eigen::ArrayXf>(surface.value.row(j), width) =
+        quadratic(solution, row(coordinates.x), row(coordinates.y), row(coordinates.scale)).cast<float>();
   }
   return surface;
 }
@@ -134,9 +181,9 @@ RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coord
   constexpr int plane_steps = 6;
   constexpr int quadratic_steps = 8;
   constexpr double least_spread = 1e-3;
-  std::vector<Sample> samples = draw_samples(cells, coordinates, nullptr, nullptr);
-  const Shorth start = shorth_of(samples);
-  for (Sample& sample : samples) sample.residual = sample.value - start.middle;
+  Samples samples = draw_samples(cells, coordinates, nullptr, nullptr, Sampling::rough);
+  const Shorth start = shorth_of(samples.value);
+  samples.residual = samples.value - start.middle;
   double spread = std::max({start.half_width, least_spread * std::abs(start.middle), 1e-9});
   iterate(samples, plane_terms, plane_steps, spread);
   const Terms solution = iterate(samples, quadratic_terms, quadratic_steps, spread);
@@ -144,9 +191,9 @@ RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coord
 }
 
 RoadSurface refit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
-                               const Image<std::uint8_t>& region, const RoadSurface& earlier) {
+                               const Image<std::uint8_t>& region, const RoadSurface& earlier, Sampling sampling) {
   constexpr int steps = 6;
-  std::vector<Sample> samples = draw_samples(cells, coordinates, &region, &earlier);
+  Samples samples = draw_samples(cells, coordinates, &region, &earlier, sampling);
   double spread = std::max(earlier.noise, 1e-9);
   const Terms solution = iterate(samples, quadratic_terms, steps, spread);
   return evaluate(solution, spread, cells, coordinates);

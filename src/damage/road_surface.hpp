@@ -21,12 +21,15 @@ struct RoadSurface {
   double noise = 0;    ///< standard deviation of the cells around it, pixels, robust
 };
 
-/// Robust fit (Tukey's weights) to the cells near the value that most of them have.
+/// How many cells a fit looks at: the first fits only say where the road is.
+enum class Sampling { rough, fine };
+
+/// Rough robust fit (Tukey's weights) to the cells near the value that most of them have.
 /// Throws Error when fewer than 32 cells can be used.
 RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates);
 
 /// The same to the cells of `region` (0 = leave out), from an earlier fit on.
 RoadSurface refit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
-                               const Image<std::uint8_t>& region, const RoadSurface& earlier);
+                               const Image<std::uint8_t>& region, const RoadSurface& earlier, Sampling sampling);
 
 }  // namespace roadstereo

@@ -20,6 +20,14 @@ Thresholds::Thresholds(const DamageInput& input, const DamageOptions& options, c
   if (metric) height_m_ = road_plane(*input.plane, *input.calibration).height_m;
 }
 
+void Thresholds::depths(int j, float* row) const {
+  const float* const scale = scale_.row(j);
+  const float noise = noise_;
+  const double least = min_depth_m_;
+  const int width = scale_.width();
+  for (int i = 0; i < width; ++i) row[i] = std::max(noise, static_cast<float>(least * scale[i]));
+}
+
 float Thresholds::in_pixels(double metres, int i, int j) const {
   const float scale = scale_(i, j);
   return metric_ && !std::isnan(scale) ? static_cast<float>(metres * scale) : std::numeric_limits<float>::infinity();

@@ -16,6 +16,8 @@ class Thresholds {
   bool metric() const { return metric_; }
   /// Depth that counts.
   float depth(int i, int j) const { return std::max(noise_, static_cast<float>(min_depth_m_ * scale_(i, j))); }
+  /// The same of a whole row.
+  void depths(int j, float* row) const;
   /// A depression that is deeper is no damage, and no protrusion that is higher.
   float deepest(int i, int j) const { return in_pixels(options_.max_depth_m, i, j); }
   float highest(int i, int j) const { return in_pixels(options_.max_height_m, i, j); }
