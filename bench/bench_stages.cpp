@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "roadstereo/damage.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
 #include "stereo/coarse/coarse_search.hpp"
@@ -24,6 +25,7 @@ struct Frame {
   MatchMaps maps;
   Image<float> disparity, transformed;
   RoadGeometry geometry;
+  DamageMap damage;
 
   Frame(int width, int height, int disparities) {
     synth::Scene scene = synth::named_scene("uav");
@@ -43,6 +45,7 @@ struct Frame {
     make_engine("cpu", 0)->match(input(), MatcherOptions{}, maps);
     add_shift(maps.disparity, shift, 0, disparity);
     geometry = fit_road_geometry(disparity, std::nullopt, road.model, 0, {});
+    transform_disparity(disparity, geometry, 0, {}, 0, transformed);
   }
   MatchInput input() const { return {left, target, first_column.data(), shift.disparities}; }
 };
@@ -90,6 +93,15 @@ void register_all() {
   add_stage("road_geometry", [](Frame& f) { fit_road_geometry(f.disparity, std::nullopt, f.road.model, 0, {}); });
   add_stage("transform_disparity",
             [](Frame& f) { transform_disparity(f.disparity, f.geometry, 0, {}, 0, f.transformed); });
+  add_stage("damage", [](Frame& f) {
+    DamageInput input;
+    input.transformed = f.transformed;
+    input.disparity = f.disparity;
+    input.grey = f.left;
+    input.plane = f.geometry.plane;
+    input.calibration = f.pair.calibration;
+    find_damage(input, {}, 1, f.damage);
+  });
   auto* coarse = add("stage/coarse_search", [](benchmark::State& state) {
     CoarseSearch search({}, 0);
     const auto no_road = [](double, double) { return std::numeric_limits<double>::quiet_NaN(); };

@@ -113,6 +113,10 @@ struct DamageMap {
 /// Throws Error when the map has no disparities, one value only, or the views do not agree in size.
 DamageMap find_damage(const DamageInput& input, const DamageOptions& options = {}, int threads = 0);
 
+/// The same into an earlier result, whose maps keep their memory when the sizes are equal: fresh memory costs about as
+/// much as painting it. `result` is unspecified after an error.
+void find_damage(const DamageInput& input, const DamageOptions& options, int threads, DamageMap& result);
+
 /// The result where nothing was found and no road either; `reason` says why nothing is metric.
 DamageMap no_damage(int width, int height, const std::string& reason);
 

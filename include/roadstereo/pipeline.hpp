@@ -107,6 +107,8 @@ class Pipeline {
   /// Finds and measures damage in the last frame. Without a road there is none. Throws Error when there is no
   /// last frame (none yet, refused, handed out, forgotten), or when hardly any disparity of it lies on a road.
   DamageMap find_damage() const;
+  /// The same into an earlier result, whose maps keep their memory when the sizes are equal.
+  void find_damage(DamageMap& result) const;
 
   /// What the next frame will start from.
   const CarriedState& carried() const;
@@ -126,7 +128,10 @@ class Pipeline {
 };
 
 /// Damage of a result that was handed out, as `Pipeline::find_damage` finds it.
-DamageMap find_damage(const FrameResult& result, const std::optional<StereoCalibration>& calibration,
+DamageMap find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
                       const DamageOptions& options = {}, int threads = 0);
+/// The same into an earlier result, whose maps keep their memory when the sizes are equal.
+void find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
+                 const DamageOptions& options, int threads, DamageMap& result);
 
 }  // namespace roadstereo

@@ -102,13 +102,14 @@ class Search {
         witness_(witness),
         kind_(kind),
         depth_(relief.depth),
-        allowed_(relief.known) {
+        allowed_(relief.known),
+        reached_(relief.depth.width(), relief.depth.height(), 0) {
     if (kind == DamageKind::protrusion) turn_over();
     if (kind == DamageKind::depression) allow_holes(relief, thresholds, allowed_);
   }
 
   /// Adds what is found to `found`; cells of `taken` belong to others.
-  void run(std::vector<Candidate>& found, Image<std::uint8_t>& taken) const {
+  void run(std::vector<Candidate>& found, Image<std::uint8_t>& taken) {
     const ConnectedRegions regions(cores_of_depth());
     std::vector<ConnectedRegion> cores(regions.begin(), regions.end());
     std::sort(cores.begin(), cores.end(), [](const auto& one, const auto& other) { return one.size > other.size; });
@@ -142,7 +143,7 @@ class Search {
     return cores;
   }
 
-  void add(const ConnectedRegion& core, std::vector<Candidate>& found, Image<std::uint8_t>& taken) const {
+  void add(const ConnectedRegion& core, std::vector<Candidate>& found, Image<std::uint8_t>& taken) {
     constexpr double least_on_road = 0.6;
     constexpr double most_open = 0.25;
     const float least = thresholds_.least_cells(core.runs.front().first, core.runs.front().row);
@@ -169,12 +170,12 @@ class Search {
 
   /// The region around a core. Where it would run into another damage, only what lies deeper than the saddle between
   /// them; empty when there is none.
-  Candidate draw(const ConnectedRegion& core, const Image<std::uint8_t>& taken) const {
+  Candidate draw(const ConnectedRegion& core, const Image<std::uint8_t>& taken) {
     constexpr int tries = 8;
     constexpr float deeper = 1.25F;
     constexpr float noise_floor = 2;  // standard deviations of the road
     constexpr double bowl = 2;        // a paraboloid's rim is twice as steep as the cone
-    const DepthField field{depth_, allowed_};
+    const DepthField field{depth_, allowed_, reached_};
     Candidate candidate;
     candidate.kind = kind_;
     const float floor = floor_depth(field, core);
@@ -234,6 +235,7 @@ class Search {
   DamageKind kind_;
   Image<float> depth_;  ///< positive inside the kind of damage that is looked for
   Image<std::uint8_t> allowed_;
+  Image<std::uint8_t> reached_;  ///< scratch of floods
 };
 
 }  // namespace

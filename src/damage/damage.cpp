@@ -80,6 +80,12 @@ DamageMap no_damage(int width, int height, const std::string& reason) {
 }
 
 DamageMap find_damage(const DamageInput& input, const DamageOptions& options, int threads) {
+  DamageMap result;
+  find_damage(input, options, threads, result);
+  return result;
+}
+
+void find_damage(const DamageInput& input, const DamageOptions& options, int threads, DamageMap& result) {
   options.validate();
   require_input(input);
   const Cells cells = make_cells(input.transformed, input.sigma,
@@ -89,7 +95,6 @@ DamageMap find_damage(const DamageInput& input, const DamageOptions& options, in
   Image<std::uint8_t> road;
   find_road(cells, coordinates, surface, road);
   const DepthCells relief = make_depth_cells(cells, surface);
-  DamageMap result;
   result.unmetric_reason = missing_for_metres(input);
   result.metric = result.unmetric_reason.empty();
   result.noise_px = surface.noise;
@@ -97,7 +102,6 @@ DamageMap find_damage(const DamageInput& input, const DamageOptions& options, in
   const Segmentation found{cells, surface, road, relief,
                            find_candidates(relief, road, thresholds, make_witness(input, cells), options.protrusions)};
   measure_damage(input, options, found, threads, result);
-  return result;
 }
 
 }  // namespace roadstereo

@@ -15,7 +15,8 @@ struct Level {
 
 /// Adds neighbouring cells of a row in twos.
 void add_in_twos(const float* fine, int width, float* coarse) {
-  for (int i = 0; i < width / 2; ++i) coarse[i] = coarse[i] + fine[2 * i] + fine[2 * i + 1];
+  const std::ptrdiff_t twos = width / 2;
+  for (std::ptrdiff_t i = 0; i < twos; ++i) coarse[i] = coarse[i] + fine[2 * i] + fine[2 * i + 1];
   if (width % 2 != 0) coarse[width / 2] += fine[width - 1];
 }
 

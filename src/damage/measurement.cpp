@@ -117,6 +117,7 @@ void keep_significant(DamageMap& result) {
 void measure_damage(const DamageInput& input, const DamageOptions& options, const Segmentation& found, int threads,
                     DamageMap& result) {
   paint_maps(input, found, threads, result);
+  result.damages.clear();
   std::vector<SurfaceOffset> offsets;
   offsets.reserve(found.candidates.size());
   for (std::size_t k = 0; k < found.candidates.size(); ++k) {

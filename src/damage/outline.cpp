@@ -75,24 +75,28 @@ float floor_depth(const DepthField& field, const ConnectedRegion& seeds) {
 BoxMask flood(const DepthField& field, const ConnectedRegion& seeds, float level) {
   const int columns = field.depth.width();
   const int rows = field.depth.height();
-  BoxMask region(whole(field.depth));
   Box box;
-  std::vector<CellIndex> open;
+  std::vector<CellIndex> cells;
   const auto take = [&](int i, int j) {
-    if (region(i, j) || field.allowed(i, j) == 0 || field.depth(i, j) <= level) return;
-    region.set(i, j);
+    if (field.reached(i, j) != 0 || field.allowed(i, j) == 0 || field.depth(i, j) <= level) return;
+    field.reached(i, j) = 255;
     box.add(i, j);
-    open.push_back({i, j});
+    cells.push_back({i, j});
   };
   for (const CellRun& run : seeds.runs) {
     for (int i = run.first; i <= run.last; ++i) take(i, run.row);
   }
-  while (!open.empty()) {
-    const CellIndex cell = open.back();
-    open.pop_back();
+  std::size_t next = 0;
+  while (next < cells.size()) {
+    const CellIndex cell = cells[next++];
     for_neighbours(cell.column, cell.row, columns, rows, take);
   }
-  return region.within(box);
+  BoxMask region(box);
+  for (const CellIndex& cell : cells) {
+    region.set(cell.column, cell.row);
+    field.reached(cell.column, cell.row) = 0;
+  }
+  return region;
 }
 
 Outline find_outline(const DepthField& field, const ConnectedRegion& seeds, float floor, float lowest, bool metric) {

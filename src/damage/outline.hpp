@@ -9,6 +9,7 @@ namespace roadstereo {
 struct DepthField {
   const Image<float>& depth;
   const Image<std::uint8_t>& allowed;
+  Image<std::uint8_t>& reached;  ///< scratch of the same size, all 0 between two floods
 };
 
 /// The cells that hang together with `seeds` and lie deeper than `level`.

@@ -36,7 +36,7 @@ Samples draw_samples(const Cells& cells, const SurfaceCoordinates& coordinates, 
   const int most_samples = sampling == Sampling::rough ? 1'500 : 6'000;
   const double share = static_cast<double>(cells.value.pixels()) / most_samples;
   const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(share))));
-  Samples samples((cells.width() / step + 1) * (cells.height() / step + 1));
+  Samples samples(static_cast<Eigen::Index>(cells.width() / step + 1) * (cells.height() / step + 1));
   Eigen::Index count = 0;
   for (int j = step / 2; j < cells.height(); j += step) {
     for (int i = step / 2; i < cells.width(); i += step) {

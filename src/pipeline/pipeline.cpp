@@ -273,24 +273,38 @@ void Pipeline::process(const FrameView& left, const FrameView& right, FrameResul
 }
 
 DamageMap Pipeline::find_damage() const {
-  const State& s = *state_;
-  if (!s.has_frame) fail("no frame was processed yet, or the last one was refused or handed out");
-  return roadstereo::find_damage(s.result, s.calibration, s.options.damage, s.threads);
+  DamageMap result;
+  find_damage(result);
+  return result;
 }
 
-DamageMap find_damage(const FrameResult& result, const std::optional<StereoCalibration>& calibration,
+void Pipeline::find_damage(DamageMap& result) const {
+  const State& s = *state_;
+  if (!s.has_frame) fail("no frame was processed yet, or the last one was refused or handed out");
+  roadstereo::find_damage(s.result, s.calibration, s.options.damage, s.threads, result);
+}
+
+DamageMap find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
                       const DamageOptions& options, int threads) {
-  if (!result.geometry_found) {
-    return no_damage(result.disparity.width(), result.disparity.height(), "no road was found");
+  DamageMap result;
+  find_damage(frame, calibration, options, threads, result);
+  return result;
+}
+
+void find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
+                 const DamageOptions& options, int threads, DamageMap& result) {
+  if (!frame.geometry_found) {
+    result = no_damage(frame.disparity.width(), frame.disparity.height(), "no road was found");
+    return;
   }
   DamageInput input;
-  input.transformed = result.transformed;
-  input.disparity = result.disparity;
-  input.sigma = result.sigma;
-  input.grey = result.grey;
-  input.plane = result.geometry.plane;
+  input.transformed = frame.transformed;
+  input.disparity = frame.disparity;
+  input.sigma = frame.sigma;
+  input.grey = frame.grey;
+  input.plane = frame.geometry.plane;
   input.calibration = calibration;
-  return find_damage(input, options, threads);
+  find_damage(input, options, threads, result);
 }
 
 const CarriedState& Pipeline::carried() const {

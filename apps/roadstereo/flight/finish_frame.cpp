@@ -13,7 +13,7 @@ void look_for_damage(const std::optional<StereoCalibration>& calibration, const 
                      FlightJob& job) {
   constexpr int threads = 1;  // the others match the next frame
   try {
-    job.damage = find_damage(job.result, calibration, options.damage, threads);
+    find_damage(job.result, calibration, options.damage, threads, job.damage);
     job.frame.noise_px = job.damage.noise_px;
   } catch (const Error& error) {
     job.damage = no_damage(job.result.disparity.width(), job.result.disparity.height(), "no road was found");

@@ -37,7 +37,7 @@ void begin(FlightJob& job) {
   frame.time_s = job.pair.time_s;
   frame.reason = job.pair.refused;
   if (!frame.reason.empty()) frame.status = io::FrameStatus::refused;
-  job.damage = {};
+  job.damage.damages.clear();
   job.files.clear();
 }
 
