@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "evaluate/flight_trials.hpp"
+#include "roadstereo/image.hpp"
+
+namespace roadstereo::cli {
+
+/// Errors of ψ and of the road model over the frames, carried over and afresh, and the time of each frame.
+Frame draw_flight(const std::vector<FlightFrame>& frames);
+
+}  // namespace roadstereo::cli

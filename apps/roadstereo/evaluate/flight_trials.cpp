@@ -1,0 +1,101 @@
+#include "evaluate/flight_trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "flight_path.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/synth.hpp"
+#include "scene_options.hpp"
+#include "settings.hpp"
+#include "stopwatch.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+synth::Scene first_scene(const FlightOptions& options) {
+  SceneOptions scene;
+  scene.name = options.scene;
+  scene.size = options.size;
+  synth::Scene first = make_scene(scene);
+  first.supersampling = options.supersampling;
+  first.validate();
+  return first;
+}
+
+Pipeline make_pipeline(const FlightOptions& options, const StereoCalibration& calibration) {
+  PipelineOptions made = preset(options.preset);
+  made.threads = options.methods.threads;
+  apply_settings(options.methods.settings, made);
+  return Pipeline(made, calibration);
+}
+
+/// ψ of a plane: a1 = α1 cos ψ, a2 = −α1 sin ψ.
+double roll_of(const RoadModel& plane) {
+  return std::atan(-plane.a2 / plane.a1);
+}
+
+RoadError road_error(const RoadModel& plane, double roll_rad, const synth::SyntheticPair& truth) {
+  constexpr double straight_down = 0.02;  // pixels per pixel: the disparity hardly changes over the image
+  RoadError error;
+  const bool observable = std::hypot(truth.plane.a1, truth.plane.a2) > straight_down;
+  error.roll_rad = observable ? std::abs(roll_rad - truth.roll_rad) : std::numeric_limits<double>::quiet_NaN();
+  for (int v = 0; v < truth.disparity.height(); ++v) {
+    for (int u = 0; u < truth.disparity.width(); ++u) {
+      if (std::isnan(truth.disparity(u, v))) continue;
+      error.plane_px = std::max(error.plane_px, std::abs(plane.disparity(u, v) - truth.plane.disparity(u, v)));
+    }
+  }
+  return error;
+}
+
+/// A pipeline that found no road is as wrong as can be.
+FlightResult compare(const FrameResult& result, const synth::SyntheticPair& truth) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  FlightResult errors{{infinite, infinite}, {infinite, infinite}};
+  if (result.road.reliable) errors.before = road_error(result.road.model, roll_of(result.road.model), truth);
+  if (result.geometry_found) errors.after = road_error(result.geometry.plane, result.geometry.roll_rad, truth);
+  return errors;
+}
+
+FlightFrame try_frame(const synth::SyntheticPair& pair, std::vector<Pipeline>& pipelines, Pipeline& fresh) {
+  FlightFrame frame;
+  for (Pipeline& pipeline : pipelines) {
+    const FrameResult* result = nullptr;
+    frame.times_ms.push_back(time_ms([&] { result = &pipeline.process(pair.left.view(), pair.right.view()); }));
+    frame.carried = compare(*result, pair);
+    frame.estimated_anew = !result->road.carried_over;
+    frame.reason = result->warnings.empty() ? "" : result->warnings.front();
+  }
+  fresh.reset();
+  frame.fresh = compare(fresh.process(pair.left.view(), pair.right.view()), pair);
+  return frame;
+}
+
+}  // namespace
+
+void FlightOptions::validate() const {
+  if (frames < 2 || frames > 100000) fail("--frames is ", frames, "; it must be between 2 and 100000");
+  if (passes < 1 || passes > 100) fail("--passes is ", passes, "; it must be between 1 and 100");
+}
+
+std::vector<FlightFrame> fly(const FlightOptions& options) {
+  options.validate();
+  const synth::FlightPath path = parse_flight(options.flight);
+  const synth::Scene first = first_scene(options);
+  const StereoCalibration calibration = first.rig.calibration();
+  for (int i = 0; i < options.frames; ++i) synth::flight_frame(first, path, i);  // refused before anything is rendered
+  std::vector<Pipeline> pipelines;
+  pipelines.reserve(static_cast<std::size_t>(options.passes));
+  for (int pass = 0; pass < options.passes; ++pass) pipelines.push_back(make_pipeline(options, calibration));
+  Pipeline fresh = make_pipeline(options, calibration);
+  std::vector<FlightFrame> frames;
+  frames.reserve(static_cast<std::size_t>(options.frames));
+  for (int i = 0; i < options.frames; ++i) {
+    frames.push_back(try_frame(synth::render(synth::flight_frame(first, path, i)), pipelines, fresh));
+  }
+  return frames;
+}
+
+}  // namespace roadstereo::cli
