@@ -10,16 +10,16 @@
 #include "core/shrink.hpp"
 #include "road/block_alignment.hpp"
 #include "road/plane_fit.hpp"
+#include "road/strip_correlation.hpp"
 
 namespace roadstereo {
 namespace {
 
 constexpr int coarse_width = 120;
 constexpr int half_block = 4;
-constexpr int block_pixels = (2 * half_block + 1) * (2 * half_block + 1);
 constexpr int refined_radius = 8;
-constexpr double least_correlation = 0.7;
-constexpr double least_deviation = 2.0 * grey_scale;
+constexpr float least_correlation = 0.7f;
+constexpr float least_deviation = 2.0f * grey_scale;
 constexpr int cells_across = 15;
 constexpr int cells_down = 9;
 
@@ -28,29 +28,48 @@ struct Pyramid {
   ImageView<const std::int16_t> left, right;
   int factor;
   GreyImage small_left, small_right;
-  GreyImage smooth_left, smooth_right;  ///< for sampling between the pixels
 };
 
-/// The image under a 3×3 binomial filter: interpolating it does not smooth it much further, so that noise does not make
-/// offsets of half a pixel look good.
-GreyImage smoothed(ImageView<const std::int16_t> image, int threads) {
-  GreyImage out(image.width(), image.height());
-  parallel_rows(image.height(), 32, threads, [&](int first, int last, int) {
-    for (int v = first; v < last; ++v) {
-      const std::int16_t* rows[3] = {image.row(std::max(0, v - 1)), image.row(v),
-                                     image.row(std::min(image.height() - 1, v + 1))};
-      const auto column = [&](int u) { return rows[0][u] + 2 * rows[1][u] + rows[2][u]; };
-      std::int16_t* to = out.row(v);
-      const int end = image.width() - 1;
-      for (int u = 1; u < end; ++u) {
-        to[u] = static_cast<std::int16_t>((column(u - 1) + 2 * column(u) + column(u + 1) + 8) / 16);
-      }
-      to[0] = to[1];
-      to[end] = to[end - 1];
+/// The surroundings of a pixel under a 3×3 binomial filter: interpolating them does not smooth them much further, so
+/// that noise does not make offsets of half a pixel look good.
+class SmoothPatch {
+ public:
+  static constexpr int largest_radius = 16;
+
+  /// As far as the image goes, but for its outermost pixels.
+  SmoothPatch(ImageView<const std::int16_t> image, int u, int v, int radius)
+      : first_u_(std::max(1, u - radius)), first_v_(std::max(1, v - radius)) {
+    width_ = std::max(0, std::min(image.width() - 2, u + radius) - first_u_ + 1);
+    height_ = std::max(0, std::min(image.height() - 2, v + radius) - first_v_ + 1);
+    for (int y = 0; y < height_; ++y) smooth_row(image, y);
+  }
+
+  int first_u() const { return first_u_; }
+  int first_v() const { return first_v_; }
+  ImageView<const std::int16_t> view() const { return {pixels_.data(), width_, height_, pitch}; }
+
+ private:
+  static constexpr int pitch = 2 * largest_radius + 1;
+
+  void smooth_row(ImageView<const std::int16_t> image, int y) {
+    const std::int16_t* above = image.row(first_v_ + y - 1) + first_u_ - 1;
+    const std::int16_t* here = image.row(first_v_ + y) + first_u_ - 1;
+    const std::int16_t* below = image.row(first_v_ + y + 1) + first_u_ - 1;
+    std::array<std::uint16_t, pitch + 2> columns{};  // 16 · 4080 + 8 fits
+    for (int x = 0; x < width_ + 2; ++x) {
+      columns[static_cast<std::size_t>(x)] = static_cast<std::uint16_t>(above[x] + 2 * here[x] + below[x]);
     }
-  });
-  return out;
-}
+    std::int16_t* to = pixels_.data() + static_cast<std::ptrdiff_t>(y) * pitch;
+    const std::uint16_t* column = columns.data();
+    for (int x = 0; x < width_; ++x) {
+      const auto sum = static_cast<std::uint16_t>(column[x] + 2 * column[x + 1] + column[x + 2] + 8);
+      to[x] = static_cast<std::int16_t>(sum >> 4);
+    }
+  }
+
+  int first_u_, first_v_, width_ = 0, height_ = 0;
+  std::array<std::int16_t, static_cast<std::size_t>(pitch* pitch)> pixels_{};
+};
 
 struct Place {
   int u = 0;
@@ -61,33 +80,11 @@ struct Place {
 struct Offset {
   int du = 0;
   int dv = 0;
-  double correlation = -1;
+  float correlation = -1;
 };
 
 bool inside(ImageView<const std::int16_t> image, int u, int v) {
   return u >= half_block && v >= half_block && u + half_block < image.width() && v + half_block < image.height();
-}
-
-double correlate(ImageView<const std::int16_t> left, const Place& a, ImageView<const std::int16_t> right,
-                 const Place& b) {
-  std::int32_t sl = 0, sr = 0, ll = 0, rr = 0, lr = 0;  // 81 products of at most 4080² fit
-  for (int y = -half_block; y <= half_block; ++y) {
-    const std::int16_t* l = left.row(a.v + y) + a.u;
-    const std::int16_t* r = right.row(b.v + y) + b.u;
-    for (int x = -half_block; x <= half_block; ++x) {
-      sl += l[x];
-      sr += r[x];
-      ll += l[x] * l[x];
-      rr += r[x] * r[x];
-      lr += l[x] * r[x];
-    }
-  }
-  const double mean_l = static_cast<double>(sl) / block_pixels;
-  const double mean_r = static_cast<double>(sr) / block_pixels;
-  const double variance_l = static_cast<double>(ll) / block_pixels - mean_l * mean_l;
-  const double variance_r = static_cast<double>(rr) / block_pixels - mean_r * mean_r;
-  if (std::min(variance_l, variance_r) < least_deviation * least_deviation) return -1;
-  return (static_cast<double>(lr) / block_pixels - mean_l * mean_r) / std::sqrt(variance_l * variance_r);
 }
 
 /// The place of a cell whose rows differ most: only there a vertical offset can be seen.
@@ -108,17 +105,46 @@ std::optional<Place> best_place(ImageView<const std::int16_t> image, int u0, int
   return best;
 }
 
+/// Cuts a row of a strip out of an image.
+void copy_strip(const std::int16_t* from, int columns, float* strip_row) {
+  for (int x = 0; x < columns; ++x) strip_row[x] = static_cast<float>(from[x]) - grey_max / 2.0f;
+}
+
+/// The best of all whole offsets between two; the block around `place` must lie inside the left image.
 Offset search(ImageView<const std::int16_t> left, const Place& place, ImageView<const std::int16_t> right,
-              const Offset& lowest, const Offset& highest) {
+              const Offset& lowest, const Offset& highest, Strip& strip) {
   Offset best;
+  const CorrelationBlock block(left, place.u, place.v, half_block, half_block);
+  const int first = std::max(lowest.du, half_block - place.u);
+  const int count = std::min(highest.du, right.width() - half_block - 1 - place.u) - first + 1;
+  if (block.deviation < least_deviation || count < 1) return best;
+  StripCorrelations correlations;
   for (int dv = lowest.dv; dv <= highest.dv; ++dv) {
-    for (int du = lowest.du; du <= highest.du; ++du) {
-      if (!inside(right, place.u + du, place.v + dv)) continue;
-      const double correlation = correlate(left, place, right, {place.u + du, place.v + dv});
-      if (correlation > best.correlation) best = {du, dv, correlation};
+    const int top = place.v + dv - half_block;
+    if (top < 0 || top + block.height > right.height()) continue;
+    for (int y = 0; y < block.height; ++y) {
+      copy_strip(right.row(top + y) + place.u + first - half_block, count + block.width - 1, strip.row(y));
     }
+    correlate_strip(block, strip, count, least_deviation, correlations);
+    const auto at = std::max_element(correlations.begin(), correlations.begin() + count);
+    if (*at > best.correlation) best = {first + static_cast<int>(at - correlations.begin()), dv, *at};
   }
   return best;
+}
+
+/// The vertical offset of a block to a fraction of a pixel.
+std::optional<double> refined_offset(const Pyramid& pair, const Place& place, const Offset& offset) {
+  constexpr int room = SmoothPatch::largest_radius - refined_radius;  // for the slant of the road
+  const SmoothPatch left(pair.left, place.u, place.v, refined_radius);
+  const SmoothPatch right(pair.right, place.u + offset.du, place.v + offset.dv, refined_radius + room);
+  // From the one patch's coordinates to the other's.
+  const int shift_u = left.first_u() - right.first_u(), shift_v = left.first_v() - right.first_v();
+  const BlockAlignment start{.du = static_cast<double>(offset.du + shift_u),
+                             .dv = static_cast<double>(offset.dv + shift_v)};
+  const auto aligned =
+      align_block(left.view(), place.u - left.first_u(), place.v - left.first_v(), right.view(), start, refined_radius);
+  if (!aligned) return std::nullopt;
+  return aligned->dv - shift_v;
 }
 
 /// The vertical offsets that one row of cells shows.
@@ -127,24 +153,23 @@ std::vector<double> measure_cells(const Pyramid& pair, int cell_v) {
   const int columns = 2 * pair.small_left.width() / 5;
   const int reach = pair.factor / 2 + 1;
   std::vector<double> offsets;
+  Strip strip{};
   for (int cell_u = 0; cell_u < cells_across; ++cell_u) {
     const auto place = best_place(pair.small_left, cell_u * pair.small_left.width() / cells_across,
                                   cell_v * pair.small_left.height() / cells_down,
                                   (cell_u + 1) * pair.small_left.width() / cells_across,
                                   (cell_v + 1) * pair.small_left.height() / cells_down);
     if (!place) continue;
-    const Offset coarse = search(pair.small_left, *place, pair.small_right, {-columns, -rows}, {0, rows});
+    const Offset coarse = search(pair.small_left, *place, pair.small_right, {-columns, -rows}, {0, rows}, strip);
     if (coarse.correlation < least_correlation) continue;
     const Place full{static_cast<int>(std::lround(unshrink(place->u, pair.factor))),
                      static_cast<int>(std::lround(unshrink(place->v, pair.factor)))};
     if (!inside(pair.left, full.u, full.v)) continue;
     const Offset fine =
         search(pair.left, full, pair.right, {coarse.du * pair.factor - reach, coarse.dv * pair.factor - reach},
-               {coarse.du * pair.factor + reach, coarse.dv * pair.factor + reach});
+               {coarse.du * pair.factor + reach, coarse.dv * pair.factor + reach}, strip);
     if (fine.correlation < least_correlation) continue;
-    const BlockAlignment start{.du = static_cast<double>(fine.du), .dv = static_cast<double>(fine.dv)};
-    const auto aligned = align_block(pair.smooth_left, full.u, full.v, pair.smooth_right, start, refined_radius);
-    if (aligned) offsets.push_back(aligned->dv);
+    if (const auto dv = refined_offset(pair, full, fine)) offsets.push_back(*dv);
   }
   return offsets;
 }
@@ -155,13 +180,7 @@ RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView
                                    int threads) {
   int factor = 1;
   while (left.width() / (2 * factor) >= coarse_width) factor *= 2;
-  const Pyramid pair{left,
-                     right,
-                     factor,
-                     shrink(left, factor),
-                     shrink(right, factor),
-                     smoothed(left, threads),
-                     smoothed(right, threads)};
+  const Pyramid pair{left, right, factor, shrink(left, factor), shrink(right, factor)};
   std::vector<std::vector<double>> by_row(cells_down);
   parallel_for(cells_down, threads,
                [&](int cell_v, int) { by_row[static_cast<std::size_t>(cell_v)] = measure_cells(pair, cell_v); });

@@ -2,181 +2,206 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "core/parallel.hpp"
 #include "core/shrink.hpp"
+#include "road/row_correlation.hpp"
 
 namespace roadstereo {
 namespace {
 
-// Wide and flat blocks: on a road seen at a slant the disparity changes from row to row, not along them.
-constexpr int half_width = 5;
-constexpr int half_height = 2;
-constexpr int block_pixels = (2 * half_width + 1) * (2 * half_height + 1);
-
+constexpr int half_width = row_block_half_width;
+constexpr int half_height = row_block_half_height;
 constexpr float least_deviation = 1.2f * grey_scale;  ///< of a block with texture
 constexpr float least_correlation = 0.7f;
 constexpr float least_margin = 0.03f;  ///< by which the best must beat every other but its neighbours
+constexpr int band_rows = 12;
 
-/// Means and inverse deviations of the blocks of one row; 0 where there is no texture.
-struct BlockRow {
-  std::vector<float> mean;
-  std::vector<float> inverse_deviation;
-};
-
-/// Sums of 2·half_width + 1 neighbours, for the columns whose block lies inside.
-void slide(const std::vector<float>& columns, std::vector<float>& blocks) {
-  const auto last = static_cast<std::ptrdiff_t>(columns.size()) - half_width;
-  float* sum = blocks.data();
-  std::fill(blocks.begin(), blocks.end(), 0.0f);
-  for (int du = -half_width; du <= half_width; ++du) {
-    const float* column = columns.data() + du;
-    for (std::ptrdiff_t u = half_width; u < last; ++u) sum[u] += column[u];
-  }
+std::ptrdiff_t padded(int size) {
+  return (size + row_guard - 1) / row_guard * row_guard + row_guard;
 }
 
-BlockRow describe_blocks(const GreyImage& image, int v) {
-  const auto width = static_cast<std::size_t>(image.width());
-  std::vector<float> sums(width), squares(width), block_sums(width), block_squares(width);
-  for (int row = v - half_height; row <= v + half_height; ++row) {
-    for (std::size_t u = 0; u < width; ++u) {
-      const auto value = static_cast<float>(image.row(row)[u]);
-      sums[u] += value;
-      squares[u] += value * value;
-    }
-  }
-  slide(sums, block_sums);
-  slide(squares, block_squares);
-  BlockRow row{std::vector<float>(width), std::vector<float>(width)};
-  for (std::size_t u = half_width; u + half_width < width; ++u) {
-    row.mean[u] = block_sums[u] / block_pixels;
-    const float variance = block_squares[u] / block_pixels - row.mean[u] * row.mean[u];
-    if (variance >= least_deviation * least_deviation) row.inverse_deviation[u] = 1 / std::sqrt(variance);
-  }
-  return row;
-}
+/// How the rows of all buffers are laid out: `front` elements without effect, then the columns, then a guard.
+struct Layout {
+  int width;
+  int disparities;
+  std::ptrdiff_t front = padded(disparities);
+  std::ptrdiff_t pitch = padded(width);
 
-/// Best disparity of every pixel of a row.
-struct BestRow {
-  std::vector<int> d;
-  std::vector<float> correlation;
-
-  explicit BestRow(int width)
-      : d(static_cast<std::size_t>(width), -1), correlation(static_cast<std::size_t>(width), -1) {}
+  std::size_t row_size() const { return static_cast<std::size_t>(front + pitch); }
+  std::size_t volume_size() const {
+    return static_cast<std::size_t>(2 * row_guard + static_cast<std::ptrdiff_t>(disparities) * pitch);
+  }
 };
 
-/// Correlations of one row, all disparities: the value for left column u and disparity d is row(d)[u].
-class RowCorrelations {
+/// A shrunk image with zeros around its rows.
+class PaddedImage {
  public:
-  RowCorrelations(const GreyImage& left, const GreyImage& right, int v, int disparities)
-      : width_(left.width()),
-        disparities_(std::min(disparities, width_ - 2 * half_width)),
-        values_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(disparities_), -1.0f) {
-    const BlockRow left_row = describe_blocks(left, v);
-    const BlockRow right_row = describe_blocks(right, v);
-    std::vector<float> products(static_cast<std::size_t>(width_));
-    std::vector<float> blocks(static_cast<std::size_t>(width_));
-    for (int d = 0; d < disparities_; ++d) {
-      std::fill(products.begin(), products.end(), 0.0f);
-      for (int y = v - half_height; y <= v + half_height; ++y) {
-        const std::int16_t* l = left.row(y);
-        const std::int16_t* r = right.row(y) - d;
-        for (int u = d; u < width_; ++u) {
-          products[static_cast<std::size_t>(u)] += static_cast<float>(l[u]) * static_cast<float>(r[u]);
-        }
-      }
-      slide(products, blocks);
-      correlate(blocks, left_row, right_row, d);
-    }
+  PaddedImage(ImageView<const std::int16_t> image, int factor, const Layout& layout)
+      : pixels_(scratch_vector<std::int16_t>(layout.row_size() * static_cast<std::size_t>(image.height() / factor))),
+        view_(pixels_.data() + layout.front, layout.width, image.height() / factor,
+              static_cast<std::ptrdiff_t>(layout.row_size())) {
+    shrink(image, factor, view_);
   }
 
-  int width() const { return width_; }
-
-  BestRow best_of_left() const {
-    BestRow best(width_);
-    for (int d = 0; d < disparities_; ++d) update(best, row(d), 0, width_, d);
-    return best;
-  }
-  /// Right column x is left column x + d.
-  BestRow best_of_right() const {
-    BestRow best(width_);
-    for (int d = 0; d < disparities_; ++d) update(best, row(d) + d, 0, width_ - d, d);
-    return best;
-  }
-  /// Whether no disparity but the neighbours of the best comes near it.
-  bool distinct(int u, int best) const {
-    for (int d = 0; d < disparities_; ++d) {
-      if (std::abs(d - best) > 2 && row(d)[u] > row(best)[u] - least_margin) return false;
-    }
-    return true;
-  }
-  /// Position of the maximum, by a parabola through the best and its neighbours.
-  double refine(int u, int d) const {
-    if (d == 0 || d + 1 >= disparities_) return d;
-    const float before = row(d - 1)[u], after = row(d + 1)[u];
-    if (before <= -1 || after <= -1) return d;
-    const float curvature = 2 * before + 2 * after - 4 * row(d)[u];
-    return curvature < 0 ? d + static_cast<double>((before - after) / curvature) : d;
-  }
+  int height() const { return view_.height(); }
+  const std::int16_t* row(int v) const { return view_.row(v); }
 
  private:
-  const float* row(int d) const { return values_.data() + static_cast<std::ptrdiff_t>(d) * width_; }
-
-  void correlate(const std::vector<float>& blocks, const BlockRow& left_row, const BlockRow& right_row, int d) {
-    float* out = values_.data() + static_cast<std::ptrdiff_t>(d) * width_;
-    const float* right_mean = right_row.mean.data() - d;
-    const float* right_inverse = right_row.inverse_deviation.data() - d;
-    for (int u = d + half_width; u + half_width < width_; ++u) {
-      const auto i = static_cast<std::size_t>(u);
-      const float deviations = left_row.inverse_deviation[i] * right_inverse[u];
-      const float covariance = blocks[i] / block_pixels - left_row.mean[i] * right_mean[u];
-      out[u] = deviations > 0 ? covariance * deviations : -1;
-    }
-  }
-
-  static void update(BestRow& best, const float* values, int first, int last, int d) {
-    for (int u = first; u < last; ++u) {
-      const auto i = static_cast<std::size_t>(u);
-      const bool better = values[u] > best.correlation[i];
-      best.d[i] = better ? d : best.d[i];
-      best.correlation[i] = better ? values[u] : best.correlation[i];
-    }
-  }
-
-  int width_;
-  int disparities_;
-  std::vector<float> values_;
+  ScratchVector<std::int16_t> pixels_;
+  ImageView<std::int16_t> view_;
 };
 
-/// The reliable matches of one row of the shrunk pair.
-void match_row(const GreyImage& left, const GreyImage& right, int v, int disparities, int factor,
-               std::vector<DisparityPoint>& matches) {
-  const RowCorrelations row(left, right, v, disparities);
-  const BestRow from_left = row.best_of_left();
-  const BestRow from_right = row.best_of_right();
-  for (int u = 0; u < row.width(); ++u) {
-    const auto i = static_cast<std::size_t>(u);
-    const int d = from_left.d[i];
-    if (from_left.correlation[i] < least_correlation) continue;
-    if (std::abs(from_right.d[static_cast<std::size_t>(u - d)] - d) > 1 || !row.distinct(u, d)) continue;
-    matches.push_back({unshrink(u, factor), unshrink(v, factor), row.refine(u, d) * factor});
+/// What a band of rows needs beside the images.
+class BandMemory {
+ public:
+  explicit BandMemory(const Layout& layout)
+      : front_(layout.front),
+        row_size_(layout.row_size()),
+        sums_(scratch_vector<std::int32_t>(layout.volume_size())),
+        values_(scratch_vector<float>(layout.volume_size())),
+        rows_(scratch_vector<float>(row_count * row_size_)),
+        columns_(scratch_vector<std::int32_t>(2 * row_size_)) {}
+
+  void clear_sums() { std::fill(sums_.begin(), sums_.end(), 0); }
+  std::int32_t* sums() { return sums_.data() + row_guard; }
+  float* values() { return values_.data(); }
+  std::int32_t* column_sums() { return columns_.data(); }
+  std::int32_t* column_squares() { return columns_.data() + row_size_; }
+
+  BlockRow left() { return {row(0), row(1)}; }
+  BlockRow right() { return {row(2), row(3)}; }
+  BestOfRow best_of_left() { return {row(4), row(5)}; }
+  BestOfRow best_of_right() { return {row(6), row(7)}; }
+  float* rivals() { return row(8); }
+
+  /// No disparity is the best yet.
+  void clear_best() { std::fill_n(row(4) - front_, 4 * row_size_, -1.0f); }
+
+ private:
+  static constexpr std::size_t row_count = 9;
+  float* row(std::size_t i) { return rows_.data() + i * row_size_ + front_; }
+
+  std::ptrdiff_t front_;
+  std::size_t row_size_;
+  ScratchVector<std::int32_t> sums_;
+  ScratchVector<float> values_, rows_;
+  ScratchVector<std::int32_t> columns_;
+};
+
+/// Sum of a block's columns.
+std::int32_t block_sum(const std::int32_t* centre) {
+  std::int32_t sum = 0;
+  for (int x = -half_width; x <= half_width; ++x) sum += centre[x];
+  return sum;
+}
+
+void describe_blocks(const PaddedImage& image, int v, int width, BandMemory& memory, const BlockRow& blocks) {
+  std::int32_t* sums = memory.column_sums();
+  std::int32_t* squares = memory.column_squares();
+  std::fill_n(sums, width, 0);
+  std::fill_n(squares, width, 0);
+  for (int y = v - half_height; y <= v + half_height; ++y) {
+    const std::int16_t* row = image.row(y);
+    for (int u = 0; u < width; ++u) {
+      sums[u] += row[u];
+      squares[u] += row[u] * row[u];
+    }
   }
+  for (int u = half_width; u + half_width < width; ++u) {
+    const float mean = static_cast<float>(block_sum(sums + u)) / row_block_pixels;
+    const float variance = static_cast<float>(block_sum(squares + u)) / row_block_pixels - mean * mean;
+    const bool textured = variance >= least_deviation * least_deviation;
+    blocks.mean[u] = mean;
+    blocks.inverse_deviation[u] = textured ? 1 / std::sqrt(variance) : 0;
+  }
+}
+
+/// Position of the maximum, by a parabola through the best and its neighbours.
+double refine(const RowCorrelations& row, int u, int d) {
+  if (d == 0 || d + 1 >= row.disparities) return d;
+  const float* at = row.values + d * row.pitch + u;
+  const float before = at[-row.pitch], after = at[row.pitch];
+  if (before <= -1 || after <= -1) return d;
+  const float curvature = 2 * before + 2 * after - 4 * *at;
+  return curvature < 0 ? d + static_cast<double>((before - after) / curvature) : d;
+}
+
+/// The reliable matches of one row of the shrunk pair: distinct, and found from both sides. Returns how many.
+std::size_t collect(const RowCorrelations& row, BandMemory& memory, int v, int factor, DisparityPoint* matches) {
+  const BestOfRow left = memory.best_of_left(), right = memory.best_of_right();
+  find_rivals(row, left.disparity, memory.rivals());
+  std::size_t found = 0;
+  for (int u = 0; u < row.width; ++u) {
+    if (left.correlation[u] < least_correlation) continue;
+    const int d = static_cast<int>(left.disparity[u]);
+    if (std::abs(right.disparity[u - d] - left.disparity[u]) > 1) continue;
+    if (memory.rivals()[u] > left.correlation[u] - least_margin) continue;
+    matches[found++] = {unshrink(u, factor), unshrink(v, factor), refine(row, u, d) * factor};
+  }
+  return found;
+}
+
+/// A shrunk pair.
+struct SmallPair {
+  PaddedImage left, right;
+  Layout layout;
+  int factor;
+};
+
+/// The matches of the rows whose blocks begin at the rows first … last − 1. Sums of products slide from row to row;
+/// they are whole numbers, so that it does not matter where a band begins.
+std::size_t match_band(const SmallPair& pair, int first, int last, BandMemory& memory, DisparityPoint* matches) {
+  const int width = pair.layout.width;
+  const RowCorrelations row{memory.values(), pair.layout.pitch, width, pair.layout.disparities};
+  const auto add = [&](int v, int sign) {
+    add_products(pair.left.row(v), pair.right.row(v), row, sign, memory.sums());
+  };
+  memory.clear_sums();
+  for (int v = first; v < first + 2 * half_height; ++v) add(v, 1);
+  std::size_t found = 0;
+  for (int top = first; top < last; ++top) {
+    const int v = top + half_height;
+    add(v + half_height, 1);
+    describe_blocks(pair.left, v, width, memory, memory.left());
+    describe_blocks(pair.right, v, width, memory, memory.right());
+    memory.clear_best();
+    correlate_row(memory.sums(), memory.left(), memory.right(), row, memory.best_of_left(), memory.best_of_right());
+    found += collect(row, memory, v, pair.factor, matches + found);
+    add(top, -1);
+  }
+  return found;
 }
 
 }  // namespace
 
-std::vector<DisparityPoint> match_coarsely(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                           int factor, double max_disparity_px, int threads) {
-  const GreyImage small_left = shrink(left, factor);
-  const GreyImage small_right = shrink(right, factor);
-  const int disparities = static_cast<int>(max_disparity_px / factor) + 1;
-  const int rows = std::max(0, small_left.height() - 2 * half_height);
-  std::vector<std::vector<DisparityPoint>> by_row(static_cast<std::size_t>(rows));
-  parallel_for(rows, threads, [&](int row, int) {
-    match_row(small_left, small_right, row + half_height, disparities, factor, by_row[static_cast<std::size_t>(row)]);
+ScratchVector<DisparityPoint> match_coarsely(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                             int factor, double max_disparity_px, int threads) {
+  auto matches = scratch_vector<DisparityPoint>();
+  const int width = left.width() / factor;
+  const int rows = left.height() / factor - 2 * half_height;
+  const int disparities = std::min(static_cast<int>(max_disparity_px / factor) + 1, width - 2 * half_width);
+  if (rows < 1 || disparities < 1) return matches;
+  const Layout layout{width, disparities};
+  const SmallPair pair{PaddedImage(left, factor, layout), PaddedImage(right, factor, layout), layout, factor};
+  const int bands = (rows + band_rows - 1) / band_rows;
+  const int workers = std::min(resolve_threads(threads), bands);
+  std::pmr::vector<BandMemory> memory(ScratchScope::memory());
+  memory.reserve(static_cast<std::size_t>(workers));
+  for (int worker = 0; worker < workers; ++worker) memory.emplace_back(layout);
+  const std::size_t band_size = static_cast<std::size_t>(band_rows) * static_cast<std::size_t>(width);
+  auto by_band = scratch_vector<DisparityPoint>(static_cast<std::size_t>(bands) * band_size);
+  auto found = scratch_vector<std::size_t>(static_cast<std::size_t>(bands));
+  parallel_rows(rows, band_rows, threads, [&](int first, int last, int worker) {
+    const auto band = static_cast<std::size_t>(first / band_rows);
+    found[band] =
+        match_band(pair, first, last, memory[static_cast<std::size_t>(worker)], by_band.data() + band * band_size);
   });
-  std::vector<DisparityPoint> matches;
-  for (const auto& found : by_row) matches.insert(matches.end(), found.begin(), found.end());
+  for (std::size_t band = 0; band < found.size(); ++band) {
+    const DisparityPoint* of_band = by_band.data() + band * band_size;
+    matches.insert(matches.end(), of_band, of_band + found[band]);
+  }
   return matches;
 }
 

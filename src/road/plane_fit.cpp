@@ -1,7 +1,9 @@
 #include "road/plane_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "road/sampler.hpp"
 
@@ -115,23 +117,62 @@ std::optional<RoadModel> plane_through(const DisparityPoint& a, const DisparityP
   return model;
 }
 
-std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, PlaneVote vote,
+namespace {
+
+/// Points drawn to judge planes, in groups, and the most that those behind a group can add.
+class Jury {
+ public:
+  Jury(PlaneVotes votes, ScratchVector<DisparityPoint> points) : votes_(votes), points_(std::move(points)) {
+    double rest = 0;
+    for (std::size_t group = groups; group-- > 0;) {
+      rest_[group] = rest;
+      for (const DisparityPoint& p : of_group(group)) rest += votes_({&p, 1}, RoadModel{p.d, 0, 0});
+    }
+  }
+
+  /// All votes for the plane; some smaller number than `least` when there cannot be as many.
+  double judge(const RoadModel& plane, double least) const {
+    double score = 0;
+    for (std::size_t group = 0; group < groups; ++group) {
+      score += votes_(of_group(group), plane);
+      if (score + rest_[group] < least) break;
+    }
+    return score;
+  }
+
+ private:
+  static constexpr std::size_t groups = 16;
+
+  std::span<const DisparityPoint> of_group(std::size_t group) const {
+    const std::size_t first = group * points_.size() / groups, last = (group + 1) * points_.size() / groups;
+    return std::span(points_).subspan(first, last - first);
+  }
+
+  PlaneVotes votes_;
+  ScratchVector<DisparityPoint> points_;
+  std::array<double, groups> rest_{};
+};
+
+}  // namespace
+
+std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, PlaneVotes votes,
                                       FunctionRef<bool(const RoadModel&)> possible) {
   constexpr int trials = 300;
   constexpr std::size_t voters = 400;
   if (points.size() < 3) return std::nullopt;
   Sampler sampler;
   const auto draw = [&]() -> const DisparityPoint& { return points[sampler.below(points.size())]; };
-  auto jury = scratch_vector<DisparityPoint>();
-  for (std::size_t i = 0; i < voters; ++i) jury.push_back(draw());
+  auto drawn = scratch_vector<DisparityPoint>();
+  drawn.reserve(voters);
+  for (std::size_t i = 0; i < voters; ++i) drawn.push_back(draw());
+  const Jury jury(votes, std::move(drawn));
   std::optional<RoadModel> best;
   double best_score = 0;
   for (int trial = 0; trial < trials; ++trial) {
     const DisparityPoint &a = draw(), &b = draw(), &c = draw();
     const auto plane = plane_through(a, b, c);
     if (!plane || !possible(*plane)) continue;
-    double score = 0;
-    for (const DisparityPoint& p : jury) score += vote(p, *plane);
+    const double score = jury.judge(*plane, best_score);
     if (score > best_score) {
       best_score = score;
       best = plane;
@@ -141,11 +182,15 @@ std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, Pl
 }
 
 std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, double tolerance_px) {
-  const auto vote = [tolerance_px](const DisparityPoint& p, const RoadModel& plane) {
-    const double x = (p.d - plane.disparity(p.u, p.v)) / tolerance_px;
-    return std::max(0.0, 1 - x * x);
+  const auto votes = [tolerance_px](std::span<const DisparityPoint> voters, const RoadModel& plane) {
+    double sum = 0;
+    for (const DisparityPoint& p : voters) {
+      const double x = (p.d - plane.disparity(p.u, p.v)) / tolerance_px;
+      sum += std::max(0.0, 1 - x * x);
+    }
+    return sum;
   };
-  return search_plane(points, vote, [](const RoadModel&) { return true; });
+  return search_plane(points, votes, [](const RoadModel&) { return true; });
 }
 
 }  // namespace roadstereo

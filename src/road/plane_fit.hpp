@@ -60,12 +60,13 @@ struct RobustPlane {
 std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> points, const RoadModel& start,
                                             double start_scale_px, bool with_roll, int max_iterations);
 
-/// What a point says to a plane: positive for, negative against.
-using PlaneVote = FunctionRef<double(const DisparityPoint&, const RoadModel&)>;
+/// What points say to a plane, added up: positive for, negative against. A point can say no more for a plane than for
+/// one that it lies on.
+using PlaneVotes = FunctionRef<double(std::span<const DisparityPoint>, const RoadModel&)>;
 
 /// The plane through three of the points that gets the most votes of the others: a start that no outliers pull. Only
 /// planes that `possible` accepts are tried. Deterministic. Nothing when no plane has more votes for it than against.
-std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, PlaneVote vote,
+std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, PlaneVotes votes,
                                       FunctionRef<bool(const RoadModel&)> possible);
 
 /// The same where every point within `tolerance_px` votes for a plane and none against it.

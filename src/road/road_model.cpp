@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <vector>
 
 #include "core/sentence.hpp"
 #include "core/shrink.hpp"
@@ -18,9 +17,19 @@ namespace {
 
 constexpr int coarse_width = 120;   ///< the coarse search shrinks the image to between this and twice this
 constexpr int fewest_matches = 40;  ///< below this nothing is known
-constexpr int few_places = 1000;    ///< of the first fine search, which only brings the plane near
-constexpr int places = 2500;        ///< of the fine search
-constexpr int places_again = 500;   ///< of the search around the last frame's plane
+
+constexpr double least_share_again = 0.5;  ///< that a carried-over model explains; to look anew costs only time
+
+/// How far and in how many places a search around a supposed plane looks. Each first brings the plane near, then
+/// measures it where the residuals are small, for a parabola is the more exact the nearer the peak is to a pixel.
+struct FineSearch {
+  int range_px;
+  int places;
+};
+constexpr FineSearch first_search{7, 1000};  ///< the coarse plane is good to a pixel of the shrunk image at best
+constexpr FineSearch close_search{4, 2500};
+constexpr FineSearch close_search_again{2, 1500};
+constexpr FineSearch first_search_again{4, 500};  ///< around the last frame's plane
 
 /// Power of two that brings the image near the width of the coarse search.
 int coarse_factor(int width) {
@@ -65,9 +74,12 @@ double vote(const DisparityPoint& point, const RoadModel& plane, double toleranc
 
 std::optional<RoadModel> search_road(std::span<const DisparityPoint> matches, double tolerance_px, int height,
                                      const TiltLimit& limit) {
-  return search_plane(
-      matches, [&](const DisparityPoint& p, const RoadModel& plane) { return vote(p, plane, tolerance_px, height); },
-      [&](const RoadModel& plane) { return limit.can_be_road(plane); });
+  const auto votes = [&](std::span<const DisparityPoint> points, const RoadModel& plane) {
+    double sum = 0;
+    for (const DisparityPoint& p : points) sum += vote(p, plane, tolerance_px, height);
+    return sum;
+  };
+  return search_plane(matches, votes, [&](const RoadModel& plane) { return limit.can_be_road(plane); });
 }
 
 /// The same plane in the coordinates of the image shrunk by `factor`.
@@ -114,21 +126,51 @@ struct Refinement {
 /// Where the plane that a refinement starts from comes from.
 enum class Origin { this_pair, last_frame };
 
-Refinement refine_road(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, const RoadModel& plane,
-                       Origin origin, int factor, int range_px, int tried_places, const TiltLimit& limit,
-                       bool with_roll, int threads) {
+/// The pair as the fine search sees it: at full size, or a large one shrunk.
+class FinePair {
+ public:
+  FinePair(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right)
+      : factor_(std::max(1, coarse_factor(left.width()) / 8)) {
+    // At full size there is nothing to shrink, and nothing to copy.
+    const std::size_t size = factor_ > 1 ? left.pixels() / static_cast<std::size_t>(factor_ * factor_) : 0;
+    pixels_.resize(2 * size);
+    left_ = shrunk(left, pixels_.data());
+    right_ = shrunk(right, pixels_.data() + size);
+  }
+
+  ImageView<const std::int16_t> left() const { return left_; }
+  ImageView<const std::int16_t> right() const { return right_; }
+  int factor() const { return factor_; }
+
+ private:
+  ImageView<const std::int16_t> shrunk(ImageView<const std::int16_t> image, std::int16_t* pixels) const {
+    if (factor_ == 1) return image;
+    const ImageView<std::int16_t> small(pixels, image.width() / factor_, image.height() / factor_);
+    shrink(image, factor_, small);
+    return small;
+  }
+
+  int factor_;
+  ScratchVector<std::int16_t> pixels_ = scratch_vector<std::int16_t>();
+  ImageView<const std::int16_t> left_, right_;
+};
+
+Refinement refine_road(const FinePair& pair, const RoadModel& plane, Origin origin, const FineSearch& search,
+                       const TiltLimit& limit, bool with_roll, int threads) {
   constexpr int iterations = 50;
   constexpr double tolerance = 1.0;    // of the vote, pixels of the shrunk image
   constexpr double start_scale = 0.5;  // of the fit: a kerb must not pull it, a road that is not flat must stay in
-  GuidedMatches found = match_near_plane(left, right, shrink_model(plane, factor), range_px, tried_places, threads);
+  const int factor = pair.factor();
+  const int height = pair.left().height() * factor;
+  GuidedMatches found =
+      match_near_plane(pair.left(), pair.right(), shrink_model(plane, factor), search.range_px, search.places, threads);
   Refinement result;
   result.tried = found.tried;
   result.points = unshrink_points(std::move(found.points), factor);
   if (result.points.size() < static_cast<std::size_t>(fewest_matches)) return result;
   // The supposed plane may lie between a road and its pavement: vote anew with the sharper points.
-  const auto start = origin == Origin::last_frame
-                         ? std::optional(plane)
-                         : search_road(result.points, tolerance * factor, left.height() * factor, limit);
+  const auto start = origin == Origin::last_frame ? std::optional(plane)
+                                                  : search_road(result.points, tolerance * factor, height, limit);
   if (!start) return result;
   auto fit = fit_robust_plane(result.points, *start, start_scale * factor, with_roll, iterations);
   if (!fit) return result;
@@ -140,28 +182,55 @@ Refinement refine_road(ImageView<const std::int16_t> left, ImageView<const std::
   result.inliers = static_cast<int>(rows.size());
   result.found = result.inliers >= fewest_matches;
   if (result.found) {
-    result.rows_covered = (percentile(rows, 0.95) - percentile(rows, 0.05)) / (left.height() * factor);
+    result.rows_covered = (percentile(rows, 0.95) - percentile(rows, 0.05)) / height;
   }
   return result;
 }
 
+/// Share of the textured places of the road that the model explains.
+double inlier_share(const Refinement& refinement) {
+  return refinement.tried > 0 ? static_cast<double>(refinement.inliers) / refinement.tried : 0;
+}
+
 /// Fills in the estimate from the last refinement and says whether, and if not why not, it can be trusted.
-void judge(const Refinement& refinement, const RoadModelOptions& options, RoadModelEstimate& estimate) {
+void judge(const Refinement& refinement, double least_share, const TiltLimit& limit, RoadModelEstimate& estimate) {
   constexpr double least_rows_covered = 0.1;
   estimate.model = refinement.fit.plane;
   estimate.inliers = refinement.inliers;
   estimate.residual_px = refinement.fit.scale_px;
-  const double share = refinement.tried > 0 ? static_cast<double>(refinement.inliers) / refinement.tried : 0;
+  const double share = inlier_share(refinement);
   if (!refinement.found) {
     estimate.reason = sentence("only ", refinement.points.size(), " correspondences lie near the supposed road");
-  } else if (share < options.min_inlier_share) {
+  } else if (share < least_share) {
     estimate.reason = sentence("the road explains ", 100 * share, " % of the textured places where it should be seen, ",
-                               "less than ", 100 * options.min_inlier_share, " %");
+                               "less than ", 100 * least_share, " %");
   } else if (refinement.rows_covered < least_rows_covered) {
     estimate.reason = sentence("the road was found in ", 100 * refinement.rows_covered, " % of the rows only");
+  } else if (!limit.can_be_road(estimate.model)) {
+    estimate.reason = "the plane found is tilted like a wall";
   } else {
     estimate.reliable = true;
   }
+}
+
+/// How far a plane has moved since the last frame: the largest change of its disparity in a corner of the image that
+/// sees the road both times.
+double largest_move(const RoadModel& now, const RoadModel& before, int width, int height) {
+  double largest = 0;
+  for (const double v : {0.0, height - 1.0}) {
+    for (const double u : {0.0, width - 1.0}) {
+      const double d = now.disparity(u, v), last = before.disparity(u, v);
+      if (d > 0 && last > 0) largest = std::max(largest, std::abs(d - last));
+    }
+  }
+  return largest;
+}
+
+/// A road that has moved further than this from one frame to the next has jumped: then nothing says that the search
+/// around the last frame's plane has seen all of it. In a smooth flight it moves a tenth as far.
+double largest_step_px(int width) {
+  constexpr double share_of_width = 1.0 / 640, least_px = 0.25;
+  return std::max(least_px, share_of_width * width);
 }
 
 /// Whether exchanging the images explains them far better than the order they came in. Only asked when few pixels of
@@ -195,7 +264,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
                                       const RoadModelOptions& options, int threads) {
   const int factor = coarse_factor(left.width());
   const double max_disparity = options.max_disparity_share * left.width();
-  const std::vector<DisparityPoint> matches = match_coarsely(left, right, factor, max_disparity, threads);
+  const ScratchVector<DisparityPoint> matches = match_coarsely(left, right, factor, max_disparity, threads);
   if (look_swapped(left, right, factor, max_disparity, matches.size(), threads)) {
     fail("left and right look swapped: the matches lie at negative disparities");
   }
@@ -205,7 +274,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
     estimate.reason = sentence("only ", matches.size(), " reliable correspondences in the whole image");
     return estimate;
   }
-  std::vector<double> disparities;
+  auto disparities = scratch_vector<double>();
   disparities.reserve(matches.size());
   for (const DisparityPoint& p : matches) disparities.push_back(p.d);
   estimate.largest_disparity_px = percentile(disparities, 0.99);
@@ -217,20 +286,14 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
     return estimate;
   }
   // First wide, for the coarse plane is good to a pixel of the shrunk image at best; then close.
-  const int fine = std::max(1, factor / 8);
-  const GreyImage fine_left = shrink(left, fine);
-  const GreyImage fine_right = shrink(right, fine);
-  Refinement refinement = refine_road(fine_left, fine_right, *coarse, Origin::this_pair, fine, 7, few_places, limit,
-                                      options.with_roll, threads);
+  const FinePair fine(left, right);
+  Refinement refinement =
+      refine_road(fine, *coarse, Origin::this_pair, first_search, limit, options.with_roll, threads);
   if (refinement.found) {
-    refinement = refine_road(fine_left, fine_right, refinement.fit.plane, Origin::this_pair, fine, 4, places, limit,
-                             options.with_roll, threads);
+    refinement =
+        refine_road(fine, refinement.fit.plane, Origin::this_pair, close_search, limit, options.with_roll, threads);
   }
-  judge(refinement, options, estimate);
-  if (estimate.reliable && !limit.can_be_road(estimate.model)) {
-    estimate.reliable = false;
-    estimate.reason = "the plane found is tilted like a wall";
-  }
+  judge(refinement, options.min_inlier_share, limit, estimate);
   measure_range(matches, estimate);
   return estimate;
 }
@@ -239,27 +302,26 @@ RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageVie
                                     const RoadModel& previous, const std::optional<StereoCalibration>& calibration,
                                     const RoadModelOptions& options, int threads) {
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
-  const int fine = std::max(1, coarse_factor(left.width()) / 8);
-  // At full size there is nothing to shrink, and nothing to copy.
-  auto pixels = scratch_vector<std::int16_t>(fine > 1 ? 2 * left.pixels() / static_cast<std::size_t>(fine * fine) : 0);
-  const auto fine_view = [&](ImageView<const std::int16_t> image, std::size_t at) {
-    if (fine == 1) return image;
-    const ImageView<std::int16_t> small(pixels.data() + at, image.width() / fine, image.height() / fine);
-    shrink(image, fine, small);
-    return ImageView<const std::int16_t>(small);
-  };
-  const Refinement refinement =
-      refine_road(fine_view(left, 0), fine_view(right, pixels.size() / 2), previous, Origin::last_frame, fine, 4,
-                  places_again, limit, options.with_roll, threads);
+  const FinePair fine(left, right);
+  const Refinement around =
+      refine_road(fine, previous, Origin::last_frame, first_search_again, limit, options.with_roll, threads);
+  const Refinement refinement = around.found ? refine_road(fine, around.fit.plane, Origin::last_frame,
+                                                           close_search_again, limit, options.with_roll, threads)
+                                             : Refinement();
   RoadModelEstimate estimate;
   estimate.carried_over = true;
-  estimate.matches = static_cast<int>(refinement.points.size());
-  judge(refinement, options, estimate);
+  estimate.matches = static_cast<int>(around.points.size());
+  judge(refinement, std::max(options.min_inlier_share, least_share_again), limit, estimate);
   if (estimate.reliable && estimate.residual_px > options.verify_tolerance_px) {
     estimate.reliable = false;
     estimate.reason = sentence("the last frame's road leaves ", estimate.residual_px, " px on this one");
   }
-  measure_range(refinement.points, estimate);
+  const double moved = largest_move(estimate.model, previous, left.width(), left.height());
+  if (estimate.reliable && moved > largest_step_px(left.width())) {
+    estimate.reliable = false;
+    estimate.reason = sentence("the road has moved by ", moved, " px since the last frame");
+  }
+  measure_range(around.points, estimate);
   return estimate;
 }
 

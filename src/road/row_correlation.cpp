@@ -1,0 +1,115 @@
+#include "road/row_correlation.hpp"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "road/row_correlation.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
+//
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace roadstereo::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, row_guard>;
+using Float = hn::Vec<Floats>;
+
+void add_products(const std::int16_t* left, const std::int16_t* right, const RowCorrelations& row, int sign,
+                  std::int32_t* sums) {
+  const hn::RebindToSigned<Floats> d32;
+  const hn::Rebind<std::int16_t, Floats> d16;
+  const int lanes = static_cast<int>(hn::Lanes(d32));
+  for (int u = 0; u < row.width; u += lanes) {
+    const auto grey = hn::PromoteTo(d32, hn::LoadU(d16, left + u));
+    const auto signed_grey = sign < 0 ? hn::Neg(grey) : grey;
+    for (int d = 0; d < row.disparities; ++d) {
+      std::int32_t* sum = sums + d * row.pitch + u;
+      const auto other = hn::PromoteTo(d32, hn::LoadU(d16, right + u - d));
+      hn::StoreU(hn::Add(hn::LoadU(d32, sum), hn::Mul(signed_grey, other)), d32, sum);
+    }
+  }
+}
+
+HWY_INLINE void keep_better(Float correlation, Float disparity, const BestOfRow& best, std::ptrdiff_t at) {
+  const Floats df;
+  const Float before = hn::LoadU(df, best.correlation + at);
+  const auto better = hn::Gt(correlation, before);
+  hn::StoreU(hn::IfThenElse(better, correlation, before), df, best.correlation + at);
+  hn::StoreU(hn::IfThenElse(better, disparity, hn::LoadU(df, best.disparity + at)), df, best.disparity + at);
+}
+
+/// The sums of a block's columns, as a float.
+HWY_INLINE Float block_sum(const std::int32_t* centre) {
+  const Floats df;
+  const hn::RebindToSigned<Floats> d32;
+  auto sum = hn::LoadU(d32, centre);
+  for (int x = 1; x <= row_block_half_width; ++x) {
+    sum = hn::Add(sum, hn::Add(hn::LoadU(d32, centre - x), hn::LoadU(d32, centre + x)));
+  }
+  return hn::ConvertTo(df, sum);
+}
+
+void correlate_row(const std::int32_t* sums, const BlockRow& left, const BlockRow& right, const RowCorrelations& row,
+                   const BestOfRow& best_of_left, const BestOfRow& best_of_right) {
+  const Floats df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  const Float per_pixel = hn::Set(df, 1.0f / row_block_pixels), none = hn::Set(df, -1.0f);
+  for (int d = 0; d < row.disparities; ++d) {
+    const Float disparity = hn::Set(df, static_cast<float>(d));
+    for (int u = 0; u < row.width; u += lanes) {
+      const std::ptrdiff_t at = d * row.pitch + u, there = std::ptrdiff_t{u} - d;
+      const Float inverse =
+          hn::Mul(hn::LoadU(df, left.inverse_deviation + u), hn::LoadU(df, right.inverse_deviation + there));
+      const Float means = hn::Mul(hn::LoadU(df, left.mean + u), hn::LoadU(df, right.mean + there));
+      const Float covariance = hn::MulSub(block_sum(sums + at), per_pixel, means);
+      const Float correlation = hn::IfThenElse(hn::Gt(inverse, hn::Zero(df)), hn::Mul(covariance, inverse), none);
+      hn::StoreU(correlation, df, row.values + at);
+      keep_better(correlation, disparity, best_of_left, u);
+      keep_better(correlation, disparity, best_of_right, there);
+    }
+  }
+}
+
+void find_rivals(const RowCorrelations& row, const float* best_disparity, float* rivals) {
+  const Floats df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  const Float near = hn::Set(df, 2.0f), none = hn::Set(df, -1.0f);
+  for (int u = 0; u < row.width; u += lanes) {
+    const Float best = hn::LoadU(df, best_disparity + u);
+    Float rival = none;
+    for (int d = 0; d < row.disparities; ++d) {
+      const Float away = hn::Abs(hn::Sub(best, hn::Set(df, static_cast<float>(d))));
+      const Float value = hn::LoadU(df, row.values + d * row.pitch + u);
+      rival = hn::Max(rival, hn::IfThenElse(hn::Gt(away, near), value, none));
+    }
+    hn::StoreU(rival, df, rivals + u);
+  }
+}
+
+}  // namespace roadstereo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace roadstereo {
+
+HWY_EXPORT(add_products);
+HWY_EXPORT(correlate_row);
+HWY_EXPORT(find_rivals);
+
+void add_products(const std::int16_t* left, const std::int16_t* right, const RowCorrelations& row, int sign,
+                  std::int32_t* sums) {
+  HWY_DYNAMIC_DISPATCH(add_products)(left, right, row, sign, sums);
+}
+
+void correlate_row(const std::int32_t* sums, const BlockRow& left, const BlockRow& right, const RowCorrelations& row,
+                   const BestOfRow& best_of_left, const BestOfRow& best_of_right) {
+  HWY_DYNAMIC_DISPATCH(correlate_row)(sums, left, right, row, best_of_left, best_of_right);
+}
+
+void find_rivals(const RowCorrelations& row, const float* best_disparity, float* rivals) {
+  HWY_DYNAMIC_DISPATCH(find_rivals)(row, best_disparity, rivals);
+}
+
+}  // namespace roadstereo
+#endif  // HWY_ONCE

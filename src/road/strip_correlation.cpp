@@ -1,0 +1,154 @@
+#include "road/strip_correlation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "road/strip_correlation.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
+//
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace roadstereo::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, 8>;
+using Float = hn::Vec<Floats>;
+
+constexpr float mid_grey = grey_max / 2.0f;
+
+/// Sums of the strip's columns and of their squares.
+struct ColumnSums {
+  std::array<float, Strip::pitch> values, squares;
+};
+
+HWY_INLINE void sum_columns(const Strip& strip, int columns, int height, ColumnSums& sums) {
+  const Floats df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  for (int x = 0; x < columns; x += lanes) {
+    Float sum = hn::Zero(df), squares = hn::Zero(df);
+    for (int y = 0; y < height; ++y) {
+      const Float value = hn::LoadU(df, strip.row(y) + x);
+      sum = hn::Add(sum, value);
+      squares = hn::MulAdd(value, value, squares);
+    }
+    hn::StoreU(sum, df, sums.values.data() + x);
+    hn::StoreU(squares, df, sums.squares.data() + x);
+  }
+}
+
+/// Sums over the block of its values times the strip's, for the parts that begin at `first` and the columns behind it.
+HWY_INLINE Float sum_products(const CorrelationBlock& block, const Strip& strip, int first) {
+  const Floats df;
+  Float even = hn::Zero(df), odd = hn::Zero(df);  // two chains hide each other's latency
+  const float* value = block.values.data();
+  for (int y = 0; y < block.height; ++y) {
+    const float* row = strip.row(y) + first;
+    int x = 0;
+    for (; x + 1 < block.width; x += 2, value += 2) {
+      even = hn::MulAdd(hn::Set(df, value[0]), hn::LoadU(df, row + x), even);
+      odd = hn::MulAdd(hn::Set(df, value[1]), hn::LoadU(df, row + x + 1), odd);
+    }
+    if (x < block.width) even = hn::MulAdd(hn::Set(df, *value++), hn::LoadU(df, row + x), even);
+  }
+  return hn::Add(even, odd);
+}
+
+void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float least_deviation,
+                     StripCorrelations& correlations) {
+  const Floats df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  const Float per_pixel = hn::Set(df, 1.0f / static_cast<float>(block.width * block.height));
+  const Float least_variance = hn::Set(df, least_deviation * least_deviation);
+  const Float per_deviation = hn::Set(df, 1.0f / block.deviation);
+  ColumnSums sums;
+  sum_columns(strip, count + block.width - 1 + lanes, block.height, sums);
+  for (int i = 0; i < count; i += lanes) {
+    Float sum = hn::Zero(df), squares = hn::Zero(df);
+    for (int x = 0; x < block.width; ++x) {
+      sum = hn::Add(sum, hn::LoadU(df, sums.values.data() + i + x));
+      squares = hn::Add(squares, hn::LoadU(df, sums.squares.data() + i + x));
+    }
+    const Float mean = hn::Mul(sum, per_pixel);
+    const Float variance = hn::NegMulAdd(mean, mean, hn::Mul(squares, per_pixel));
+    const auto textured = hn::Ge(variance, least_variance);
+    const Float covariance = hn::Mul(sum_products(block, strip, i), per_pixel);
+    const Float safe = hn::IfThenElse(textured, variance, hn::Set(df, 1.0f));
+    const Float correlation = hn::Div(hn::Mul(covariance, per_deviation), hn::Sqrt(safe));
+    hn::StoreU(hn::IfThenElse(textured, correlation, hn::Set(df, -1.0f)), df, correlations.data() + i);
+  }
+}
+
+constexpr int most_sampled = 32;  ///< columns
+constexpr int most_drift = 16;    ///< pixels by which they may fall behind or run ahead along the strip
+
+/// A column lies between two pixels of a few that come into question; each counts by its distance from the column, and
+/// beyond a pixel's distance not at all.
+void sample_strip(const std::int16_t* image_row, int image_width, double x, double step, int count, float* strip_row) {
+  const Floats df;
+  const hn::Rebind<std::int16_t, Floats> d16;
+  const hn::RebindToSigned<Floats> d32;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  const double drift = (step - 1) * (count - 1);
+  const int base = static_cast<int>(std::floor(x + std::min(0.0, drift)));
+  const int taps = static_cast<int>(std::abs(drift)) + 3;
+  std::array<std::int16_t, most_sampled + most_drift + 16> pixels{};
+  const int first = std::max(0, base), last = std::min(image_width, base + count + taps);
+  std::copy(image_row + first, image_row + last, pixels.data() + (first - base));
+  const auto start = static_cast<float>(x - base);
+  const Float slope = hn::Set(df, static_cast<float>(step - 1)), one = hn::Set(df, 1.0f);
+  for (int i = 0; i < count; i += lanes) {
+    const Float at = hn::Add(hn::Iota(df, 0), hn::Set(df, static_cast<float>(i)));
+    const Float place = hn::MulAdd(at, slope, hn::Set(df, start));
+    Float value = hn::Set(df, -mid_grey);
+    for (int k = 0; k < taps; ++k) {
+      const Float away = hn::Abs(hn::Sub(place, hn::Set(df, static_cast<float>(k))));
+      const Float weight = hn::Max(hn::Sub(one, away), hn::Zero(df));
+      const Float pixel = hn::ConvertTo(df, hn::PromoteTo(d32, hn::LoadU(d16, pixels.data() + i + k)));
+      value = hn::MulAdd(weight, pixel, value);
+    }
+    hn::StoreU(value, df, strip_row + i);
+  }
+}
+
+}  // namespace roadstereo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace roadstereo {
+
+HWY_EXPORT(correlate_strip);
+HWY_EXPORT(sample_strip);
+
+CorrelationBlock::CorrelationBlock(ImageView<const std::int16_t> image, int u, int v, int half_width, int half_height)
+    : width(2 * half_width + 1), height(2 * half_height + 1) {
+  std::uint32_t sum = 0, squares = 0;  // most_width · most_height squares of at most 4080 fit
+  for (int y = -half_height; y <= half_height; ++y) {
+    const std::int16_t* row = image.row(v + y) + u - half_width;
+    for (int x = 0; x < width; ++x) {
+      const auto grey = static_cast<std::uint32_t>(row[x]);
+      sum += grey;
+      squares += grey * grey;
+    }
+  }
+  const double pixels = width * height, mean = sum / pixels;
+  deviation = static_cast<float>(std::sqrt(std::max(0.0, squares / pixels - mean * mean)));
+  float* value = values.data();
+  for (int y = -half_height; y <= half_height; ++y, value += width) {
+    const std::int16_t* row = image.row(v + y) + u - half_width;
+    for (int x = 0; x < width; ++x) value[x] = static_cast<float>(row[x]) - static_cast<float>(mean);
+  }
+}
+
+void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float least_deviation,
+                     StripCorrelations& correlations) {
+  HWY_DYNAMIC_DISPATCH(correlate_strip)(block, strip, count, least_deviation, correlations);
+}
+
+void sample_strip(const std::int16_t* image_row, int image_width, double x, double step, int count, float* strip_row) {
+  HWY_DYNAMIC_DISPATCH(sample_strip)(image_row, image_width, x, step, count, strip_row);
+}
+
+}  // namespace roadstereo
+#endif  // HWY_ONCE
