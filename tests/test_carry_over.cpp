@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
 #include "textured_pair.hpp"
@@ -137,6 +138,35 @@ TEST(Flight, ACutToASimilarRoadIsAsGoodAsASingleFrame) {
   EXPECT_LT(difference(result.road.model, after.plane, after), 0.1);
   EXPECT_LE(difference(result.geometry.plane, after.plane, after),
             difference(expected.geometry.plane, after.plane, after) + 0.01);
+}
+
+TEST(Flight, WarmingUpLeavesNothingBehind) {
+  const synth::SyntheticPair pair = synth::render(small_road());
+  Pipeline warm(preset("default"), pair.calibration), cold(preset("default"), pair.calibration);
+  warm.warm_up(width, height);
+  EXPECT_THROW(warm.find_damage(), Error);
+  EXPECT_THROW(warm.warm_up(width + 1, height), Error);  // the calibration is of another size
+  const FrameResult& result = warm.process(pair.left.view(), pair.right.view());
+  const FrameResult& expected = cold.process(pair.left.view(), pair.right.view());
+  EXPECT_FALSE(result.road.carried_over);
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_EQ(difference(result.geometry.plane, expected.geometry.plane, pair), 0);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const float a = result.disparity(u, v), b = expected.disparity(u, v);
+      ASSERT_TRUE(a == b || (std::isnan(a) && std::isnan(b)));
+    }
+  }
+}
+
+TEST(Flight, WarmingUpTakesEveryWhiteLevelAndSize) {
+  for (const double white_level : {0.0, 200.0, 4095.0}) {
+    PipelineOptions options;
+    options.white_level = white_level;
+    Pipeline pipeline(options);
+    EXPECT_NO_THROW(pipeline.warm_up(32, 32));
+    EXPECT_NO_THROW(pipeline.warm_up(320, 48));
+  }
 }
 
 TEST(Flight, AfterAFrameWithoutARoadTheNextStartsAfresh) {

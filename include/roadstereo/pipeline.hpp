@@ -116,6 +116,10 @@ class Pipeline {
   /// Goes on from there: the next frame starts from `carried`.
   void carry_on(const CarriedState& carried);
 
+  /// Makes the memory and starts the threads that frames of this size need, so that the first takes no longer than any
+  /// other whose road model is found anew. Forgets the last frame. Throws Error for a size that `process` refuses.
+  void warm_up(int width, int height);
+
   /// Forgets the last frame: the next one starts afresh.
   void reset();
 
