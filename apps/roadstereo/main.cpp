@@ -3,8 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
+#include <opencv2/core/utils/logger.hpp>
 #include <string>
 
 #include "commands.hpp"
@@ -75,10 +77,21 @@ void describe(CLI::App& app) {
   roadstereo::cli::add_evaluate(app);
 }
 
+/// OpenCV and FFmpeg say in words of their own, on standard error, what the sentences of errors say. Whoever wants to
+/// hear them sets the variables.
+void quieten_decoders() {
+  constexpr int keep_what_is_set = 0;
+  ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", keep_what_is_set);  // FFmpeg's AV_LOG_QUIET
+  if (std::getenv("OPENCV_LOG_LEVEL") == nullptr) {
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
+    quieten_decoders();
     CLI::App app;
     describe(app);
     return run(app, argc, argv);

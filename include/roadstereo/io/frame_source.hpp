@@ -80,8 +80,8 @@ class FrameSource {
 ///   video          both views in one picture, see StereoLayout
 ///   two names      left and right: two folders or two videos
 ///   /dev/video*    V4L2 camera with both views in one picture
-///   GStreamer      a pipeline: a text with " ! "; its end, " ! videoconvert ! appsink drop=true max-buffers=2
-///                  sync=false", is added when it has no appsink
+///   GStreamer      a pipeline: a text with " ! "; " ! videoconvert ! appsink max-buffers=2 sync=false" is added when
+///                  it has no appsink, and drops pictures that come too fast when the pipeline is live
 ///   .bag           ROS 1 bag with two image topics
 /// Throws Error when it is none of these or cannot be opened.
 std::unique_ptr<FrameSource> open_source(const std::vector<std::string>& names, const SourceOptions& options = {});

@@ -15,7 +15,7 @@ void insert(std::deque<TimedMessage>& waiting, TimedMessage message) {
 
 /// To the microsecond.
 double milliseconds(std::int64_t nanoseconds) {
-  return 1e-3 * static_cast<double>((nanoseconds + 500) / 1000);
+  return 1e-3 * std::round(1e-3 * static_cast<double>(nanoseconds));
 }
 
 }  // namespace
@@ -61,8 +61,8 @@ MatchedMessages NearestPairs::alone(bool is_left) {
   std::ostringstream reason;
   reason << "the " << (is_left ? "left" : "right") << " picture has no partner";
   if (distance) {
-    reason << ": the nearest " << (is_left ? "right" : "left") << " one is " << 1e-6 * static_cast<double>(*distance)
-           << " ms away" << (*distance <= limit_ns_ ? ", and belongs to another" : ", more than ");
+    reason << ": the nearest " << (is_left ? "right" : "left") << " one is " << milliseconds(*distance) << " ms away"
+           << (*distance <= limit_ns_ ? ", and belongs to another" : ", more than ");
     if (*distance > limit_ns_) reason << milliseconds(limit_ns_) << " ms";
   }
   MatchedMessages result;

@@ -22,8 +22,8 @@ std::unique_ptr<FrameSource> open_two_videos(const std::string& left, const std:
 
 /// V4L2, both views in one picture; `next` throws Error when the camera is gone.
 std::unique_ptr<FrameSource> open_camera(const std::string& device, const SourceOptions& options);
-/// Both views in one picture, times are those of arrival. Adds " ! videoconvert ! appsink drop=true max-buffers=2
-/// sync=false" to a pipeline without appsink. Where the pipeline ends, `next` returns nothing.
+/// Both views in one picture. Adds " ! videoconvert ! appsink max-buffers=2 sync=false" to a pipeline without appsink.
+/// Live is what GStreamer calls live. Where the pipeline ends, `next` returns nothing; where it fails, it throws Error.
 std::unique_ptr<FrameSource> open_gstreamer(const std::string& pipeline, const SourceOptions& options);
 
 /// ROS 1. Throws Error, too, when the program was built without it.
