@@ -10,7 +10,7 @@ packages=(build-essential cmake ninja-build pkg-config
           libopencv-dev libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
           libeigen3-dev libnanoflann-dev
           libgdal-dev libpugixml-dev "$geographiclib"
-          libgstreamer-plugins-base1.0-dev librosbag-storage-dev
+          libgstreamer-plugins-base1.0-dev librosbag-storage-dev libcpp-httplib-dev
           libgtest-dev libbenchmark-dev)
 case "${1:-}" in
   "") ;;

@@ -8,6 +8,7 @@ namespace roadstereo::cli {
 
 // Each adds one subcommand to the command line; the subcommand runs when it is parsed.
 void add_inspect(CLI::App& app);
+void add_live(CLI::App& app);
 void add_damage(CLI::App& app);
 void add_synth(CLI::App& app);
 void add_limits(CLI::App& app);

@@ -69,6 +69,7 @@ void describe(CLI::App& app) {
   app.set_version_flag("--version", std::string("roadstereo ") + roadstereo::version);
   app.require_subcommand(0, 1);  // none is refused after parsing, when a mistyped one has been named
   roadstereo::cli::add_inspect(app);
+  roadstereo::cli::add_live(app);
   roadstereo::cli::add_damage(app);
   roadstereo::cli::add_synth(app);
   roadstereo::cli::add_limits(app);

@@ -1,6 +1,9 @@
 #include "source_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <tuple>
+
+#include "image_size.hpp"
 
 namespace roadstereo::cli {
 
@@ -31,6 +34,8 @@ void add_source_options(CLI::App& command, SourceChoice& choice) {
       ->capture_default_str();
   command.add_option("--rate", choice.rate_hz, "Pairs a second, in the place of the source's own times")
       ->type_name("HZ");
+  command.add_option("--camera-size", choice.camera_size, "Picture with both views to ask a V4L2 camera for")
+      ->type_name("WxH");
 }
 
 io::SourceOptions make_source_options(const SourceChoice& choice) {
@@ -40,6 +45,9 @@ io::SourceOptions make_source_options(const SourceChoice& choice) {
   options.topics = choice.topics;
   options.max_time_difference_s = choice.max_time_difference_ms * ms;
   options.rate_hz = choice.rate_hz;
+  if (!choice.camera_size.empty()) {
+    std::tie(options.camera_width, options.camera_height) = parse_image_size(choice.camera_size);
+  }
   options.validate();
   return options;
 }

@@ -17,6 +17,7 @@ struct SourceChoice {
   std::vector<std::string> topics;
   double max_time_difference_ms = 5;
   double rate_hz = 0;
+  std::string camera_size;  ///< "WxH" of the picture that holds both views; empty leaves the default
 };
 
 /// --calibration: none, one file, or the two of a ROS pair.

@@ -1,0 +1,106 @@
+#include "live/damage_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roadstereo::cli {
+namespace {
+
+/// How long a damage may be missed before what is seen there is another one, seconds.
+constexpr double memory_s = 1;
+
+double half_diagonal(const Damage& damage) {
+  const auto& [u0, v0, u1, v1] = damage.box_px;
+  return std::hypot(u1 - u0 + 1, v1 - v0 + 1) / 2;
+}
+
+/// How well a depth is known, as a share of itself.
+double uncertainty(const Damage& damage) {
+  const Measured& depth = damage.metrics ? damage.metrics->max_depth_m : damage.max_depth_px;
+  return depth.std_error / std::max(std::abs(depth.value), 1e-9);
+}
+
+bool better(const Damage& one, const Damage& other) {
+  if (one.cut_by_border != other.cut_by_border) return !one.cut_by_border;
+  return uncertainty(one) < uncertainty(other);
+}
+
+double distance(const std::array<double, 2>& a, const std::array<double, 2>& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1]);
+}
+
+}  // namespace
+
+/// A damage that was seen once moves as others do: the road does not.
+std::array<double, 2> DamageList::expected(const Track& track, Clock::time_point time) const {
+  const double passed = seconds_between(track.seen, time);
+  const std::array<double, 2>& speed = track.moved ? track.speed : common_speed_;
+  return {track.centre[0] + passed * speed[0], track.centre[1] + passed * speed[1]};
+}
+
+DamageList::Track* DamageList::nearest(const Damage& damage, const LiveView& view, const std::vector<bool>& taken) {
+  constexpr double least_reach_px = 12;
+  Track* best = nullptr;
+  double least = HUGE_VAL;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    Track& track = tracks_[i];
+    if (taken[i] || track.kind != damage.kind) continue;
+    const double away = distance(expected(track, view.arrival), damage.centroid_px);
+    const double reach = std::max({least_reach_px, track.reach, half_diagonal(damage)});
+    if (away <= reach && away < least) {
+      best = &track;
+      least = away;
+    }
+  }
+  return best;
+}
+
+void DamageList::follow(Track& track, const Damage& damage, const LiveView& view) {
+  const double passed = seconds_between(track.seen, view.arrival);
+  if (passed > 0) {
+    track.speed = {(damage.centroid_px[0] - track.centre[0]) / passed,
+                   (damage.centroid_px[1] - track.centre[1]) / passed};
+    track.moved = true;
+    common_speed_ = track.speed;
+  }
+  track.seen = view.arrival;
+  track.centre = damage.centroid_px;
+  track.reach = half_diagonal(damage);
+  const auto entry = std::find_if(entries_.begin(), entries_.end(),
+                                  [&track](const ListedDamage& listed) { return listed.id == track.id; });
+  if (entry == entries_.end()) return;
+  ++entry->views;
+  if (!better(damage, entry->best)) return;
+  entry->best = damage;
+  entry->changed_in = view.number;
+}
+
+void DamageList::begin(const Damage& damage, const LiveView& view) {
+  Track track;
+  track.id = ++found_;
+  track.kind = damage.kind;
+  track.seen = view.arrival;
+  track.centre = damage.centroid_px;
+  track.reach = half_diagonal(damage);
+  tracks_.push_back(track);
+  entries_.push_front({track.id, view.clock_s, view.number, 1, damage});
+  if (entries_.size() > most_entries) entries_.pop_back();
+}
+
+void DamageList::add(const LiveView& view) {
+  tracks_.erase(
+      std::remove_if(tracks_.begin(), tracks_.end(),
+                     [&view](const Track& track) { return seconds_between(track.seen, view.arrival) > memory_s; }),
+      tracks_.end());
+  std::vector<bool> taken(tracks_.size(), false);
+  for (const Damage& damage : view.damages) {
+    if (Track* track = nearest(damage, view, taken)) {
+      taken[static_cast<std::size_t>(track - tracks_.data())] = true;
+      follow(*track, damage, view);
+    } else {
+      begin(damage, view);
+    }
+  }
+}
+
+}  // namespace roadstereo::cli

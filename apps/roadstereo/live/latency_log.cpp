@@ -1,0 +1,53 @@
+#include "live/latency_log.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roadstereo::cli {
+namespace {
+
+/// The smallest value that at least that share of the values do not exceed.
+double quantile(std::vector<double>& values, double share) {
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+}  // namespace
+
+void LatencyLog::add(double ms) {
+  if (recent_.size() < most_recent) {
+    recent_.push_back(ms);
+  } else {
+    recent_[oldest_] = ms;
+    oldest_ = (oldest_ + 1) % most_recent;
+  }
+  const double bin = std::ceil(std::max(ms, 0.0) / bin_ms);
+  ++counts_[bin > static_cast<double>(bins) ? bins : static_cast<std::size_t>(bin)];
+  ++total_;
+  max_ms_ = std::max(max_ms_, ms);
+}
+
+LatencyFigures LatencyLog::recent() const {
+  if (recent_.empty()) return {};
+  std::vector<double> values = recent_;
+  return {quantile(values, 0.5), quantile(values, 0.95), *std::max_element(values.begin(), values.end())};
+}
+
+double LatencyLog::quantile_of_all(double share) const {
+  const double rank = std::ceil(share * static_cast<double>(total_));
+  double seen = 0;
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    seen += counts_[bin];
+    if (seen >= rank) return std::min(bin_ms * static_cast<double>(bin), max_ms_);
+  }
+  return max_ms_;
+}
+
+LatencyFigures LatencyLog::all() const {
+  if (total_ == 0) return {};
+  return {quantile_of_all(0.5), quantile_of_all(0.95), max_ms_};
+}
+
+}  // namespace roadstereo::cli

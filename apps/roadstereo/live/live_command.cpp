@@ -1,0 +1,136 @@
+#include "live/live_command.hpp"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "live/live_server.hpp"
+#include "live/live_session.hpp"
+#include "live/live_summary.hpp"
+#include "live/stop_signals.hpp"
+#include "live/terminal_line.hpp"
+#include "roadstereo/error.hpp"
+#include "source_options.hpp"
+#include "treatment_options.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+/// The command line of `live`.
+struct Arguments {
+  std::vector<std::string> names;
+  std::vector<std::string> calibration;
+  SourceChoice source;
+  Treatment treatment;
+  std::string record;
+  std::string serve;
+  double max_age_ms = 500;
+  bool loop = false;
+  std::int64_t frames = 0;
+  double seconds = 0;
+  bool json = false;
+};
+
+LiveOptions live_options(const Arguments& arguments) {
+  if (arguments.calibration.size() > 2) fail("--calibration takes one file, or the two of a ROS pair");
+  LiveOptions options;
+  options.processing.pipeline = make_options(arguments.treatment);
+  options.processing.find_white_level = !sets_white_level(arguments.treatment);
+  options.capture.rate_hz = arguments.source.rate_hz;
+  options.capture.loop = arguments.loop;
+  options.calibration = arguments.calibration;
+  options.max_age_s = arguments.max_age_ms / 1000;
+  options.record = arguments.record;
+  return options;
+}
+
+/// Until the source ends, enough was seen, or somebody stops it.
+void watch(const Arguments& arguments, LiveSession& session, Clock::time_point start, const StopSignals& signals) {
+  constexpr double period_s = 0.05;
+  TerminalLine line;
+  while (!session.finished()) {
+    const LiveStatus status = session.board().status();
+    line.show(status);
+    if (arguments.frames > 0 && status.counts.shown >= arguments.frames) return;
+    if (arguments.seconds > 0 && seconds_between(start, Clock::now()) >= arguments.seconds) return;
+    if (signals.wait(period_s)) return;
+  }
+}
+
+void live(const Arguments& arguments, const NamedOpener& opener) {
+  std::optional<ServeAddress> address;
+  if (!arguments.serve.empty()) address = serve_address(arguments.serve);
+  const io::SourceOptions source = make_source_options(arguments.source);
+  auto signals = std::make_unique<StopSignals>();
+  LiveSession session(live_options(arguments),
+                      [&] { return opener(arguments.names, source); });
+  const Clock::time_point start = Clock::now();
+  std::unique_ptr<LiveServer> server;
+  if (address) {
+    server = std::make_unique<LiveServer>(*address, session.board());
+    fmt::print(stderr, "roadstereo: showing {} at {}\n", session.description(), server->url());
+  }
+  watch(arguments, session, start, *signals);
+  signals.reset();
+  session.end();
+  server.reset();
+  LiveSummary summary{session.description(), seconds_between(start, Clock::now()), session.board().status(),
+                      session.board().latency_of_all()};
+  fmt::print("{}", arguments.json ? summary_json(summary) : summary_text(summary));
+}
+
+constexpr const char* footer =
+    R"(The newest pair wins: what comes while the program is busy is dropped and counted, and nothing older than --max-age is
+processed. A recording is played back in real time, at its own times or at --rate. A camera that is lost is tried again
+until it is back.
+
+--record DIR keeps the raw pairs without loss, left/NNNNNN.png and right/NNNNNN.png with times.txt and the calibration,
+for roadstereo inspect DIR. It never delays the view: pairs that the disk cannot keep up with are left out and counted.
+
+--serve PORT shows a page on this machine: left image with outlined damage, transformed disparity, roll, height, frames a
+second, latency, age, and the running list of damages. With a HOST (0.0.0.0 for all addresses) other machines can see
+it, too, if they know the token in the address that is printed. Port 0 takes any that is free.
+
+Ctrl-C ends, with a summary.
+
+Examples:
+  roadstereo live /dev/video0 --calibration rig.yaml --serve 8080
+  roadstereo live flight.mp4 --calibration rig.yaml --loop --serve 0.0.0.0:8080
+  roadstereo live /dev/video0 --calibration rig.yaml --record flight1
+
+)";
+
+void add_options(CLI::App& command, Arguments& arguments) {
+  command.add_option("SOURCE", arguments.names, "Camera, video, folder, list, bag or pipeline; or left and right")
+      ->required()
+      ->expected(1, 2);
+  add_calibration_option(command, arguments.calibration);
+  command.add_option("--record", arguments.record, "New folder for the raw pairs")->type_name("DIR");
+  command.add_option("--serve", arguments.serve, "Show a page at that port")->type_name("[HOST:]PORT");
+  command.add_option("--max-age", arguments.max_age_ms, "Older pairs are not processed, ms")
+      ->type_name("MS")
+      ->check(CLI::Range(1.0, 60000.0))
+      ->capture_default_str();
+  command.add_flag("--loop", arguments.loop, "Play a recording again and again");
+  command.add_option("--frames", arguments.frames, "End after so many processed pairs")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--seconds", arguments.seconds, "End after that time")->type_name("S")->check(CLI::PositiveNumber);
+  command.add_flag("--json", arguments.json, "Print the summary as JSON");
+}
+
+}  // namespace
+
+void add_live_command(CLI::App& app, const NamedOpener& opener) {
+  CLI::App* command =
+      app.add_subcommand("live", "Disparity, roll and damage of a camera's pairs, or a recording's, as they come");
+  command->footer(footer + settings_help());
+  const auto arguments = std::make_shared<Arguments>();
+  add_options(*command, *arguments);
+  add_source_options(*command, arguments->source);
+  add_treatment_options(*command, arguments->treatment);
+  command->callback([arguments, opener] { live(*arguments, opener); });
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,97 @@
+#include "live/live_session.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "live/recording_folder.hpp"
+#include "roadstereo/error.hpp"
+#include "synth_files.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+/// Stands for every source of a run where only its calibration matters: sources come and go with the camera, what is
+/// known of the rig stays.
+class CalibrationOnly final : public io::FrameSource {
+ public:
+  explicit CalibrationOnly(const io::FrameSource& source)
+      : calibration_(source.calibration()), description_(source.description()) {}
+
+  std::optional<io::SourcePair> next() override { return std::nullopt; }
+  void skip(std::int64_t) override {}
+  std::optional<std::int64_t> size() const override { return 0; }
+  std::optional<io::CalibrationFile> calibration() const override { return calibration_; }
+  std::string description() const override { return description_; }
+
+ private:
+  std::optional<io::CalibrationFile> calibration_;
+  std::string description_;
+};
+
+}  // namespace
+
+LiveSession::LiveSession(const LiveOptions& options, SourceOpener opener) : board_(options.max_age_s) {
+  std::unique_ptr<io::FrameSource> source = opener();
+  description_ = source->description();
+  auto rectifier = std::make_unique<RectifiedSource>(std::make_unique<CalibrationOnly>(*source), options.calibration);
+  processing_ = std::make_unique<Processing>(options.processing, std::move(rectifier), board_, captured_);
+  if (!options.record.empty()) start_recorder(options, *source);
+  capture_ = std::make_unique<Capture>(std::move(source), std::move(opener), options.capture, board_, captured_,
+                                       recorder_.get());
+  finishing_ = std::thread([this] { guarded([this] { processing_->finish(); }); });
+  matching_ = std::thread([this] { guarded([this] { processing_->match(); }); });
+  capturing_ = std::jthread([this](const std::stop_token& stop) {
+    guarded([this, &stop] { capture_->run(stop); });
+    captured_.close();
+    finished_ = true;
+  });
+}
+
+void LiveSession::start_recorder(const LiveOptions& options, const io::FrameSource& source) {
+  const auto folder = std::make_shared<RecordingFolder>(options.record, options.calibration);
+  const std::optional<io::CalibrationFile> own = source.calibration();
+  if (options.calibration.empty() && own && own->rectified) {
+    folder->add_calibration("calibration.yaml", plain_yaml(*own->rectified));
+  }
+  recorder_ = std::make_unique<Recorder>([folder](const RecordedPair& pair) { folder->write(pair); }, board_);
+}
+
+void LiveSession::guarded(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::current_exception();
+    finished_ = true;
+  }
+}
+
+/// Every thread ends when the one before it has: what is on its way still arrives.
+void LiveSession::join() {
+  if (!capturing_.joinable()) return;
+  capturing_.request_stop();
+  capturing_.join();
+  matching_.join();
+  finishing_.join();
+  recorder_.reset();
+}
+
+void LiveSession::end() {
+  join();
+  if (!failure_) {
+    board_.end();
+    return;
+  }
+  try {
+    std::rethrow_exception(failure_);
+  } catch (const std::exception& error) {
+    board_.end(error.what());
+    throw;
+  }
+}
+
+LiveSession::~LiveSession() {
+  join();
+}
+
+}  // namespace roadstereo::cli

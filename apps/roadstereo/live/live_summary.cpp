@@ -1,0 +1,52 @@
+#include "live/live_summary.hpp"
+
+#include <fmt/core.h>
+
+#include "json_text.hpp"
+#include "live/memory_use.hpp"
+#include "live/status_json.hpp"
+#include "roadstereo/version.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+double mean_fps(const LiveSummary& summary) {
+  return summary.seconds > 0 ? static_cast<double>(summary.status.counts.shown) / summary.seconds : 0;
+}
+
+}  // namespace
+
+std::string summary_text(const LiveSummary& summary) {
+  const LiveCounts& counts = summary.status.counts;
+  std::string text = fmt::format("roadstereo {}: {}\n", version, summary.source);
+  text += fmt::format("  {:<10}{} taken, {} processed, {} dropped, {} too old, {} refused\n", "pairs", counts.taken,
+                      counts.shown, counts.dropped, counts.too_old, counts.refused);
+  text += fmt::format("  {:<10}{:.1f} a second over {:.1f} s\n", "rate", mean_fps(summary), summary.seconds);
+  text += fmt::format("  {:<10}median {:.1f} ms, 95 %: {:.1f} ms, largest {:.1f} ms\n", "latency",
+                      summary.latency.median_ms, summary.latency.p95_ms, summary.latency.max_ms);
+  text += fmt::format("  {:<10}{} seen\n", "damages", summary.status.damages_found);
+  const RecordingState& recording = summary.status.recording;
+  if (recording.on) {
+    text += fmt::format("  {:<10}{} pairs, {} left out{}{}\n", "recorded", recording.recorded, recording.left_out,
+                        recording.message.empty() ? "" : "; ", recording.message);
+  }
+  if (counts.reconnects > 0) text += fmt::format("  {:<10}lost and back {} times\n", "camera", counts.reconnects);
+  return text;
+}
+
+std::string summary_json(const LiveSummary& summary) {
+  const RecordingState& recording = summary.status.recording;
+  nlohmann::ordered_json json{{"source", summary.source}, {"seconds", json_number(summary.seconds)}};
+  json.update(counts_json(summary.status.counts));
+  json["fps"] = json_number(mean_fps(summary));
+  json["latency_ms"] = latency_json(summary.latency);
+  json["recorded"] = recording.recorded;
+  json["recording_left_out"] = recording.left_out;
+  json["recording_message"] = recording.message;
+  json["damages"] = summary.status.damages_found;
+  json["peak_memory_mib"] = json_number(memory_use().peak_mib);
+  json["memory_mib"] = json_number(memory_use().now_mib);
+  return json_text(json);
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,14 @@
+#include "live/lower_priority.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace roadstereo::cli {
+
+void lower_priority() {
+  constexpr int nice = 10;
+  // Linux counts threads as processes here. Where it is not allowed the thread works as it is.
+  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice);
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,230 @@
+// Asks for the newest picture, shows it with its figures, and asks again: a slow line shows fewer pictures, not older ones.
+(() => {
+  "use strict";
+
+  const MOST_LISTED = 100;
+  const PATIENCE_MS = 6000; // with a server that answers within a second
+  const PAUSE_MS = 1000; // after a failure
+  const NAMES = { starting: "Starting", live: "Live", stale: "Stale", reconnecting: "Reconnecting", ended: "Ended" };
+  const token = new URLSearchParams(location.search).get("token");
+  const element = (id) => document.getElementById(id);
+
+  let shown = null; // the state that belongs to the pictures
+  let shownAt = 0; // when it arrived, by performance.now()
+  let session = null;
+  let unreachable = ""; // why the server does not answer
+  let listed = new Map();
+
+  function address(path, values) {
+    const query = new URLSearchParams(values);
+    if (token !== null) query.set("token", token);
+    return `${path}?${query}`;
+  }
+
+  const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+  async function get(path, values) {
+    const answer = await fetch(address(path, values), { signal: AbortSignal.timeout(PATIENCE_MS) });
+    if (!answer.ok) throw new Error(`the program answers with error ${answer.status}`);
+    return answer;
+  }
+
+  function number(value, decimals) {
+    return value === null ? "–" : value.toFixed(decimals).replace("-", "−");
+  }
+
+  /** Two figures are enough, and whole numbers from a hundred on. */
+  function rounded(value, error) {
+    const decimals = error === null || error >= 10 || Math.abs(value) >= 1000 ? 0 : error >= 1 || value >= 100 ? 1 : 2;
+    return [number(value, decimals), error === null ? null : number(error, decimals)];
+  }
+
+  async function draw(id, frame) {
+    const answer = await get(`/${id}.jpg`, { frame });
+    const picture = await createImageBitmap(await answer.blob());
+    return { canvas: element(id), picture, reach: Number(answer.headers.get("Reach")) };
+  }
+
+  function put({ canvas, picture }) {
+    if (canvas.width !== picture.width || canvas.height !== picture.height) {
+      canvas.width = picture.width;
+      canvas.height = picture.height;
+    }
+    canvas.getContext("2d").drawImage(picture, 0, 0);
+    picture.close();
+  }
+
+  function showReach(reach) {
+    element("scale_low").textContent = `−${reach} px, below road`;
+    element("scale_high").textContent = `above road, +${reach} px`;
+  }
+
+  /** A long line that turns about the middle of the picture, between marks that stay level. */
+  function showHorizon(view) {
+    const seen = view !== null && view.roll !== null && view.roll.observable;
+    element("horizon").toggleAttribute("hidden", !seen);
+    element("horizon_note").textContent = seen ? "the line turns with the roll" : "roll is not observable: no line";
+    if (!seen) return;
+    const { width, height } = view;
+    const [x, y] = [width / 2, height / 2];
+    element("horizon").setAttribute("viewBox", `0 0 ${width} ${height}`);
+    const line = `M${0.06 * width} ${y}H${0.42 * width}M${0.58 * width} ${y}H${0.94 * width}`;
+    const level = `M0 ${y}H${0.045 * width}M${0.955 * width} ${y}H${width}`;
+    for (const path of document.querySelectorAll("#horizon .line path")) path.setAttribute("d", line);
+    for (const path of document.querySelectorAll("#horizon .level path")) path.setAttribute("d", level);
+    document.querySelector("#horizon .line").setAttribute("transform", `rotate(${view.roll.degrees} ${x} ${y})`);
+  }
+
+  function showRoll(roll) {
+    const known = roll !== null && roll.observable;
+    element("roll").textContent = known ? `${number(roll.degrees, 2)}°` : roll === null ? "–" : "not observable";
+    element("roll_more").textContent = known ? `± ${number(roll.error_degrees, 2)}°` : roll === null ? "no road found" : "looking straight down";
+  }
+
+  function showHeight(view) {
+    element("height").textContent = view.height_m === null ? "–" : `${number(view.height_m, 2)} m`;
+    const pitch = view.pitch_degrees;
+    const looking = `looking ${number(Math.abs(pitch), 1)}° ${pitch < 0 ? "above" : "below"} the horizon`;
+    element("height_more").textContent = pitch === null ? "needs a calibration" : looking;
+  }
+
+  function showCounts(state) {
+    const { counts, latency_ms: latency, recording } = state;
+    const dropped = counts.dropped + counts.too_old;
+    element("fps").textContent = number(state.fps, 1);
+    element("fps_more").textContent = `${dropped} dropped` + (counts.refused > 0 ? `, ${counts.refused} refused` : "");
+    element("latency").textContent = `${number(latency.median, 0)} ms`;
+    element("latency_more").textContent = `95 %: ${number(latency.p95, 0)} ms`;
+    element("recording").hidden = recording === null;
+    if (recording === null) return;
+    element("recorded").textContent = `${recording.recorded} pairs`;
+    element("recorded_more").textContent = recording.message ? "stopped" : `${recording.left_out} left out`;
+  }
+
+  function cell(row, ...content) {
+    const made = document.createElement("td");
+    made.append(...content);
+    row.append(made);
+  }
+
+  function withError(figure, sign) {
+    const [value, error] = rounded(figure.value, figure.error);
+    const small = document.createElement("small");
+    small.textContent = error === null ? ` ${figure.unit}` : ` ± ${error} ${figure.unit}`;
+    return [sign + value, small];
+  }
+
+  function row(damage) {
+    const made = document.createElement("tr");
+    cell(made, new Date(1000 * damage.time_s).toLocaleTimeString([], { hour12: false }));
+    cell(made, damage.kind + (damage.cut ? " (cut)" : ""));
+    cell(made, ...withError(damage.depth, damage.kind === "protrusion" ? "+" : ""));
+    cell(made, ...withError(damage.area, ""));
+    if (damage.severity === null) {
+      cell(made, "–");
+      return made;
+    }
+    const chip = document.createElement("span");
+    chip.className = `chip ${damage.severity}`;
+    chip.textContent = damage.severity;
+    cell(made, chip);
+    return made;
+  }
+
+  function showList(state) {
+    element("found").textContent = `${state.damages_found} seen`;
+    if (state.damages.length === 0) return;
+    for (const damage of state.damages) listed.set(damage.id, row(damage));
+    const newest = [...listed.keys()].sort((a, b) => b - a).slice(0, MOST_LISTED);
+    listed = new Map(newest.map((id) => [id, listed.get(id)]));
+    document.querySelector("#list tbody").replaceChildren(...listed.values());
+    document.querySelector("#list .scroll").hidden = false;
+    element("none").hidden = true;
+  }
+
+  /** What is wrong, for people; empty when nothing is. */
+  function complaint() {
+    if (unreachable) return unreachable;
+    if (shown === null) return "";
+    const parts = [shown.message, shown.recording?.message, ...(shown.view?.warnings ?? [])];
+    return parts.filter(Boolean).join(". ");
+  }
+
+  /** Called often: the age goes on when nothing comes. */
+  function showAge() {
+    const age = shown === null ? 0 : shown.age_s + (performance.now() - shownAt) / 1000;
+    const pictured = shown !== null && shown.view !== null;
+    const old = pictured && age > shown.max_age_s;
+    let state = shown === null ? "starting" : shown.state;
+    if (old && state === "live") state = "stale";
+    document.body.dataset.state = state;
+    document.body.classList.toggle("old", old);
+    if (element("state").textContent !== NAMES[state]) element("state").textContent = NAMES[state];
+    element("age").textContent = !pictured ? "–" : age < 1 ? `${number(1000 * age, 0)} ms` : `${number(age, 1)} s`;
+    element("age_more").textContent = shown === null ? "" : `at most ${number(1000 * shown.max_age_s, 0)} ms when live`;
+    for (const overdue of document.querySelectorAll(".overdue")) {
+      overdue.hidden = !old;
+      overdue.textContent = `no new picture for ${number(age, age < 10 ? 1 : 0)} s`;
+    }
+    const text = complaint();
+    element("message").hidden = text === "";
+    if (element("message").textContent !== text) element("message").textContent = text;
+  }
+
+  function show(state, arrived) {
+    shown = state;
+    shownAt = arrived;
+    document.body.dataset.frame = state.frame;
+    showCounts(state);
+    showHorizon(state.view);
+    if (state.view !== null) {
+      showRoll(state.view.roll);
+      showHeight(state.view);
+    }
+    showAge();
+  }
+
+  function beginAnew(state) {
+    session = state.session;
+    listed.clear();
+    document.querySelector("#list tbody").replaceChildren();
+  }
+
+  /** Asks once; returns the number of the view that was answered with. */
+  async function refresh(after) {
+    const state = await (await get("/state", { after })).json();
+    const arrived = performance.now();
+    unreachable = "";
+    if (session !== state.session) {
+      const first = session === null;
+      beginAnew(state);
+      if (!first) return 0; // another run: everything from its beginning
+    }
+    showList(state);
+    if (state.frame > after && !document.hidden) {
+      const [left, transformed] = await Promise.all([draw("left", state.frame), draw("transformed", state.frame)]);
+      put(left);
+      put(transformed);
+      showReach(transformed.reach);
+    }
+    show(state, arrived);
+    if (state.state === "ended" || document.hidden) await pause(PAUSE_MS);
+    return state.frame;
+  }
+
+  async function run() {
+    let after = 0;
+    while (true) {
+      try {
+        after = await refresh(after);
+      } catch (error) {
+        const ended = shown !== null && shown.state === "ended";
+        unreachable = ended ? "The run has ended." : `No answer from roadstereo (${error.message}); trying again.`;
+        await pause(PAUSE_MS);
+      }
+    }
+  }
+
+  setInterval(showAge, 100);
+  run();
+})();

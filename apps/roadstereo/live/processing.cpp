@@ -1,0 +1,95 @@
+#include "live/processing.hpp"
+
+#include <utility>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::cli {
+
+Processing::Processing(const ProcessingOptions& options, std::unique_ptr<RectifiedSource> rectifier, LiveBoard& board,
+                       NewestSlot<CapturedPair>& captured)
+    : options_(options), rectifier_(std::move(rectifier)), board_(board), captured_(captured) {
+  options_.pipeline.validate();
+}
+
+/// Made when the first pair has told what white is.
+Pipeline& Processing::pipeline() {
+  if (!pipeline_) {
+    if (options_.find_white_level) options_.pipeline.white_level = rectifier_->white_level();
+    pipeline_.emplace(options_.pipeline, rectifier_->calibration());
+  }
+  return *pipeline_;
+}
+
+std::optional<Processing::Matched> Processing::match(CapturedPair captured) {
+  if (seconds_between(captured.arrival, Clock::now()) > board_.max_age_s()) {
+    board_.count_too_old();
+    return std::nullopt;
+  }
+  rectifier_->rectify(captured.pair);
+  if (!captured.pair.refused.empty()) {
+    board_.refuse(captured.pair.refused);
+    return std::nullopt;
+  }
+  Matched matched;
+  try {
+    pipeline().process(captured.pair.left.view(), captured.pair.right.view(), matched.result);
+  } catch (const SystemError&) {
+    throw;
+  } catch (const Error& error) {
+    board_.refuse(error.what());
+    return std::nullopt;
+  }
+  matched.calibration = rectifier_->calibration();
+  matched.captured = std::move(captured);
+  return matched;
+}
+
+void Processing::match_pairs() {
+  while (std::optional<CapturedPair> captured = captured_.take()) {
+    std::optional<Matched> matched = match(std::move(*captured));
+    if (matched && matched_.put(std::move(*matched))) board_.count_dropped();
+  }
+}
+
+void Processing::match() {
+  try {
+    match_pairs();
+  } catch (...) {
+    matched_.close();
+    throw;
+  }
+  matched_.close();
+}
+
+LiveView Processing::view_of(Matched matched) const {
+  LiveView view;
+  FrameResult& result = matched.result;
+  view.warnings = std::move(result.warnings);
+  try {
+    DamageMap map = find_damage(result, matched.calibration, options_.pipeline.damage, options_.pipeline.threads);
+    view.damages = std::move(map.damages);
+    view.ids = std::move(map.ids);
+  } catch (const SystemError&) {
+    throw;
+  } catch (const Error& error) {  // a pair that shows no road is shown all the same
+    view.ids.assign(result.disparity.width(), result.disparity.height(), 0);
+    view.warnings.push_back(std::string("damage was not looked for: ") + error.what());
+  }
+  view.name = std::move(matched.captured.pair.name);
+  view.arrival = matched.captured.arrival;
+  view.clock_s = matched.captured.clock_s;
+  view.left = std::move(matched.captured.pair.left);
+  view.transformed = std::move(result.transformed);
+  view.delta_t = result.delta_t;
+  if (!result.geometry_found) return view;
+  view.geometry = result.geometry;
+  if (matched.calibration) view.plane = road_plane(result.geometry.plane, *matched.calibration);
+  return view;
+}
+
+void Processing::finish() {
+  while (std::optional<Matched> matched = matched_.take()) board_.publish(view_of(std::move(*matched)));
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flight/rectified_source.hpp"
+#include "live/captured_pair.hpp"
+#include "live/live_board.hpp"
+#include "live/newest_slot.hpp"
+#include "roadstereo/pipeline.hpp"
+
+namespace roadstereo::cli {
+
+/// How pairs are treated.
+struct ProcessingOptions {
+  PipelineOptions pipeline;
+  bool find_white_level = true;  ///< on the first pair of a 16-bit source
+};
+
+/// The way from a captured pair to the view that is shown, in two steps that run at the same time on successive pairs.
+class Processing {
+ public:
+  /// `rectifier`: only its `rectify` is used. Throws Error when an option is out of range.
+  Processing(const ProcessingOptions& options, std::unique_ptr<RectifiedSource> rectifier, LiveBoard& board,
+             NewestSlot<CapturedPair>& captured);
+
+  /// First step, on a thread of its own: rectifies and matches until the slot is closed and empty.
+  void match();
+
+  /// Second step, on another: finds damage and publishes until the first step has ended.
+  void finish();
+
+ private:
+  struct Matched {
+    CapturedPair captured;
+    FrameResult result;
+    std::optional<StereoCalibration> calibration;
+  };
+
+  void match_pairs();
+  std::optional<Matched> match(CapturedPair captured);
+  Pipeline& pipeline();
+  LiveView view_of(Matched matched) const;
+
+  ProcessingOptions options_;
+  std::unique_ptr<RectifiedSource> rectifier_;
+  LiveBoard& board_;
+  NewestSlot<CapturedPair>& captured_;
+  NewestSlot<Matched> matched_;
+  std::optional<Pipeline> pipeline_;
+};
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,109 @@
+#include "live/recording_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include "live/whole_file.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/lossless_png.hpp"
+
+namespace roadstereo::cli {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int png_level = 1;  // a camera is fast
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) fail("cannot record into ", folder.string(), ": ", error.message());
+}
+
+void require_no_recording(const fs::path& folder) {
+  std::error_code ignored;
+  for (const char* name : {"left", "right", "times.txt"}) {
+    if (fs::exists(folder / name, ignored)) {
+      fail("cannot record into ", folder.string(), ": it has ", name, " already; --record takes a new folder");
+    }
+  }
+}
+
+/// Names of the copies: those of the files, told apart by side where they are equal.
+std::vector<std::string> copy_names(const std::vector<std::string>& files) {
+  std::vector<std::string> names;
+  for (const std::string& file : files) names.push_back(fs::path(file).filename().string());
+  if (names.size() == 2 && names[0] == names[1]) {
+    names[0] = "left_" + names[0];
+    names[1] = "right_" + names[1];
+  }
+  return names;
+}
+
+}  // namespace
+
+RecordingFolder::RecordingFolder(fs::path folder, const std::vector<std::string>& calibration)
+    : folder_(std::move(folder)) {
+  require_no_recording(folder_);
+  make_folder(folder_ / "left");
+  make_folder(folder_ / "right");
+  const std::vector<std::string> names = copy_names(calibration);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::ifstream file(calibration[i], std::ios::binary);
+    add_calibration(names[i], {std::istreambuf_iterator<char>(file), {}});
+  }
+  const fs::path times = folder_ / "times.txt";
+  times_ = ::open(times.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
+  if (times_ < 0) fail("cannot write ", times.string(), ": ", std::generic_category().message(errno));
+}
+
+RecordingFolder::~RecordingFolder() {
+  ::close(times_);
+  if (pairs_ > 0) return;
+  std::error_code ignored;  // nothing was recorded: the folder can be taken again
+  for (const char* name : {"left", "right", "times.txt"}) fs::remove(folder_ / name, ignored);
+}
+
+void RecordingFolder::add_calibration(const std::string& name, const std::string& text) {
+  write_whole_file(folder_ / name, bytes_of(text));
+}
+
+/// A line is there whole or not at all, too.
+void RecordingFolder::write_time(double time_s) {
+  const std::string line = fmt::format("{:.6f}\n", time_s);
+  const off_t before = ::lseek(times_, 0, SEEK_END);
+  const ssize_t written = ::write(times_, line.data(), line.size());
+  if (written == static_cast<ssize_t>(line.size())) return;
+  const int error = written < 0 ? errno : ENOSPC;
+  (void)!::ftruncate(times_, before);
+  fail<SystemError>("cannot write ", (folder_ / "times.txt").string(), ": ", std::generic_category().message(error));
+}
+
+void RecordingFolder::write(const RecordedPair& pair) {
+  const std::string name = fmt::format("{:06}.png", pairs_);
+  const fs::path left = folder_ / "left" / name;
+  const fs::path right = folder_ / "right" / name;
+  try {
+    write_whole_file(left, io::encode_lossless_png(pair.left.view(), png_level));
+    write_whole_file(right, io::encode_lossless_png(pair.right.view(), png_level));
+    write_time(pair.time_s);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(left, ignored);
+    fs::remove(right, ignored);
+    throw;
+  }
+  ++pairs_;
+}
+
+}  // namespace roadstereo::cli
