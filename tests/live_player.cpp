@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    constexpr int frames = 24;
+    constexpr int frames = 12;
     constexpr double interval_s = 1.0 / 30;
     const MemoryFlight flight = fly(std::stoi(argv[1]), std::stoi(argv[2]), frames);
     std::ofstream(argv[3]) << cli::plain_yaml(flight.calibration);

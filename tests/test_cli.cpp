@@ -443,6 +443,13 @@ TEST_F(CommandLine, BenchmarkRefusesWhatItCannotMeasure) {
   expect_complaint(run("benchmark --preset slow"), 2, "slow");
 }
 
+TEST_F(CommandLine, LiveRefusesWhatItCannotShow) {
+  expect_complaint(run("live missing.mp4"), "missing.mp4");
+  expect_complaint(run("live missing.mp4 --serve nonsense"), "--serve is \"nonsense\"");
+  expect_complaint(run("live missing.mp4 --set nonsense=1"), "nonsense");
+  expect_complaint(run("live missing.mp4 --layout sideways"), "sideways");
+}
+
 TEST_F(CommandLine, FileNamesNeedNotBeUtf8) {
   make_road();
   fs::copy_file(folder_ / "road/left.png", folder_ / "left\xff.png");

@@ -7,7 +7,8 @@ namespace roadstereo::cli {
 /// The pauses between attempts to get a lost camera back, seconds: each twice as long as the one before, up to a limit.
 class RetryPause {
  public:
-  explicit RetryPause(double first_s = 0.5, double longest_s = 5) : first_s_(first_s), longest_s_(longest_s) {}
+  RetryPause() = default;
+  RetryPause(double first_s, double longest_s) : first_s_(first_s), longest_s_(longest_s) {}
 
   double next() {
     next_s_ = next_s_ == 0 ? first_s_ : std::min(2 * next_s_, longest_s_);
@@ -18,8 +19,8 @@ class RetryPause {
   void reset() { next_s_ = 0; }
 
  private:
-  double first_s_;
-  double longest_s_;
+  double first_s_ = 0.5;
+  double longest_s_ = 5;
   double next_s_ = 0;
 };
 

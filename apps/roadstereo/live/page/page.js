@@ -84,7 +84,7 @@
   function showHeight(view) {
     element("height").textContent = view.height_m === null ? "–" : `${number(view.height_m, 2)} m`;
     const pitch = view.pitch_degrees;
-    const looking = `looking ${number(Math.abs(pitch), 1)}° ${pitch < 0 ? "above" : "below"} the horizon`;
+    const looking = `looking ${number(Math.abs(pitch), 1)}° ${pitch < 0 ? "up" : "down"}`;
     element("height_more").textContent = pitch === null ? "needs a calibration" : looking;
   }
 
@@ -161,7 +161,7 @@
     document.body.classList.toggle("old", old);
     if (element("state").textContent !== NAMES[state]) element("state").textContent = NAMES[state];
     element("age").textContent = !pictured ? "–" : age < 1 ? `${number(1000 * age, 0)} ms` : `${number(age, 1)} s`;
-    element("age_more").textContent = shown === null ? "" : `at most ${number(1000 * shown.max_age_s, 0)} ms when live`;
+    element("age_more").textContent = shown === null ? "" : `limit ${number(1000 * shown.max_age_s, 0)} ms`;
     for (const overdue of document.querySelectorAll(".overdue")) {
       overdue.hidden = !old;
       overdue.textContent = `no new picture for ${number(age, age < 10 ? 1 : 0)} s`;
