@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "flight/flight_results.hpp"
@@ -61,8 +62,7 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   text += fmt::format("  frames    {} ({} refused, {} failed), road estimated anew in {}\n", summary.frames,
                       summary.refused, summary.failed, summary.road_estimated);
   text += fmt::format("  damage    {} damages in {} sightings\n", inventory.damages().size(), summary.sightings);
-  if (summary.placed)
-    text += fmt::format("  map       {} of {} frames have a place\n", *summary.placed, summary.frames);
+  if (summary.placed) text += fmt::format("  map       {} of {} frames are on it\n", *summary.placed, summary.frames);
   text += fmt::format("  time      {:.1f} s, {:.1f} frames/s\n", run.seconds, run.frames_per_second);
   for (const std::string& reason : summary.reasons) text += fmt::format("  no result {}\n", reason);
   return text + fmt::format("  report    {}\n", (folder.path() / "report.html").string());
@@ -72,6 +72,7 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
 
 void inspect_flight(const FlightSettings& settings) {
   settings.validate();
+  auto stop = std::make_unique<StopSignals>();  // before any thread
   FlightRun run;
   run.options = make_options(settings.treatment);
   std::optional<FlightPlaces> places;
@@ -86,8 +87,9 @@ void inspect_flight(const FlightSettings& settings) {
   run.resumed_at = journal.frames();
 
   Progress progress(frames_to_do(settings, source.source()), journal.frames(), settings.quiet);
-  Flight flight{source, folder, journal, inventory, run.options, progress};
+  Flight flight{source, folder, journal, inventory, run.options, progress, *stop};
   run.complete = run_flight(settings, flight);
+  stop.reset();  // another Ctrl-C ends the program
   run.options = flight.options;
   run.seconds = progress.seconds();
   run.frames_per_second = progress.frames_per_second();

@@ -1,7 +1,6 @@
 #include "source_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <tuple>
 
 #include "image_size.hpp"
 
@@ -46,7 +45,9 @@ io::SourceOptions make_source_options(const SourceChoice& choice) {
   options.max_time_difference_s = choice.max_time_difference_ms * ms;
   options.rate_hz = choice.rate_hz;
   if (!choice.camera_size.empty()) {
-    std::tie(options.camera_width, options.camera_height) = parse_image_size(choice.camera_size);
+    const ImageSize size = parse_image_size(choice.camera_size);
+    options.camera_width = size.width;
+    options.camera_height = size.height;
   }
   options.validate();
   return options;

@@ -12,7 +12,6 @@
 #include "flight/flight_job.hpp"
 #include "flight/in_turn.hpp"
 #include "flight/match_frame.hpp"
-#include "flight/stop_signal.hpp"
 #include "roadstereo/io/flight_pictures.hpp"
 
 namespace roadstereo::cli {
@@ -58,7 +57,6 @@ class Line {
   Flight& flight_;
   std::vector<FrameFile> write_;
   int finishers_;
-  StopSignal stop_;
   bool reached_end_ = false;
   BoundedQueue<io::SourcePair> pairs_;  ///< read, to be matched
   BoundedQueue<JobPointer> matched_;    ///< to be finished
@@ -105,7 +103,7 @@ void Line::guarded(const Work& work) {
 void Line::read() {
   io::FrameSource& source = flight_.source.source();
   source.skip(settings_.from + flight_.journal.frames() * settings_.every);
-  while (!stop_.requested()) {
+  while (!flight_.stop.wait(0)) {
     std::optional<io::SourcePair> pair = flight_.source.next();
     if (!pair || (settings_.to && pair->index > *settings_.to)) {
       reached_end_ = true;

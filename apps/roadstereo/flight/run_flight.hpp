@@ -9,6 +9,7 @@
 #include "flight/rectified_source.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/flight_journal.hpp"
+#include "stop_signals.hpp"
 
 namespace roadstereo::cli {
 
@@ -20,6 +21,7 @@ struct Flight {
   io::FlightInventory& inventory;  ///< of the frames that the journal has
   PipelineOptions options;
   Progress& progress;
+  const StopSignals& stop;
 };
 
 /// Processes the frames that the journal does not have yet: one thread reads, one matches (with the threads of the

@@ -8,10 +8,10 @@
 #include "live/live_server.hpp"
 #include "live/live_session.hpp"
 #include "live/live_summary.hpp"
-#include "live/stop_signals.hpp"
 #include "live/terminal_line.hpp"
 #include "roadstereo/error.hpp"
 #include "source_options.hpp"
+#include "stop_signals.hpp"
 #include "treatment_options.hpp"
 
 namespace roadstereo::cli {
@@ -63,8 +63,7 @@ void live(const Arguments& arguments, const NamedOpener& opener) {
   if (!arguments.serve.empty()) address = serve_address(arguments.serve);
   const io::SourceOptions source = make_source_options(arguments.source);
   auto signals = std::make_unique<StopSignals>();
-  LiveSession session(live_options(arguments),
-                      [&] { return opener(arguments.names, source); });
+  LiveSession session(live_options(arguments), [&] { return opener(arguments.names, source); });
   const Clock::time_point start = Clock::now();
   std::unique_ptr<LiveServer> server;
   if (address) {

@@ -1,4 +1,4 @@
-#include "live/stop_signals.hpp"
+#include "stop_signals.hpp"
 
 #include <ctime>
 #include <initializer_list>
