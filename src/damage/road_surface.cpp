@@ -51,6 +51,7 @@ Samples draw_samples(const Cells& cells, const SurfaceCoordinates& coordinates, 
     }
   }
   if (count < least_samples) {
+    if (sampling == Sampling::rough) return draw_samples(cells, coordinates, region, earlier, Sampling::fine);
     fail("the transformed map has ", count, " valid places on the road; at least ", least_samples, " are needed");
   }
   samples.resize(count - count % 2);  // they are added up in twos
