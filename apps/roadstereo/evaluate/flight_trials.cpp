@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <limits>
 
 #include "flight_path.hpp"
@@ -63,7 +64,9 @@ FlightFrame try_frame(const synth::SyntheticPair& pair, std::vector<Pipeline>& p
   FlightFrame frame;
   for (Pipeline& pipeline : pipelines) {
     const FrameResult* result = nullptr;
+    const std::clock_t start = std::clock();
     frame.times_ms.push_back(time_ms([&] { result = &pipeline.process(pair.left.view(), pair.right.view()); }));
+    frame.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     frame.carried = compare(*result, pair);
     frame.estimated_anew = !result->road.carried_over;
     frame.reason = result->warnings.empty() ? "" : result->warnings.front();
@@ -88,7 +91,10 @@ std::vector<FlightFrame> fly(const FlightOptions& options) {
   for (int i = 0; i < options.frames; ++i) synth::flight_frame(first, path, i);  // refused before anything is rendered
   std::vector<Pipeline> pipelines;
   pipelines.reserve(static_cast<std::size_t>(options.passes));
-  for (int pass = 0; pass < options.passes; ++pass) pipelines.push_back(make_pipeline(options, calibration));
+  for (int pass = 0; pass < options.passes; ++pass) {
+    pipelines.push_back(make_pipeline(options, calibration));
+    if (!options.cold) pipelines.back().warm_up(first.rig.width, first.rig.height);
+  }
   Pipeline fresh = make_pipeline(options, calibration);
   std::vector<FlightFrame> frames;
   frames.reserve(static_cast<std::size_t>(options.frames));

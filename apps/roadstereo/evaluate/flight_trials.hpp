@@ -15,6 +15,7 @@ struct FlightOptions {
   std::string preset = "default";
   int frames = 300;
   int supersampling = 1;  ///< rays per pixel and side of the renderer
+  bool cold = false;      ///< the first frame also makes the pipeline's memory and starts its threads
   int passes = 5;         ///< how often each frame is timed
   MethodSettings methods;
 
@@ -40,6 +41,7 @@ struct FlightFrame {
   bool estimated_anew = false;   ///< by the first
   std::string reason;            ///< why, when it was
   std::vector<double> times_ms;  ///< of the frame: one per pass
+  std::vector<double> cpu_ms;    ///< of all threads: one per pass
 };
 
 /// Renders the flight frame by frame. Every frame goes through as many pipelines as there are passes, which all have
