@@ -38,9 +38,9 @@ double roll_of(const RoadModel& plane) {
 }
 
 RoadError road_error(const RoadModel& plane, double roll_rad, const synth::SyntheticPair& truth) {
-  constexpr double straight_down = 0.02;  // pixels per pixel: the disparity hardly changes over the image
+  constexpr double least_px = 1;  // straight down the disparity changes by less over the image
   RoadError error;
-  const bool observable = std::hypot(truth.plane.a1, truth.plane.a2) > straight_down;
+  const bool observable = std::hypot(truth.plane.a1, truth.plane.a2) * truth.disparity.height() > least_px;
   error.roll_rad = observable ? std::abs(roll_rad - truth.roll_rad) : std::numeric_limits<double>::quiet_NaN();
   for (int v = 0; v < truth.disparity.height(); ++v) {
     for (int u = 0; u < truth.disparity.width(); ++u) {
