@@ -87,6 +87,7 @@ class Page(unittest.TestCase):
     def open(self, *arguments):
         player = Player(*arguments)
         self.addCleanup(player.kill)
+        self.browser.get("about:blank")  # what came before is not this page's
         for log in ("browser", "performance"):
             self.browser.get_log(log)
         self.browser.get(player.url)

@@ -138,8 +138,7 @@ void LiveServer::State::send_picture(const Request& request, Response& response,
 void LiveServer::State::route() {
   server.set_pre_routing_handler(
       [this](const Request& request, Response& response) { return check(request, response); });
-  server.set_exception_handler(
-      [](const Request&, Response& response, const std::exception_ptr&) { response.status = 500; });
+  server.set_exception_handler([](const Request&, Response& response, const auto&) { response.status = 500; });
   send_file("/", page_files::page, "text/html; charset=utf-8");
   send_file("/style.css", page_files::style, "text/css; charset=utf-8");
   send_file("/script.js", page_files::script, "text/javascript; charset=utf-8");

@@ -42,6 +42,7 @@ void require_no_recording(const fs::path& folder) {
 /// Names of the copies: those of the files, told apart by side where they are equal.
 std::vector<std::string> copy_names(const std::vector<std::string>& files) {
   std::vector<std::string> names;
+  names.reserve(files.size());
   for (const std::string& file : files) names.push_back(fs::path(file).filename().string());
   if (names.size() == 2 && names[0] == names[1]) {
     names[0] = "left_" + names[0];

@@ -1,12 +1,10 @@
 #include "live/serving_threads.hpp"
 
-#include <utility>
-
 #include "live/lower_priority.hpp"
 
 namespace roadstereo::cli {
 
-void ServingThreads::enqueue(std::function<void()> task) {
+ServingThreads::Taken ServingThreads::enqueue(std::function<void()> task) {
   const std::lock_guard lock(mutex_);
   tasks_.push_back(std::move(task));
   if (tasks_.size() > idle_ && threads_.size() < most_) {
@@ -14,6 +12,7 @@ void ServingThreads::enqueue(std::function<void()> task) {
   } else {
     changed_.notify_one();
   }
+  return static_cast<Taken>(true);
 }
 
 void ServingThreads::shutdown() {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace roadstereo::cli {
@@ -17,7 +18,10 @@ class ServingThreads final : public httplib::TaskQueue {
  public:
   explicit ServingThreads(std::size_t most) : most_(most) {}
 
-  void enqueue(std::function<void()> task) override;
+  /// What the library's version wants returned: nothing, or that the task was taken.
+  using Taken = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));
+
+  Taken enqueue(std::function<void()> task) override;
   void shutdown() override;
 
  private:

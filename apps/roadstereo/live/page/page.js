@@ -78,7 +78,8 @@
   function showRoll(roll) {
     const known = roll !== null && roll.observable;
     element("roll").textContent = known ? `${number(roll.degrees, 2)}°` : roll === null ? "–" : "not observable";
-    element("roll_more").textContent = known ? `± ${number(roll.error_degrees, 2)}°` : roll === null ? "no road found" : "looking straight down";
+    const why = roll === null ? "no road found" : "disparity hardly changes";
+    element("roll_more").textContent = known ? `± ${number(roll.error_degrees, 2)}°` : why;
   }
 
   function showHeight(view) {
@@ -107,17 +108,21 @@
     row.append(made);
   }
 
+  function small(text) {
+    const made = document.createElement("small");
+    made.textContent = text;
+    return made;
+  }
+
   function withError(figure, sign) {
     const [value, error] = rounded(figure.value, figure.error);
-    const small = document.createElement("small");
-    small.textContent = error === null ? ` ${figure.unit}` : ` ± ${error} ${figure.unit}`;
-    return [sign + value, small];
+    return [sign + value, small(error === null ? ` ${figure.unit}` : ` ± ${error} ${figure.unit}`)];
   }
 
   function row(damage) {
     const made = document.createElement("tr");
     cell(made, new Date(1000 * damage.time_s).toLocaleTimeString([], { hour12: false }));
-    cell(made, damage.kind + (damage.cut ? " (cut)" : ""));
+    cell(made, damage.kind, ...(damage.cut ? [small(" cut by the border")] : []));
     cell(made, ...withError(damage.depth, damage.kind === "protrusion" ? "+" : ""));
     cell(made, ...withError(damage.area, ""));
     if (damage.severity === null) {
