@@ -1,3 +1,5 @@
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -11,21 +13,8 @@ namespace {
 constexpr std::array<std::uint8_t, 8> signature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 constexpr std::size_t chunk_frame = 12;  // length, type and checksum around the data
 
-constexpr std::array<std::uint32_t, 256> make_crc_table() {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t n = 0; n < 256; ++n) {
-    std::uint32_t c = n;
-    for (int bit = 0; bit < 8; ++bit) c = (c & 1U) != 0 ? 0xedb88320U ^ (c >> 1U) : c >> 1U;
-    table[n] = c;
-  }
-  return table;
-}
-
-std::uint32_t crc32(Bytes bytes) {
-  static constexpr std::array<std::uint32_t, 256> table = make_crc_table();
-  std::uint32_t c = 0xffffffffU;
-  for (const std::uint8_t byte : bytes) c = table[(c ^ byte) & 0xffU] ^ (c >> 8U);
-  return ~c;
+std::uint32_t checksum(Bytes bytes) {
+  return static_cast<std::uint32_t>(::crc32_z(0, bytes.data(), bytes.size()));
 }
 
 std::uint32_t big_endian_32(Bytes bytes, std::size_t at) {
@@ -47,7 +36,7 @@ Chunk next_chunk(const std::string& path, Bytes bytes, std::size_t at) {
   const Chunk chunk{{reinterpret_cast<const char*>(bytes.data() + at + 4), 4},
                     bytes.subspan(at + 8, size),
                     bytes.subspan(at, size + chunk_frame)};
-  if (crc32(bytes.subspan(at + 4, size + 4)) != big_endian_32(bytes, at + 8 + size)) {
+  if (checksum(bytes.subspan(at + 4, size + 4)) != big_endian_32(bytes, at + 8 + size)) {
     fail(path, ": the PNG file is damaged: a checksum does not agree");
   }
   return chunk;

@@ -12,6 +12,7 @@
 #include "flight/flight_job.hpp"
 #include "flight/in_turn.hpp"
 #include "flight/match_frame.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_pictures.hpp"
 
 namespace roadstereo::cli {
@@ -64,6 +65,14 @@ class Line {
   InTurn in_turn_;
   FirstFailure failure_;
 };
+
+/// Makes memory and threads before the first frame, which would else take longer than the others.
+void warm_up(Pipeline& pipeline, const io::SourcePair& pair) {
+  try {
+    pipeline.warm_up(pair.left.width, pair.left.height);
+  } catch (const Error&) {  // of a size that the pair itself is about to be refused for, with its name
+  }
+}
 
 int finisher_count(const PipelineOptions& options) {
   constexpr int most = 4;
@@ -125,6 +134,7 @@ void Line::match() {
     if (!pipeline && pair->refused.empty()) {  // white and the size are known from the first good pair on
       if (!sets_white_level(settings_.treatment)) flight_.options.white_level = flight_.source.white_level();
       pipeline.emplace(flight_.options, flight_.source.calibration());
+      warm_up(*pipeline, *pair);
       if (before) pipeline->carry_on(before->carried);
     }
     (*job)->place = place++;
