@@ -12,6 +12,7 @@
 #include "flight/flight_job.hpp"
 #include "flight/in_turn.hpp"
 #include "flight/match_frame.hpp"
+#include "lower_priority.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_pictures.hpp"
 
@@ -110,6 +111,7 @@ void Line::guarded(const Work& work) {
 }
 
 void Line::read() {
+  lower_priority();
   io::FrameSource& source = flight_.source.source();
   source.skip(settings_.from + flight_.journal.frames() * settings_.every);
   while (!flight_.stop.wait(0)) {
@@ -150,6 +152,7 @@ void Line::match() {
 }
 
 void Line::finish() {
+  lower_priority();
   while (std::optional<JobPointer> job = matched_.take()) {
     finish_frame(flight_.source.calibration(), flight_.options, write_, **job);
     in_turn_.when_it_is((*job)->place, [&] { put_down(**job); });

@@ -3,7 +3,7 @@
 #include <exception>
 #include <utility>
 
-#include "live/lower_priority.hpp"
+#include "lower_priority.hpp"
 
 namespace roadstereo::cli {
 

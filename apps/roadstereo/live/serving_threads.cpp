@@ -1,6 +1,6 @@
 #include "live/serving_threads.hpp"
 
-#include "live/lower_priority.hpp"
+#include "lower_priority.hpp"
 
 namespace roadstereo::cli {
 

@@ -21,26 +21,22 @@ std::vector<std::uint8_t> jpeg_of(const cv::Mat& picture) {
   return bytes;
 }
 
-/// The part of the frame in 8 bits and colour; white is the largest value of a deeper frame.
-cv::Mat part_of(const FrameView& frame, const PixelBox& box) {
-  const int channels = channel_count(frame.order);
-  const std::ptrdiff_t sample_bytes = frame.sample == SampleType::u16 ? 2 : 1;
-  FrameView part = frame;
-  part.data =
-      static_cast<const std::uint8_t*>(frame.data) + box.v0 * frame.stride_bytes + box.u0 * channels * sample_bytes;
-  part.width = box.width();
-  part.height = box.height();
+/// The part of the frame at that scale, in 8 bits and colour; white is the largest value of a deeper frame.
+cv::Mat part_of(const FrameView& frame, const PixelBox& box, double scale) {
+  const cv::Mat whole = mat_over(frame);
+  const cv::Mat part = whole(cv::Rect(box.u0, box.v0, box.width(), box.height()));
+  const cv::Size size(std::max(1, cvRound(scale * part.cols)), std::max(1, cvRound(scale * part.rows)));
+  cv::Mat small = part;
+  if (scale < 1) cv::resize(part, small, size, 0, 0, cv::INTER_AREA);
   const double white = frame.sample == SampleType::u16 ? find_white_level(frame, frame) : 255;
-  return to_bgr(part, white);
+  return to_bgr(frame_from(small, frame.order).view(), white);
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> frame_thumbnail(const FrameView& left, const DamageMap& map, int width) {
   const double scale = std::min(1.0, static_cast<double>(width) / left.width);
-  const cv::Size size(std::max(1, cvRound(scale * left.width)), std::max(1, cvRound(scale * left.height)));
-  cv::Mat small;
-  cv::resize(part_of(left, {0, 0, left.width - 1, left.height - 1}), small, size, 0, 0, cv::INTER_AREA);
+  cv::Mat small = part_of(left, {0, 0, left.width - 1, left.height - 1}, scale);
   for (const Damage& damage : map.damages) draw_outline(small, map, damage, 1, {}, scale);
   return jpeg_of(small);
 }
@@ -50,9 +46,7 @@ std::vector<std::uint8_t> damage_picture(const FrameView& left, const DamageMap&
   constexpr int least_margin_px = 16;
   const PixelBox box = surroundings(map, damage, margin_share, least_margin_px);
   const double scale = std::min(1.0, static_cast<double>(side) / std::max(box.width(), box.height()));
-  cv::Mat picture = part_of(left, box);
-  const cv::Size size(std::max(1, cvRound(scale * box.width())), std::max(1, cvRound(scale * box.height())));
-  if (scale < 1) cv::resize(picture, picture, size, 0, 0, cv::INTER_AREA);
+  cv::Mat picture = part_of(left, box, scale);
   draw_outline(picture, map, damage, 1, {box.u0, box.v0}, scale);
   return jpeg_of(picture);
 }

@@ -1,4 +1,4 @@
-#include "live/lower_priority.hpp"
+#include "lower_priority.hpp"
 
 #include <sys/resource.h>
 #include <unistd.h>
