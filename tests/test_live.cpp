@@ -615,8 +615,7 @@ TEST(TerminalLine, SaysHowThingsStand) {
   status.recording = {true, 5, 1, ""};
   EXPECT_EQ(
       status_line(status),
-      "stale 30.0 fps, latency 40 ms (95 %: 61), age 1500 ms, roll 5.73°, 2 damages, 7 seen, 3 dropped, 5 recorded "
-      "(1 left out)");
+      "stale 30.0 fps, latency 40/61 ms, age 1500 ms, roll 5.73°, damages 2/7, dropped 3, recorded 5 (1 left out)");
 }
 
 }  // namespace

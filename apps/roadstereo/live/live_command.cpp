@@ -91,7 +91,8 @@ for roadstereo inspect DIR. It never delays the view: pairs that the disk cannot
 second, latency, age, and the running list of damages. With a HOST (0.0.0.0 for all addresses) other machines can see
 it, too, if they know the token in the address that is printed. Port 0 takes any that is free.
 
-Ctrl-C ends, with a summary.
+On a terminal one line is rewritten: latency as median/95th percentile, height, damages as seen now/in all. Ctrl-C ends,
+with a summary.
 
 Examples:
   roadstereo live /dev/video0 --calibration rig.yaml --serve 8080

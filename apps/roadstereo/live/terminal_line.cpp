@@ -19,7 +19,7 @@ std::string road_text(const LiveView& view) {
   if (view.geometry->roll_observable) {
     text = fmt::format(", roll {:.2f}°", view.geometry->roll_rad * 180 / std::numbers::pi);
   }
-  if (view.plane) text += fmt::format(", height {:.2f} m", view.plane->height_m);
+  if (view.plane) text += fmt::format(", {:.2f} m", view.plane->height_m);
   return text;
 }
 
@@ -51,14 +51,14 @@ std::string status_line(const LiveStatus& status) {
   const LiveCounts& counts = status.counts;
   std::string line = name_of(status.state);
   if (!status.view) return line + fmt::format(" for {:.1f} s", status.age_s);
-  line += fmt::format(" {:.1f} fps, latency {:.0f} ms (95 %: {:.0f}), age {:.0f} ms", status.fps,
-                      status.latency.median_ms, status.latency.p95_ms, 1000 * status.age_s);
+  line += fmt::format(" {:.1f} fps, latency {:.0f}/{:.0f} ms, age {:.0f} ms", status.fps, status.latency.median_ms,
+                      status.latency.p95_ms, 1000 * status.age_s);
   line += road_text(*status.view);
-  line += fmt::format(", {} damages, {} seen, {} dropped", status.view->damages.size(), status.damages_found,
+  line += fmt::format(", damages {}/{}, dropped {}", status.view->damages.size(), status.damages_found,
                       counts.dropped + counts.too_old);
-  if (counts.refused > 0) line += fmt::format(", {} refused", counts.refused);
+  if (counts.refused > 0) line += fmt::format(", refused {}", counts.refused);
   if (status.recording.on) {
-    line += fmt::format(", {} recorded", status.recording.recorded);
+    line += fmt::format(", recorded {}", status.recording.recorded);
     if (status.recording.left_out > 0) line += fmt::format(" ({} left out)", status.recording.left_out);
   }
   return line;

@@ -7,7 +7,7 @@
 
 namespace roadstereo::cli {
 
-/// How things stand in one line.
+/// How things stand in one line: latency as median/95th percentile, height over the road, damages as seen now/in all.
 std::string status_line(const LiveStatus& status);
 
 /// The line on stderr: rewritten on a terminal, a plain one every few seconds elsewhere. Its end is a new line.
