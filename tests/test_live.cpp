@@ -316,6 +316,10 @@ TEST(Capture, LateSourcePassesOverPairs) {
   const LiveCounts counts = bench.board.status().counts;
   EXPECT_EQ(counts.taken, 3000);
   EXPECT_EQ(counts.dropped, 2999);
+  bench.slot.close();
+  const auto newest = bench.slot.take();
+  ASSERT_TRUE(newest);
+  EXPECT_EQ(newest->pair.index, 2999) << "the last one is shown";
 }
 
 TEST(Capture, LostCameraIsRetriedUntilItIsBack) {

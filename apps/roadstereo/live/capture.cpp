@@ -1,5 +1,6 @@
 #include "live/capture.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -56,29 +57,35 @@ std::optional<io::SourcePair> Capture::next_of_camera() {
   return std::nullopt;
 }
 
-/// Pairs that cannot be shown any more are passed over without being decoded.
+/// Pairs that cannot be shown any more are passed over without being decoded; but not the last one.
 void Capture::skip_overdue() {
-  const std::int64_t overdue = playback_.overdue(Clock::now());
-  if (overdue == 0) return;
-  source_->skip(overdue);
-  board_.count_taken(overdue);
-  board_.count_dropped(overdue);
+  std::int64_t overdue = playback_.overdue(Clock::now());
+  if (const std::optional<std::int64_t> size = source_->size()) overdue = std::min(overdue, *size - next_index_ - 1);
+  if (overdue > 0) source_->skip(overdue);
+}
+
+void Capture::count_skipped(const io::SourcePair& pair) {
+  if (pair.index > next_index_) {
+    board_.count_taken(pair.index - next_index_);
+    board_.count_dropped(pair.index - next_index_);
+  }
+  next_index_ = pair.index + 1;
 }
 
 std::optional<io::SourcePair> Capture::next_of_recording(const std::stop_token& stop) {
   skip_overdue();
   std::optional<io::SourcePair> pair = source_->next();
   if (pair) {
-    ++pairs_of_round_;
+    count_skipped(*pair);
     sleep_until(playback_.due(*pair, Clock::now()), stop);
     return pair;
   }
-  if (options_.loop && pairs_of_round_ == 0) fail("the recording holds no pair to play again");
+  if (options_.loop && next_index_ == 0) fail("the recording holds no pair to play again");
   ended_ = !options_.loop;
   if (options_.loop) {
     source_ = opener_();
     playback_.begin_again();
-    pairs_of_round_ = 0;
+    next_index_ = 0;
   }
   return std::nullopt;
 }

@@ -43,6 +43,7 @@ class Capture {
   void lose(const std::string& reason);
   void reconnect(const std::stop_token& stop);
   void skip_overdue();
+  void count_skipped(const io::SourcePair& pair);
   void deliver(io::SourcePair pair);
   void sleep_until(Clock::time_point time, const std::stop_token& stop);
 
@@ -55,8 +56,8 @@ class Capture {
   bool live_;
   bool ended_ = false;
   Playback playback_;
-  std::int64_t pairs_of_round_ = 0;
-  std::mutex mutex_;  ///< of the pauses
+  std::int64_t next_index_ = 0;  ///< of the recording
+  std::mutex mutex_;             ///< of the pauses
   std::condition_variable_any stopped_;
 };
 

@@ -45,7 +45,8 @@ DamageList::Track* DamageList::nearest(const Damage& damage, const LiveView& vie
   for (std::size_t i = 0; i < taken.size(); ++i) {
     Track& track = tracks_[i];
     if (taken[i] || track.kind != damage.kind) continue;
-    const double away = distance(expected(track, view.arrival), damage.centroid_px);
+    const double away = std::min(distance(expected(track, view.arrival), damage.centroid_px),
+                                 distance(track.centre, damage.centroid_px));  // it may have stopped or turned
     const double reach = std::max({least_reach_px, track.reach, half_diagonal(damage)});
     if (away <= reach && away < least) {
       best = &track;
