@@ -1,20 +1,23 @@
 #!/usr/bin/env bash
 # Runs the tests with the address and undefined-behaviour sanitizers, and those of the embedded library with the thread
-# sanitizer. Left out, because sanitizers make them last too long: the tests on real data, and the largest comparisons
-# with the reference engine and the experiments of `evaluate`, whose small ones take the same ways through the code.
+# sanitizer. Left out, because sanitizers make them last too long: the experiments of `evaluate`, the tests on real data
+# and in a browser, and the largest comparisons with the reference engine, whose small ones take the same ways through
+# the code. Under the thread sanitizer also what has the same threads as another test: other scenes, presets and
+# instruction sets.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-slow='DamageCommand.Evaluate|odd_large|large_windows|_100$|Peers.Fast|RoadScene|Evaluate\.(Ablation|Synth|Sigma|Roll|Lambda|Blur|Kitti|Flatness|Middlebury)'
+slow='DamageCommand.Evaluate|odd_large|large_windows|_100$|Peers.Fast|RoadScene|InBrowser'
+same_threads='EveryPreset.*/(paper|fast)|EveryTarget|NamedScene|OfScene|ReferenceEngine|Synth.Truth|Synth.EveryScene|CrossSection|FindDamage.(Kerb|Intact|Measures)|RowAlignment.FindsTheOffset|Pipeline.(Straight|Corrected|Colour|RollOf|WorksWithout|RowsThat|Refuses)'
 
 check() {
-  local preset=$1
+  local preset=$1 left_out=$2
   cmake --preset "$preset"
   cmake --build --preset "$preset" -j "$(nproc)"
-  ctest --test-dir "build-$preset" --output-on-failure -j "$(nproc)" --label-exclude real_data --exclude-regex "$slow"
+  ctest --test-dir "build-$preset" --output-on-failure -j "$(nproc)" --label-exclude real_data --exclude-regex "$left_out"
 }
 
 export UBSAN_OPTIONS=print_stacktrace=1
-check asan
-check tsan
+check asan "$slow"
+check tsan "$slow|$same_threads"
 echo "Sanitizers: good."

@@ -76,7 +76,9 @@ void describe(CLI::App& app) {
   roadstereo::cli::add_limits(app);
   roadstereo::cli::add_engines(app);
   roadstereo::cli::add_benchmark(app);
+#ifdef ROADSTEREO_WITH_EVALUATE
   roadstereo::cli::add_evaluate(app);
+#endif
 }
 
 /// OpenCV and FFmpeg say in words of their own, on standard error, what the sentences of errors say. Whoever wants to
