@@ -77,7 +77,7 @@ TEST_F(CommandLine, VersionIsPrinted) {
 TEST_F(CommandLine, WrongUsageExitsWithTwo) {
   expect_complaint(run(""), 2, "subcommand");
   expect_complaint(run("flatten"), 2, "flatten");
-  expect_complaint(run("inspect left.png"), 2, "RIGHT");
+  expect_complaint(run("inspect left.png --output result"), 2, "left.png: no such file");
   expect_complaint(run("inspect left.png right.png"), 2, "--output");
   expect_complaint(run("inspect left.png right.png --output result --colour red"), 2, "--colour");
   expect_complaint(run("inspect left.png right.png more.png --output result"), 2, "more.png");

@@ -516,6 +516,7 @@ TEST_F(LiveFiles, EqualNamesOfCalibrationsAreToldApart) {
 /// A session to its end.
 LiveStatus run_session(const LiveOptions& options, const MemoryPlan& plan) {
   LiveSession session(options, [&plan] { return source_of(plan); });
+  session.start();
   while (!session.finished()) std::this_thread::sleep_for(1ms);
   session.end();
   return session.board().status();
@@ -553,10 +554,20 @@ TEST(LiveSession, PairThatTheMatcherRefusesIsCounted) {
   LiveSession session(options, [&frames] {
     return std::make_unique<MemorySource>(frames, MemoryPlan{2, 0.5, false, "", -1});
   });
+  session.start();
   while (!session.finished()) std::this_thread::sleep_for(1ms);
   EXPECT_NE(session.board().wait_for_news(0, 0.01).message.find("same image"), std::string::npos);
   session.end();
   EXPECT_EQ(session.board().status().counts.refused, 2);
+}
+
+TEST_F(LiveFiles, SessionThatDoesNotStartLeavesNoRecording) {
+  LiveOptions options;
+  options.record = (folder_ / "rec").string();
+  {
+    const LiveSession session(options, [] { return source_of({1, 0.001, false, "", -1}); });
+  }
+  EXPECT_TRUE(files_in(folder_).empty());
 }
 
 TEST(LiveSession, FirstOpeningMustSucceed) {
@@ -565,6 +576,7 @@ TEST(LiveSession, FirstOpeningMustSucceed) {
 
 TEST(LiveSession, FailureOfTheSourceIsThrownAtTheEnd) {
   LiveSession session({}, [] { return source_of({1, 0.001, false, "the disk is gone", -1}); });
+  session.start();
   while (!session.finished()) std::this_thread::sleep_for(1ms);
   EXPECT_THROW(session.end(), Error);
   EXPECT_EQ(session.board().status().message, "the disk is gone");

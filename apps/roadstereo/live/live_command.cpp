@@ -64,12 +64,13 @@ void live(const Arguments& arguments, const NamedOpener& opener) {
   const io::SourceOptions source = make_source_options(arguments.source);
   auto signals = std::make_unique<StopSignals>();
   LiveSession session(live_options(arguments), [&] { return opener(arguments.names, source); });
-  const Clock::time_point start = Clock::now();
   std::unique_ptr<LiveServer> server;
   if (address) {
     server = std::make_unique<LiveServer>(*address, session.board());
     fmt::print(stderr, "roadstereo: showing {} at {}\n", session.description(), server->url());
   }
+  const Clock::time_point start = Clock::now();
+  session.start();
   watch(arguments, session, start, *signals);
   signals.reset();
   session.end();
@@ -115,8 +116,10 @@ void add_options(CLI::App& command, Arguments& arguments) {
   command.add_flag("--loop", arguments.loop, "Play a recording again and again");
   command.add_option("--frames", arguments.frames, "End after so many processed pairs")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--seconds", arguments.seconds, "End after that time")->type_name("S")->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
+  command.add_option("--seconds", arguments.seconds, "End after that time")
+      ->type_name("S")
+      ->check(CLI::Range(0.001, 1e7));
   command.add_flag("--json", arguments.json, "Print the summary as JSON");
 }
 

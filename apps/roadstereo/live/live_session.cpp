@@ -38,6 +38,9 @@ LiveSession::LiveSession(const LiveOptions& options, SourceOpener opener) : boar
   if (!options.record.empty()) start_recorder(options, *source);
   capture_ = std::make_unique<Capture>(std::move(source), std::move(opener), options.capture, board_, captured_,
                                        recorder_.get());
+}
+
+void LiveSession::start() {
   finishing_ = std::thread([this] { guarded([this] { processing_->finish(); }); });
   matching_ = std::thread([this] { guarded([this] { processing_->match(); }); });
   capturing_ = std::jthread([this](const std::stop_token& stop) {

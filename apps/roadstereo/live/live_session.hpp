@@ -28,7 +28,7 @@ struct LiveOptions {
 /// A run from its source to the board, on threads of its own: capture, matching, damage, and recording.
 class LiveSession {
  public:
-  /// Opens the source and starts. Throws Error when the source cannot be opened, the calibration cannot be read, or the
+  /// Opens the source. Throws Error when the source cannot be opened, the calibration cannot be read, or the
   /// folder of the recording cannot be written to.
   LiveSession(const LiveOptions& options, SourceOpener opener);
 
@@ -36,6 +36,9 @@ class LiveSession {
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
+
+  /// From here on pairs are taken.
+  void start();
 
   LiveBoard& board() { return board_; }
   const std::string& description() const { return description_; }  ///< of the source, for people
