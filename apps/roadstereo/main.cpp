@@ -91,8 +91,8 @@ void quieten_decoders() {
   }
 }
 
-/// Frames come and go by the thousand: their memory is kept for the next one, not given back and asked for again page by
-/// page, which costs a millisecond a frame.
+/// Frames come and go by the thousand: their memory is kept for the next one, not given back and asked for again page
+/// by page, which costs a millisecond a frame.
 void keep_memory() {
 #ifdef __GLIBC__
   constexpr int largest_kept = 64 << 20;
