@@ -25,7 +25,7 @@ cmake -G Ninja -S . -B "$build" -DCMAKE_TOOLCHAIN_FILE="$PWD/cmake/aarch64.cmake
   -DROADSTEREO_GTEST_SOURCE=/usr/src/googletest -DROADSTEREO_WERROR="${ROADSTEREO_WERROR:-OFF}"
 cmake --build "$build" -j "$(nproc)"
 # Emulated, the sweeps over many scenes last too long; what is vector code is tested whole.
-for test in test_simd_targets test_engines test_frame test_parallel test_perspective test_plane_fit test_roll_energy; do
+for test in test_simd_targets test_engines test_frame test_parallel test_perspective test_plane_fit test_road_correlation test_roll_energy; do
   filter='*'
   [ "$test" != test_engines ] || filter='-*odd_large*:*large_windows*:*_100:*tiles*:*/reference*'
   qemu-aarch64 -L /usr/aarch64-linux-gnu -E LD_LIBRARY_PATH="$build/root/usr/lib/aarch64-linux-gnu" \

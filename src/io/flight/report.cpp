@@ -105,7 +105,9 @@ std::vector<Column> metric_columns() {
       {"Length", "m", [](const Row& r) { return metric_cell(r, [](const M& m) { return plain_cell(m.length_m); }); }},
       {"Width", "m", [](const Row& r) { return metric_cell(r, [](const M& m) { return plain_cell(m.width_m); }); }},
       {"Distance", "m",
-       [](const Row& r) { return metric_cell(r, [](const M& m) { return fixed_cell(m.distance_m, 2); }); }}};
+       [](const Row& r) { return metric_cell(r, [](const M& m) { return fixed_cell(m.distance_m, 2); }); }},
+      {"Resolvable", "mm",
+       [](const Row& r) { return metric_cell(r, [](const M& m) { return plain_cell(m.resolvable_depth_m * mm); }); }}};
 }
 
 std::vector<Column> pixel_columns() {
@@ -119,13 +121,16 @@ std::string damages_of(const FlightReportInput& input) {
   for (const auto& part : {input.metric ? metric_columns() : pixel_columns(), sighting_columns()}) {
     columns.insert(columns.end(), part.begin(), part.end());
   }
-  std::string hint = "A click on a column's head sorts by it; another turns the order round.";
+  std::string hint = sorting_hint;
   if (input.worst.size() < input.damages) {
     hint = "The " + std::to_string(input.worst.size()) + " worst of " + std::to_string(input.damages) +
            "; all are in damages.csv. " + hint;
   }
-  return fill(flight_templates::damages,
-              {{"hint", hint}, {"headings", report_headings(columns)}, {"rows", report_rows(columns, input.worst)}});
+  return fill(templates::table, {{"id", "damages"},
+                                 {"title", "Damages by severity"},
+                                 {"hint", hint},
+                                 {"headings", report_headings(columns)},
+                                 {"rows", report_rows(columns, input.worst)}});
 }
 
 bool has_points(const std::vector<double>& values) {

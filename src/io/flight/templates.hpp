@@ -8,6 +8,5 @@ namespace roadstereo::io::flight_templates {
 
 extern const std::string_view document;  ///< flight.html
 extern const std::string_view style;     ///< flight.css: what report.css does not have
-extern const std::string_view damages;   ///< damages.html: the table
 
 }  // namespace roadstereo::io::flight_templates

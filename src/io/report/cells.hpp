@@ -20,6 +20,9 @@ ReportCell plain_cell(double value);
 ReportCell fixed_cell(double value, int decimals);
 ReportCell severity_cell(const Damage& damage);
 
+/// What a reader must know of a table whose columns can be sorted.
+inline constexpr const char* sorting_hint = "A click on a column's head sorts by it; another turns the order round.";
+
 template <class Row>
 struct ReportColumn {
   std::string title;

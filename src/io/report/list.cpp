@@ -68,7 +68,11 @@ bool all_metric(const DamageMap& map) {
 std::string damage_list(const DamageMap& map) {
   if (map.damages.empty()) return "";
   const std::vector<Column> columns = all_metric(map) ? metric_columns() : pixel_columns();
-  return fill(templates::table, {{"headings", report_headings(columns)}, {"rows", report_rows(columns, map.damages)}});
+  return fill(templates::table, {{"id", "list"},
+                                 {"title", "All damages"},
+                                 {"hint", std::string(sorting_hint) + " ± is one standard error."},
+                                 {"headings", report_headings(columns)},
+                                 {"rows", report_rows(columns, map.damages)}});
 }
 
 }  // namespace roadstereo::io
