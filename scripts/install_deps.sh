@@ -20,6 +20,8 @@ case "${1:-}" in
   *) echo "usage: $0 [--checks]" >&2; exit 2 ;;
 esac
 
+optional=(librosbag-storage-dev libsensor-msgs-dev)  # ROS 1 bags; newer distributions no longer have them
+
 installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
 missing=()
@@ -42,4 +44,11 @@ fi
 
 echo "Installing with apt: ${missing[*]}"
 "${as_root[@]}" apt-get update -qq
+for package in "${optional[@]}"; do
+  if [[ " ${missing[*]} " == *" $package "* ]] && ! apt-cache show "$package" >/dev/null 2>&1; then
+    echo "Going on without $package, which this system does not have"
+    missing=($(printf '%s\n' "${missing[@]}" | grep -vx "$package" || true))
+  fi
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"

@@ -39,6 +39,7 @@ FlightFrame frame_of(std::int64_t index, std::vector<Damage> damages) {
   FlightFrame frame;
   frame.index = index;
   frame.name = std::to_string(index);
+  frame.road_carried_over = true;
   frame.damages = std::move(damages);
   return frame;
 }
@@ -172,6 +173,20 @@ TEST(FlightInventory, MissedOnceIsTheSameLongGoneIsAnother) {
   Damage bump = pothole(100, 100);
   bump.kind = DamageKind::protrusion;
   EXPECT_EQ(inventory.add(frame_of(7, {bump})), std::vector<std::int64_t>{3}) << "a bump is no pothole";
+}
+
+TEST(FlightInventory, ACutLeadsToOtherDamages) {
+  FlightInventory inventory;
+  inventory.add(frame_of(0, {pothole(100, 100)}));
+  FlightFrame cut = frame_of(1, {pothole(100, 100)});
+  cut.road_carried_over = false;
+  EXPECT_EQ(inventory.add(cut), std::vector<std::int64_t>{2});
+  FlightFrame refused = frame_of(2, {});
+  refused.status = FrameStatus::refused;
+  refused.road_carried_over = false;
+  inventory.add(refused);
+  EXPECT_EQ(inventory.add(frame_of(3, {pothole(100, 100)})), std::vector<std::int64_t>{2})
+      << "over a frame that is missing";
 }
 
 TEST(FlightInventory, WholeSightingsGoBeforePreciseOnesThatAreCutAndTheWorstComesFirst) {

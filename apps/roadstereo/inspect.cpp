@@ -29,19 +29,23 @@ bool is_setting(const std::string& word) {
   return word.find('=') != std::string::npos && word.find(" ! ") == std::string::npos;
 }
 
+/// Whether the word is a name of the input: the first one, and RIGHT, or the right one of two recordings.
+bool is_input(const std::string& word, const std::vector<std::string>& source) {
+  if (source.empty()) return true;
+  if (source.size() > 1 || is_setting(word)) return false;
+  return !io::is_recording(source[0]) || io::is_recording(word);
+}
+
 /// An option takes one value, so that it never swallows the names of the input. What follows `--set a=1` as `b=2` and
 /// `--calibration left.yaml` as `right.yaml` arrives as further names, and is put in its place here.
 void place_names(Arguments& arguments) {
   FlightSettings& settings = arguments.settings;
   settings.source.clear();
   for (const std::string& word : arguments.names) {
-    const bool one_is_enough = !settings.source.empty() && io::is_recording(settings.source[0]);
-    if (settings.source.empty()) {
+    if (is_input(word, settings.source)) {
       settings.source.push_back(word);
     } else if (is_setting(word)) {
       settings.treatment.settings.push_back(word);
-    } else if (settings.source.size() == 1 && (!one_is_enough || io::is_recording(word))) {
-      settings.source.push_back(word);
     } else if (settings.calibration.size() == 1) {
       settings.calibration.push_back(word);
     } else {

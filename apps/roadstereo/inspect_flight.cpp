@@ -68,6 +68,15 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   return text + fmt::format("  report    {}\n", (folder.path() / "report.html").string());
 }
 
+/// Clouds are in metres. A bag may bring a calibration of its own.
+void require_calibration(const FlightSettings& settings, const RectifiedSource& source) {
+  const bool cloud = std::any_of(settings.write.begin(), settings.write.end(),
+                                 [](const std::string& name) { return frame_file(name) == FrameFile::cloud; });
+  if (cloud && source.calibration_format().empty()) {
+    fail("--write cloud needs --calibration: without it no point has a place in space");
+  }
+}
+
 }  // namespace
 
 void inspect_flight(const FlightSettings& settings) {
@@ -79,6 +88,7 @@ void inspect_flight(const FlightSettings& settings) {
   if (!settings.track.file.empty()) places.emplace(settings.track);
   RectifiedSource source(io::open_source(settings.source, make_source_options(settings.choice)), settings.calibration);
   if (source.source().live()) fail(settings.source[0], ": a camera has no end; see roadstereo live");
+  require_calibration(settings, source);
   FlightFolder folder(settings.output);
   io::FlightJournal journal = open_journal(settings, run.options, folder);
   io::FlightInventory inventory;

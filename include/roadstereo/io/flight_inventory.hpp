@@ -24,7 +24,8 @@ struct RoadDamage {
 bool is_worse(const RoadDamage& one, const RoadDamage& other);
 
 /// The damages of a flight, frame by frame: sightings in successive frames whose outlines, moved as the picture moved,
-/// lie over each other are one damage. Frames far apart do not overlap: then each sighting counts by itself.
+/// lie over each other are one damage. A frame whose road was found anew does not follow from the one before, and
+/// frames far apart do not overlap: then each sighting counts by itself.
 class FlightInventory {
  public:
   /// Takes the damages of the next frame in order, and tells the road damage that each belongs to.

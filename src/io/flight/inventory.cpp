@@ -86,6 +86,7 @@ void FlightInventory::remember(const std::vector<Sighting>& sightings) {
 
 std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
   ++place_;
+  if (frame.status == FrameStatus::good && !frame.road_carried_over) recent_.clear();  // a cut, or a jump
   std::vector<std::int64_t> ids;
   std::vector<Sighting> sightings;
   for (const Damage& damage : frame.damages) {
