@@ -32,8 +32,8 @@ bool is_setting(const std::string& word) {
 /// Whether the word is a name of the input: the first one, and RIGHT, or the right one of two recordings.
 bool is_input(const std::string& word, const std::vector<std::string>& source) {
   if (source.empty()) return true;
-  if (source.size() > 1 || is_setting(word)) return false;
-  return !io::is_recording(source[0]) || io::is_recording(word);
+  if (source.size() > 1) return false;
+  return !io::is_recording(source[0]) || (io::is_recording(word) && !is_setting(word));
 }
 
 /// An option takes one value, so that it never swallows the names of the input. What follows `--set a=1` as `b=2` and
