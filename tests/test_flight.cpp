@@ -267,6 +267,44 @@ TEST_F(FlightCommand, SaysWhatCannotBeGoneOnWith) {
       << "threads change nothing";
 }
 
+TEST_F(FlightCommand, GoesOnOnlyWithTheSameFramesAndCalibration) {
+  write_list(6);
+  const std::string command = "inspect flight.txt --calibration rig.yaml --output out --quiet ";
+  EXPECT_EQ(run(command + "--to 2").exit_code, 0);
+  const std::string rig = read_text(folder_ / "rig.yaml");
+  write("rig.yaml", rig + "# another line\n");
+  expect_complaint(run(command + "--resume"), "content of the calibration");
+  write("rig.yaml", rig);
+  const std::string list = read_text(folder_ / "flight.txt");
+  write("flight.txt", list.substr(list.find('\n') + 1));  // without the first frame
+  expect_complaint(run(command + "--resume"), "frame 2 was \"2\" and is now \"3\"");
+  write("flight.txt", list);
+  EXPECT_EQ(run(command + "--resume").exit_code, 0);
+  EXPECT_EQ(rows("out/frames.csv").size(), 7U);
+}
+
+TEST_F(FlightCommand, AMistypedOptionLeavesAnEarlierFlightAlone) {
+  write_list(3);
+  EXPECT_EQ(run("inspect flight.txt --output out --quiet").exit_code, 0);
+  const std::string frames = read_text(folder_ / "out/frames.csv");
+  expect_complaint(run("inspect flight.txt --output out --quiet --threads -1"), "threads is -1");
+  expect_complaint(run("inspect flight.txt --output out --quiet --from 3"), "has 3 frames");
+  expect_complaint(run("inspect flight.txt --output out --quiet --engine abacus"), "abacus");
+  EXPECT_EQ(read_text(folder_ / "out/frames.csv"), frames);
+}
+
+TEST_F(FlightCommand, GoesOnWhenNobodyListens) {
+  write_list(3);
+  EXPECT_EQ(std::system(("cd '" + folder_.string() +
+                         "' && '" ROADSTEREO_BINARY "' inspect flight.txt --output out >/dev/null 2>/dev/full")
+                            .c_str()),
+            0);
+  EXPECT_EQ(rows("out/frames.csv").size(), 4U);
+  const int status =
+      std::system(("'" ROADSTEREO_BINARY "' inspect nowhere --output '" + folder_.string() + "' 2>&-").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+}
+
 TEST_F(FlightCommand, OneProgramAtATimeWritesIntoAFolder) {
   write_list(3);
   fs::create_directories(folder_ / "out/flight");

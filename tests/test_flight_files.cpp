@@ -117,6 +117,13 @@ TEST_F(Journal, GoesOnOnlyWithWhatItWasBegunWith) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("--every \"1\", not \"2\""), std::string::npos) << error.what();
   }
+  std::ofstream(file_, std::ios::app) << "no frame\n";
+  try {
+    FlightJournal::resume(file_, {{"source", "a"}});
+    FAIL() << "a line that is no frame was taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(file_.string() + ", line 2: "), std::string::npos) << error.what();
+  }
   std::ofstream(file_) << "something else\n";
   EXPECT_THROW(FlightJournal::resume(file_, {}), Error);
   fs::remove(file_);

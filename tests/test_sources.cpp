@@ -200,6 +200,21 @@ TEST_F(Sources, AListHasPathsBesideItAndTimes) {
   EXPECT_EQ(all("pairs.csv")[0].time_s, 3);
 }
 
+TEST_F(Sources, ListsOfSpreadsheetsAreTaken) {
+  image("my x/one.png", 1);
+  image("y/two.png", 2);
+  text("table.csv", "\xEF\xBB\xBFleft,right,time\r\n\"my x/one.png\",\"y/two.png\",0.5\r\n");
+  text("semicolon.csv", "my x/one.png; y/two.png; 1.5\n");
+  text("quoted.txt", "\"my x/one.png\"  y/two.png\n");
+  for (const char* name : {"table.csv", "semicolon.csv", "quoted.txt"}) {
+    const std::vector<SourcePair> pairs = all(name);
+    ASSERT_EQ(pairs.size(), 1U) << name;
+    expect_numbers(pairs[0], 1, 2);
+  }
+  text("never.csv", "my x/one.png,y/two.png,nan\n");
+  EXPECT_NE(complaint("never.csv").find("\"nan\" is no time"), std::string::npos) << complaint("never.csv");
+}
+
 TEST_F(Sources, ComplaintsNameTheFileAndWhatWouldBeRight) {
   text("pairs.txt", "one.png\n");
   EXPECT_NE(complaint("pairs.txt").find("line 1"), std::string::npos);

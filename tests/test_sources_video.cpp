@@ -233,6 +233,35 @@ TEST_F(VideoSources, SkippingIsExactBetweenKeyFrames) {
   EXPECT_FALSE(source->next());
 }
 
+TEST_F(VideoSources, APictureThatCannotBeDecodedIsOneRefusedPair) {
+  const std::string file = write("beside.avi", "MJPG", 6, beside);
+  NEEDS_CODEC(file);
+  std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(bytes), {}};
+  std::size_t picture = 0;
+  for (int i = 0; i < 3; ++i) picture = content.find("\xFF\xD8\xFF", picture + 1);  // the third JPEG
+  ASSERT_NE(picture, std::string::npos);
+  bytes.clear();
+  bytes.seekp(static_cast<std::streamoff>(picture));
+  bytes << std::string(300, '\0') << std::flush;
+  bytes.close();
+  const auto source = open_video(file, {});
+  for (int i = 0; i < 6; ++i) {
+    const std::optional<SourcePair> pair = source->next();
+    if (i != 2) {
+      expect_pair(pair, i);
+      continue;
+    }
+    ASSERT_TRUE(pair);
+    EXPECT_EQ(pair->index, 2);
+    EXPECT_NE(pair->refused.find("cannot be decoded"), std::string::npos) << pair->refused;
+  }
+  EXPECT_FALSE(source->next());
+  const auto again = open_video(file, {});
+  again->skip(4);
+  expect_pair(again->next(), 4);
+}
+
 TEST_F(VideoSources, SayHowMuchIsMissingOfAVideoThatWasCut) {
   const std::string whole = write("whole.mkv", "FFV1", 30, beside);
   NEEDS_CODEC(whole);

@@ -6,39 +6,15 @@
 #include <memory>
 #include <utility>
 
+#include "flight/flight_facts.hpp"
 #include "flight/flight_results.hpp"
 #include "flight/run_flight.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/options.hpp"
 #include "roadstereo/version.hpp"
 
 namespace roadstereo::cli {
 
 namespace {
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
-}
-
-/// All that the results depend on: a flight goes on only with the same.
-io::FlightFacts facts_of(const FlightSettings& settings, const PipelineOptions& options) {
-  io::FlightFacts facts{{"version", version},
-                        {"source", joined(settings.source)},
-                        {"calibration", joined(settings.calibration)},
-                        {"--from", std::to_string(settings.from)},
-                        {"--every", std::to_string(settings.every)},
-                        {"--write", joined(settings.write)},
-                        {"--layout", settings.choice.layout},
-                        {"--topics", joined(settings.choice.topics)},
-                        {"--max-time-difference", fmt::format("{}", settings.choice.max_time_difference_ms)},
-                        {"--rate", fmt::format("{}", settings.choice.rate_hz)}};
-  for (const OptionText& option : list_options(options)) {
-    if (option.key != "threads") facts.emplace_back(option.key, option.value);
-  }
-  return facts;
-}
 
 std::optional<std::int64_t> frames_to_do(const FlightSettings& settings, const io::FrameSource& source) {
   const std::optional<std::int64_t> size = source.size();
@@ -48,7 +24,7 @@ std::optional<std::int64_t> frames_to_do(const FlightSettings& settings, const i
 }
 
 io::FlightJournal open_journal(const FlightSettings& settings, const PipelineOptions& options, FlightFolder& folder) {
-  const io::FlightFacts facts = facts_of(settings, options);
+  const io::FlightFacts facts = flight_facts(settings, options);
   if (settings.resume && std::filesystem::exists(folder.journal())) {
     return io::FlightJournal::resume(folder.journal(), facts);
   }
@@ -63,6 +39,7 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
                       summary.refused, summary.failed, summary.road_estimated);
   text += fmt::format("  damage    {} damages in {} sightings\n", inventory.damages().size(), summary.sightings);
   if (summary.placed) text += fmt::format("  map       {} of {} frames are on it\n", *summary.placed, summary.frames);
+  if (!summary.track_note.empty()) text += fmt::format("            {}\n", summary.track_note);
   text += fmt::format("  time      {:.1f} s, {:.1f} frames/s\n", run.seconds, run.frames_per_second);
   for (const std::string& reason : summary.reasons) text += fmt::format("  no result {}\n", reason);
   return text + fmt::format("  report    {}\n", (folder.path() / "report.html").string());
@@ -77,6 +54,13 @@ void require_calibration(const FlightSettings& settings, const RectifiedSource& 
   }
 }
 
+/// Before an earlier flight is removed for nothing.
+void require_frames(const FlightSettings& settings, const io::FrameSource& source) {
+  if (frames_to_do(settings, source) != 0) return;
+  fail(settings.source[0], ": has ", source.size().value_or(0), " frames, the first of which is 0; --from is ",
+       settings.from);
+}
+
 }  // namespace
 
 void inspect_flight(const FlightSettings& settings) {
@@ -89,6 +73,7 @@ void inspect_flight(const FlightSettings& settings) {
   RectifiedSource source(io::open_source(settings.source, make_source_options(settings.choice)), settings.calibration);
   if (source.source().live()) fail(settings.source[0], ": a camera has no end; see roadstereo live");
   require_calibration(settings, source);
+  require_frames(settings, source.source());
   FlightFolder folder(settings.output);
   io::FlightJournal journal = open_journal(settings, run.options, folder);
   io::FlightInventory inventory;
@@ -114,7 +99,7 @@ void inspect_flight(const FlightSettings& settings) {
   if (settings.json) fmt::print("{}", json);
   if (!settings.json && !settings.quiet) fmt::print("{}", flight_text(run, summary, inventory, folder));
   if (!run.complete) throw Interrupted{};
-  if (summary.frames == 0) fail(joined(settings.source), ": holds no frame between --from and --to");
+  if (summary.frames == 0) fail(settings.source[0], ": holds no frame between --from and --to");
   if (summary.good == 0) fail("none of the ", summary.frames, " frames could be matched: ", summary.reasons.front());
 }
 

@@ -14,6 +14,7 @@
 #include "inspect_flight.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/version.hpp"
+#include "say.hpp"
 
 namespace {
 
@@ -32,7 +33,7 @@ constexpr const char* footer =
 /// Says what went wrong in one line, whatever the message's own line breaks.
 int complain(std::string message, int exit_code) {
   std::replace(message.begin(), message.end(), '\n', ' ');
-  fmt::print(stderr, "roadstereo: {}\n", message);
+  roadstereo::cli::say("roadstereo: {}\n", message);
   return exit_code;
 }
 

@@ -1,3 +1,4 @@
+#include "core/parallel.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 
@@ -63,6 +64,7 @@ void PipelineOptions::validate() const {
   if (!(white_level >= 0 && white_level <= 65535)) {
     fail("white_level is ", white_level, "; it must be between 0 (the sample type's largest) and 65535");
   }
+  resolve_threads(threads);
   resolve_engine_name(engine);
   road_model.validate();
   perspective.validate();

@@ -1,6 +1,10 @@
 #include "flight/flight_places.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace roadstereo::cli {
 
@@ -45,6 +49,21 @@ void FlightPlaces::add(const io::FlightFrame& frame) {
     damages_.push_back({geo.index, geo.name, geo.time_s, damage, place_of(damage, geo.place, frame.height_m)});
   }
   frames_.push_back(std::move(geo));
+}
+
+std::string FlightPlaces::why_nowhere() const {
+  if (placed_ > 0 || frames_.empty()) return {};
+  double first = std::numeric_limits<double>::infinity();
+  double last = -first;
+  for (const io::GeoFrame& frame : frames_) {
+    if (!std::isfinite(frame.time_s)) continue;
+    first = std::min(first, frame.time_s);
+    last = std::max(last, frame.time_s);
+  }
+  if (first > last) return "the frames have no times; --rate and --track-offset give them some";
+  return fmt::format(
+      "the frames' times are {:.3f} … {:.3f} s, those of the track {:.3f} … {:.3f} s; see --track-offset", first, last,
+      track_.points().front().time_s, track_.points().back().time_s);
 }
 
 std::vector<StagedFile> FlightPlaces::files() const {

@@ -21,6 +21,9 @@ class FlightPlaces {
 
   std::size_t placed() const { return placed_; }  ///< frames that have a place
 
+  /// Why no frame has a place, with the times of both; nothing when one has.
+  std::string why_nowhere() const;
+
   /// frames.geojson, damages.geojson and flight.gpkg.
   std::vector<StagedFile> files() const;
 

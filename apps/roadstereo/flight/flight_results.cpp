@@ -56,6 +56,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const FlightRun& run, 
 std::vector<std::string> notices_of(const FlightRun& run, const FlightSummary& summary) {
   std::vector<std::string> notices;
   if (!run.complete) notices.emplace_back("The flight was stopped before its end; inspect --resume goes on with it.");
+  if (!summary.track_note.empty()) notices.push_back("No frame has a place on the map: " + summary.track_note + ".");
   const std::int64_t without = summary.refused + summary.failed;
   if (without == 0) return notices;
   std::string text =
@@ -129,8 +130,11 @@ std::string write_flight_results(const FlightSettings& settings, const FlightRun
     if (places) places->add(frame);
   });
   summary.settle_times();
-  if (places) summary.placed = static_cast<std::int64_t>(places->placed());
-  const std::string json = flight_json(settings, run, summary, inventory);
+  if (places) {
+    summary.placed = static_cast<std::int64_t>(places->placed());
+    summary.track_note = places->why_nowhere();
+  }
+  std::string json = flight_json(settings, run, summary, inventory);
   std::vector<StagedFile> files = places ? places->files() : std::vector<StagedFile>{};
   files.push_back(text_file("frames.csv", frames));
   files.push_back(text_file("damages.csv", damages));

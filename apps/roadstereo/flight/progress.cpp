@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "say.hpp"
+
 namespace roadstereo::cli {
 
 using Clock = std::chrono::steady_clock;
@@ -19,7 +21,7 @@ Progress::Progress(std::optional<std::int64_t> total, std::int64_t done, bool qu
       shown_(start_) {}
 
 void Progress::end() {
-  if (drawn_) fmt::print(stderr, "\n");
+  if (drawn_) say("\n");
   drawn_ = false;
 }
 
@@ -46,11 +48,11 @@ void Progress::frame_done(bool good) {
 
 void Progress::show() {
   if (terminal_) {
-    fmt::print(stderr, "\r{} {}\033[K", bar(), line());
+    say("\r{} {}\033[K", bar(), line());
     std::fflush(stderr);
     drawn_ = true;
   } else {
-    fmt::print(stderr, "{}\n", line());
+    say("{}\n", line());
   }
 }
 

@@ -46,6 +46,7 @@ class Line {
   bool run();
 
  private:
+  void go_to_start(io::FrameSource& source) const;
   void read();
   void match();
   void finish();
@@ -110,10 +111,23 @@ void Line::guarded(const Work& work) {
   }
 }
 
+/// Behind the last frame of an earlier run, which must still be what it was.
+void Line::go_to_start(io::FrameSource& source) const {
+  const std::optional<io::FlightFrame>& last = flight_.journal.last();
+  if (!last) return source.skip(settings_.from);
+  source.skip(last->index);
+  const std::optional<io::SourcePair> again = source.next();
+  if (!again || again->name != last->name) {
+    fail(settings_.source[0], ": has changed since this flight was begun: frame ", last->index, " was \"", last->name,
+         "\" and is now ", again ? "\"" + again->name + "\"" : "missing", "; begin anew without --resume");
+  }
+  source.skip(settings_.every - 1);
+}
+
 void Line::read() {
   lower_priority();
   io::FrameSource& source = flight_.source.source();
-  source.skip(settings_.from + flight_.journal.frames() * settings_.every);
+  go_to_start(source);
   while (!flight_.stop.wait(0)) {
     std::optional<io::SourcePair> pair = flight_.source.next();
     if (!pair || (settings_.to && pair->index > *settings_.to)) {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <optional>
 
 #include "live/live_server.hpp"
@@ -10,6 +11,7 @@
 #include "live/live_summary.hpp"
 #include "live/terminal_line.hpp"
 #include "roadstereo/error.hpp"
+#include "say.hpp"
 #include "source_options.hpp"
 #include "stop_signals.hpp"
 #include "treatment_options.hpp"
@@ -33,6 +35,8 @@ struct Arguments {
 };
 
 LiveOptions live_options(const Arguments& arguments) {
+  if (!std::isfinite(arguments.max_age_ms)) fail("--max-age is ", arguments.max_age_ms, "; it must be a number of ms");
+  if (!std::isfinite(arguments.seconds)) fail("--seconds is ", arguments.seconds, "; it must be a number");
   if (arguments.calibration.size() > 2) fail("--calibration takes one file, or the two of a ROS pair");
   LiveOptions options;
   options.processing.pipeline = make_options(arguments.treatment);
@@ -67,7 +71,7 @@ void live(const Arguments& arguments, const NamedOpener& opener) {
   std::unique_ptr<LiveServer> server;
   if (address) {
     server = std::make_unique<LiveServer>(*address, session.board());
-    fmt::print(stderr, "roadstereo: showing {} at {}\n", session.description(), server->url());
+    say("roadstereo: showing {} at {}\n", session.description(), server->url());
   }
   const Clock::time_point start = Clock::now();
   session.start();

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "say.hpp"
+
 namespace roadstereo::cli {
 namespace {
 
@@ -74,17 +76,17 @@ void TerminalLine::show(const LiveStatus& status) {
   const Clock::time_point now = Clock::now();
   if (std::string message = message_of(status); message != message_) {
     message_ = std::move(message);
-    if (!message_.empty()) fmt::print(stderr, "{}{}\n", written_ ? "\r\033[K" : "", message_);
+    if (!message_.empty()) say("{}{}\n", written_ ? "\r\033[K" : "", message_);
     due_ = now;
   }
   if (now < due_) return;
   due_ = now + clock_span(terminal_ ? terminal_period_s : plain_period_s);
   if (terminal_) {
-    fmt::print(stderr, "\r\033[K{}", cut_to(status_line(status), terminal_columns()));
+    say("\r\033[K{}", cut_to(status_line(status), terminal_columns()));
     std::fflush(stderr);
     written_ = true;
   } else {
-    fmt::print(stderr, "{}\n", status_line(status));
+    say("{}\n", status_line(status));
   }
 }
 

@@ -45,9 +45,17 @@ void for_each_line(const fs::path& file, const Visit& visit) {
   }
 }
 
+FlightFrame frame_of(const std::string& line, const fs::path& file, std::int64_t number) {
+  try {
+    return read_flight_frame(line);
+  } catch (const Error& error) {
+    fail(file.string(), ", line ", number, ": ", error.what(), "; begin anew without --resume");
+  }
+}
+
 void require_same(const std::string& begun_with, const FlightFacts& facts, const fs::path& file) {
   const Json begun = Json::parse(begun_with, nullptr, false);
-  if (!begun.is_object()) fail(file.string(), ": is no journal of a flight");
+  if (!begun.is_object()) fail(file.string(), ": is no journal of a flight; begin anew without --resume");
   for (const auto& [name, value] : facts) {
     const std::string before = begun.contains(name) && begun[name].is_string() ? begun[name].get<std::string>() : "";
     if (before == value) continue;
@@ -93,11 +101,11 @@ FlightJournal FlightJournal::resume(const fs::path& file, const FlightFacts& fac
   std::optional<FlightFrame> last;
   for_each_line(file, [&](const std::string& line, std::uintmax_t end) {
     if (lines == 0) require_same(line, facts, file);
-    if (lines > 0) last = read_flight_frame(line);
+    if (lines > 0) last = frame_of(line, file, lines + 1);
     ++lines;
     good_end = end;
   });
-  if (lines == 0) fail(file.string(), ": is no journal of a flight");
+  if (lines == 0) fail(file.string(), ": is no journal of a flight; begin anew without --resume");
   std::error_code error;
   fs::resize_file(file, good_end, error);
   if (error) fail_write(file, error.value());
@@ -120,7 +128,8 @@ void FlightJournal::for_each(const std::function<void(const FlightFrame&)>& visi
 void read_flight_journal(const fs::path& file, const std::function<void(const FlightFrame&)>& visit) {
   std::int64_t lines = 0;
   for_each_line(file, [&](const std::string& line, std::uintmax_t) {
-    if (lines++ > 0) visit(read_flight_frame(line));
+    if (lines > 0) visit(frame_of(line, file, lines + 1));
+    ++lines;
   });
 }
 

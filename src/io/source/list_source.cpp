@@ -1,7 +1,8 @@
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <string_view>
 
 #include "io/source/image_pairs.hpp"
 #include "io/source/sources.hpp"
@@ -11,20 +12,31 @@ namespace roadstereo::io {
 namespace fs = std::filesystem;
 namespace {
 
-/// The words of a line; with a comma in it, what lies between commas.
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
+/// The words of a line, between blanks; with a comma or semicolon in it, between those. Quotes hold a word together.
 std::vector<std::string> words_of(const std::string& line) {
-  std::vector<std::string> words;
-  std::istringstream stream(line);
-  std::string word;
-  if (line.find(',') == std::string::npos) {
-    while (stream >> word) words.push_back(word);
-    return words;
+  const char* const separators = line.find_first_of(",;") != std::string::npos ? ",;" : " \t";
+  const bool blanks_separate = separators[0] == ' ';
+  std::vector<std::string> words(1);
+  bool quoted = false;
+  for (const char letter : line) {
+    if (letter == '"') {
+      quoted = !quoted;
+    } else if (quoted || std::string_view(separators).find(letter) == std::string_view::npos) {
+      if (quoted || !words.back().empty() || (letter != ' ' && letter != '\t')) words.back() += letter;
+    } else if (!blanks_separate || !words.back().empty()) {
+      words.emplace_back();
+    }
   }
-  while (std::getline(stream, word, ',')) {
-    const auto first = word.find_first_not_of(" \t");
-    words.push_back(first == std::string::npos ? "" : word.substr(first, word.find_last_not_of(" \t") - first + 1));
-  }
+  for (std::string& word : words) word.erase(word.find_last_not_of(" \t") + 1);
+  if (blanks_separate && words.back().empty()) words.pop_back();
   return words;
+}
+
+/// The names of columns that tables begin with.
+bool is_heading(const std::vector<std::string>& words) {
+  return words.size() >= 2 && words[0] == "left" && words[1] == "right";
 }
 
 ImagePair pair_of(const std::vector<std::string>& words, const std::string& where, const fs::path& folder) {
@@ -38,7 +50,8 @@ ImagePair pair_of(const std::vector<std::string>& words, const std::string& wher
   if (words.size() < 3) return pair;
   const char* end = words[2].data() + words[2].size();
   const auto [read_to, error] = std::from_chars(words[2].data(), end, pair.time_s);
-  if (error != std::errc{} || read_to != end) fail(where, ": \"", words[2], "\" is no time in seconds");
+  if (error != std::errc{} || read_to != end || !std::isfinite(pair.time_s))
+    fail(where, ": \"", words[2], "\" is no time in seconds");
   return pair;
 }
 
@@ -51,8 +64,9 @@ std::unique_ptr<FrameSource> open_list(const std::string& file, const SourceOpti
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (number == 1 && line.rfind(byte_order_mark, 0) == 0) line.erase(0, byte_order_mark.size());
     const std::vector<std::string> words = words_of(line);
-    if (words.empty() || words[0].empty() || words[0][0] == '#') continue;
+    if (words.empty() || words[0].empty() || words[0][0] == '#' || (pairs.empty() && is_heading(words))) continue;
     pairs.push_back(pair_of(words, file + ", line " + std::to_string(number), fs::path(file).parent_path()));
   }
   if (pairs.empty()) fail(file, ": lists no pairs; a line is \"left right [seconds]\"");

@@ -50,13 +50,36 @@ VideoFile::VideoFile(std::string name) : name_(std::move(name)) {
   grey_ = is_grey(capture_);
 }
 
+/// Behind a picture that cannot be decoded others may follow: OpenCV says the same as at the end.
+bool VideoFile::find_next() {
+  constexpr int most_lost = 64;
+  for (int lost = 0; lost < most_lost; ++lost) {
+    if (!capture_.grab()) continue;
+    lost_ = lost;
+    held_ = true;
+    return true;
+  }
+  return false;
+}
+
 bool VideoFile::grab() {
-  if (!capture_.grab()) return false;
+  decodable_ = false;
+  if (lost_ > 0) {
+    --lost_;
+  } else if (held_) {
+    held_ = false;
+    decodable_ = true;
+  } else if (capture_.grab()) {
+    decodable_ = true;
+  } else if (!find_next()) {
+    return false;
+  }
   ++grabbed_;
   return true;
 }
 
 cv::Mat VideoFile::picture() {
+  if (!decodable_) return {};
   cv::Mat picture;
   if (!capture_.retrieve(picture)) return {};
   if (!grey_ || picture.channels() == 1) return picture;

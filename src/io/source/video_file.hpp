@@ -14,7 +14,7 @@ class VideoFile {
   /// Throws Error naming the file when it cannot be opened as a video.
   explicit VideoFile(std::string name);
 
-  /// Goes to the next picture; false at the end, or where nothing more can be decoded.
+  /// Goes to the next picture, whether it can be decoded or not; false at the end.
   bool grab();
   /// The picture that was grabbed, grey where the video has no colours, else BGR; empty when it cannot be had.
   cv::Mat picture();
@@ -31,6 +31,8 @@ class VideoFile {
   std::int64_t missing_pictures() const;
 
  private:
+  bool find_next();
+
   std::string name_;
   cv::VideoCapture capture_;
   int width_ = 0;
@@ -38,6 +40,9 @@ class VideoFile {
   double rate_hz_ = 0;
   bool grey_ = false;
   std::int64_t grabbed_ = 0;
+  bool decodable_ = false;  ///< the picture that was grabbed
+  int lost_ = 0;            ///< pictures that cannot be decoded before the one that is held
+  bool held_ = false;       ///< a picture was grabbed ahead
   std::optional<std::int64_t> stated_;
 };
 
