@@ -66,6 +66,7 @@ StagedFile encode_frame_file(FrameFile file, const std::optional<StereoCalibrati
 
 std::vector<std::string> frame_file_names(std::int64_t index) {
   std::vector<std::string> names;
+  names.reserve(all_files.size());
   for (const FrameFile file : all_files) names.push_back(name_of_file(file, index));
   return names;
 }

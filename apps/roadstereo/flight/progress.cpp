@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "say.hpp"
@@ -69,7 +70,7 @@ std::string Progress::line() const {
   if (total_) text += fmt::format(" of {}", std::max(*total_, before_ + done_));
   text += fmt::format(" frames, {:.1f} frames/s", rate);
   if (total_ && rate > 0) {
-    const auto left = static_cast<std::int64_t>(static_cast<double>(*total_ - before_ - done_) / rate + 0.5);
+    const auto left = std::llround(static_cast<double>(*total_ - before_ - done_) / rate);
     text += fmt::format(", {}:{:02} left", std::max<std::int64_t>(left, 0) / 60, std::max<std::int64_t>(left, 0) % 60);
   }
   if (bad_ > 0) text += fmt::format(", {} without a result", bad_);
