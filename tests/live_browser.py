@@ -6,7 +6,6 @@ LIVE_PLAYER is the program that plays it. Exits with 77 (skipped) where Chromium
 import json
 import pathlib
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -15,37 +14,14 @@ import time
 import unittest
 import urllib.parse
 
-SKIPPED = 77
+sys.dont_write_bytecode = True  # the folder of the sources stays as it is
 
+from browser import start_browser  # before selenium: skips without it
+from selenium.webdriver.common.by import By
 
-def skip(reason):
-    print(f"SKIPPED: the live page was NOT opened in a browser: {reason}", file=sys.stderr)
-    sys.exit(SKIPPED)
-
-
-try:
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-    from selenium.webdriver.common.by import By
-except ImportError as error:
-    skip(f"{error} (Debian's python3-selenium)")
-
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-DRIVER = shutil.which("chromedriver")
 PLAYER = None
 FOLDER = None
 PATIENCE_S = 60  # for a machine that does other things, too
-
-
-def start_browser(profile):
-    options = webdriver.ChromeOptions()
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                     "--disable-background-networking", "--no-first-run", "--window-size=1280,1000",
-                     f"--user-data-dir={profile}"):
-        options.add_argument(argument)
-    options.binary_location = CHROMIUM
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    return webdriver.Chrome(service=Service(DRIVER), options=options)
 
 
 class Player:
@@ -204,8 +180,6 @@ def main():
     if len(sys.argv) != 2:
         print("usage: live_browser.py LIVE_PLAYER", file=sys.stderr)
         return 2
-    if CHROMIUM is None or DRIVER is None:
-        skip("chromium or chromedriver is not installed (Debian's chromium and chromium-driver)")
     PLAYER = sys.argv[1]
     with tempfile.TemporaryDirectory(prefix="roadstereo_live_") as folder:
         FOLDER = pathlib.Path(folder)

@@ -6,43 +6,19 @@ REPORT_SAMPLES is the program that writes them. Exits with 77 (skipped) where Ch
 import base64
 import json
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
 
-SKIPPED = 77
+sys.dont_write_bytecode = True  # the folder of the sources stays as it is
 
+from browser import start_browser  # before selenium: skips without it
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 
-def skip(reason):
-    print(f"SKIPPED: reports were NOT opened in a browser: {reason}", file=sys.stderr)
-    sys.exit(SKIPPED)
-
-
-try:
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-    from selenium.webdriver.common.action_chains import ActionChains
-    from selenium.webdriver.common.by import By
-    from selenium.webdriver.common.keys import Keys
-except ImportError as error:
-    skip(f"{error} (Debian's python3-selenium)")
-
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-DRIVER = shutil.which("chromedriver")
 FOLDER = None
-
-
-def start_browser(profile):
-    options = webdriver.ChromeOptions()
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                     "--disable-background-networking", "--no-first-run", "--window-size=1280,1000",
-                     f"--user-data-dir={profile}"):
-        options.add_argument(argument)
-    options.binary_location = CHROMIUM
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    return webdriver.Chrome(service=Service(DRIVER), options=options)
 
 
 class Report(unittest.TestCase):
@@ -243,8 +219,6 @@ def main():
     if len(sys.argv) != 2:
         print("usage: report_browser.py REPORT_SAMPLES", file=sys.stderr)
         return 2
-    if CHROMIUM is None or DRIVER is None:
-        skip("chromium or chromedriver is not installed (Debian's chromium and chromium-driver)")
     with tempfile.TemporaryDirectory(prefix="roadstereo_report_") as folder:
         FOLDER = pathlib.Path(folder)
         subprocess.run([sys.argv[1], folder], check=True, timeout=200)

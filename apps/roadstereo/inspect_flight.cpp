@@ -32,12 +32,11 @@ io::FlightJournal open_journal(const FlightSettings& settings, const PipelineOpt
   return io::FlightJournal::begin(folder.journal(), facts);
 }
 
-std::string flight_text(const FlightRun& run, const FlightSummary& summary, const io::FlightInventory& inventory,
-                        const FlightFolder& folder) {
+std::string flight_text(const FlightRun& run, const FlightSummary& summary, const FlightFolder& folder) {
   std::string text = fmt::format("roadstereo {}: {}\n", version, run.source);
   text += fmt::format("  frames    {} ({} refused, {} failed), road estimated anew in {}\n", summary.frames,
                       summary.refused, summary.failed, summary.road_estimated);
-  text += fmt::format("  damage    {} damages in {} sightings\n", inventory.damages().size(), summary.sightings);
+  text += fmt::format("  damage    {} damages in {} sightings\n", summary.damages, summary.sightings);
   if (summary.placed) text += fmt::format("  map       {} of {} frames are on it\n", *summary.placed, summary.frames);
   if (!summary.track_note.empty()) text += fmt::format("            {}\n", summary.track_note);
   text += fmt::format("  time      {:.1f} s, {:.1f} frames/s\n", run.seconds, run.frames_per_second);
@@ -94,10 +93,10 @@ void inspect_flight(const FlightSettings& settings) {
   run.threads = used_threads(run.options);
 
   FlightSummary summary;
-  const std::string json = write_flight_results(settings, run, journal, inventory, places, folder, summary);
+  const std::string json = write_flight_results(settings, run, journal, places, folder, summary);
   progress.end();
   if (settings.json) fmt::print("{}", json);
-  if (!settings.json && !settings.quiet) fmt::print("{}", flight_text(run, summary, inventory, folder));
+  if (!settings.json && !settings.quiet) fmt::print("{}", flight_text(run, summary, folder));
   if (!run.complete) throw Interrupted{};
   if (summary.frames == 0) fail(settings.source[0], ": holds no frame between --from and --to");
   if (summary.good == 0) fail("none of the ", summary.frames, " frames could be matched: ", summary.reasons.front());

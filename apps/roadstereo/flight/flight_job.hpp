@@ -17,6 +17,10 @@ struct StagedFile {
   std::vector<std::uint8_t> bytes;
 };
 
+inline StagedFile text_file(const std::string& name, const std::string& text) {
+  return {name, {text.begin(), text.end()}};
+}
+
 /// One frame on its way through the program. Its memory serves one frame after the other.
 struct FlightJob {
   std::int64_t place = 0;  ///< which frame of the flight, from 0, whatever its place in the source

@@ -16,10 +16,6 @@ io::TrackOptions options_of(const TrackSettings& settings) {
   return options;
 }
 
-StagedFile text_file(const std::string& name, const std::string& text) {
-  return {name, {text.begin(), text.end()}};
-}
-
 /// A damage lies where the frame puts it on the road; without metres it has no place of its own.
 std::optional<io::Place> place_of(const Damage& damage, const std::optional<io::Place>& camera, double height_m) {
   if (!camera || !damage.metrics) return std::nullopt;

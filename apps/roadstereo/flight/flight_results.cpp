@@ -13,10 +13,6 @@ namespace roadstereo::cli {
 
 namespace {
 
-StagedFile text_file(const std::string& name, const std::string& text) {
-  return {name, {text.begin(), text.end()}};
-}
-
 std::string range_text(const std::vector<double>& values, const char* unit, int decimals) {
   std::vector<double> known;
   for (const double value : values) {
@@ -118,18 +114,18 @@ std::string report_of(const FlightSettings& settings, const FlightRun& run, cons
 }  // namespace
 
 std::string write_flight_results(const FlightSettings& settings, const FlightRun& run, const io::FlightJournal& journal,
-                                 const io::FlightInventory& inventory, std::optional<FlightPlaces>& places,
-                                 FlightFolder& folder, FlightSummary& summary) {
+                                 std::optional<FlightPlaces>& places, FlightFolder& folder, FlightSummary& summary) {
   std::string frames = io::frames_csv_names();
   std::string damages = io::flight_damages_csv_names();
-  io::FlightInventory again;  // to tell which damage of the road each sighting is
+  io::FlightInventory inventory;
   journal.for_each([&](const io::FlightFrame& frame) {
     summary.add(frame);
     frames += io::frames_csv_row(frame);
-    damages += io::flight_damages_csv_rows(frame, again.add(frame));
+    damages += io::flight_damages_csv_rows(frame, inventory.add(frame));
     if (places) places->add(frame);
   });
   summary.settle_times();
+  summary.damages = static_cast<std::int64_t>(inventory.damages().size());
   if (places) {
     summary.placed = static_cast<std::int64_t>(places->placed());
     summary.track_note = places->why_nowhere();

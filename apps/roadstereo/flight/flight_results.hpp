@@ -28,7 +28,6 @@ struct FlightRun {
 /// Writes frames.csv, damages.csv, summary.json and report.html from the journal, and the maps when there is a track
 /// (`places`, which takes the frames). Returns the text of summary.json.
 std::string write_flight_results(const FlightSettings& settings, const FlightRun& run, const io::FlightJournal& journal,
-                                 const io::FlightInventory& inventory, std::optional<FlightPlaces>& places,
-                                 FlightFolder& folder, FlightSummary& summary);
+                                 std::optional<FlightPlaces>& places, FlightFolder& folder, FlightSummary& summary);
 
 }  // namespace roadstereo::cli

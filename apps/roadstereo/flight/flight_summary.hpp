@@ -20,6 +20,7 @@ struct FlightSummary {
   std::int64_t road_unknown = 0;       ///< ... or not found before matching
   std::optional<std::int64_t> placed;  ///< frames that the track has a place for; absent without a track
   std::string track_note;              ///< why no frame has a place, when none has
+  std::int64_t damages = 0;            ///< of the road (FlightInventory)
   std::int64_t sightings = 0;          ///< of damages, over all frames
   std::vector<std::string> reasons;    ///< why frames are not good, each once, the first few
   double first_time_s = io::FlightFrame::unknown;

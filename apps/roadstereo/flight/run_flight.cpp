@@ -12,7 +12,6 @@
 #include "flight/flight_job.hpp"
 #include "flight/in_turn.hpp"
 #include "flight/match_frame.hpp"
-#include "lower_priority.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_pictures.hpp"
 
@@ -125,7 +124,6 @@ void Line::go_to_start(io::FrameSource& source) const {
 }
 
 void Line::read() {
-  lower_priority();
   io::FrameSource& source = flight_.source.source();
   go_to_start(source);
   while (!flight_.stop.wait(0)) {
@@ -166,7 +164,6 @@ void Line::match() {
 }
 
 void Line::finish() {
-  lower_priority();
   while (std::optional<JobPointer> job = matched_.take()) {
     finish_frame(flight_.source.calibration(), flight_.options, write_, **job);
     in_turn_.when_it_is((*job)->place, [&] { put_down(**job); });

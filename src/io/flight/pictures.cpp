@@ -1,12 +1,11 @@
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "io/damage_outline.hpp"
 #include "io/frame_mat.hpp"
-#include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_pictures.hpp"
 #include "roadstereo/io/image_file.hpp"
+#include "roadstereo/io/jpeg.hpp"
 #include "roadstereo/surroundings.hpp"
 
 namespace roadstereo::io {
@@ -14,11 +13,7 @@ namespace {
 
 std::vector<std::uint8_t> jpeg_of(const cv::Mat& picture) {
   constexpr int quality = 82;
-  std::vector<std::uint8_t> bytes;
-  if (!cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, quality})) {
-    fail<SystemError>("a picture of the flight could not be encoded as JPEG");
-  }
-  return bytes;
+  return encode_jpeg(frame_from(picture, ChannelOrder::bgr).view(), quality, picture.cols);
 }
 
 /// The part of the frame at that scale, in 8 bits and colour; white is the largest value of a deeper frame.
