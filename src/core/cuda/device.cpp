@@ -1,0 +1,50 @@
+#include "core/cuda/device.hpp"
+
+#include <cuda_runtime_api.h>
+
+#include "core/cuda/probe.hpp"
+#include "core/sentence.hpp"
+
+namespace roadstereo::cuda {
+namespace {
+
+Device unusable(std::string reason) {
+  static_cast<void>(cudaGetLastError());  // said, and not to be said again by the next call
+  Device device;
+  device.reason = std::move(reason);
+  return device;
+}
+
+std::string said(cudaError_t status) {
+  return cudaGetErrorString(status);
+}
+
+}  // namespace
+
+Device find_device() {
+  int count = 0;
+  if (const cudaError_t status = cudaGetDeviceCount(&count); status != cudaSuccess) {
+    return unusable("CUDA finds no device: " + said(status));
+  }
+  if (count == 0) return unusable("CUDA finds no device");
+  int index = 0;
+  cudaDeviceProp properties{};
+  cudaError_t status = cudaGetDevice(&index);
+  if (status == cudaSuccess) status = cudaGetDeviceProperties(&properties, index);
+  if (status != cudaSuccess) return unusable("the GPU does not answer: " + said(status));
+  const std::string name =
+      sentence(properties.name, " (compute capability ", properties.major, ".", properties.minor, ")");
+  if (const cudaError_t code = probe_code(); code != cudaSuccess) {
+    return unusable(sentence("this binary carries no code that the ", name, " can run (", said(code),
+                             "): build it with CMAKE_CUDA_ARCHITECTURES=", properties.major, properties.minor));
+  }
+  Device device;
+  device.name = name;
+  device.multiprocessors = properties.multiProcessorCount;
+  status = cudaDeviceGetAttribute(&device.shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, index);
+  if (status != cudaSuccess) return unusable("the GPU does not answer: " + said(status));
+  device.usable = true;
+  return device;
+}
+
+}  // namespace roadstereo::cuda

@@ -1,0 +1,207 @@
+#pragma once
+
+// The part of CUDA that the project uses, on the host: types, qualifiers and what kernels call. The functions of the
+// runtime are in runtime.cpp, threads and barriers in run_kernel.cpp. Names are CUDA's.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#define __global__
+#define __device__
+#define __host__
+#define __forceinline__ inline
+#define __restrict__ __restrict
+#define __launch_bounds__(...)
+#define __align__(n) alignas(n)
+
+struct uint3 {
+  unsigned x, y, z;
+};
+struct dim3 {
+  unsigned x, y, z;
+  constexpr dim3(unsigned across = 1, unsigned down = 1, unsigned deep = 1) : x(across), y(down), z(deep) {}
+};
+struct float2 {
+  float x, y;
+};
+struct alignas(16) float4 {
+  float x, y, z, w;
+};
+struct int2 {
+  int x, y;
+};
+struct alignas(16) int4 {
+  int x, y, z, w;
+};
+inline float2 make_float2(float x, float y) {
+  return {x, y};
+}
+inline float4 make_float4(float x, float y, float z, float w) {
+  return {x, y, z, w};
+}
+inline int4 make_int4(int x, int y, int z, int w) {
+  return {x, y, z, w};
+}
+
+namespace roadstereo::cuda::emulated {
+
+/// Who runs at the moment.
+struct Here {
+  uint3 thread, block;
+  dim3 block_size, grid_size;
+};
+const Here& here();
+void wait_for_block();
+void wait_for_warp();
+/// Leaves `bits` for the other lanes of the warp, waits for all of them, and returns what `lane` left.
+std::uint64_t exchange(std::uint64_t bits, int lane);
+/// Lanes of the warp that have not ended, whose `vote` is true.
+unsigned ballot(bool vote);
+int lane();
+
+template <class T>
+T exchange_value(T value, int from) {
+  static_assert(sizeof(T) <= sizeof(std::uint64_t));
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof(T));
+  bits = exchange(bits, from);
+  std::memcpy(&value, &bits, sizeof(T));
+  return value;
+}
+
+}  // namespace roadstereo::cuda::emulated
+
+#define threadIdx (::roadstereo::cuda::emulated::here().thread)
+#define blockIdx (::roadstereo::cuda::emulated::here().block)
+#define blockDim (::roadstereo::cuda::emulated::here().block_size)
+#define gridDim (::roadstereo::cuda::emulated::here().grid_size)
+
+inline void __syncthreads() {
+  ::roadstereo::cuda::emulated::wait_for_block();
+}
+inline void __syncwarp(unsigned = 0xFFFFFFFFU) {
+  ::roadstereo::cuda::emulated::wait_for_warp();
+}
+template <class T>
+T __shfl_sync(unsigned, T value, int from) {
+  return ::roadstereo::cuda::emulated::exchange_value(value, from & 31);
+}
+template <class T>
+T __shfl_xor_sync(unsigned, T value, int mask) {
+  return ::roadstereo::cuda::emulated::exchange_value(value, ::roadstereo::cuda::emulated::lane() ^ mask);
+}
+template <class T>
+T __shfl_down_sync(unsigned, T value, unsigned by) {
+  const int own = ::roadstereo::cuda::emulated::lane(), from = own + static_cast<int>(by);
+  return ::roadstereo::cuda::emulated::exchange_value(value, from < 32 ? from : own);
+}
+template <class T>
+T __shfl_up_sync(unsigned, T value, unsigned by) {
+  const int own = ::roadstereo::cuda::emulated::lane(), from = own - static_cast<int>(by);
+  return ::roadstereo::cuda::emulated::exchange_value(value, from >= 0 ? from : own);
+}
+inline unsigned __ballot_sync(unsigned, bool vote) {
+  return ::roadstereo::cuda::emulated::ballot(vote);
+}
+inline int __any_sync(unsigned mask, bool vote) {
+  return __ballot_sync(mask, vote) != 0;
+}
+template <class T>
+T __ldg(const T* at) {
+  return *at;
+}
+inline int __popc(unsigned bits) {
+  return __builtin_popcount(bits);
+}
+inline int __ffs(int bits) {
+  return __builtin_ffs(bits);
+}
+inline int __float_as_int(float value) {
+  int bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+inline float __int_as_float(int bits) {
+  float value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+template <class T>
+T atomicAdd(T* at, T value) {
+  const T before = *at;
+  *at = static_cast<T>(before + value);
+  return before;
+}
+template <class T>
+T atomicMin(T* at, T value) {
+  const T before = *at;
+  *at = value < before ? value : before;
+  return before;
+}
+template <class T>
+T atomicMax(T* at, T value) {
+  const T before = *at;
+  *at = before < value ? value : before;
+  return before;
+}
+template <class T>
+T atomicOr(T* at, T value) {
+  const T before = *at;
+  *at = static_cast<T>(before | value);
+  return before;
+}
+
+enum cudaError_t { cudaSuccess = 0, cudaErrorInvalidValue = 1, cudaErrorMemoryAllocation = 2 };
+enum cudaMemcpyKind {
+  cudaMemcpyHostToHost,
+  cudaMemcpyHostToDevice,
+  cudaMemcpyDeviceToHost,
+  cudaMemcpyDeviceToDevice,
+  cudaMemcpyDefault
+};
+enum cudaMemoryType { cudaMemoryTypeUnregistered, cudaMemoryTypeHost, cudaMemoryTypeDevice, cudaMemoryTypeManaged };
+enum cudaDeviceAttr { cudaDevAttrMaxSharedMemoryPerBlockOptin, cudaDevAttrMultiProcessorCount };
+struct cudaPointerAttributes {
+  cudaMemoryType type;
+};
+struct cudaDeviceProp {
+  char name[256];
+  int major, minor, multiProcessorCount;
+};
+struct cudaFuncAttributes {
+  int maxThreadsPerBlock;
+};
+using cudaStream_t = struct CUstream_st*;
+using cudaEvent_t = struct CUevent_st*;
+constexpr unsigned cudaStreamNonBlocking = 1;
+constexpr unsigned cudaHostAllocMapped = 2;
+
+cudaError_t cudaGetDeviceCount(int* count);
+cudaError_t cudaGetDevice(int* device);
+cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int device);
+cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int device);
+cudaError_t cudaDriverGetVersion(int* version);
+cudaError_t cudaRuntimeGetVersion(int* version);
+cudaError_t cudaGetLastError();
+const char* cudaGetErrorString(cudaError_t error);
+const char* cudaGetErrorName(cudaError_t error);
+cudaError_t cudaMalloc(void** memory, std::size_t bytes);
+cudaError_t cudaFree(void* memory);
+cudaError_t cudaHostAlloc(void** memory, std::size_t bytes, unsigned flags);
+cudaError_t cudaFreeHost(void* memory);
+cudaError_t cudaPointerGetAttributes(cudaPointerAttributes* attributes, const void* pointer);
+cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind kind, cudaStream_t stream);
+cudaError_t cudaMemcpy2DAsync(void* to, std::size_t to_pitch, const void* from, std::size_t from_pitch,
+                              std::size_t bytes, std::size_t rows, cudaMemcpyKind kind, cudaStream_t stream);
+cudaError_t cudaMemsetAsync(void* memory, int byte, std::size_t bytes, cudaStream_t stream);
+cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned flags);
+cudaError_t cudaStreamDestroy(cudaStream_t stream);
+cudaError_t cudaStreamSynchronize(cudaStream_t stream);
+cudaError_t cudaEventCreate(cudaEvent_t* event);
+cudaError_t cudaEventDestroy(cudaEvent_t event);
+cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t stream);
+cudaError_t cudaEventSynchronize(cudaEvent_t event);
+cudaError_t cudaEventElapsedTime(float* ms, cudaEvent_t first, cudaEvent_t last);

@@ -1,0 +1,261 @@
+#include "core/cuda/emulated/run_kernel.hpp"
+
+#include <ucontext.h>
+
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/common_interface_defs.h>
+#endif
+#if defined(__SANITIZE_THREAD__)
+#include <sanitizer/tsan_interface.h>
+#endif
+
+namespace roadstereo::cuda::emulated {
+namespace {
+
+constexpr std::size_t stack_bytes = std::size_t{256} << 10;
+constexpr int warp = 32;
+
+enum class Waits { no, for_warp, for_block, ended };
+
+/// One way of execution that can be left and entered again. The scheduler's own has no stack of ours.
+struct Fiber {
+  ucontext_t context{};
+  std::unique_ptr<char[]> stack;
+  Waits waits = Waits::no;
+  std::uint64_t left_for_others = 0;
+  Here here{};
+#if defined(__SANITIZE_ADDRESS__)
+  void* fake_stack = nullptr;
+#endif
+#if defined(__SANITIZE_THREAD__)
+  void* of_sanitizer = nullptr;
+#endif
+};
+
+/// The threads of the block that runs in this thread of the host.
+struct Block {
+  std::vector<std::unique_ptr<Fiber>> fibers;  ///< kept from launch to launch
+  std::size_t threads = 0;
+  Fiber scheduler;
+  Fiber* running = nullptr;
+  const std::function<void()>* kernel = nullptr;
+  std::exception_ptr failure;
+  std::unique_ptr<unsigned char[]> shared;
+  std::size_t launches = 0;
+  const void* stack_of_scheduler = nullptr;
+  std::size_t stack_of_scheduler_bytes = 0;
+
+  ~Block();
+};
+
+Block& block() {
+  static thread_local Block own;
+  return own;
+}
+
+void switch_fibers(Fiber& from, Fiber& to, bool for_ever) {
+  static_cast<void>(for_ever);
+#if defined(__SANITIZE_ADDRESS__)
+  Block& own = block();
+  const bool to_scheduler = &to == &own.scheduler;
+  __sanitizer_start_switch_fiber(for_ever ? nullptr : &from.fake_stack,
+                                 to_scheduler ? own.stack_of_scheduler : to.stack.get(),
+                                 to_scheduler ? own.stack_of_scheduler_bytes : stack_bytes);
+#endif
+#if defined(__SANITIZE_THREAD__)
+  __tsan_switch_to_fiber(to.of_sanitizer, 0);
+#endif
+  swapcontext(&from.context, &to.context);
+#if defined(__SANITIZE_ADDRESS__)
+  __sanitizer_finish_switch_fiber(from.fake_stack, nullptr, nullptr);
+#endif
+}
+
+Block::~Block() {
+#if defined(__SANITIZE_THREAD__)
+  for (const auto& fiber : fibers) __tsan_destroy_fiber(fiber->of_sanitizer);
+#endif
+}
+
+/// What a fiber does: one thread of the kernel, then back to the scheduler for good.
+void run_thread() {
+  Block& own = block();
+#if defined(__SANITIZE_ADDRESS__)
+  __sanitizer_finish_switch_fiber(nullptr, &own.stack_of_scheduler, &own.stack_of_scheduler_bytes);
+#endif
+  Fiber& self = *own.running;
+  try {
+    (*own.kernel)();
+  } catch (...) {
+    own.failure = std::current_exception();
+  }
+  self.waits = Waits::ended;
+  switch_fibers(self, own.scheduler, true);
+}
+
+void start(Fiber& fiber) {
+  if (!fiber.stack) {
+    fiber.stack.reset(new char[stack_bytes]);
+#if defined(__SANITIZE_THREAD__)
+    fiber.of_sanitizer = __tsan_create_fiber(0);
+#endif
+  }
+  getcontext(&fiber.context);
+  fiber.context.uc_stack.ss_sp = fiber.stack.get();
+  fiber.context.uc_stack.ss_size = stack_bytes;
+  fiber.context.uc_link = nullptr;
+  makecontext(&fiber.context, run_thread, 0);
+  fiber.waits = Waits::no;
+}
+
+void wait(Waits what) {
+  Block& own = block();
+  Fiber& self = *own.running;
+  self.waits = what;
+  switch_fibers(self, own.scheduler, false);
+}
+
+/// Lets go the warps, or else the block, all of whose threads wait for it. True when somebody can run.
+bool release_waiting() {
+  Block& own = block();
+  bool released = false;
+  for (std::size_t first = 0; first < own.threads; first += warp) {
+    const std::size_t end = std::min(first + warp, own.threads);
+    bool all = true;
+    for (std::size_t t = first; t < end; ++t) {
+      const Waits waits = own.fibers[t]->waits;
+      all = all && (waits == Waits::for_warp || waits == Waits::ended);
+    }
+    for (std::size_t t = first; all && t < end; ++t) {
+      if (own.fibers[t]->waits != Waits::for_warp) continue;
+      own.fibers[t]->waits = Waits::no;
+      released = true;
+    }
+  }
+  if (released) return true;
+  for (std::size_t t = 0; t < own.threads; ++t) {
+    if (own.fibers[t]->waits != Waits::for_block) return false;
+  }
+  for (std::size_t t = 0; t < own.threads; ++t) own.fibers[t]->waits = Waits::no;
+  return true;
+}
+
+bool all_ended() {
+  Block& own = block();
+  for (std::size_t t = 0; t < own.threads; ++t) {
+    if (own.fibers[t]->waits != Waits::ended) return false;
+  }
+  return true;
+}
+
+/// Threads run in turn until each waits; every other turn goes backwards.
+void run_block() {
+  Block& own = block();
+  for (bool forwards = true; !all_ended(); forwards = !forwards) {
+    for (std::size_t i = 0; i < own.threads; ++i) {
+      Fiber& fiber = *own.fibers[forwards ? i : own.threads - 1 - i];
+      if (fiber.waits != Waits::no) continue;
+      own.running = &fiber;
+      switch_fibers(own.scheduler, fiber, false);
+    }
+    if (own.failure) std::rethrow_exception(std::exchange(own.failure, nullptr));
+    if (!release_waiting() && !all_ended()) {
+      throw std::logic_error("threads of a block wait for each other at different barriers");
+    }
+  }
+}
+
+}  // namespace
+
+void run_kernel(dim3 grid, dim3 size, std::size_t shared_bytes, const std::function<void()>& thread) {
+  Block& own = block();
+  own.kernel = &thread;
+  own.threads = std::size_t{size.x} * size.y * size.z;
+  if (own.threads == 0 || own.threads > 1024) throw std::logic_error("a block has 1 to 1024 threads");
+  if (grid.x == 0 || grid.y == 0 || grid.z == 0 || grid.y > 65535 || grid.z > 65535) {
+    throw std::logic_error("a grid has at least one block, and at most 65535 down and deep");
+  }
+  while (own.fibers.size() < own.threads) own.fibers.push_back(std::make_unique<Fiber>());
+#if defined(__SANITIZE_THREAD__)
+  own.scheduler.of_sanitizer = __tsan_get_current_fiber();
+#endif
+  const bool forwards = own.launches++ % 2 == 0;
+  const std::size_t blocks = std::size_t{grid.x} * grid.y * grid.z;
+  for (std::size_t i = 0; i < blocks; ++i) {
+    const std::size_t index = forwards ? i : blocks - 1 - i;
+    const auto x = static_cast<unsigned>(index % grid.x), rest = static_cast<unsigned>(index / grid.x);
+    own.shared.reset(new unsigned char[shared_bytes]);
+    std::memset(own.shared.get(), 0xFF, shared_bytes);
+    for (std::size_t t = 0; t < own.threads; ++t) {
+      const auto n = static_cast<unsigned>(t);
+      own.fibers[t]->here = {
+          {n % size.x, n / size.x % size.y, n / size.x / size.y}, {x, rest % grid.y, rest / grid.y}, size, grid};
+      start(*own.fibers[t]);
+    }
+    run_block();
+  }
+}
+
+void* shared_memory() {
+  return block().shared.get();
+}
+
+const Here& here() {
+  return block().running->here;
+}
+
+void wait_for_block() {
+  wait(Waits::for_block);
+}
+
+void wait_for_warp() {
+  wait(Waits::for_warp);
+}
+
+int lane() {
+  const Here& own = here();
+  const unsigned thread = own.thread.x + own.block_size.x * (own.thread.y + own.block_size.y * own.thread.z);
+  return static_cast<int>(thread % warp);
+}
+
+namespace {
+
+/// The fiber of a lane of the running thread's warp; null behind the end of the block.
+Fiber* of_lane(int of) {
+  const Here& own = here();
+  const std::size_t thread = own.thread.x + own.block_size.x * (own.thread.y + own.block_size.y * own.thread.z);
+  const std::size_t other = thread / warp * warp + static_cast<std::size_t>(of);
+  return other < block().threads ? block().fibers[other].get() : nullptr;
+}
+
+}  // namespace
+
+std::uint64_t exchange(std::uint64_t bits, int from) {
+  block().running->left_for_others = bits;
+  wait_for_warp();
+  const Fiber* other = of_lane(from);
+  const std::uint64_t theirs = other != nullptr ? other->left_for_others : bits;
+  wait_for_warp();
+  return theirs;
+}
+
+unsigned ballot(bool vote) {
+  block().running->left_for_others = vote ? 1 : 0;
+  wait_for_warp();
+  unsigned votes = 0;
+  for (int other = 0; other < warp; ++other) {
+    const Fiber* fiber = of_lane(other);
+    if (fiber != nullptr && fiber->waits != Waits::ended && fiber->left_for_others == 1) votes |= 1U << other;
+  }
+  wait_for_warp();
+  return votes;
+}
+
+}  // namespace roadstereo::cuda::emulated

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include "core/cuda/emulated/cuda_runtime.h"
+
+/// Runs kernels on the host, one thread after the other: a machine without a GPU checks with it what the kernels
+/// compute. Blocks run one after the other; the threads of a block take turns at their barriers, forth and back, so
+/// that a missing barrier shows. Shared and device memory begin as bytes 0xFF, and are as large as was asked for, so
+/// that the address sanitizer sees what compute-sanitizer would.
+namespace roadstereo::cuda::emulated {
+
+/// Throws std::logic_error when the threads of a block wait for each other at different barriers, or for one that
+/// ended.
+void run_kernel(dim3 grid, dim3 block, std::size_t shared_bytes, const std::function<void()>& thread);
+
+/// Shared memory of the block that runs.
+void* shared_memory();
+
+/// Calls of cudaMalloc and cudaHostAlloc so far, of the whole process.
+std::size_t allocations();
+
+}  // namespace roadstereo::cuda::emulated

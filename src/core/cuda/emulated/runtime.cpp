@@ -1,0 +1,177 @@
+// The functions of CUDA's runtime on the host: a stream does at once what it is asked.
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <map>
+#include <mutex>
+
+#include "core/cuda/emulated/cuda_runtime.h"
+#include "core/cuda/emulated/run_kernel.hpp"
+
+struct CUstream_st {};
+struct CUevent_st {
+  std::chrono::steady_clock::time_point time;
+};
+
+namespace {
+
+/// Which memory is whose: pointers are of the device, of pinned memory, or unknown.
+class Memory {
+ public:
+  cudaError_t take(void** memory, std::size_t bytes, cudaMemoryType type) {
+    constexpr std::size_t most = std::size_t{1} << 34;
+    *memory = bytes <= most ? std::malloc(bytes) : nullptr;
+    if (*memory == nullptr) return cudaErrorMemoryAllocation;
+    std::memset(*memory, 0xFF, bytes);
+    const std::lock_guard lock(mutex_);
+    ++count_;
+    blocks_[*memory] = {bytes, type};
+    return cudaSuccess;
+  }
+
+  cudaError_t give_back(void* memory) {
+    if (memory == nullptr) return cudaSuccess;
+    {
+      const std::lock_guard lock(mutex_);
+      if (blocks_.erase(memory) == 0) return cudaErrorInvalidValue;
+    }
+    std::free(memory);
+    return cudaSuccess;
+  }
+
+  cudaMemoryType type_of(const void* pointer) {
+    const std::lock_guard lock(mutex_);
+    auto block = blocks_.upper_bound(pointer);
+    if (block == blocks_.begin()) return cudaMemoryTypeUnregistered;
+    --block;
+    const auto distance = static_cast<const char*>(pointer) - static_cast<const char*>(block->first);
+    return static_cast<std::size_t>(distance) < block->second.bytes ? block->second.type : cudaMemoryTypeUnregistered;
+  }
+
+  std::size_t count() {
+    const std::lock_guard lock(mutex_);
+    return count_;
+  }
+
+ private:
+  struct Block {
+    std::size_t bytes;
+    cudaMemoryType type;
+  };
+  std::mutex mutex_;
+  std::map<const void*, Block> blocks_;
+  std::size_t count_ = 0;
+};
+
+/// One for the process, as a device's memory is.
+Memory& memory() {
+  static Memory all;
+  return all;
+}
+
+}  // namespace
+
+std::size_t roadstereo::cuda::emulated::allocations() {
+  return memory().count();
+}
+
+cudaError_t cudaGetDeviceCount(int* count) {
+  *count = 1;
+  return cudaSuccess;
+}
+cudaError_t cudaGetDevice(int* device) {
+  *device = 0;
+  return cudaSuccess;
+}
+cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int) {
+  *properties = {};
+  std::strncpy(properties->name, "the host's imitation of a GPU", sizeof properties->name - 1);
+  properties->multiProcessorCount = 2;
+  return cudaSuccess;
+}
+cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int) {
+  constexpr int smallest_of_all_devices = 48 << 10;
+  *value = attribute == cudaDevAttrMaxSharedMemoryPerBlockOptin ? smallest_of_all_devices : 2;
+  return cudaSuccess;
+}
+cudaError_t cudaDriverGetVersion(int* version) {
+  *version = 0;
+  return cudaSuccess;
+}
+cudaError_t cudaRuntimeGetVersion(int* version) {
+  *version = 0;
+  return cudaSuccess;
+}
+cudaError_t cudaGetLastError() {
+  return cudaSuccess;
+}
+const char* cudaGetErrorString(cudaError_t error) {
+  return error == cudaErrorMemoryAllocation ? "out of memory" : error == cudaSuccess ? "no error" : "invalid argument";
+}
+const char* cudaGetErrorName(cudaError_t error) {
+  return error == cudaErrorMemoryAllocation ? "cudaErrorMemoryAllocation"
+         : error == cudaSuccess             ? "cudaSuccess"
+                                            : "cudaErrorInvalidValue";
+}
+cudaError_t cudaMalloc(void** pointer, std::size_t bytes) {
+  return memory().take(pointer, bytes, cudaMemoryTypeDevice);
+}
+cudaError_t cudaFree(void* pointer) {
+  return memory().give_back(pointer);
+}
+cudaError_t cudaHostAlloc(void** pointer, std::size_t bytes, unsigned) {
+  return memory().take(pointer, bytes, cudaMemoryTypeHost);
+}
+cudaError_t cudaFreeHost(void* pointer) {
+  return memory().give_back(pointer);
+}
+cudaError_t cudaPointerGetAttributes(cudaPointerAttributes* attributes, const void* pointer) {
+  attributes->type = memory().type_of(pointer);
+  return cudaSuccess;
+}
+cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind, cudaStream_t) {
+  std::memcpy(to, from, bytes);
+  return cudaSuccess;
+}
+cudaError_t cudaMemcpy2DAsync(void* to, std::size_t to_pitch, const void* from, std::size_t from_pitch,
+                              std::size_t bytes, std::size_t rows, cudaMemcpyKind, cudaStream_t) {
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::memcpy(static_cast<char*>(to) + row * to_pitch, static_cast<const char*>(from) + row * from_pitch, bytes);
+  }
+  return cudaSuccess;
+}
+cudaError_t cudaMemsetAsync(void* pointer, int byte, std::size_t bytes, cudaStream_t) {
+  std::memset(pointer, byte, bytes);
+  return cudaSuccess;
+}
+cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) {
+  *stream = new CUstream_st;
+  return cudaSuccess;
+}
+cudaError_t cudaStreamDestroy(cudaStream_t stream) {
+  delete stream;
+  return cudaSuccess;
+}
+cudaError_t cudaStreamSynchronize(cudaStream_t) {
+  return cudaSuccess;
+}
+cudaError_t cudaEventCreate(cudaEvent_t* event) {
+  *event = new CUevent_st;
+  return cudaSuccess;
+}
+cudaError_t cudaEventDestroy(cudaEvent_t event) {
+  delete event;
+  return cudaSuccess;
+}
+cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t) {
+  event->time = std::chrono::steady_clock::now();
+  return cudaSuccess;
+}
+cudaError_t cudaEventSynchronize(cudaEvent_t) {
+  return cudaSuccess;
+}
+cudaError_t cudaEventElapsedTime(float* ms, cudaEvent_t first, cudaEvent_t last) {
+  *ms = std::chrono::duration<float, std::milli>(last->time - first->time).count();
+  return cudaSuccess;
+}
