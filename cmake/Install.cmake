@@ -3,6 +3,9 @@ include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/roadstereo)
 
 install(TARGETS roadstereo roadstereo_synth EXPORT roadstereoTargets)
+if(ROADSTEREO_WITH_CUDA)
+  install(TARGETS roadstereo_cuda EXPORT roadstereoTargets)
+endif()
 install(EXPORT roadstereoTargets NAMESPACE roadstereo:: DESTINATION ${package_folder})
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/roadstereo DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "roadstereo/matcher.hpp"
+#include "stereo/sub_pixel.hpp"
 
 namespace roadstereo {
 
@@ -24,19 +25,6 @@ std::vector<Tap> window_taps(const MatcherOptions& options);
 /// (n (S + N)). The disparity of least squares has the variance 2 N / Σ(∂i/∂u)² = 2 E / (n K). A winner that is no
 /// minimum of the costs adds the distance from the vertex of the parabola to the reach of eq. subpixel.
 double support_pixels(const MatcherOptions& options);
-
-/// The prior counts in full where the smallest cost is `lean_full_at` − `lean_offset` or more, and less where a
-/// disparity correlates well: small differences of small costs say as much as large ones of large costs.
-inline constexpr float lean_offset = 0.02F;
-inline constexpr float lean_full_at = 0.1F;
-
-/// A winner that leans on the prior may lie beside the minimum of the costs. Eq. subpixel then reaches as far as this,
-/// pixels, where the noise is below that variance, pixels²; half a pixel elsewhere.
-inline constexpr float sure_reach = 1.5F;
-inline constexpr float sure_variance = 0.04F;
-
-/// Second difference of the costs below which they do not tell where their minimum is.
-inline constexpr float least_curvature = 1e-6F;
 
 /// For every row v the first target column that all rows of the block around v see: blocks are rectangles, so the
 /// common view of a block begins there.

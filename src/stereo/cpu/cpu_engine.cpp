@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "stereo/cpu/trim_window.hpp"
+#include "stereo/trim_window.hpp"
 #include "stereo/cpu/view_matcher.hpp"
 #include "stereo/window.hpp"
 
@@ -135,7 +135,7 @@ class CpuEngine final : public StereoEngine {
   void use(const MatcherOptions& options) {
     if (options_ == options) return;
     options_ = options;
-    taps_ = cpu::trimmed_taps(options);
+    taps_ = trimmed_taps(options);
     prepared_columns_ = prepared_disparities_ = 0;
   }
 

@@ -109,6 +109,14 @@ inline int __any_sync(unsigned mask, bool vote) {
   return __ballot_sync(mask, vote) != 0;
 }
 template <class T>
+T min(T a, T b) {
+  return b < a ? b : a;
+}
+template <class T>
+T max(T a, T b) {
+  return a < b ? b : a;
+}
+template <class T>
 T __ldg(const T* at) {
   return *at;
 }

@@ -1,8 +1,8 @@
-#include "stereo/cpu/trim_window.hpp"
+#include "stereo/trim_window.hpp"
 
 #include <cmath>
 
-namespace roadstereo::cpu {
+namespace roadstereo {
 
 std::vector<Tap> trimmed_taps(const MatcherOptions& options) {
   constexpr double negligible = 5e-4;
@@ -23,4 +23,4 @@ std::vector<Tap> trimmed_taps(const MatcherOptions& options) {
   return taps;
 }
 
-}  // namespace roadstereo::cpu
+}  // namespace roadstereo

@@ -1,0 +1,78 @@
+#include "core/cuda/launch.hpp"
+#include "stereo/cuda/block_sums.hpp"
+
+// Floor per pixel and view: 2 bytes read and 24 written, 4 (2r + 1) additions when columns and rows are summed apart.
+// At 640×360 both views write 11 MB: 2.3 µs of an H200's 4.8 TB/s.
+
+namespace roadstereo::cuda {
+namespace {
+
+constexpr int tile_columns = 32;
+constexpr int tile_rows = 8;
+
+__device__ int centred(const Plane<const std::int16_t>& image, int u, int v) {
+  return u >= 0 && u < image.width && v >= 0 && v < image.height ? __ldg(image.row(v) + u) - mid_grey : 0;
+}
+
+/// The sums over the columns of a tile and a radius around it, then those over its blocks.
+__global__ void sum_tile(Plane<const std::int16_t> left, Plane<const std::int16_t> right, int radius,
+                         float noise_variance, BlockSums sums) {
+  const int view = static_cast<int>(blockIdx.z);
+  const Plane<const std::int16_t> image = view == 0 ? left : right;
+  const int first_u = static_cast<int>(blockIdx.x) * tile_columns - radius;
+  const int first_v = static_cast<int>(blockIdx.y) * tile_rows;
+  const int wide = tile_columns + 2 * radius;
+  auto* columns = shared_memory<ColumnSums>();
+  for (int i = static_cast<int>(threadIdx.x); i < wide * tile_rows; i += static_cast<int>(blockDim.x)) {
+    const int u = first_u + i % wide, v = first_v + i / wide;
+    ColumnSums column{0, 0};
+    for (int y = v - radius; y <= v + radius; ++y) {
+      const int grey = y < image.height && y >= 0 ? centred(image, u, y) : 0;
+      column.sum += grey;
+      column.squares += grey * grey;
+    }
+    columns[i] = column;
+    const bool in_tile = u >= first_u + radius && u < first_u + radius + tile_columns;
+    if (in_tile && u < image.width && v < image.height) sums.columns[view](u, v) = column;
+  }
+  __syncthreads();
+  const int x = static_cast<int>(threadIdx.x) % tile_columns, y = static_cast<int>(threadIdx.x) / tile_columns;
+  const int u = first_u + radius + x, v = first_v + y;
+  if (u >= image.width || v >= image.height) return;
+  int sum = 0, squares = 0;
+  for (int k = 0; k <= 2 * radius; ++k) {
+    const ColumnSums& column = columns[y * wide + x + k];
+    sum += column.sum;
+    squares += column.squares;
+  }
+  const int rows = min(v + radius, image.height - 1) - max(v - radius, 0) + 1;
+  sums.statistics[view](u, v) = block_statistics(rows * (2 * radius + 1), sum, squares, noise_variance);
+}
+
+__global__ void take_first_columns(const int* first, int rows, int radius, int* of_blocks) {
+  const int v = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (v >= rows) return;
+  int latest = 0;
+  for (int y = max(0, v - radius); first != nullptr && y <= min(rows - 1, v + radius); ++y) {
+    latest = max(latest, first[y]);
+  }
+  of_blocks[v] = latest;
+}
+
+}  // namespace
+
+void sum_blocks(const Plane<const std::int16_t> (&images)[2], int block_radius, float noise_variance,
+                const BlockSums& sums, cudaStream_t stream) {
+  const std::size_t shared =
+      sizeof(ColumnSums) * static_cast<std::size_t>((tile_columns + 2 * block_radius) * tile_rows);
+  const dim3 grid(blocks_for(images[0].width, tile_columns), blocks_for(images[0].height, tile_rows), 2);
+  launch(sum_tile, {grid, tile_columns * tile_rows, shared}, stream, images[0], images[1], block_radius, noise_variance,
+         sums);
+}
+
+void first_columns_of_blocks(const int* first, int rows, int block_radius, int* of_blocks, cudaStream_t stream) {
+  constexpr int threads = 128;
+  launch(take_first_columns, {blocks_for(rows, threads), threads}, stream, first, rows, block_radius, of_blocks);
+}
+
+}  // namespace roadstereo::cuda

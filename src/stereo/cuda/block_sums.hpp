@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+
+#include "core/cuda/plane.hpp"
+#include "stereo/cuda/block_cost.hpp"
+
+namespace roadstereo::cuda {
+
+/// The blocks of both views, "means and deviations once": what a cost needs besides the products.
+struct BlockSums {
+  Plane<ColumnSums> columns[2];          ///< over the rows of a block, per column of each view
+  Plane<BlockStatistics> statistics[2];  ///< of the whole blocks; of no meaning where one leaves the image's columns
+};
+
+/// Fills `sums` for the two images of a pair.
+void sum_blocks(const Plane<const std::int16_t> (&images)[2], int block_radius, float noise_variance,
+                const BlockSums& sums, cudaStream_t stream);
+
+/// For every row v the first target column that all rows of the block around v see, as block_first_columns does.
+/// `first` null: every row sees all.
+void first_columns_of_blocks(const int* first, int rows, int block_radius, int* of_blocks, cudaStream_t stream);
+
+}  // namespace roadstereo::cuda

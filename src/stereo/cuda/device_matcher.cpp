@@ -1,0 +1,105 @@
+#include "stereo/cuda/device_matcher.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "stereo/cuda/finish_rows.hpp"
+#include "stereo/trim_window.hpp"
+#include "stereo/window.hpp"
+
+namespace roadstereo::cuda {
+
+/// The window's taps with their weights by distance, on both sides of the bus.
+void DeviceMatcher::use(const MatcherOptions& options, cudaStream_t stream) {
+  if (options_ == options) return;
+  ROADSTEREO_CUDA(cudaStreamSynchronize(stream));  // what still reads the taps of before
+  const std::vector<Tap> taps = trimmed_taps(options);
+  taps_.reserve(taps.size());
+  taps_on_device_.reserve(taps.size());
+  settings_ = {};
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    const double distance2 = taps[i].du * taps[i].du + taps[i].dv * taps[i].dv;
+    const double log2_space = -distance2 / (options.sigma_space * options.sigma_space) * std::numbers::log2e;
+    taps_.data()[i] = {static_cast<std::int16_t>(taps[i].du), static_cast<std::int16_t>(taps[i].dv),
+                       static_cast<float>(log2_space)};
+    settings_.reach_across = std::max(settings_.reach_across, taps[i].du);
+    settings_.reach_down = std::max(settings_.reach_down, taps[i].dv);
+  }
+  const double sigma_colour = options.sigma_colour * grey_scale, noise = options.texture_noise * grey_scale;
+  settings_.block_radius = options.block_radius;
+  settings_.noise_variance = static_cast<float>(noise * noise);
+  settings_.taps = taps_on_device_.data();
+  settings_.tap_count = static_cast<int>(taps.size());
+  settings_.log2_colour = static_cast<float>(-std::numbers::log2e / (sigma_colour * sigma_colour));
+  settings_.support = static_cast<float>(support_pixels(options));
+  settings_.prior_slope = static_cast<float>(options.prior_slope);
+  settings_.prior_reach = static_cast<float>(options.prior_reach);
+  ROADSTEREO_CUDA(cudaMemcpyAsync(taps_on_device_.data(), taps_.data(), taps.size() * sizeof(WindowTap),
+                                  cudaMemcpyHostToDevice, stream));
+  options_ = options;
+}
+
+void DeviceMatcher::reserve(int width, int height) {
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  for (std::size_t side = 0; side < 2; ++side) {
+    column_sums_[side].reserve(pixels);
+    blocks_[side].reserve(pixels);
+    sums_.columns[side] = packed_plane(column_sums_[side].data(), width, height);
+    sums_.statistics[side] = packed_plane(blocks_[side].data(), width, height);
+  }
+  first_columns_.reserve(static_cast<std::size_t>(height));
+  disparity_.reserve(pixels);
+  variance_.reserve(pixels);
+  winner_.reserve(pixels);
+  target_winner_.reserve(pixels);
+  maps_ = {packed_plane(disparity_.data(), width, height), packed_plane(variance_.data(), width, height),
+           packed_plane(winner_.data(), width, height), packed_plane(target_winner_.data(), width, height)};
+}
+
+ViewToMatch DeviceMatcher::view_of(const DeviceMatchInput& input, bool mirrored) const {
+  const std::size_t own = mirrored ? 1 : 0, other = 1 - own;
+  ViewToMatch view{};
+  view.own = mirrored ? input.target : input.reference;
+  view.other = mirrored ? input.reference : input.target;
+  view.own_columns = sums_.columns[own];
+  view.other_columns = sums_.columns[other];
+  view.own_blocks = sums_.statistics[own];
+  view.other_blocks = sums_.statistics[other];
+  view.first_column = first_columns_.data();
+  view.mirrored = mirrored;
+  view.disparities = input.disparities;
+  view.ranges = mirrored ? input.target_ranges : input.reference_ranges;
+  view.range_columns = SearchRanges::tile_columns;
+  view.range_rows = SearchRanges::tile_rows;
+  view.ranges_across = (view.own.width + SearchRanges::tile_columns - 1) / SearchRanges::tile_columns;
+  if (!mirrored) view.prior = input.prior;
+  view.prior_factor = input.prior_factor;
+  return view;
+}
+
+const DeviceMatchMaps& DeviceMatcher::match(const DeviceMatchInput& input, const MatcherOptions& options,
+                                            cudaStream_t stream) {
+  const int width = input.reference.width, height = input.reference.height;
+  use(options, stream);
+  reserve(width, height);
+  const ViewLaunch plan = plan_view_launch(settings_, width, height, input.disparities, multiprocessors_);
+  energies_.reserve(static_cast<std::size_t>(plan.blocks) * plan.energies_per_block);
+
+  const Plane<const std::int16_t> images[2]{input.reference, input.target};
+  sum_blocks(images, options.block_radius, settings_.noise_variance, sums_, stream);
+  first_columns_of_blocks(input.first_column, height, options.block_radius, first_columns_.data(), stream);
+  match_view(view_of(input, false), settings_, taps_.data(), plan, energies_.data(),
+             {maps_.winner, maps_.disparity, maps_.variance}, stream);
+  if (options.target_volume) {
+    match_view(view_of(input, true), settings_, taps_.data(), plan, energies_.data(), {maps_.target_winner, {}, {}},
+               stream);
+  }
+  const auto hidden_variance = static_cast<float>(options.hidden_sigma_px * options.hidden_sigma_px);
+  const FinishSettings finish{!options.target_volume, options.left_right_check, static_cast<float>(options.consistency),
+                              hidden_variance,        options.sub_pixel,        options.drop_range_ends};
+  finish_rows(maps_.winner, maps_.target_winner, maps_.disparity, maps_.variance, finish, stream);
+  return maps_;
+}
+
+}  // namespace roadstereo::cuda

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/cuda/plane.hpp"
+#include "stereo/cuda/block_sums.hpp"
+
+namespace roadstereo::cuda {
+
+/// One tap of the aggregation window: its offset from the pixel, and log2 of its weight by distance (eq. omega0).
+struct WindowTap {
+  std::int16_t du;
+  std::int16_t dv;
+  float log2_space;
+};
+
+/// Disparities first ≤ d < end that a tile of SearchRanges searches.
+struct TileRange {
+  std::int16_t first;
+  std::int16_t end;
+};
+
+/// One view of a pair as the kernel walks over it. The kernel knows one direction only: pixel i of its own view may
+/// match pixel i − d of the other. For the target view both images are therefore read mirrored, from their last
+/// columns on; the planes themselves are not.
+struct ViewToMatch {
+  Plane<const std::int16_t> own, other;
+  Plane<const ColumnSums> own_columns, other_columns;
+  Plane<const BlockStatistics> own_blocks, other_blocks;
+  const int* first_column;  ///< per row: first column of the target that its whole blocks see
+  bool mirrored;            ///< the own view is the target
+  int disparities;
+  const TileRange* ranges;  ///< one per tile of the own view, row by row; null: all search everything
+  int range_columns;        ///< pixels of such a tile
+  int range_rows;
+  int ranges_across;         ///< tiles in a row
+  Plane<const float> prior;  ///< what the winners lean on; no data: nothing
+  int prior_factor;          ///< pixels that one of the prior stands for, across and down
+};
+
+struct ViewSettings {
+  int block_radius;
+  float noise_variance;
+  const WindowTap* taps;  ///< in device memory
+  int tap_count;
+  int reach_across;  ///< of the taps, pixels
+  int reach_down;
+  float log2_colour;  ///< −log2 e / σ1², per squared step of grey
+  float support;      ///< pixels that an energy rests on
+  float prior_slope;
+  float prior_reach;
+};
+
+/// What a view leaves: winners (−1 where nothing can match), and of each its distance to the minimum, NaN where it has
+/// no neighbour on one side, and its variance.
+struct ViewWinners {
+  Plane<std::int16_t> winner;
+  Plane<float> offset;  ///< no data: not wanted, nor the variance
+  Plane<float> variance;
+};
+
+/// How the kernel is run on a device: so many blocks as find room at a time, each with memory for its energies.
+struct ViewLaunch {
+  int blocks;
+  std::size_t energies_per_block;  ///< floats
+  std::size_t shared_bytes;
+};
+
+/// For a device with so many multiprocessors and so much shared memory for a block.
+ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height, int disparities, int multiprocessors);
+
+/// Matching costs (eq. c), bilateral aggregation (eqs. fbs, omega) and winner-take-all of one view, in one kernel:
+/// costs live in shared memory, energies in a slice of `energies` that stays in the cache. `taps_on_host` are the
+/// settings' taps where the host can read them.
+void match_view(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
+                const ViewLaunch& plan, float* energies, const ViewWinners& winners, cudaStream_t stream);
+
+}  // namespace roadstereo::cuda
