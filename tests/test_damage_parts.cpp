@@ -421,6 +421,21 @@ TEST(RoadSurfaceFit, LooksOnlyAtTheRegion) {
   EXPECT_THROW(refit_road_surface(road.cells, road.coordinates, region, earlier, Sampling::fine), Error);
 }
 
+/// Of a single row of cells nothing can be said across it; along it the fit is exact.
+TEST(RoadSurfaceFit, LeavesOutWhatTheSamplesDoNotTellApart) {
+  constexpr int only = 102;
+  const QuadraticRoad road({}, camber_px, 0, 0);
+  RoadSurface earlier = fit_road_surface(road.cells, road.coordinates);
+  earlier.noise = 0.1;
+  Image<std::uint8_t> region(300, 200, 0);
+  for (int i = 0; i < 300; ++i) region(i, only) = 255;
+  const RoadSurface surface = refit_road_surface(road.cells, road.coordinates, region, earlier, Sampling::fine);
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_NEAR(surface.value(i, only), road.truth(i, only), 1e-4) << i;
+    ASSERT_NEAR(surface.value(i, 0), road.truth(i, only), 1e-4) << i;
+  }
+}
+
 double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

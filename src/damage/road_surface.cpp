@@ -1,43 +1,43 @@
 #include "damage/road_surface.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
+#include "core/cholesky.hpp"
 #include "core/median.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
 namespace {
 
-constexpr int plane_terms = 3;
-constexpr int quadratic_terms = 6;
-using Terms = Eigen::Matrix<double, quadratic_terms, 1>;
-using Normal = Eigen::Matrix<double, quadratic_terms, quadratic_terms>;
-using Values = Eigen::ArrayXd;
+constexpr std::size_t plane_terms = 3;
+constexpr std::size_t quadratic_terms = 6;
+using Terms = Vector<quadratic_terms>;
+using Values = std::vector<double>;
 
-/// Cells that may be road, one coefficient each. `residual` is the value less the fit so far.
+/// Cells that may be road, one element each. `residual` is the value less the fit so far.
 struct Samples {
   Values x, y, scale, value, residual;
 
-  explicit Samples(Eigen::Index count) : x(count), y(count), scale(count), value(count), residual(count) {}
-  Eigen::Index size() const { return value.size(); }
-  void resize(Eigen::Index count) {
-    for (Values* values : {&x, &y, &scale, &value, &residual}) values->conservativeResize(count);
+  explicit Samples(std::size_t count) : x(count), y(count), scale(count), value(count), residual(count) {}
+  std::size_t size() const { return value.size(); }
+  void resize(std::size_t count) {
+    for (Values* values : {&x, &y, &scale, &value, &residual}) values->resize(count);
   }
 };
 
 /// A regular sample of the cells that may be road. Residuals are against `earlier` where it is given.
 Samples draw_samples(const Cells& cells, const SurfaceCoordinates& coordinates, const Image<std::uint8_t>* region,
                      const RoadSurface* earlier, Sampling sampling) {
-  constexpr Eigen::Index least_samples = 32;
+  constexpr std::size_t least_samples = 32;
   const int most_samples = sampling == Sampling::rough ? 1'500 : 6'000;
   const double share = static_cast<double>(cells.value.pixels()) / most_samples;
   const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(share))));
-  Samples samples(static_cast<Eigen::Index>(cells.width() / step + 1) * (cells.height() / step + 1));
-  Eigen::Index count = 0;
+  const int most_columns = cells.width() / step + 1, most_rows = cells.height() / step + 1;
+  Samples samples(static_cast<std::size_t>(most_columns) * static_cast<std::size_t>(most_rows));
+  std::size_t count = 0;
   for (int j = step / 2; j < cells.height(); j += step) {
     for (int i = step / 2; i < cells.width(); i += step) {
       if (std::isnan(cells.value(i, j)) || std::isnan(coordinates.x(i, j))) continue;
@@ -64,8 +64,7 @@ struct Shorth {
   double half_width = 0;
 };
 
-Shorth shorth_of(const Values& all) {
-  std::vector<double> values(all.begin(), all.end());
+Shorth shorth_of(Values values) {
   std::sort(values.begin(), values.end());
   const std::size_t held = values.size() / 3;
   std::size_t best = 0;
@@ -78,7 +77,7 @@ Shorth shorth_of(const Values& all) {
 /// Robust standard deviation of the residuals that are not far out.
 double spread_of(const Values& residuals, double reach) {
   std::vector<float> sizes;
-  sizes.reserve(static_cast<std::size_t>(residuals.size()));
+  sizes.reserve(residuals.size());
   for (const double residual : residuals) {
     if (std::abs(residual) <= reach) sizes.push_back(static_cast<float>(std::abs(residual)));
   }
@@ -87,32 +86,59 @@ double spread_of(const Values& residuals, double reach) {
 
 /// The normal equations of a weighted fit.
 struct Equations {
-  Normal normal = Normal::Zero();
-  Terms right = Terms::Zero();
-
-  Terms solve(int terms) const {
-    Terms solution = Terms::Zero();
-    solution.head(terms) = normal.topLeftCorner(terms, terms).ldlt().solve(right.head(terms));
-    return solution;
-  }
+  Matrix<quadratic_terms> normal{};
+  Terms right{};
 };
+
+/// The first `terms` terms of the fit; the others are 0, and so are those that the samples do not tell apart from the
+/// ones before.
+template <std::size_t terms>
+Terms solve(const Equations& equations) {
+  constexpr double smallest = 1e-13;  // some rounding errors
+  Matrix<terms> factor{};
+  Vector<terms> right{};
+  for (std::size_t i = 0; i < terms; ++i) {
+    right[i] = equations.right[i];
+    for (std::size_t j = 0; j <= i; ++j) factor[i][j] = equations.normal[i][j];
+  }
+  factor_in_place(factor, smallest);
+  const Vector<terms> solved = solve_factored(factor, right);
+  Terms solution{};
+  std::copy(solved.begin(), solved.end(), solution.begin());
+  return solution;
+}
+
+/// Two samples side by side.
+struct Two {
+  double first = 0, second = 0;
+
+  double sum() const { return first + second; }
+  Two& operator+=(Two other) { return *this = {first + other.first, second + other.second}; }
+};
+Two operator*(Two a, Two b) {
+  return {a.first * b.first, a.second * b.second};
+}
+
+/// Roots of Tukey's weights of residuals that are given as shares of the reach.
+Two roots_of_weights(Two shares) {
+  const Two squares = shares * shares;
+  return {std::max(0.0, 1 - squares.first), std::max(0.0, 1 - squares.second)};
+}
 
 /// Sums over the samples with Tukey's weights. The terms are scale · (1, x, y, x², xy, y²), so that the normal matrix
 /// holds no more than the sums of weight · scale² · x^a·y^b for a + b ≤ 4.
 Equations add_up(const Samples& samples, double reach) {
-  using Two = Eigen::Array2d;  // samples side by side
   constexpr std::size_t powers = 15;
-  std::array<Two, powers> left;
-  std::array<Two, quadratic_terms> right;
-  left.fill(Two::Zero());
-  right.fill(Two::Zero());
-  for (Eigen::Index k = 0; k < samples.size(); k += 2) {
-    const auto two = [k](const Values& values) -> Two { return values.segment<2>(k); };
-    const Two x = two(samples.x), y = two(samples.y), scale = two(samples.scale), r = two(samples.residual) / reach;
-    const Two root = (1 - r * r).max(0.0);
+  std::array<Two, powers> left{};
+  std::array<Two, quadratic_terms> right{};
+  const Two per_reach{1 / reach, 1 / reach};
+  for (std::size_t k = 0; k < samples.size(); k += 2) {
+    const auto two = [k](const Values& values) { return Two{values[k], values[k + 1]}; };
+    const Two x = two(samples.x), y = two(samples.y), scale = two(samples.scale);
+    const Two root = roots_of_weights(two(samples.residual) * per_reach);
     const Two once = root * root * scale, twice = once * scale, seen = once * two(samples.value);
     const Two xx = x * x, xy = x * y, yy = y * y;
-    const std::array<Two, quadratic_terms> basis{Two::Ones(), x, y, xx, xy, yy};
+    const std::array<Two, quadratic_terms> basis{Two{1, 1}, x, y, xx, xy, yy};
     for (std::size_t i = 0; i < basis.size(); ++i) {
       left[i] += twice * basis[i];
       right[i] += seen * basis[i];
@@ -131,29 +157,28 @@ Equations add_up(const Samples& samples, double reach) {
                                                                                            {5, 8, 9, 12, 13, 14}}};
   Equations equations;
   for (std::size_t i = 0; i < quadratic_terms; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    equations.right[row] = right[i].sum();
-    for (std::size_t j = 0; j < quadratic_terms; ++j) {
-      equations.normal(row, static_cast<Eigen::Index>(j)) = left[product[i][j]].sum();
-    }
+    equations.right[i] = right[i].sum();
+    for (std::size_t j = 0; j < quadratic_terms; ++j) equations.normal[i][j] = left[product[i][j]].sum();
   }
   return equations;
 }
 
-/// What a solution gives at places of the road.
-template <class Coordinates>
-auto quadratic(const Terms& c, const Coordinates& x, const Coordinates& y, const Coordinates& scale) {
+/// What a solution gives at a place of the road.
+double quadratic(const Terms& c, double x, double y, double scale) {
   return scale * (c[0] + x * (c[1] + c[3] * x + c[4] * y) + y * (c[2] + c[5] * y));
 }
 
 /// Steps of the reweighted fit with the first `terms` terms; `spread` and the residuals are brought up to date.
-Terms iterate(Samples& samples, int terms, int steps, double& spread) {
+template <std::size_t terms>
+Terms iterate(Samples& samples, int steps, double& spread) {
   constexpr double tukey = 4.7;
   constexpr double widest = 3;  // of the spread, for what counts when it is measured anew
-  Terms solution = Terms::Zero();
+  Terms solution{};
   for (int i = 0; i < steps; ++i) {
-    solution = add_up(samples, tukey * spread).solve(terms);
-    samples.residual = samples.value - quadratic(solution, samples.x, samples.y, samples.scale);
+    solution = solve<terms>(add_up(samples, tukey * spread));
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      samples.residual[k] = samples.value[k] - quadratic(solution, samples.x[k], samples.y[k], samples.scale[k]);
+    }
     const double measured = spread_of(samples.residual, widest * spread);
     spread = std::max(measured, 0.5 * spread);
     if (measured == 0) break;
@@ -165,13 +190,12 @@ RoadSurface evaluate(const Terms& solution, double noise, const Cells& cells, co
   RoadSurface surface;
   surface.noise = noise;
   surface.value.resize(cells.width(), cells.height());
-  const Eigen::Index width = cells.width();
   for (int j = 0; j < cells.height(); ++j) {
-    const auto row = [j, width](const Image<float>& image) {
-      return Eigen::Map<const Eigen::ArrayXf>(image.row(j), width).cast<double>();
-    };
-    Eigen::Map<Eigen::ArrayXf>(surface.value.row(j), width) =
-        quadratic(solution, row(coordinates.x), row(coordinates.y), row(coordinates.scale)).cast<float>();
+    const float *x = coordinates.x.row(j), *y = coordinates.y.row(j), *scale = coordinates.scale.row(j);
+    float* value = surface.value.row(j);
+    for (int i = 0; i < cells.width(); ++i) {
+      value[i] = static_cast<float>(quadratic(solution, double{x[i]}, double{y[i]}, double{scale[i]}));
+    }
   }
   return surface;
 }
@@ -184,10 +208,10 @@ RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coord
   constexpr double least_spread = 1e-3;
   Samples samples = draw_samples(cells, coordinates, nullptr, nullptr, Sampling::rough);
   const Shorth start = shorth_of(samples.value);
-  samples.residual = samples.value - start.middle;
+  for (std::size_t k = 0; k < samples.size(); ++k) samples.residual[k] = samples.value[k] - start.middle;
   double spread = std::max({start.half_width, least_spread * std::abs(start.middle), 1e-9});
-  iterate(samples, plane_terms, plane_steps, spread);
-  const Terms solution = iterate(samples, quadratic_terms, quadratic_steps, spread);
+  iterate<plane_terms>(samples, plane_steps, spread);
+  const Terms solution = iterate<quadratic_terms>(samples, quadratic_steps, spread);
   return evaluate(solution, spread, cells, coordinates);
 }
 
@@ -196,7 +220,7 @@ RoadSurface refit_road_surface(const Cells& cells, const SurfaceCoordinates& coo
   constexpr int steps = 6;
   Samples samples = draw_samples(cells, coordinates, &region, &earlier, sampling);
   double spread = std::max(earlier.noise, 1e-9);
-  const Terms solution = iterate(samples, quadratic_terms, steps, spread);
+  const Terms solution = iterate<quadratic_terms>(samples, steps, spread);
   return evaluate(solution, spread, cells, coordinates);
 }
 

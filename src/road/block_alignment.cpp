@@ -4,36 +4,14 @@
 #include <array>
 #include <cmath>
 
+#include "core/cholesky.hpp"
+
 namespace roadstereo {
 namespace {
 
 constexpr std::size_t parameters = 6;  // du, dv, shear, stretch, gain, offset
-using Vector = std::array<double, parameters>;
-using Matrix = std::array<Vector, parameters>;
-
-/// Solves a x = b for a symmetric positive definite matrix by its Cholesky factor; nothing when it is not one.
-std::optional<Vector> solve(Matrix a, Vector b) {
-  constexpr double smallest = 1e-5;  // sums of single precision leave that much of nothing
-  for (std::size_t k = 0; k < parameters; ++k) {
-    const double size = a[k][k];
-    for (std::size_t j = 0; j < k; ++j) a[k][k] -= a[k][j] * a[k][j];
-    if (!(a[k][k] > smallest * size)) return std::nullopt;
-    a[k][k] = std::sqrt(a[k][k]);
-    for (std::size_t i = k + 1; i < parameters; ++i) {
-      for (std::size_t j = 0; j < k; ++j) a[i][k] -= a[i][j] * a[k][j];
-      a[i][k] /= a[k][k];
-    }
-  }
-  for (std::size_t k = 0; k < parameters; ++k) {
-    for (std::size_t j = 0; j < k; ++j) b[k] -= a[k][j] * b[j];
-    b[k] /= a[k][k];
-  }
-  for (std::size_t k = parameters; k-- > 0;) {
-    for (std::size_t i = k + 1; i < parameters; ++i) b[k] -= a[i][k] * b[i];
-    b[k] /= a[k][k];
-  }
-  return b;
-}
+using Parameters = Vector<parameters>;
+constexpr double smallest_share = 1e-5;  // sums of single precision leave that much of nothing
 
 constexpr int most_radius = 8;
 constexpr std::size_t columns = 20;  ///< of the largest block, up to whole vectors of four
@@ -121,7 +99,7 @@ class LeftBlock {
 };
 
 /// Row y of the block in the right image under the parameters p; false when it leaves the image.
-bool sample_row(ImageView<const std::int16_t> right, const LeftBlock& block, const Vector& p, int y, Row& row) {
+bool sample_row(ImageView<const std::int16_t> right, const LeftBlock& block, const Parameters& p, int y, Row& row) {
   const double at_v = block.v() + y + p[1], step = 1 + p[3];
   const double start = block.u() - block.radius() * step + p[0] + p[2] * y, end = start + (block.width() - 1) * step;
   if (!(at_v >= 0 && at_v < right.height() - 1 && std::min(start, end) >= 0 &&
@@ -151,8 +129,8 @@ bool sample_row(ImageView<const std::int16_t> right, const LeftBlock& block, con
 
 /// The normal equations of one step, and how well the blocks correlate at its start.
 struct Equations {
-  Matrix a{};
-  Vector b{};
+  Matrix<parameters> a{};
+  Parameters b{};
   double correlation = 0;
 };
 
@@ -173,7 +151,7 @@ double moment(const Columns& sums, int radius, int power) {
 }
 
 /// Slopes of the residual: gain·a, gain·d, gain·a·y, gain·a·x, g, 1.
-Equations make_equations(const ColumnSums& s, const LeftBlock& block, const Vector& p) {
+Equations make_equations(const ColumnSums& s, const LeftBlock& block, const Parameters& p) {
   const double gain = p[4], offset = p[5], n = block.pixels();
   const int radius = block.radius();
   const auto x = [radius](const Columns& sums) { return moment(sums, radius, 1); };
@@ -194,7 +172,7 @@ Equations make_equations(const ColumnSums& s, const LeftBlock& block, const Vect
   return e;
 }
 
-std::optional<Equations> set_up(const LeftBlock& block, ImageView<const std::int16_t> right, const Vector& p) {
+std::optional<Equations> set_up(const LeftBlock& block, ImageView<const std::int16_t> right, const Parameters& p) {
   ColumnSums sums;
   Row row;
   for (int y = -block.radius(); y <= block.radius(); ++y) {
@@ -215,11 +193,11 @@ std::optional<BlockAlignment> align_block(ImageView<const std::int16_t> left, in
   constexpr double least_correlation = 0.85;
   if (u < radius || v < radius || u + radius >= left.width() || v + radius >= left.height()) return std::nullopt;
   const LeftBlock block(left, u, v, radius);
-  Vector p{start.du, start.dv, start.shear, start.stretch, 1, 0};
+  Parameters p{start.du, start.dv, start.shear, start.stretch, 1, 0};
   for (int step = 0; step < most_steps; ++step) {
     const auto equations = set_up(block, right, p);
     if (!equations) return std::nullopt;
-    const auto change = solve(equations->a, equations->b);
+    const auto change = solve_positive_definite(equations->a, equations->b, smallest_share);
     if (!change) return std::nullopt;
     for (std::size_t i = 0; i < parameters; ++i) p[i] += (*change)[i];
     if (std::abs(p[0] - start.du) > farthest_px || std::abs(p[1] - start.dv) > farthest_px) return std::nullopt;
