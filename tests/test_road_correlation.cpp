@@ -115,7 +115,7 @@ TEST_P(EveryTarget, RowsAreCorrelatedAtEveryDisparity) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Machine, EveryTarget, testing::ValuesIn(test::targets_of_this_machine()),
-                         [](const auto& test) { return std::string(hwy::TargetName(test.param)); });
+                         test::name_of_target);
 
 }  // namespace
 }  // namespace roadstereo

@@ -210,7 +210,7 @@ TEST_P(EveryTarget, OneColumnIsARow) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Machine, EveryTarget, testing::ValuesIn(test::targets_of_this_machine()),
-                         [](const auto& test) { return std::string(hwy::TargetName(test.param)); });
+                         test::name_of_target);
 
 }  // namespace
 }  // namespace roadstereo

@@ -1,0 +1,3 @@
+#pragma once
+
+// Highway's header compiles the including file once for every instruction set. Here there is one, and nothing to do.
