@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Checks the engine `cuda` on a machine that has a GPU and nothing but CUDA, CMake and a compiler: builds the library, its
+# tests and the benchmark, runs the tests, those of the kernels also under compute-sanitizer, and then the benchmark.
+#   scripts/gpu_check.sh
+# GoogleTest is built from its sources, whose folder ROADSTEREO_GTEST_SOURCE names; Debian's package googletest has them
+# in /usr/src/googletest. Where that is not there, a copy in a folder of the project can travel along with it:
+# `cp -r /usr/src/googletest DIR` is enough.
+# SANITIZER_FILTER chooses the tests that run under compute-sanitizer, which is slow: a filter of GoogleTest, '*' is all.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+export PATH=$PATH:/usr/local/cuda/bin
+googletest=${ROADSTEREO_GTEST_SOURCE:-/usr/src/googletest}
+missing=()
+for tool in cmake ctest make "${CXX:-c++}" nvcc compute-sanitizer nvidia-smi; do
+  command -v "$tool" >/dev/null || missing+=("$tool")
+done
+[ -f "$googletest/CMakeLists.txt" ] || missing+=("GoogleTest's sources in $googletest (see ROADSTEREO_GTEST_SOURCE)")
+if [ ${#missing[@]} -gt 0 ]; then
+  printf -v list ', %s' "${missing[@]}"
+  echo "Missing, also in /usr/local/cuda/bin: ${list#, }" >&2
+  exit 2
+fi
+if [[ $(nvidia-smi -L 2>&1 || true) != "GPU "* ]]; then
+  echo "nvidia-smi sees no GPU" >&2
+  exit 2
+fi
+
+cmake --preset standalone -DROADSTEREO_CUDA=ON -DROADSTEREO_GTEST_SOURCE="$googletest" -DROADSTEREO_WERROR=ON
+cmake --build --preset standalone -j "$(nproc)"
+ctest --test-dir build-standalone --output-on-failure -j "$(nproc)"
+for tool in memcheck racecheck initcheck; do
+  echo "compute-sanitizer: $tool"
+  compute-sanitizer --tool "$tool" --error-exitcode 1 build-standalone/bin/test_cuda \
+    --gtest_filter="${SANITIZER_FILTER:-*}" --gtest_brief=1
+done
+build-standalone/bin/bench_cuda
+echo "GPU: good."
