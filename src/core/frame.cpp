@@ -1,6 +1,6 @@
-#include <algorithm>
-#include <cmath>
+#include <cstdint>
 
+#include "core/grey_weights.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/image.hpp"
 
@@ -10,14 +10,14 @@ namespace {
 constexpr int min_side = 32;
 constexpr int max_side = 8192;
 
-/// Weights of the samples of one pixel in its grey value.
-struct GreyWeights {
+/// Shares of the samples of one pixel in its grey value.
+struct Shares {
   double first;
   double second;
   double third;
 };
 
-GreyWeights grey_weights(ChannelOrder order) {
+Shares shares_of(ChannelOrder order) {
   switch (order) {
     case ChannelOrder::bgr:
     case ChannelOrder::bgra:
@@ -32,26 +32,17 @@ GreyWeights grey_weights(ChannelOrder order) {
 }
 
 template <class Sample>
-void convert(const FrameView& frame, double white_level, GreyImage& grey) {
+void convert(const FrameView& frame, const GreyWeights& weights, GreyImage& grey) {
   const int channels = channel_count(frame.order);
-  const GreyWeights weights = grey_weights(frame.order);
-  const double scale = grey_max / white_level;
-  const auto first = static_cast<float>(weights.first * scale);
-  const auto second = static_cast<float>(weights.second * scale);
-  const auto third = static_cast<float>(weights.third * scale);
-  const auto level = [](float value) {
-    return static_cast<std::int16_t>(std::min(value + 0.5f, static_cast<float>(grey_max)));
-  };
   for (int v = 0; v < frame.height; ++v) {
     const auto* bytes = static_cast<const std::uint8_t*>(frame.data) + v * frame.stride_bytes;
     const auto* in = reinterpret_cast<const Sample*>(bytes);
     std::int16_t* out = grey.row(v);
     if (channels == 1) {
-      for (int u = 0; u < frame.width; ++u) out[u] = level(first * static_cast<float>(in[u]));
+      for (int u = 0; u < frame.width; ++u) out[u] = grey_level(weights, static_cast<float>(in[u]));
     } else {
       for (int u = 0; u < frame.width; ++u, in += channels) {
-        out[u] = level(first * static_cast<float>(in[0]) + second * static_cast<float>(in[1]) +
-                       third * static_cast<float>(in[2]));
+        out[u] = grey_level(weights, static_cast<float>(in[0]), static_cast<float>(in[1]), static_cast<float>(in[2]));
       }
     }
   }
@@ -78,7 +69,7 @@ FrameView Frame::view() const {
   return {bytes.data(), width, height, sample_bytes * channel_count(order) * width, sample, order};
 }
 
-void to_grey(const FrameView& frame, double white_level, GreyImage& grey) {
+GreyWeights grey_weights(const FrameView& frame, double white_level) {
   if (frame.data == nullptr) fail("the image has no data");
   if (frame.width < min_side || frame.height < min_side || frame.width > max_side || frame.height > max_side) {
     fail("the image has ", frame.width, "×", frame.height, " pixels; it must have between ", min_side, "×", min_side,
@@ -88,12 +79,19 @@ void to_grey(const FrameView& frame, double white_level, GreyImage& grey) {
   if (!(white_level >= 0 && white_level <= largest)) {
     fail("white_level is ", white_level, "; it must be between 0 (the sample type's largest) and ", largest);
   }
-  const double white = white_level > 0 ? white_level : largest;
+  const double scale = grey_max / (white_level > 0 ? white_level : largest);
+  const Shares shares = shares_of(frame.order);
+  return {static_cast<float>(shares.first * scale), static_cast<float>(shares.second * scale),
+          static_cast<float>(shares.third * scale), static_cast<float>(grey_max)};
+}
+
+void to_grey(const FrameView& frame, double white_level, GreyImage& grey) {
+  const GreyWeights weights = grey_weights(frame, white_level);
   grey.resize(frame.width, frame.height);
   if (frame.sample == SampleType::u16) {
-    convert<std::uint16_t>(frame, white, grey);
+    convert<std::uint16_t>(frame, weights, grey);
   } else {
-    convert<std::uint8_t>(frame, white, grey);
+    convert<std::uint8_t>(frame, weights, grey);
   }
 }
 

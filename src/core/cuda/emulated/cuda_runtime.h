@@ -84,6 +84,7 @@ inline void __syncthreads() {
 inline void __syncwarp(unsigned = 0xFFFFFFFFU) {
   ::roadstereo::cuda::emulated::wait_for_warp();
 }
+inline void __threadfence() {}  // blocks run one after the other
 template <class T>
 T __shfl_sync(unsigned, T value, int from) {
   return ::roadstereo::cuda::emulated::exchange_value(value, from & 31);

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+struct CUstream_st;
+
+namespace roadstereo {
+
+/// How a pipeline with the engine `cuda` shares a device with its caller (`Pipeline::use_device`).
+struct DeviceUse {
+  /// Where all work is enqueued: a cudaStream_t of the caller, which must outlive the pipeline. Null: a stream of its
+  /// own.
+  CUstream_st* stream = nullptr;
+  /// Copy the maps to the host. False leaves the images of FrameResult empty: they are in `Pipeline::device_maps`
+  /// alone, and `find_damage` has nothing to look at.
+  bool download = true;
+};
+
+/// The last frame's maps in device memory, rows without padding. They belong to the pipeline, and work enqueued in its
+/// stream before the next frame may read them.
+struct DeviceMaps {
+  int width = 0;                       ///< pixels
+  int height = 0;                      ///< pixels
+  const std::int16_t* grey = nullptr;  ///< the left image in sixteenths of a grey level
+  const float* disparity = nullptr;    ///< ℓ, pixels, NaN invalid
+  const float* sigma = nullptr;        ///< standard error of the disparity, pixels, NaN invalid
+  const float* transformed = nullptr;  ///< ℓ', pixels, NaN invalid
+  CUstream_st* stream = nullptr;       ///< where they were made
+};
+
+}  // namespace roadstereo

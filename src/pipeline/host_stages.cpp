@@ -1,0 +1,138 @@
+#include "pipeline/host_stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.hpp"
+#include "pipeline/pair_checks.hpp"
+#include "roadstereo/device.hpp"
+#include "roadstereo/error.hpp"
+#include "stereo/coarse/coarse_search.hpp"
+#include "stereo/window.hpp"
+
+namespace roadstereo {
+namespace {
+
+bool shows_something(const GreyImage& image) {
+  const std::int16_t first = image(0, 0);
+  for (int v = 0; v < image.height(); ++v) {
+    const std::int16_t* row = image.row(v);
+    if (std::any_of(row, row + image.width(), [first](std::int16_t value) { return value != first; })) return true;
+  }
+  return false;
+}
+
+class HostStages final : public FrameStages {
+ public:
+  HostStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
+      : options_(options),
+        calibration_(calibration),
+        threads_(resolve_threads(options.threads)),
+        support_(support_pixels(options.matcher)),
+        engine_(make_engine(options.engine, options.threads)) {
+    if (options.narrow_search || options.matcher.prior_slope > 0) {
+      coarse_search_.emplace(options.coarse_search, options.threads);
+    }
+  }
+
+  void prepare(const FrameView& left, const FrameView& right, FrameResult& result) override {
+    to_grey(left, options_.white_level, result.grey);
+    to_grey(right, options_.white_level, right_);
+    PairContents contents;
+    contents.left = {shows_something(result.grey), result.grey(0, 0)};
+    contents.right = {shows_something(right_), right_(0, 0)};
+    contents.equal = result.grey == right_;
+    require_pair(contents);
+  }
+
+  GreyPair grey(FrameResult& result) override { return {result.grey, right_}; }
+
+  RoadModelEstimate verify_road(const RoadModel& previous, const FrameResult& result) override {
+    return verify_road_model(result.grey, right_, previous, calibration_, options_.road_model, threads_);
+  }
+
+  void transform_perspective(const FrameResult& result) override {
+    transform_target(right_, result.shift, threads_, transformed_target_, first_column_);
+  }
+
+  void look_coarsely(const FrameResult& result) override {
+    match_input_ = {result.grey, transformed_target_, first_column_.data(), result.shift.disparities};
+    if (!coarse_search_) return;
+    // The road's disparity after the shift; beyond the horizon there is none.
+    const auto road = [&shift = result.shift](double u, double v) {
+      const double disparity = shift.enabled ? shift.road.disparity(u, v) : -1;
+      return disparity < 0 ? std::numeric_limits<double>::quiet_NaN() : std::min(disparity, shift.delta_p);
+    };
+    if (!coarse_search_->find(match_input_, road)) return;
+    if (options_.narrow_search) match_input_.ranges = coarse_search_->ranges();
+    match_input_.prior = &coarse_search_->prior();
+  }
+
+  void match(const MatcherOptions& options, const FrameResult&) override {
+    engine_->match(match_input_, options, maps_);
+  }
+
+  void refine(FrameResult& result) override {
+    add_shift(maps_.disparity, result.shift, threads_, shifted_);
+    refine_disparities(shifted_, maps_.variance, result.shift.road, support_, options_.refinement, threads_,
+                       result.disparity, result.sigma);
+  }
+
+  double valid_share(const FrameResult& result) override {
+    std::size_t valid = 0;
+    for (int v = 0; v < result.disparity.height(); ++v) {
+      const float* row = result.disparity.row(v);
+      for (int u = 0; u < result.disparity.width(); ++u) valid += std::isnan(row[u]) ? 0U : 1U;
+    }
+    return static_cast<double>(valid) / static_cast<double>(result.disparity.pixels());
+  }
+
+  RoadGeometry fit_geometry(const std::optional<RoadModel>& prior, double initial_roll_rad,
+                            const FrameResult& result) override {
+    return fit_road_geometry(result.disparity, std::nullopt, prior, initial_roll_rad, options_.road_geometry, threads_);
+  }
+
+  void transform(FrameResult& result) override {
+    result.delta_t = transform_disparity(result.disparity, result.geometry, result.shift.delta_p,
+                                         options_.road_geometry, threads_, result.transformed);
+    result.spread = measure_spread(result.transformed, result.delta_t, threads_);
+  }
+
+  void leave_untransformed(FrameResult& result) override {
+    result.transformed.assign(result.grey.width(), result.grey.height(), std::numeric_limits<float>::quiet_NaN());
+  }
+
+  void deliver(FrameResult&) override {}
+
+  void use_device(const DeviceUse&) override { fail_without_device(); }
+  DeviceMaps device_maps() const override { fail_without_device(); }
+
+ private:
+  [[noreturn]] static void fail_without_device() {
+    fail("only a pipeline with the engine cuda keeps its maps on a device");
+  }
+
+  PipelineOptions options_;
+  std::optional<StereoCalibration> calibration_;
+  int threads_;
+  double support_;  ///< pixels that one disparity rests on
+  std::unique_ptr<StereoEngine> engine_;
+  std::optional<CoarseSearch> coarse_search_;
+
+  // Scratch memory.
+  GreyImage right_, transformed_target_;
+  std::vector<int> first_column_;
+  MatchInput match_input_;
+  MatchMaps maps_;
+  Image<float> shifted_;  ///< disparities before they are refined
+};
+
+}  // namespace
+
+std::unique_ptr<FrameStages> make_host_stages(const PipelineOptions& options,
+                                              const std::optional<StereoCalibration>& calibration) {
+  return std::make_unique<HostStages>(options, calibration);
+}
+
+}  // namespace roadstereo
