@@ -6,6 +6,8 @@
 
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
+#include "road/cubic.hpp"
+#include "road/shift_terms_of.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/road_plane.hpp"
 
@@ -49,13 +51,6 @@ int full_range(const RoadModelEstimate& road, int width) {
 /// Pixels that cubic interpolation reads beyond the ends of a row: copies of the border.
 constexpr std::ptrdiff_t border = 2;
 
-/// Weights of Keys' cubic interpolation for the samples at −1, 0, 1, 2 around the place f, 0 ≤ f < 1.
-std::array<float, 4> cubic_weights(double f) {
-  const double f2 = f * f, f3 = f2 * f;
-  return {static_cast<float>(-0.5 * f + f2 - 0.5 * f3), static_cast<float>(1 - 2.5 * f2 + 1.5 * f3),
-          static_cast<float>(0.5 * f + 2 * f2 - 1.5 * f3), static_cast<float>(-0.5 * f2 + 0.5 * f3)};
-}
-
 /// padded = row v of the image, or what lies between its rows where v is no whole number.
 void copy_with_border(ImageView<const std::int16_t> image, double v, float* padded) {
   const int width = image.width();
@@ -67,28 +62,21 @@ void copy_with_border(ImageView<const std::int16_t> image, double v, float* padd
   if (v == whole) {
     std::copy_n(row(0), width, out);
   } else {
-    const std::array<float, 4> weight = cubic_weights(v - whole);
+    const CubicWeights weight = cubic_weights(v - whole);
     const std::int16_t *a = row(-1), *b = row(0), *c = row(1), *d = row(2);
-    for (int u = 0; u < width; ++u) out[u] = weight[0] * a[u] + weight[1] * b[u] + weight[2] * c[u] + weight[3] * d[u];
+    for (int u = 0; u < width; ++u) out[u] = weighted(weight, a[u], b[u], c[u], d[u]);
   }
   std::fill_n(padded, border, out[0]);
   std::fill_n(out + width, border, out[width - 1]);
 }
 
-/// out[x] = row(x − shift) for x in [first, end), where shift = whole − f(x), 0 ≤ f < 1, changes linearly with x. Keys'
-/// cubic interpolation: sharp enough not to flatten texture at half-pixel phases, as linear interpolation does.
+/// out[x] = row(x − shift) for x in [first, end), where shift = whole − f(x), 0 ≤ f < 1, changes linearly with x.
 void sample_cubic(const float* row, int whole, float f_at_first, float f_step, int first, int end, std::int16_t* out) {
   const float* source = row + border - whole;
   for (int x = first; x < end; ++x) {
     const float* p = source + x;
     const float f = f_at_first + static_cast<float>(x - first) * f_step;
-    const float linear = 0.5f * (p[1] - p[-1]);
-    const float square = p[-1] - 2.5f * p[0] + 2 * p[1] - 0.5f * p[2];
-    const float cube = 0.5f * (p[2] - p[-1]) + 1.5f * (p[0] - p[1]);
-    const float value = p[0] + f * (linear + f * (square + f * cube));
-    const float bounded = std::min(std::max(value, 0.0f), static_cast<float>(grey_max));
-    // Not negative, and lround would keep the loop from being vectorised.
-    out[x] = static_cast<std::int16_t>(bounded + 0.5f);  // NOLINT(bugprone-incorrect-roundings)
+    out[x] = grey_between(p[-1], p[0], p[1], p[2], f, static_cast<float>(grey_max));
   }
 }
 
@@ -110,16 +98,6 @@ void transform_row(const float* row, const PerspectiveShift& shift, int v, int f
   }
 }
 
-/// First column x of row v whose source x − shift(x, v) lies inside the target image.
-int find_first_column(const PerspectiveShift& shift, int v, int width) {
-  const auto outside = [&](int x) { return x - shift.at(x, v) < 0; };
-  const double guess = shift.at(0, v) / (1 - std::min(shift.road.a2, 0.9));
-  int x = std::clamp(static_cast<int>(guess) - 2, 0, width);
-  while (x > 0 && !outside(x - 1)) --x;
-  while (x < width && outside(x)) ++x;
-  return x;
-}
-
 }  // namespace
 
 void PerspectiveOptions::validate() const {
@@ -135,9 +113,7 @@ void PerspectiveOptions::validate() const {
 }
 
 double PerspectiveShift::at(double x, double v) const {
-  if (!enabled) return 0;
-  const double shift = std::max(0.0, road.disparity(x, v) - delta_p);
-  return whole_pixel ? std::round(shift) : shift;
+  return shift_at(shift_terms(*this), x, v);
 }
 
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
@@ -178,12 +154,13 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
   const int height = target.height();
   transformed.resize(width, height);
   first_column.resize(static_cast<std::size_t>(height));
+  const ShiftTerms terms = shift_terms(shift);
   const std::size_t padded = static_cast<std::size_t>(width + 2 * border);
   auto rows = scratch_vector<float>(padded * static_cast<std::size_t>(resolve_threads(threads)));
   parallel_rows(height, rows_per_band, threads, [&](int first_row, int last_row, int worker) {
     float* in = rows.data() + padded * static_cast<std::size_t>(worker);
     for (int v = first_row; v < last_row; ++v) {
-      const int first = find_first_column(shift, v, width);
+      const int first = find_first_column(terms, v, width);
       first_column[static_cast<std::size_t>(v)] = first;
       copy_with_border(target, v + shift.row_offset, in);
       std::fill_n(transformed.row(v), first, std::int16_t{0});
@@ -194,6 +171,7 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
 
 void add_shift(ImageView<const float> residual, const PerspectiveShift& shift, int threads, Image<float>& disparity) {
   disparity.resize(residual.width(), residual.height());
+  const ShiftTerms terms = shift_terms(shift);
   parallel_rows(residual.height(), rows_per_band, threads, [&](int first_row, int last_row, int) {
     for (int v = first_row; v < last_row; ++v) {
       const float* in = residual.row(v);
@@ -202,18 +180,12 @@ void add_shift(ImageView<const float> residual, const PerspectiveShift& shift, i
         std::copy_n(in, residual.width(), out);
         continue;
       }
-      // The shift belongs to the column of the transformed target that was matched: u − residual.
       if (shift.whole_pixel) {
-        for (int u = 0; u < residual.width(); ++u) {
-          out[u] = std::isnan(in[u]) ? in[u] : in[u] + static_cast<float>(shift.at(u - double{in[u]}, v));
-        }
+        for (int u = 0; u < residual.width(); ++u) out[u] = with_whole_shift(in[u], terms, u, v);
         continue;
       }
-      const auto of_row = static_cast<float>(shift.road.disparity(0, v) - shift.delta_p);
-      const auto slope = static_cast<float>(shift.road.a2);
-      for (int u = 0; u < residual.width(); ++u) {
-        out[u] = in[u] + std::max(0.0f, of_row + slope * (static_cast<float>(u) - in[u]));
-      }
+      const RowLine road = row_line(terms.road, v, shift.delta_p);
+      for (int u = 0; u < residual.width(); ++u) out[u] = with_shift(in[u], road, u);
     }
   });
 }
