@@ -1,24 +1,20 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
+#include "road/refinement/settings.hpp"
 #include "road/refinement/weighted_mean.hpp"
+#include "road/shift_terms_of.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/refinement.hpp"
 
 namespace roadstereo {
 namespace {
 
-constexpr int lanes = 16;           // elements that the kernel may touch behind a row
-constexpr float unknown = 1e12F;    // variance of a disparity that is not there
-constexpr float widest_sigma = 10;  // pixels; nothing is known less well than by the search range
+constexpr int lanes = 16;  // elements that the kernel may touch behind a row
 constexpr int rows_per_band = 32;
-/// Variances of the theory are too small by this: the colour weights leave fewer pixels to a cost than its support, and
-/// neither sampling nor the slant of a surface is noise. Measured on synthetic roads (docs/accuracy.md).
-constexpr float optimism = 1.7F;
 constexpr int most_lines = 65;
 
 /// What is refined, and how.
@@ -56,19 +52,17 @@ class BandRows {
  private:
   void fill_row(int v) {
     const float *disparity = maps_.disparity.row(v), *variance = maps_.variance.row(v);
-    const auto least = static_cast<float>(maps_.options.least_sigma_px * maps_.options.least_sigma_px);
-    const auto most = static_cast<float>(maps_.options.most_sigma_px * maps_.options.most_sigma_px);
-    const auto of_row = static_cast<float>(maps_.road.disparity(0, v)), slope = static_cast<float>(maps_.road.a2);
+    const VarianceBounds bounds = variance_bounds(maps_.options);
+    const RowLine road = row_line(plane_terms(maps_.road), v, 0);
     float* height = numbers_ + 3 * pitch_ * (v - first_);
     float *precision = height + pitch_, *spread = precision + pitch_;
     std::fill_n(height, 2 * pitch_, 0.0F);
-    std::fill_n(spread, pitch_, unknown);
+    std::fill_n(spread, pitch_, not_measured().variance);
     for (int u = 0; u < maps_.disparity.width(); ++u) {
-      const bool known = disparity[u] == disparity[u];
-      const float bounded = std::min(variance[u], widest_sigma * widest_sigma) + least;
-      height[radius_ + u] = known ? disparity[u] - (of_row + slope * static_cast<float>(u)) : 0.0F;
-      precision[radius_ + u] = known ? 1 / bounded : 0.0F;
-      spread[radius_ + u] = known ? std::min(bounded, most) : unknown;
+      const Measured pixel = measured(disparity[u], variance[u], road.at(static_cast<float>(u)), bounds);
+      height[radius_ + u] = pixel.value;
+      precision[radius_ + u] = pixel.precision;
+      spread[radius_ + u] = pixel.variance;
     }
   }
 
@@ -89,15 +83,15 @@ void refine_row(const Maps& maps, const BandRows& rows, const MeanSettings& sett
   }
   const int width = maps.disparity.width();
   weighted_mean(rows.row(v), {lines.data(), count}, settings, width, mean, precision);
-  const auto of_row = static_cast<float>(maps.road.disparity(0, v)), slope = static_cast<float>(maps.road.a2);
+  const RowLine road = row_line(plane_terms(maps.road), v, 0);
   const float* disparity = maps.disparity.row(v);
   const auto worst = static_cast<float>(maps.options.worst_sigma_px);
   for (int u = 0; u < width; ++u) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-    const float error = std::sqrt(optimism / precision[u]);
-    const bool known = disparity[u] == disparity[u] && error <= worst;
-    refined[u] = known ? mean[u] + (of_row + slope * static_cast<float>(u)) : nan;
-    sigma[u] = known ? error : nan;
+    const RefinedPixel pixel =
+        refined_pixel(disparity[u], mean[u], precision[u], road.at(static_cast<float>(u)), worst, nan);
+    refined[u] = pixel.disparity;
+    sigma[u] = pixel.sigma;
   }
 }
 
@@ -129,9 +123,8 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
   refined.resize(width, height);
   sigma.resize(width, height);
   const Maps maps{disparity, variance, road, options};
-  const int radius = options.radius / options.step * options.step;
-  const MeanSettings settings{.reach2 = static_cast<float>(options.reach_sigmas * options.reach_sigmas),
-                              .share = static_cast<float>(std::min(1.0, options.step * options.step / support))};
+  const int radius = window_radius(options);
+  const MeanSettings settings = mean_settings(options, support);
   const std::size_t band_numbers = BandRows::numbers(width, radius);
   const int row_numbers = width + lanes;
   const std::size_t numbers = band_numbers + 2 * static_cast<std::size_t>(row_numbers);

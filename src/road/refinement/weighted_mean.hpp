@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "road/refinement/mean_settings.hpp"
+
 namespace roadstereo {
 
 /// One row of what is averaged; both can be read a radius beyond either end of the row.
@@ -16,11 +18,6 @@ struct WindowLine {
   MeasuredRow row;
   int first;
   int step;
-};
-
-struct MeanSettings {
-  float reach2 = 9;  ///< squared number of joint standard errors at which a neighbour loses its weight
-  float share = 1;   ///< part of one neighbour that is independent of the others
 };
 
 /// mean[u], precision[u] for u in [0, width): the mean of the window's neighbours q of u, weighted by their precision

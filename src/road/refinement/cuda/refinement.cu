@@ -1,0 +1,166 @@
+// Floor: 16 bytes a pixel, and of each of its 25 neighbours (radius 8, step 4) 12 bytes of shared memory and 14
+// operations: 3.7 MB and 80 million operations for 640×360. A tile of 32×16 pixels reads its border of 8 too: three
+// times its pixels.
+
+#include <cmath>
+
+#include "core/cuda/launch.hpp"
+#include "road/refinement/cuda/refinement.hpp"
+
+namespace roadstereo::cuda {
+namespace {
+
+constexpr int tile_columns = 32, thread_rows = 8;
+constexpr int most_shared_bytes = 48 << 10;
+
+struct Maps {
+  Plane<const float> residual, variance;
+  ShiftTerms shift;
+};
+
+/// The lines that road and shift are in one row. Double precision is slow on small GPUs: once a row suffices.
+struct RowLines {
+  RowLine road, shift;
+};
+
+__device__ RowLines row_lines(const Maps& maps, int v) {
+  return {row_line(maps.shift.road, v, 0), row_line(maps.shift.road, v, maps.shift.delta_p)};
+}
+
+/// Disparity between the original images.
+__device__ float full_disparity(const Maps& maps, const RowLine& line, float residual, int u, int v) {
+  if (!maps.shift.enabled) return residual;
+  return maps.shift.whole_pixel ? with_whole_shift(residual, maps.shift, u, v) : with_shift(residual, line, u);
+}
+
+__device__ Measured measured_at(const Maps& maps, const RowLines& lines, const VarianceBounds& bounds, int u, int v) {
+  if (u < 0 || u >= maps.residual.width || v < 0 || v >= maps.residual.height) return not_measured();
+  const float disparity = full_disparity(maps, lines.shift, __ldg(&maps.residual(u, v)), u, v);
+  return measured(disparity, __ldg(&maps.variance(u, v)), lines.road.at(static_cast<float>(u)), bounds);
+}
+
+/// The pixels of a tile and a border around it in shared memory: lines of the rows, and three planes of numbers.
+struct Tile {
+  RowLines* lines;
+  float* numbers;
+  int left, top;  ///< of the border, pixels of the map
+  int columns, rows;
+
+  __device__ int size() const { return columns * rows; }
+  __device__ RowLine road(int v) const { return lines[v - top].road; }
+  __device__ Measured operator()(int u, int v) const {
+    const float* at = numbers + (v - top) * columns + (u - left);
+    return {at[0], at[size()], at[2 * size()]};
+  }
+  __device__ void fill(const Maps& maps, const VarianceBounds& bounds) const {
+    const int thread = static_cast<int>(threadIdx.y) * tile_columns + static_cast<int>(threadIdx.x);
+    for (int y = thread; y < rows; y += tile_columns * thread_rows) lines[y] = row_lines(maps, top + y);
+    __syncthreads();
+    for (int y = static_cast<int>(threadIdx.y); y < rows; y += thread_rows) {
+      for (int x = static_cast<int>(threadIdx.x); x < columns; x += tile_columns) {
+        const Measured pixel = measured_at(maps, lines[y], bounds, left + x, top + y);
+        float* at = numbers + y * columns + x;
+        at[0] = pixel.value;
+        at[size()] = pixel.precision;
+        at[2 * size()] = pixel.variance;
+      }
+    }
+    __syncthreads();
+  }
+};
+
+/// Where a window is too wide for shared memory.
+struct Untiled {
+  const Maps& maps;
+  const VarianceBounds& bounds;
+
+  __device__ RowLine road(int v) const { return row_lines(maps, v).road; }
+  __device__ Measured operator()(int u, int v) const { return measured_at(maps, row_lines(maps, v), bounds, u, v); }
+};
+
+/// Quotient where a last bit does not matter.
+__device__ float quotient(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return __fdividef(a, b);
+#else
+  return a / b;
+#endif
+}
+
+template <class Pixels>
+__device__ RefinedPixel refine_pixel(const Maps& maps, const Pixels& pixels, const RefinementSettings& settings, int u,
+                                     int v) {
+  const Measured centre = pixels(u, v);
+  float weights = 0, away = 0;
+  for (int dv = -settings.radius; dv <= settings.radius; dv += settings.step) {
+    for (int du = -settings.radius; du <= settings.radius; du += settings.step) {
+      const Measured other = pixels(u + du, v + dv);
+      const float difference = other.value - centre.value;
+      const float joint = settings.mean.reach2 * (other.variance + centre.variance);
+      const float agreement = fmaxf(0.0F, 1 - quotient(difference * difference, joint));
+      const float weight = agreement * agreement * other.precision;
+      weights += weight;
+      away += weight * difference;
+    }
+  }
+  const float mean = centre.value + (weights > 0 ? away / weights : 0);
+  const float precision = fmaxf(centre.precision, weights * settings.mean.share);
+  const float road = pixels.road(v).at(static_cast<float>(u));
+  return refined_pixel(maps.residual(u, v), mean, precision, road, settings.worst_sigma, nanf(""));
+}
+
+template <int rows_each>
+__global__ void refine_tiles(Maps maps, RefinementSettings settings, Plane<float> refined, Plane<float> sigma) {
+  const int left = static_cast<int>(blockIdx.x) * tile_columns;
+  const int top = static_cast<int>(blockIdx.y) * thread_rows * rows_each;
+  const int border = settings.radius;
+  const int rows = thread_rows * rows_each + 2 * border;
+  auto* lines = shared_memory<RowLines>();
+  const Tile tile{lines, reinterpret_cast<float*>(lines + rows), left - border, top - border, tile_columns + 2 * border,
+                  rows};
+  tile.fill(maps, settings.bounds);
+  const int u = left + static_cast<int>(threadIdx.x);
+  for (int k = 0; k < rows_each; ++k) {
+    const int v = top + k * thread_rows + static_cast<int>(threadIdx.y);
+    if (u >= refined.width || v >= refined.height) continue;
+    const RefinedPixel pixel = refine_pixel(maps, tile, settings, u, v);
+    refined(u, v) = pixel.disparity;
+    sigma(u, v) = pixel.sigma;
+  }
+}
+
+__global__ void refine_untiled(Maps maps, RefinementSettings settings, Plane<float> refined, Plane<float> sigma) {
+  const int u = static_cast<int>(blockIdx.x * tile_columns + threadIdx.x);
+  const int v = static_cast<int>(blockIdx.y * thread_rows + threadIdx.y);
+  if (u >= refined.width || v >= refined.height) return;
+  const RefinedPixel pixel = refine_pixel(maps, Untiled{maps, settings.bounds}, settings, u, v);
+  refined(u, v) = pixel.disparity;
+  sigma(u, v) = pixel.sigma;
+}
+
+std::size_t tile_bytes(int rows, int border) {
+  const auto all_rows = static_cast<std::size_t>(rows + 2 * border);
+  return all_rows * (sizeof(RowLines) + 3 * static_cast<std::size_t>(tile_columns + 2 * border) * sizeof(float));
+}
+
+}  // namespace
+
+void refine_disparities(Plane<const float> residual, Plane<const float> variance, const ShiftTerms& shift,
+                        const RefinementSettings& settings, Plane<float> refined, Plane<float> sigma,
+                        cudaStream_t stream) {
+  constexpr int rows_each = 2;
+  const Maps maps{residual, variance, shift};
+  const dim3 block(tile_columns, thread_rows);
+  const auto grid = [&](int rows) {
+    return dim3(blocks_for(refined.width, tile_columns), blocks_for(refined.height, rows));
+  };
+  const std::size_t bytes = tile_bytes(rows_each * thread_rows, settings.radius);
+  if (bytes <= most_shared_bytes) {
+    launch(refine_tiles<rows_each>, {grid(rows_each * thread_rows), block, bytes}, stream, maps, settings, refined,
+           sigma);
+  } else {
+    launch(refine_untiled, {grid(thread_rows), block}, stream, maps, settings, refined, sigma);
+  }
+}
+
+}  // namespace roadstereo::cuda

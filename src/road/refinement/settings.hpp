@@ -1,0 +1,29 @@
+#pragma once
+
+#include <algorithm>
+
+#include "road/refinement/mean_settings.hpp"
+#include "road/refinement/measured.hpp"
+#include "roadstereo/refinement.hpp"
+
+// What the options come to, for whoever refines.
+
+namespace roadstereo {
+
+/// Distance of the window's outermost neighbours from its centre, pixels.
+inline int window_radius(const RefinementOptions& options) {
+  return options.radius / options.step * options.step;
+}
+
+/// `support` is the number of pixels that one disparity rests on.
+inline MeanSettings mean_settings(const RefinementOptions& options, double support) {
+  return {static_cast<float>(options.reach_sigmas * options.reach_sigmas),
+          static_cast<float>(std::min(1.0, options.step * options.step / support))};
+}
+
+inline VarianceBounds variance_bounds(const RefinementOptions& options) {
+  return {static_cast<float>(options.least_sigma_px * options.least_sigma_px),
+          static_cast<float>(options.most_sigma_px * options.most_sigma_px)};
+}
+
+}  // namespace roadstereo
