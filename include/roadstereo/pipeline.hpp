@@ -19,6 +19,9 @@
 
 namespace roadstereo {
 
+struct DeviceUse;
+struct DeviceMaps;
+
 struct PipelineOptions {
   std::string engine = "auto";  ///< a name from engines(), or "auto"
   int threads = 0;              ///< worker threads; 0 takes all cores
@@ -122,6 +125,12 @@ class Pipeline {
 
   /// Forgets the last frame: the next one starts afresh.
   void reset();
+
+  /// Engine cuda: shares a device with the caller (roadstereo/device.hpp), from the next frame on. Such a pipeline also
+  /// takes frames whose data lie in device memory. Throws Error for any other engine.
+  void use_device(const DeviceUse& use);
+  /// Engine cuda: the last frame's maps in device memory. Throws Error for any other engine, or without a frame.
+  DeviceMaps device_maps() const;
 
   const PipelineOptions& options() const;
   const std::string& engine_name() const;

@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
 #include "core/sentence.hpp"
+#include "pipeline/host_stages.hpp"
+#include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
-#include "stereo/coarse/coarse_search.hpp"
-#include "stereo/window.hpp"
+#if defined(ROADSTEREO_WITH_CUDA)
+#include "pipeline/cuda/device_stages.hpp"
+#endif
 
 namespace roadstereo {
 namespace {
@@ -29,23 +31,13 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-void require_picture(const GreyImage& image, const char* name) {
-  const std::int16_t first = image(0, 0);
-  for (int v = 0; v < image.height(); ++v) {
-    const std::int16_t* row = image.row(v);
-    if (std::any_of(row, row + image.width(), [first](std::int16_t value) { return value != first; })) return;
-  }
-  fail("the ", name, " image shows nothing: every pixel has the grey level ", static_cast<double>(first) / grey_scale,
-       " of 255");
-}
-
-double valid_share(const Image<float>& map) {
-  std::size_t valid = 0;
-  for (int v = 0; v < map.height(); ++v) {
-    const float* row = map.row(v);
-    for (int u = 0; u < map.width(); ++u) valid += std::isnan(row[u]) ? 0U : 1U;
-  }
-  return static_cast<double>(valid) / static_cast<double>(map.pixels());
+std::unique_ptr<FrameStages> make_stages(const std::string& engine, const PipelineOptions& options,
+                                         const std::optional<StereoCalibration>& calibration) {
+#if defined(ROADSTEREO_WITH_CUDA)
+  if (engine == "cuda") return cuda::make_device_stages(options, calibration);
+#endif
+  static_cast<void>(engine);
+  return make_host_stages(options, calibration);
 }
 
 }  // namespace
@@ -55,29 +47,20 @@ struct Pipeline::State {
   std::optional<StereoCalibration> calibration;
   std::string engine_name;
   int threads = 1;
-  double support = 1;  ///< pixels that one disparity rests on
-  std::unique_ptr<StereoEngine> engine;
-  std::optional<CoarseSearch> coarse_search;
+  std::unique_ptr<FrameStages> stages;
 
   CarriedState carried;
-  bool has_frame = false;  ///< whether `result` belongs to one frame, whole
+  int width = 0, height = 0;  ///< of the frame, pixels
+  bool has_frame = false;     ///< whether `result` belongs to one frame, whole
 
-  // Scratch memory.
   std::pmr::unsynchronized_pool_resource memory{{.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
-  GreyImage right, transformed_target;
-  std::vector<int> first_column;
-  MatchInput match_input;
-  MatchMaps maps;
-  Image<float> shifted;  ///< disparities before they are refined
   FrameResult result;
 
   void prepare(const FrameView& left_frame, const FrameView& right_frame);
   void find_road();
-  void measure_rows();
+  void measure_rows(const GreyPair& grey);
   void transform_perspective();
-  void look_coarsely();
   void match();
-  void refine();
   void find_geometry();
   void transform();
   void summarise();
@@ -89,35 +72,34 @@ void Pipeline::State::prepare(const FrameView& left_frame, const FrameView& righ
     fail("the left image has ", left_frame.width, "×", left_frame.height, " pixels and the right image ",
          right_frame.width, "×", right_frame.height, "; a pair must have one size");
   }
+  width = left_frame.width;
+  height = left_frame.height;
   if (calibration) calibration->validate(left_frame.width, left_frame.height, "calibration");
   if (carried.width != left_frame.width || carried.height != left_frame.height) carried.road.reset();
-  to_grey(left_frame, options.white_level, result.grey);
-  to_grey(right_frame, options.white_level, right);
-  require_picture(result.grey, "left");
-  require_picture(right, "right");
-  if (result.grey == right) fail("left and right are the same image");
+  stages->prepare(left_frame, right_frame, result);
 }
 
 /// The road model Δu (eq. relation_vd): the last frame's when it still fits, else from the images.
 void Pipeline::State::find_road() {
   result.rows = {};
   if (carried.road) {
-    result.road = verify_road_model(result.grey, right, *carried.road, calibration, options.road_model, threads);
+    result.road = stages->verify_road(*carried.road, result);
     if (result.road.reliable) return;
     result.warnings.push_back(sentence("the road model was estimated anew: ", result.road.reason));
   }
-  result.road = estimate_road_model(result.grey, right, calibration, options.road_model, threads);
+  const GreyPair grey = stages->grey(result);
+  result.road = estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads);
   if (!result.road.reliable) {
     result.warnings.push_back(sentence("no reliable road model (", result.road.reason,
                                        "): matched without perspective transformation over the full range"));
   }
-  if (options.check_rows) measure_rows();
+  if (options.check_rows) measure_rows(grey);
 }
 
-void Pipeline::State::measure_rows() {
+void Pipeline::State::measure_rows(const GreyPair& grey) {
   constexpr double largest_offset_px = 0.5;
   constexpr double largest_spread_px = 1.0;
-  result.rows = measure_row_alignment(result.grey, right, threads);
+  result.rows = measure_row_alignment(grey.left, grey.right, threads);
   carried.row_offset_px = 0;
   if (!result.rows.known()) return;
   constexpr double largest_correction_px = 2.0;
@@ -136,24 +118,9 @@ void Pipeline::State::measure_rows() {
 
 /// π_tar → π_tar', section 3.1.
 void Pipeline::State::transform_perspective() {
-  result.shift =
-      plan_perspective(result.road, calibration, result.grey.width(), result.grey.height(), options.perspective);
+  result.shift = plan_perspective(result.road, calibration, width, height, options.perspective);
   result.shift.row_offset = carried.row_offset_px;
-  transform_target(right, result.shift, threads, transformed_target, first_column);
-}
-
-/// Which disparities each tile can have, and a coarse map that matching leans on where the costs leave a choice.
-void Pipeline::State::look_coarsely() {
-  match_input = {result.grey, transformed_target, first_column.data(), result.shift.disparities};
-  if (!coarse_search) return;
-  // The road's disparity after the shift; beyond the horizon there is none.
-  const auto road = [this](double u, double v) {
-    const double disparity = result.shift.enabled ? result.shift.road.disparity(u, v) : -1;
-    return disparity < 0 ? std::numeric_limits<double>::quiet_NaN() : std::min(disparity, result.shift.delta_p);
-  };
-  if (!coarse_search->find(match_input, road)) return;
-  if (options.narrow_search) match_input.ranges = coarse_search->ranges();
-  match_input.prior = &coarse_search->prior();
+  stages->transform_perspective(result);
 }
 
 /// Section 3.2. Without a road the coarse map has only its rows to go by, and matching leans on it less far.
@@ -161,20 +128,13 @@ void Pipeline::State::match() {
   constexpr double reach_without_road_px = 2;
   MatcherOptions matcher = options.matcher;
   if (!result.shift.enabled) matcher.prior_reach = std::min(matcher.prior_reach, reach_without_road_px);
-  engine->match(match_input, matcher, maps);
-}
-
-/// Adds the shift back, and smooths where the standard errors allow it.
-void Pipeline::State::refine() {
-  add_shift(maps.disparity, result.shift, threads, shifted);
-  refine_disparities(shifted, maps.variance, result.shift.road, support, options.refinement, threads, result.disparity,
-                     result.sigma);
+  stages->match(matcher, result);
 }
 
 /// Roll angle and projection model, section 3.3.
 void Pipeline::State::find_geometry() {
   constexpr double least_valid_share = 0.01;
-  result.valid_share = valid_share(result.disparity);
+  result.valid_share = stages->valid_share(result);
   result.geometry = {};
   result.geometry_found = false;
   if (result.valid_share < least_valid_share) {
@@ -182,8 +142,7 @@ void Pipeline::State::find_geometry() {
     return;
   }
   const auto prior = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
-  result.geometry =
-      fit_road_geometry(result.disparity, std::nullopt, prior, carried.roll_rad, options.road_geometry, threads);
+  result.geometry = stages->fit_geometry(prior, carried.roll_rad, result);
   result.geometry_found = true;
 }
 
@@ -192,12 +151,10 @@ void Pipeline::State::transform() {
   result.delta_t = 0;
   result.spread = {};
   if (!result.geometry_found) {
-    result.transformed.assign(result.grey.width(), result.grey.height(), std::numeric_limits<float>::quiet_NaN());
+    stages->leave_untransformed(result);
     return;
   }
-  result.delta_t = transform_disparity(result.disparity, result.geometry, result.shift.delta_p, options.road_geometry,
-                                       threads, result.transformed);
-  result.spread = measure_spread(result.transformed, result.delta_t, threads);
+  stages->transform(result);
   // Nothing vouches for a plane that the images did not show before matching and that few disparities lie on.
   constexpr double least_road_share = 0.3;
   if (!result.road.reliable && result.spread.road_share < least_road_share) {
@@ -210,15 +167,14 @@ void Pipeline::State::transform() {
 
 /// What the next frame starts from, and the figures of this one.
 void Pipeline::State::summarise() {
-  carried.width = result.grey.width();
-  carried.height = result.grey.height();
+  carried.width = width;
+  carried.height = height;
   carried.road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
   carried.roll_rad = result.geometry_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   const StageTimes& ms = result.ms;
   result.ms.total = ms.prepare + ms.road_model + ms.perspective + ms.coarse + ms.match + ms.refinement +
                     ms.road_geometry + ms.transform;
-  result.mde_per_s =
-      static_cast<double>(result.grey.pixels()) * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
+  result.mde_per_s = static_cast<double>(width) * height * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
 }
 
 Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
@@ -228,11 +184,7 @@ Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCal
   state_->calibration = calibration;
   state_->engine_name = resolve_engine_name(options.engine);
   state_->threads = resolve_threads(options.threads);
-  state_->support = support_pixels(options.matcher);
-  state_->engine = make_engine(options.engine, options.threads);
-  if (options.narrow_search || options.matcher.prior_slope > 0) {
-    state_->coarse_search.emplace(options.coarse_search, options.threads);
-  }
+  state_->stages = make_stages(state_->engine_name, options, calibration);
 }
 
 Pipeline::~Pipeline() = default;
@@ -251,16 +203,17 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
   s.result.ms.road_model = watch.lap();
   s.transform_perspective();
   s.result.ms.perspective = watch.lap();
-  s.look_coarsely();
+  s.stages->look_coarsely(s.result);
   s.result.ms.coarse = watch.lap();
   s.match();
   s.result.ms.match = watch.lap();
-  s.refine();
+  s.stages->refine(s.result);
   s.result.ms.refinement = watch.lap();
   s.find_geometry();
   s.result.ms.road_geometry = watch.lap();
   s.transform();
   s.result.ms.transform = watch.lap();
+  s.stages->deliver(s.result);
   s.summarise();
   s.has_frame = true;
   return s.result;
@@ -314,6 +267,16 @@ const CarriedState& Pipeline::carried() const {
 void Pipeline::carry_on(const CarriedState& carried) {
   state_->has_frame = false;
   state_->carried = carried;
+}
+
+void Pipeline::use_device(const DeviceUse& use) {
+  state_->has_frame = false;
+  state_->stages->use_device(use);
+}
+
+DeviceMaps Pipeline::device_maps() const {
+  if (state_->carried.width == 0) fail("no frame was processed yet");
+  return state_->stages->device_maps();
 }
 
 void Pipeline::reset() {
