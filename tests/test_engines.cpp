@@ -331,6 +331,15 @@ TEST(Registry, NamesTheEnginesThatExist) {
   } catch (const Error& error) {
     EXPECT_EQ(std::string(error.what()), "there is no engine called 'gpu'; this build has: " + known);
   }
+  for (const AbsentEngine& absent : absent_engines()) {
+    try {
+      make_engine(absent.name, 1);
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()),
+                "the engine " + absent.name + " cannot be used: " + absent.reason + "; there are: " + known);
+    }
+  }
   EXPECT_EQ(resolve_engine_name("auto"), engines().front().name);
   EXPECT_EQ(resolve_engine_name("cpu"), "cpu");
 }

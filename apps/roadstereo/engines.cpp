@@ -17,7 +17,12 @@ std::string engines_json() {
   for (const EngineInfo& engine : engines()) {
     list.push_back({{"name", engine.name}, {"description", engine.description}, {"exact", engine.exact}});
   }
-  const nlohmann::ordered_json document = {{"auto", resolve_engine_name("auto")}, {"engines", list}};
+  auto absent = nlohmann::ordered_json::array();
+  for (const AbsentEngine& engine : absent_engines()) {
+    absent.push_back({{"name", engine.name}, {"reason", engine.reason}});
+  }
+  const nlohmann::ordered_json document = {
+      {"auto", resolve_engine_name("auto")}, {"engines", list}, {"absent", absent}};
   return document.dump(2);
 }
 
@@ -25,6 +30,9 @@ std::string engines_table() {
   std::string table;
   for (const EngineInfo& engine : engines()) {
     table += fmt::format("{:<12} {}{}\n", engine.name, engine.description, engine.exact ? " (exact)" : "");
+  }
+  for (const AbsentEngine& engine : absent_engines()) {
+    table += fmt::format("{:<12} not here: {}\n", engine.name, engine.reason);
   }
   return table + fmt::format("{:<12} {}\n", "auto", "stands for " + resolve_engine_name("auto"));
 }

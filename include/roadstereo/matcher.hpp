@@ -106,8 +106,17 @@ struct EngineInfo {
 /// Every engine of this build that this machine can run, best first.
 const std::vector<EngineInfo>& engines();
 
+/// An engine that is known, but not in `engines()`.
+struct AbsentEngine {
+  std::string name;
+  std::string reason;  ///< why this build or this machine has it not, as a sentence
+};
+
+/// Every known engine that cannot be used, for example `cuda` without a GPU.
+const std::vector<AbsentEngine>& absent_engines();
+
 /// Makes the engine called `name`; "auto" takes the first of the registry. `threads` 0 takes all cores.
-/// Throws Error naming the engines that exist.
+/// Throws Error naming the engines that exist, or why the one that was asked for cannot be used.
 std::unique_ptr<StereoEngine> make_engine(const std::string& name, int threads);
 
 /// The name that "auto" stands for, or `name` itself; throws like make_engine.

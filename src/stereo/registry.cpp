@@ -12,26 +12,45 @@ namespace roadstereo {
 
 namespace {
 
-std::vector<EngineInfo> make_registry() {
-  std::vector<EngineInfo> registry{
-      {"cpu", "threads and SIMD (" + cpu_engine_target() + "), sliding sums, no cost volume", false, make_cpu_engine},
-      {"reference", "the paper's equations in double precision: slow, the oracle", true, make_reference_engine},
-  };
-#if defined(ROADSTEREO_CUDA_EMULATED)
-  registry.push_back({"cuda", "CUDA's kernels emulated on the host: slow, for tests", false, make_cuda_engine});
-#elif defined(ROADSTEREO_WITH_CUDA)
+struct Registry {
+  std::vector<EngineInfo> usable;  ///< best first
+  std::vector<AbsentEngine> absent;
+};
+
+Registry make_registry() {
+  Registry registry;
+#if defined(ROADSTEREO_WITH_CUDA) && !defined(ROADSTEREO_CUDA_EMULATED)
   if (const cuda::Device device = cuda::find_device(); device.usable) {
-    registry.insert(registry.begin(), {"cuda", "CUDA on " + device.name, false, make_cuda_engine});
+    registry.usable.push_back({"cuda", "CUDA on " + device.name, false, make_cuda_engine});
+  } else {
+    registry.absent.push_back({"cuda", device.reason});
   }
+#elif !defined(ROADSTEREO_WITH_CUDA)
+  registry.absent.push_back({"cuda", "this build was made without CUDA (CMake option ROADSTEREO_CUDA)"});
+#endif
+  registry.usable.push_back(
+      {"cpu", "threads and SIMD (" + cpu_engine_target() + "), sliding sums, no cost volume", false, make_cpu_engine});
+  registry.usable.push_back(
+      {"reference", "the paper's equations in double precision: slow, the oracle", true, make_reference_engine});
+#if defined(ROADSTEREO_CUDA_EMULATED)
+  registry.usable.push_back({"cuda", "CUDA's kernels emulated on the host: slow, for tests", false, make_cuda_engine});
 #endif
   return registry;
+}
+
+const Registry& registry() {
+  static const Registry of_this_machine = make_registry();
+  return of_this_machine;
 }
 
 }  // namespace
 
 const std::vector<EngineInfo>& engines() {
-  static const std::vector<EngineInfo> registry = make_registry();
-  return registry;
+  return registry().usable;
+}
+
+const std::vector<AbsentEngine>& absent_engines() {
+  return registry().absent;
 }
 
 namespace {
@@ -42,6 +61,9 @@ const EngineInfo& find_engine(const std::string& name) {
   for (const EngineInfo& info : engines()) {
     if (info.name == name) return info;
     known += ", " + info.name;
+  }
+  for (const AbsentEngine& absent : absent_engines()) {
+    if (absent.name == name) fail("the engine ", name, " cannot be used: ", absent.reason, "; there are: ", known);
   }
   fail("there is no engine called '", name, "'; this build has: ", known);
 }

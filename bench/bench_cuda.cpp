@@ -1,0 +1,175 @@
+// The engine `cuda` on the GPU of this machine: the whole pipeline with images in device memory, its stages, its largest
+// kernels against what they must at least cost, and frames from host to host. Needs nothing but the library.
+//   bench_cuda [RUNS]
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/cuda/device.hpp"
+#include "core/cuda/memory.hpp"
+#include "kernel_floors.hpp"
+#include "roadstereo/device.hpp"
+#include "roadstereo/pipeline.hpp"
+#include "roadstereo/synth.hpp"
+
+namespace roadstereo {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0 : values[values.size() / 2];
+}
+
+struct Size {
+  int width, height, disparities;
+};
+
+synth::SyntheticPair make_pair(const Size& size) {
+  synth::Scene scene = synth::named_scene("uav");
+  scene.supersampling = 1;
+  scene.rig.focal_px *= static_cast<double>(size.width) / scene.rig.width;
+  scene.rig.width = size.width;
+  scene.rig.height = size.height;
+  return synth::render(scene);
+}
+
+/// A camera frame in device memory.
+class FrameOnDevice {
+ public:
+  explicit FrameOnDevice(const Frame& frame) : bytes_(frame.bytes.size()), view_(frame.view()) {
+    ROADSTEREO_CUDA(cudaMemcpyAsync(bytes_.data(), frame.bytes.data(), frame.bytes.size(), cudaMemcpyHostToDevice, nullptr));
+    ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
+    view_.data = bytes_.data();
+  }
+  const FrameView& view() const { return view_; }
+
+ private:
+  cuda::DeviceArray<std::uint8_t> bytes_;
+  FrameView view_;
+};
+
+PipelineOptions options_of(const std::string& name, const Size& size) {
+  PipelineOptions options = preset(name);
+  options.engine = "cuda";
+  options.perspective.disparities = size.disparities;
+  return options;
+}
+
+struct Goal {
+  Size size;
+  const char* preset;
+  double ms;  ///< 0: none
+};
+
+/// The whole pipeline on frames whose road model is known from the frame before.
+void time_pipeline(const Goal& goal, int runs) {
+  const synth::SyntheticPair pair = make_pair(goal.size);
+  const FrameOnDevice left(pair.left), right(pair.right);
+  Pipeline pipeline(options_of(goal.preset, goal.size), pair.calibration);
+  pipeline.use_device({.stream = nullptr, .download = false});
+  constexpr int warm_up = 10;
+  std::vector<double> ms;
+  std::vector<StageTimes> stages;
+  for (int run = 0; run < warm_up + runs; ++run) {
+    const auto start = Clock::now();
+    const FrameResult& result = pipeline.process(left.view(), right.view());
+    if (run < warm_up) continue;
+    ms.push_back(ms_since(start));
+    stages.push_back(result.ms);
+  }
+  const auto stage = [&stages](double StageTimes::*member) {
+    std::vector<double> values;
+    for (const StageTimes& times : stages) values.push_back(times.*member);
+    return median(values);
+  };
+  const double total = median(ms);
+  const double evaluations = 1e-6 * goal.size.width * goal.size.height * goal.size.disparities;
+  std::printf("%5dx%-5d D %-3d %-8s %8.3f ms  %7.0f Mde/s", goal.size.width, goal.size.height, goal.size.disparities,
+              goal.preset, total, evaluations / (total * 1e-3));
+  if (goal.ms > 0) std::printf("  goal %.2f ms: %s (%.2f)", goal.ms, total <= goal.ms ? "reached" : "MISSED", total / goal.ms);
+  std::printf("\n      prepare %.3f, road model %.3f, perspective %.3f, coarse %.3f, match %.3f, refinement %.3f, "
+              "road geometry %.3f, transform %.3f\n",
+              stage(&StageTimes::prepare), stage(&StageTimes::road_model), stage(&StageTimes::perspective),
+              stage(&StageTimes::coarse), stage(&StageTimes::match), stage(&StageTimes::refinement),
+              stage(&StageTimes::road_geometry), stage(&StageTimes::transform));
+}
+
+/// Frames from host memory to host memory, by so many pipelines that each have a thread and a stream of their own.
+void count_frames(const Size& size, int pipelines, int runs) {
+  const synth::SyntheticPair pair = make_pair(size);
+  std::vector<Pipeline> all;
+  for (int i = 0; i < pipelines; ++i) {
+    all.emplace_back(options_of("default", size), pair.calibration);
+    for (int frame = 0; frame < 3; ++frame) all.back().process(pair.left.view(), pair.right.view());
+  }
+  std::vector<std::exception_ptr> failures(all.size());
+  const auto start = Clock::now();
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    threads.emplace_back([&, i] {
+      try {
+        for (int run = 0; run < runs; ++run) all[i].process(pair.left.view(), pair.right.view());
+      } catch (...) {
+        failures[i] = std::current_exception();
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+  const double per_second = 1e3 * pipelines * runs / ms_since(start);
+  constexpr double goal = 1500;
+  std::printf("%5dx%-5d host to host, %d pipeline%s: %7.0f frames/s  goal %.0f: %s\n", size.width, size.height, pipelines,
+              pipelines == 1 ? " " : "s", per_second, goal, per_second >= goal ? "reached" : "MISSED");
+}
+
+void run(int runs) {
+  const cuda::Device device = cuda::find_device();
+  if (!device.usable) {
+    std::printf("bench_cuda: nothing to measure: %s\n", device.reason.c_str());
+    return;
+  }
+  const Size usual{640, 360, 32}, large{2079, 1040, 64};
+  std::printf("%s\n\nThe whole pipeline, images in device memory, median of %d frames:\n", device.name.c_str(), runs);
+  for (const Goal& goal : {Goal{usual, "paper", 0.35}, Goal{usual, "default", 0.25}, Goal{usual, "fast", 0},
+                           Goal{large, "paper", 0}, Goal{large, "default", 3}, Goal{large, "fast", 0}}) {
+    time_pipeline(goal, runs);
+  }
+  std::printf("\nKernels of matching against their floors, %dx%d, D %d, the whole range searched:\n", usual.width,
+              usual.height, usual.disparities);
+  bench::time_kernels(usual.width, usual.height, usual.disparities, runs);
+  std::printf("\n");
+  for (const int pipelines : {1, 2, 3}) count_frames(usual, pipelines, runs);
+}
+
+}  // namespace
+}  // namespace roadstereo
+
+int main(int argc, char** argv) {
+  try {
+    const int runs = argc > 1 ? std::atoi(argv[1]) : 200;
+    if (runs < 1) {
+      std::fprintf(stderr, "bench_cuda: '%s' is no number of runs\n", argv[1]);
+      return 2;
+    }
+    roadstereo::run(runs);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_cuda: %s\n", error.what());
+    return 1;
+  }
+}
