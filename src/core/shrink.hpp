@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/unshrink.hpp"
 #include "roadstereo/image.hpp"
 
 namespace roadstereo {
@@ -10,10 +11,5 @@ GreyImage shrink(ImageView<const std::int16_t> image, int factor);
 
 /// The same into an image of the right size.
 void shrink(ImageView<const std::int16_t> image, int factor, ImageView<std::int16_t> small);
-
-/// Full-size coordinate of a coordinate of the shrunk image.
-inline double unshrink(double x, int factor) {
-  return (x + 0.5) * factor - 0.5;
-}
 
 }  // namespace roadstereo

@@ -7,37 +7,25 @@
 #include "core/require_range.hpp"
 #include "core/shrink.hpp"
 #include "roadstereo/error.hpp"
+#include "stereo/coarse/coarse_column.hpp"
 #include "stereo/coarse/coarse_map.hpp"
+#include "stereo/coarse/coarse_size.hpp"
+#include "stereo/coarse/road_chance.hpp"
 #include "stereo/coarse/scanline.hpp"
 #include "stereo/window.hpp"
 
 namespace roadstereo {
 namespace {
 
-constexpr int most_columns = 800;       // of the coarse pair, when the factor is derived
-constexpr int smallest_side = 64;       // pixels; below that there is nothing to gain
-constexpr int fewest_disparities = 12;  // below this narrowing saves nothing
-constexpr int fewest_rows = 24;         // of a band
-constexpr float no_evidence = 1;        // cost of a disparity without a counterpart: that of uncorrelated blocks
+constexpr int fewest_rows = 24;  // of a band
 
-int derived_factor(const CoarseSearchOptions& options, int width) {
-  if (options.factor != 0) return options.factor;
-  int factor = 2;
-  while (factor < 8 && width / factor > most_columns) factor *= 2;
-  return factor;
-}
-
-/// How far the costs of a pixel leave the road possible: 1 where they are as low within two coarse pixels of it as
-/// anywhere, 0 where they are so much lower elsewhere that the pixel shows something else.
+/// How far the costs of a pixel leave the road possible.
 float chance_of_road(const float* costs, int count, float road) {
-  constexpr int near = 2;
-  constexpr float doubtful = 0.2F, impossible = 0.4F;  // in units of the correlation
-  const int centre = static_cast<int>(std::lround(road));
-  const int first = std::clamp(centre - near, 0, count), end = std::clamp(centre + near + 1, first, count);
+  const NearRoad near = near_road(road, count);
   float at_road = no_evidence, least = no_evidence;
-  for (int d = first; d < end; ++d) at_road = std::min(at_road, costs[d]);
+  for (int d = near.first; d < near.end; ++d) at_road = std::min(at_road, costs[d]);
   for (int d = 0; d < count; ++d) least = std::min(least, costs[d]);
-  return std::clamp((impossible - (at_road - least)) / (impossible - doubtful), 0.0F, 1.0F);
+  return chance_by_costs(at_road, least);
 }
 
 }  // namespace
@@ -72,17 +60,17 @@ void CoarseSearch::shrink_pair(const MatchInput& input, int factor) {
   for (std::size_t v = 0; v < first_column_.size(); ++v) {
     const int* rows = input.first_column + static_cast<std::size_t>(factor) * v;
     const int first = *std::max_element(rows, rows + factor);
-    first_column_[v] = std::min(reference_.width(), (first + factor - 1) / factor);
+    first_column_[v] = coarse_column(first, factor, reference_.width());
   }
 }
 
 bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, double)> road) {
   const int width = input.reference.width(), height = input.reference.height();
   ranges_found_ = false;
-  if (std::min(width, height) < smallest_side) return false;
-  prior_.factor = derived_factor(options_, width);
+  if (!worth_a_coarse_look(width, height)) return false;
+  prior_.factor = coarse_factor(options_, width);
   shrink_pair(input, prior_.factor);
-  const int disparities = std::max(2, (input.disparities - 1) / prior_.factor + 1);
+  const int disparities = coarse_disparities(input.disparities, prior_.factor);
   const MatchInput coarse{reference_, target_, first_column_.data(), disparities};
   block_first_columns(coarse, options_.block_radius, block_first_column_);
   for (Image<float>* map : {&along_rows_, &prior_.disparity}) map->resize(reference_.width(), reference_.height());
@@ -108,7 +96,7 @@ bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, doub
   parallel_rows(reference_.height(), rows, threads_, [&](int first, int last, int worker) {
     correct_rows(first, last, workers_[static_cast<std::size_t>(worker)]);
   });
-  if (input.disparities < fewest_disparities) return true;
+  if (input.disparities < fewest_ranged_disparities) return true;
   tile_ranges_.find(prior_.disparity, prior_.factor, width, height, input.disparities);
   ranges_found_ = true;
   return true;
@@ -118,11 +106,7 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, Fun
                               Worker& worker) {
   const cpu::MatchView view(coarse, cpu::MatchView::reference, block_first_column_);
   worker.costs.start(view, first, 0, view.width(), {0, coarse.disparities});
-  worker.evidence.start(coarse.reference, first,
-                        {.block_radius = options_.block_radius,
-                         .noise = options_.texture_noise,
-                         .row_error = options_.row_error_px,
-                         .half_at = options_.known_within_px});
+  worker.evidence.start(coarse.reference, first, evidence_options(options_));
   for (int v = first; v < last; ++v) {
     worker.costs.compute(v, worker.row.row(0));
     finish_row(coarse, v, road, worker);
@@ -135,7 +119,6 @@ void CoarseSearch::finish_row(const MatchInput& coarse, int v, FunctionRef<doubl
   const int width = reference_.width();
   const auto factor = static_cast<float>(prior_.factor);
   const std::vector<float>& ignorance = worker.evidence.next();
-  constexpr float knows_enough = 0.1F;  // the road hardly pulls there
   const int first_seen = block_first_column_[static_cast<std::size_t>(v)];
   for (int u = 0; u < width; ++u) {
     const auto column = static_cast<std::size_t>(u);

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "roadstereo/coarse_search.hpp"
 #include "roadstereo/image.hpp"
+#include "stereo/coarse/ignorance.hpp"
 
 namespace roadstereo {
 
@@ -13,6 +15,22 @@ struct EvidenceOptions {
   double row_error = 0.3;  ///< standard deviation of the rows' offset, pixels
   double half_at = 0.3;    ///< standard error of the disparity that leaves half the ignorance, pixels
 };
+
+/// Those of a coarse look.
+inline EvidenceOptions evidence_options(const CoarseSearchOptions& options) {
+  return {.block_radius = options.block_radius,
+          .noise = options.texture_noise,
+          .row_error = options.row_error_px,
+          .half_at = options.known_within_px};
+}
+
+/// What the options come to in the formula.
+inline IgnoranceTerms ignorance_terms(const EvidenceOptions& options) {
+  constexpr double gradient_unit = 2.0 * grey_scale / (1 << CoarseGradient::shift);
+  return {static_cast<float>(options.noise * options.noise * gradient_unit * gradient_unit),
+          static_cast<float>(options.row_error * options.row_error),
+          static_cast<float>(options.half_at * options.half_at)};
+}
 
 /// How little a block of an image can say about its disparity: 0 all, 1 nothing. From gradients alone, the standard
 /// error s of the block's disparity is s² = noise² / Σ gu² + row_error² · (Σ gu gv / Σ gu²)²: texture-free blocks know

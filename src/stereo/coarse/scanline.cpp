@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "stereo/coarse/path_winner.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "stereo/coarse/scanline.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for every instruction set
@@ -132,11 +134,9 @@ HWY_INLINE float take_winner(const float* forth, const float* back, int count, f
     winner = d + static_cast<int>(found);
     break;
   }
-  const auto disparity = static_cast<float>(winner);
-  if (winner == 0 || winner + 1 >= count) return disparity;
-  const float before = totals[winner - 1], after = totals[winner + 1];
-  const float curvature = 2 * (before + after - 2 * totals[winner]);
-  return curvature > 0 ? disparity + (before - after) / curvature : disparity;
+  const bool inside = winner > 0 && winner + 1 < count;
+  const float before = inside ? totals[winner - 1] : never, after = inside ? totals[winner + 1] : never;
+  return winner_with_fraction(winner, count, before, totals[winner], after);
 }
 
 void match_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "stereo/block_correlation.hpp"
+
 // Vector kernels for the matching cost c(p, d) of eq. c. They work on one row of a view, whose pixels are called "own";
 // the other view's row is stored in the opposite direction, so that the candidates d = 0, 1, … of an own pixel lie one
 // behind the other: a vector holds the disparities of one pixel.
@@ -17,9 +19,6 @@ inline constexpr int disparity_grid = 16;
 constexpr std::ptrdiff_t padded_disparities(std::ptrdiff_t disparities) {
   return (disparities + disparity_grid - 1) / disparity_grid * disparity_grid;
 }
-
-/// A block whose variance (fixed-point grey²) is below this has no texture: its cost is 1.
-inline constexpr float smallest_variance = 0.25f;
 
 /// Two samples of one column as one number: the row that enters the block and the row that leaves it.
 using SamplePair = std::int32_t;

@@ -5,9 +5,6 @@
 namespace roadstereo::cpu {
 namespace {
 
-/// Subtracted from every grey value: keeps the sums of products in 32 bits and changes no covariance.
-constexpr int mid_grey = grey_max / 2;
-
 /// out[k] = row[first + k] − mid-grey, or row[width − 1 − first − k] when mirrored; 0 outside the row.
 void copy_centred(const std::int16_t* row, int width, bool mirrored, int first, int count, std::int16_t* out) {
   const int begin = std::clamp(-first, 0, count);

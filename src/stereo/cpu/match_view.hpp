@@ -7,6 +7,9 @@
 
 namespace roadstereo::cpu {
 
+/// Subtracted from every grey value: keeps the sums of products in 32 bits and changes no covariance.
+inline constexpr int mid_grey = grey_max / 2;
+
 /// One view of a pair as the matcher walks over it. The matcher knows one direction only: pixel i of its own view may
 /// match pixel i − d of the other. For the target view both images are therefore mirrored. The other view's rows are
 /// stored backwards: column j holds pixel width − 1 − j, so own pixel i at disparity d meets column width − 1 − i + d.

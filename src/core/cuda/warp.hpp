@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cuda_runtime.h>
+
+namespace roadstereo::cuda {
+
+constexpr int warp_lanes = 32;
+constexpr unsigned whole_warp = 0xFFFFFFFFU;
+
+/// The smallest of the numbers of a warp's lanes, none of which is NaN.
+__device__ inline float warp_min(float value) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+  // As whole numbers in the order of the floats: the hardware finds their smallest in one step.
+  const int bits = __float_as_int(value);
+  const int least = __reduce_min_sync(whole_warp, bits ^ ((bits >> 31) & 0x7FFFFFFF));
+  return __int_as_float(least ^ ((least >> 31) & 0x7FFFFFFF));
+#else
+  for (int distance = warp_lanes / 2; distance > 0; distance /= 2) {
+    value = fminf(value, __shfl_xor_sync(whole_warp, value, distance));
+  }
+  return value;
+#endif
+}
+
+/// The largest of the numbers of a warp's lanes.
+__device__ inline int warp_max(int value) {
+  for (int distance = warp_lanes / 2; distance > 0; distance /= 2) {
+    const int other = __shfl_xor_sync(whole_warp, value, distance);
+    value = other > value ? other : value;
+  }
+  return value;
+}
+
+}  // namespace roadstereo::cuda

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+
+#include "roadstereo/coarse_search.hpp"
+
+// How a pair is looked at coarsely, for whoever does.
+
+namespace roadstereo {
+
+inline constexpr int fewest_ranged_disparities = 12;  ///< below this narrowing saves nothing
+
+/// Whether a pair is large enough to gain anything.
+inline bool worth_a_coarse_look(int width, int height) {
+  constexpr int smallest_side = 64;
+  return std::min(width, height) >= smallest_side;
+}
+
+inline int coarse_factor(const CoarseSearchOptions& options, int width) {
+  constexpr int most_columns = 800;
+  if (options.factor != 0) return options.factor;
+  int factor = 2;
+  while (factor < 8 && width / factor > most_columns) factor *= 2;
+  return factor;
+}
+
+inline int coarse_disparities(int disparities, int factor) {
+  return std::max(2, (disparities - 1) / factor + 1);
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,158 @@
+// Floor: 8 bytes and 7 operations a cost each way, and 8 bytes for the winners: 320×180 pixels of 24 disparities, 33 MB
+// in the second cache. What counts is the chain: a column needs the smallest total of the column before it, so that a
+// row takes columns × (exchange with the neighbours, smallest of a warp, three operations), about 70 cycles each with
+// the hardware's minimum (compute capability 8), 170 without. Both ways of all rows run beside each other.
+
+#include "core/cuda/launch.hpp"
+#include "core/cuda/unroll.hpp"
+#include "core/cuda/warp.hpp"
+#include "stereo/coarse/cuda/paths.hpp"
+#include "stereo/coarse/path_winner.hpp"
+
+namespace roadstereo::cuda {
+namespace {
+
+constexpr int ahead = 4;  // columns whose costs are on their way
+
+/// The disparities of a column that one lane holds: lane·count ….
+template <int count>
+struct alignas(count % 4 == 0   ? 16
+               : count % 2 == 0 ? 8
+                                : 4) LaneCosts {
+  float at[count];
+};
+
+/// One path along a row, from the left or from the right.
+template <int count>
+struct Path {
+  using Lane = LaneCosts<count>;
+  const float* costs;  ///< this lane's of the first column of the path
+  float* out;
+  std::ptrdiff_t next;  ///< from one column of the path to the next
+
+  __device__ Lane cost(int k) const { return *reinterpret_cast<const Lane*>(costs + k * next); }
+  __device__ void store(int k, const Lane& numbers) const { *reinterpret_cast<Lane*>(out + k * next) = numbers; }
+};
+
+template <int count>
+__device__ float cheapest_of(const LaneCosts<count>& totals) {
+  float least = totals.at[0];
+  ROADSTEREO_UNROLL
+  for (int i = 1; i < count; ++i) least = fminf(least, totals.at[i]);
+  return warp_min(least);
+}
+
+/// Cheapest way from the totals of a column to each disparity of the next: stay, step by one, or jump.
+template <int count>
+__device__ LaneCosts<count> arrive(const LaneCosts<count>& totals, float cheapest, const PathPenalties& penalties) {
+  const auto lane = static_cast<int>(threadIdx.x);
+  const float from_left = __shfl_up_sync(whole_warp, totals.at[count - 1], 1U);
+  const float from_right = __shfl_down_sync(whole_warp, totals.at[0], 1U);
+  const float left_end = lane == 0 ? INFINITY : from_left, right_end = lane == warp_lanes - 1 ? INFINITY : from_right;
+  LaneCosts<count> way;
+  ROADSTEREO_UNROLL
+  for (int i = 0; i < count; ++i) {
+    const float left = i > 0 ? totals.at[i > 0 ? i - 1 : 0] : left_end;
+    const float right = i + 1 < count ? totals.at[i + 1 < count ? i + 1 : i] : right_end;
+    const float stay = totals.at[i] - cheapest, change = fminf(left, right) - cheapest;
+    way.at[i] = fminf(fminf(stay, change + penalties.step), penalties.jump);
+  }
+  return way;
+}
+
+/// Follows the path to its end. It leaves totals on the way forth, and back the ways without the column's own cost.
+template <int count, bool forth>
+__device__ void follow(const Path<count>& path, int columns, const PathPenalties& penalties) {
+  LaneCosts<count> totals = path.cost(0), way{}, coming[ahead];
+  path.store(0, forth ? totals : way);
+  ROADSTEREO_UNROLL
+  for (int k = 0; k < ahead; ++k) coming[k] = path.cost(1 + k < columns ? 1 + k : columns - 1);
+  for (int first = 1; first < columns; first += ahead) {
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < ahead; ++k) {
+      if (first + k >= columns) break;
+      way = arrive(totals, cheapest_of(totals), penalties);
+      ROADSTEREO_UNROLL
+      for (int i = 0; i < count; ++i) totals.at[i] = coming[k].at[i] + way.at[i];
+      const int wanted = first + k + ahead;
+      coming[k] = path.cost(wanted < columns ? wanted : columns - 1);
+      path.store(first + k, forth ? totals : way);
+    }
+  }
+}
+
+/// A warp follows one row, one way.
+template <int count>
+__global__ void follow_rows(CoarseVolume costs, PathPenalties penalties, CoarseVolume forth, CoarseVolume back) {
+  const int v = costs.first_row + static_cast<int>(blockIdx.x);
+  const int d = static_cast<int>(threadIdx.x) * count, last = costs.columns - 1;
+  if (blockIdx.y == 0) {
+    follow<count, true>({costs.pixel(0, v) + d, forth.pixel(0, v) + d, costs.pitch}, costs.columns, penalties);
+  } else {
+    follow<count, false>({costs.pixel(last, v) + d, back.pixel(last, v) + d, -std::ptrdiff_t{costs.pitch}},
+                         costs.columns, penalties);
+  }
+}
+
+constexpr int winner_warps = 8;
+
+/// The smallest of the sums of both ways, with its fraction: a warp for each pixel.
+__device__ float take_winner(const float* forth, const float* back, int count) {
+  const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
+  float least = INFINITY;
+  int winner = 0;
+  for (int d = lane; d < count; d += warp_lanes) {
+    const float total = forth[d] + back[d];
+    if (total < least) {
+      least = total;
+      winner = d;
+    }
+  }
+  const float smallest = warp_min(least);
+  // Of equal totals the first disparity wins.
+  winner = -warp_max(least == smallest ? -winner : -count);
+  const auto total = [&](int d) { return d >= 0 && d < count ? forth[d] + back[d] : INFINITY; };
+  return winner_with_fraction(winner, count, total(winner - 1), smallest, total(winner + 1));
+}
+
+__global__ void take_winners(CoarseVolume forth, CoarseVolume back, const int* first_seen, Plane<float> disparity) {
+  const int v = forth.first_row + static_cast<int>(blockIdx.y);
+  const int u = static_cast<int>(blockIdx.x) * winner_warps + static_cast<int>(threadIdx.x) / warp_lanes;
+  if (u >= forth.columns) return;
+  const int seen = u - first_seen[v] + 1, count = seen < forth.disparities ? seen : forth.disparities;
+  const float winner = count > 0 ? take_winner(forth.pixel(u, v), back.pixel(u, v), count) : nanf("");
+  if (threadIdx.x % warp_lanes == 0) disparity(u, v) = winner;
+}
+
+using RowKernel = void (*)(CoarseVolume, PathPenalties, CoarseVolume, CoarseVolume);
+
+struct RowKernelOf {
+  int count;
+  RowKernel kernel;
+};
+
+constexpr RowKernelOf row_kernels[] = {
+    {1, follow_rows<1>}, {2, follow_rows<2>}, {4, follow_rows<4>}, {8, follow_rows<8>}, {16, follow_rows<16>}};
+
+const RowKernelOf& row_kernel(int disparities) {
+  for (const RowKernelOf& of : row_kernels) {
+    if (of.count * warp_lanes >= disparities) return of;
+  }
+  return row_kernels[4];
+}
+
+}  // namespace
+
+int path_pitch(int disparities) {
+  return row_kernel(disparities).count * warp_lanes;
+}
+
+void follow_paths(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
+                  const CoarseVolume& forth, const CoarseVolume& back, Plane<float> disparity, cudaStream_t stream) {
+  const auto rows = static_cast<unsigned>(costs.rows);
+  launch(row_kernel(costs.disparities).kernel, {dim3(rows, 2), warp_lanes}, stream, costs, penalties, forth, back);
+  launch(take_winners, {dim3(blocks_for(costs.columns, winner_warps), rows), winner_warps * warp_lanes}, stream, forth,
+         back, first_seen, disparity);
+}
+
+}  // namespace roadstereo::cuda

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include "core/cuda/plane.hpp"
+#include "stereo/coarse/cuda/coarse_volume.hpp"
+
+namespace roadstereo::cuda {
+
+/// Penalties of a change of the disparity from one pixel to the next.
+struct PathPenalties {
+  float step;  ///< by one
+  float jump;  ///< by more
+};
+
+/// The pitch of volumes of so many disparities, at most 512.
+int path_pitch(int disparities);
+
+/// Takes for every column of the band's rows the disparity of the cheapest path along the row that passes through it
+/// (stereo/coarse/scanline.hpp), coarse pixels, NaN where a column has no counterpart. `forth` and `back` are scratch
+/// memory of the size of `costs`.
+void follow_paths(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
+                  const CoarseVolume& forth, const CoarseVolume& back, Plane<float> disparity, cudaStream_t stream);
+
+}  // namespace roadstereo::cuda

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include "core/cuda/plane.hpp"
+#include "stereo/coarse/tile_range.hpp"
+
+namespace roadstereo::cuda {
+
+/// Tiles of the full-size pair, and their size in coarse pixels.
+struct CoarseTiles {
+  int across, down;
+  int columns, rows;
+};
+
+/// Leaves in `reference` and `target`, one element a tile and row by row, the disparities that the coarse map
+/// (full-size pixels, NaN unknown) shows in each tile of either view, with a margin; all where too few pixels matched.
+void find_tile_ranges(Plane<const float> coarse, int factor, int disparities, const CoarseTiles& tiles,
+                      TileRange* reference, TileRange* target, cudaStream_t stream);
+
+}  // namespace roadstereo::cuda

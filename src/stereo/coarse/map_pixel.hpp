@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/cuda/host_device.hpp"
+
+namespace roadstereo {
+
+ROADSTEREO_HD inline float smaller(float a, float b) {
+  return b < a ? b : a;
+}
+
+ROADSTEREO_HD inline float larger(float a, float b) {
+  return a < b ? b : a;
+}
+
+ROADSTEREO_HD inline float median_of_three(float a, float b, float c) {
+  return larger(smaller(a, b), smaller(larger(a, b), c));
+}
+
+ROADSTEREO_HD inline float median_of_five(float a, float b, float c, float d, float e) {
+  const float lower = larger(smaller(a, b), smaller(c, d));
+  const float upper = smaller(larger(a, b), larger(c, d));
+  return median_of_three(lower, upper, e);
+}
+
+/// A pixel of the map, `own`, between two rows above and two below: their median, or itself where one is not known.
+ROADSTEREO_HD inline float median_of_rows(float a, float b, float own, float c, float d) {
+  const float sum = a + b + own + c + d;
+  return sum == sum ? median_of_five(a, b, c, d, own) : own;
+}
+
+/// Target column that column u of a row shows with the disparity.
+ROADSTEREO_HD inline int target_column(int u, float disparity) {
+  const int column = u - static_cast<int>(lroundf(disparity));
+  return column > 0 ? column : 0;
+}
+
+/// Whether the largest disparity on a pixel's target column hides the pixel.
+ROADSTEREO_HD inline bool is_hidden(float disparity, float nearest) {
+  constexpr float more = 1;
+  return nearest > disparity + more;  // never where it is NaN
+}
+
+}  // namespace roadstereo
