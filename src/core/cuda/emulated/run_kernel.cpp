@@ -24,12 +24,19 @@ constexpr int warp = 32;
 
 enum class Waits { no, for_warp, for_block, ended };
 
+/// What a lane leaves for the others, and in which of its exchanges.
+struct Left {
+  std::uint64_t bits = 0;
+  unsigned exchange = 0;
+};
+
 /// One way of execution that can be left and entered again. The scheduler's own has no stack of ours.
 struct Fiber {
   ucontext_t context{};
   std::unique_ptr<char[]> stack;
   Waits waits = Waits::no;
-  std::uint64_t left_for_others = 0;
+  Left left[2];            ///< in two exchanges in turn, so that one barrier between them suffices
+  unsigned exchanges = 0;  ///< so far
   Here here{};
 #if defined(__SANITIZE_ADDRESS__)
   void* fake_stack = nullptr;
@@ -113,6 +120,8 @@ void start(Fiber& fiber) {
   fiber.context.uc_link = nullptr;
   makecontext(&fiber.context, run_thread, 0);
   fiber.waits = Waits::no;
+  fiber.left[0] = fiber.left[1] = {};
+  fiber.exchanges = 0;
 }
 
 void wait(Waits what) {
@@ -235,26 +244,32 @@ Fiber* of_lane(int of) {
   return other < block().threads ? block().fibers[other].get() : nullptr;
 }
 
+/// Leaves `bits` for the warp, waits for it, and returns which exchange this was.
+unsigned leave(std::uint64_t bits) {
+  Fiber& self = *block().running;
+  const unsigned number = ++self.exchanges;
+  self.left[number % 2] = {bits, number};
+  wait_for_warp();
+  return number;
+}
+
 }  // namespace
 
 std::uint64_t exchange(std::uint64_t bits, int from) {
-  block().running->left_for_others = bits;
-  wait_for_warp();
+  const unsigned number = leave(bits);
   const Fiber* other = of_lane(from);
-  const std::uint64_t theirs = other != nullptr ? other->left_for_others : bits;
-  wait_for_warp();
-  return theirs;
+  return other != nullptr ? other->left[number % 2].bits : bits;
 }
 
 unsigned ballot(bool vote) {
-  block().running->left_for_others = vote ? 1 : 0;
-  wait_for_warp();
+  const unsigned number = leave(vote ? 1 : 0);
   unsigned votes = 0;
   for (int other = 0; other < warp; ++other) {
     const Fiber* fiber = of_lane(other);
-    if (fiber != nullptr && fiber->waits != Waits::ended && fiber->left_for_others == 1) votes |= 1U << other;
+    if (fiber == nullptr) continue;
+    const Left& left = fiber->left[number % 2];
+    if (left.exchange == number && left.bits == 1) votes |= 1U << other;
   }
-  wait_for_warp();
   return votes;
 }
 
