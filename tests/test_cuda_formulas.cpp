@@ -41,7 +41,7 @@ struct Moments {
 cuda::BlockStatistics statistics(const std::vector<int>& values, float noise_variance) {
   int sum = 0, squares = 0;
   for (const int value : values) {
-    const int centred = value - cuda::mid_grey;
+    const int centred = value - mid_grey;
     sum += centred;
     squares += centred * centred;
   }
@@ -59,7 +59,7 @@ TEST_P(CudaBlockCost, IsOneMinusTheCorrelation) {
       int products = 0;
       for (std::size_t i = 0; i < pair.own.size(); ++i) {
         covariance += (pair.own[i] - own.mean) * (pair.other[i] - other.mean) / static_cast<double>(pair.own.size());
-        products += (pair.own[i] - cuda::mid_grey) * (pair.other[i] - cuda::mid_grey);
+        products += (pair.own[i] - mid_grey) * (pair.other[i] - mid_grey);
       }
       const double expected =
           1 - covariance / std::sqrt((own.variance + noise * noise) * (other.variance + noise * noise));
@@ -76,7 +76,7 @@ TEST_P(CudaBlockCost, StatisticsSplitTheSumExactly) {
     const Blocks pair = blocks(GetParam(), seed, 1);
     const cuda::BlockStatistics block = statistics(pair.own, 0);
     const Moments moments(pair.own);
-    EXPECT_NEAR(block.mean + double{block.fraction} + cuda::mid_grey, moments.mean, 1e-5);
+    EXPECT_NEAR(block.mean + double{block.fraction} + mid_grey, moments.mean, 1e-5);
     EXPECT_LE(std::abs(block.fraction), 0.5F);
     EXPECT_NEAR(block.inverse * std::sqrt(moments.variance * GetParam()), 1, 1e-6);
   }
@@ -89,7 +89,7 @@ TEST(CudaBlockCost, LargestSumsFitIntoWholeNumbers) {
   std::vector<int> halves(441, 0), flat(441, 4080);
   for (std::size_t i = 0; i < 220; ++i) halves[i] = 4080;
   int products = 0;
-  for (const int value : halves) products += (value - cuda::mid_grey) * (value - cuda::mid_grey);
+  for (const int value : halves) products += (value - mid_grey) * (value - mid_grey);
   EXPECT_NEAR(cuda::block_cost(products, statistics(halves, 0), statistics(halves, 0)), 0, 2e-6);
   EXPECT_EQ(cuda::block_cost(products, statistics(halves, 0), statistics(flat, 0)), 1);  // no texture: neutral
 }

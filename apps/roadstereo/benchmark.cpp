@@ -52,7 +52,8 @@ void add_stages(const StageTimes& ms, std::vector<Timing>& stages) {
                                                    {"match", ms.match},
                                                    {"refinement", ms.refinement},
                                                    {"road geometry", ms.road_geometry},
-                                                   {"transform", ms.transform}};
+                                                   {"transform", ms.transform},
+                                                   {"deliver", ms.deliver}};
   if (stages.empty()) {
     for (const auto& [name, value] : values) stages.push_back({name, {}});
   }

@@ -67,6 +67,7 @@ Json times_json(const StageTimes& ms) {
           {"refinement", json_number(ms.refinement)},
           {"road_geometry", json_number(ms.road_geometry)},
           {"transform", json_number(ms.transform)},
+          {"deliver", json_number(ms.deliver)},
           {"total", json_number(ms.total)}};
 }
 

@@ -56,7 +56,8 @@ struct StageTimes {
   double refinement = 0;     ///< smoothing by the standard errors
   double road_geometry = 0;  ///< roll and projection model
   double transform = 0;      ///< disparity transformation
-  double total = 0;
+  double deliver = 0;        ///< maps from a device to the host; nothing with the engines of the host
+  double total = 0;          ///< on the host's clock: with the engine cuda more than the stages, which the device times
 };
 
 /// The paper's result for one pair.

@@ -36,11 +36,10 @@ class FrameStages {
   virtual void match(const MatcherOptions& options, const FrameResult& result) = 0;
   /// Adds the shift back, and smooths where the standard errors allow it: fills disparity and sigma.
   virtual void refine(FrameResult& result) = 0;
-  /// Share of the pixels that have a disparity.
-  virtual double valid_share(const FrameResult& result) = 0;
-  /// fit_road_geometry.
-  virtual RoadGeometry fit_geometry(const std::optional<RoadModel>& prior, double initial_roll_rad,
-                                    const FrameResult& result) = 0;
+  /// Fills valid_share, the share of the pixels that have a disparity, and, where that is at least `least_share`, geometry
+  /// (fit_road_geometry). False where it is not.
+  virtual bool fit_geometry(const std::optional<RoadModel>& prior, double initial_roll_rad, double least_share,
+                            FrameResult& result) = 0;
   /// ℓ → ℓ' by result.geometry: fills transformed, delta_t and spread.
   virtual void transform(FrameResult& result) = 0;
   /// Fills transformed with NaN: no road was found.

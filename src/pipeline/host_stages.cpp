@@ -23,6 +23,15 @@ bool shows_something(const GreyImage& image) {
   return false;
 }
 
+double valid_share(const Image<float>& map) {
+  std::size_t valid = 0;
+  for (int v = 0; v < map.height(); ++v) {
+    const float* row = map.row(v);
+    for (int u = 0; u < map.width(); ++u) valid += std::isnan(row[u]) ? 0U : 1U;
+  }
+  return static_cast<double>(valid) / static_cast<double>(map.pixels());
+}
+
 class HostStages final : public FrameStages {
  public:
   HostStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
@@ -79,18 +88,13 @@ class HostStages final : public FrameStages {
                        result.disparity, result.sigma);
   }
 
-  double valid_share(const FrameResult& result) override {
-    std::size_t valid = 0;
-    for (int v = 0; v < result.disparity.height(); ++v) {
-      const float* row = result.disparity.row(v);
-      for (int u = 0; u < result.disparity.width(); ++u) valid += std::isnan(row[u]) ? 0U : 1U;
-    }
-    return static_cast<double>(valid) / static_cast<double>(result.disparity.pixels());
-  }
-
-  RoadGeometry fit_geometry(const std::optional<RoadModel>& prior, double initial_roll_rad,
-                            const FrameResult& result) override {
-    return fit_road_geometry(result.disparity, std::nullopt, prior, initial_roll_rad, options_.road_geometry, threads_);
+  bool fit_geometry(const std::optional<RoadModel>& prior, double initial_roll_rad, double least_share,
+                    FrameResult& result) override {
+    result.valid_share = valid_share(result.disparity);
+    if (result.valid_share < least_share) return false;
+    result.geometry =
+        fit_road_geometry(result.disparity, std::nullopt, prior, initial_roll_rad, options_.road_geometry, threads_);
+    return true;
   }
 
   void transform(FrameResult& result) override {

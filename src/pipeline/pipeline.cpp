@@ -134,16 +134,12 @@ void Pipeline::State::match() {
 /// Roll angle and projection model, section 3.3.
 void Pipeline::State::find_geometry() {
   constexpr double least_valid_share = 0.01;
-  result.valid_share = stages->valid_share(result);
   result.geometry = {};
-  result.geometry_found = false;
-  if (result.valid_share < least_valid_share) {
-    result.warnings.push_back(sentence("only ", 100 * result.valid_share, " % of the pixels have a disparity"));
-    return;
-  }
   const auto prior = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
-  result.geometry = stages->fit_geometry(prior, carried.roll_rad, result);
-  result.geometry_found = true;
+  result.geometry_found = stages->fit_geometry(prior, carried.roll_rad, least_valid_share, result);
+  if (!result.geometry_found) {
+    result.warnings.push_back(sentence("only ", 100 * result.valid_share, " % of the pixels have a disparity"));
+  }
 }
 
 /// ℓ → ℓ' (eq. disparity_transformation). δt is at least δp, so that it stays the same from frame to frame of a flight.
@@ -171,9 +167,6 @@ void Pipeline::State::summarise() {
   carried.height = height;
   carried.road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
   carried.roll_rad = result.geometry_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
-  const StageTimes& ms = result.ms;
-  result.ms.total = ms.prepare + ms.road_model + ms.perspective + ms.coarse + ms.match + ms.refinement +
-                    ms.road_geometry + ms.transform;
   result.mde_per_s = static_cast<double>(width) * height * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
 }
 
@@ -196,7 +189,7 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
   const ScratchScope scratch(s.memory);
   s.has_frame = false;
   s.result.warnings.clear();
-  Stopwatch watch;
+  Stopwatch frame, watch;
   s.prepare(left, right);
   s.result.ms.prepare = watch.lap();
   s.find_road();
@@ -214,6 +207,8 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
   s.transform();
   s.result.ms.transform = watch.lap();
   s.stages->deliver(s.result);
+  s.result.ms.deliver = watch.lap();
+  s.result.ms.total = frame.lap();
   s.summarise();
   s.has_frame = true;
   return s.result;

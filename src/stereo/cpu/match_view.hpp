@@ -4,11 +4,9 @@
 #include <span>
 
 #include "roadstereo/matcher.hpp"
+#include "stereo/mid_grey.hpp"
 
 namespace roadstereo::cpu {
-
-/// Subtracted from every grey value: keeps the sums of products in 32 bits and changes no covariance.
-inline constexpr int mid_grey = grey_max / 2;
 
 /// One view of a pair as the matcher walks over it. The matcher knows one direction only: pixel i of its own view may
 /// match pixel i − d of the other. For the target view both images are therefore mirrored. The other view's rows are

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/cuda/plane.hpp"
+#include "stereo/coarse/tile_range.hpp"
 #include "stereo/cuda/block_sums.hpp"
 
 namespace roadstereo::cuda {
@@ -15,12 +16,6 @@ struct WindowTap {
   std::int16_t du;
   std::int16_t dv;
   float log2_space;
-};
-
-/// Disparities first ≤ d < end that a tile of SearchRanges searches.
-struct TileRange {
-  std::int16_t first;
-  std::int16_t end;
 };
 
 /// One view of a pair as the kernel walks over it. The kernel knows one direction only: pixel i of its own view may

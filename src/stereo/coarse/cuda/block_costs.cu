@@ -8,6 +8,7 @@
 #include "stereo/block_correlation.hpp"
 #include "stereo/coarse/coarse_column.hpp"
 #include "stereo/coarse/cuda/block_costs.hpp"
+#include "stereo/mid_grey.hpp"
 #include "stereo/coarse/road_chance.hpp"
 
 namespace roadstereo::cuda {
@@ -34,7 +35,7 @@ struct ViewColumns {
 };
 
 /// Loads a view's columns from `begin` on and sums them; pixels before `begin` do not count.
-__device__ void load_columns(const ViewColumns& view, const Plane<const std::int16_t>& image, int begin, int mid_grey,
+__device__ void load_columns(const ViewColumns& view, const Plane<const std::int16_t>& image, int begin,
                              int first_row, int rows) {
   const auto thread = static_cast<int>(threadIdx.x);
   for (int i = thread; i < view.count; i += warps * warp_lanes) {
@@ -117,8 +118,8 @@ __global__ void block_costs_of_segments(CoarsePair pair, int any_radius, float n
               of.own.count + costs.disparities - 1};
   of.own.grey = reinterpret_cast<short*>(of.other.sums + of.other.count);
   of.other.grey = of.own.grey + rows * of.own.count;
-  load_columns(of.own, pair.reference, 0, pair.mid_grey, v - radius, rows);
-  load_columns(of.other, pair.target, first_other, pair.mid_grey, v - radius, rows);
+  load_columns(of.own, pair.reference, 0, v - radius, rows);
+  load_columns(of.other, pair.target, first_other, v - radius, rows);
   __syncthreads();
   const int first_row = v - radius < 0 ? 0 : v - radius;
   const int last_row = v + radius < pair.reference.height ? v + radius : pair.reference.height - 1;

@@ -11,7 +11,6 @@
 #include "stereo/coarse/cuda/road_guess.hpp"
 #include "stereo/coarse/cuda/tile_ranges.hpp"
 #include "stereo/coarse/evidence.hpp"
-#include "stereo/cpu/match_view.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -77,7 +76,7 @@ CoarsePair CoarseLook::shrink_pair(const CoarseInput& input, cudaStream_t stream
   const auto reference = packed_plane(reference_.data(), width_, height_);
   const auto target = packed_plane(target_.data(), width_, height_);
   shrink(input.reference, input.target, factor_, reference, target, stream);
-  return {reference, target, input.first_column, factor_, cpu::mid_grey};
+  return {reference, target, input.first_column, factor_};
 }
 
 /// The winners of a band of rows along their smoothest paths, with the road as the guess where the picture says

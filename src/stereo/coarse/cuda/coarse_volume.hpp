@@ -12,7 +12,6 @@ struct CoarsePair {
   Plane<const std::int16_t> reference, target;
   const int* first_column;  ///< of the target in its full size; null: all valid
   int factor;               ///< that it was shrunk by
-  int mid_grey;             ///< subtracted from every grey value, so that sums of products stay in 32 bits
 };
 
 /// Numbers of the pixels and disparities of a band of rows: disparity d of column u of row first_row + r at

@@ -1,0 +1,196 @@
+#include "pipeline/cuda/device_stages.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/cuda/device.hpp"
+#include "core/cuda/grey.hpp"
+#include "pipeline/cuda/frame_maps.hpp"
+#include "pipeline/cuda/frame_upload.hpp"
+#include "pipeline/cuda/stage_clock.hpp"
+#include "pipeline/pair_checks.hpp"
+#include "road/cuda/disparity_transform.hpp"
+#include "road/cuda/perspective.hpp"
+#include "road/cuda/road_fit.hpp"
+#include "road/cuda/road_verification.hpp"
+#include "road/cuda/verification_judgement.hpp"
+#include "road/refinement/cuda/refinement.hpp"
+#include "road/refinement/settings.hpp"
+#include "road/shift_terms_of.hpp"
+#include "roadstereo/device.hpp"
+#include "roadstereo/error.hpp"
+#include "stereo/coarse/cuda/coarse_look.hpp"
+#include "stereo/cuda/device_matcher.hpp"
+#include "stereo/window.hpp"
+
+namespace roadstereo::cuda {
+namespace {
+
+Device require_device() {
+  Device device = find_device();
+  if (!device.usable) fail("the engine cuda cannot be used: ", device.reason);
+  return device;
+}
+
+DevicePlane device_plane(const RoadModel& model) {
+  return {model.a0, model.a1, model.a2};
+}
+
+RefinementSettings refinement_settings(const PipelineOptions& options) {
+  const RefinementOptions& refinement = options.refinement;
+  return {window_radius(refinement), refinement.step, mean_settings(refinement, support_pixels(options.matcher)),
+          variance_bounds(refinement), static_cast<float>(refinement.worst_sigma_px)};
+}
+
+/// The host waits for the device twice a frame: for the road, which it judges, and for the end.
+class DeviceStages final : public FrameStages {
+ public:
+  DeviceStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
+      : options_(options), calibration_(calibration), matcher_(require_device().multiprocessors) {
+    stream_.emplace();
+    if (options.narrow_search || options.matcher.prior_slope > 0) coarse_look_.emplace(options.coarse_search);
+  }
+
+  void prepare(const FrameView& left, const FrameView& right, FrameResult&) override {
+    width_ = left.width;
+    height_ = left.height;
+    clock_.mark(StageClock::begin, stream());
+    const FrameUpload::Pair frames = upload_.upload(left, right, options_.white_level, stream());
+    maps_.resize(width_, height_);
+    const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    right_.reserve(pixels);
+    target_.reserve(pixels);
+    first_column_.reserve(static_cast<std::size_t>(height_));
+    to_grey_.convert(frames.left, frames.right, maps_.grey(), plane(right_), stream());
+    clock_.mark(StageClock::prepared, stream());
+  }
+
+  GreyPair grey(FrameResult&) override {
+    download(maps_.grey(), left_on_host_);
+    download(plane(right_), right_on_host_);
+    wait_for_pair();
+    clock_.mark(StageClock::prepared, stream());
+    return {left_on_host_, right_on_host_};
+  }
+
+  RoadModelEstimate verify_road(const RoadModel& previous, const FrameResult&) override {
+    verification_.run(maps_.grey(), plane(right_), {nullptr, device_plane(previous)}, options_.road_model.with_roll,
+                      stream());
+    wait_for_pair();
+    return judge_verification(verification_.figures(), previous, width_, height_, calibration_, options_.road_model);
+  }
+
+  void transform_perspective(const FrameResult& result) override {
+    clock_.mark(StageClock::road_known, stream());
+    transform_target(plane(right_), shift_terms(result.shift), static_cast<float>(grey_max), plane(target_),
+                     first_column_.data(), stream());
+    clock_.mark(StageClock::transformed_target, stream());
+  }
+
+  void look_coarsely(const FrameResult& result) override {
+    input_ = {maps_.grey(), plane(target_), first_column_.data(), result.shift.disparities};
+    if (coarse_look_ && coarse_look_->find({input_.reference, input_.target, input_.first_column, input_.disparities,
+                                            shift_terms(result.shift)},
+                                           stream())) {
+      if (options_.narrow_search) {
+        input_.reference_ranges = coarse_look_->reference_ranges();
+        input_.target_ranges = coarse_look_->target_ranges();
+      }
+      input_.prior = coarse_look_->prior();
+      input_.prior_factor = coarse_look_->factor();
+    }
+    clock_.mark(StageClock::looked, stream());
+  }
+
+  void match(const MatcherOptions& options, const FrameResult&) override {
+    matched_ = matcher_.match(input_, options, stream());
+    clock_.mark(StageClock::matched, stream());
+  }
+
+  void refine(FrameResult& result) override {
+    cuda::refine_disparities(matched_.disparity, matched_.variance, shift_terms(result.shift),
+                             refinement_settings(options_), maps_.disparity(), maps_.sigma(), stream());
+    clock_.mark(StageClock::refined, stream());
+  }
+
+  bool fit_geometry(const std::optional<RoadModel>& prior, double initial_roll_rad, double least_share,
+                    FrameResult& result) override;
+  void transform(FrameResult& result) override;
+  void leave_untransformed(FrameResult&) override;
+  void deliver(FrameResult& result) override;
+
+  void use_device(const DeviceUse& use) override {
+    stream_->wait();
+    stream_.emplace(use.stream);
+    download_ = use.download;
+  }
+
+  DeviceMaps device_maps() const override {
+    return {width_,
+            height_,
+            maps_.grey().data,
+            maps_.disparity().data,
+            maps_.sigma().data,
+            maps_.transformed().data,
+            stream_->get()};
+  }
+
+ private:
+  cudaStream_t stream() const { return stream_->get(); }
+  Plane<std::int16_t> plane(DeviceArray<std::int16_t>& pixels) const {
+    return packed_plane(pixels.data(), width_, height_);
+  }
+
+  /// Waits for the device, and refuses what the grey levels show to be no pair.
+  void wait_for_pair() {
+    stream_->wait();
+    const PairFindings& found = to_grey_.findings();
+    require_pair({{found.left_varies != 0, static_cast<std::int16_t>(found.left_level)},
+                  {found.right_varies != 0, static_cast<std::int16_t>(found.right_level)},
+                  found.differ == 0});
+  }
+
+  template <class T>
+  void download(const Plane<T>& from, Image<T>& to) {
+    to.resize(width_, height_);
+    ROADSTEREO_CUDA(
+        cudaMemcpyAsync(to.row(0), from.data, to.pixels() * sizeof(T), cudaMemcpyDeviceToHost, stream()));
+  }
+
+  /// The end of the frame, around a plane that may still lie in device memory.
+  void enqueue_transform(const PlaneSource& road, const FrameResult& result) {
+    transform_.run(maps_.disparity(), road, {options_.road_geometry.delta_t_px, result.shift.delta_p},
+                   maps_.transformed(), stream());
+    clock_.mark(StageClock::transformed, stream());
+    if (download_) maps_.download(stream());
+  }
+
+  double found_share() const {
+    return static_cast<double>(transform_.figures().valid) / (static_cast<double>(width_) * height_);
+  }
+
+  PipelineOptions options_;
+  std::optional<StereoCalibration> calibration_;
+  std::optional<Stream> stream_;
+  bool download_ = true;
+
+  int width_ = 0, height_ = 0;
+  FrameUpload upload_;
+  PairToGrey to_grey_;
+  FrameMaps maps_;
+  DeviceArray<std::int16_t> right_, target_;
+  DeviceArray<int> first_column_;
+  GreyImage left_on_host_, right_on_host_;
+  RoadVerification verification_;
+  std::optional<CoarseLook> coarse_look_;
+  DeviceMatchInput input_;
+  DeviceMatcher matcher_;
+  DeviceMatchMaps matched_;
+  RoadFit fit_;
+  DisparityTransform transform_;
+  bool transformed_ = false;  ///< the transformation is enqueued already
+  StageClock clock_;
+};
+
+}  // namespace
+}  // namespace roadstereo::cuda

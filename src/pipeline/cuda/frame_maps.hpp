@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/cuda/memory.hpp"
+#include "core/cuda/plane.hpp"
+#include "roadstereo/pipeline.hpp"
+
+namespace roadstereo::cuda {
+
+/// What a frame leaves, in one piece of device memory, so that one copy takes it to the host: ℓ, σ, ℓ' and the left
+/// image.
+class FrameMaps {
+ public:
+  void resize(int width, int height);
+
+  Plane<float> disparity() const { return {floats_.data(), width_, height_, width_}; }
+  Plane<float> sigma() const { return {floats_.data() + pixels_, width_, height_, width_}; }
+  Plane<float> transformed() const { return {floats_.data() + 2 * pixels_, width_, height_, width_}; }
+  Plane<std::int16_t> grey() const {
+    return {reinterpret_cast<std::int16_t*>(floats_.data() + 3 * pixels_), width_, height_, width_};
+  }
+
+  /// Enqueues the copy to the host.
+  void download(cudaStream_t stream);
+  /// Once the stream was waited for.
+  void take(FrameResult& result) const;
+
+ private:
+  int width_ = 0, height_ = 0;
+  std::size_t pixels_ = 0;
+  mutable DeviceArray<float> floats_;
+  PinnedArray<float> on_host_;
+};
+
+}  // namespace roadstereo::cuda

@@ -1,0 +1,62 @@
+#include "pipeline/cuda/frame_upload.hpp"
+
+#include <cstring>
+
+#include "core/grey_weights.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::cuda {
+namespace {
+
+bool is_on_device(const FrameView& frame) {
+  cudaPointerAttributes attributes{};
+  ROADSTEREO_CUDA(cudaPointerGetAttributes(&attributes, frame.data));
+  return attributes.type == cudaMemoryTypeDevice || attributes.type == cudaMemoryTypeManaged;
+}
+
+int sample_bytes(const FrameView& frame) {
+  return frame.sample == SampleType::u16 ? 2 : 1;
+}
+
+std::size_t row_bytes(const FrameView& frame) {
+  return static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(channel_count(frame.order)) *
+         static_cast<std::size_t>(sample_bytes(frame));
+}
+
+DeviceFrame frame_at(const void* data, std::ptrdiff_t stride_bytes, const FrameView& frame, double white_level) {
+  return {data, stride_bytes, sample_bytes(frame), channel_count(frame.order), grey_weights(frame, white_level)};
+}
+
+void copy_rows(const FrameView& frame, unsigned char* to) {
+  const std::size_t bytes = row_bytes(frame);
+  for (int v = 0; v < frame.height; ++v) {
+    const auto* from = static_cast<const unsigned char*>(frame.data) + v * frame.stride_bytes;
+    std::memcpy(to + static_cast<std::size_t>(v) * bytes, from, bytes);
+  }
+}
+
+}  // namespace
+
+FrameUpload::Pair FrameUpload::upload(const FrameView& left, const FrameView& right, double white_level,
+                                      cudaStream_t stream) {
+  const bool left_there = is_on_device(left), right_there = is_on_device(right);
+  if (left_there != right_there) fail("one image lies in device memory and the other on the host; both must be together");
+  if (left_there) {
+    return {frame_at(left.data, left.stride_bytes, left, white_level),
+            frame_at(right.data, right.stride_bytes, right, white_level)};
+  }
+  const auto rows = static_cast<std::size_t>(left.height);
+  const std::size_t left_bytes = row_bytes(left) * rows, right_bytes = row_bytes(right) * rows;
+  const std::size_t right_at = (left_bytes + 15) / 16 * 16;  // samples of 16 bits stay aligned
+  on_host_.reserve(right_at + right_bytes);
+  on_device_.reserve(right_at + right_bytes);
+  copy_rows(left, on_host_.data());
+  copy_rows(right, on_host_.data() + right_at);
+  ROADSTEREO_CUDA(
+      cudaMemcpyAsync(on_device_.data(), on_host_.data(), right_at + right_bytes, cudaMemcpyHostToDevice, stream));
+  const auto stride = [](const FrameView& frame) { return static_cast<std::ptrdiff_t>(row_bytes(frame)); };
+  return {frame_at(on_device_.data(), stride(left), left, white_level),
+          frame_at(on_device_.data() + right_at, stride(right), right, white_level)};
+}
+
+}  // namespace roadstereo::cuda

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "core/cuda/memory.hpp"
+#include "roadstereo/pipeline.hpp"
+
+namespace roadstereo::cuda {
+
+/// When the device has ended each stage of a frame: a clock on the host sees only when they were enqueued.
+class StageClock {
+ public:
+  enum Mark { begin, prepared, road_known, transformed_target, looked, matched, refined, fitted, transformed, marks };
+
+  StageClock() {
+    for (cudaEvent_t& event : events_) ROADSTEREO_CUDA(cudaEventCreate(&event));
+  }
+  ~StageClock() {
+    for (cudaEvent_t event : events_) static_cast<void>(cudaEventDestroy(event));
+  }
+  StageClock(const StageClock&) = delete;
+  StageClock& operator=(const StageClock&) = delete;
+
+  void mark(Mark at, cudaStream_t stream) { ROADSTEREO_CUDA(cudaEventRecord(events_[at], stream)); }
+
+  /// Every mark must have been passed. Leaves `total` alone: it is for a clock on the host, which sees what lies between.
+  void read(StageTimes& ms) const {
+    ms.prepare = between(begin, prepared);
+    ms.road_model = between(prepared, road_known);
+    ms.perspective = between(road_known, transformed_target);
+    ms.coarse = between(transformed_target, looked);
+    ms.match = between(looked, matched);
+    ms.refinement = between(matched, refined);
+    ms.road_geometry = between(refined, fitted);
+    ms.transform = between(fitted, transformed);
+  }
+
+ private:
+  double between(Mark from, Mark to) const {
+    float ms = 0;
+    ROADSTEREO_CUDA(cudaEventElapsedTime(&ms, events_[from], events_[to]));
+    return static_cast<double>(ms);
+  }
+
+  std::array<cudaEvent_t, marks> events_{};
+};
+
+}  // namespace roadstereo::cuda
