@@ -8,20 +8,6 @@
 #include "road/sampler.hpp"
 
 namespace roadstereo {
-namespace {
-
-/// Tukey's constant: 95 % efficiency for normal residuals.
-constexpr double tukey = 4.685;
-
-/// Residuals below this are rounding, not noise.
-constexpr double smallest_scale_px = 1e-3;
-
-double tukey_weight(double residual, double scale) {
-  const double x = residual / (tukey * scale);
-  return std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0;
-}
-
-}  // namespace
 
 void PlaneSums::add(const DisparityPoint& point, double weight) {
   const double u = point.u - origin_u_;
@@ -52,16 +38,8 @@ void PlaneSums::add(const PlaneSums& other) {
 }
 
 std::optional<RoadModel> PlaneSums::plane(bool with_roll) const {
-  if (n_ <= 0 || vv() <= 1e-9 * n_) return std::nullopt;
   RoadModel model;
-  if (with_roll) {
-    const double determinant = uu() * vv() - uv() * uv();
-    if (determinant <= 1e-9 * n_ * n_) return std::nullopt;
-    model.a1 = (uu() * vd() - uv() * ud()) / determinant;
-    model.a2 = (vv() * ud() - uv() * vd()) / determinant;
-  } else {
-    model.a1 = vd() / vv();
-  }
+  if (!solve_slopes({n_, uu(), uv(), vv(), ud(), vd()}, with_roll, model.a1, model.a2)) return std::nullopt;
   model.a0 = mean_d() - model.a1 * mean_v() - model.a2 * mean_u();
   return model;
 }
@@ -83,7 +61,7 @@ std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> poin
     PlaneSums sums(points.front().u, points.front().v);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const DisparityPoint& p = points[i];
-      fit.weights[i] = tukey_weight(p.d - fit.plane.disparity(p.u, p.v), fit.scale_px);
+      fit.weights[i] = tukey_weight((p.d - fit.plane.disparity(p.u, p.v)) / (tukey * fit.scale_px));
       if (fit.weights[i] > 0) sums.add(p, fit.weights[i]);
     }
     const std::optional<RoadModel> plane = sums.plane(with_roll);
@@ -94,10 +72,10 @@ std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> poin
       const double residual = p.d - plane->disparity(p.u, p.v);
       if (std::abs(residual) < tukey * fit.scale_px) near.push_back(residual);
     }
-    const double scale = std::clamp(normal_from_median * median_magnitude(near), smallest_scale_px, fit.scale_px);
+    const double scale = narrowed_scale(median_magnitude(near), fit.scale_px);
     const DisparityPoint& far = points.back();
-    const bool settled = std::abs(plane->disparity(far.u, far.v) - fit.plane.disparity(far.u, far.v)) < 1e-6 &&
-                         std::abs(plane->a2 - fit.plane.a2) < 1e-9 && scale > fit.scale_px * (1 - 1e-4);
+    const bool settled = robust_fit_settled(plane->disparity(far.u, far.v) - fit.plane.disparity(far.u, far.v),
+                                            plane->a2 - fit.plane.a2, scale, fit.scale_px);
     fit.plane = *plane;
     fit.scale_px = scale;
     if (settled) break;

@@ -5,6 +5,7 @@
 
 #include "core/function_ref.hpp"
 #include "core/scratch.hpp"
+#include "road/robust_weights.hpp"
 #include "roadstereo/road_model.hpp"
 
 namespace roadstereo {
@@ -77,8 +78,5 @@ std::optional<RoadModel> plane_through(const DisparityPoint& a, const DisparityP
 
 /// Median of |values|; reorders them. 0 when empty.
 double median_magnitude(std::span<double> values);
-
-/// Turns a median of magnitudes into the standard deviation of a normal distribution.
-inline constexpr double normal_from_median = 1.4826;
 
 }  // namespace roadstereo

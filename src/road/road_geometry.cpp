@@ -118,12 +118,11 @@ RoadModel robust_start(std::span<const DisparityPoint> points, const std::option
   return search_plane(points, tolerance_px).value_or(least_squares);
 }
 
-/// Window that the robust fit begins with: wide enough for a start that is a pixel off, too narrow for kerbs.
 double start_scale(std::span<const DisparityPoint> points, const RoadModel& start) {
   auto residuals = scratch_vector<double>();
   residuals.reserve(points.size());
   for (const DisparityPoint& p : points) residuals.push_back(p.d - start.disparity(p.u, p.v));
-  return std::clamp(normal_from_median * median_magnitude(residuals), 0.2, 0.6);
+  return start_scale_of(median_magnitude(residuals));
 }
 
 /// Whether the road's disparity changes enough over the map for its direction to mean a roll angle.

@@ -1,0 +1,204 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/cuda/block_reduce.hpp"
+#include "core/cuda/block_select.hpp"
+#include "road/cuda/robust_plane.hpp"
+#include "road/robust_weights.hpp"
+
+// Counted floor of an iteration, n points: 30·n single-precision operations and 5·16·n bytes of shared memory and
+// first-level cache for weights, sums and residuals, then 4 passes of the median over n keys. One block: what counts is
+// the way through its barriers, about 20 an iteration.
+//
+// The normal equations are those of the residuals: what they yield is the step of the plane, so that single precision
+// rounds the step and not the plane, and vanishes with it. Only the first residuals need double precision.
+namespace roadstereo::cuda {
+
+/// What the threads of a fit share.
+struct FitState {
+  double scratch[sums_scratch(9)];
+  SelectScratch select;
+  DevicePlane start, plane;  ///< of the first step, of this one
+  float step[3];             ///< the plane's disparity minus the start's: at the origin, along v, along u
+  double scale;
+  double narrow_from;  ///< scale of the window that the median is taken in
+  double far_u, far_v;
+  float origin_u, origin_v;
+  int good;
+};
+
+/// Threads of a block that fits up to `count` points: eight for each, unless that is very few.
+inline unsigned fit_threads(int count) {
+  unsigned threads = 128;
+  while (threads < 1024 && static_cast<int>(threads) * 8 < count) threads *= 2;
+  return threads;
+}
+
+/// Shared memory of a fit.
+inline std::size_t fit_shared_bytes(int count) {
+  return sizeof(FitState) + static_cast<std::size_t>(count) * sizeof(float);
+}
+
+/// A fit in the block that runs.
+class BlockFit {
+ public:
+  /// `first` and `weights` have room for all points, in global memory; `residuals` in shared memory.
+  __device__ BlockFit(const DevicePoints& points, const RobustFit& fit, FitState& state, float* residuals, float* first,
+                      float* weights)
+      : points_(points), fit_(fit), state_(state), residuals_(residuals), first_(first), weights_(weights) {}
+
+  /// All threads get the result; barriers on the way make the weights visible to the block.
+  __device__ FittedPlane run(const DevicePlane& start) {
+    FittedPlane fitted{start, 0, 0, 0, begin(start)};
+    if (fitted.points < 3) return fitted;
+    const double first_scale = fit_.start_scale_px > 0 ? fit_.start_scale_px : start_scale();
+    if (leader()) state_.scale = first_scale;
+    __syncthreads();
+    bool settled = false;
+    for (fitted.iterations = 1; fitted.iterations <= fit_.max_iterations; ++fitted.iterations) {
+      const DevicePlane last = state_.plane;
+      const double last_scale = state_.scale;
+      step();
+      if (state_.good == 0) return fitted;
+      update_residuals();
+      const double median = median_below(static_cast<float>(tukey * last_scale));
+      const double scale = narrowed_scale(median, last_scale);
+      const DevicePlane now = state_.plane;
+      settled =
+          robust_fit_settled(now.disparity(state_.far_u, state_.far_v) - last.disparity(state_.far_u, state_.far_v),
+                             now.a2 - last.a2, scale, last_scale);
+      if (leader()) state_.scale = scale;
+      __syncthreads();
+      if (settled) break;
+    }
+    fitted.plane = state_.plane;
+    fitted.scale_px = state_.scale;
+    fitted.found = 1;
+    return fitted;
+  }
+
+ private:
+  __device__ static bool leader() { return threadIdx.x == 0; }
+  __device__ static int thread() { return static_cast<int>(threadIdx.x); }
+  __device__ static int threads() { return static_cast<int>(blockDim.x); }
+
+  /// First residuals, and the points that the host calls front and back. Returns how many points there are.
+  __device__ int begin(const DevicePlane& start) {
+    int first = points_.count, last = -1, found = 0;
+    for (int i = thread(); i < points_.count; i += threads()) {
+      const float d = points_.d[i];
+      const auto residual = static_cast<float>(static_cast<double>(d) - start.disparity(points_.u[i], points_.v[i]));
+      first_[i] = residuals_[i] = residual;
+      weights_[i] = 0;
+      if (d != d) continue;
+      first = first < i ? first : i;
+      last = i;
+      ++found;
+    }
+    auto* scratch = reinterpret_cast<int*>(state_.scratch);
+    first = block_best(first, Least{}, scratch);
+    last = block_best(last, Greatest{}, scratch);
+    const int own[1] = {found};
+    found = *block_sums(own, scratch);
+    if (found > 0 && leader()) {
+      state_.start = state_.plane = start;
+      state_.origin_u = points_.u[first];
+      state_.origin_v = points_.v[first];
+      state_.far_u = points_.u[last];
+      state_.far_v = points_.v[last];
+    }
+    __syncthreads();
+    return found;
+  }
+
+  /// The scale's clamp makes any median beyond it the same.
+  __device__ double start_scale() {
+    const auto reach = static_cast<float>(1.01 * largest_start_scale_px / normal_from_median);
+    return start_scale_of(median_magnitude(reach, true));
+  }
+
+  /// Median of the magnitudes below `reach`, 0 of none. With `all`, larger ones count as `reach`.
+  __device__ double median_magnitude(float reach, bool all) {
+    constexpr float keys = 4294967040.0F;  // the largest float below 2³²
+    const float per_key = keys / reach;
+    const auto key = [&](int i, std::uint32_t& out) {
+      const float magnitude = fabsf(residuals_[i]);
+      out = magnitude < reach ? static_cast<std::uint32_t>(magnitude * per_key) : 0xFFFFFFFFU;
+      return all ? magnitude == magnitude : magnitude < reach;
+    };
+    const SelectedKey median = block_select(points_.count, key, MiddleRank{}, state_.select);
+    return median.of > 0 ? static_cast<double>(median.key) / keys * reach : 0;
+  }
+  __device__ double median_below(float reach) { return median_magnitude(reach, false); }
+
+  /// Weights, sums and the next plane; state_.good says whether there is one.
+  __device__ void step() {
+    const auto per_window = static_cast<float>(1 / (tukey * state_.scale));
+    float n = 0, su = 0, sv = 0, sr = 0, uu = 0, uv = 0, vv = 0, ur = 0, vr = 0;
+    for (int i = thread(); i < points_.count; i += threads()) {
+      const float residual = residuals_[i];
+      const float weight = tukey_weight(residual * per_window);
+      weights_[i] = weight;
+      if (!(weight > 0)) continue;
+      const float u = points_.u[i] - state_.origin_u, v = points_.v[i] - state_.origin_v;
+      const float wu = weight * u, wv = weight * v;
+      n += weight;
+      su += wu;
+      sv += wv;
+      sr += weight * residual;
+      uu += wu * u;
+      uv += wu * v;
+      vv += wv * v;
+      ur += wu * residual;
+      vr += wv * residual;
+    }
+    const double own[9] = {n, su, sv, sr, uu, uv, vv, ur, vr};
+    const double* sums = block_sums(own, state_.scratch);
+    if (leader()) solve(sums);
+    __syncthreads();
+  }
+
+  /// The least-squares plane of the disparities, as a step from the last plane.
+  __device__ void solve(const double* s) {
+    const double n = s[0];
+    const double mean_u = s[1] / n, mean_v = s[2] / n, mean_r = s[3] / n;
+    PlaneMoments m{n,
+                   s[4] - mean_u * s[1],
+                   s[5] - mean_u * s[2],
+                   s[6] - mean_v * s[2],
+                   s[7] - mean_u * s[3],
+                   s[8] - mean_v * s[3]};
+    DevicePlane& plane = state_.plane;
+    if (!fit_.with_roll) m.vd += plane.a2 * m.uv;  // what a2 explained is left to a1
+    double by_a1 = 0, by_a2 = 0;
+    state_.good = solve_slopes(m, fit_.with_roll, by_a1, by_a2) ? 1 : 0;
+    if (state_.good == 0) return;
+    if (!fit_.with_roll) by_a2 = -plane.a2;
+    const double origin_u = state_.origin_u, origin_v = state_.origin_v;
+    plane.a0 += mean_r - by_a1 * (mean_v + origin_v) - by_a2 * (mean_u + origin_u);
+    plane.a1 += by_a1;
+    plane.a2 += by_a2;
+    state_.step[0] =
+        static_cast<float>(plane.disparity(origin_u, origin_v) - state_.start.disparity(origin_u, origin_v));
+    state_.step[1] = static_cast<float>(plane.a1 - state_.start.a1);
+    state_.step[2] = static_cast<float>(plane.a2 - state_.start.a2);
+  }
+
+  __device__ void update_residuals() {
+    const float at_origin = state_.step[0], along_v = state_.step[1], along_u = state_.step[2];
+    for (int i = thread(); i < points_.count; i += threads()) {
+      const float u = points_.u[i] - state_.origin_u, v = points_.v[i] - state_.origin_v;
+      residuals_[i] = first_[i] - (at_origin + along_v * v + along_u * u);
+    }
+  }
+
+  const DevicePoints& points_;
+  const RobustFit& fit_;
+  FitState& state_;
+  float* residuals_;
+  float* first_;
+  float* weights_;
+};
+
+}  // namespace roadstereo::cuda

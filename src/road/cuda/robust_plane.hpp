@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include "core/cuda/memory.hpp"
+#include "road/cuda/fitted_plane.hpp"
+
+namespace roadstereo::cuda {
+
+/// Points of disparity space in device memory; those whose `d` is NaN are missing.
+struct DevicePoints {
+  const float* u;
+  const float* v;
+  const float* d;
+  int count;  ///< with the missing ones, at most most_fit_points
+};
+
+/// As many as a block works on in the shared memory that every device has.
+inline constexpr int most_fit_points = 8192;
+
+/// Throws Error when there are more.
+void require_fit_points(int count);
+
+struct RobustFit {
+  double start_scale_px;  ///< window that the fit begins with; 0: from the median of the residuals to the start plane
+  bool with_roll;
+  int max_iterations;
+};
+
+/// fit_robust_plane() on the device: iteratively reweighted least squares in one block.
+class RobustPlaneFit {
+ public:
+  /// Enqueues the fit of `points`. Throws Error when there are too many.
+  void run(const DevicePoints& points, const PlaneSource& start, const RobustFit& fit, cudaStream_t stream);
+
+  const FittedPlane* plane() const { return fitted_.data(); }  ///< in device memory
+  const float* weights() const { return weights_.data(); }  ///< in device memory: Tukey weights, 0 for missing points
+  const FittedPlane& result() const { return *result_.data(); }  ///< once the stream was synchronised
+
+ private:
+  DeviceArray<FittedPlane> fitted_{1};
+  DeviceArray<float> first_, weights_;
+  PinnedArray<FittedPlane> result_{1};
+};
+
+}  // namespace roadstereo::cuda

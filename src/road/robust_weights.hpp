@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/cuda/host_device.hpp"
+
+// The formulas of the robust plane fit, which runs on the host and on the device.
+namespace roadstereo {
+
+/// Tukey's constant: 95 % efficiency for normal residuals.
+inline constexpr double tukey = 4.685;
+
+/// Residuals below this are rounding, not noise.
+inline constexpr double smallest_scale_px = 1e-3;
+
+/// Turns a median of magnitudes into the standard deviation of a normal distribution.
+inline constexpr double normal_from_median = 1.4826;
+
+/// Tukey's biweight, 0 … 1; `x` is the residual in windows of tukey · scale.
+template <class Real>
+ROADSTEREO_HD Real tukey_weight(Real x) {
+  const Real rest = 1 - x * x;
+  return rest > 0 ? rest * rest : Real{0};
+}
+
+/// The scale after a step: that of the residuals in the window that is left, so that it narrows onto the road.
+ROADSTEREO_HD inline double narrowed_scale(double median_magnitude, double scale) {
+  const double wished = normal_from_median * median_magnitude;
+  if (wished < smallest_scale_px) return smallest_scale_px;
+  return wished > scale ? scale : wished;
+}
+
+/// Whether a step that changed the plane by `by_px` at a far point and by `by_a2`, and the scale from one to another,
+/// was the last.
+ROADSTEREO_HD inline bool robust_fit_settled(double by_px, double by_a2, double scale, double last_scale) {
+  return std::fabs(by_px) < 1e-6 && std::fabs(by_a2) < 1e-9 && scale > last_scale * (1 - 1e-4);
+}
+
+/// Window that the robust fit of a map begins with: wide enough for a start that is a pixel off, too narrow for kerbs.
+inline constexpr double least_start_scale_px = 0.2;
+inline constexpr double largest_start_scale_px = 0.6;
+
+ROADSTEREO_HD inline double start_scale_of(double median_magnitude) {
+  const double scale = normal_from_median * median_magnitude;
+  if (scale < least_start_scale_px) return least_start_scale_px;
+  return scale > largest_start_scale_px ? largest_start_scale_px : scale;
+}
+
+/// Moments of points of disparity space: their weight, and sums of products of deviations from the means.
+struct PlaneMoments {
+  double n, uu, uv, vv, ud, vd;
+};
+
+/// The slopes a1 (along v) and a2 (along u) of the least-squares plane, a2 = 0 without roll; false when the points lie
+/// on one line of the image.
+ROADSTEREO_HD inline bool solve_slopes(const PlaneMoments& m, bool with_roll, double& a1, double& a2) {
+  if (m.n <= 0 || m.vv <= 1e-9 * m.n) return false;
+  if (!with_roll) {
+    a1 = m.vd / m.vv;
+    a2 = 0;
+    return true;
+  }
+  const double determinant = m.uu * m.vv - m.uv * m.uv;
+  if (determinant <= 1e-9 * m.n * m.n) return false;
+  a1 = (m.uu * m.vd - m.uv * m.ud) / determinant;
+  a2 = (m.vv * m.ud - m.uv * m.vd) / determinant;
+  return true;
+}
+
+}  // namespace roadstereo
