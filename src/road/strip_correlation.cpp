@@ -116,6 +116,8 @@ void sample_strip(const std::int16_t* image_row, int image_width, double x, doub
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "road/guided_search.hpp"
+
 namespace roadstereo {
 
 HWY_EXPORT(correlate_strip);
@@ -133,7 +135,7 @@ CorrelationBlock::CorrelationBlock(ImageView<const std::int16_t> image, int u, i
     }
   }
   const double pixels = width * height, mean = sum / pixels;
-  deviation = static_cast<float>(std::sqrt(std::max(0.0, squares / pixels - mean * mean)));
+  deviation = static_cast<float>(block_deviation(squares, mean, pixels));
   float* value = values.data();
   for (int y = -half_height; y <= half_height; ++y, value += width) {
     const std::int16_t* row = image.row(v + y) + u - half_width;

@@ -1,0 +1,184 @@
+// Floor, a place with n = 2·range + 1 disparities: 105 pixels of the left image and 7·(15 + 2·range) of the right,
+// 0.6 KB for n = 9; 105·(3·n + 3) multiplications and additions. 500 places: 0.3 MB and 3 million operations.
+
+#include "core/cuda/block_reduce.hpp"
+#include "core/cuda/launch.hpp"
+#include "core/unshrink.hpp"
+#include "road/cuda/guided_match.hpp"
+
+namespace roadstereo::cuda {
+namespace {
+
+constexpr int places_per_block = 4;
+constexpr int most_range = 7;
+constexpr int most_offsets = 2 * most_range + 1;
+constexpr float mid_grey = 255 * guided_grey_steps / 2.0F;
+
+/// Sums over a row of a block, for one of the offsets.
+struct RowSums {
+  float products, values, squares;
+};
+
+/// Shared memory of a warp. Rows of 16 and 32 columns: a warp's lanes read different banks, or the same word.
+struct PlaceMemory {
+  float block[guided_height][16];
+  float strip[guided_height][warp_size];
+  unsigned sums[16], squares[16];
+  RowSums rows[guided_height][most_offsets];
+  float correlations[most_offsets];
+};
+
+/// The pair's planes at the size of the search.
+__device__ DevicePlane shrunk_plane(const DevicePlane& plane, int factor) {
+  const double centre = unshrink(0, factor);
+  return {plane.disparity(centre, centre) / factor, plane.a1, plane.a2};
+}
+
+/// A search by one warp.
+class PlaceSearch {
+ public:
+  __device__ PlaceSearch(const GuidedPair& pair, const DevicePlane& plane, int range, int u, int v, PlaceMemory& memory)
+      : pair_(pair),
+        plane_(plane),
+        range_(range),
+        offsets_(2 * range + 1),
+        u_(u),
+        v_(v),
+        lane_(static_cast<int>(threadIdx.x) % warp_size),
+        memory_(memory) {}
+
+  /// Cuts the block out of the left image; false when it has no texture.
+  __device__ bool cut_block() {
+    unsigned sum = 0, squares = 0;
+    for (int y = 0; y < guided_height && lane_ < guided_width; ++y) {
+      const int grey = __ldg(pair_.left.row(v_ + y - guided_half_height) + u_ - guided_half_width + lane_);
+      memory_.block[y][lane_] = static_cast<float>(grey);
+      sum += static_cast<unsigned>(grey);
+      squares += static_cast<unsigned>(grey * grey);
+    }
+    if (lane_ < guided_width) {
+      memory_.sums[lane_] = sum;
+      memory_.squares[lane_] = squares;
+    }
+    __syncwarp();
+    sum = squares = 0;
+    for (int x = 0; x < guided_width; ++x) {
+      sum += memory_.sums[x];
+      squares += memory_.squares[x];
+    }
+    constexpr double pixels = guided_width * guided_height;
+    const double mean = sum / pixels;
+    mean_ = static_cast<float>(mean);
+    deviation_ = static_cast<float>(block_deviation(squares, mean, pixels));
+    return deviation_ >= guided_least_deviation;
+  }
+
+  /// Residual to the plane of the best correlation; NaN when it is low or at an end of the range.
+  __device__ float best_residual() {
+    sample_strip();
+    __syncwarp();
+    sum_rows();
+    __syncwarp();
+    if (lane_ < offsets_) memory_.correlations[lane_] = correlation();
+    __syncwarp();
+    const float* of = memory_.correlations;
+    int best = 0;
+    for (int i = 1; i < offsets_; ++i) best = of[i] > of[best] ? i : best;
+    if (of[best] < guided_least_correlation || best == 0 || best == offsets_ - 1) return nanf("");
+    return static_cast<float>(range_ - (best + parabola_offset(of[best - 1], of[best], of[best + 1])));
+  }
+
+ private:
+  /// The right image along the block's rows, each column shifted by the plane; a lane for each column.
+  __device__ void sample_strip() {
+    const int count = guided_width + 2 * range_, first = u_ - guided_half_width - range_;
+    if (lane_ >= count) return;
+    const double slope = -plane_.a2, drift = slope * (count - 1);
+    for (int y = 0; y < guided_height; ++y) {
+      const int row = v_ + y - guided_half_height;
+      const double x = first - plane_.disparity(first, row);
+      const int base = static_cast<int>(floor(x + (drift < 0 ? drift : 0.0)));
+      const float place = static_cast<float>(x - base) + static_cast<float>(lane_) * static_cast<float>(slope);
+      const float whole = floorf(place), part = place - whole;
+      const int column = base + lane_ + static_cast<int>(whole), last = pair_.right.width - 1;
+      const std::int16_t* greys = pair_.right.row(row);
+      const float left = __ldg(greys + (column < last ? column : last));
+      const float right = __ldg(greys + (column + 1 < last ? column + 1 : last));
+      memory_.strip[y][lane_] = (1 - part) * left + part * right - mid_grey;
+    }
+  }
+
+  /// A lane for each row of each offset.
+  __device__ void sum_rows() {
+    for (int task = lane_; task < guided_height * offsets_; task += warp_size) {
+      const int y = task / offsets_, offset = task % offsets_;
+      RowSums sums{0, 0, 0};
+      for (int x = 0; x < guided_width; ++x) {
+        const float value = memory_.strip[y][offset + x];
+        sums.products += (memory_.block[y][x] - mean_) * value;
+        sums.values += value;
+        sums.squares += value * value;
+      }
+      memory_.rows[y][offset] = sums;
+    }
+  }
+
+  /// Of the lane's offset.
+  __device__ float correlation() const {
+    RowSums sums{0, 0, 0};
+    for (int y = 0; y < guided_height; ++y) {
+      const RowSums& row = memory_.rows[y][lane_];
+      sums.products += row.products;
+      sums.values += row.values;
+      sums.squares += row.squares;
+    }
+    constexpr float per_pixel = 1.0F / (guided_width * guided_height);
+    const float mean = sums.values * per_pixel;
+    const float variance = sums.squares * per_pixel - mean * mean;
+    if (!(variance >= guided_least_deviation * guided_least_deviation)) return -1;
+    return sums.products * per_pixel / deviation_ / sqrtf(variance);
+  }
+
+  const GuidedPair& pair_;
+  const DevicePlane& plane_;
+  int range_, offsets_, u_, v_, lane_;
+  PlaceMemory& memory_;
+  float mean_ = 0, deviation_ = 0;
+};
+
+__global__ void match_places(GuidedPair pair, GuidedGrid grid, PlaneSource source, const int* needed,
+                             GuidedSlots slots) {
+  const int own = static_cast<int>(threadIdx.x) / warp_size;
+  const int place = static_cast<int>(blockIdx.x) * places_per_block + own;
+  if (place >= grid.places()) return;
+  const DevicePlane plane = shrunk_plane(source.get(), pair.factor);
+  const int u = grid.column(place % grid.columns), v = grid.row(place / grid.columns);
+  bool tried =
+      (needed == nullptr || *needed != 0) && fabs(plane.a2) < guided_steepest &&
+      guided_in_view(u, plane.disparity(u, v), guided_reach(plane.a1, plane.a2, grid.range_px), pair.left.width);
+  float residual = nanf("");
+  if (tried) {
+    PlaceSearch search(pair, plane, grid.range_px, u, v, shared_memory<PlaceMemory>()[own]);
+    tried = search.cut_block();
+    if (tried) residual = search.best_residual();
+  }
+  if (threadIdx.x % warp_size != 0) return;
+  slots.u[place] = static_cast<float>(unshrink(u, pair.factor));
+  slots.v[place] = static_cast<float>(unshrink(v, pair.factor));
+  // What was matched is the target column at u − residual of the shifted image.
+  const double r = residual;
+  slots.d[place] = static_cast<float>((plane.disparity(u - r, v) + r) * pair.factor);
+  slots.tried[place] = tried ? 1 : 0;
+}
+
+}  // namespace
+
+void match_near_plane(const GuidedPair& pair, const GuidedGrid& grid, const PlaneSource& plane, const int* needed,
+                      const GuidedSlots& slots, cudaStream_t stream) {
+  if (grid.places() == 0) return;
+  const LaunchShape shape{blocks_for(grid.places(), places_per_block), places_per_block * warp_size,
+                          places_per_block * sizeof(PlaceMemory)};
+  launch(match_places, shape, stream, pair, grid, plane, needed, slots);
+}
+
+}  // namespace roadstereo::cuda
