@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include "core/sentence.hpp"
@@ -10,55 +9,12 @@
 #include "road/coarse_match.hpp"
 #include "road/guided_match.hpp"
 #include "road/plane_fit.hpp"
+#include "road/road_judgement.hpp"
+#include "road/road_search.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
 namespace {
-
-constexpr int coarse_width = 120;   ///< the coarse search shrinks the image to between this and twice this
-constexpr int fewest_matches = 40;  ///< below this nothing is known
-
-constexpr double least_share_again = 0.5;  ///< that a carried-over model explains; to look anew costs only time
-
-/// How far and in how many places a search around a supposed plane looks. Each first brings the plane near, then
-/// measures it where the residuals are small, for a parabola is the more exact the nearer the peak is to a pixel.
-struct FineSearch {
-  int range_px;
-  int places;
-};
-constexpr FineSearch first_search{7, 1000};  ///< the coarse plane is good to a pixel of the shrunk image at best
-constexpr FineSearch close_search{4, 2500};
-constexpr FineSearch close_search_again{2, 1500};
-constexpr FineSearch first_search_again{4, 500};  ///< around the last frame's plane
-
-/// Power of two that brings the image near the width of the coarse search.
-int coarse_factor(int width) {
-  int factor = 1;
-  while (width / (2 * factor) >= coarse_width) factor *= 2;
-  return factor;
-}
-
-/// Tells roads from walls: the sideways tilt of the plane. Without a calibration a usual lens stands in; it decides
-/// nothing but what cannot be a road.
-class TiltLimit {
- public:
-  TiltLimit(int width, int height, const std::optional<StereoCalibration>& calibration, double max_tilt_deg)
-      : focal_(calibration ? calibration->focal_px : 0.8 * width),
-        cx_(calibration ? calibration->cx_px : width / 2.0),
-        cy_(calibration ? calibration->cy_px : height / 2.0),
-        offset_(calibration ? calibration->disparity_offset_px : 0),
-        largest_sine_(std::sin(max_tilt_deg * std::numbers::pi / 180)) {}
-
-  bool can_be_road(const RoadModel& plane) const {
-    const double depth = (plane.disparity(cx_, cy_) + offset_) / focal_;
-    const double length = std::hypot(plane.a1, plane.a2, depth);
-    // A road lies below the camera and is not seen from beneath.
-    return length > 0 && std::abs(plane.a2) <= largest_sine_ * length && plane.a1 >= -largest_sine_ * length;
-  }
-
- private:
-  double focal_, cx_, cy_, offset_, largest_sine_;
-};
 
 /// How much a match speaks for a plane. The road is what fills the lower part of the picture, and nothing but damage
 /// lies below it: a match beyond the plane speaks against it, one in front of it (a vehicle, a verge) hardly.
@@ -99,28 +55,23 @@ double percentile(std::span<double> values, double share) {
   return *at;
 }
 
-/// Where the correspondences near the road lie: far enough from it to show damage, bumps and a road that is not flat,
-/// not so far that vehicles and houses count.
+/// Where the correspondences near the road lie.
 void measure_range(std::span<const DisparityPoint> matches, RoadModelEstimate& estimate) {
   auto residuals = scratch_vector<double>();
   for (const DisparityPoint& p : matches) {
     const double expected = estimate.model.disparity(p.u, p.v);
     const double residual = p.d - expected;
-    if (expected > 0 && std::abs(residual) < 4 + 0.12 * expected) residuals.push_back(residual);
+    if (near_road(residual, expected)) residuals.push_back(residual);
   }
   if (residuals.size() < static_cast<std::size_t>(fewest_matches)) return;
-  estimate.lowest_px = percentile(residuals, 0.01);
-  estimate.highest_px = percentile(residuals, 0.99);
+  estimate.lowest_px = percentile(residuals, lowest_residual_share);
+  estimate.highest_px = percentile(residuals, highest_residual_share);
 }
 
 /// What the fine search around a plane and a robust fit leave.
 struct Refinement {
-  bool found = false;
-  RobustPlane fit;
+  RoadEvidence evidence;
   ScratchVector<DisparityPoint> points = scratch_vector<DisparityPoint>();  ///< full-size coordinates
-  int tried = 0;
-  int inliers = 0;
-  double rows_covered = 0;  ///< share of the image height between the 5th and the 95th percentile of the inliers' rows
 };
 
 /// Where the plane that a refinement starts from comes from.
@@ -130,7 +81,7 @@ enum class Origin { this_pair, last_frame };
 class FinePair {
  public:
   FinePair(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right)
-      : factor_(std::max(1, coarse_factor(left.width()) / 8)) {
+      : factor_(fine_factor(left.width())) {
     // At full size there is nothing to shrink, and nothing to copy.
     const std::size_t size = factor_ > 1 ? left.pixels() / static_cast<std::size_t>(factor_ * factor_) : 0;
     pixels_.resize(2 * size);
@@ -157,80 +108,35 @@ class FinePair {
 
 Refinement refine_road(const FinePair& pair, const RoadModel& plane, Origin origin, const FineSearch& search,
                        const TiltLimit& limit, bool with_roll, int threads) {
-  constexpr int iterations = 50;
-  constexpr double tolerance = 1.0;    // of the vote, pixels of the shrunk image
-  constexpr double start_scale = 0.5;  // of the fit: a kerb must not pull it, a road that is not flat must stay in
+  constexpr double tolerance = 1.0;  // of the vote, pixels of the shrunk image
   const int factor = pair.factor();
   const int height = pair.left().height() * factor;
   GuidedMatches found =
       match_near_plane(pair.left(), pair.right(), shrink_model(plane, factor), search.range_px, search.places, threads);
   Refinement result;
-  result.tried = found.tried;
+  RoadEvidence& evidence = result.evidence;
+  evidence.tried = found.tried;
   result.points = unshrink_points(std::move(found.points), factor);
-  if (result.points.size() < static_cast<std::size_t>(fewest_matches)) return result;
+  evidence.points = static_cast<int>(result.points.size());
+  if (evidence.points < fewest_matches) return result;
   // The supposed plane may lie between a road and its pavement: vote anew with the sharper points.
   const auto start = origin == Origin::last_frame ? std::optional(plane)
                                                   : search_road(result.points, tolerance * factor, height, limit);
   if (!start) return result;
-  auto fit = fit_robust_plane(result.points, *start, start_scale * factor, with_roll, iterations);
+  const auto fit = fit_robust_plane(result.points, *start, fine_fit_scale * factor, with_roll, fine_fit_iterations);
   if (!fit) return result;
-  result.fit = std::move(*fit);
+  evidence.plane = fit->plane;
+  evidence.scale_px = fit->scale_px;
   auto rows = scratch_vector<double>();
   for (std::size_t i = 0; i < result.points.size(); ++i) {
-    if (result.fit.weights[i] > 0) rows.push_back(result.points[i].v);
+    if (fit->weights[i] > 0) rows.push_back(result.points[i].v);
   }
-  result.inliers = static_cast<int>(rows.size());
-  result.found = result.inliers >= fewest_matches;
-  if (result.found) {
-    result.rows_covered = (percentile(rows, 0.95) - percentile(rows, 0.05)) / height;
+  evidence.inliers = static_cast<int>(rows.size());
+  evidence.found = evidence.inliers >= fewest_matches;
+  if (evidence.found) {
+    evidence.rows_covered = (percentile(rows, highest_row_share) - percentile(rows, lowest_row_share)) / height;
   }
   return result;
-}
-
-/// Share of the textured places of the road that the model explains.
-double inlier_share(const Refinement& refinement) {
-  return refinement.tried > 0 ? static_cast<double>(refinement.inliers) / refinement.tried : 0;
-}
-
-/// Fills in the estimate from the last refinement and says whether, and if not why not, it can be trusted.
-void judge(const Refinement& refinement, double least_share, const TiltLimit& limit, RoadModelEstimate& estimate) {
-  constexpr double least_rows_covered = 0.1;
-  estimate.model = refinement.fit.plane;
-  estimate.inliers = refinement.inliers;
-  estimate.residual_px = refinement.fit.scale_px;
-  const double share = inlier_share(refinement);
-  if (!refinement.found) {
-    estimate.reason = sentence("only ", refinement.points.size(), " correspondences lie near the supposed road");
-  } else if (share < least_share) {
-    estimate.reason = sentence("the road explains ", 100 * share, " % of the textured places where it should be seen, ",
-                               "less than ", 100 * least_share, " %");
-  } else if (refinement.rows_covered < least_rows_covered) {
-    estimate.reason = sentence("the road was found in ", 100 * refinement.rows_covered, " % of the rows only");
-  } else if (!limit.can_be_road(estimate.model)) {
-    estimate.reason = "the plane found is tilted like a wall";
-  } else {
-    estimate.reliable = true;
-  }
-}
-
-/// How far a plane has moved since the last frame: the largest change of its disparity in a corner of the image that
-/// sees the road both times.
-double largest_move(const RoadModel& now, const RoadModel& before, int width, int height) {
-  double largest = 0;
-  for (const double v : {0.0, height - 1.0}) {
-    for (const double u : {0.0, width - 1.0}) {
-      const double d = now.disparity(u, v), last = before.disparity(u, v);
-      if (d > 0 && last > 0) largest = std::max(largest, std::abs(d - last));
-    }
-  }
-  return largest;
-}
-
-/// A road that has moved further than this from one frame to the next has jumped: then nothing says that the search
-/// around the last frame's plane has seen all of it. In a smooth flight it moves a tenth as far.
-double largest_step_px(int width) {
-  constexpr double share_of_width = 1.0 / 640, least_px = 0.25;
-  return std::max(least_px, share_of_width * width);
 }
 
 /// Whether exchanging the images explains them far better than the order they came in. Only asked when few pixels of
@@ -289,11 +195,11 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const FinePair fine(left, right);
   Refinement refinement =
       refine_road(fine, *coarse, Origin::this_pair, first_search, limit, options.with_roll, threads);
-  if (refinement.found) {
-    refinement =
-        refine_road(fine, refinement.fit.plane, Origin::this_pair, close_search, limit, options.with_roll, threads);
+  if (refinement.evidence.found) {
+    refinement = refine_road(fine, refinement.evidence.plane, Origin::this_pair, close_search, limit, options.with_roll,
+                             threads);
   }
-  judge(refinement, options.min_inlier_share, limit, estimate);
+  judge(refinement.evidence, options.min_inlier_share, limit, estimate);
   measure_range(matches, estimate);
   return estimate;
 }
@@ -305,22 +211,11 @@ RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageVie
   const FinePair fine(left, right);
   const Refinement around =
       refine_road(fine, previous, Origin::last_frame, first_search_again, limit, options.with_roll, threads);
-  const Refinement refinement = around.found ? refine_road(fine, around.fit.plane, Origin::last_frame,
-                                                           close_search_again, limit, options.with_roll, threads)
-                                             : Refinement();
-  RoadModelEstimate estimate;
-  estimate.carried_over = true;
-  estimate.matches = static_cast<int>(around.points.size());
-  judge(refinement, std::max(options.min_inlier_share, least_share_again), limit, estimate);
-  if (estimate.reliable && estimate.residual_px > options.verify_tolerance_px) {
-    estimate.reliable = false;
-    estimate.reason = sentence("the last frame's road leaves ", estimate.residual_px, " px on this one");
-  }
-  const double moved = largest_move(estimate.model, previous, left.width(), left.height());
-  if (estimate.reliable && moved > largest_step_px(left.width())) {
-    estimate.reliable = false;
-    estimate.reason = sentence("the road has moved by ", moved, " px since the last frame");
-  }
+  const Refinement close = around.evidence.found ? refine_road(fine, around.evidence.plane, Origin::last_frame,
+                                                               close_search_again, limit, options.with_roll, threads)
+                                                 : Refinement();
+  RoadModelEstimate estimate =
+      judge_again(around.evidence, close.evidence, previous, left.width(), left.height(), calibration, options);
   measure_range(around.points, estimate);
   return estimate;
 }

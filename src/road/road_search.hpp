@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/cuda/host_device.hpp"
+
+// How the road is looked for, on the host and on the device.
+namespace roadstereo {
+
+inline constexpr int coarse_width = 120;   ///< the coarse search shrinks the image to between this and twice this
+inline constexpr int fewest_matches = 40;  ///< below this nothing is known
+
+/// Power of two that brings the image near the width of the coarse search.
+inline int coarse_factor(int width) {
+  int factor = 1;
+  while (width / (2 * factor) >= coarse_width) factor *= 2;
+  return factor;
+}
+
+/// By how much the fine search shrinks large images.
+inline int fine_factor(int width) {
+  const int factor = coarse_factor(width) / 8;
+  return factor > 1 ? factor : 1;
+}
+
+/// How far and in how many places a search around a supposed plane looks. Each first brings the plane near, then
+/// measures it where the residuals are small, for a parabola is the more exact the nearer the peak is to a pixel.
+struct FineSearch {
+  int range_px;
+  int places;
+};
+inline constexpr FineSearch first_search{7, 1000};  ///< the coarse plane is good to a pixel of the shrunk image at best
+inline constexpr FineSearch close_search{4, 2500};
+inline constexpr FineSearch close_search_again{2, 1500};
+inline constexpr FineSearch first_search_again{4, 500};  ///< around the last frame's plane
+
+/// Of the robust fit after a search. The window is in pixels of the shrunk image: a kerb must not pull the plane, a
+/// road that is not flat must stay in.
+inline constexpr int fine_fit_iterations = 50;
+inline constexpr double fine_fit_scale = 0.5;
+
+/// The rows of the inliers between these shares count as covered.
+inline constexpr double lowest_row_share = 0.05;
+inline constexpr double highest_row_share = 0.95;
+
+/// Shares of the residuals near the road that bound its range.
+inline constexpr double lowest_residual_share = 0.01;
+inline constexpr double highest_residual_share = 0.99;
+
+/// Whether a correspondence is near the road: far enough from it to show damage, bumps and a road that is not flat,
+/// not so far that vehicles and houses count.
+ROADSTEREO_HD inline bool near_road(double residual, double expected) {
+  return expected > 0 && std::fabs(residual) < 4 + 0.12 * expected;
+}
+
+}  // namespace roadstereo
