@@ -6,6 +6,7 @@
 
 #include "core/shrink.hpp"
 #include "device_copy.hpp"
+#include "device_test.hpp"
 #include "road/cuda/guided_match.hpp"
 #include "road/guided_match.hpp"
 #include "textured_pair.hpp"
@@ -22,16 +23,16 @@ struct Found {
 
 Found search_on_device(const test::TexturedPair& pair, const RoadModel& plane, int range, int places,
                        const int* needed = nullptr, int factor = 1) {
-  test::DeviceImage<std::int16_t> left(pair.reference), right(pair.target);
+  test::DevicePlane<std::int16_t> left(pair.reference), right(pair.target);
   const GuidedGrid grid = guided_grid(pair.reference.width(), pair.reference.height(), range, places);
   const auto count = static_cast<std::size_t>(grid.places());
   DeviceArray<float> u(count), v(count), d(count);
   DeviceArray<int> tried(count);
-  match_near_plane({left.plane(), right.plane(), factor}, grid, {nullptr, {plane.a0, plane.a1, plane.a2}}, needed,
+  match_near_plane({left.view(), right.view(), factor}, grid, {nullptr, {plane.a0, plane.a1, plane.a2}}, needed,
                    {u.data(), v.data(), d.data(), tried.data()}, nullptr);
-  const auto us = test::download(u.data(), count), vs = test::download(v.data(), count),
-             ds = test::download(d.data(), count);
-  const auto ts = test::download(tried.data(), count);
+  const auto us = test::to_host(u.data(), count), vs = test::to_host(v.data(), count),
+             ds = test::to_host(d.data(), count);
+  const auto ts = test::to_host(tried.data(), count);
   Found found;
   for (std::size_t i = 0; i < count; ++i) {
     found.tried += ts[i];
@@ -98,7 +99,7 @@ TEST_F(CudaGuidedMatch, TriesNothingWithoutARoad) {
     EXPECT_EQ(found.tried, 0);
     EXPECT_TRUE(found.points.empty());
   }
-  const auto needed = test::upload(std::vector{0});
+  const auto needed = test::to_device(std::vector{0});
   EXPECT_EQ(search_on_device(pair, road, 4, 100, needed.data()).tried, 0);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "device_copy.hpp"
+#include "device_test.hpp"
 #include "road/cuda/robust_plane.hpp"
 #include "road/plane_fit.hpp"
 #include "roadstereo/error.hpp"
@@ -50,15 +51,15 @@ struct Fitted {
 };
 
 Fitted fit_on_device(const Points& points, const RoadModel& start, const RobustFit& how, bool start_in_memory = false) {
-  const auto u = test::upload(points.u), v = test::upload(points.v), d = test::upload(points.d);
+  const auto u = test::to_device(points.u), v = test::to_device(points.v), d = test::to_device(points.d);
   const DevicePlane plane{start.a0, start.a1, start.a2};
-  const auto memory = test::upload(std::vector{plane});
+  const auto memory = test::to_device(std::vector{plane});
   RobustPlaneFit fit;
   fit.run({u.data(), v.data(), d.data(), static_cast<int>(points.u.size())},
           {start_in_memory ? memory.data() : nullptr, start_in_memory ? DevicePlane{} : plane}, how, nullptr);
   ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
-  EXPECT_EQ(test::download(fit.plane(), 1).front().plane.a0, fit.result().plane.a0);
-  return {fit.result(), test::download(fit.weights(), points.u.size())};
+  EXPECT_EQ(test::to_host(fit.plane(), 1).front().plane.a0, fit.result().plane.a0);
+  return {fit.result(), test::to_host(fit.weights(), points.u.size())};
 }
 
 void expect_agreement(const Fitted& device, const RobustPlane& host, const Points& points) {

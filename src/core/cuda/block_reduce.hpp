@@ -6,7 +6,7 @@
 namespace roadstereo::cuda {
 
 inline constexpr int warp_size = 32;
-inline constexpr unsigned whole_warp = 0xFFFFFFFFU;
+inline constexpr unsigned every_lane = 0xFFFFFFFFU;
 
 /// Values of shared memory that block_sums() of `count` values works in.
 constexpr int sums_scratch(int count) {
@@ -27,7 +27,7 @@ __device__ T fold_lanes(const T (&values)[count], int& first, int& end) {
     T rest[kept];
     for (int i = 0; i < kept; ++i) {
       const T low = values[i], high = i + kept < count ? values[i + kept < count ? i + kept : i] : T{};
-      rest[i] = (upper ? high : low) + __shfl_xor_sync(whole_warp, upper ? low : high, mask);
+      rest[i] = (upper ? high : low) + __shfl_xor_sync(every_lane, upper ? low : high, mask);
     }
     if (upper) {
       first = first + kept < end ? first + kept : end;
@@ -52,7 +52,7 @@ __device__ const T* block_sums(const T (&values)[count], T* scratch) {
   T* totals = scratch + warp_size * count;
   for (int i = own; i < count; i += warps) {
     T total = lane < warps ? scratch[lane * count + i] : T{};
-    for (int mask = warp_size / 2; mask > 0; mask /= 2) total += __shfl_xor_sync(whole_warp, total, mask);
+    for (int mask = warp_size / 2; mask > 0; mask /= 2) total += __shfl_xor_sync(every_lane, total, mask);
     if (lane == 0) totals[i] = total;
   }
   __syncthreads();
@@ -66,7 +66,7 @@ __device__ T block_best(T value, Better better, T* scratch) {
   const int warps = static_cast<int>(blockDim.x) / warp_size;
   const auto best_of_warp = [&](T best) {
     for (int mask = warp_size / 2; mask > 0; mask /= 2) {
-      const T other = __shfl_xor_sync(whole_warp, best, mask);
+      const T other = __shfl_xor_sync(every_lane, best, mask);
       if (better(other, best)) best = other;
     }
     return best;

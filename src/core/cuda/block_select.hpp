@@ -52,10 +52,10 @@ __device__ void choose_bin(int shift, RankOf rank_of, SelectScratch& scratch) {
   for (int bin = first; bin < first + of_lane; ++bin) own += scratch.counts[bin];
   int until = own;
   for (int by = 1; by < warp_size; by *= 2) {
-    const int before = __shfl_up_sync(whole_warp, until, static_cast<unsigned>(by));
+    const int before = __shfl_up_sync(every_lane, until, static_cast<unsigned>(by));
     if (lane >= by) until += before;
   }
-  const int all = __shfl_sync(whole_warp, until, warp_size - 1);
+  const int all = __shfl_sync(every_lane, until, warp_size - 1);
   const bool first_digit = shift == 24;
   const int rank = first_digit ? rank_of(all) : scratch.rank;
   __syncwarp();

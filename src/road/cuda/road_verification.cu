@@ -1,0 +1,129 @@
+// Floor: that of guided_match.cu for 500 and 1500 places, and of robust_fit.hpp for as many points. What it takes is
+// the latency of two searches and two fits one after the other.
+
+#include "core/cuda/launch.hpp"
+#include "core/cuda/shrink.hpp"
+#include "road/cuda/road_verification.hpp"
+#include "road/cuda/robust_fit.hpp"
+#include "road/road_search.hpp"
+
+namespace roadstereo::cuda {
+namespace {
+
+/// Points and tried places of a search.
+__device__ void count_places(const SearchMemory& search, FitState& state, SearchFigures& figures) {
+  int own[2] = {0, 0};
+  for (int i = static_cast<int>(threadIdx.x); i < search.count; i += static_cast<int>(blockDim.x)) {
+    own[0] += search.slots.d[i] == search.slots.d[i] ? 1 : 0;
+    own[1] += search.slots.tried[i];
+  }
+  const int* sums = block_sums(own, reinterpret_cast<int*>(state.scratch));
+  figures.points = sums[0];
+  figures.tried = sums[1];
+}
+
+/// Inliers and the rows that they cover; a thread's own weights are visible to it.
+__device__ void count_inliers(const SearchMemory& search, FitState& state, SearchFigures& figures) {
+  const auto row = [&](int i, std::uint32_t& key) {
+    key = key_of(search.slots.v[i]);
+    return search.weights[i] > 0;
+  };
+  const SelectedKey lowest = block_select(search.count, row, ShareRank{lowest_row_share}, state.select);
+  figures.inliers = lowest.of;
+  figures.found = lowest.of >= fewest_matches ? 1 : 0;
+  if (figures.found == 0) return;
+  const SelectedKey highest = block_select(search.count, row, ShareRank{highest_row_share}, state.select);
+  figures.lowest_row = value_of(lowest.key);
+  figures.highest_row = value_of(highest.key);
+}
+
+/// The fit to what a search found; all threads get the figures.
+__device__ SearchFigures fit_search(const SearchMemory& search, const DevicePlane& start, const RobustFit& fit) {
+  FitState& state = *shared_memory<FitState>();
+  SearchFigures figures{{start, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
+  count_places(search, state, figures);
+  if (figures.points < fewest_matches) return figures;
+  const DevicePoints points{search.slots.u, search.slots.v, search.slots.d, search.count};
+  auto* residuals = reinterpret_cast<float*>(&state + 1);
+  figures.fit = BlockFit(points, fit, state, residuals, search.first, search.weights).run(start);
+  if (figures.fit.found != 0) count_inliers(search, state, figures);
+  return figures;
+}
+
+__global__ void __launch_bounds__(1024)
+    fit_around(SearchMemory search, PlaneSource previous, RobustFit fit, VerificationFigures* figures) {
+  const SearchFigures found = fit_search(search, previous.get(), fit);
+  if (threadIdx.x == 0) figures->around = found;
+}
+
+/// Where the correspondences of the first search lie that are near the road.
+__device__ void measure_range(const SearchMemory& around, const DevicePlane& road, VerificationFigures& figures) {
+  FitState& state = *shared_memory<FitState>();
+  const auto residual = [&](int i, std::uint32_t& key) {
+    const double expected = road.disparity(around.slots.u[i], around.slots.v[i]);
+    const double value = around.slots.d[i] - expected;
+    key = key_of(static_cast<float>(value));
+    return near_road(value, expected);
+  };
+  const SelectedKey lowest = block_select(around.count, residual, ShareRank{lowest_residual_share}, state.select);
+  figures.near = lowest.of;
+  if (lowest.of < fewest_matches) return;
+  const SelectedKey highest = block_select(around.count, residual, ShareRank{highest_residual_share}, state.select);
+  figures.lowest_px = value_of(lowest.key);
+  figures.highest_px = value_of(highest.key);
+}
+
+__global__ void __launch_bounds__(1024) fit_close(SearchMemory search, SearchMemory around, RobustFit fit,
+                                                  VerificationFigures* figures, VerificationFigures* result) {
+  VerificationFigures own{figures->around, {}, 0, 0, 0};
+  const bool needed = own.around.found != 0;
+  if (needed) own.close = fit_search(search, own.around.fit.plane, fit);
+  if (own.close.fit.found != 0) measure_range(around, own.close.fit.plane, own);
+  if (threadIdx.x == 0) *figures = *result = own;
+}
+
+LaunchShape fit_shape(int count) {
+  return {1, fit_threads(count), fit_shared_bytes(count)};
+}
+
+}  // namespace
+
+SearchMemory RoadVerification::Search::memory(int places) {
+  require_fit_points(places);
+  const auto count = static_cast<std::size_t>(places > 0 ? places : 1);
+  for (DeviceArray<float>* of : {&u, &v, &d, &first, &weights}) of->reserve(count);
+  tried.reserve(count);
+  return {{u.data(), v.data(), d.data(), tried.data()}, places, first.data(), weights.data()};
+}
+
+GuidedPair RoadVerification::shrunk(Plane<const std::int16_t> left, Plane<const std::int16_t> right,
+                                    cudaStream_t stream) {
+  const int factor = fine_factor(left.width);
+  if (factor == 1) return {left, right, 1};
+  const int width = left.width / factor, height = left.height / factor;
+  const std::size_t size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  pixels_.reserve(2 * size);
+  const auto small_left = packed_plane(pixels_.data(), width, height);
+  const auto small_right = packed_plane(pixels_.data() + size, width, height);
+  shrink(left, right, factor, small_left, small_right, stream);
+  return {small_left, small_right, factor};
+}
+
+void RoadVerification::run(Plane<const std::int16_t> left, Plane<const std::int16_t> right, const PlaneSource& previous,
+                           bool with_roll, cudaStream_t stream) {
+  const GuidedPair pair = shrunk(left, right, stream);
+  const auto grid = [&](const FineSearch& search) {
+    return guided_grid(pair.left.width, pair.left.height, search.range_px, search.places);
+  };
+  const GuidedGrid first = grid(first_search_again), second = grid(close_search_again);
+  const SearchMemory around = around_.memory(first.places()), close = close_.memory(second.places());
+  const RobustFit fit{fine_fit_scale * pair.factor, with_roll, fine_fit_iterations};
+  VerificationFigures* figures = figures_.data();
+  match_near_plane(pair, first, previous, nullptr, around.slots, stream);
+  launch(fit_around, fit_shape(around.count), stream, around, previous, fit, figures);
+  match_near_plane(pair, second, {&figures->around.fit.plane, {}}, &figures->around.found, close.slots, stream);
+  launch(fit_close, fit_shape(close.count > around.count ? close.count : around.count), stream, close, around, fit,
+         figures, result_.data());
+}
+
+}  // namespace roadstereo::cuda

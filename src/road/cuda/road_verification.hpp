@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+
+#include "core/cuda/memory.hpp"
+#include "core/cuda/plane.hpp"
+#include "road/cuda/guided_match.hpp"
+#include "road/cuda/robust_plane.hpp"
+#include "road/cuda/verification_figures.hpp"
+
+namespace roadstereo::cuda {
+
+/// A search's places and what the fit to them needs, in device memory.
+struct SearchMemory {
+  GuidedSlots slots;
+  int count;
+  float* first;
+  float* weights;
+};
+
+/// The device's part of verify_road_model(): two searches around the last frame's plane, each with a robust fit. What
+/// the figures say of the road is judge_verification()'s to tell. Four launches, six for large images.
+class RoadVerification {
+ public:
+  /// Enqueues it. The images must stay until then.
+  void run(Plane<const std::int16_t> left, Plane<const std::int16_t> right, const PlaneSource& previous, bool with_roll,
+           cudaStream_t stream);
+
+  /// The refined plane in device memory, for kernels that follow; means nothing unless the figures say so.
+  const DevicePlane* plane() const { return &figures_.data()->close.fit.plane; }
+  /// Once the stream was synchronised.
+  const VerificationFigures& figures() const { return *result_.data(); }
+
+ private:
+  /// The places of one search.
+  struct Search {
+    DeviceArray<float> u, v, d, first, weights;
+    DeviceArray<int> tried;
+
+    SearchMemory memory(int count);
+  };
+
+  GuidedPair shrunk(Plane<const std::int16_t> left, Plane<const std::int16_t> right, cudaStream_t stream);
+
+  Search around_, close_;
+  DeviceArray<std::int16_t> pixels_;
+  DeviceArray<VerificationFigures> figures_{1};
+  PinnedArray<VerificationFigures> result_{1};
+};
+
+}  // namespace roadstereo::cuda

@@ -1,0 +1,136 @@
+// The last frame's road on the next frame: the device's verification against verify_road_model(), on rendered flights.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "device_copy.hpp"
+#include "device_test.hpp"
+#include "road/cuda/road_verification.hpp"
+#include "road/cuda/verification_judgement.hpp"
+#include "road/road_search.hpp"
+#include "roadstereo/synth.hpp"
+#include "textured_pair.hpp"
+
+namespace roadstereo::cuda {
+namespace {
+
+struct Pair {
+  GreyImage left, right;
+  RoadModel plane;
+  std::optional<StereoCalibration> calibration;
+};
+
+synth::Scene road_scene(int width, int height) {
+  synth::Scene scene = synth::named_scene("uav");
+  scene.supersampling = 1;
+  scene.rig.focal_px *= static_cast<double>(width) / scene.rig.width;
+  scene.rig.width = width;
+  scene.rig.height = height;
+  return scene;
+}
+
+Pair render_pair(const synth::Scene& scene) {
+  const synth::SyntheticPair truth = synth::render(scene);
+  Pair pair{{}, {}, truth.plane, truth.calibration};
+  to_grey(truth.left.view(), 0, pair.left);
+  to_grey(truth.right.view(), 0, pair.right);
+  return pair;
+}
+
+RoadModelEstimate verify_on_device(RoadVerification& verification, const Pair& pair, const RoadModel& previous,
+                                   const RoadModelOptions& options) {
+  test::DevicePlane<std::int16_t> left(pair.left), right(pair.right);
+  verification.run(left.view(), right.view(), {nullptr, {previous.a0, previous.a1, previous.a2}}, options.with_roll,
+                   nullptr);
+  ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
+  return judge_verification(verification.figures(), previous, pair.left.width(), pair.left.height(), pair.calibration,
+                            options);
+}
+
+void expect_same(const RoadModelEstimate& device, const RoadModelEstimate& host, const Pair& pair) {
+  EXPECT_EQ(device.reliable, host.reliable);
+  EXPECT_EQ(device.reason, host.reason);
+  EXPECT_EQ(device.carried_over, host.carried_over);
+  EXPECT_EQ(device.matches, host.matches);
+  EXPECT_NEAR(device.inliers, host.inliers, 1);
+  EXPECT_NEAR(device.residual_px, host.residual_px, 1e-5);
+  EXPECT_NEAR(device.lowest_px, host.lowest_px, 1e-4);
+  EXPECT_NEAR(device.highest_px, host.highest_px, 1e-4);
+  for (const double v : {0.0, pair.left.height() - 1.0}) {
+    for (const double u : {0.0, pair.left.width() - 1.0}) {
+      EXPECT_NEAR(device.model.disparity(u, v), host.model.disparity(u, v), 1e-4);
+    }
+  }
+}
+
+class CudaRoadVerification : public test::OnDevice {
+ protected:
+  void expect_agreement(const Pair& pair, const RoadModel& previous, const RoadModelOptions& options = {}) {
+    const RoadModelEstimate device = verify_on_device(verification_, pair, previous, options);
+    host_ = verify_road_model(pair.left, pair.right, previous, pair.calibration, options, 1);
+    expect_same(device, host_, pair);
+  }
+
+  RoadVerification verification_;  ///< used again for frames of every size
+  RoadModelEstimate host_;
+};
+
+TEST_F(CudaRoadVerification, FollowsAFlightAsTheHostDoes) {
+  const synth::Scene scene = road_scene(208, 117);
+  synth::FlightPath path;
+  path.roll_period = path.pitch_period = path.climb_period = 40;
+  RoadModel previous = render_pair(synth::flight_frame(scene, path, 0)).plane;
+  for (const int frame : {1, 2}) {
+    SCOPED_TRACE(frame);
+    const Pair pair = render_pair(synth::flight_frame(scene, path, frame));
+    expect_agreement(pair, previous);
+    EXPECT_TRUE(host_.reliable) << host_.reason;
+    previous = host_.model;
+  }
+  RoadModelOptions without_roll;
+  without_roll.with_roll = false;
+  expect_agreement(render_pair(synth::flight_frame(scene, path, 3)), previous, without_roll);
+}
+
+TEST_F(CudaRoadVerification, NoticesJumpsForTheSameReasons) {
+  synth::Scene scene = road_scene(208, 117);
+  const RoadModel previous = render_pair(scene).plane;
+  scene.rig.camera_height_m *= 0.5;  // nothing of the road within the search
+  expect_agreement(render_pair(scene), previous);
+  EXPECT_FALSE(host_.reliable);
+  scene.rig.camera_height_m *= 1.8;  // a little lower than at first: still within the search
+  expect_agreement(render_pair(scene), previous);
+  EXPECT_NE(host_.reason.find("has moved"), std::string::npos) << host_.reason;
+  scene = road_scene(208, 117);
+  RoadModelOptions strict;
+  strict.verify_tolerance_px = 1e-4;
+  expect_agreement(render_pair(scene), previous, strict);
+  EXPECT_NE(host_.reason.find("leaves"), std::string::npos) << host_.reason;
+}
+
+TEST_F(CudaRoadVerification, SaysSoWithoutEvidence) {
+  Pair pair = render_pair(road_scene(208, 117));
+  const RoadModel road = pair.plane;
+  pair.right = test::textured_pair(
+                   208, 117, [](double, double) { return 0; }, 99)
+                   .target;
+  expect_agreement(pair, road);
+  EXPECT_NE(host_.reason.find("only 0 correspondences"), std::string::npos) << host_.reason;
+  EXPECT_EQ(verification_.figures().close.tried, 0);
+}
+
+TEST_F(CudaRoadVerification, TakesSmallAndLargeImages) {
+  const auto small = test::textured_pair(32, 32, [](double, double) { return 4; });
+  expect_agreement({small.reference, small.target, {}, std::nullopt}, {4, 0, 0});
+  // Wide enough to be searched at half its size.
+  const RoadModel plane{11, 0.4, 0.002};
+  const auto large = test::textured_pair(1921, 64, [&](double u, double v) { return plane.disparity(u, v); });
+  ASSERT_EQ(fine_factor(1921), 2);
+  const Pair pair{large.reference, large.target, plane, std::nullopt};
+  expect_agreement(pair, {11.6, 0.39, 0.002});
+  EXPECT_TRUE(host_.reliable) << host_.reason;
+}
+
+}  // namespace
+}  // namespace roadstereo::cuda
