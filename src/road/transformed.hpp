@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/cuda/host_device.hpp"
+#include "core/cuda/rounded.hpp"
+#include "road/robust_weights.hpp"
+
+// The formulas of the transformed disparity and its spread, which are measured on the host and on the device.
+namespace roadstereo {
+
+/// The road's disparity at the first pixel of a row.
+ROADSTEREO_HD inline double road_at_row(double a0, double a1, int v) {
+  return a0 + rounded_product(a1, v);
+}
+
+/// ℓ(p) − α0 + α1 (u sin ψ − v cos ψ): height above (or depth below) the road, in pixels of disparity.
+ROADSTEREO_HD inline float above_road(float disparity, double at_row, double a2, int u) {
+  return static_cast<float>(disparity - (at_row + rounded_product(a2, u)));
+}
+
+/// δt: the smallest whole number that makes every value positive, at least `least`; `smallest` is that of the heights,
+/// infinite without any.
+ROADSTEREO_HD inline double derived_delta_t(double smallest, double least) {
+  const double needed = std::isfinite(smallest) ? std::floor(-smallest) + 1 : 0;
+  const double wished = std::ceil(least);
+  return wished < needed ? needed : wished;
+}
+
+/// Regular sample of a map that its spread is first judged by.
+ROADSTEREO_HD inline int spread_step(double pixels) {
+  const int step = static_cast<int>(std::sqrt(pixels / 12000));
+  return step > 1 ? step : 1;
+}
+
+/// What stands on the road or beside it must not widen the limit: first only what is this near counts.
+inline constexpr double spread_nearest_px = 3.0;
+
+/// Residuals up to this are the road's; `median` is that of the near ones' magnitudes.
+ROADSTEREO_HD inline double spread_limit(double median) {
+  constexpr double narrowest_limit_px = 1.0;
+  const double limit = 3 * normal_from_median * median;
+  return limit < narrowest_limit_px ? narrowest_limit_px : limit;
+}
+
+/// Sums behind a standard deviation.
+struct Spread {
+  double n, sum, squares;
+
+  ROADSTEREO_HD void add(double value) {
+    n += 1;
+    sum += value;
+    squares += value * value;
+  }
+  ROADSTEREO_HD void add(const Spread& other) {
+    n += other.n;
+    sum += other.sum;
+    squares += other.squares;
+  }
+  ROADSTEREO_HD double deviation() const {
+    if (!(n > 0)) return 0;
+    const double variance = squares / n - sum / n * (sum / n);
+    return variance > 0 ? std::sqrt(variance) : 0;
+  }
+};
+
+}  // namespace roadstereo
