@@ -1,5 +1,5 @@
-// The engine `cuda` on the GPU of this machine: the whole pipeline with images in device memory, its stages, its largest
-// kernels against what they must at least cost, and frames from host to host. Needs nothing but the library.
+// The engine `cuda` on the GPU of this machine: the whole pipeline with images in device memory, its stages, its
+// largest kernels against what they must at least cost, and frames from host to host. Needs nothing but the library.
 //   bench_cuda [RUNS]
 
 #include <algorithm>
@@ -7,17 +7,17 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <functional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/cuda/device.hpp"
 #include "core/cuda/memory.hpp"
-#include "kernel_floors.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
+#include "stage_floors.hpp"
 
 namespace roadstereo {
 namespace {
@@ -50,7 +50,8 @@ synth::SyntheticPair make_pair(const Size& size) {
 class FrameOnDevice {
  public:
   explicit FrameOnDevice(const Frame& frame) : bytes_(frame.bytes.size()), view_(frame.view()) {
-    ROADSTEREO_CUDA(cudaMemcpyAsync(bytes_.data(), frame.bytes.data(), frame.bytes.size(), cudaMemcpyHostToDevice, nullptr));
+    ROADSTEREO_CUDA(
+        cudaMemcpyAsync(bytes_.data(), frame.bytes.data(), frame.bytes.size(), cudaMemcpyHostToDevice, nullptr));
     ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
     view_.data = bytes_.data();
   }
@@ -74,6 +75,26 @@ struct Goal {
   double ms;  ///< 0: none
 };
 
+/// Each stage by the device's clock, beside its floor where it has one that is no latency.
+void print_stages(const std::vector<StageTimes>& frames, const StageTimes& floors) {
+  const std::pair<const char*, double StageTimes::*> stages[] = {{"prepare", &StageTimes::prepare},
+                                                                 {"road model", &StageTimes::road_model},
+                                                                 {"perspective", &StageTimes::perspective},
+                                                                 {"coarse", &StageTimes::coarse},
+                                                                 {"match", &StageTimes::match},
+                                                                 {"refinement", &StageTimes::refinement},
+                                                                 {"road geometry", &StageTimes::road_geometry},
+                                                                 {"transform", &StageTimes::transform}};
+  for (const auto& [name, member] : stages) {
+    std::vector<double> values;
+    for (const StageTimes& times : frames) values.push_back(times.*member);
+    const double ms = median(values), floor = floors.*member;
+    std::printf("  %-14s %8.4f ms", name, ms);
+    if (floor > 0) std::printf("   floor %8.4f ms, ratio %5.1f", floor, ms / floor);
+    std::printf("\n");
+  }
+}
+
 /// The whole pipeline on frames whose road model is known from the frame before.
 void time_pipeline(const Goal& goal, int runs) {
   const synth::SyntheticPair pair = make_pair(goal.size);
@@ -90,21 +111,16 @@ void time_pipeline(const Goal& goal, int runs) {
     ms.push_back(ms_since(start));
     stages.push_back(result.ms);
   }
-  const auto stage = [&stages](double StageTimes::*member) {
-    std::vector<double> values;
-    for (const StageTimes& times : stages) values.push_back(times.*member);
-    return median(values);
-  };
   const double total = median(ms);
   const double evaluations = 1e-6 * goal.size.width * goal.size.height * goal.size.disparities;
-  std::printf("%5dx%-5d D %-3d %-8s %8.3f ms  %7.0f Mde/s", goal.size.width, goal.size.height, goal.size.disparities,
+  std::printf("%dx%d, D %d, %s: %.3f ms, %.0f Mde/s", goal.size.width, goal.size.height, goal.size.disparities,
               goal.preset, total, evaluations / (total * 1e-3));
-  if (goal.ms > 0) std::printf("  goal %.2f ms: %s (%.2f)", goal.ms, total <= goal.ms ? "reached" : "MISSED", total / goal.ms);
-  std::printf("\n      prepare %.3f, road model %.3f, perspective %.3f, coarse %.3f, match %.3f, refinement %.3f, "
-              "road geometry %.3f, transform %.3f\n",
-              stage(&StageTimes::prepare), stage(&StageTimes::road_model), stage(&StageTimes::perspective),
-              stage(&StageTimes::coarse), stage(&StageTimes::match), stage(&StageTimes::refinement),
-              stage(&StageTimes::road_geometry), stage(&StageTimes::transform));
+  if (goal.ms > 0)
+    std::printf("; goal %.2f ms: %s (%.2f)", goal.ms, total <= goal.ms ? "reached" : "MISSED", total / goal.ms);
+  std::printf("\n");
+  const StageTimes floors = bench::stage_floors(pipeline.options(), goal.size.width, goal.size.height,
+                                                goal.size.disparities, bench::device_peak());
+  print_stages(stages, floors);
 }
 
 /// Frames from host memory to host memory, by so many pipelines that each have a thread and a stream of their own.
@@ -133,7 +149,7 @@ void count_frames(const Size& size, int pipelines, int runs) {
   }
   const double per_second = 1e3 * pipelines * runs / ms_since(start);
   constexpr double goal = 1500;
-  std::printf("%5dx%-5d host to host, %d pipeline%s: %7.0f frames/s  goal %.0f: %s\n", size.width, size.height, pipelines,
+  std::printf("%dx%d host to host, %d pipeline%s: %7.0f frames/s  goal %.0f: %s\n", size.width, size.height, pipelines,
               pipelines == 1 ? " " : "s", per_second, goal, per_second >= goal ? "reached" : "MISSED");
 }
 
@@ -149,9 +165,6 @@ void run(int runs) {
                            Goal{large, "paper", 0}, Goal{large, "default", 3}, Goal{large, "fast", 0}}) {
     time_pipeline(goal, runs);
   }
-  std::printf("\nKernels of matching against their floors, %dx%d, D %d, the whole range searched:\n", usual.width,
-              usual.height, usual.disparities);
-  bench::time_kernels(usual.width, usual.height, usual.disparities, runs);
   std::printf("\n");
   for (const int pipelines : {1, 2, 3}) count_frames(usual, pipelines, runs);
 }

@@ -1,0 +1,83 @@
+#include "stage_floors.hpp"
+
+#include <algorithm>
+
+#include "core/cuda/check.hpp"
+#include "stereo/trim_window.hpp"
+
+namespace roadstereo::bench {
+namespace {
+
+double attribute(cudaDeviceAttr which) {
+  int device = 0, value = 0;
+  ROADSTEREO_CUDA(cudaGetDevice(&device));
+  ROADSTEREO_CUDA(cudaDeviceGetAttribute(&value, which, device));
+  return value;
+}
+
+/// Bytes and operations of one stage.
+struct Work {
+  double bytes = 0, operations = 0, shared_bytes = 0;
+
+  double ms(const Peak& peak) const {
+    return 1e3 * std::max({bytes / peak.bytes, operations / peak.operations, shared_bytes / peak.shared_bytes});
+  }
+};
+
+/// match_view.cu, per pixel and disparity; block_sums.cu and finish_rows.cu per pixel.
+Work matching(const MatcherOptions& options, double pixels, int disparities) {
+  constexpr double tile_columns = 32, tile_rows = 12;
+  int across = 0, down = 0;
+  const std::vector<Tap> taps = trimmed_taps(options);
+  for (const Tap& tap : taps) {
+    across = std::max(across, tap.du);
+    down = std::max(down, tap.dv);
+  }
+  const double surroundings = (tile_columns + 2 * across) * (tile_rows + 2 * down) / (tile_columns * tile_rows);
+  const double block = 2 * options.block_radius + 1, window = static_cast<double>(taps.size());
+  const double views = options.target_volume ? 2 : 1, costs = views * pixels * disparities;
+  return {.bytes = pixels * (2 * 26 + 22),
+          .operations = costs * (surroundings * (4 + block + 8) + window + 6),
+          .shared_bytes = costs * 4 * ((block + 2) * surroundings + window)};
+}
+
+/// stereo/coarse/cuda/*.cu, with the pair at half its size, or less.
+Work coarse_look(const PipelineOptions& options, int width, double pixels, int disparities) {
+  constexpr int most_columns = 800;
+  int factor = std::max(2, options.coarse_search.factor);
+  while (options.coarse_search.factor == 0 && factor < 8 && width / factor > most_columns) factor *= 2;
+  const double coarse = pixels / (factor * factor), costs = coarse * (disparities - 1.0) / factor;
+  return {.bytes = 4 * pixels + 32 * coarse + (4 + 12 + 24) * costs, .operations = costs * (62 + 5 + 14)};
+}
+
+}  // namespace
+
+Peak device_peak() {
+  constexpr double khz = 1e3, bits_per_byte = 8, per_clock = 2;  // memory moves twice in a clock
+  const double clock = khz * attribute(cudaDevAttrClockRate);
+  const double multiprocessors = attribute(cudaDevAttrMultiProcessorCount);
+  // A multiprocessor's; before compute capability 8.6, and of an A100, it has half the lanes: there floors are too low.
+  constexpr double lanes = 128, shared_bytes = 128;
+  return {.bytes = per_clock * khz * attribute(cudaDevAttrMemoryClockRate) *
+                   attribute(cudaDevAttrGlobalMemoryBusWidth) / bits_per_byte,
+          .operations = multiprocessors * clock * lanes,
+          .shared_bytes = multiprocessors * clock * shared_bytes};
+}
+
+StageTimes stage_floors(const PipelineOptions& options, int width, int height, int disparities, const Peak& peak) {
+  const double pixels = static_cast<double>(width) * height;
+  const double neighbours = 2.0 * (options.refinement.radius / options.refinement.step) + 1;
+  StageTimes floors;
+  floors.prepare = Work{.bytes = 6 * pixels, .operations = 16 * pixels}.ms(peak);
+  floors.perspective = Work{.bytes = 4 * pixels, .operations = 20 * pixels}.ms(peak);
+  floors.coarse = coarse_look(options, width, pixels, disparities).ms(peak);
+  floors.match = matching(options.matcher, pixels, disparities).ms(peak);
+  floors.refinement = Work{.bytes = 16 * pixels,
+                           .operations = 14 * neighbours * neighbours * pixels,
+                           .shared_bytes = 12 * neighbours * neighbours * pixels}
+                          .ms(peak);
+  floors.transform = Work{.bytes = 12 * pixels, .operations = 40 * pixels}.ms(peak);
+  return floors;
+}
+
+}  // namespace roadstereo::bench
