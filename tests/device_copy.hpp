@@ -47,6 +47,7 @@ class DevicePlane {
 template <class T>
 cuda::DeviceArray<T> to_device(const std::vector<T>& numbers) {
   cuda::DeviceArray<T> copy(numbers.size());
+  if (numbers.empty()) return copy;
   ROADSTEREO_CUDA(
       cudaMemcpyAsync(copy.data(), numbers.data(), numbers.size() * sizeof(T), cudaMemcpyHostToDevice, nullptr));
   ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));

@@ -128,12 +128,12 @@ inline int __ffs(int bits) {
   return __builtin_ffs(bits);
 }
 inline int __float_as_int(float value) {
-  int bits;
+  int bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
   return bits;
 }
 inline float __int_as_float(int bits) {
-  float value;
+  float value = 0;
   std::memcpy(&value, &bits, sizeof value);
   return value;
 }

@@ -1,9 +1,10 @@
-// Floor: 4 bytes written a cost; with radius 3, a cost takes 14 products whose factors come from shared memory, 8
-// numbers of the column sums, and about 40 operations for the correlation. 320×180 pixels of 24 disparities: 1.4
-// million costs, 5.5 MB, 140 million operations. The block slides along the row, so that a column enters and leaves it
-// once.
+// Floor: 4 bytes written a cost; with radius 3, a cost takes 7 products whose factors come from shared memory, and
+// about 20 operations for the correlation: 320×180 pixels of 24 disparities are 1.4 million costs, 5.5 MB, 60 million
+// operations. The block slides along the row, so that a column enters it once; the sums over each view's whole blocks
+// are made once for all disparities.
 
 #include "core/cuda/launch.hpp"
+#include "core/cuda/unroll.hpp"
 #include "core/cuda/warp.hpp"
 #include "stereo/block_correlation.hpp"
 #include "stereo/coarse/coarse_column.hpp"
@@ -15,7 +16,7 @@ namespace roadstereo::cuda {
 namespace {
 
 constexpr int warps = 4;
-constexpr int columns_each = 16;  // of a warp
+constexpr int columns_each = 22;  // of a warp: with the block's radius of 3 on both sides four times a block's width
 constexpr int segment = warps * columns_each;
 
 /// Sums of one column over the rows of a block.
@@ -23,22 +24,30 @@ struct ColumnSums {
   int sum, square;
 };
 
-/// One view's columns around a segment, for the rows of a block: 0 where there is no pixel.
+/// One view's columns around a segment, for the rows of a block: 0 where there is no pixel that counts.
 struct ViewColumns {
-  short* grey;       ///< row by row
-  ColumnSums* sums;  ///< per column
-  int first;         ///< column of the image
+  BlockPart* parts;  ///< of the whole blocks around the columns
+  ColumnSums* sums;
+  short* grey;  ///< row by row
+  int first;    ///< column of the image
   int count;
 
-  __device__ int at(int row, int column) const { return grey[row * count + (column - first)]; }
-  __device__ const ColumnSums& of(int column) const { return sums[column - first]; }
+  __device__ const short* from(int column) const { return grey + (column - first); }
+  __device__ const BlockPart& part(int column) const { return parts[column - first]; }
 };
 
-/// Loads a view's columns from `begin` on and sums them; pixels before `begin` do not count.
+/// A segment of a row as its block of threads sees it.
+struct Segment {
+  ViewColumns own, other;
+  int width, first_other;  ///< columns of the image; the first one of the target that counts
+  int radius, rows;        ///< of the block; rows of it that lie in the image
+  float noise_variance;
+};
+
+/// Loads a view's columns from `begin` on and sums them.
 __device__ void load_columns(const ViewColumns& view, const Plane<const std::int16_t>& image, int begin,
                              int first_row, int rows) {
-  const auto thread = static_cast<int>(threadIdx.x);
-  for (int i = thread; i < view.count; i += warps * warp_lanes) {
+  for (int i = static_cast<int>(threadIdx.x); i < view.count; i += warps * warp_lanes) {
     const int column = view.first + i;
     ColumnSums sums{0, 0};
     for (int r = 0; r < rows; ++r) {
@@ -53,28 +62,74 @@ __device__ void load_columns(const ViewColumns& view, const Plane<const std::int
   }
 }
 
-/// A segment of a row: both views, and what of them is seen.
-struct Segment {
-  ViewColumns own, other;
-  int width;
-  int first_other;
-  int rows;  ///< of shared memory; those outside the image are 0
-};
+/// The part of a block that the columns first … last of a view make up.
+__device__ BlockPart part_of(const ViewColumns& view, int first, int last, const Segment& of) {
+  ColumnSums sums{0, 0};
+  for (int c = first; c <= last; ++c) {
+    const ColumnSums& column = view.sums[c - view.first];
+    sums.sum += column.sum;
+    sums.square += column.square;
+  }
+  return block_part(sums.sum, sums.square, (last - first + 1) * of.rows, of.noise_variance);
+}
 
-/// Adds column c of the block to the sums for disparity d, or takes it away.
+__device__ void fill_parts(const ViewColumns& view, const Segment& of) {
+  const int end = view.count - of.radius;
+  for (int i = of.radius + static_cast<int>(threadIdx.x); i < end; i += warps * warp_lanes) {
+    const int column = view.first + i;
+    view.parts[i] = part_of(view, column - of.radius, column + of.radius, of);
+  }
+}
+
+/// Σ own·other over one column of the block.
 template <int known_rows>
-__device__ void add_column(const Segment& of, int c, int d, int sign, BlockSums& sums) {
-  if (c < 0 || c >= of.width || c - d < of.first_other) return;
-  const int rows = known_rows > 0 ? known_rows : of.rows;
+__device__ int column_product(const Segment& of, int column, int d) {
+  const int rows = known_rows > 0 ? known_rows : 2 * of.radius + 1;
+  const short *own = of.own.from(column), *other = of.other.from(column - d);
   int product = 0;
-  for (int r = 0; r < rows; ++r) product += of.own.at(r, c) * of.other.at(r, c - d);
-  const ColumnSums &own = of.own.of(c), &other = of.other.of(c - d);
-  sums.columns += sign;
-  sums.own += sign * own.sum;
-  sums.own_square += sign * own.square;
-  sums.other += sign * other.sum;
-  sums.other_square += sign * other.square;
-  sums.product += sign * product;
+  for (int r = 0; r < rows; ++r) product += own[r * of.own.count] * other[r * of.other.count];
+  return product;
+}
+
+/// The cost of column u at disparity d, over the part of the block that both views see.
+__device__ float cost_of(const Segment& of, int u, int d, int product) {
+  if (u - d < of.first_other) return no_evidence;
+  const int left = u - of.radius, right = u + of.radius, seen = d + of.first_other;
+  const int first = left > seen ? left : seen, last = right < of.width ? right : of.width - 1;
+  const int pixels = (last - first + 1) * of.rows;
+  if (first == left && last == right) return correlation_cost(of.own.part(u), of.other.part(u - d), product, pixels);
+  return correlation_cost(part_of(of.own, first, last, of), part_of(of.other, first - d, last - d, of), product,
+                          pixels);
+}
+
+/// Costs of one disparity along the columns begin … end − 1. The products of the block's columns lie in registers.
+template <int block>
+__device__ void slide_block(const Segment& of, int begin, int end, int d, float* cost, int pitch) {
+  constexpr int radius = block / 2;
+  int columns[block] = {}, product = 0;
+  for (int first = begin - radius; first < end + radius; first += block) {
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < block; ++k) {
+      const int u = first + k - radius;
+      if (u >= end) break;
+      columns[k] = column_product<block>(of, first + k, d);
+      product += columns[k];
+      if (u >= begin) cost[(u - begin) * pitch] = cost_of(of, u, d, product);
+      product -= columns[(k + 1) % block];
+    }
+  }
+}
+
+/// The same for blocks of any size: what leaves the block is computed again.
+template <>
+__device__ void slide_block<0>(const Segment& of, int begin, int end, int d, float* cost, int pitch) {
+  int product = 0;
+  for (int c = begin - of.radius; c < begin + of.radius; ++c) product += column_product<0>(of, c, d);
+  for (int u = begin; u < end; ++u) {
+    product += column_product<0>(of, u + of.radius, d);
+    cost[(u - begin) * pitch] = cost_of(of, u, d, product);
+    product -= column_product<0>(of, u - of.radius, d);
+  }
 }
 
 /// First target column that the block around row v sees, found by a whole warp.
@@ -90,44 +145,47 @@ __device__ int first_seen_by_block(const CoarsePair& pair, int v, int radius) {
   return coarse_column(warp_max(largest), pair.factor, pair.reference.width);
 }
 
-/// The costs of one disparity along the columns of a warp.
-template <int known_rows>
-__device__ void slide_block(const Segment& of, int radius, int image_rows, float noise_variance, int begin, int end,
-                            int d, int v, const CoarseVolume& costs) {
-  BlockSums sums{};
-  for (int c = begin - radius; c < begin + radius; ++c) add_column<known_rows>(of, c, d, 1, sums);
-  for (int u = begin; u < end; ++u) {
-    add_column<known_rows>(of, u + radius, d, 1, sums);
-    const bool seen = u - d >= of.first_other;
-    costs.pixel(u, v)[d] = seen ? correlation_cost(sums, image_rows, noise_variance) : no_evidence;
-    add_column<known_rows>(of, u - radius, d, -1, sums);
-  }
+/// Shares out the memory of the block.
+__device__ Segment make_segment(int first, int radius, const CoarseVolume& costs) {
+  Segment of{};
+  of.own.first = first - radius;
+  of.own.count = segment + 2 * radius;
+  of.other.first = of.own.first - (costs.disparities - 1);
+  of.other.count = of.own.count + costs.disparities - 1;
+  of.own.parts = shared_memory<BlockPart>();
+  of.other.parts = of.own.parts + of.own.count;
+  of.own.sums = reinterpret_cast<ColumnSums*>(of.other.parts + of.other.count);
+  of.other.sums = of.own.sums + of.own.count;
+  of.own.grey = reinterpret_cast<short*>(of.other.sums + of.other.count);
+  of.other.grey = of.own.grey + (2 * radius + 1) * of.own.count;
+  return of;
 }
 
-template <int known_radius>
-__global__ void block_costs_of_segments(CoarsePair pair, int any_radius, float noise_variance, CoarseVolume costs,
+template <int known_block>
+__global__ void block_costs_of_segments(CoarsePair pair, int radius, float noise_variance, CoarseVolume costs,
                                         int* first_seen) {
-  const int radius = known_radius > 0 ? known_radius : any_radius, rows = 2 * radius + 1;
-  const int v = costs.first_row + static_cast<int>(blockIdx.y);
-  const int first = static_cast<int>(blockIdx.x) * segment;
-  const int first_other = first_seen_by_block(pair, v, radius);
-  if (blockIdx.x == 0 && threadIdx.x == 0) first_seen[v] = first_other;
-  Segment of{{}, {}, costs.columns, first_other, rows};
-  of.own = {nullptr, shared_memory<ColumnSums>(), first - radius, segment + 2 * radius};
-  of.other = {nullptr, of.own.sums + of.own.count, of.own.first - (costs.disparities - 1),
-              of.own.count + costs.disparities - 1};
-  of.own.grey = reinterpret_cast<short*>(of.other.sums + of.other.count);
-  of.other.grey = of.own.grey + rows * of.own.count;
-  load_columns(of.own, pair.reference, 0, v - radius, rows);
-  load_columns(of.other, pair.target, first_other, v - radius, rows);
+  const int v = costs.first_row + static_cast<int>(blockIdx.y), first = static_cast<int>(blockIdx.x) * segment;
+  const int first_row = v - radius, last_row = v + radius;
+  const int inside =
+      (last_row < pair.reference.height ? last_row : pair.reference.height - 1) - (first_row > 0 ? first_row : 0) + 1;
+  Segment of = make_segment(first, radius, costs);
+  of.width = costs.columns;
+  of.first_other = first_seen_by_block(pair, v, radius);
+  of.radius = radius;
+  of.rows = inside;
+  of.noise_variance = noise_variance;
+  if (blockIdx.x == 0 && threadIdx.x == 0) first_seen[v] = of.first_other;
+  load_columns(of.own, pair.reference, 0, first_row, 2 * radius + 1);
+  load_columns(of.other, pair.target, of.first_other, first_row, 2 * radius + 1);
   __syncthreads();
-  const int first_row = v - radius < 0 ? 0 : v - radius;
-  const int last_row = v + radius < pair.reference.height ? v + radius : pair.reference.height - 1;
+  fill_parts(of.own, of);
+  fill_parts(of.other, of);
+  __syncthreads();
   const int begin = first + static_cast<int>(threadIdx.x) / warp_lanes * columns_each;
   const int end = begin + columns_each < costs.columns ? begin + columns_each : costs.columns;
+  if (begin >= end) return;
   for (int d = static_cast<int>(threadIdx.x) % warp_lanes; d < costs.disparities; d += warp_lanes) {
-    slide_block<known_radius == 0 ? 0 : 2 * known_radius + 1>(of, radius, last_row - first_row + 1, noise_variance,
-                                                              begin, end, d, v, costs);
+    slide_block<known_block>(of, begin, end, d, costs.pixel(begin, v) + d, costs.pitch);
   }
 }
 
@@ -136,10 +194,11 @@ __global__ void block_costs_of_segments(CoarsePair pair, int any_radius, float n
 void block_costs(const CoarsePair& pair, int block_radius, float noise_variance, const CoarseVolume& costs,
                  int* first_seen, cudaStream_t stream) {
   const int own = segment + 2 * block_radius, both = 2 * own + costs.disparities - 1;
-  const std::size_t bytes_each = sizeof(ColumnSums) + static_cast<std::size_t>(2 * block_radius + 1) * sizeof(short);
+  const std::size_t bytes_each =
+      sizeof(BlockPart) + sizeof(ColumnSums) + static_cast<std::size_t>(2 * block_radius + 1) * sizeof(short);
   const LaunchShape shape{dim3(blocks_for(costs.columns, segment), static_cast<unsigned>(costs.rows)),
                           warps * warp_lanes, static_cast<std::size_t>(both) * bytes_each};
-  const auto kernel = block_radius == 3 ? block_costs_of_segments<3> : block_costs_of_segments<0>;
+  const auto kernel = block_radius == 3 ? block_costs_of_segments<7> : block_costs_of_segments<0>;
   launch(kernel, shape, stream, pair, block_radius, noise_variance, costs, first_seen);
 }
 

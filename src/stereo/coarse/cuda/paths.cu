@@ -12,8 +12,6 @@
 namespace roadstereo::cuda {
 namespace {
 
-constexpr int ahead = 4;  // columns whose costs are on their way
-
 /// The disparities of a column that one lane holds: lane·count ….
 template <int count>
 struct alignas(count % 4 == 0   ? 16
@@ -63,6 +61,7 @@ __device__ LaneCosts<count> arrive(const LaneCosts<count>& totals, float cheapes
 /// Follows the path to its end. It leaves totals on the way forth, and back the ways without the column's own cost.
 template <int count, bool forth>
 __device__ void follow(const Path<count>& path, int columns, const PathPenalties& penalties) {
+  constexpr int ahead = count <= 2 ? 8 : 4;  // columns whose costs are on their way: memory takes as long as several
   LaneCosts<count> totals = path.cost(0), way{}, coming[ahead];
   path.store(0, forth ? totals : way);
   ROADSTEREO_UNROLL
