@@ -12,34 +12,34 @@ namespace roadstereo {
 void PlaneSums::add(const DisparityPoint& point, double weight) {
   const double u = point.u - origin_u_;
   const double v = point.v - origin_v_;
-  n_ += weight;
-  u_ += weight * u;
-  v_ += weight * v;
-  d_ += weight * point.d;
-  uu_ += weight * u * u;
-  uv_ += weight * u * v;
-  vv_ += weight * v * v;
-  ud_ += weight * u * point.d;
-  vd_ += weight * v * point.d;
-  dd_ += weight * point.d * point.d;
+  s_.n += weight;
+  s_.u += weight * u;
+  s_.v += weight * v;
+  s_.d += weight * point.d;
+  s_.uu += weight * u * u;
+  s_.uv += weight * u * v;
+  s_.vv += weight * v * v;
+  s_.ud += weight * u * point.d;
+  s_.vd += weight * v * point.d;
+  s_.dd += weight * point.d * point.d;
 }
 
 void PlaneSums::add(const PlaneSums& other) {
-  n_ += other.n_;
-  u_ += other.u_;
-  v_ += other.v_;
-  d_ += other.d_;
-  uu_ += other.uu_;
-  uv_ += other.uv_;
-  vv_ += other.vv_;
-  ud_ += other.ud_;
-  vd_ += other.vd_;
-  dd_ += other.dd_;
+  s_.n += other.s_.n;
+  s_.u += other.s_.u;
+  s_.v += other.s_.v;
+  s_.d += other.s_.d;
+  s_.uu += other.s_.uu;
+  s_.uv += other.s_.uv;
+  s_.vv += other.s_.vv;
+  s_.ud += other.s_.ud;
+  s_.vd += other.s_.vd;
+  s_.dd += other.s_.dd;
 }
 
 std::optional<RoadModel> PlaneSums::plane(bool with_roll) const {
   RoadModel model;
-  if (!solve_slopes({n_, uu(), uv(), vv(), ud(), vd()}, with_roll, model.a1, model.a2)) return std::nullopt;
+  if (!solve_slopes({s_.n, uu(), uv(), vv(), ud(), vd()}, with_roll, model.a1, model.a2)) return std::nullopt;
   model.a0 = mean_d() - model.a1 * mean_v() - model.a2 * mean_u();
   return model;
 }

@@ -5,6 +5,7 @@
 
 #include "core/function_ref.hpp"
 #include "core/scratch.hpp"
+#include "road/raw_sums.hpp"
 #include "road/robust_weights.hpp"
 #include "roadstereo/road_model.hpp"
 
@@ -21,31 +22,31 @@ struct DisparityPoint {
 /// origin near the data, so that differences of large sums do not cancel.
 class PlaneSums {
  public:
-  explicit PlaneSums(double origin_u = 0, double origin_v = 0) : origin_u_(origin_u), origin_v_(origin_v) {}
+  explicit PlaneSums(double origin_u = 0, double origin_v = 0, const RawSums& sums = {})
+      : origin_u_(origin_u), origin_v_(origin_v), s_(sums) {}
 
   void add(const DisparityPoint& point, double weight = 1);
   void add(const PlaneSums& other);
 
-  double weight() const { return n_; }
-  double mean_u() const { return origin_u_ + u_ / n_; }
-  double mean_v() const { return origin_v_ + v_ / n_; }
-  double mean_d() const { return d_ / n_; }
+  double weight() const { return s_.n; }
+  double mean_u() const { return origin_u_ + s_.u / s_.n; }
+  double mean_v() const { return origin_v_ + s_.v / s_.n; }
+  double mean_d() const { return s_.d / s_.n; }
 
   /// Sums of products of deviations from the means.
-  double uu() const { return uu_ - u_ * u_ / n_; }
-  double uv() const { return uv_ - u_ * v_ / n_; }
-  double vv() const { return vv_ - v_ * v_ / n_; }
-  double ud() const { return ud_ - u_ * d_ / n_; }
-  double vd() const { return vd_ - v_ * d_ / n_; }
-  double dd() const { return dd_ - d_ * d_ / n_; }
+  double uu() const { return s_.uu - s_.u * s_.u / s_.n; }
+  double uv() const { return s_.uv - s_.u * s_.v / s_.n; }
+  double vv() const { return s_.vv - s_.v * s_.v / s_.n; }
+  double ud() const { return s_.ud - s_.u * s_.d / s_.n; }
+  double vd() const { return s_.vd - s_.v * s_.d / s_.n; }
+  double dd() const { return s_.dd - s_.d * s_.d / s_.n; }
 
   /// The least-squares plane; nothing when the points lie on one line of the image. `with_roll` false keeps a2 = 0.
   std::optional<RoadModel> plane(bool with_roll = true) const;
 
  private:
   double origin_u_, origin_v_;
-  double n_ = 0, u_ = 0, v_ = 0, d_ = 0;
-  double uu_ = 0, uv_ = 0, vv_ = 0, ud_ = 0, vd_ = 0, dd_ = 0;
+  RawSums s_;
 };
 
 /// A plane through most of the points, and how well it fits those.

@@ -2,21 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <utility>
 
 #include "core/parallel.hpp"
+#include "road/geometry_judgement.hpp"
 #include "road/plane_fit.hpp"
 #include "road/roll_energy.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
 namespace {
-
-/// Points that the robust solver and the standard error look at: enough for both, few enough to cost nothing.
-constexpr std::size_t sample_limit = 6000;
-
-/// Residuals of neighbours are not independent: the standard error takes cells of the map as one observation each.
-constexpr int cells_per_side = 24;
 
 using Mask = std::optional<ImageView<const std::uint8_t>>;
 
@@ -47,14 +42,15 @@ PlaneSums sum_points(std::span<const DisparityPoint> points) {
   return sums;
 }
 
-/// Valid disparities on a regular grid, at most about `sample_limit`.
+/// Valid disparities on a regular grid.
 ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, const Mask& mask) {
-  const double per_sample = static_cast<double>(disparity.pixels()) / static_cast<double>(sample_limit);
-  const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(per_sample))));
+  const MapSample sample = map_sample(disparity.width(), disparity.height());
   auto points = scratch_vector<DisparityPoint>();
-  points.reserve(2 * sample_limit);
-  for (int v = step / 2; v < disparity.height(); v += step) {
-    for (int u = step / 2; u < disparity.width(); u += step) {
+  points.reserve(static_cast<std::size_t>(sample.count()));
+  for (int row = 0; row < sample.rows; ++row) {
+    const int v = sample.at(row);
+    for (int column = 0; column < sample.columns; ++column) {
+      const int u = sample.at(column);
       if (usable(disparity, mask, u, v)) {
         points.push_back({static_cast<double>(u), static_cast<double>(v), disparity(u, v)});
       }
@@ -63,14 +59,9 @@ ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, const
   return points;
 }
 
-/// Covariance of the slopes (a1, a2) of a weighted plane fit.
-struct SlopeCovariance {
-  double a1_a1 = 0, a1_a2 = 0, a2_a2 = 0;
-};
-
-/// Cluster-robust ("sandwich") covariance: the scores of all points of one cell are added up before they are squared.
-SlopeCovariance slope_covariance(std::span<const DisparityPoint> points, std::span<const double> weights,
-                                 const RoadModel& plane, int width, int height) {
+/// Adds up the scores of all points of a cell before they are squared. Without weights all count as 1.
+void sum_scores(std::span<const DisparityPoint> points, std::span<const double> weights, const RoadModel& plane,
+                int width, int height, FitMoments& moments) {
   PlaneSums sums(width / 2.0, height / 2.0);
   for (std::size_t i = 0; i < points.size(); ++i) sums.add(points[i], weights.empty() ? 1 : weights[i]);
   struct Score {
@@ -80,34 +71,33 @@ SlopeCovariance slope_covariance(std::span<const DisparityPoint> points, std::sp
   for (std::size_t i = 0; i < points.size(); ++i) {
     const DisparityPoint& p = points[i];
     const double residual = (weights.empty() ? 1 : weights[i]) * (p.d - plane.disparity(p.u, p.v));
-    const auto column = static_cast<std::size_t>(p.u * cells_per_side / width);
-    const auto row = static_cast<std::size_t>(p.v * cells_per_side / height);
+    const auto column = static_cast<std::size_t>(cell_of(p.u, width));
+    const auto row = static_cast<std::size_t>(cell_of(p.v, height));
     cells[row * cells_per_side + column].u += residual * (p.u - sums.mean_u());
     cells[row * cells_per_side + column].v += residual * (p.v - sums.mean_v());
   }
-  double uu = 0, uv = 0, vv = 0;
   for (const Score& cell : cells) {
-    uu += cell.u * cell.u;
-    uv += cell.u * cell.v;
-    vv += cell.v * cell.v;
+    moments.score_uu += cell.u * cell.u;
+    moments.score_uv += cell.u * cell.v;
+    moments.score_vv += cell.v * cell.v;
   }
-  // Inverse of the normal matrix on both sides.
-  const double determinant = sums.uu() * sums.vv() - sums.uv() * sums.uv();
-  const double iuu = sums.vv() / determinant, iuv = -sums.uv() / determinant, ivv = sums.uu() / determinant;
-  const double left_uu = iuu * uu + iuv * uv, left_uv = iuu * uv + iuv * vv;
-  const double left_vu = iuv * uu + ivv * uv, left_vv = iuv * uv + ivv * vv;
-  return {left_vu * iuv + left_vv * ivv, left_vu * iuu + left_vv * iuv, left_uu * iuu + left_uv * iuv};
+  moments.uu = sums.uu();
+  moments.uv = sums.uv();
+  moments.vv = sums.vv();
 }
 
-/// Standard error of ψ = atan(−a2 / a1).
-double roll_standard_error(const SlopeCovariance& covariance, const RoadModel& plane) {
-  const double square = plane.a1 * plane.a1 + plane.a2 * plane.a2;
-  if (square == 0) return HUGE_VAL;
-  const double by_a1 = plane.a2 / square;
-  const double by_a2 = -plane.a1 / square;
-  const double variance =
-      by_a1 * by_a1 * covariance.a1_a1 + 2 * by_a1 * by_a2 * covariance.a1_a2 + by_a2 * by_a2 * covariance.a2_a2;
-  return std::sqrt(std::max(variance, 0.0));
+FitMoments fit_moments(std::span<const DisparityPoint> points, std::span<const double> weights, const RoadModel& plane,
+                       int width, int height) {
+  FitMoments moments{};
+  sum_scores(points, weights, plane, width, height, moments);
+  PlaneSums residuals;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const DisparityPoint& p = points[i];
+    residuals.add({p.u, p.v, p.d - plane.disparity(p.u, p.v)}, weights.empty() ? 1 : weights[i]);
+  }
+  moments.n = residuals.weight();
+  moments.residuals = residuals.dd();
+  return moments;
 }
 
 /// The start of the robust fit: the model known before matching, or the plane that most of the map agrees with.
@@ -125,11 +115,22 @@ double start_scale(std::span<const DisparityPoint> points, const RoadModel& star
   return start_scale_of(median_magnitude(residuals));
 }
 
-/// Whether the road's disparity changes enough over the map for its direction to mean a roll angle.
-bool observable(const RoadGeometry& geometry, int width, int height, const RoadGeometryOptions& options) {
-  const double gradient = std::hypot(geometry.plane.a1, geometry.plane.a2);
-  return geometry.roll_stderr_rad <= options.max_roll_stderr_rad &&
-         gradient * std::min(width, height) >= options.min_gradient_px;
+/// Plane, roll angle and iterations; without a fit the least-squares plane, and no weights.
+RoadGeometry fit_robustly(std::span<const DisparityPoint> points, const std::optional<RoadModel>& prior,
+                          int max_iterations, ScratchVector<double>& weights) {
+  const PlaneSums sums = sum_points(points);
+  require_enough(sums.weight());
+  const std::optional<RoadModel> least_squares = sums.plane();
+  if (!least_squares) fail_on_one_line();
+  RoadGeometry geometry;
+  geometry.pixels = points.size();
+  const RoadModel start = robust_start(points, prior, *least_squares);
+  auto fit = fit_robust_plane(points, start, start_scale(points, start), true, max_iterations);
+  geometry.plane = fit ? fit->plane : *least_squares;
+  geometry.iterations = fit ? fit->iterations : 0;
+  geometry.roll_rad = roll_of_plane(geometry.plane);
+  if (fit) weights = std::move(fit->weights);
+  return geometry;
 }
 
 }  // namespace
@@ -155,48 +156,13 @@ RoadGeometry fit_road_geometry(ImageView<const float> disparity, const Mask& mas
     fail("the mask has ", mask->width(), "×", mask->height(), " pixels and the disparity map ", disparity.width(), "×",
          disparity.height(), "; they must be equal");
   }
-  constexpr double fewest = 16;
-  const bool robust = options.solver == RollSolver::robust;
   const ScratchVector<DisparityPoint> points = sample_map(disparity, mask);
-  const PlaneSums sums = robust ? sum_points(points) : sum_map(disparity, mask, threads);
-  if (sums.weight() < fewest) {
-    fail("only ", sums.weight(), " disparities are valid; the road geometry needs at least ", fewest);
-  }
-  const std::optional<RoadModel> least_squares = sums.plane();
-  if (!least_squares) fail("all valid disparities lie on one line of the image; the road geometry needs an area");
-
-  RoadGeometry geometry;
-  geometry.pixels = static_cast<std::size_t>(sums.weight());
   auto weights = scratch_vector<double>();
-  if (robust) {
-    const RoadModel start = robust_start(points, prior, *least_squares);
-    auto fit = fit_robust_plane(points, start, start_scale(points, start), true, options.max_iterations);
-    geometry.plane = fit ? fit->plane : *least_squares;
-    geometry.iterations = fit ? fit->iterations : 0;
-    geometry.roll_rad = roll_of_plane(geometry.plane);
-    if (fit) weights = std::move(fit->weights);
-  } else {
-    const RollEnergy energy(sums);
-    RollSolution solution{roll_of_plane(*least_squares), 1};
-    if (options.solver == RollSolver::gradient_descent) solution = descend_roll(energy, initial_roll_rad, options);
-    geometry.roll_rad = solution.roll;
-    geometry.iterations = solution.iterations;
-    const double alpha1 = energy.alpha1(solution.roll);
-    geometry.plane = {energy.alpha0(solution.roll), alpha1 * std::cos(solution.roll),
-                      -alpha1 * std::sin(solution.roll)};
-  }
-  geometry.alpha0 = geometry.plane.a0;
-  geometry.alpha1 = geometry.plane.a1 * std::cos(geometry.roll_rad) - geometry.plane.a2 * std::sin(geometry.roll_rad);
-  PlaneSums residuals;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const DisparityPoint& p = points[i];
-    residuals.add({p.u, p.v, p.d - geometry.plane.disparity(p.u, p.v)}, weights.empty() ? 1 : weights[i]);
-  }
-  geometry.residual_px = std::sqrt(std::max(residuals.dd() / residuals.weight(), 0.0));
-  const SlopeCovariance covariance =
-      slope_covariance(points, weights, geometry.plane, disparity.width(), disparity.height());
-  geometry.roll_stderr_rad = roll_standard_error(covariance, geometry.plane);
-  geometry.roll_observable = observable(geometry, disparity.width(), disparity.height(), options);
+  RoadGeometry geometry = options.solver == RollSolver::robust
+                              ? fit_robustly(points, prior, options.max_iterations, weights)
+                              : solve_from_sums(sum_map(disparity, mask, threads), initial_roll_rad, options);
+  const FitMoments moments = fit_moments(points, weights, geometry.plane, disparity.width(), disparity.height());
+  judge_geometry(moments, disparity.width(), disparity.height(), options, geometry);
   return geometry;
 }
 
