@@ -1,0 +1,104 @@
+// Floor: 4 bytes and 8 operations in double precision a pixel: 0.9 MB and 2 million for 640×360.
+
+#include "core/cuda/block_reduce.hpp"
+#include "core/cuda/last_block.hpp"
+#include "core/cuda/launch.hpp"
+#include "road/cuda/map_sums.hpp"
+
+namespace roadstereo::cuda {
+namespace {
+
+constexpr int rows_per_block = 8;
+constexpr int row_sums = 6;
+constexpr int map_sums = 10;
+
+/// Shared memory of a block; the sums of its rows, or of all.
+struct Shared {
+  double rows[rows_per_block][row_sums];
+  double total[sums_scratch(map_sums)];
+  unsigned last;
+};
+
+/// n, u, d, uu, ud, dd of a row: a warp adds them up, and its first lane makes the rest of them.
+__device__ RawSums sum_row(const MaskedMap& map, int v, double* shared) {
+  const double centre_u = (map.disparity.width - 1) / 2.0, at_v = v - (map.disparity.height - 1) / 2.0;
+  const int lane = static_cast<int>(threadIdx.x) % warp_size;
+  double own[row_sums] = {};
+  for (int u = lane; u < map.disparity.width; u += warp_size) {
+    const float value = __ldg(map.disparity.row(v) + u);
+    if (!(value == value) || (map.mask.data != nullptr && map.mask(u, v) == 0)) continue;
+    const double d = value, at_u = u - centre_u;
+    own[0] += 1;
+    own[1] += at_u;
+    own[2] += d;
+    own[3] += at_u * at_u;
+    own[4] += at_u * d;
+    own[5] += d * d;
+  }
+  int first = 0, end = row_sums;
+  const double sum = fold_lanes<warp_size / 2>(own, first, end);
+  if (first < end) shared[first] = sum;
+  __syncwarp();
+  RawSums sums;
+  sums.n = shared[0];
+  sums.u = shared[1];
+  sums.v = at_v * sums.n;
+  sums.d = shared[2];
+  sums.uu = shared[3];
+  sums.uv = at_v * sums.u;
+  sums.vv = at_v * sums.v;
+  sums.ud = shared[4];
+  sums.vd = at_v * sums.d;
+  sums.dd = shared[5];
+  return sums;
+}
+
+/// The rows' sums, by the last block.
+__device__ RawSums add_rows(const RawSums* rows, int height, Shared& shared) {
+  double own[map_sums] = {};
+  for (int v = static_cast<int>(threadIdx.x); v < height; v += static_cast<int>(blockDim.x)) {
+    const RawSums& s = rows[v];
+    const double terms[map_sums] = {s.n, s.u, s.v, s.d, s.uu, s.uv, s.vv, s.ud, s.vd, s.dd};
+    for (int i = 0; i < map_sums; ++i) own[i] += terms[i];
+  }
+  const double* t = block_sums(own, shared.total);
+  RawSums sums;
+  sums.n = t[0];
+  sums.u = t[1];
+  sums.v = t[2];
+  sums.d = t[3];
+  sums.uu = t[4];
+  sums.uv = t[5];
+  sums.vv = t[6];
+  sums.ud = t[7];
+  sums.vd = t[8];
+  sums.dd = t[9];
+  return sums;
+}
+
+__global__ void sum_map(MaskedMap map, RawSums* rows, unsigned* arrived, RawSums* result) {
+  Shared& shared = *shared_memory<Shared>();
+  const int own = static_cast<int>(threadIdx.x) / warp_size;
+  const int v = static_cast<int>(blockIdx.x) * rows_per_block + own;
+  if (v < map.disparity.height) {
+    const RawSums sums = sum_row(map, v, shared.rows[own]);
+    if (threadIdx.x % warp_size == 0) rows[v] = sums;
+  }
+  if (!comes_last(arrived, gridDim.x, &shared.last)) return;
+  const RawSums all = add_rows(rows, map.disparity.height, shared);
+  if (threadIdx.x == 0) *result = all;
+}
+
+}  // namespace
+
+void MapSums::run(const MaskedMap& map, cudaStream_t stream) {
+  if (arrived_.capacity() == 0) {
+    arrived_.reserve(1);
+    ROADSTEREO_CUDA(cudaMemsetAsync(arrived_.data(), 0, sizeof(unsigned), stream));
+  }
+  rows_.reserve(static_cast<std::size_t>(map.disparity.height));
+  launch(sum_map, {blocks_for(map.disparity.height, rows_per_block), rows_per_block * warp_size, sizeof(Shared)},
+         stream, map, rows_.data(), arrived_.data(), result_.data());
+}
+
+}  // namespace roadstereo::cuda

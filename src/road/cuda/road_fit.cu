@@ -1,0 +1,177 @@
+// Floor: at most about 6000 disparities of the map, a sector of 32 bytes each: 0.2 MB; then that of robust_fit.hpp, and
+// 60 operations in double precision a point for the moments.
+
+#include "core/cuda/launch.hpp"
+#include "road/cuda/road_fit.hpp"
+#include "road/cuda/robust_fit.hpp"
+#include "road/map_sample.hpp"
+
+namespace roadstereo::cuda {
+namespace {
+
+/// The sample of a map, in global memory.
+struct SampledMap {
+  MapSample sample;
+  int width, height;
+  float *u, *v, *d, *first, *weights;
+
+  __device__ bool has(int i) const { return d[i] == d[i]; }
+};
+
+__device__ int thread() {
+  return static_cast<int>(threadIdx.x);
+}
+__device__ int threads() {
+  return static_cast<int>(blockDim.x);
+}
+
+/// A thread writes the places that it will work on.
+__device__ void take_sample(const MaskedMap& map, const SampledMap& sampled) {
+  for (int i = thread(); i < sampled.sample.count(); i += threads()) {
+    const int u = sampled.sample.at(i % sampled.sample.columns), v = sampled.sample.at(i / sampled.sample.columns);
+    const bool counts = map.mask.data == nullptr || map.mask(u, v) != 0;
+    sampled.u[i] = static_cast<float>(u);
+    sampled.v[i] = static_cast<float>(v);
+    sampled.d[i] = counts ? __ldg(map.disparity.row(v) + u) : nanf("");
+  }
+}
+
+/// Every point counts as one, and every missing point as none. Returns how many there are.
+__device__ int count_all(const SampledMap& sampled, FitState& state) {
+  int own[1] = {0};
+  for (int i = thread(); i < sampled.sample.count(); i += threads()) {
+    sampled.weights[i] = sampled.has(i) ? 1 : 0;
+    own[0] += sampled.has(i) ? 1 : 0;
+  }
+  return *block_sums(own, reinterpret_cast<int*>(state.scratch));
+}
+
+/// The least-squares plane of all points; false when they lie on one line.
+__device__ bool fit_least_squares(const SampledMap& sampled, FitState& state, DevicePlane& plane) {
+  const double centre_u = sampled.width / 2.0, centre_v = sampled.height / 2.0;
+  double own[9] = {};
+  for (int i = thread(); i < sampled.sample.count(); i += threads()) {
+    if (!sampled.has(i)) continue;
+    const double u = sampled.u[i] - centre_u, v = sampled.v[i] - centre_v, d = sampled.d[i];
+    const double terms[9] = {1, u, v, d, u * u, u * v, v * v, u * d, v * d};
+    for (int k = 0; k < 9; ++k) own[k] += terms[k];
+  }
+  const double* s = block_sums(own, state.scratch);
+  const double n = s[0], mean_u = s[1] / n, mean_v = s[2] / n, mean_d = s[3] / n;
+  const PlaneMoments moments{
+      n, s[4] - mean_u * s[1], s[5] - mean_u * s[2], s[6] - mean_v * s[2], s[7] - mean_u * s[3], s[8] - mean_v * s[3]};
+  if (!solve_slopes(moments, true, plane.a1, plane.a2)) return false;
+  plane.a0 = mean_d - plane.a1 * (mean_v + centre_v) - plane.a2 * (mean_u + centre_u);
+  return true;
+}
+
+/// Along one side of a map: the sampled places that a row or column of cells holds.
+struct CellRange {
+  __device__ CellRange(const MapSample& sample, int places, int cell, int size)
+      : first((cell * size / cells_per_side - sample.step / 2) / sample.step - 1) {
+    if (first < 0) first = 0;
+    while (first < places && cell_of(sample.at(first), size) < cell) ++first;
+    end = first;
+    while (end < places && cell_of(sample.at(end), size) == cell) ++end;
+  }
+  int first, end;
+};
+
+/// The means that the moments are taken about.
+struct Means {
+  double u, v;
+};
+
+/// Adds up the scores of a cell before they are squared; a thread for each cell, its points in the host's order.
+__device__ void sum_scores(const SampledMap& sampled, const DevicePlane& plane, const Means& mean, FitState& state,
+                           FitMoments& moments) {
+  double own[3] = {};
+  for (int cell = thread(); cell < cells_per_side * cells_per_side; cell += threads()) {
+    const CellRange rows(sampled.sample, sampled.sample.rows, cell / cells_per_side, sampled.height);
+    const CellRange columns(sampled.sample, sampled.sample.columns, cell % cells_per_side, sampled.width);
+    double along_u = 0, along_v = 0;
+    for (int row = rows.first; row < rows.end; ++row) {
+      for (int column = columns.first; column < columns.end; ++column) {
+        const int i = row * sampled.sample.columns + column;
+        if (!(sampled.weights[i] > 0)) continue;
+        const double u = sampled.u[i], v = sampled.v[i];
+        const double residual = sampled.weights[i] * (sampled.d[i] - plane.disparity(u, v));
+        along_u += residual * (u - mean.u);
+        along_v += residual * (v - mean.v);
+      }
+    }
+    own[0] += along_u * along_u;
+    own[1] += along_u * along_v;
+    own[2] += along_v * along_v;
+  }
+  const double* sums = block_sums(own, state.scratch);
+  moments.score_uu = sums[0];
+  moments.score_uv = sums[1];
+  moments.score_vv = sums[2];
+}
+
+__device__ FitMoments fit_moments(const SampledMap& sampled, const DevicePlane& plane, FitState& state) {
+  const double centre_u = sampled.width / 2.0, centre_v = sampled.height / 2.0;
+  double own[8] = {};
+  for (int i = thread(); i < sampled.sample.count(); i += threads()) {
+    const double weight = sampled.weights[i];
+    if (!(weight > 0)) continue;
+    const double u = sampled.u[i] - centre_u, v = sampled.v[i] - centre_v;
+    const double residual = sampled.d[i] - plane.disparity(sampled.u[i], sampled.v[i]);
+    const double terms[8] = {1, u, v, residual, u * u, u * v, v * v, residual * residual};
+    for (int k = 0; k < 8; ++k) own[k] += weight * terms[k];
+  }
+  const double* s = block_sums(own, state.scratch);
+  const double mean_u = s[1] / s[0], mean_v = s[2] / s[0];
+  FitMoments moments{
+      s[0], s[4] - mean_u * s[1], s[5] - mean_u * s[2], s[6] - mean_v * s[2], s[7] - s[3] / s[0] * s[3], 0, 0, 0};
+  sum_scores(sampled, plane, {mean_u + centre_u, mean_v + centre_v}, state, moments);
+  return moments;
+}
+
+/// `max_iterations` 0 measures the plane as it is.
+__global__ void __launch_bounds__(1024) fit_map(MaskedMap map, SampledMap sampled, PlaneSource source,
+                                                int max_iterations, RoadFitFigures* figures, RoadFitFigures* result) {
+  FitState& state = *shared_memory<FitState>();
+  const DevicePlane start = source.get();
+  RoadFitFigures own{start, {start, 0, 0, 0, 0}, 0, 1, {}};
+  take_sample(map, sampled);
+  if (max_iterations > 0) {
+    const DevicePoints points{sampled.u, sampled.v, sampled.d, sampled.sample.count()};
+    const RobustFit fit{0, true, max_iterations};
+    auto* residuals = reinterpret_cast<float*>(&state + 1);
+    own.fit = BlockFit(points, fit, state, residuals, sampled.first, sampled.weights).run(start);
+    own.plane = own.fit.plane;
+    own.points = own.fit.points;
+  }
+  if (own.fit.found == 0) {
+    own.points = count_all(sampled, state);
+    if (max_iterations > 0) own.has_plane = fit_least_squares(sampled, state, own.plane) ? 1 : 0;
+  }
+  if (own.has_plane != 0) own.moments = fit_moments(sampled, own.plane, state);
+  if (thread() == 0) *figures = *result = own;
+}
+
+}  // namespace
+
+void RoadFit::run(const MaskedMap& map, const PlaneSource& prior, int max_iterations, cudaStream_t stream) {
+  enqueue(map, prior, max_iterations, stream);
+}
+
+void RoadFit::measure(const MaskedMap& map, const DevicePlane& plane, cudaStream_t stream) {
+  enqueue(map, {nullptr, plane}, 0, stream);
+}
+
+void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, cudaStream_t stream) {
+  const int width = map.disparity.width, height = map.disparity.height;
+  const MapSample sample = map_sample(width, height);
+  require_fit_points(sample.count());
+  for (DeviceArray<float>* of : {&u_, &v_, &d_, &first_, &weights_}) {
+    of->reserve(static_cast<std::size_t>(sample.count()));
+  }
+  const SampledMap sampled{sample, width, height, u_.data(), v_.data(), d_.data(), first_.data(), weights_.data()};
+  launch(fit_map, {1, fit_threads(sample.count()), fit_shared_bytes(sample.count())}, stream, map, sampled, plane,
+         max_iterations, figures_.data(), result_.data());
+}
+
+}  // namespace roadstereo::cuda
