@@ -6,7 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "stereo/cuda/block_cost.hpp"
+#include "stereo/block_correlation.hpp"
+#include "stereo/mid_grey.hpp"
 #include "stereo/sub_pixel.hpp"
 #include "textured_pair.hpp"
 
@@ -38,14 +39,14 @@ struct Moments {
   }
 };
 
-cuda::BlockStatistics statistics(const std::vector<int>& values, float noise_variance) {
+BlockPart part_of(const std::vector<int>& values, float noise_variance) {
   int sum = 0, squares = 0;
   for (const int value : values) {
     const int centred = value - mid_grey;
     sum += centred;
     squares += centred * centred;
   }
-  return cuda::block_statistics(static_cast<int>(values.size()), sum, squares, noise_variance);
+  return block_part(sum, squares, static_cast<int>(values.size()), noise_variance);
 }
 
 class CudaBlockCost : public testing::TestWithParam<int> {};
@@ -64,8 +65,8 @@ TEST_P(CudaBlockCost, IsOneMinusTheCorrelation) {
       const double expected =
           1 - covariance / std::sqrt((own.variance + noise * noise) * (other.variance + noise * noise));
       const auto noise_variance = static_cast<float>(noise * noise);
-      const float cost =
-          cuda::block_cost(products, statistics(pair.own, noise_variance), statistics(pair.other, noise_variance));
+      const float cost = correlation_cost(part_of(pair.own, noise_variance), part_of(pair.other, noise_variance),
+                                          products, GetParam());
       EXPECT_NEAR(cost, expected, 2e-6) << seed;
     }
   }
@@ -74,11 +75,11 @@ TEST_P(CudaBlockCost, IsOneMinusTheCorrelation) {
 TEST_P(CudaBlockCost, StatisticsSplitTheSumExactly) {
   for (std::uint64_t seed = 1; seed < 40; ++seed) {
     const Blocks pair = blocks(GetParam(), seed, 1);
-    const cuda::BlockStatistics block = statistics(pair.own, 0);
+    const BlockPart block = part_of(pair.own, 0);
     const Moments moments(pair.own);
-    EXPECT_NEAR(block.mean + double{block.fraction} + mid_grey, moments.mean, 1e-5);
-    EXPECT_LE(std::abs(block.fraction), 0.5F);
-    EXPECT_NEAR(block.inverse * std::sqrt(moments.variance * GetParam()), 1, 1e-6);
+    EXPECT_NEAR(block.mean + double{block.residue} / GetParam() + mid_grey, moments.mean, 1e-9);
+    EXPECT_LE(std::abs(block.residue), 0.5F * static_cast<float>(GetParam()));
+    EXPECT_NEAR(block.inverse_deviation * std::sqrt(moments.variance), 1, 1e-6);
   }
 }
 
@@ -90,8 +91,8 @@ TEST(CudaBlockCost, LargestSumsFitIntoWholeNumbers) {
   for (std::size_t i = 0; i < 220; ++i) halves[i] = 4080;
   int products = 0;
   for (const int value : halves) products += (value - mid_grey) * (value - mid_grey);
-  EXPECT_NEAR(cuda::block_cost(products, statistics(halves, 0), statistics(halves, 0)), 0, 2e-6);
-  EXPECT_EQ(cuda::block_cost(products, statistics(halves, 0), statistics(flat, 0)), 1);  // no texture: neutral
+  EXPECT_NEAR(correlation_cost(part_of(halves, 0), part_of(halves, 0), products, 441), 0, 2e-6);
+  EXPECT_EQ(correlation_cost(part_of(halves, 0), part_of(flat, 0), products, 441), 1);  // no texture: neutral
 }
 
 TEST(CudaSubPixel, FindsTheVertexOfAParabola) {

@@ -1,8 +1,5 @@
 #include "pipeline/cuda/device_stages.hpp"
 
-#include <algorithm>
-#include <utility>
-
 #include "core/cuda/device.hpp"
 #include "core/cuda/grey.hpp"
 #include "pipeline/cuda/frame_maps.hpp"
@@ -10,6 +7,8 @@
 #include "pipeline/cuda/stage_clock.hpp"
 #include "pipeline/pair_checks.hpp"
 #include "road/cuda/disparity_transform.hpp"
+#include "road/cuda/geometry_judgement.hpp"
+#include "road/cuda/map_sums.hpp"
 #include "road/cuda/perspective.hpp"
 #include "road/cuda/road_fit.hpp"
 #include "road/cuda/road_verification.hpp"
@@ -126,13 +125,9 @@ class DeviceStages final : public FrameStages {
   }
 
   DeviceMaps device_maps() const override {
-    return {width_,
-            height_,
-            maps_.grey().data,
-            maps_.disparity().data,
-            maps_.sigma().data,
-            maps_.transformed().data,
-            stream_->get()};
+    return {
+        width_,        height_, maps_.grey().data, maps_.disparity().data, maps_.sigma().data, maps_.transformed().data,
+        stream_->get()};
   }
 
  private:
@@ -153,8 +148,7 @@ class DeviceStages final : public FrameStages {
   template <class T>
   void download(const Plane<T>& from, Image<T>& to) {
     to.resize(width_, height_);
-    ROADSTEREO_CUDA(
-        cudaMemcpyAsync(to.row(0), from.data, to.pixels() * sizeof(T), cudaMemcpyDeviceToHost, stream()));
+    ROADSTEREO_CUDA(cudaMemcpyAsync(to.row(0), from.data, to.pixels() * sizeof(T), cudaMemcpyDeviceToHost, stream()));
   }
 
   /// The end of the frame, around a plane that may still lie in device memory.
@@ -165,9 +159,7 @@ class DeviceStages final : public FrameStages {
     if (download_) maps_.download(stream());
   }
 
-  double found_share() const {
-    return static_cast<double>(transform_.figures().valid) / (static_cast<double>(width_) * height_);
-  }
+  RoadGeometry fit_on_host();
 
   PipelineOptions options_;
   std::optional<StereoCalibration> calibration_;
@@ -181,16 +173,94 @@ class DeviceStages final : public FrameStages {
   DeviceArray<std::int16_t> right_, target_;
   DeviceArray<int> first_column_;
   GreyImage left_on_host_, right_on_host_;
+  Image<float> disparity_on_host_;
   RoadVerification verification_;
   std::optional<CoarseLook> coarse_look_;
   DeviceMatchInput input_;
   DeviceMatcher matcher_;
   DeviceMatchMaps matched_;
   RoadFit fit_;
+  MapSums sums_;
   DisparityTransform transform_;
   bool transformed_ = false;  ///< the transformation is enqueued already
   StageClock clock_;
 };
 
+/// The robust fit around a known road goes on into the transformation without the host. Other solvers come back to it
+/// for their plane; without a road before matching, the host searches for one.
+bool DeviceStages::fit_geometry(const std::optional<RoadModel>& prior, double initial_roll_rad, double least_share,
+                                FrameResult& result) {
+  const RoadGeometryOptions& options = options_.road_geometry;
+  const MaskedMap map{maps_.disparity(), {}};
+  const bool robust = options.solver == RollSolver::robust;
+  transformed_ = robust && prior.has_value();
+  if (transformed_) {
+    fit_.run(map, {nullptr, device_plane(*prior)}, options.max_iterations, stream());
+    clock_.mark(StageClock::fitted, stream());
+    enqueue_transform({fit_.plane(), {}}, result);
+  } else {
+    // The transformation by no plane at all counts what is valid.
+    transform_.run(maps_.disparity(), {nullptr, {}}, {0, 0}, maps_.transformed(), stream());
+    if (!robust) sums_.run(map, stream());
+  }
+  stream_->wait();
+  result.valid_share = static_cast<double>(transform_.figures().valid) / (static_cast<double>(width_) * height_);
+  if (result.valid_share < least_share) return false;
+  if (transformed_) {
+    result.geometry = finish_road_fit(fit_.figures(), width_, height_, options);
+  } else if (robust) {
+    result.geometry = fit_on_host();
+  } else {
+    result.geometry = solve_map(sums_.sums(), width_, height_, initial_roll_rad, options);
+    fit_.measure(map, device_plane(result.geometry.plane), stream());
+    stream_->wait();
+    finish_measured(fit_.figures(), width_, height_, options, result.geometry);
+  }
+  return true;
+}
+
+RoadGeometry DeviceStages::fit_on_host() {
+  download(maps_.disparity(), disparity_on_host_);
+  stream_->wait();
+  return fit_road_geometry(disparity_on_host_, std::nullopt, std::nullopt, 0, options_.road_geometry, options_.threads);
+}
+
+void DeviceStages::transform(FrameResult& result) {
+  if (!transformed_) {
+    clock_.mark(StageClock::fitted, stream());
+    enqueue_transform({nullptr, device_plane(result.geometry.plane)}, result);
+    stream_->wait();
+  }
+  const TransformFigures& found = transform_.figures();
+  result.delta_t = found.delta_t;
+  result.spread = {found.road_px, found.all_px, found.road_share};
+}
+
+void DeviceStages::leave_untransformed(FrameResult&) {
+  clock_.mark(StageClock::fitted, stream());
+  constexpr int every_bit = 0xFF;  // a NaN
+  const std::size_t bytes = sizeof(float) * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  ROADSTEREO_CUDA(cudaMemsetAsync(maps_.transformed().data, every_bit, bytes, stream()));
+  clock_.mark(StageClock::transformed, stream());
+  if (download_) maps_.download(stream());
+}
+
+void DeviceStages::deliver(FrameResult& result) {
+  stream_->wait();
+  clock_.read(result.ms);
+  if (download_) {
+    maps_.take(result);
+  } else {
+    for (Image<float>* map : {&result.disparity, &result.sigma, &result.transformed}) map->resize(0, 0);
+    result.grey.resize(0, 0);
+  }
+}
+
 }  // namespace
+
+std::unique_ptr<FrameStages> make_device_stages(const PipelineOptions& options,
+                                                const std::optional<StereoCalibration>& calibration) {
+  return std::make_unique<DeviceStages>(options, calibration);
+}
+
 }  // namespace roadstereo::cuda

@@ -40,7 +40,8 @@ void copy_rows(const FrameView& frame, unsigned char* to) {
 FrameUpload::Pair FrameUpload::upload(const FrameView& left, const FrameView& right, double white_level,
                                       cudaStream_t stream) {
   const bool left_there = is_on_device(left), right_there = is_on_device(right);
-  if (left_there != right_there) fail("one image lies in device memory and the other on the host; both must be together");
+  if (left_there != right_there)
+    fail("one image lies in device memory and the other on the host; both must be together");
   if (left_there) {
     return {frame_at(left.data, left.stride_bytes, left, white_level),
             frame_at(right.data, right.stride_bytes, right, white_level)};

@@ -24,7 +24,8 @@ class StageClock {
 
   void mark(Mark at, cudaStream_t stream) { ROADSTEREO_CUDA(cudaEventRecord(events_[at], stream)); }
 
-  /// Every mark must have been passed. Leaves `total` alone: it is for a clock on the host, which sees what lies between.
+  /// Every mark must have been passed. Leaves `total` alone: it is for a clock on the host, which sees what lies
+  /// between.
   void read(StageTimes& ms) const {
     ms.prepare = between(begin, prepared);
     ms.road_model = between(prepared, road_known);

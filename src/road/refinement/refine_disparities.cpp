@@ -59,7 +59,7 @@ class BandRows {
     std::fill_n(height, 2 * pitch_, 0.0F);
     std::fill_n(spread, pitch_, not_measured().variance);
     for (int u = 0; u < maps_.disparity.width(); ++u) {
-      const Measured pixel = measured(disparity[u], variance[u], road.at(static_cast<float>(u)), bounds);
+      const MeasuredHeight pixel = measured(disparity[u], variance[u], road.at(static_cast<float>(u)), bounds);
       height[radius_ + u] = pixel.value;
       precision[radius_ + u] = pixel.precision;
       spread[radius_ + u] = pixel.variance;

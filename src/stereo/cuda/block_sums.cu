@@ -1,5 +1,6 @@
 #include "core/cuda/launch.hpp"
 #include "stereo/cuda/block_sums.hpp"
+#include "stereo/mid_grey.hpp"
 
 // Floor per pixel and view: 2 bytes read and 24 written, 4 (2r + 1) additions when columns and rows are summed apart.
 // At 640×360 both views write 11 MB: 2.3 µs of an H200's 4.8 TB/s.
@@ -46,7 +47,7 @@ __global__ void sum_tile(Plane<const std::int16_t> left, Plane<const std::int16_
     squares += column.squares;
   }
   const int rows = min(v + radius, image.height - 1) - max(v - radius, 0) + 1;
-  sums.statistics[view](u, v) = block_statistics(rows * (2 * radius + 1), sum, squares, noise_variance);
+  sums.blocks[view](u, v) = block_part(sum, squares, rows * (2 * radius + 1), noise_variance);
 }
 
 __global__ void take_first_columns(const int* first, int rows, int radius, int* of_blocks) {

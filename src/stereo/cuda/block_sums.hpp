@@ -5,14 +5,20 @@
 #include <cstdint>
 
 #include "core/cuda/plane.hpp"
-#include "stereo/cuda/block_cost.hpp"
+#include "stereo/block_correlation.hpp"
 
 namespace roadstereo::cuda {
 
+/// Sums over the rows of a block at one column: of the grey values less mid-grey, and of their squares.
+struct ColumnSums {
+  int sum;
+  int squares;
+};
+
 /// The blocks of both views, "means and deviations once": what a cost needs besides the products.
 struct BlockSums {
-  Plane<ColumnSums> columns[2];          ///< over the rows of a block, per column of each view
-  Plane<BlockStatistics> statistics[2];  ///< of the whole blocks; of no meaning where one leaves the image's columns
+  Plane<ColumnSums> columns[2];  ///< over the rows of a block, per column of each view
+  Plane<BlockPart> blocks[2];    ///< of the whole blocks; of no meaning where one leaves the image's columns
 };
 
 /// Fills `sums` for the two images of a pair.

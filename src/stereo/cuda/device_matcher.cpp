@@ -46,7 +46,7 @@ void DeviceMatcher::reserve(int width, int height) {
     column_sums_[side].reserve(pixels);
     blocks_[side].reserve(pixels);
     sums_.columns[side] = packed_plane(column_sums_[side].data(), width, height);
-    sums_.statistics[side] = packed_plane(blocks_[side].data(), width, height);
+    sums_.blocks[side] = packed_plane(blocks_[side].data(), width, height);
   }
   first_columns_.reserve(static_cast<std::size_t>(height));
   disparity_.reserve(pixels);
@@ -64,8 +64,8 @@ ViewToMatch DeviceMatcher::view_of(const DeviceMatchInput& input, bool mirrored)
   view.other = mirrored ? input.reference : input.target;
   view.own_columns = sums_.columns[own];
   view.other_columns = sums_.columns[other];
-  view.own_blocks = sums_.statistics[own];
-  view.other_blocks = sums_.statistics[other];
+  view.own_blocks = sums_.blocks[own];
+  view.other_blocks = sums_.blocks[other];
   view.first_column = first_columns_.data();
   view.mirrored = mirrored;
   view.disparities = input.disparities;

@@ -48,7 +48,7 @@ class DeviceMatcher {
   PinnedArray<WindowTap> taps_;
   DeviceArray<WindowTap> taps_on_device_;
   DeviceArray<ColumnSums> column_sums_[2];
-  DeviceArray<BlockStatistics> blocks_[2];
+  DeviceArray<BlockPart> blocks_[2];
   DeviceArray<int> first_columns_;
   DeviceArray<float> energies_, disparity_, variance_;
   DeviceArray<std::int16_t> winner_, target_winner_;

@@ -1,5 +1,6 @@
 #include "core/cuda/launch.hpp"
 #include "stereo/cuda/match_view.hpp"
+#include "stereo/mid_grey.hpp"
 #include "stereo/sub_pixel.hpp"
 
 // A block of threads matches one tile of 32×12 pixels, four disparities at a time: column sums of products slide down
@@ -150,8 +151,8 @@ __device__ float clipped_cost(const ViewToMatch& view, const CostRow& row, float
     other_squares += other.squares;
   }
   const int n = row.pixel_rows * (last - first + 1);
-  return block_cost(products, block_statistics(n, own_sum, own_squares, noise_variance),
-                    block_statistics(n, other_sum, other_squares, noise_variance));
+  return correlation_cost(block_part(own_sum, own_squares, n, noise_variance),
+                          block_part(other_sum, other_squares, n, noise_variance), products, n);
 }
 
 /// The costs of own pixel i at four disparities.
@@ -176,13 +177,14 @@ __device__ float4 four_costs(const ViewToMatch& view, const CostRow& row, float 
     sums.z += products[k].z;
     sums.w += products[k].w;
   }
-  const BlockStatistics own = view.own_blocks(image_column(view, i), row.v);
+  const BlockPart own = view.own_blocks(image_column(view, i), row.v);
   const int x = image_column(view, i - d), step = view.mirrored ? 1 : -1;
-  const BlockStatistics* others = view.other_blocks.row(row.v);
-  costs.x = block_cost(sums.x, own, others[x]);
-  costs.y = block_cost(sums.y, own, others[x + step]);
-  costs.z = block_cost(sums.z, own, others[x + 2 * step]);
-  costs.w = block_cost(sums.w, own, others[x + 3 * step]);
+  const BlockPart* others = view.other_blocks.row(row.v);
+  const int n = row.pixel_rows * (2 * row.radius + 1);
+  costs.x = correlation_cost(own, others[x], sums.x, n);
+  costs.y = correlation_cost(own, others[x + step], sums.y, n);
+  costs.z = correlation_cost(own, others[x + 2 * step], sums.z, n);
+  costs.w = correlation_cost(own, others[x + 3 * step], sums.w, n);
   return costs;
 }
 

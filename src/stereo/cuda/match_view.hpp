@@ -24,7 +24,7 @@ struct WindowTap {
 struct ViewToMatch {
   Plane<const std::int16_t> own, other;
   Plane<const ColumnSums> own_columns, other_columns;
-  Plane<const BlockStatistics> own_blocks, other_blocks;
+  Plane<const BlockPart> own_blocks, other_blocks;
   const int* first_column;  ///< per row: first column of the target that its whole blocks see
   bool mirrored;            ///< the own view is the target
   int disparities;

@@ -33,7 +33,7 @@ __device__ float full_disparity(const Maps& maps, const RowLine& line, float res
   return maps.shift.whole_pixel ? with_whole_shift(residual, maps.shift, u, v) : with_shift(residual, line, u);
 }
 
-__device__ Measured measured_at(const Maps& maps, const RowLines& lines, const VarianceBounds& bounds, int u, int v) {
+__device__ MeasuredHeight measured_at(const Maps& maps, const RowLines& lines, const VarianceBounds& bounds, int u, int v) {
   if (u < 0 || u >= maps.residual.width || v < 0 || v >= maps.residual.height) return not_measured();
   const float disparity = full_disparity(maps, lines.shift, __ldg(&maps.residual(u, v)), u, v);
   return measured(disparity, __ldg(&maps.variance(u, v)), lines.road.at(static_cast<float>(u)), bounds);
@@ -48,7 +48,7 @@ struct Tile {
 
   __device__ int size() const { return columns * rows; }
   __device__ RowLine road(int v) const { return lines[v - top].road; }
-  __device__ Measured operator()(int u, int v) const {
+  __device__ MeasuredHeight operator()(int u, int v) const {
     const float* at = numbers + (v - top) * columns + (u - left);
     return {at[0], at[size()], at[2 * size()]};
   }
@@ -58,7 +58,7 @@ struct Tile {
     __syncthreads();
     for (int y = static_cast<int>(threadIdx.y); y < rows; y += thread_rows) {
       for (int x = static_cast<int>(threadIdx.x); x < columns; x += tile_columns) {
-        const Measured pixel = measured_at(maps, lines[y], bounds, left + x, top + y);
+        const MeasuredHeight pixel = measured_at(maps, lines[y], bounds, left + x, top + y);
         float* at = numbers + y * columns + x;
         at[0] = pixel.value;
         at[size()] = pixel.precision;
@@ -75,7 +75,7 @@ struct Untiled {
   const VarianceBounds& bounds;
 
   __device__ RowLine road(int v) const { return row_lines(maps, v).road; }
-  __device__ Measured operator()(int u, int v) const { return measured_at(maps, row_lines(maps, v), bounds, u, v); }
+  __device__ MeasuredHeight operator()(int u, int v) const { return measured_at(maps, row_lines(maps, v), bounds, u, v); }
 };
 
 /// Quotient where a last bit does not matter.
@@ -90,11 +90,11 @@ __device__ float quotient(float a, float b) {
 template <class Pixels>
 __device__ RefinedPixel refine_pixel(const Maps& maps, const Pixels& pixels, const RefinementSettings& settings, int u,
                                      int v) {
-  const Measured centre = pixels(u, v);
+  const MeasuredHeight centre = pixels(u, v);
   float weights = 0, away = 0;
   for (int dv = -settings.radius; dv <= settings.radius; dv += settings.step) {
     for (int du = -settings.radius; du <= settings.radius; du += settings.step) {
-      const Measured other = pixels(u + du, v + dv);
+      const MeasuredHeight other = pixels(u + du, v + dv);
       const float difference = other.value - centre.value;
       const float joint = settings.mean.reach2 * (other.variance + centre.variance);
       const float agreement = fmaxf(0.0F, 1 - quotient(difference * difference, joint));
