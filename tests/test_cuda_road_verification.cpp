@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/cuda/launch.hpp"
 #include "device_copy.hpp"
 #include "device_test.hpp"
 #include "road/cuda/road_verification.hpp"
@@ -118,6 +119,32 @@ TEST_F(CudaRoadVerification, SaysSoWithoutEvidence) {
   expect_agreement(pair, road);
   EXPECT_NE(host_.reason.find("only 0 correspondences"), std::string::npos) << host_.reason;
   EXPECT_EQ(verification_.figures().close.tried, 0);
+}
+
+TEST_F(CudaRoadVerification, IsTheSameAgainAndTakesNoMoreMemory) {
+  const RoadModel plane{6, 0.06, -0.03};
+  const auto images = test::textured_pair(161, 93, [&](double u, double v) { return plane.disparity(u, v); });
+  const test::DevicePlane<std::int16_t> left(images.reference.view()), right(images.target.view());
+  VerificationFigures first{};
+  for (const int again : {0, 1}) {
+#if defined(ROADSTEREO_CUDA_EMULATED)
+    const std::size_t before = emulated::allocations();
+#endif
+    verification_.run(left.view(), right.view(), {nullptr, {6.3, 0.06, -0.031}}, true, nullptr);
+    ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
+#if defined(ROADSTEREO_CUDA_EMULATED)
+    EXPECT_EQ(emulated::allocations() > before, again == 0);
+#endif
+    const VerificationFigures& figures = verification_.figures();
+    if (again == 0) first = figures;
+    EXPECT_EQ(figures.close.found, 1);
+    EXPECT_EQ(figures.close.fit.plane.a0, first.close.fit.plane.a0);
+    EXPECT_EQ(figures.close.fit.plane.a1, first.close.fit.plane.a1);
+    EXPECT_EQ(figures.close.fit.plane.a2, first.close.fit.plane.a2);
+    EXPECT_EQ(figures.close.fit.scale_px, first.close.fit.scale_px);
+    EXPECT_EQ(figures.close.inliers, first.close.inliers);
+    EXPECT_EQ(figures.lowest_px, first.lowest_px);
+  }
 }
 
 TEST_F(CudaRoadVerification, TakesSmallAndLargeImages) {

@@ -12,7 +12,8 @@ namespace roadstereo::cuda {
 /// Shared memory of block_select().
 struct SelectScratch {
   static constexpr int bins = 256;
-  int counts[bins];
+  static constexpr int digits = 4;
+  __align__(16) int counts[digits][bins];
   std::uint32_t prefix;
   int rank;
   int of;
@@ -43,53 +44,63 @@ struct ShareRank {
   __device__ int operator()(int count) const { return static_cast<int>(share * (count - 1)); }
 };
 
-/// The first warp finds the bin that holds the key of the rank, and how many keys lie in the bins before it.
+/// The first warp finds the bin of a digit that holds the key of the rank, and how many keys lie in the bins before it.
 template <class RankOf>
-__device__ void choose_bin(int shift, RankOf rank_of, SelectScratch& scratch) {
+__device__ void choose_bin(int digit, RankOf rank_of, SelectScratch& scratch) {
   constexpr int of_lane = SelectScratch::bins / warp_size;
-  const int lane = static_cast<int>(threadIdx.x), first = lane * of_lane;
-  int own = 0;
-  for (int bin = first; bin < first + of_lane; ++bin) own += scratch.counts[bin];
-  int until = own;
+  static_assert(of_lane == 8, "two vectors of four");
+  const int lane = static_cast<int>(threadIdx.x);
+  const auto* counts = reinterpret_cast<const int4*>(scratch.counts[digit]) + 2 * lane;
+  const int4 a = counts[0], b = counts[1];
+  const int own[of_lane] = {a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w};
+  int until = 0;
+  for (int i = 0; i < of_lane; ++i) until += own[i];
+  int below = -until;
   for (int by = 1; by < warp_size; by *= 2) {
     const int before = __shfl_up_sync(every_lane, until, static_cast<unsigned>(by));
     if (lane >= by) until += before;
   }
+  below += until;
   const int all = __shfl_sync(every_lane, until, warp_size - 1);
-  const bool first_digit = shift == 24;
-  const int rank = first_digit ? rank_of(all) : scratch.rank;
+  const int rank = digit == 0 ? rank_of(all) : scratch.rank;
   __syncwarp();
-  if (first_digit && lane == 0) scratch.of = all;
-  int below = until - own;
+  if (digit == 0 && lane == 0) scratch.of = all;
   if (rank < below || rank >= until) return;
-  int bin = first;
-  while (rank >= below + scratch.counts[bin]) below += scratch.counts[bin++];
-  scratch.prefix |= static_cast<std::uint32_t>(bin) << shift;
+  int bin = of_lane * lane;
+  bool before = true;
+  for (int i = 0; i < of_lane; ++i) {
+    before = before && rank >= below + own[i];
+    if (before) below += own[i];
+    if (before) ++bin;
+  }
+  const std::uint32_t known = digit == 0 ? 0 : scratch.prefix;
+  scratch.prefix = known << 8 | static_cast<std::uint32_t>(bin);
   scratch.rank = rank - below;
 }
 
-/// The key of the rank `rank_of(number of keys)`, by radix: digit by digit from the highest. `key_of_item(i, key)` says
-/// whether item i of `count` has a key, and which; an item is always asked for by the same thread.
+/// The key of the rank `rank_of(number of keys)`, by radix: digit by digit from the highest, with two barriers each.
+/// `key_of_item(i, key)` says whether item i of `count` has a key, and which; an item is always asked for by the same
+/// thread.
 template <class KeyOfItem, class RankOf>
 __device__ SelectedKey block_select(int count, KeyOfItem key_of_item, RankOf rank_of, SelectScratch& scratch) {
   const int thread = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
+  for (int i = thread; i < SelectScratch::digits * SelectScratch::bins; i += threads) {
+    scratch.counts[i / SelectScratch::bins][i % SelectScratch::bins] = 0;
+  }
+  __syncthreads();
   std::uint32_t prefix = 0;
-  for (int shift = 24; shift >= 0; shift -= 8) {
-    for (int bin = thread; bin < SelectScratch::bins; bin += threads) scratch.counts[bin] = 0;
-    if (thread == 0) scratch.prefix = prefix;
-    __syncthreads();
-    const std::uint32_t known = shift == 24 ? 0 : 0xFFFFFFFFU << (shift + 8);
+  for (int digit = 0; digit < SelectScratch::digits; ++digit) {
+    const int shift = 24 - 8 * digit;
     for (int i = thread; i < count; i += threads) {
       std::uint32_t key = 0;
-      if (key_of_item(i, key) && (key & known) == prefix) atomicAdd(&scratch.counts[(key >> shift) & 255U], 1);
+      if (!key_of_item(i, key)) continue;
+      if (digit == 0 || key >> (shift + 8) == prefix) atomicAdd(&scratch.counts[digit][(key >> shift) & 255U], 1);
     }
     __syncthreads();
-    if (thread < warp_size) choose_bin(shift, rank_of, scratch);
+    if (thread < warp_size) choose_bin(digit, rank_of, scratch);
     __syncthreads();
+    if (scratch.of == 0) return {0, 0};
     prefix = scratch.prefix;
-    const int of = scratch.of;
-    __syncthreads();  // before the next digit's counts
-    if (of == 0) return {0, 0};
   }
   return {prefix, scratch.of};
 }

@@ -19,10 +19,10 @@ struct RowSums {
   float products, values, squares;
 };
 
-/// Shared memory of a warp. Rows of 16 and 32 columns: a warp's lanes read different banks, or the same word.
+/// Shared memory of a warp. The rows' lengths spread what its lanes read of different rows over the banks.
 struct PlaceMemory {
-  float block[guided_height][16];
-  float strip[guided_height][warp_size];
+  float block[guided_height][17];
+  float strip[guided_height][37];
   unsigned sums[16], squares[16];
   RowSums rows[guided_height][most_offsets];
   float correlations[most_offsets];

@@ -9,7 +9,7 @@
 
 // Counted floor of an iteration, n points: 30·n single-precision operations and 5·16·n bytes of shared memory and
 // first-level cache for weights, sums and residuals, then 4 passes of the median over n keys. One block: what counts is
-// the way through its barriers, about 20 an iteration.
+// the way through its barriers, 14 an iteration.
 //
 // The normal equations are those of the residuals: what they yield is the step of the plane, so that single precision
 // rounds the step and not the plane, and vanishes with it. Only the first residuals need double precision.
@@ -39,6 +39,8 @@ inline unsigned fit_threads(int count) {
 inline std::size_t fit_shared_bytes(int count) {
   return sizeof(FitState) + static_cast<std::size_t>(count) * sizeof(float);
 }
+
+static_assert(sizeof(FitState) + most_fit_points * sizeof(float) <= (48U << 10), "every device has 48 KB for a block");
 
 /// A fit in the block that runs.
 class BlockFit {
