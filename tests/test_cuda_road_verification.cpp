@@ -82,16 +82,12 @@ TEST_F(CudaRoadVerification, FollowsAFlightAsTheHostDoes) {
   synth::FlightPath path;
   path.roll_period = path.pitch_period = path.climb_period = 40;
   RoadModel previous = render_pair(synth::flight_frame(scene, path, 0)).plane;
-  for (const int frame : {1, 2}) {
-    SCOPED_TRACE(frame);
-    const Pair pair = render_pair(synth::flight_frame(scene, path, frame));
-    expect_agreement(pair, previous);
-    EXPECT_TRUE(host_.reliable) << host_.reason;
-    previous = host_.model;
-  }
+  expect_agreement(render_pair(synth::flight_frame(scene, path, 1)), previous);
+  EXPECT_TRUE(host_.reliable) << host_.reason;
+  previous = host_.model;
   RoadModelOptions without_roll;
   without_roll.with_roll = false;
-  expect_agreement(render_pair(synth::flight_frame(scene, path, 3)), previous, without_roll);
+  expect_agreement(render_pair(synth::flight_frame(scene, path, 2)), previous, without_roll);
 }
 
 TEST_F(CudaRoadVerification, NoticesJumpsForTheSameReasons) {
