@@ -47,21 +47,12 @@ class PlaceSearch {
         lane_(static_cast<int>(threadIdx.x) % warp_size),
         memory_(memory) {}
 
-  /// Cuts the block out of the left image; false when it has no texture.
-  __device__ bool cut_block() {
-    unsigned sum = 0, squares = 0;
-    for (int y = 0; y < guided_height && lane_ < guided_width; ++y) {
-      const int grey = __ldg(pair_.left.row(v_ + y - guided_half_height) + u_ - guided_half_width + lane_);
-      memory_.block[y][lane_] = static_cast<float>(grey);
-      sum += static_cast<unsigned>(grey);
-      squares += static_cast<unsigned>(grey * grey);
-    }
-    if (lane_ < guided_width) {
-      memory_.sums[lane_] = sum;
-      memory_.squares[lane_] = squares;
-    }
+  /// Reads both images at once, then says whether the block has texture.
+  __device__ bool read() {
+    cut_block();
+    sample_strip();
     __syncwarp();
-    sum = squares = 0;
+    unsigned sum = 0, squares = 0;
     for (int x = 0; x < guided_width; ++x) {
       sum += memory_.sums[x];
       squares += memory_.squares[x];
@@ -75,8 +66,6 @@ class PlaceSearch {
 
   /// Residual to the plane of the best correlation; NaN when it is low or at an end of the range.
   __device__ float best_residual() {
-    sample_strip();
-    __syncwarp();
     sum_rows();
     __syncwarp();
     if (lane_ < offsets_) memory_.correlations[lane_] = correlation();
@@ -89,6 +78,20 @@ class PlaceSearch {
   }
 
  private:
+  /// The block of the left image; a lane for each column.
+  __device__ void cut_block() {
+    if (lane_ >= guided_width) return;
+    unsigned sum = 0, squares = 0;
+    for (int y = 0; y < guided_height; ++y) {
+      const int grey = __ldg(pair_.left.row(v_ + y - guided_half_height) + u_ - guided_half_width + lane_);
+      memory_.block[y][lane_] = static_cast<float>(grey);
+      sum += static_cast<unsigned>(grey);
+      squares += static_cast<unsigned>(grey * grey);
+    }
+    memory_.sums[lane_] = sum;
+    memory_.squares[lane_] = squares;
+  }
+
   /// The right image along the block's rows, each column shifted by the plane; a lane for each column.
   __device__ void sample_strip() {
     const int count = guided_width + 2 * range_, first = u_ - guided_half_width - range_;
@@ -159,7 +162,7 @@ __global__ void match_places(GuidedPair pair, GuidedGrid grid, PlaneSource sourc
   float residual = nanf("");
   if (tried) {
     PlaceSearch search(pair, plane, grid.range_px, u, v, shared_memory<PlaceMemory>()[own]);
-    tried = search.cut_block();
+    tried = search.read();
     if (tried) residual = search.best_residual();
   }
   if (threadIdx.x % warp_size != 0) return;
