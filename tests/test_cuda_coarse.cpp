@@ -6,10 +6,14 @@
 #include <cmath>
 #include <limits>
 
+#if defined(ROADSTEREO_CUDA_EMULATED)
+#include "core/cuda/emulated/run_kernel.hpp"
+#endif
 #include "device_copy.hpp"
 #include "device_test.hpp"
 #include "road/shift_terms_of.hpp"
 #include "roadstereo/perspective.hpp"
+#include "roadstereo/synth.hpp"
 #include "stereo/coarse/coarse_search.hpp"
 #include "stereo/coarse/cuda/coarse_look.hpp"
 #include "textured_pair.hpp"
@@ -107,7 +111,23 @@ Case road_with_a_hole(int width, int height, CoarseSearchOptions options) {
 
 TEST_F(CudaCoarse, ARoadWithAHoleIsSeenAsOnTheHost) {
   cuda::CoarseLook look({});
-  expect_as_on_host(look, road_with_a_hole(129, 97, {}));
+  expect_as_on_host(look, road_with_a_hole(129, 85, {}));
+}
+
+TEST_F(CudaCoarse, ARenderedStreetIsSeenAsOnTheHost) {
+  synth::Scene scene = synth::named_scene("street");
+  scene.rig.focal_px *= 128.0 / scene.rig.width;
+  scene.rig.width = 128;
+  scene.rig.height = 64;
+  scene.supersampling = 1;
+  const synth::SyntheticPair pair = synth::render(scene, 1);
+  Case of{{}, 24, {pair.plane, 12, 24}};
+  GreyImage right;
+  to_grey(pair.left.view(), 0, of.pair.reference);
+  to_grey(pair.right.view(), 0, right);
+  transform_target(right, of.shift, 1, of.pair.target, of.first_column);
+  cuda::CoarseLook look({}, 10000);  // in bands of four rows
+  expect_as_on_host(look, of);
 }
 
 TEST_F(CudaCoarse, OtherOptionsAreFollowed) {
@@ -129,9 +149,24 @@ TEST_F(CudaCoarse, WithoutARoadAndOverManyDisparities) {
 
 TEST_F(CudaCoarse, FewDisparitiesHaveNoRanges) {
   cuda::CoarseLook look({});
-  expect_as_on_host(look, {test::textured_pair(65, 64, [](double, double) { return 4; }), 8, no_shift()});
+  const Case of{test::textured_pair(65, 64, [](double, double) { return 4; }), 8, no_shift()};
+  expect_as_on_host(look, of);
   EXPECT_EQ(look.target_ranges(), nullptr);
 }
+
+#if defined(ROADSTEREO_CUDA_EMULATED)
+TEST_F(CudaCoarse, TheSecondFrameAllocatesNothing) {
+  const auto pair = test::textured_pair(65, 64, [](double, double) { return 4; });
+  const test::DevicePlane<std::int16_t> reference(pair.reference), target(pair.target);
+  cuda::CoarseLook look({});
+  std::size_t allocations[2] = {};
+  for (std::size_t& count : allocations) {
+    ASSERT_TRUE(look.find({reference.view(), target.view(), nullptr, 16, {}}, nullptr));
+    count = cuda::emulated::allocations();
+  }
+  EXPECT_EQ(allocations[0], allocations[1]);
+}
+#endif
 
 TEST_F(CudaCoarse, SmallImagesAreNotWorthIt) {
   const GreyImage small(100, 60, 1600);

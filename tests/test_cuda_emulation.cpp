@@ -9,6 +9,7 @@
 #include "core/cuda/device.hpp"
 #include "core/cuda/launch.hpp"
 #include "core/cuda/memory.hpp"
+#include "core/cuda/warp.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cuda {
@@ -41,6 +42,23 @@ TEST(CudaEmulation, LanesExchangeWithinTheirWarp) {
   std::vector<int> sums(64);
   launch(sum_lanes, {1, 64}, nullptr, sums.data());
   for (std::size_t t = 0; t < 64; ++t) EXPECT_EQ(sums[t], t < 32 ? 31 * 32 / 2 : 31 * 32 / 2 + 32 * 32);
+}
+
+/// The smallest and the largest of a warp's numbers, as floats of both signs and as whole numbers.
+void reduce(float* least, int* largest) {
+  const int lane = static_cast<int>(threadIdx.x);
+  least[lane] = warp_min(lane < 32 ? static_cast<float>(lane) - 7.5F : static_cast<float>(80 - lane));
+  largest[lane] = warp_max(lane < 32 ? -lane - 3 : lane % 50);
+}
+
+TEST(CudaEmulation, WarpsReduce) {
+  std::vector<float> least(64);
+  std::vector<int> largest(64);
+  launch(reduce, {1, 64}, nullptr, least.data(), largest.data());
+  for (std::size_t t = 0; t < 64; ++t) {
+    EXPECT_EQ(least[t], t < 32 ? -7.5F : 17.0F);
+    EXPECT_EQ(largest[t], t < 32 ? -3 : 49);
+  }
 }
 
 void vote(unsigned* votes) {

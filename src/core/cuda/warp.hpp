@@ -7,10 +7,17 @@ namespace roadstereo::cuda {
 constexpr int warp_lanes = 32;
 constexpr unsigned whole_warp = 0xFFFFFFFFU;
 
+// From compute capability 8 on the hardware finds the smallest whole number of a warp in one step.
+#if defined(ROADSTEREO_CUDA_EMULATED) || (defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800)
+#define ROADSTEREO_WARP_REDUCES 1
+#else
+#define ROADSTEREO_WARP_REDUCES 0
+#endif
+
 /// The smallest of the numbers of a warp's lanes, none of which is NaN.
 __device__ inline float warp_min(float value) {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
-  // As whole numbers in the order of the floats: the hardware finds their smallest in one step.
+#if ROADSTEREO_WARP_REDUCES
+  // As whole numbers in the order of the floats.
   const int bits = __float_as_int(value);
   const int least = __reduce_min_sync(whole_warp, bits ^ ((bits >> 31) & 0x7FFFFFFF));
   return __int_as_float(least ^ ((least >> 31) & 0x7FFFFFFF));
@@ -24,11 +31,15 @@ __device__ inline float warp_min(float value) {
 
 /// The largest of the numbers of a warp's lanes.
 __device__ inline int warp_max(int value) {
+#if ROADSTEREO_WARP_REDUCES
+  return __reduce_max_sync(whole_warp, value);
+#else
   for (int distance = warp_lanes / 2; distance > 0; distance /= 2) {
     const int other = __shfl_xor_sync(whole_warp, value, distance);
     value = other > value ? other : value;
   }
   return value;
+#endif
 }
 
 }  // namespace roadstereo::cuda

@@ -59,6 +59,8 @@ void wait_for_warp();
 std::uint64_t exchange(std::uint64_t bits, int lane);
 /// Lanes of the warp that have not ended, whose `vote` is true.
 unsigned ballot(bool vote);
+/// The smallest value of the lanes of the warp that have not ended.
+int smallest(int value);
 int lane();
 
 template <class T>
@@ -102,6 +104,12 @@ template <class T>
 T __shfl_up_sync(unsigned, T value, unsigned by) {
   const int own = ::roadstereo::cuda::emulated::lane(), from = own - static_cast<int>(by);
   return ::roadstereo::cuda::emulated::exchange_value(value, from >= 0 ? from : own);
+}
+inline int __reduce_min_sync(unsigned, int value) {
+  return ::roadstereo::cuda::emulated::smallest(value);
+}
+inline int __reduce_max_sync(unsigned, int value) {
+  return -1 - ::roadstereo::cuda::emulated::smallest(-1 - value);
 }
 inline unsigned __ballot_sync(unsigned, bool vote) {
   return ::roadstereo::cuda::emulated::ballot(vote);

@@ -285,6 +285,17 @@ std::uint64_t exchange(std::uint64_t bits, int from) {
   return other != nullptr ? other->left[number % 2].bits : bits;
 }
 
+int smallest(int value) {
+  const unsigned number = leave(static_cast<std::uint32_t>(value));
+  for (int other = 0; other < warp; ++other) {
+    const Fiber* fiber = of_lane(other);
+    if (fiber == nullptr) continue;
+    const Left& left = fiber->left[number % 2];
+    if (left.exchange == number) value = std::min(value, static_cast<int>(static_cast<std::uint32_t>(left.bits)));
+  }
+  return value;
+}
+
 unsigned ballot(bool vote) {
   const unsigned number = leave(vote ? 1 : 0);
   unsigned votes = 0;

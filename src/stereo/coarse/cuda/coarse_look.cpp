@@ -15,9 +15,6 @@
 namespace roadstereo::cuda {
 namespace {
 
-/// Numbers of one of the three volumes: larger images are matched band by band, so that they fit small devices.
-constexpr std::ptrdiff_t most_numbers = std::ptrdiff_t{1} << 25;
-
 std::size_t area(int width, int height) {
   return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
@@ -65,7 +62,7 @@ CoarseVolume CoarseLook::reserve(const CoarseInput& input) {
   const int disparities = coarse_disparities(input.disparities, factor_);
   CoarseVolume shape{nullptr, width_, disparities, path_pitch(disparities), 0, 0};
   const std::ptrdiff_t of_row = std::ptrdiff_t{shape.columns} * shape.pitch;
-  shape.rows = static_cast<int>(std::clamp<std::ptrdiff_t>(most_numbers / of_row, 1, height_));
+  shape.rows = static_cast<int>(std::clamp<std::ptrdiff_t>(most_numbers_ / of_row, 1, height_));
   for (DeviceArray<float>* volume : {&costs_, &forth_, &back_}) {
     volume->reserve(static_cast<std::size_t>(of_row * shape.rows));
   }

@@ -2,6 +2,7 @@
 
 #include <cuda_runtime_api.h>
 
+#include <cstddef>
 #include <cstdint>
 
 #include "core/cuda/memory.hpp"
@@ -25,8 +26,13 @@ struct CoarseInput {
 /// frame; what it leaves lies in device memory and is valid until the next call.
 class CoarseLook {
  public:
+  /// Numbers of one of the three volumes of costs: larger pairs are matched band by band, so that they fit small
+  /// devices.
+  static constexpr std::ptrdiff_t usual_numbers = std::ptrdiff_t{1} << 25;
+
   /// The options must be valid.
-  explicit CoarseLook(const CoarseSearchOptions& options) : options_(options) {}
+  explicit CoarseLook(const CoarseSearchOptions& options, std::ptrdiff_t most_numbers = usual_numbers)
+      : options_(options), most_numbers_(most_numbers) {}
 
   /// Only enqueues. False, with neither prior nor ranges, when the image is too small.
   bool find(const CoarseInput& input, cudaStream_t stream);
@@ -48,6 +54,7 @@ class CoarseLook {
   void find_ranges(const CoarseInput& input, cudaStream_t stream);
 
   CoarseSearchOptions options_;
+  std::ptrdiff_t most_numbers_;
   int width_ = 0, height_ = 0, factor_ = 1;  ///< of the coarse map
   DeviceArray<std::int16_t> reference_, target_;
   DeviceArray<int> first_seen_;
