@@ -141,6 +141,20 @@ TEST_F(CudaCoarse, OtherOptionsAreFollowed) {
   expect_as_on_host(look, road_with_a_hole(230, 100, options));
 }
 
+TEST_F(CudaCoarse, WeakTextureHoldsAgainstAWrongRoad) {
+  cuda::CoarseLook look({});
+  const auto ten = [](double, double) { return 10; };
+  expect_as_on_host(look, {test::textured_pair(97, 64, ten, 1, 0.05), 30, {{18, 0, 0}, 18, 30}});
+}
+
+TEST_F(CudaCoarse, TilesOfTheTargetSeeWhatLiesFurtherRightInTheReference) {
+  CoarseSearchOptions options;
+  options.factor = 8;
+  cuda::CoarseLook look(options);
+  const auto wall = [](double u, double) { return u < 204 ? 8 : 40; };
+  expect_as_on_host(look, {test::textured_pair(400, 100, wall), 48, no_shift(), {}, options});
+}
+
 TEST_F(CudaCoarse, WithoutARoadAndOverManyDisparities) {
   cuda::CoarseLook look({});
   const auto wavy = [](double u, double v) { return 12 + 0.02 * v + 2 * std::sin(0.04 * u); };
