@@ -1,8 +1,8 @@
 // Camera frames to grey levels on the device, and smaller images of them: the same bits as on the host.
 
+#include "core/cuda/device_frame.hpp"
 #include "core/cuda/grey.hpp"
 #include "core/cuda/shrink.hpp"
-#include "core/grey_weights.hpp"
 #include "core/shrink.hpp"
 #include "device_copy.hpp"
 #include "device_test.hpp"
@@ -32,11 +32,6 @@ struct RandomFrame {
   }
 };
 
-cuda::DeviceFrame on_device(const FrameView& frame, const cuda::DeviceArray<std::uint8_t>& bytes, double white_level) {
-  return {bytes.data(), frame.stride_bytes, frame.sample == SampleType::u16 ? 2 : 1, channel_count(frame.order),
-          grey_weights(frame, white_level)};
-}
-
 /// Both grey images and what was found, of one converter.
 struct Converted {
   GreyImage left, right;
@@ -47,8 +42,9 @@ Converted convert(cuda::PairToGrey& converter, const RandomFrame& left, const Ra
                   double white_level = 0) {
   const auto left_bytes = test::to_device(left.bytes), right_bytes = test::to_device(right.bytes);
   const test::DevicePlane<std::int16_t> left_grey(width, height), right_grey(width, height);
-  converter.convert(on_device(left.view, left_bytes, white_level), on_device(right.view, right_bytes, white_level),
-                    left_grey.plane(), right_grey.plane(), nullptr);
+  converter.convert(cuda::device_frame(left.view, left_bytes.data(), white_level),
+                    cuda::device_frame(right.view, right_bytes.data(), white_level), left_grey.plane(),
+                    right_grey.plane(), nullptr);
   return {left_grey.on_host(), right_grey.on_host(), converter.findings()};
 }
 

@@ -6,7 +6,7 @@
 #include "device_copy.hpp"
 #include "device_test.hpp"
 #include "road/refinement/cuda/refinement.hpp"
-#include "road/refinement/settings.hpp"
+#include "road/refinement/cuda/refinement_settings.hpp"
 #include "road/shift_terms_of.hpp"
 #include "textured_pair.hpp"
 
@@ -17,11 +17,6 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr double support = 100;
 
 class CudaRefinement : public test::OnDevice {};
-
-cuda::RefinementSettings settings_of(const RefinementOptions& options) {
-  return {window_radius(options), options.step, mean_settings(options, support), variance_bounds(options),
-          static_cast<float>(options.worst_sigma_px)};
-}
 
 /// Residual disparities around δp with steps, holes of all sizes and outliers, and variances from tiny to infinite.
 struct Maps {
@@ -62,8 +57,9 @@ void expect_as_on_host(int width, int height, const PerspectiveShift& shift, con
   refine_disparities(full, maps.variance, shift.road, support, options, 1, refined, sigma);
   const test::DevicePlane<float> residual(maps.residual), variance(maps.variance);
   const test::DevicePlane<float> device_refined(width, height), device_sigma(width, height);
-  cuda::refine_disparities(residual.view(), variance.view(), shift_terms(shift), settings_of(options),
-                           device_refined.plane(), device_sigma.plane(), nullptr);
+  cuda::refine_disparities(residual.view(), variance.view(), shift_terms(shift),
+                           cuda::refinement_settings(options, support), device_refined.plane(), device_sigma.plane(),
+                           nullptr);
   expect_equal(device_refined.on_host(), refined);
   expect_equal(device_sigma.on_host(), sigma);
 }
