@@ -13,8 +13,7 @@
 #include "road/cuda/road_fit.hpp"
 #include "road/cuda/road_verification.hpp"
 #include "road/cuda/verification_judgement.hpp"
-#include "road/refinement/cuda/refinement.hpp"
-#include "road/refinement/settings.hpp"
+#include "road/refinement/cuda/refinement_settings.hpp"
 #include "road/shift_terms_of.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
@@ -33,12 +32,6 @@ Device require_device() {
 
 DevicePlane device_plane(const RoadModel& model) {
   return {model.a0, model.a1, model.a2};
-}
-
-RefinementSettings refinement_settings(const PipelineOptions& options) {
-  const RefinementOptions& refinement = options.refinement;
-  return {window_radius(refinement), refinement.step, mean_settings(refinement, support_pixels(options.matcher)),
-          variance_bounds(refinement), static_cast<float>(refinement.worst_sigma_px)};
 }
 
 /// The host waits for the device twice a frame: for the road, which it judges, and for the end.
@@ -108,7 +101,8 @@ class DeviceStages final : public FrameStages {
 
   void refine(FrameResult& result) override {
     cuda::refine_disparities(matched_.disparity, matched_.variance, shift_terms(result.shift),
-                             refinement_settings(options_), maps_.disparity(), maps_.sigma(), stream());
+                             refinement_settings(options_.refinement, support_pixels(options_.matcher)),
+                             maps_.disparity(), maps_.sigma(), stream());
     clock_.mark(StageClock::refined, stream());
   }
 

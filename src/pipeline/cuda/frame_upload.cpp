@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "core/grey_weights.hpp"
+#include "core/cuda/device_frame.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cuda {
@@ -14,17 +14,16 @@ bool is_on_device(const FrameView& frame) {
   return attributes.type == cudaMemoryTypeDevice || attributes.type == cudaMemoryTypeManaged;
 }
 
-int sample_bytes(const FrameView& frame) {
-  return frame.sample == SampleType::u16 ? 2 : 1;
-}
-
 std::size_t row_bytes(const FrameView& frame) {
   return static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(channel_count(frame.order)) *
-         static_cast<std::size_t>(sample_bytes(frame));
+         (frame.sample == SampleType::u16 ? 2U : 1U);
 }
 
-DeviceFrame frame_at(const void* data, std::ptrdiff_t stride_bytes, const FrameView& frame, double white_level) {
-  return {data, stride_bytes, sample_bytes(frame), channel_count(frame.order), grey_weights(frame, white_level)};
+/// The frame with its rows one behind the other.
+DeviceFrame packed_frame(const FrameView& frame, const void* data, double white_level) {
+  FrameView packed = frame;
+  packed.stride_bytes = static_cast<std::ptrdiff_t>(row_bytes(frame));
+  return device_frame(packed, data, white_level);
 }
 
 void copy_rows(const FrameView& frame, unsigned char* to) {
@@ -43,8 +42,7 @@ FrameUpload::Pair FrameUpload::upload(const FrameView& left, const FrameView& ri
   if (left_there != right_there)
     fail("one image lies in device memory and the other on the host; both must be together");
   if (left_there) {
-    return {frame_at(left.data, left.stride_bytes, left, white_level),
-            frame_at(right.data, right.stride_bytes, right, white_level)};
+    return {device_frame(left, left.data, white_level), device_frame(right, right.data, white_level)};
   }
   const auto rows = static_cast<std::size_t>(left.height);
   const std::size_t left_bytes = row_bytes(left) * rows, right_bytes = row_bytes(right) * rows;
@@ -55,9 +53,8 @@ FrameUpload::Pair FrameUpload::upload(const FrameView& left, const FrameView& ri
   copy_rows(right, on_host_.data() + right_at);
   ROADSTEREO_CUDA(
       cudaMemcpyAsync(on_device_.data(), on_host_.data(), right_at + right_bytes, cudaMemcpyHostToDevice, stream));
-  const auto stride = [](const FrameView& frame) { return static_cast<std::ptrdiff_t>(row_bytes(frame)); };
-  return {frame_at(on_device_.data(), stride(left), left, white_level),
-          frame_at(on_device_.data() + right_at, stride(right), right, white_level)};
+  return {packed_frame(left, on_device_.data(), white_level),
+          packed_frame(right, on_device_.data() + right_at, white_level)};
 }
 
 }  // namespace roadstereo::cuda
