@@ -64,7 +64,7 @@ TEST(CudaBlock, Extremes) {
   std::vector<float> values(160), found(2);
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = static_cast<float>(test::lattice(1, static_cast<std::int64_t>(i), 3)) - 0.5F;
-  launch(extremes, {1, 160, (warp_size + 1) * sizeof(float)}, nullptr, values.data(), found.data());
+  launch(extremes, {1, 160, (warp_lanes + 1) * sizeof(float)}, nullptr, values.data(), found.data());
   EXPECT_EQ(found[0], *std::min_element(values.begin(), values.end()));
   EXPECT_EQ(found[1], *std::max_element(values.begin(), values.end()));
 }

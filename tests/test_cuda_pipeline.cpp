@@ -178,6 +178,13 @@ TEST_F(CudaPipeline, RefusesWhatTheHostRefuses) {
   EXPECT_EQ(refusal("cuda", pair.left, grey), refusal("cpu", pair.left, grey));
   EXPECT_EQ(refusal("cuda", pair.left, pair.left), refusal("cpu", pair.left, pair.left));
   EXPECT_EQ(refusal("cuda", pair.right, pair.left), refusal("cpu", pair.right, pair.left));
+  Frame small = pair.left;
+  small.height = 20;
+  EXPECT_EQ(refusal("cuda", small, small), refusal("cpu", small, small));
+  Frame empty = pair.left;
+  empty.bytes.clear();
+  empty.bytes.shrink_to_fit();
+  EXPECT_EQ(refusal("cuda", empty, pair.right), refusal("cpu", empty, pair.right));
   Pipeline host(options_of("default", "cpu"));
   EXPECT_THROW(host.use_device({}), Error);
 }

@@ -6,9 +6,11 @@
 
 #include "core/parallel.hpp"
 #include "pipeline/pair_checks.hpp"
+#include "road/shift_terms_of.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/coarse_search.hpp"
+#include "stereo/coarse/road_chance.hpp"
 #include "stereo/window.hpp"
 
 namespace roadstereo {
@@ -68,10 +70,8 @@ class HostStages final : public FrameStages {
   void look_coarsely(const FrameResult& result) override {
     match_input_ = {result.grey, transformed_target_, first_column_.data(), result.shift.disparities};
     if (!coarse_search_) return;
-    // The road's disparity after the shift; beyond the horizon there is none.
-    const auto road = [&shift = result.shift](double u, double v) {
-      const double disparity = shift.enabled ? shift.road.disparity(u, v) : -1;
-      return disparity < 0 ? std::numeric_limits<double>::quiet_NaN() : std::min(disparity, shift.delta_p);
+    const auto road = [shift = shift_terms(result.shift)](double u, double v) {
+      return shifted_road(shift, u, v, std::numeric_limits<double>::quiet_NaN());
     };
     if (!coarse_search_->find(match_input_, road)) return;
     if (options_.narrow_search) match_input_.ranges = coarse_search_->ranges();

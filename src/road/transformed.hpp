@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/cuda/host_device.hpp"
-#include "core/cuda/rounded.hpp"
+#include "core/uncontracted.hpp"
 #include "road/robust_weights.hpp"
 
 // The formulas of the transformed disparity and its spread, which are measured on the host and on the device.
@@ -11,12 +11,12 @@ namespace roadstereo {
 
 /// The road's disparity at the first pixel of a row.
 ROADSTEREO_HD inline double road_at_row(double a0, double a1, int v) {
-  return a0 + rounded_product(a1, v);
+  return a0 + uncontracted_product(a1, v);
 }
 
 /// ℓ(p) − α0 + α1 (u sin ψ − v cos ψ): height above (or depth below) the road, in pixels of disparity.
 ROADSTEREO_HD inline float above_road(float disparity, double at_row, double a2, int u) {
-  return static_cast<float>(disparity - (at_row + rounded_product(a2, u)));
+  return static_cast<float>(disparity - (at_row + uncontracted_product(a2, u)));
 }
 
 /// δt: the smallest whole number that makes every value positive, at least `least`; `smallest` is that of the heights,

@@ -1,16 +1,13 @@
 #pragma once
 
-#include <cuda_runtime.h>
+#include "core/cuda/warp.hpp"
 
 // For kernels whose blocks have whole warps in one dimension: every thread of the block calls these.
 namespace roadstereo::cuda {
 
-inline constexpr int warp_size = 32;
-inline constexpr unsigned every_lane = 0xFFFFFFFFU;
-
 /// Values of shared memory that block_sums() of `count` values works in.
 constexpr int sums_scratch(int count) {
-  return (warp_size + 1) * count;
+  return (warp_lanes + 1) * count;
 }
 
 /// Adds up `count` values over the lanes of a warp, in a fixed tree. At each step a lane hands half of what it carries
@@ -27,7 +24,7 @@ __device__ T fold_lanes(const T (&values)[count], int& first, int& end) {
     T rest[kept];
     for (int i = 0; i < kept; ++i) {
       const T low = values[i], high = i + kept < count ? values[i + kept < count ? i + kept : i] : T{};
-      rest[i] = (upper ? high : low) + __shfl_xor_sync(every_lane, upper ? low : high, mask);
+      rest[i] = (upper ? high : low) + __shfl_xor_sync(whole_warp, upper ? low : high, mask);
     }
     if (upper) {
       first = first + kept < end ? first + kept : end;
@@ -42,31 +39,31 @@ __device__ T fold_lanes(const T (&values)[count], int& first, int& end) {
 /// shared memory, until the next call.
 template <class T, int count>
 __device__ const T* block_sums(const T (&values)[count], T* scratch) {
-  const int lane = static_cast<int>(threadIdx.x) % warp_size, own = static_cast<int>(threadIdx.x) / warp_size;
-  const int warps = static_cast<int>(blockDim.x) / warp_size;
+  const int lane = static_cast<int>(threadIdx.x) % warp_lanes, own = static_cast<int>(threadIdx.x) / warp_lanes;
+  const int warps = static_cast<int>(blockDim.x) / warp_lanes;
   int first = 0, end = count;
-  const T sum = fold_lanes<warp_size / 2>(values, first, end);
+  const T sum = fold_lanes<warp_lanes / 2>(values, first, end);
   __syncthreads();  // the last call's sums have been read
   if (first < end) scratch[own * count + first] = sum;
   __syncthreads();
-  T* totals = scratch + warp_size * count;
+  T* totals = scratch + warp_lanes * count;
   for (int i = own; i < count; i += warps) {
     T total = lane < warps ? scratch[lane * count + i] : T{};
-    for (int mask = warp_size / 2; mask > 0; mask /= 2) total += __shfl_xor_sync(every_lane, total, mask);
+    for (int mask = warp_lanes / 2; mask > 0; mask /= 2) total += __shfl_xor_sync(whole_warp, total, mask);
     if (lane == 0) totals[i] = total;
   }
   __syncthreads();
   return totals;
 }
 
-/// The one of all threads' values that `better(a, b)` puts before the others; `scratch` has room for warp_size + 1.
+/// The one of all threads' values that `better(a, b)` puts before the others; `scratch` has room for warp_lanes + 1.
 template <class T, class Better>
 __device__ T block_best(T value, Better better, T* scratch) {
-  const int lane = static_cast<int>(threadIdx.x) % warp_size, own = static_cast<int>(threadIdx.x) / warp_size;
-  const int warps = static_cast<int>(blockDim.x) / warp_size;
+  const int lane = static_cast<int>(threadIdx.x) % warp_lanes, own = static_cast<int>(threadIdx.x) / warp_lanes;
+  const int warps = static_cast<int>(blockDim.x) / warp_lanes;
   const auto best_of_warp = [&](T best) {
-    for (int mask = warp_size / 2; mask > 0; mask /= 2) {
-      const T other = __shfl_xor_sync(every_lane, best, mask);
+    for (int mask = warp_lanes / 2; mask > 0; mask /= 2) {
+      const T other = __shfl_xor_sync(whole_warp, best, mask);
       if (better(other, best)) best = other;
     }
     return best;
@@ -77,10 +74,10 @@ __device__ T block_best(T value, Better better, T* scratch) {
   __syncthreads();
   if (own == 0) {
     const T best = best_of_warp(scratch[lane < warps ? lane : 0]);
-    if (lane == 0) scratch[warp_size] = best;
+    if (lane == 0) scratch[warp_lanes] = best;
   }
   __syncthreads();
-  return scratch[warp_size];
+  return scratch[warp_lanes];
 }
 
 /// Orders for block_best().

@@ -47,7 +47,7 @@ struct ShareRank {
 /// The first warp finds the bin of a digit that holds the key of the rank, and how many keys lie in the bins before it.
 template <class RankOf>
 __device__ void choose_bin(int digit, RankOf rank_of, SelectScratch& scratch) {
-  constexpr int of_lane = SelectScratch::bins / warp_size;
+  constexpr int of_lane = SelectScratch::bins / warp_lanes;
   static_assert(of_lane == 8, "two vectors of four");
   const int lane = static_cast<int>(threadIdx.x);
   const auto* counts = reinterpret_cast<const int4*>(scratch.counts[digit]) + 2 * lane;
@@ -56,12 +56,12 @@ __device__ void choose_bin(int digit, RankOf rank_of, SelectScratch& scratch) {
   int until = 0;
   for (int i = 0; i < of_lane; ++i) until += own[i];
   int below = -until;
-  for (int by = 1; by < warp_size; by *= 2) {
-    const int before = __shfl_up_sync(every_lane, until, static_cast<unsigned>(by));
+  for (int by = 1; by < warp_lanes; by *= 2) {
+    const int before = __shfl_up_sync(whole_warp, until, static_cast<unsigned>(by));
     if (lane >= by) until += before;
   }
   below += until;
-  const int all = __shfl_sync(every_lane, until, warp_size - 1);
+  const int all = __shfl_sync(whole_warp, until, warp_lanes - 1);
   const int rank = digit == 0 ? rank_of(all) : scratch.rank;
   __syncwarp();
   if (digit == 0 && lane == 0) scratch.of = all;
@@ -97,7 +97,7 @@ __device__ SelectedKey block_select(int count, KeyOfItem key_of_item, RankOf ran
       if (digit == 0 || key >> (shift + 8) == prefix) atomicAdd(&scratch.counts[digit][(key >> shift) & 255U], 1);
     }
     __syncthreads();
-    if (thread < warp_size) choose_bin(digit, rank_of, scratch);
+    if (thread < warp_lanes) choose_bin(digit, rank_of, scratch);
     __syncthreads();
     if (scratch.of == 0) return {0, 0};
     prefix = scratch.prefix;

@@ -30,10 +30,6 @@ Device require_device() {
   return device;
 }
 
-DevicePlane device_plane(const RoadModel& model) {
-  return {model.a0, model.a1, model.a2};
-}
-
 /// The host waits for the device twice a frame: for the road, which it judges, and for the end.
 class DeviceStages final : public FrameStages {
  public:
@@ -44,10 +40,10 @@ class DeviceStages final : public FrameStages {
   }
 
   void prepare(const FrameView& left, const FrameView& right, FrameResult&) override {
-    width_ = left.width;
-    height_ = left.height;
     clock_.mark(StageClock::begin, stream());
     const FrameUpload::Pair frames = upload_.upload(left, right, options_.white_level, stream());
+    width_ = left.width;
+    height_ = left.height;
     maps_.resize(width_, height_);
     const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     right_.reserve(pixels);
@@ -66,7 +62,7 @@ class DeviceStages final : public FrameStages {
   }
 
   RoadModelEstimate verify_road(const RoadModel& previous, const FrameResult&) override {
-    verification_.run(maps_.grey(), plane(right_), {nullptr, device_plane(previous)}, options_.road_model.with_roll,
+    verification_.run(maps_.grey(), plane(right_), {nullptr, plane_terms(previous)}, options_.road_model.with_roll,
                       stream());
     wait_for_pair();
     return judge_verification(verification_.figures(), previous, width_, height_, calibration_, options_.road_model);
@@ -189,7 +185,7 @@ bool DeviceStages::fit_geometry(const std::optional<RoadModel>& prior, double in
   const bool robust = options.solver == RollSolver::robust;
   transformed_ = robust && prior.has_value();
   if (transformed_) {
-    fit_.run(map, {nullptr, device_plane(*prior)}, options.max_iterations, stream());
+    fit_.run(map, {nullptr, plane_terms(*prior)}, options.max_iterations, stream());
     clock_.mark(StageClock::fitted, stream());
     enqueue_transform({fit_.plane(), {}}, result);
   } else {
@@ -206,7 +202,7 @@ bool DeviceStages::fit_geometry(const std::optional<RoadModel>& prior, double in
     result.geometry = fit_on_host();
   } else {
     result.geometry = solve_map(sums_.sums(), width_, height_, initial_roll_rad, options);
-    fit_.measure(map, device_plane(result.geometry.plane), stream());
+    fit_.measure(map, plane_terms(result.geometry.plane), stream());
     stream_->wait();
     finish_measured(fit_.figures(), width_, height_, options, result.geometry);
   }
@@ -222,7 +218,7 @@ RoadGeometry DeviceStages::fit_on_host() {
 void DeviceStages::transform(FrameResult& result) {
   if (!transformed_) {
     clock_.mark(StageClock::fitted, stream());
-    enqueue_transform({nullptr, device_plane(result.geometry.plane)}, result);
+    enqueue_transform({nullptr, plane_terms(result.geometry.plane)}, result);
     stream_->wait();
   }
   const TransformFigures& found = transform_.figures();

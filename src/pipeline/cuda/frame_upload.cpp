@@ -38,6 +38,7 @@ void copy_rows(const FrameView& frame, unsigned char* to) {
 
 FrameUpload::Pair FrameUpload::upload(const FrameView& left, const FrameView& right, double white_level,
                                       cudaStream_t stream) {
+  for (const FrameView* frame : {&left, &right}) static_cast<void>(grey_weights(*frame, white_level));  // refuses
   const bool left_there = is_on_device(left), right_there = is_on_device(right);
   if (left_there != right_there)
     fail("one image lies in device memory and the other on the host; both must be together");

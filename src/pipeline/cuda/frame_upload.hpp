@@ -13,8 +13,8 @@ class FrameUpload {
     DeviceFrame left, right;
   };
 
-  /// The frames must be ones that to_grey takes, of one size. Device memory is read where it lies, until the stream was
-  /// waited for; of host memory a copy is made at once.
+  /// The frames have one size. Throws Error for what to_grey refuses. Device memory is read where it lies, until the
+  /// stream was waited for; of host memory a copy is made at once.
   Pair upload(const FrameView& left, const FrameView& right, double white_level, cudaStream_t stream);
 
  private:

@@ -58,7 +58,7 @@ __device__ double median_near(const Sample& sample, double delta_t, SelectScratc
 __global__ void measure_heights(Plane<const float> disparity, PlaneSource source, TransformOffset offset, Sample sample,
                                 DisparityTransform::State* state) {
   Shared& shared = *shared_memory<Shared>();
-  const DevicePlane road = source.get();
+  const PlaneTerms road = source.get();
   const Place at;
   const bool of_sample = at.u < disparity.width && sample.has(at.u);
   float lowest = INFINITY;
@@ -104,7 +104,7 @@ __device__ void finish(const double* sums, int blocks, Shared& shared, Disparity
 __global__ void shift_heights(Plane<const float> disparity, PlaneSource source, Plane<float> transformed,
                               DisparityTransform::State* state, double* sums, TransformFigures* figures) {
   Shared& shared = *shared_memory<Shared>();
-  const DevicePlane plane = source.get();
+  const PlaneTerms plane = source.get();
   const double delta_t = state->delta_t, limit = state->limit;
   const Place at;
   Spread all{0, 0, 0}, road{0, 0, 0};

@@ -29,7 +29,7 @@ struct PlaceMemory {
 };
 
 /// The pair's planes at the size of the search.
-__device__ DevicePlane shrunk_plane(const DevicePlane& plane, int factor) {
+__device__ PlaneTerms shrunk_plane(const PlaneTerms& plane, int factor) {
   const double centre = unshrink(0, factor);
   return {plane.disparity(centre, centre) / factor, plane.a1, plane.a2};
 }
@@ -37,14 +37,14 @@ __device__ DevicePlane shrunk_plane(const DevicePlane& plane, int factor) {
 /// A search by one warp.
 class PlaceSearch {
  public:
-  __device__ PlaceSearch(const GuidedPair& pair, const DevicePlane& plane, int range, int u, int v, PlaceMemory& memory)
+  __device__ PlaceSearch(const GuidedPair& pair, const PlaneTerms& plane, int range, int u, int v, PlaceMemory& memory)
       : pair_(pair),
         plane_(plane),
         range_(range),
         offsets_(2 * range + 1),
         u_(u),
         v_(v),
-        lane_(static_cast<int>(threadIdx.x) % warp_size),
+        lane_(static_cast<int>(threadIdx.x) % warp_lanes),
         memory_(memory) {}
 
   /// Reads both images at once, then says whether the block has texture.
@@ -113,7 +113,7 @@ class PlaceSearch {
 
   /// A lane for each row of each offset.
   __device__ void sum_rows() {
-    for (int task = lane_; task < guided_height * offsets_; task += warp_size) {
+    for (int task = lane_; task < guided_height * offsets_; task += warp_lanes) {
       const int y = task / offsets_, offset = task % offsets_;
       RowSums sums{0, 0, 0};
       for (int x = 0; x < guided_width; ++x) {
@@ -143,7 +143,7 @@ class PlaceSearch {
   }
 
   const GuidedPair& pair_;
-  const DevicePlane& plane_;
+  const PlaneTerms& plane_;
   int range_, offsets_, u_, v_, lane_;
   PlaceMemory& memory_;
   float mean_ = 0, deviation_ = 0;
@@ -151,10 +151,10 @@ class PlaceSearch {
 
 __global__ void match_places(GuidedPair pair, GuidedGrid grid, PlaneSource source, const int* needed,
                              GuidedSlots slots) {
-  const int own = static_cast<int>(threadIdx.x) / warp_size;
+  const int own = static_cast<int>(threadIdx.x) / warp_lanes;
   const int place = static_cast<int>(blockIdx.x) * places_per_block + own;
   if (place >= grid.places()) return;
-  const DevicePlane plane = shrunk_plane(source.get(), pair.factor);
+  const PlaneTerms plane = shrunk_plane(source.get(), pair.factor);
   const int u = grid.column(place % grid.columns), v = grid.row(place / grid.columns);
   bool tried =
       (needed == nullptr || *needed != 0) && fabs(plane.a2) < guided_steepest &&
@@ -165,7 +165,7 @@ __global__ void match_places(GuidedPair pair, GuidedGrid grid, PlaneSource sourc
     tried = search.read();
     if (tried) residual = search.best_residual();
   }
-  if (threadIdx.x % warp_size != 0) return;
+  if (threadIdx.x % warp_lanes != 0) return;
   slots.u[place] = static_cast<float>(unshrink(u, pair.factor));
   slots.v[place] = static_cast<float>(unshrink(v, pair.factor));
   // What was matched is the target column at u − residual of the shifted image.
@@ -179,7 +179,7 @@ __global__ void match_places(GuidedPair pair, GuidedGrid grid, PlaneSource sourc
 void match_near_plane(const GuidedPair& pair, const GuidedGrid& grid, const PlaneSource& plane, const int* needed,
                       const GuidedSlots& slots, cudaStream_t stream) {
   if (grid.places() == 0) return;
-  const LaunchShape shape{blocks_for(grid.places(), places_per_block), places_per_block * warp_size,
+  const LaunchShape shape{blocks_for(grid.places(), places_per_block), places_per_block * warp_lanes,
                           places_per_block * sizeof(PlaceMemory)};
   launch(match_places, shape, stream, pair, grid, plane, needed, slots);
 }

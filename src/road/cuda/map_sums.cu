@@ -22,9 +22,9 @@ struct Shared {
 /// n, u, d, uu, ud, dd of a row: a warp adds them up, and its first lane makes the rest of them.
 __device__ RawSums sum_row(const MaskedMap& map, int v, double* shared) {
   const double centre_u = (map.disparity.width - 1) / 2.0, at_v = v - (map.disparity.height - 1) / 2.0;
-  const int lane = static_cast<int>(threadIdx.x) % warp_size;
+  const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
   double own[row_sums] = {};
-  for (int u = lane; u < map.disparity.width; u += warp_size) {
+  for (int u = lane; u < map.disparity.width; u += warp_lanes) {
     const float value = __ldg(map.disparity.row(v) + u);
     if (!(value == value) || (map.mask.data != nullptr && map.mask(u, v) == 0)) continue;
     const double d = value, at_u = u - centre_u;
@@ -36,7 +36,7 @@ __device__ RawSums sum_row(const MaskedMap& map, int v, double* shared) {
     own[5] += d * d;
   }
   int first = 0, end = row_sums;
-  const double sum = fold_lanes<warp_size / 2>(own, first, end);
+  const double sum = fold_lanes<warp_lanes / 2>(own, first, end);
   if (first < end) shared[first] = sum;
   __syncwarp();
   RawSums sums;
@@ -78,11 +78,11 @@ __device__ RawSums add_rows(const RawSums* rows, int height, Shared& shared) {
 
 __global__ void sum_map(MaskedMap map, RawSums* rows, unsigned* arrived, RawSums* result) {
   Shared& shared = *shared_memory<Shared>();
-  const int own = static_cast<int>(threadIdx.x) / warp_size;
+  const int own = static_cast<int>(threadIdx.x) / warp_lanes;
   const int v = static_cast<int>(blockIdx.x) * rows_per_block + own;
   if (v < map.disparity.height) {
     const RawSums sums = sum_row(map, v, shared.rows[own]);
-    if (threadIdx.x % warp_size == 0) rows[v] = sums;
+    if (threadIdx.x % warp_lanes == 0) rows[v] = sums;
   }
   if (!comes_last(arrived, gridDim.x, &shared.last)) return;
   const RawSums all = add_rows(rows, map.disparity.height, shared);
@@ -97,7 +97,7 @@ void MapSums::run(const MaskedMap& map, cudaStream_t stream) {
     ROADSTEREO_CUDA(cudaMemsetAsync(arrived_.data(), 0, sizeof(unsigned), stream));
   }
   rows_.reserve(static_cast<std::size_t>(map.disparity.height));
-  launch(sum_map, {blocks_for(map.disparity.height, rows_per_block), rows_per_block * warp_size, sizeof(Shared)},
+  launch(sum_map, {blocks_for(map.disparity.height, rows_per_block), rows_per_block * warp_lanes, sizeof(Shared)},
          stream, map, rows_.data(), arrived_.data(), result_.data());
 }
 

@@ -47,7 +47,7 @@ __device__ int count_all(const SampledMap& sampled, FitState& state) {
 }
 
 /// The least-squares plane of all points; false when they lie on one line.
-__device__ bool fit_least_squares(const SampledMap& sampled, FitState& state, DevicePlane& plane) {
+__device__ bool fit_least_squares(const SampledMap& sampled, FitState& state, PlaneTerms& plane) {
   const double centre_u = sampled.width / 2.0, centre_v = sampled.height / 2.0;
   double own[9] = {};
   for (int i = thread(); i < sampled.sample.count(); i += threads()) {
@@ -83,7 +83,7 @@ struct Means {
 };
 
 /// Adds up the scores of a cell before they are squared; a thread for each cell, its points in the host's order.
-__device__ void sum_scores(const SampledMap& sampled, const DevicePlane& plane, const Means& mean, FitState& state,
+__device__ void sum_scores(const SampledMap& sampled, const PlaneTerms& plane, const Means& mean, FitState& state,
                            FitMoments& moments) {
   double own[3] = {};
   for (int cell = thread(); cell < cells_per_side * cells_per_side; cell += threads()) {
@@ -110,7 +110,7 @@ __device__ void sum_scores(const SampledMap& sampled, const DevicePlane& plane, 
   moments.score_vv = sums[2];
 }
 
-__device__ FitMoments fit_moments(const SampledMap& sampled, const DevicePlane& plane, FitState& state) {
+__device__ FitMoments fit_moments(const SampledMap& sampled, const PlaneTerms& plane, FitState& state) {
   const double centre_u = sampled.width / 2.0, centre_v = sampled.height / 2.0;
   double own[8] = {};
   for (int i = thread(); i < sampled.sample.count(); i += threads()) {
@@ -133,7 +133,7 @@ __device__ FitMoments fit_moments(const SampledMap& sampled, const DevicePlane& 
 __global__ void __launch_bounds__(1024) fit_map(MaskedMap map, SampledMap sampled, PlaneSource source,
                                                 int max_iterations, RoadFitFigures* figures, RoadFitFigures* result) {
   FitState& state = *shared_memory<FitState>();
-  const DevicePlane start = source.get();
+  const PlaneTerms start = source.get();
   RoadFitFigures own{start, {start, 0, 0, 0, 0}, 0, 1, {}};
   take_sample(map, sampled);
   if (max_iterations > 0) {
@@ -158,7 +158,7 @@ void RoadFit::run(const MaskedMap& map, const PlaneSource& prior, int max_iterat
   enqueue(map, prior, max_iterations, stream);
 }
 
-void RoadFit::measure(const MaskedMap& map, const DevicePlane& plane, cudaStream_t stream) {
+void RoadFit::measure(const MaskedMap& map, const PlaneTerms& plane, cudaStream_t stream) {
   enqueue(map, {nullptr, plane}, 0, stream);
 }
 

@@ -25,10 +25,10 @@ class RoadFit {
   /// Enqueues the robust fit from a prior.
   void run(const MaskedMap& map, const PlaneSource& prior, int max_iterations, cudaStream_t stream);
   /// Enqueues only what tells how well the map fits a plane that is known.
-  void measure(const MaskedMap& map, const DevicePlane& plane, cudaStream_t stream);
+  void measure(const MaskedMap& map, const PlaneTerms& plane, cudaStream_t stream);
 
-  const DevicePlane* plane() const { return &figures_.data()->plane; }  ///< in device memory
-  const RoadFitFigures& figures() const { return *result_.data(); }     ///< once the stream was synchronised
+  const PlaneTerms* plane() const { return &figures_.data()->plane; }  ///< in device memory
+  const RoadFitFigures& figures() const { return *result_.data(); }    ///< once the stream was synchronised
 
  private:
   void enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, cudaStream_t stream);

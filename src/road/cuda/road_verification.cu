@@ -38,7 +38,7 @@ __device__ void count_inliers(const SearchMemory& search, FitState& state, Searc
 }
 
 /// The fit to what a search found; all threads get the figures.
-__device__ SearchFigures fit_search(const SearchMemory& search, const DevicePlane& start, const RobustFit& fit) {
+__device__ SearchFigures fit_search(const SearchMemory& search, const PlaneTerms& start, const RobustFit& fit) {
   FitState& state = *shared_memory<FitState>();
   SearchFigures figures{{start, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
   count_places(search, state, figures);
@@ -57,7 +57,7 @@ __global__ void __launch_bounds__(1024)
 }
 
 /// Where the correspondences of the first search lie that are near the road.
-__device__ void measure_range(const SearchMemory& around, const DevicePlane& road, VerificationFigures& figures) {
+__device__ void measure_range(const SearchMemory& around, const PlaneTerms& road, VerificationFigures& figures) {
   FitState& state = *shared_memory<FitState>();
   const auto residual = [&](int i, std::uint32_t& key) {
     const double expected = road.disparity(around.slots.u[i], around.slots.v[i]);

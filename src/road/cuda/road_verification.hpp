@@ -29,7 +29,7 @@ class RoadVerification {
            cudaStream_t stream);
 
   /// The refined plane in device memory, for kernels that follow; means nothing unless the figures say so.
-  const DevicePlane* plane() const { return &figures_.data()->close.fit.plane; }
+  const PlaneTerms* plane() const { return &figures_.data()->close.fit.plane; }
   /// Once the stream was synchronised.
   const VerificationFigures& figures() const { return *result_.data(); }
 

@@ -19,8 +19,8 @@ namespace roadstereo::cuda {
 struct FitState {
   double scratch[sums_scratch(9)];
   SelectScratch select;
-  DevicePlane start, plane;  ///< of the first step, of this one
-  float step[3];             ///< the plane's disparity minus the start's: at the origin, along v, along u
+  PlaneTerms start, plane;  ///< of the first step, of this one
+  float step[3];            ///< the plane's disparity minus the start's: at the origin, along v, along u
   double scale;
   double narrow_from;  ///< scale of the window that the median is taken in
   double far_u, far_v;
@@ -51,7 +51,7 @@ class BlockFit {
       : points_(points), fit_(fit), state_(state), residuals_(residuals), first_(first), weights_(weights) {}
 
   /// All threads get the result; barriers on the way make the weights visible to the block.
-  __device__ FittedPlane run(const DevicePlane& start) {
+  __device__ FittedPlane run(const PlaneTerms& start) {
     FittedPlane fitted{start, 0, 0, 0, begin(start)};
     if (fitted.points < 3) return fitted;
     const double first_scale = fit_.start_scale_px > 0 ? fit_.start_scale_px : start_scale();
@@ -59,14 +59,14 @@ class BlockFit {
     __syncthreads();
     bool settled = false;
     for (fitted.iterations = 1; fitted.iterations <= fit_.max_iterations; ++fitted.iterations) {
-      const DevicePlane last = state_.plane;
+      const PlaneTerms last = state_.plane;
       const double last_scale = state_.scale;
       step();
       if (state_.good == 0) return fitted;
       update_residuals();
       const double median = median_below(static_cast<float>(tukey * last_scale));
       const double scale = narrowed_scale(median, last_scale);
-      const DevicePlane now = state_.plane;
+      const PlaneTerms now = state_.plane;
       settled =
           robust_fit_settled(now.disparity(state_.far_u, state_.far_v) - last.disparity(state_.far_u, state_.far_v),
                              now.a2 - last.a2, scale, last_scale);
@@ -86,7 +86,7 @@ class BlockFit {
   __device__ static int threads() { return static_cast<int>(blockDim.x); }
 
   /// First residuals, and the points that the host calls front and back. Returns how many points there are.
-  __device__ int begin(const DevicePlane& start) {
+  __device__ int begin(const PlaneTerms& start) {
     int first = points_.count, last = -1, found = 0;
     for (int i = thread(); i < points_.count; i += threads()) {
       const float d = points_.d[i];
@@ -171,7 +171,7 @@ class BlockFit {
                    s[6] - mean_v * s[2],
                    s[7] - mean_u * s[3],
                    s[8] - mean_v * s[3]};
-    DevicePlane& plane = state_.plane;
+    PlaneTerms& plane = state_.plane;
     if (!fit_.with_roll) m.vd += plane.a2 * m.uv;  // what a2 explained is left to a1
     double by_a1 = 0, by_a2 = 0;
     state_.good = solve_slopes(m, fit_.with_roll, by_a1, by_a2) ? 1 : 0;

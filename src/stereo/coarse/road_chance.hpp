@@ -34,12 +34,18 @@ ROADSTEREO_HD inline float chance_by_costs(float at_road, float least) {
 }
 
 /// Coarse disparity that the road has after the shift at a pixel of the shrunk pair; `nothing` beyond the horizon and
+/// The disparity that the road has after the shift, full-size pixels; `nothing` where there is none: above the horizon,
+/// or without a road.
+ROADSTEREO_HD inline double shifted_road(const ShiftTerms& shift, double u, double v, double nothing) {
+  const double disparity = shift.enabled ? shift.road.disparity(u, v) : -1;
+  if (disparity < 0) return nothing;
+  return disparity < shift.delta_p ? disparity : shift.delta_p;
+}
+
 /// without a shift.
 ROADSTEREO_HD inline float coarse_road(const ShiftTerms& shift, int u, int v, int factor, float nothing) {
-  if (!shift.enabled) return nothing;
-  const double disparity = shift.road.disparity(unshrink(u, factor), unshrink(v, factor));
-  if (disparity < 0) return nothing;
-  return static_cast<float>(disparity < shift.delta_p ? disparity : shift.delta_p) / static_cast<float>(factor);
+  const double road = shifted_road(shift, unshrink(u, factor), unshrink(v, factor), static_cast<double>(nothing));
+  return static_cast<float>(road) / static_cast<float>(factor);
 }
 
 }  // namespace roadstereo

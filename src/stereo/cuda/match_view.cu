@@ -1,4 +1,6 @@
 #include "core/cuda/launch.hpp"
+#include "core/cuda/unroll.hpp"
+#include "core/cuda/warp.hpp"
 #include "stereo/cuda/match_view.hpp"
 #include "stereo/mid_grey.hpp"
 #include "stereo/sub_pixel.hpp"
@@ -266,7 +268,7 @@ __device__ Aggregate aggregate_clipped(const ViewToMatch& view, const ViewSettin
                                        int grey, const int4* centre) {
   Aggregate sums{make_float4(0, 0, 0, 0), make_float4(0, 0, 0, 0)};
   if (most > 0) {
-#pragma unroll
+    ROADSTEREO_UNROLL
     for (int t = 0; t < most; ++t) {
       if (t < settings.tap_count) add_clipped(centre[offsets.at[t]], weights.of_tap[t], sums);
     }
@@ -284,7 +286,7 @@ template <int most>
 __device__ float4 whole_energies(int tap_count, const TapOffsets<most>& offsets, const PixelWeights<most>& weights,
                                  const int4* centre) {
   Aggregate sums{make_float4(0, 0, 0, 0), make_float4(0, 0, 0, 0)};
-#pragma unroll
+  ROADSTEREO_UNROLL
   for (int t = 0; t < most; ++t) {
     if (t < tap_count) add_whole(centre[offsets.at[t]], weights.of_tap[t], sums);
   }
@@ -373,7 +375,7 @@ __device__ int latest_first_column(const ViewToMatch& view, const Tile& tile, in
       const int v = min(max(tile.halo_v + y, 0), view.own.height - 1);
       latest = max(latest, __ldg(view.first_column + v));
     }
-    for (int mask = 16; mask > 0; mask /= 2) latest = max(latest, __shfl_xor_sync(0xFFFFFFFFU, latest, mask));
+    latest = warp_max(latest);
     if (lane == 0) *of_block = latest;
   }
   __syncthreads();
@@ -403,7 +405,7 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
   const int grey = wanted ? __ldg(view.own.row(v) + image_column(view, i)) : 0;
   if (most > 0 && wanted) {
     float sum = 0;
-#pragma unroll
+    ROADSTEREO_UNROLL
     for (int t = 0; t < most; ++t) {
       weights.of_tap[t] = t < settings.tap_count ? tap_weight(view, settings, settings.taps[t], i, v, grey) : 0.0F;
       sum += weights.of_tap[t];
