@@ -15,6 +15,7 @@
 #include "core/cuda/device.hpp"
 #include "core/cuda/memory.hpp"
 #include "roadstereo/device.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
 #include "stage_floors.hpp"
@@ -155,10 +156,7 @@ void count_frames(const Size& size, int pipelines, int runs) {
 
 void run(int runs) {
   const cuda::Device device = cuda::find_device();
-  if (!device.usable) {
-    std::printf("bench_cuda: nothing to measure: %s\n", device.reason.c_str());
-    return;
-  }
+  if (!device.usable) fail("nothing to measure: ", device.reason);
   const Size usual{640, 360, 32}, large{2079, 1040, 64};
   std::printf("%s\n\nThe whole pipeline, images in device memory, median of %d frames:\n", device.name.c_str(), runs);
   for (const Goal& goal : {Goal{usual, "paper", 0.35}, Goal{usual, "default", 0.25}, Goal{usual, "fast", 0},
