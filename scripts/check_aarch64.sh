@@ -21,7 +21,7 @@ done)
 export PKG_CONFIG_LIBDIR=$build/root/usr/lib/aarch64-linux-gnu/pkgconfig
 export PKG_CONFIG_SYSROOT_DIR=$build/root
 cmake -G Ninja -S . -B "$build" -DCMAKE_TOOLCHAIN_FILE="$PWD/cmake/aarch64.cmake" -DCMAKE_BUILD_TYPE=Release \
-  -DROADSTEREO_EMBEDDED_ONLY=ON -DROADSTEREO_TBB=OFF -DROADSTEREO_BUILD_BENCHMARKS=OFF \
+  -DROADSTEREO_EMBEDDED_ONLY=ON -DROADSTEREO_TBB=OFF -DROADSTEREO_CUDA=OFF -DROADSTEREO_BUILD_BENCHMARKS=OFF \
   -DROADSTEREO_GTEST_SOURCE=/usr/src/googletest -DROADSTEREO_WERROR="${ROADSTEREO_WERROR:-OFF}"
 cmake --build "$build" -j "$(nproc)"
 # Emulated, the sweeps over many scenes last too long; what is vector code is tested whole.
