@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "core/cuda/device.hpp"
 
 namespace roadstereo::test {
@@ -13,6 +15,20 @@ class OnDevice : public testing::Test {
     const cuda::Device device = cuda::find_device();
     if (!device.usable) GTEST_SKIP() << device.reason;
   }
+};
+
+/// A stage that takes device memory as soon as it is made: it is made by its first use, which a skipped test has not.
+template <class Stage>
+class MadeOnUse {
+ public:
+  Stage& operator*() {
+    if (!stage_) stage_.emplace();
+    return *stage_;
+  }
+  Stage* operator->() { return &**this; }
+
+ private:
+  std::optional<Stage> stage_;
 };
 
 }  // namespace roadstereo::test

@@ -42,7 +42,7 @@ class CudaDisparityTransform : public test::OnDevice {
     const TransformedSpread spread = measure_spread(expected, delta_t, 1);
     const test::DevicePlane<float> disparity(map.view()), transformed(map.width(), map.height());
     const auto in_memory = test::to_device(std::vector{PlaneTerms{plane.a0, plane.a1, plane.a2}});
-    transform_.run(disparity.view(), {in_memory.data(), {}}, {given, least}, transformed.plane(), nullptr);
+    transform_->run(disparity.view(), {in_memory.data(), {}}, {given, least}, transformed.plane(), nullptr);
     ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
     const Image<float> found = transformed.on_host();
     int differ = 0, valid = 0;
@@ -54,7 +54,7 @@ class CudaDisparityTransform : public test::OnDevice {
       }
     }
     EXPECT_EQ(differ, 0);
-    const TransformFigures& figures = transform_.figures();
+    const TransformFigures& figures = transform_->figures();
     EXPECT_EQ(figures.delta_t, delta_t);
     EXPECT_EQ(figures.valid, valid);
     EXPECT_NEAR(figures.road_px, spread.road_px, 1e-6 * spread.road_px);
@@ -62,7 +62,7 @@ class CudaDisparityTransform : public test::OnDevice {
     EXPECT_NEAR(figures.road_share, spread.road_share, 1e-9);
   }
 
-  DisparityTransform transform_;  ///< used again for maps of every size
+  test::MadeOnUse<DisparityTransform> transform_;  ///< used again for maps of every size
 };
 
 TEST_F(CudaDisparityTransform, EqualsTheHosts) {
@@ -85,14 +85,14 @@ TEST_F(CudaDisparityTransform, WidensTheLimitWithTheNoise) {
     for (int u = 0; u < 129; ++u) map(u, v) += static_cast<float>(4 * test::lattice(u, v, 9) - 2);
   }
   expect_agreement(map, road, -1, 2);
-  EXPECT_GT(transform_.figures().road_px, 1);
+  EXPECT_GT(transform_->figures().road_px, 1);
 }
 
 TEST_F(CudaDisparityTransform, OfNothingIsNothing) {
   const Image<float> none(40, 30, std::numeric_limits<float>::quiet_NaN());
   expect_agreement(none, road, -1, 3);
-  EXPECT_EQ(transform_.figures().delta_t, 3);
-  EXPECT_EQ(transform_.figures().valid, 0);
+  EXPECT_EQ(transform_->figures().delta_t, 3);
+  EXPECT_EQ(transform_->figures().valid, 0);
   expect_agreement(damaged_road(33, 35), road, -1, 2);  // and leaves nothing behind
 }
 
@@ -103,15 +103,15 @@ TEST_F(CudaDisparityTransform, OfAnExactRoadIsFlat) {
   }
   map(30, 20) -= 2;
   const test::DevicePlane<float> disparity(map.view()), transformed(64, 48);
-  transform_.run(disparity.view(), {nullptr, {10, 0.25, -0.125}}, {-1, 1}, transformed.plane(), nullptr);
+  transform_->run(disparity.view(), {nullptr, {10, 0.25, -0.125}}, {-1, 1}, transformed.plane(), nullptr);
   ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
   const Image<float> found = transformed.on_host();
-  EXPECT_EQ(transform_.figures().delta_t, 3);
+  EXPECT_EQ(transform_->figures().delta_t, 3);
   EXPECT_EQ(found(30, 20), 1);
   EXPECT_EQ(found(31, 20), 3);
   EXPECT_EQ(found(0, 0), 3);
-  EXPECT_EQ(transform_.figures().road_px, 0);
-  EXPECT_NEAR(transform_.figures().road_share, 1 - 1.0 / (64 * 48), 1e-12);
+  EXPECT_EQ(transform_->figures().road_px, 0);
+  EXPECT_NEAR(transform_->figures().road_share, 1 - 1.0 / (64 * 48), 1e-12);
 }
 
 }  // namespace

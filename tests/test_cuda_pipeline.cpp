@@ -22,7 +22,7 @@
 namespace roadstereo {
 namespace {
 
-constexpr int width = 256, height = 150;
+constexpr int width = 192, height = 112;
 
 synth::SyntheticPair frame_of(const std::string& name, int frame = 0) {
   synth::Scene scene = synth::named_scene(name);

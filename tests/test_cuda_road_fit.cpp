@@ -57,16 +57,16 @@ class CudaRoadFit : public test::OnDevice {
     const auto wait = [] { ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr)); };
     if (options.solver == RollSolver::robust) {
       const auto start = test::to_device(std::vector{PlaneTerms{prior->a0, prior->a1, prior->a2}});
-      fit_.run(masked, {start.data(), {}}, options.max_iterations, nullptr);
+      fit_->run(masked, {start.data(), {}}, options.max_iterations, nullptr);
       wait();
-      return finish_road_fit(fit_.figures(), width, height, options);
+      return finish_road_fit(fit_->figures(), width, height, options);
     }
-    sums_.run(masked, nullptr);
+    sums_->run(masked, nullptr);
     wait();
-    RoadGeometry geometry = solve_map(sums_.sums(), width, height, 0, options);
-    fit_.measure(masked, {geometry.plane.a0, geometry.plane.a1, geometry.plane.a2}, nullptr);
+    RoadGeometry geometry = solve_map(sums_->sums(), width, height, 0, options);
+    fit_->measure(masked, {geometry.plane.a0, geometry.plane.a1, geometry.plane.a2}, nullptr);
     wait();
-    finish_measured(fit_.figures(), width, height, options, geometry);
+    finish_measured(fit_->figures(), width, height, options, geometry);
     return geometry;
   }
 
@@ -89,13 +89,13 @@ class CudaRoadFit : public test::OnDevice {
         EXPECT_NEAR(device.plane.disparity(u, v), host.plane.disparity(u, v), 1e-5);
       }
     }
-    const PlaneTerms left = test::to_host(fit_.plane(), 1).front();
+    const PlaneTerms left = test::to_host(fit_->plane(), 1).front();
     EXPECT_EQ(left.a0, device.plane.a0);
     EXPECT_EQ(left.a2, device.plane.a2);
   }
 
-  RoadFit fit_;
-  MapSums sums_;
+  test::MadeOnUse<RoadFit> fit_;
+  test::MadeOnUse<MapSums> sums_;
 };
 
 RoadModel prior_of(double roll) {
@@ -134,7 +134,7 @@ TEST_F(CudaRoadFit, FindsTheRollOfAnExactRoad) {
 
 TEST_F(CudaRoadFit, TakesLeastSquaresFromAHopelessStart) {
   expect_agreement(road_map(129, 47, 0.02, 0.4), {}, RoadModel{400, 0, 0}, RollSolver::robust);
-  EXPECT_EQ(fit_.figures().fit.found, 0);
+  EXPECT_EQ(fit_->figures().fit.found, 0);
 }
 
 TEST_F(CudaRoadFit, NeedsAnAreaAsTheHostDoes) {
@@ -164,9 +164,9 @@ TEST_F(CudaRoadFit, SumsAreTheClosedForms) {
   // d = 3 everywhere: the sums of a rectangle.
   const Image<float> map(70, 37, 3);
   const test::DevicePlane<float> disparity(map.view());
-  sums_.run({disparity.view(), {}}, nullptr);
+  sums_->run({disparity.view(), {}}, nullptr);
   ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
-  const RawSums& s = sums_.sums();
+  const RawSums& s = sums_->sums();
   EXPECT_EQ(s.n, 70 * 37);
   EXPECT_NEAR(s.u, 0, 1e-9);
   EXPECT_NEAR(s.vd, 0, 1e-9);

@@ -68,12 +68,12 @@ void expect_same(const RoadModelEstimate& device, const RoadModelEstimate& host,
 class CudaRoadVerification : public test::OnDevice {
  protected:
   void expect_agreement(const Pair& pair, const RoadModel& previous, const RoadModelOptions& options = {}) {
-    const RoadModelEstimate device = verify_on_device(verification_, pair, previous, options);
+    const RoadModelEstimate device = verify_on_device(*verification_, pair, previous, options);
     host_ = verify_road_model(pair.left, pair.right, previous, pair.calibration, options, 1);
     expect_same(device, host_, pair);
   }
 
-  RoadVerification verification_;  ///< used again for frames of every size
+  test::MadeOnUse<RoadVerification> verification_;  ///< used again for frames of every size
   RoadModelEstimate host_;
 };
 
@@ -112,7 +112,7 @@ TEST_F(CudaRoadVerification, SaysSoWithoutEvidence) {
                    .target;
   expect_agreement(pair, road);
   EXPECT_NE(host_.reason.find("only 0 correspondences"), std::string::npos) << host_.reason;
-  EXPECT_EQ(verification_.figures().close.tried, 0);
+  EXPECT_EQ(verification_->figures().close.tried, 0);
 }
 
 TEST_F(CudaRoadVerification, IsTheSameAgainAndTakesNoMoreMemory) {
@@ -124,12 +124,12 @@ TEST_F(CudaRoadVerification, IsTheSameAgainAndTakesNoMoreMemory) {
 #if defined(ROADSTEREO_CUDA_EMULATED)
     const std::size_t before = emulated::allocations();
 #endif
-    verification_.run(left.view(), right.view(), {nullptr, {6.3, 0.06, -0.031}}, true, nullptr);
+    verification_->run(left.view(), right.view(), {nullptr, {6.3, 0.06, -0.031}}, true, nullptr);
     ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
 #if defined(ROADSTEREO_CUDA_EMULATED)
     EXPECT_EQ(emulated::allocations() > before, again == 0);
 #endif
-    const VerificationFigures& figures = verification_.figures();
+    const VerificationFigures& figures = verification_->figures();
     if (again == 0) first = figures;
     EXPECT_EQ(figures.close.found, 1);
     EXPECT_EQ(figures.close.fit.plane.a0, first.close.fit.plane.a0);
