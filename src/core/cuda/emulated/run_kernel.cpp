@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::size_t stack_bytes = std::size_t{256} << 10;
 constexpr int warp = 32;
+constexpr unsigned char nothing_written = 0xFF;
 
 enum class Waits { no, for_warp, for_block, ended };
 
@@ -57,7 +58,7 @@ struct Block {
   Fiber* running = nullptr;
   const std::function<void()>* kernel = nullptr;
   std::exception_ptr failure;
-  std::unique_ptr<unsigned char[]> shared;
+  std::vector<unsigned char> shared;  ///< of just the size, so that the address sanitizer sees its end
   std::size_t launches = 0;
   const void* stack_of_scheduler = nullptr;
   std::size_t stack_of_scheduler_bytes = 0;
@@ -214,13 +215,13 @@ void run_kernel(dim3 grid, dim3 size, std::size_t shared_bytes, const std::funct
 #if defined(__SANITIZE_THREAD__)
   own.scheduler.of_sanitizer = __tsan_get_current_fiber();
 #endif
+  if (own.shared.size() != shared_bytes) own.shared = std::vector<unsigned char>(shared_bytes);
   const bool forwards = own.launches++ % 2 == 0;
   const std::size_t blocks = std::size_t{grid.x} * grid.y * grid.z;
   for (std::size_t i = 0; i < blocks; ++i) {
     const std::size_t index = forwards ? i : blocks - 1 - i;
     const auto x = static_cast<unsigned>(index % grid.x), rest = static_cast<unsigned>(index / grid.x);
-    own.shared.reset(new unsigned char[shared_bytes]);
-    std::memset(own.shared.get(), 0xFF, shared_bytes);
+    std::fill(own.shared.begin(), own.shared.end(), nothing_written);
     for (std::size_t t = 0; t < own.threads; ++t) {
       const auto n = static_cast<unsigned>(t);
       own.fibers[t]->here = {
@@ -232,7 +233,7 @@ void run_kernel(dim3 grid, dim3 size, std::size_t shared_bytes, const std::funct
 }
 
 void* shared_memory() {
-  return block().shared.get();
+  return block().shared.data();
 }
 
 const Here& here() {
