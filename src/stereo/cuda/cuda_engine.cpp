@@ -6,9 +6,8 @@
 #include "stereo/window.hpp"
 
 namespace roadstereo {
+namespace cuda {
 namespace {
-
-using namespace cuda;
 
 class CudaEngine final : public StereoEngine {
  public:
@@ -90,11 +89,12 @@ class CudaEngine final : public StereoEngine {
 };
 
 }  // namespace
+}  // namespace cuda
 
 std::unique_ptr<StereoEngine> make_cuda_engine(int) {
-  const Device device = find_device();
-  if (!device.usable) fail("the engine cuda cannot run: ", device.reason);
-  return std::make_unique<CudaEngine>(device);
+  const cuda::Device device = cuda::find_device();
+  if (!device.usable) fail("the engine cuda cannot be used: ", device.reason);
+  return std::make_unique<cuda::CudaEngine>(device);
 }
 
 }  // namespace roadstereo
