@@ -6,8 +6,8 @@ struct CUstream_st;
 
 namespace roadstereo {
 
-/// How a pipeline with the engine `cuda` shares a device with its caller (`Pipeline::use_device`). A pipeline belongs to
-/// the device that is current in the thread that makes it, and is used where the same one is.
+/// How a pipeline with the engine `cuda` shares a device with its caller (`Pipeline::use_device`). A pipeline belongs
+/// to the device that is current in the thread that makes it, and is used where the same one is.
 struct DeviceUse {
   /// Where all work is enqueued: a cudaStream_t of the caller, which must outlive the pipeline. Null: a stream of its
   /// own.

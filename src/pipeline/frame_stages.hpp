@@ -36,8 +36,8 @@ class FrameStages {
   virtual void match(const MatcherOptions& options, const FrameResult& result) = 0;
   /// Adds the shift back, and smooths where the standard errors allow it: fills disparity and sigma.
   virtual void refine(FrameResult& result) = 0;
-  /// Fills valid_share, the share of the pixels that have a disparity, and, where that is at least `least_share`, geometry
-  /// (fit_road_geometry). False where it is not.
+  /// Fills valid_share, the share of the pixels that have a disparity, and, where that is at least `least_share`,
+  /// geometry (fit_road_geometry). False where it is not.
   virtual bool fit_geometry(const std::optional<RoadModel>& prior, double initial_roll_rad, double least_share,
                             FrameResult& result) = 0;
   /// ℓ → ℓ' by result.geometry: fills transformed, delta_t and spread.

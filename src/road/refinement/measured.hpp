@@ -26,7 +26,8 @@ struct VarianceBounds {
 };
 
 /// A disparity (NaN unknown) of the variance given, above the road.
-ROADSTEREO_HD inline MeasuredHeight measured(float disparity, float variance, float road, const VarianceBounds& bounds) {
+ROADSTEREO_HD inline MeasuredHeight measured(float disparity, float variance, float road,
+                                             const VarianceBounds& bounds) {
   constexpr float widest_sigma = 10;  // pixels; nothing is known less well than by the search range
   constexpr float widest = widest_sigma * widest_sigma;
   const MeasuredHeight nothing = not_measured();

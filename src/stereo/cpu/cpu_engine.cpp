@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "stereo/trim_window.hpp"
 #include "stereo/cpu/view_matcher.hpp"
+#include "stereo/trim_window.hpp"
 #include "stereo/window.hpp"
 
 namespace roadstereo {

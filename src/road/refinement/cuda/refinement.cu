@@ -33,7 +33,8 @@ __device__ float full_disparity(const Maps& maps, const RowLine& line, float res
   return maps.shift.whole_pixel ? with_whole_shift(residual, maps.shift, u, v) : with_shift(residual, line, u);
 }
 
-__device__ MeasuredHeight measured_at(const Maps& maps, const RowLines& lines, const VarianceBounds& bounds, int u, int v) {
+__device__ MeasuredHeight measured_at(const Maps& maps, const RowLines& lines, const VarianceBounds& bounds, int u,
+                                      int v) {
   if (u < 0 || u >= maps.residual.width || v < 0 || v >= maps.residual.height) return not_measured();
   const float disparity = full_disparity(maps, lines.shift, __ldg(&maps.residual(u, v)), u, v);
   return measured(disparity, __ldg(&maps.variance(u, v)), lines.road.at(static_cast<float>(u)), bounds);
@@ -75,7 +76,9 @@ struct Untiled {
   const VarianceBounds& bounds;
 
   __device__ RowLine road(int v) const { return row_lines(maps, v).road; }
-  __device__ MeasuredHeight operator()(int u, int v) const { return measured_at(maps, row_lines(maps, v), bounds, u, v); }
+  __device__ MeasuredHeight operator()(int u, int v) const {
+    return measured_at(maps, row_lines(maps, v), bounds, u, v);
+  }
 };
 
 /// Quotient where a last bit does not matter.

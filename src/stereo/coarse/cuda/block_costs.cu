@@ -9,8 +9,8 @@
 #include "stereo/block_correlation.hpp"
 #include "stereo/coarse/coarse_column.hpp"
 #include "stereo/coarse/cuda/block_costs.hpp"
-#include "stereo/mid_grey.hpp"
 #include "stereo/coarse/road_chance.hpp"
+#include "stereo/mid_grey.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -45,8 +45,8 @@ struct Segment {
 };
 
 /// Loads a view's columns from `begin` on and sums them.
-__device__ void load_columns(const ViewColumns& view, const Plane<const std::int16_t>& image, int begin,
-                             int first_row, int rows) {
+__device__ void load_columns(const ViewColumns& view, const Plane<const std::int16_t>& image, int begin, int first_row,
+                             int rows) {
   for (int i = static_cast<int>(threadIdx.x); i < view.count; i += warps * warp_lanes) {
     const int column = view.first + i;
     ColumnSums sums{0, 0};
