@@ -25,6 +25,20 @@ inline unsigned blocks_for(int count, int size) {
   return static_cast<unsigned>((count + size - 1) / size);
 }
 
+#if !defined(ROADSTEREO_CUDA_EMULATED)
+/// Lets blocks of the kernel have more shared memory than usual. The kernel is everybody's: it gets as much as the
+/// device has, which is the same number in every thread, and not what this launch needs.
+inline void ask_for_shared_memory(const void* kernel, std::size_t bytes) {
+  constexpr std::size_t without_asking = 48U << 10;
+  if (bytes <= without_asking) return;
+  int device = 0, most = 0;
+  ROADSTEREO_CUDA(cudaGetDevice(&device));
+  ROADSTEREO_CUDA(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
+  require_shared_memory(bytes, most);
+  ROADSTEREO_CUDA(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, most));
+}
+#endif
+
 /// Runs `kernel` in the stream; what keeps it from starting is thrown.
 template <class... Parameters, class... Arguments>
 void launch(void (*kernel)(Parameters...), const LaunchShape& shape, cudaStream_t stream, Arguments&&... arguments) {
@@ -34,12 +48,8 @@ void launch(void (*kernel)(Parameters...), const LaunchShape& shape, cudaStream_
   static_cast<void>(stream);
   emulated::run_kernel(shape.grid, shape.block, shape.shared_bytes, [&] { std::apply(kernel, values); });
 #else
-  constexpr std::size_t without_asking = 48U << 10;
   const void* function = reinterpret_cast<const void*>(kernel);
-  if (shape.shared_bytes > without_asking) {
-    ROADSTEREO_CUDA(cudaFuncSetAttribute(function, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                         static_cast<int>(shape.shared_bytes)));
-  }
+  ask_for_shared_memory(function, shape.shared_bytes);
   std::apply(
       [&](auto&... value) {
         void* pointers[] = {static_cast<void*>(&value)...};
