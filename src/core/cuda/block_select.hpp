@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/cuda/block_reduce.hpp"
+#include "core/cuda/unroll.hpp"
 
 // For kernels whose blocks have whole warps in one dimension: every thread of the block calls these.
 namespace roadstereo::cuda {
@@ -83,6 +84,7 @@ __device__ void choose_bin(int digit, RankOf rank_of, SelectScratch& scratch) {
 /// thread.
 template <class KeyOfItem, class RankOf>
 __device__ SelectedKey block_select(int count, KeyOfItem key_of_item, RankOf rank_of, SelectScratch& scratch) {
+  constexpr int at_once = 4;  // items of a thread that are read before one is counted: memory takes long
   const int thread = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
   for (int i = thread; i < SelectScratch::digits * SelectScratch::bins; i += threads) {
     scratch.counts[i / SelectScratch::bins][i % SelectScratch::bins] = 0;
@@ -91,10 +93,21 @@ __device__ SelectedKey block_select(int count, KeyOfItem key_of_item, RankOf ran
   std::uint32_t prefix = 0;
   for (int digit = 0; digit < SelectScratch::digits; ++digit) {
     const int shift = 24 - 8 * digit;
-    for (int i = thread; i < count; i += threads) {
-      std::uint32_t key = 0;
-      if (!key_of_item(i, key)) continue;
-      if (digit == 0 || key >> (shift + 8) == prefix) atomicAdd(&scratch.counts[digit][(key >> shift) & 255U], 1);
+    for (int first = thread; first < count; first += at_once * threads) {
+      std::uint32_t keys[at_once] = {};
+      bool has[at_once];
+      ROADSTEREO_UNROLL
+      for (int k = 0; k < at_once; ++k) {
+        const int i = first + k * threads;
+        has[k] = key_of_item(i < count ? i : first, keys[k]);  // no branch keeps the reads from each other
+      }
+      ROADSTEREO_UNROLL
+      for (int k = 0; k < at_once; ++k) {
+        const bool counts = has[k] && first + k * threads < count;
+        if (counts && (digit == 0 || keys[k] >> (shift + 8) == prefix)) {
+          atomicAdd(&scratch.counts[digit][(keys[k] >> shift) & 255U], 1);
+        }
+      }
     }
     __syncthreads();
     if (thread < warp_lanes) choose_bin(digit, rank_of, scratch);

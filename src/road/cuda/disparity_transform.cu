@@ -46,9 +46,9 @@ __device__ double median_near(const Sample& sample, double delta_t, SelectScratc
   const auto key = [&](int i, std::uint32_t& out) {
     const float value = sample.heights[i] + static_cast<float>(delta_t);
     const auto residual = static_cast<float>(fabs(value - delta_t));
-    const bool near = residual <= static_cast<float>(spread_nearest_px);
-    if (near) out = static_cast<std::uint32_t>(residual * steps);
-    return near;
+    constexpr auto nearest = static_cast<float>(spread_nearest_px);
+    out = static_cast<std::uint32_t>(fminf(residual, nearest) * steps);  // also of NaN, which does not count
+    return residual <= nearest;
   };
   const SelectedKey median = block_select(sample.columns * sample.rows, key, MiddleRank{}, scratch);
   return median.of > 0 ? static_cast<double>(median.key) / steps : 0;
