@@ -149,7 +149,9 @@ __global__ void __launch_bounds__(1024) fit_map(MaskedMap map, SampledMap sample
     if (max_iterations > 0) own.has_plane = fit_least_squares(sampled, state, own.plane) ? 1 : 0;
   }
   if (own.has_plane != 0) own.moments = fit_moments(sampled, own.plane, state);
-  if (thread() == 0) *figures = *result = own;
+  if (thread() != 0) return;
+  *figures = own;
+  *result = own;  // not read back: it lies in the host's memory
 }
 
 }  // namespace

@@ -79,7 +79,9 @@ __global__ void __launch_bounds__(1024) fit_close(SearchMemory search, SearchMem
   const bool needed = own.around.found != 0;
   if (needed) own.close = fit_search(search, own.around.fit.plane, fit);
   if (own.close.fit.found != 0) measure_range(around, own.close.fit.plane, own);
-  if (threadIdx.x == 0) *figures = *result = own;
+  if (threadIdx.x != 0) return;
+  *figures = own;
+  *result = own;  // not read back: it lies in the host's memory
 }
 
 LaunchShape fit_shape(int count) {
