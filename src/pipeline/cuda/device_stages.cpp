@@ -33,8 +33,10 @@ Device require_device() {
 /// The host waits for the device twice a frame: for the road, which it judges, and for the end.
 class DeviceStages final : public FrameStages {
  public:
-  DeviceStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
-      : options_(options), calibration_(calibration), matcher_(require_device().multiprocessors) {
+  /// The device must be usable: members already take memory of it.
+  DeviceStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration,
+               const Device& device)
+      : options_(options), calibration_(calibration), matcher_(device.multiprocessors) {
     stream_.emplace();
     if (options.narrow_search || options.matcher.prior_slope > 0) coarse_look_.emplace(options.coarse_search);
   }
@@ -250,7 +252,7 @@ void DeviceStages::deliver(FrameResult& result) {
 
 std::unique_ptr<FrameStages> make_device_stages(const PipelineOptions& options,
                                                 const std::optional<StereoCalibration>& calibration) {
-  return std::make_unique<DeviceStages>(options, calibration);
+  return std::make_unique<DeviceStages>(options, calibration, require_device());
 }
 
 }  // namespace roadstereo::cuda
