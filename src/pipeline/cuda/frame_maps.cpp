@@ -24,8 +24,8 @@ void FrameMaps::resize(int width, int height) {
 
 void FrameMaps::download(cudaStream_t stream) {
   on_host_.reserve(floats_for(pixels_));
-  ROADSTEREO_CUDA(cudaMemcpyAsync(on_host_.data(), floats_.data(), floats_for(pixels_) * sizeof(float),
-                                  cudaMemcpyDeviceToHost, stream));
+  const std::size_t bytes = pixels_ * (maps_of_floats * sizeof(float) + sizeof(std::int16_t));
+  ROADSTEREO_CUDA(cudaMemcpyAsync(on_host_.data(), floats_.data(), bytes, cudaMemcpyDeviceToHost, stream));
 }
 
 void FrameMaps::take(FrameResult& result) const {
