@@ -20,6 +20,9 @@ __global__ void sum_tile(Plane<const std::int16_t> left, Plane<const std::int16_
                          float noise_variance, BlockSums sums) {
   const int view = static_cast<int>(blockIdx.z);
   const Plane<const std::int16_t> image = view == 0 ? left : right;
+  // Parameters that are indexed would be copied to memory.
+  const Plane<ColumnSums> sums_of_columns = view == 0 ? sums.columns[0] : sums.columns[1];
+  const Plane<BlockPart> sums_of_blocks = view == 0 ? sums.blocks[0] : sums.blocks[1];
   const int first_u = static_cast<int>(blockIdx.x) * tile_columns - radius;
   const int first_v = static_cast<int>(blockIdx.y) * tile_rows;
   const int wide = tile_columns + 2 * radius;
@@ -34,7 +37,7 @@ __global__ void sum_tile(Plane<const std::int16_t> left, Plane<const std::int16_
     }
     columns[i] = column;
     const bool in_tile = u >= first_u + radius && u < first_u + radius + tile_columns;
-    if (in_tile && u < image.width && v < image.height) sums.columns[view](u, v) = column;
+    if (in_tile && u < image.width && v < image.height) sums_of_columns(u, v) = column;
   }
   __syncthreads();
   const int x = static_cast<int>(threadIdx.x) % tile_columns, y = static_cast<int>(threadIdx.x) / tile_columns;
@@ -47,7 +50,7 @@ __global__ void sum_tile(Plane<const std::int16_t> left, Plane<const std::int16_
     squares += column.squares;
   }
   const int rows = min(v + radius, image.height - 1) - max(v - radius, 0) + 1;
-  sums.blocks[view](u, v) = block_part(sum, squares, rows * (2 * radius + 1), noise_variance);
+  sums_of_blocks(u, v) = block_part(sum, squares, rows * (2 * radius + 1), noise_variance);
 }
 
 __global__ void take_first_columns(const int* first, int rows, int radius, int* of_blocks) {

@@ -157,6 +157,21 @@ __device__ float clipped_cost(const ViewToMatch& view, const CostRow& row, float
                           block_part(other_sum, other_squares, n, noise_variance), products, n);
 }
 
+/// The same at four disparities. Not unrolled: few tiles need it, and its registers would be taken from the weights.
+__device__ float4 clipped_costs(const ViewToMatch& view, const CostRow& row, float noise_variance, int halo_i, int i,
+                                int d) {
+  float4 costs = make_float4(no_cost, no_cost, no_cost, no_cost);
+#pragma unroll 1
+  for (int k = 0; k < chunk; ++k) {
+    const float cost = clipped_cost(view, row, noise_variance, halo_i, i, d + k, k);
+    costs.x = k == 0 ? cost : costs.x;
+    costs.y = k == 1 ? cost : costs.y;
+    costs.z = k == 2 ? cost : costs.z;
+    costs.w = k == 3 ? cost : costs.w;
+  }
+  return costs;
+}
+
 /// The costs of own pixel i at four disparities.
 __device__ float4 four_costs(const ViewToMatch& view, const CostRow& row, float noise_variance, int halo_i, int i,
                              int d) {
@@ -164,13 +179,7 @@ __device__ float4 four_costs(const ViewToMatch& view, const CostRow& row, float 
   if (i < 0 || i > row.last_own || i - d < row.first_other) return costs;
   const bool whole =
       i >= row.radius && i + row.radius <= row.last_own && i - d - (chunk - 1) - row.radius >= row.first_other;
-  if (!whole) {
-    costs.x = clipped_cost(view, row, noise_variance, halo_i, i, d, 0);
-    costs.y = clipped_cost(view, row, noise_variance, halo_i, i, d + 1, 1);
-    costs.z = clipped_cost(view, row, noise_variance, halo_i, i, d + 2, 2);
-    costs.w = clipped_cost(view, row, noise_variance, halo_i, i, d + 3, 3);
-    return costs;
-  }
+  if (!whole) return clipped_costs(view, row, noise_variance, halo_i, i, d);
   int4 sums = make_int4(0, 0, 0, 0);
   const int4* products = row.products + (i - halo_i);
   for (int k = 0; k <= 2 * row.radius; ++k) {

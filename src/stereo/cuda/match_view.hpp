@@ -64,7 +64,7 @@ struct ViewLaunch {
   std::size_t shared_bytes;
 };
 
-/// For a device with so many multiprocessors and so much shared memory for a block.
+/// For a device with so many multiprocessors.
 ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height, int disparities, int multiprocessors);
 
 /// Matching costs (eq. c), bilateral aggregation (eqs. fbs, omega) and winner-take-all of one view, in one kernel:
