@@ -9,8 +9,9 @@ namespace roadstereo {
 /// A block whose variance (fixed-point grey²) is below this has no texture: its cost is 1.
 constexpr float smallest_variance = 0.25F;
 
-/// One view's part of a block of n pixels, of grey levels less mid-grey: S = n·mean + residue, mean whole.
-struct BlockPart {
+/// One view's part of a block of n pixels, of grey levels less mid-grey: S = n·mean + residue, mean whole. Aligned, so
+/// that a GPU reads it in one piece.
+struct alignas(16) BlockPart {
   int sum;                  ///< S = Σ i
   int mean;                 ///< S / n, rounded
   float residue;            ///< S − n·mean

@@ -10,7 +10,8 @@
 namespace roadstereo::cuda {
 
 /// Sums over the rows of a block at one column: of the grey values less mid-grey, and of their squares.
-struct ColumnSums {
+/// Aligned, so that both are read at once.
+struct alignas(8) ColumnSums {
   int sum;
   int squares;
 };

@@ -20,7 +20,7 @@ constexpr int columns_each = 22;  // of a warp: with the block's radius of 3 on 
 constexpr int segment = warps * columns_each;
 
 /// Sums of one column over the rows of a block.
-struct ColumnSums {
+struct alignas(8) ColumnSums {
   int sum, square;
 };
 

@@ -13,7 +13,7 @@ constexpr int warps = 4;
 constexpr int segment = 32;  // columns of a block
 
 /// Sums of the gradients of one column over the rows of a block.
-struct GradientSums {
+struct alignas(8) GradientSums {
   int squares, products;
 };
 
