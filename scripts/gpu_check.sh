@@ -30,7 +30,7 @@ ctest --test-dir build-standalone --output-on-failure -j "$(nproc)"
 sanitize() {
   local test=$1 filter=$2 tool
   [[ $("$test" --gtest_list_tests --gtest_filter="$filter") == *$'\n  '* ]] || return 0  # the filter leaves nothing of it
-  for tool in memcheck racecheck initcheck; do
+  for tool in memcheck racecheck initcheck synccheck; do
     echo "compute-sanitizer: $tool of $(basename "$test")"
     compute-sanitizer --tool "$tool" --error-exitcode 1 "$test" --gtest_filter="$filter" --gtest_brief=1
   done
