@@ -473,8 +473,11 @@ void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const W
 ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height, int disparities, int multiprocessors) {
   constexpr int blocks_per_multiprocessor = 2;
   constexpr std::size_t most_energies = std::size_t{64} << 20;  // 256 MB
+  constexpr int reserve = 64;                                   // disparities are counted in multiples of this
   ViewLaunch plan;
-  plan.energies_per_block = static_cast<std::size_t>(threads) * static_cast<std::size_t>(disparities);
+  // The number of disparities follows the road: a few more in the next frame need no new memory.
+  const int with_reserve = reserve * static_cast<int>(blocks_for(disparities, reserve));
+  plan.energies_per_block = static_cast<std::size_t>(threads) * static_cast<std::size_t>(with_reserve);
   const int tiles = ((width + tile_columns - 1) / tile_columns) * ((height + tile_rows - 1) / tile_rows);
   const auto room = static_cast<int>(most_energies / plan.energies_per_block);
   const int resident = blocks_per_multiprocessor * multiprocessors;
