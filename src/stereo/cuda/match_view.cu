@@ -161,7 +161,7 @@ __device__ float clipped_cost(const ViewToMatch& view, const CostRow& row, float
 __device__ float4 clipped_costs(const ViewToMatch& view, const CostRow& row, float noise_variance, int halo_i, int i,
                                 int d) {
   float4 costs = make_float4(no_cost, no_cost, no_cost, no_cost);
-#pragma unroll 1
+  ROADSTEREO_DO_NOT_UNROLL
   for (int k = 0; k < chunk; ++k) {
     const float cost = clipped_cost(view, row, noise_variance, halo_i, i, d + k, k);
     costs.x = k == 0 ? cost : costs.x;
