@@ -1,7 +1,7 @@
 #pragma once
 
-// Before a loop whose body indexes an array: straight code, so that the array lies in registers. Or the opposite, before
-// one that would take registers from what runs more often.
+// Before a loop whose body indexes an array: straight code, so that the array lies in registers. Or the opposite,
+// before one that would take registers from what runs more often.
 #if defined(__CUDACC__)
 #define ROADSTEREO_UNROLL _Pragma("unroll")
 #define ROADSTEREO_DO_NOT_UNROLL _Pragma("unroll 1")
