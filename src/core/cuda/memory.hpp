@@ -90,15 +90,11 @@ class PinnedArray {
   std::size_t capacity_ = 0;
 };
 
-/// A stream of its own, or the caller's.
+/// A stream that waits for no other.
 class Stream {
  public:
-  explicit Stream(cudaStream_t of_caller = nullptr) : stream_(of_caller), own_(of_caller == nullptr) {
-    if (own_) ROADSTEREO_CUDA(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
-  }
-  ~Stream() {
-    if (own_) static_cast<void>(cudaStreamDestroy(stream_));
-  }
+  Stream() { ROADSTEREO_CUDA(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking)); }
+  ~Stream() { static_cast<void>(cudaStreamDestroy(stream_)); }
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;
 
@@ -107,7 +103,6 @@ class Stream {
 
  private:
   cudaStream_t stream_ = nullptr;
-  bool own_;
 };
 
 }  // namespace roadstereo::cuda

@@ -37,7 +37,6 @@ class DeviceStages final : public FrameStages {
   DeviceStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration,
                const Device& device)
       : options_(options), calibration_(calibration), matcher_(device.multiprocessors) {
-    stream_.emplace();
     if (options.narrow_search || options.matcher.prior_slope > 0) coarse_look_.emplace(options.coarse_search);
   }
 
@@ -111,26 +110,26 @@ class DeviceStages final : public FrameStages {
   void deliver(FrameResult& result) override;
 
   void use_device(const DeviceUse& use) override {
-    stream_->wait();
-    stream_.emplace(use.stream);
+    wait();
+    stream_ = use.stream != nullptr ? use.stream : own_stream_.get();
     download_ = use.download;
   }
 
   DeviceMaps device_maps() const override {
-    return {
-        width_,        height_, maps_.grey().data, maps_.disparity().data, maps_.sigma().data, maps_.transformed().data,
-        stream_->get()};
+    return {width_, height_, maps_.grey().data, maps_.disparity().data, maps_.sigma().data, maps_.transformed().data,
+            stream_};
   }
 
  private:
-  cudaStream_t stream() const { return stream_->get(); }
+  cudaStream_t stream() const { return stream_; }
+  void wait() const { ROADSTEREO_CUDA(cudaStreamSynchronize(stream_)); }
   Plane<std::int16_t> plane(DeviceArray<std::int16_t>& pixels) const {
     return packed_plane(pixels.data(), width_, height_);
   }
 
   /// Waits for the device, and refuses what the grey levels show to be no pair.
   void wait_for_pair() {
-    stream_->wait();
+    wait();
     const PairFindings& found = to_grey_.findings();
     require_pair({{found.left_varies != 0, static_cast<std::int16_t>(found.left_level)},
                   {found.right_varies != 0, static_cast<std::int16_t>(found.right_level)},
@@ -155,7 +154,8 @@ class DeviceStages final : public FrameStages {
 
   PipelineOptions options_;
   std::optional<StereoCalibration> calibration_;
-  std::optional<Stream> stream_;
+  Stream own_stream_;
+  cudaStream_t stream_ = own_stream_.get();  ///< or the caller's
   bool download_ = true;
 
   int width_ = 0, height_ = 0;
@@ -195,7 +195,7 @@ bool DeviceStages::fit_geometry(const std::optional<RoadModel>& prior, double in
     transform_.run(maps_.disparity(), {nullptr, {}}, {0, 0}, maps_.transformed(), stream());
     if (!robust) sums_.run(map, stream());
   }
-  stream_->wait();
+  wait();
   result.valid_share = static_cast<double>(transform_.figures().valid) / (static_cast<double>(width_) * height_);
   if (result.valid_share < least_share) return false;
   if (transformed_) {
@@ -205,7 +205,7 @@ bool DeviceStages::fit_geometry(const std::optional<RoadModel>& prior, double in
   } else {
     result.geometry = solve_map(sums_.sums(), width_, height_, initial_roll_rad, options);
     fit_.measure(map, plane_terms(result.geometry.plane), stream());
-    stream_->wait();
+    wait();
     finish_measured(fit_.figures(), width_, height_, options, result.geometry);
   }
   return true;
@@ -213,7 +213,7 @@ bool DeviceStages::fit_geometry(const std::optional<RoadModel>& prior, double in
 
 RoadGeometry DeviceStages::fit_on_host() {
   download(maps_.disparity(), disparity_on_host_);
-  stream_->wait();
+  wait();
   return fit_road_geometry(disparity_on_host_, std::nullopt, std::nullopt, 0, options_.road_geometry, options_.threads);
 }
 
@@ -221,7 +221,7 @@ void DeviceStages::transform(FrameResult& result) {
   if (!transformed_) {
     clock_.mark(StageClock::fitted, stream());
     enqueue_transform({nullptr, plane_terms(result.geometry.plane)}, result);
-    stream_->wait();
+    wait();
   }
   const TransformFigures& found = transform_.figures();
   result.delta_t = found.delta_t;
@@ -238,7 +238,7 @@ void DeviceStages::leave_untransformed(FrameResult&) {
 }
 
 void DeviceStages::deliver(FrameResult& result) {
-  stream_->wait();
+  wait();
   clock_.read(result.ms);
   if (download_) {
     maps_.take(result);
