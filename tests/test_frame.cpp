@@ -60,6 +60,13 @@ TEST(Frame, RefusesSizesAndLevelsThatMakeNoSense) {
   EXPECT_THROW(to_grey({data.data(), 8193, 40, 8200, SampleType::u8, ChannelOrder::grey}, 0, grey), Error);
   EXPECT_THROW(to_grey({nullptr, 40, 40, 40, SampleType::u8, ChannelOrder::grey}, 0, grey), Error);
   EXPECT_THROW(to_grey({data.data(), 40, 40, 100, SampleType::u8, ChannelOrder::grey}, 300, grey), Error);
+  EXPECT_THROW(to_grey({data.data(), 40, 40, 39, SampleType::u8, ChannelOrder::grey}, 0, grey), Error);
+  EXPECT_THROW(to_grey({data.data(), 40, 40, 119, SampleType::u8, ChannelOrder::bgr}, 0, grey), Error);
+  alignas(2) static const std::uint8_t samples[40 * 83]{};
+  EXPECT_NO_THROW(to_grey({samples, 40, 40, 80, SampleType::u16, ChannelOrder::grey}, 0, grey));
+  EXPECT_THROW(to_grey({samples, 40, 40, 81, SampleType::u16, ChannelOrder::grey}, 0, grey), Error);
+  EXPECT_THROW(to_grey({samples + 1, 40, 40, 80, SampleType::u16, ChannelOrder::grey}, 0, grey), Error);
+  EXPECT_NO_THROW(to_grey({samples + 39 * 80, 40, 40, -80, SampleType::u16, ChannelOrder::grey}, 0, grey));
 }
 
 TEST(Image, KeepsItsMemoryWhenTheSizeComesBack) {

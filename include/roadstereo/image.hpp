@@ -116,7 +116,8 @@ inline constexpr int grey_max = 255 * grey_scale;  ///< value of white
 
 /// Converts a camera frame to grey (Rec. 601 luma for colour).
 /// `white_level` is the sample value of white; 0 takes the largest value of the sample type (255 or 65535).
-/// Throws Error for a null frame or a size outside 32×32 … 8192×8192.
+/// Throws Error for a null frame, a size outside 32×32 … 8192×8192, rows that overlap, or 16-bit samples at odd
+/// addresses.
 void to_grey(const FrameView& frame, double white_level, GreyImage& grey);
 
 }  // namespace roadstereo

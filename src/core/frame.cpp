@@ -1,4 +1,5 @@
 #include <cstdint>
+#include <cstdlib>
 
 #include "core/grey_weights.hpp"
 #include "roadstereo/error.hpp"
@@ -69,12 +70,30 @@ FrameView Frame::view() const {
   return {bytes.data(), width, height, sample_bytes * channel_count(order) * width, sample, order};
 }
 
+namespace {
+
+/// Samples of 16 bits are read as such, and rows do not overlap.
+void require_layout(const FrameView& frame) {
+  const std::ptrdiff_t sample_bytes = frame.sample == SampleType::u16 ? 2 : 1;
+  const std::ptrdiff_t row_bytes = sample_bytes * channel_count(frame.order) * frame.width;
+  if (std::abs(frame.stride_bytes) < row_bytes) {
+    fail("the image's rows are ", frame.stride_bytes, " bytes apart; ", frame.width, " pixels need ", row_bytes);
+  }
+  const auto address = reinterpret_cast<std::intptr_t>(frame.data);
+  if (address % sample_bytes != 0 || frame.stride_bytes % sample_bytes != 0) {
+    fail("the image has samples of 16 bits at an odd address, or rows an odd number of bytes apart");
+  }
+}
+
+}  // namespace
+
 GreyWeights grey_weights(const FrameView& frame, double white_level) {
   if (frame.data == nullptr) fail("the image has no data");
   if (frame.width < min_side || frame.height < min_side || frame.width > max_side || frame.height > max_side) {
     fail("the image has ", frame.width, "×", frame.height, " pixels; it must have between ", min_side, "×", min_side,
          " and ", max_side, "×", max_side);
   }
+  require_layout(frame);
   const double largest = frame.sample == SampleType::u16 ? 65535 : 255;
   if (!(white_level >= 0 && white_level <= largest)) {
     fail("white_level is ", white_level, "; it must be between 0 (the sample type's largest) and ", largest);

@@ -52,6 +52,7 @@ struct Pipeline::State {
   CarriedState carried;
   int width = 0, height = 0;  ///< of the frame, pixels
   bool has_frame = false;     ///< whether `result` belongs to one frame, whole
+  bool has_maps = false;      ///< whether the maps that a device keeps do
 
   std::pmr::unsynchronized_pool_resource memory{{.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
   FrameResult result;
@@ -187,7 +188,7 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 const FrameResult& Pipeline::process(const FrameView& left, const FrameView& right) {
   State& s = *state_;
   const ScratchScope scratch(s.memory);
-  s.has_frame = false;
+  s.has_frame = s.has_maps = false;
   s.result.warnings.clear();
   Stopwatch frame, watch;
   s.prepare(left, right);
@@ -210,7 +211,7 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
   s.result.ms.deliver = watch.lap();
   s.result.ms.total = frame.lap();
   s.summarise();
-  s.has_frame = true;
+  s.has_frame = s.has_maps = true;
   return s.result;
 }
 
@@ -241,6 +242,9 @@ DamageMap find_damage(const FrameResult& frame, const std::optional<StereoCalibr
 
 void find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
                  const DamageOptions& options, int threads, DamageMap& result) {
+  if (frame.disparity.empty()) {
+    fail("the frame has no maps on the host, where damage is looked for: it is none, or they were left on the device");
+  }
   if (!frame.geometry_found) {
     result = no_damage(frame.disparity.width(), frame.disparity.height(), "no road was found");
     return;
@@ -260,7 +264,7 @@ const CarriedState& Pipeline::carried() const {
 }
 
 void Pipeline::carry_on(const CarriedState& carried) {
-  state_->has_frame = false;
+  state_->has_frame = state_->has_maps = false;
   state_->carried = carried;
 }
 
@@ -270,8 +274,9 @@ void Pipeline::use_device(const DeviceUse& use) {
 }
 
 DeviceMaps Pipeline::device_maps() const {
-  if (state_->carried.width == 0) fail("no frame was processed yet");
-  return state_->stages->device_maps();
+  const DeviceMaps maps = state_->stages->device_maps();
+  if (!state_->has_maps) fail("no frame was processed yet, or the last one was refused or forgotten");
+  return maps;
 }
 
 void Pipeline::reset() {

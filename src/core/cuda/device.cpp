@@ -24,6 +24,8 @@ std::string said(cudaError_t status) {
 Device find_device() {
   int count = 0;
   if (const cudaError_t status = cudaGetDeviceCount(&count); status != cudaSuccess) {
+    int driver = 0;
+    if (cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) return unusable("no NVIDIA driver is installed");
     return unusable("CUDA finds no device: " + said(status));
   }
   if (count == 0) return unusable("CUDA finds no device");

@@ -13,16 +13,7 @@ class StageClock {
  public:
   enum Mark { begin, prepared, road_known, transformed_target, looked, matched, refined, fitted, transformed, marks };
 
-  StageClock() {
-    for (cudaEvent_t& event : events_) ROADSTEREO_CUDA(cudaEventCreate(&event));
-  }
-  ~StageClock() {
-    for (cudaEvent_t event : events_) static_cast<void>(cudaEventDestroy(event));
-  }
-  StageClock(const StageClock&) = delete;
-  StageClock& operator=(const StageClock&) = delete;
-
-  void mark(Mark at, cudaStream_t stream) { ROADSTEREO_CUDA(cudaEventRecord(events_[at], stream)); }
+  void mark(Mark at, cudaStream_t stream) { ROADSTEREO_CUDA(cudaEventRecord(events_[at].get(), stream)); }
 
   /// Every mark must have been passed. Leaves `total` alone: it is for a clock on the host, which sees what lies
   /// between.
@@ -40,11 +31,23 @@ class StageClock {
  private:
   double between(Mark from, Mark to) const {
     float ms = 0;
-    ROADSTEREO_CUDA(cudaEventElapsedTime(&ms, events_[from], events_[to]));
+    ROADSTEREO_CUDA(cudaEventElapsedTime(&ms, events_[from].get(), events_[to].get()));
     return static_cast<double>(ms);
   }
 
-  std::array<cudaEvent_t, marks> events_{};
+  class Event {
+   public:
+    Event() { ROADSTEREO_CUDA(cudaEventCreate(&event_)); }
+    ~Event() { static_cast<void>(cudaEventDestroy(event_)); }
+    Event(const Event&) = delete;
+    Event& operator=(const Event&) = delete;
+    cudaEvent_t get() const { return event_; }
+
+   private:
+    cudaEvent_t event_ = nullptr;
+  };
+
+  std::array<Event, marks> events_;
 };
 
 }  // namespace roadstereo::cuda

@@ -13,6 +13,7 @@ namespace roadstereo::cuda {
 /// The window's taps with their weights by distance, on both sides of the bus.
 void DeviceMatcher::use(const MatcherOptions& options, cudaStream_t stream) {
   if (options_ == options) return;
+  options_.reset();                                // until all is made: memory may run out
   ROADSTEREO_CUDA(cudaStreamSynchronize(stream));  // what still reads the taps of before
   const std::vector<Tap> taps = trimmed_taps(options);
   taps_.reserve(taps.size());
