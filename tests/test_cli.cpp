@@ -421,7 +421,7 @@ TEST_F(CommandLine, BenchmarkMeasuresStagesAndPeers) {
   EXPECT_EQ(figures["width"], 320);
   EXPECT_EQ(figures["disparities"], 16);
   EXPECT_EQ(figures["total"]["runs"], 2);
-  EXPECT_EQ(figures["stages"].size(), 8U);
+  EXPECT_EQ(figures["stages"].size(), 9U);
   EXPECT_EQ(figures["peers"].size(), 4U);
   double stages = 0;
   for (const auto& stage : figures["stages"]) stages += stage["min_ms"].get<double>();
