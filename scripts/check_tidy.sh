@@ -8,17 +8,21 @@ if [ ! -f build/compile_commands.json ]; then
   echo "build/compile_commands.json is missing: run scripts/test.sh first" >&2
   exit 2
 fi
-# The compile commands come from GCC, some of whose warning options clang does not know. The analyzer follows paths
-# through the embedded library alone, where it takes a third of the time, and the sanitizers see the rest; the
-# experiments of `evaluate` are looked at with --all.
+# The compile commands come from GCC, some of whose warning options clang does not know. Left to --all: the analyzer, which
+# follows paths through the embedded library and takes a third of the time there (the sanitizers see what they find), and
+# the experiments of `evaluate`.
 tidy() {
   # Only what this build compiles: there may be no CUDA, for example.
   while read -r -d '' file; do
     if grep -qF "\"file\": \"$PWD/$file\"" build/compile_commands.json; then printf '%s\0' "$file"; fi
   done | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build --quiet --extra-arg=-Wno-unknown-warning-option "$@"
 }
-find src -name '*.cpp' -not -path 'src/io/*' -print0 | tidy
+analyzer='-clang-analyzer-*'
 experiments=(-not -path 'apps/roadstereo/evaluate/*')
-[ "${1:-}" != --all ] || experiments=()
+if [ "${1:-}" = --all ]; then
+  analyzer=
+  experiments=()
+fi
+find src -name '*.cpp' -not -path 'src/io/*' -print0 | tidy "--checks=$analyzer"
 find src/io apps -name '*.cpp' "${experiments[@]}" -print0 | tidy '--checks=-clang-analyzer-*'
 echo "Tidy: good."
