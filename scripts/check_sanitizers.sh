@@ -3,12 +3,12 @@
 # sanitizer. Left out, because sanitizers make them last too long: the experiments of `evaluate`, the tests on real data
 # and in a browser, and the largest comparisons with the reference engine, whose small ones take the same ways through
 # the code. Under the thread sanitizer also what has no threads, or the same as another test: other scenes and presets,
-# and the emulated kernels but for two pipelines at a time.
+# and the emulated kernels but for two engines at a time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 slow='DamageCommand.Evaluate|odd_large|large_windows|_100$|Peers.Fast|RoadScene|InBrowser|CudaPreset.*/paper|CudaPipeline.Allocates'
-same_threads='/cuda|Cuda(Preset|Pipeline.(Takes|Refuses|Goes|Without))|EveryPreset.*/(paper|fast)|NamedScene|OfScene|Synth.Truth|Synth.EveryScene|FindDamage.(Kerb|Intact|Measures)|RowAlignment.FindsTheOffset|Pipeline.(Straight|Corrected|Colour|RollOf|WorksWithout|RowsThat|Refuses)'
+same_threads='/cuda|Cuda(Preset|Pipeline)|EveryPreset.*/(paper|fast)|NamedScene|OfScene|Synth.Truth|Synth.EveryScene|FindDamage.(Kerb|Intact|Measures)|RowAlignment.FindsTheOffset|Pipeline.(Straight|Corrected|Colour|RollOf|WorksWithout|RowsThat|Refuses)'
 threaded=(test_alignment test_carry_over test_coarse_search test_cuda_pipeline test_damage test_engines test_parallel
           test_perspective test_pipeline test_queues test_refinement test_road_geometry test_road_model test_synth)
 
@@ -23,6 +23,6 @@ check() {
 }
 
 export UBSAN_OPTIONS=print_stacktrace=1
-check asan "$slow|CudaPipeline.TwoInTwo"
+check asan "$slow"
 check tsan "$slow|$same_threads|NOT_BUILT" "${threaded[@]}"
 echo "Sanitizers: good."

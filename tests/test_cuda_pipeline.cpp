@@ -15,6 +15,7 @@
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
+#include "textured_pair.hpp"
 #if defined(ROADSTEREO_CUDA_EMULATED)
 #include "core/cuda/emulated/run_kernel.hpp"
 #endif
@@ -148,7 +149,6 @@ TEST_F(CudaPipeline, TakesImagesInDeviceMemoryAndLeavesTheMapsThere) {
 }
 
 TEST_F(CudaPipeline, TwoInTwoThreadsKnowNothingOfEachOther) {
-  // Small, for the thread sanitizer.
   const synth::SyntheticPair uav = frame_of("uav", 0, 2), street = frame_of("street", 0, 2);
   const auto run = [](const synth::SyntheticPair& pair, int frames) {
     Pipeline pipeline(options_of("fast", "cuda"), pair.calibration);
@@ -164,6 +164,27 @@ TEST_F(CudaPipeline, TwoInTwoThreadsKnowNothingOfEachOther) {
   second.join();
   EXPECT_EQ(beside_uav, alone_uav);
   EXPECT_EQ(beside_street, alone_street);
+}
+
+class CudaMatching : public test::OnDevice {};
+
+/// Tiny, for the thread sanitizer.
+TEST_F(CudaMatching, TwoEnginesInTwoThreadsKnowNothingOfEachOther) {
+  const auto match = [](std::uint64_t seed) {
+    const auto pair = test::textured_pair(
+        40, 34, [](double, double) { return 3; }, seed);
+    MatcherOptions options;
+    options.aggregation_radius = 2;
+    MatchMaps maps;
+    make_engine("cuda", 1)->match({pair.reference, pair.target, nullptr, 6}, options, maps);
+    return maps.winner;
+  };
+  Image<std::int16_t> first, second;
+  std::thread beside([&] { first = match(1); });
+  second = match(2);
+  beside.join();
+  EXPECT_EQ(first, match(1));
+  EXPECT_EQ(second, match(2));
 }
 
 TEST_F(CudaPipeline, RefusesWhatTheHostRefuses) {
