@@ -100,7 +100,7 @@ TEST(CudaEmulation, FailuresCarryTheCallAndWhatCudaSays) {
     FAIL();
   } catch (const SystemError& error) {
     EXPECT_EQ(std::string(error.what()),
-              "CUDA: cudaMalloc(&memory, count * sizeof(T)) failed: out of memory (cudaErrorMemoryAllocation)");
+              "CUDA: cudaMalloc(&memory, bytes) failed: out of memory (cudaErrorMemoryAllocation)");
   }
   array.reserve(4);  // and goes on after it
   EXPECT_NE(array.data(), nullptr);

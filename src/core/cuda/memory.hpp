@@ -10,21 +10,21 @@
 
 namespace roadstereo::cuda {
 
-/// Memory of the device. Grows and never shrinks, so that frames of one size allocate only once; growing forgets what
-/// was in it.
-template <class T>
-class DeviceArray {
+/// Memory that grows and never shrinks, so that frames of one size allocate only once; growing forgets what was in it.
+/// `Source` takes it and gives it back.
+template <class T, class Source>
+class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  DeviceArray() = default;
-  explicit DeviceArray(std::size_t count) { reserve(count); }
-  ~DeviceArray() { release(); }
-  DeviceArray(const DeviceArray&) = delete;
-  DeviceArray& operator=(const DeviceArray&) = delete;
-  DeviceArray(DeviceArray&& other) noexcept
+  GrowingArray() = default;
+  explicit GrowingArray(std::size_t count) { reserve(count); }
+  ~GrowingArray() { release(); }
+  GrowingArray(const GrowingArray&) = delete;
+  GrowingArray& operator=(const GrowingArray&) = delete;
+  GrowingArray(GrowingArray&& other) noexcept
       : data_(std::exchange(other.data_, nullptr)), capacity_(std::exchange(other.capacity_, 0)) {}
-  DeviceArray& operator=(DeviceArray&& other) noexcept {
+  GrowingArray& operator=(GrowingArray&& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(capacity_, other.capacity_);
     return *this;
@@ -34,9 +34,7 @@ class DeviceArray {
   void reserve(std::size_t count) {
     if (count <= capacity_) return;
     release();
-    void* memory = nullptr;
-    ROADSTEREO_CUDA(cudaMalloc(&memory, count * sizeof(T)));
-    data_ = static_cast<T*>(memory);
+    data_ = static_cast<T*>(Source::take(count * sizeof(T)));
     capacity_ = count;
   }
 
@@ -46,7 +44,7 @@ class DeviceArray {
 
  private:
   void release() {
-    static_cast<void>(cudaFree(data_));  // a destructor cannot report; what broke the device was reported before
+    Source::give_back(data_);
     data_ = nullptr;
     capacity_ = 0;
   }
@@ -54,41 +52,34 @@ class DeviceArray {
   T* data_ = nullptr;
   std::size_t capacity_ = 0;
 };
+
+// What gives memory back is called by destructors, which cannot report; what broke the device was reported before.
+
+struct DeviceMemory {
+  static void* take(std::size_t bytes) {
+    void* memory = nullptr;
+    ROADSTEREO_CUDA(cudaMalloc(&memory, bytes));
+    return memory;
+  }
+  static void give_back(void* memory) { static_cast<void>(cudaFree(memory)); }
+};
+
+struct PinnedMemory {
+  static void* take(std::size_t bytes) {
+    void* memory = nullptr;
+    ROADSTEREO_CUDA(cudaHostAlloc(&memory, bytes, cudaHostAllocMapped));
+    return memory;
+  }
+  static void give_back(void* memory) { static_cast<void>(cudaFreeHost(memory)); }
+};
+
+/// Memory of the device.
+template <class T>
+using DeviceArray = GrowingArray<T, DeviceMemory>;
 
 /// Memory of the host that the device reaches by itself: copies to and from it run beside kernels.
 template <class T>
-class PinnedArray {
-  static_assert(std::is_trivially_copyable_v<T>);
-
- public:
-  PinnedArray() = default;
-  explicit PinnedArray(std::size_t count) { reserve(count); }
-  ~PinnedArray() { release(); }
-  PinnedArray(const PinnedArray&) = delete;
-  PinnedArray& operator=(const PinnedArray&) = delete;
-
-  void reserve(std::size_t count) {
-    if (count <= capacity_) return;
-    release();
-    void* memory = nullptr;
-    ROADSTEREO_CUDA(cudaHostAlloc(&memory, count * sizeof(T), cudaHostAllocMapped));
-    data_ = static_cast<T*>(memory);
-    capacity_ = count;
-  }
-
-  T* data() { return data_; }
-  const T* data() const { return data_; }
-
- private:
-  void release() {
-    static_cast<void>(cudaFreeHost(data_));
-    data_ = nullptr;
-    capacity_ = 0;
-  }
-
-  T* data_ = nullptr;
-  std::size_t capacity_ = 0;
-};
+using PinnedArray = GrowingArray<T, PinnedMemory>;
 
 /// A stream that waits for no other.
 class Stream {
