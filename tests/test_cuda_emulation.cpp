@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
@@ -87,11 +88,23 @@ void race(int* out) {
   out[threadIdx.x] = shared[(threadIdx.x + 1) % blockDim.x];
 }
 
+#if defined(__SANITIZE_THREAD__)
+TEST(CudaEmulationDeathTest, AMissingBarrierIsADataRace) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  std::vector<int> out(64);
+  const auto run = [&] {
+    launch(race, {1, 64, 64 * sizeof(int)}, nullptr, out.data());
+    std::exit(0);
+  };
+  EXPECT_EXIT(run(), testing::ExitedWithCode(66), "data race.*\n.*\n.*race");
+}
+#else
 TEST(CudaEmulation, AMissingBarrierShows) {
   std::vector<int> out(64);
   launch(race, {1, 64, 64 * sizeof(int)}, nullptr, out.data());
   EXPECT_EQ(out[5], -1);  // bytes 0xFF: nothing was written yet
 }
+#endif
 
 TEST(CudaEmulation, FailuresCarryTheCallAndWhatCudaSays) {
   DeviceArray<float> array;

@@ -51,9 +51,9 @@ __device__ SearchFigures fit_search(const SearchMemory& search, const PlaneTerms
 }
 
 __global__ void __launch_bounds__(1024)
-    fit_around(SearchMemory search, PlaneSource previous, RobustFit fit, VerificationFigures* figures) {
+    fit_around(SearchMemory search, PlaneSource previous, RobustFit fit, SearchFigures* around) {
   const SearchFigures found = fit_search(search, previous.get(), fit);
-  if (threadIdx.x == 0) figures->around = found;
+  if (threadIdx.x == 0) *around = found;
 }
 
 /// Where the correspondences of the first search lie that are near the road.
@@ -74,14 +74,12 @@ __device__ void measure_range(const SearchMemory& around, const PlaneTerms& road
 }
 
 __global__ void __launch_bounds__(1024) fit_close(SearchMemory search, SearchMemory around, RobustFit fit,
-                                                  VerificationFigures* figures, VerificationFigures* result) {
-  VerificationFigures own{figures->around, {}, 0, 0, 0};
+                                                  const SearchFigures* found_around, VerificationFigures* result) {
+  VerificationFigures own{*found_around, {}, 0, 0, 0};
   const bool needed = own.around.found != 0;
   if (needed) own.close = fit_search(search, own.around.fit.plane, fit);
   if (own.close.fit.found != 0) measure_range(around, own.close.fit.plane, own);
-  if (threadIdx.x != 0) return;
-  *figures = own;
-  *result = own;  // not read back: it lies in the host's memory
+  if (threadIdx.x == 0) *result = own;  // not read back: it lies in the host's memory
 }
 
 LaunchShape fit_shape(int count) {
@@ -120,12 +118,12 @@ void RoadVerification::run(Plane<const std::int16_t> left, Plane<const std::int1
   const GuidedGrid first = grid(first_search_again), second = grid(close_search_again);
   const SearchMemory around = around_.memory(first.places()), close = close_.memory(second.places());
   const RobustFit fit{fine_fit_scale * pair.factor, with_roll, fine_fit_iterations};
-  VerificationFigures* figures = figures_.data();
+  SearchFigures* found_around = found_around_.data();
   match_near_plane(pair, first, previous, nullptr, around.slots, stream);
-  launch(fit_around, fit_shape(around.count), stream, around, previous, fit, figures);
-  match_near_plane(pair, second, {&figures->around.fit.plane, {}}, &figures->around.found, close.slots, stream);
+  launch(fit_around, fit_shape(around.count), stream, around, previous, fit, found_around);
+  match_near_plane(pair, second, {&found_around->fit.plane, {}}, &found_around->found, close.slots, stream);
   launch(fit_close, fit_shape(close.count > around.count ? close.count : around.count), stream, close, around, fit,
-         figures, result_.data());
+         found_around, result_.data());
 }
 
 }  // namespace roadstereo::cuda

@@ -28,8 +28,6 @@ class RoadVerification {
   void run(Plane<const std::int16_t> left, Plane<const std::int16_t> right, const PlaneSource& previous, bool with_roll,
            cudaStream_t stream);
 
-  /// The refined plane in device memory, for kernels that follow; means nothing unless the figures say so.
-  const PlaneTerms* plane() const { return &figures_.data()->close.fit.plane; }
   /// Once the stream was synchronised.
   const VerificationFigures& figures() const { return *result_.data(); }
 
@@ -46,7 +44,7 @@ class RoadVerification {
 
   Search around_, close_;
   DeviceArray<std::int16_t> pixels_;
-  DeviceArray<VerificationFigures> figures_{1};
+  DeviceArray<SearchFigures> found_around_{1};
   PinnedArray<VerificationFigures> result_{1};
 };
 

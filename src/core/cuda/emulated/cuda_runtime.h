@@ -146,29 +146,29 @@ inline float __int_as_float(int bits) {
   return value;
 }
 
+/// Puts `change(what was there)` at its place, whatever other threads do at the same time.
+template <class T, class Change>
+T change_at_once(T* at, Change change) {
+  T before = __atomic_load_n(at, __ATOMIC_RELAXED);
+  while (!__atomic_compare_exchange_n(at, &before, change(before), false, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+  return before;
+}
 template <class T>
 T atomicAdd(T* at, T value) {
-  const T before = *at;
-  *at = static_cast<T>(before + value);
-  return before;
+  return __atomic_fetch_add(at, value, __ATOMIC_RELAXED);
 }
 template <class T>
 T atomicMin(T* at, T value) {
-  const T before = *at;
-  *at = value < before ? value : before;
-  return before;
+  return change_at_once(at, [value](T before) { return value < before ? value : before; });
 }
 template <class T>
 T atomicMax(T* at, T value) {
-  const T before = *at;
-  *at = before < value ? value : before;
-  return before;
+  return change_at_once(at, [value](T before) { return before < value ? value : before; });
 }
 template <class T>
 T atomicOr(T* at, T value) {
-  const T before = *at;
-  *at = static_cast<T>(before | value);
-  return before;
+  return __atomic_fetch_or(at, value, __ATOMIC_RELAXED);
 }
 
 enum cudaError_t { cudaSuccess = 0, cudaErrorInvalidValue = 1, cudaErrorMemoryAllocation = 2 };

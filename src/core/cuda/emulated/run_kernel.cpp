@@ -13,7 +13,7 @@
 #if defined(__SANITIZE_ADDRESS__)
 #include <sanitizer/common_interface_defs.h>
 #endif
-#if defined(__SANITIZE_THREAD__)
+#if defined(ROADSTEREO_EMULATED_RACES)
 #include <sanitizer/tsan_interface.h>
 #endif
 
@@ -32,6 +32,13 @@ struct Left {
   unsigned exchange = 0;
 };
 
+/// Where threads meet, to the thread sanitizer: what each did before is ordered before what any does after. Two in
+/// turn, so that whoever goes on first and comes to the next barrier does not hand that to those who still come from
+/// this one.
+struct Meeting {
+  char at[2];
+};
+
 /// One way of execution that can be left and entered again. The scheduler's own has no stack of ours.
 struct Fiber {
   ucontext_t context{};
@@ -39,13 +46,15 @@ struct Fiber {
   bool started = false;
   std::unique_ptr<char[]> stack;
   Waits waits = Waits::no;
-  Left left[2];            ///< in two exchanges in turn, so that one barrier between them suffices
-  unsigned exchanges = 0;  ///< so far
+  Left left[2];                              ///< in two exchanges in turn, so that one barrier between them suffices
+  unsigned exchanges = 0;                    ///< so far
+  unsigned warp_waits = 0, block_waits = 0;  ///< of this block
+  Meeting of_warp{};                         ///< of the warp whose first lane this is
   Here here{};
 #if defined(__SANITIZE_ADDRESS__)
   void* fake_stack = nullptr;
 #endif
-#if defined(__SANITIZE_THREAD__)
+#if defined(ROADSTEREO_EMULATED_RACES)
   void* of_sanitizer = nullptr;
 #endif
 };
@@ -58,6 +67,8 @@ struct Block {
   Fiber* running = nullptr;
   const std::function<void()>* kernel = nullptr;
   std::exception_ptr failure;
+  Meeting meeting{};
+  char begun = 0;
   std::vector<unsigned char> shared;  ///< of just the size, so that the address sanitizer sees its end
   std::size_t launches = 0;
   const void* stack_of_scheduler = nullptr;
@@ -72,6 +83,19 @@ Block& block() {
   return own;
 }
 
+/// What came before in this thread is ordered before what follows accept() in another. Threads of a kernel are threads
+/// to the sanitizer, which nothing else orders: it sees a missing barrier as what it is, a race.
+void offer([[maybe_unused]] void* at) {
+#if defined(ROADSTEREO_EMULATED_RACES)
+  __tsan_release(at);
+#endif
+}
+void accept([[maybe_unused]] void* at) {
+#if defined(ROADSTEREO_EMULATED_RACES)
+  __tsan_acquire(at);
+#endif
+}
+
 void switch_fibers(Fiber& from, Fiber& to) {
 #if defined(__SANITIZE_ADDRESS__)
   Block& own = block();
@@ -79,8 +103,9 @@ void switch_fibers(Fiber& from, Fiber& to) {
   __sanitizer_start_switch_fiber(&from.fake_stack, to_scheduler ? own.stack_of_scheduler : to.stack.get(),
                                  to_scheduler ? own.stack_of_scheduler_bytes : stack_bytes);
 #endif
-#if defined(__SANITIZE_THREAD__)
-  __tsan_switch_to_fiber(to.of_sanitizer, 0);
+#if defined(ROADSTEREO_EMULATED_RACES)
+  // The scheduler knows of all that came before, and hands none of it on.
+  __tsan_switch_to_fiber(to.of_sanitizer, &to == &block().scheduler ? 0 : __tsan_switch_to_fiber_no_sync);
 #endif
   // Several times as fast as swapcontext, which asks the system for the signals each time.
   if (__builtin_setjmp(from.resume) == 0) {
@@ -94,7 +119,7 @@ void switch_fibers(Fiber& from, Fiber& to) {
 }
 
 void Block::forget_fibers() {
-#if defined(__SANITIZE_THREAD__)
+#if defined(ROADSTEREO_EMULATED_RACES)
   for (const auto& fiber : fibers) __tsan_destroy_fiber(fiber->of_sanitizer);
 #endif
   fibers.clear();
@@ -117,6 +142,7 @@ void run_threads() {
 #endif
   for (;;) {
     Fiber& self = *own.running;
+    accept(&own.begun);
     try {
       (*own.kernel)();
     } catch (...) {
@@ -130,7 +156,7 @@ void run_threads() {
 std::unique_ptr<Fiber> make_fiber() {
   auto fiber = std::make_unique<Fiber>();
   fiber->stack.reset(new char[stack_bytes]);
-#if defined(__SANITIZE_THREAD__)
+#if defined(ROADSTEREO_EMULATED_RACES)
   fiber->of_sanitizer = __tsan_create_fiber(0);
 #endif
   getcontext(&fiber->context);
@@ -141,10 +167,11 @@ std::unique_ptr<Fiber> make_fiber() {
   return fiber;
 }
 
-void wait(Waits what) {
+/// Waits for the warp, whose memory is not ordered by that.
+void wait_in_warp() {
   Block& own = block();
   Fiber& self = *own.running;
-  self.waits = what;
+  self.waits = Waits::for_warp;
   switch_fibers(self, own.scheduler);
 }
 
@@ -212,7 +239,7 @@ void run_kernel(dim3 grid, dim3 size, std::size_t shared_bytes, const std::funct
   if (shared_bytes > most_shared_bytes) throw std::logic_error("a block has at most 48 KB of shared memory");
   own.scheduler.started = true;
   while (own.fibers.size() < own.threads) own.fibers.push_back(make_fiber());
-#if defined(__SANITIZE_THREAD__)
+#if defined(ROADSTEREO_EMULATED_RACES)
   own.scheduler.of_sanitizer = __tsan_get_current_fiber();
 #endif
   if (own.shared.size() != shared_bytes) own.shared = std::vector<unsigned char>(shared_bytes);
@@ -227,7 +254,9 @@ void run_kernel(dim3 grid, dim3 size, std::size_t shared_bytes, const std::funct
       own.fibers[t]->here = {
           {n % size.x, n / size.x % size.y, n / size.x / size.y}, {x, rest % grid.y, rest / grid.y}, size, grid};
       own.fibers[t]->waits = Waits::no;
+      own.fibers[t]->warp_waits = own.fibers[t]->block_waits = 0;
     }
+    offer(&own.begun);
     run_block();
   }
 }
@@ -240,36 +269,50 @@ const Here& here() {
   return block().running->here;
 }
 
-void wait_for_block() {
-  wait(Waits::for_block);
-}
-
-void wait_for_warp() {
-  wait(Waits::for_warp);
-}
-
-int lane() {
-  const Here& own = here();
-  const unsigned thread = own.thread.x + own.block_size.x * (own.thread.y + own.block_size.y * own.thread.z);
-  return static_cast<int>(thread % warp);
-}
-
 namespace {
+
+std::size_t thread_of_block() {
+  const Here& own = here();
+  return own.thread.x + own.block_size.x * (own.thread.y + own.block_size.y * own.thread.z);
+}
 
 /// The fiber of a lane of the running thread's warp; null behind the end of the block.
 Fiber* of_lane(int of) {
-  const Here& own = here();
-  const std::size_t thread = own.thread.x + own.block_size.x * (own.thread.y + own.block_size.y * own.thread.z);
-  const std::size_t other = thread / warp * warp + static_cast<std::size_t>(of);
+  const std::size_t other = thread_of_block() / warp * warp + static_cast<std::size_t>(of);
   return other < block().threads ? block().fibers[other].get() : nullptr;
 }
+
+}  // namespace
+
+int lane() {
+  return static_cast<int>(thread_of_block() % warp);
+}
+
+void wait_for_block() {
+  Block& own = block();
+  Fiber& self = *own.running;
+  char& meeting = own.meeting.at[self.block_waits++ % 2];
+  self.waits = Waits::for_block;
+  offer(&meeting);
+  switch_fibers(self, own.scheduler);
+  accept(&meeting);
+}
+
+void wait_for_warp() {
+  char& meeting = of_lane(0)->of_warp.at[block().running->warp_waits++ % 2];
+  offer(&meeting);
+  wait_in_warp();
+  accept(&meeting);
+}
+
+namespace {
 
 /// Leaves `bits` for the warp, waits for it, and returns which exchange this was.
 unsigned leave(std::uint64_t bits) {
   Fiber& self = *block().running;
   const unsigned number = ++self.exchanges;
   self.left[number % 2] = {bits, number};
-  wait_for_warp();
+  wait_in_warp();
   return number;
 }
 

@@ -8,7 +8,8 @@
 /// Runs kernels on the host, one thread after the other: a machine without a GPU checks with it what the kernels
 /// compute. Blocks run one after the other; the threads of a block take turns at their barriers, forth and back, so
 /// that a missing barrier shows. Shared and device memory begin as bytes 0xFF, and are as large as was asked for, so
-/// that the address sanitizer sees what compute-sanitizer would.
+/// that the address sanitizer sees what compute-sanitizer's memcheck would. To the thread sanitizer the threads of a
+/// block are threads that only their barriers and atomics order: it sees what racecheck would, in device memory too.
 namespace roadstereo::cuda::emulated {
 
 /// Throws std::logic_error when the threads of a block wait for each other at different barriers, or for one that
