@@ -31,7 +31,8 @@ struct Block {
   float cost(double noise) const {
     const auto variance = static_cast<float>(noise * noise);
     return correlation_cost(block_part(own, own_square, pixels, variance),
-                            block_part(other, other_square, pixels, variance), product, pixels);
+                            block_part(other, other_square, pixels, variance), product,
+                            1.0F / static_cast<float>(pixels));
   }
 };
 

@@ -66,7 +66,7 @@ TEST_P(CudaBlockCost, IsOneMinusTheCorrelation) {
           1 - covariance / std::sqrt((own.variance + noise * noise) * (other.variance + noise * noise));
       const auto noise_variance = static_cast<float>(noise * noise);
       const float cost = correlation_cost(part_of(pair.own, noise_variance), part_of(pair.other, noise_variance),
-                                          products, GetParam());
+                                          products, 1.0F / static_cast<float>(GetParam()));
       EXPECT_NEAR(cost, expected, 2e-6) << seed;
     }
   }
@@ -91,8 +91,8 @@ TEST(CudaBlockCost, LargestSumsFitIntoWholeNumbers) {
   for (std::size_t i = 0; i < 220; ++i) halves[i] = 4080;
   int products = 0;
   for (const int value : halves) products += (value - mid_grey) * (value - mid_grey);
-  EXPECT_NEAR(correlation_cost(part_of(halves, 0), part_of(halves, 0), products, 441), 0, 2e-6);
-  EXPECT_EQ(correlation_cost(part_of(halves, 0), part_of(flat, 0), products, 441), 1);  // no texture: neutral
+  EXPECT_NEAR(correlation_cost(part_of(halves, 0), part_of(halves, 0), products, 1.0F / 441), 0, 2e-6);
+  EXPECT_EQ(correlation_cost(part_of(halves, 0), part_of(flat, 0), products, 1.0F / 441), 1);  // no texture: neutral
 }
 
 TEST(CudaSubPixel, FindsTheVertexOfAParabola) {

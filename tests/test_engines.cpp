@@ -33,6 +33,7 @@ MatcherOptions paper_options() {
   options.sigma_space = 1.5;
   options.sigma_colour = 5.5;
   options.texture_noise = 0;
+  options.target_volume = true;
   options.drop_range_ends = false;
   return options;
 }
@@ -56,9 +57,9 @@ std::vector<Case> cases() {
   large_block.block_radius = 10;
   large_block.aggregation_radius = 10;
   all.push_back({"large_windows", 90, 64, 20, large_block, true});
-  MatcherOptions one_view;
-  one_view.target_volume = false;
-  all.push_back({"one_view", 150, 60, 35, one_view, true});
+  MatcherOptions two_views;
+  two_views.target_volume = true;
+  all.push_back({"two_views", 150, 60, 35, two_views, true});
   MatcherOptions strict;  // what fails the left-right check is invalid
   strict.hidden_sigma_px = 0;
   all.push_back({"strict_check", 150, 60, 35, strict, true});
@@ -70,7 +71,7 @@ std::vector<Case> cases() {
   large_ring.block_radius = 2;
   large_ring.aggregation_radius = 10;
   all.push_back({"tiles", 270, 31, 33, large_ring, true});
-  all.push_back({"ranges", 290, 131, 40, MatcherOptions{}, true, true});
+  all.push_back({"ranges", 290, 131, 40, two_views, true, true});
   all.push_back({"prior_below", 131, 67, 33, MatcherOptions{}, true, false, 2, -2.5});
   all.push_back({"prior_above", 131, 67, 33, MatcherOptions{}, true, false, 3, 3.5});
   all.push_back({"prior_with_ranges", 200, 101, 40, MatcherOptions{}, true, true, 3, 1.5});

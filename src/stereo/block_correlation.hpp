@@ -28,10 +28,10 @@ ROADSTEREO_HD inline BlockPart block_part(int sum, int square, int pixels, float
   return {sum, mean, e, variance >= smallest_variance ? 1.0F / sqrtf(variance + noise_variance) : 0.0F};
 }
 
-/// The matching cost c(p, d) of eq. c: 1 − n·cov / (n σ_own σ_other), from Σ own·other.
+/// The matching cost c(p, d) of eq. c: 1 − n·cov / (n σ_own σ_other), from Σ own·other and 1 / n.
 /// n·cov = (Σ own·other − S_own·mean_other) − S_own / n·residue_other, the bracket in whole numbers.
-ROADSTEREO_HD inline float correlation_cost(const BlockPart& own, const BlockPart& other, int product, int pixels) {
-  const float inverse_n = 1.0F / static_cast<float>(pixels);
+ROADSTEREO_HD inline float correlation_cost(const BlockPart& own, const BlockPart& other, int product,
+                                            float inverse_n) {
   const float inverse = own.inverse_deviation * other.inverse_deviation * inverse_n;
   const auto whole = static_cast<float>(product - own.sum * other.mean);
   return 1.0F - (whole - static_cast<float>(own.sum) * inverse_n * other.residue) * inverse;

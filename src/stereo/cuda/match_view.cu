@@ -110,30 +110,92 @@ class ColumnProducts {
   int other_column_[chunk];
 };
 
-/// products[y][c]: sums over the rows of the blocks around row y, at column c and the disparities d … d + 3. A thread
-/// slides down a part of one column.
-__device__ void sum_products(const ViewToMatch& view, const Tile& tile, int radius, int d, int4* products) {
+/// A part of a column of the tile's surroundings that one thread slides down: rows `first` … `end` − 1 of them.
+struct Strip {
+  int column, first, end;
+};
+
+__device__ Strip strip_of_thread(const Tile& tile) {
   const int strips = max(1, threads / tile.product_columns);
   const int rows = (tile.halo_rows + strips - 1) / strips;
   const int job = static_cast<int>(threadIdx.x);
-  const int column = job % tile.product_columns, strip = job / tile.product_columns;
-  if (strip >= strips) return;
-  const int first = strip * rows, end = min(first + rows, tile.halo_rows);
-  const ColumnProducts column_products(view, tile.halo_i - radius + column, d);
+  const int first = job / tile.product_columns * rows;
+  return {job % tile.product_columns, first, min(first + rows, tile.halo_rows)};
+}
+
+/// Whether the blocks of the tile's surroundings, and what they are compared with, lie inside both images.
+__device__ bool products_inside(const ViewToMatch& view, const Tile& tile, int radius, int d) {
+  const int first_i = tile.halo_i - radius;
+  return tile.halo_v >= radius && tile.halo_v + tile.halo_rows + radius <= view.own.height &&
+         first_i - d - (chunk - 1) >= 0 && first_i + tile.product_columns <= view.own.width;
+}
+
+/// One pixel of the own view and four neighbours of the other, and how to get to the next row.
+struct RowOfPixels {
+  const std::int16_t *own, *others;
+  std::ptrdiff_t own_stride, other_stride;
+
+  template <int sign>
+  __device__ void add_and_go_on(int4& sums) {
+    const int grey = sign * (__ldg(own) - mid_grey);
+    sums.x += grey * (__ldg(others) - mid_grey);
+    sums.y += grey * (__ldg(others + 1) - mid_grey);
+    sums.z += grey * (__ldg(others + 2) - mid_grey);
+    sums.w += grey * (__ldg(others + 3) - mid_grey);
+    own += own_stride;
+    others += other_stride;
+  }
+};
+
+/// sum_products() where products_inside(): nothing is asked of a pixel.
+__device__ void sum_products_inside(const ViewToMatch& view, const Tile& tile, int radius, int d, int4* products) {
+  const Strip strip = strip_of_thread(tile);
+  if (strip.first >= strip.end) return;
+  const int i = tile.halo_i - radius + strip.column, v = tile.halo_v + strip.first - radius;
+  // In memory the disparities grow with the columns of a mirrored view, and against those of the other.
+  const int others = view.mirrored ? image_column(view, i - d) : i - d - (chunk - 1);
+  RowOfPixels coming{view.own.row(v) + image_column(view, i), view.other.row(v) + others, view.own.stride,
+                     view.other.stride};
+  RowOfPixels going = coming;
   int4 sums = make_int4(0, 0, 0, 0);
-  for (int y = first - radius; y < first + radius; ++y) column_products.add(tile.halo_v + y, 1, sums);
-  for (int y = first; y < end; ++y) {
+  for (int k = 0; k < 2 * radius; ++k) coming.add_and_go_on<1>(sums);
+  for (int y = strip.first; y < strip.end; ++y) {
+    coming.add_and_go_on<1>(sums);
+    products[y * tile.product_columns + strip.column] =
+        view.mirrored ? sums : make_int4(sums.w, sums.z, sums.y, sums.x);
+    going.add_and_go_on<-1>(sums);
+  }
+}
+
+/// The same with missing pixels at the images' borders, which count as mid-grey.
+__device__ void sum_products_at_border(const ViewToMatch& view, const Tile& tile, int radius, int d, int4* products) {
+  const Strip strip = strip_of_thread(tile);
+  const ColumnProducts column_products(view, tile.halo_i - radius + strip.column, d);
+  int4 sums = make_int4(0, 0, 0, 0);
+  for (int y = strip.first - radius; y < strip.first + radius; ++y) column_products.add(tile.halo_v + y, 1, sums);
+  for (int y = strip.first; y < strip.end; ++y) {
     column_products.add(tile.halo_v + y + radius, 1, sums);
-    products[y * tile.product_columns + column] = sums;
+    products[y * tile.product_columns + strip.column] = sums;
     column_products.add(tile.halo_v + y - radius, -1, sums);
+  }
+}
+
+/// products[y][c]: sums over the rows of the blocks around row y, at column c and the disparities d … d + 3.
+__device__ void sum_products(const ViewToMatch& view, const Tile& tile, int radius, int d, int4* products) {
+  if (products_inside(view, tile, radius, d)) {
+    sum_products_inside(view, tile, radius, d, products);
+  } else {
+    sum_products_at_border(view, tile, radius, d, products);
   }
 }
 
 /// What the costs of one row need to know of it.
 struct CostRow {
   int v, radius, pixel_rows;
+  float inverse_whole;  ///< 1 / n of whole blocks
   int first_other, last_own;
-  const int4* products;  ///< of the column halo_i − radius on
+  const BlockPart *own_blocks, *other_blocks;  ///< of this row
+  const int4* products;                        ///< of the column halo_i − radius on
 };
 
 /// The cost of own pixel i at disparity d = first of the chunk + k, over the part of the block that both views see.
@@ -154,7 +216,8 @@ __device__ float clipped_cost(const ViewToMatch& view, const CostRow& row, float
   }
   const int n = row.pixel_rows * (last - first + 1);
   return correlation_cost(block_part(own_sum, own_squares, n, noise_variance),
-                          block_part(other_sum, other_squares, n, noise_variance), products, n);
+                          block_part(other_sum, other_squares, n, noise_variance), products,
+                          1.0F / static_cast<float>(n));
 }
 
 /// The same at four disparities. Not unrolled: few tiles need it, and its registers would be taken from the weights.
@@ -188,14 +251,13 @@ __device__ float4 four_costs(const ViewToMatch& view, const CostRow& row, float 
     sums.z += products[k].z;
     sums.w += products[k].w;
   }
-  const BlockPart own = view.own_blocks(image_column(view, i), row.v);
-  const int x = image_column(view, i - d), step = view.mirrored ? 1 : -1;
-  const BlockPart* others = view.other_blocks.row(row.v);
-  const int n = row.pixel_rows * (2 * row.radius + 1);
-  costs.x = correlation_cost(own, others[x], sums.x, n);
-  costs.y = correlation_cost(own, others[x + step], sums.y, n);
-  costs.z = correlation_cost(own, others[x + 2 * step], sums.z, n);
-  costs.w = correlation_cost(own, others[x + 3 * step], sums.w, n);
+  const BlockPart own = row.own_blocks[image_column(view, i)];
+  const BlockPart* other = row.other_blocks + image_column(view, i - d);
+  const int step = view.mirrored ? 1 : -1;
+  costs.x = correlation_cost(own, other[0], sums.x, row.inverse_whole);
+  costs.y = correlation_cost(own, other[step], sums.y, row.inverse_whole);
+  costs.z = correlation_cost(own, other[2 * step], sums.z, row.inverse_whole);
+  costs.w = correlation_cost(own, other[3 * step], sums.w, row.inverse_whole);
   return costs;
 }
 
@@ -207,9 +269,12 @@ __device__ void make_costs(const ViewToMatch& view, const ViewSettings& settings
     const int v = tile.halo_v + y, height = view.own.height;
     const bool inside = v >= 0 && v < height;
     int4* row = products + y * tile.product_columns;
-    CostRow cost_row{v, settings.block_radius, 0, 0, -1, row};
+    CostRow cost_row{v, settings.block_radius, 0, 0, 0, -1, nullptr, nullptr, row};
     if (inside) {
       cost_row.pixel_rows = min(v + settings.block_radius, height - 1) - max(v - settings.block_radius, 0) + 1;
+      cost_row.inverse_whole = 1.0F / static_cast<float>(cost_row.pixel_rows * (2 * settings.block_radius + 1));
+      cost_row.own_blocks = view.own_blocks.row(v);
+      cost_row.other_blocks = view.other_blocks.row(v);
       cost_row.first_other = first_other(view, v);
       cost_row.last_own = last_own(view, v);
     }

@@ -42,6 +42,7 @@ struct Segment {
   int width, first_other;  ///< columns of the image; the first one of the target that counts
   int radius, rows;        ///< of the block; rows of it that lie in the image
   float noise_variance;
+  float inverse_whole;  ///< 1 / pixels of a whole block
 };
 
 /// Loads a view's columns from `begin` on and sums them.
@@ -96,10 +97,11 @@ __device__ float cost_of(const Segment& of, int u, int d, int product) {
   if (u - d < of.first_other) return no_evidence;
   const int left = u - of.radius, right = u + of.radius, seen = d + of.first_other;
   const int first = left > seen ? left : seen, last = right < of.width ? right : of.width - 1;
-  const int pixels = (last - first + 1) * of.rows;
-  if (first == left && last == right) return correlation_cost(of.own.part(u), of.other.part(u - d), product, pixels);
+  if (first == left && last == right) {
+    return correlation_cost(of.own.part(u), of.other.part(u - d), product, of.inverse_whole);
+  }
   return correlation_cost(part_of(of.own, first, last, of), part_of(of.other, first - d, last - d, of), product,
-                          pixels);
+                          1.0F / static_cast<float>((last - first + 1) * of.rows));
 }
 
 /// Costs of one disparity along the columns begin … end − 1. The products of the block's columns lie in registers.
@@ -174,6 +176,7 @@ __global__ void block_costs_of_segments(CoarsePair pair, int radius, float noise
   of.radius = radius;
   of.rows = inside;
   of.noise_variance = noise_variance;
+  of.inverse_whole = 1.0F / static_cast<float>((2 * radius + 1) * inside);
   if (blockIdx.x == 0 && threadIdx.x == 0) first_seen[v] = of.first_other;
   load_columns(of.own, pair.reference, 0, first_row, 2 * radius + 1);
   load_columns(of.other, pair.target, of.first_other, first_row, 2 * radius + 1);
