@@ -81,10 +81,9 @@ __device__ void choose_bin(int digit, RankOf rank_of, SelectScratch& scratch) {
 
 /// The key of the rank `rank_of(number of keys)`, by radix: digit by digit from the highest, with two barriers each.
 /// `key_of_item(i, key)` says whether item i of `count` has a key, and which; an item is always asked for by the same
-/// thread.
-template <class KeyOfItem, class RankOf>
+/// thread, which asks for `at_once` before it counts one, since memory takes long.
+template <int at_once = 4, class KeyOfItem, class RankOf>
 __device__ SelectedKey block_select(int count, KeyOfItem key_of_item, RankOf rank_of, SelectScratch& scratch) {
-  constexpr int at_once = 4;  // items of a thread that are read before one is counted: memory takes long
   const int thread = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
   for (int i = thread; i < SelectScratch::digits * SelectScratch::bins; i += threads) {
     scratch.counts[i / SelectScratch::bins][i % SelectScratch::bins] = 0;

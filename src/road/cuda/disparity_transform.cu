@@ -50,7 +50,8 @@ __device__ double median_near(const Sample& sample, double delta_t, SelectScratc
     out = static_cast<std::uint32_t>(fminf(residual, nearest) * steps);  // also of NaN, which does not count
     return residual <= nearest;
   };
-  const SelectedKey median = block_select(sample.columns * sample.rows, key, MiddleRank{}, scratch);
+  constexpr int at_once = 16;  // of the some 50 that a thread has in device memory
+  const SelectedKey median = block_select<at_once>(sample.columns * sample.rows, key, MiddleRank{}, scratch);
   return median.of > 0 ? static_cast<double>(median.key) / steps : 0;
 }
 
