@@ -2,18 +2,22 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <optional>
 
 #include "core/cuda/device.hpp"
 
 namespace roadstereo::test {
 
-/// A test that is skipped, with the reason, where no GPU can run it.
+/// A test that is skipped, with the reason, where no GPU can run it; it fails where ROADSTEREO_NEEDS_GPU is set in the
+/// environment.
 class OnDevice : public testing::Test {
  protected:
   void SetUp() override {
     const cuda::Device device = cuda::find_device();
-    if (!device.usable) GTEST_SKIP() << device.reason;
+    if (device.usable) return;
+    if (std::getenv("ROADSTEREO_NEEDS_GPU") != nullptr) FAIL() << device.reason;
+    GTEST_SKIP() << device.reason;
   }
 };
 
