@@ -76,7 +76,8 @@ struct Goal {
   double ms;  ///< 0: none
 };
 
-/// Each stage by the device's clock, beside its floor where it has one that is no latency.
+/// Each stage by the device's clock, beside its floor where it has one that is no latency. That of matching is no floor
+/// where search ranges leave much out: its ratio may be below 1.
 void print_stages(const std::vector<StageTimes>& frames, const StageTimes& floors) {
   const std::pair<const char*, double StageTimes::*> stages[] = {{"prepare", &StageTimes::prepare},
                                                                  {"road model", &StageTimes::road_model},
@@ -158,7 +159,10 @@ void run(int runs) {
   const cuda::Device device = cuda::find_device();
   if (!device.usable) fail("nothing to measure: ", device.reason);
   const Size usual{640, 360, 32}, large{2079, 1040, 64};
-  std::printf("%s\n\nThe whole pipeline, images in device memory, median of %d frames:\n", device.name.c_str(), runs);
+  std::printf(
+      "%s\n\nThe whole pipeline, images in device memory, median of %d frames; the floor of matching is that of the "
+      "whole range:\n",
+      device.name.c_str(), runs);
   for (const Goal& goal : {Goal{usual, "paper", 0.35}, Goal{usual, "default", 0.25}, Goal{usual, "fast", 0},
                            Goal{large, "paper", 0}, Goal{large, "default", 3}, Goal{large, "fast", 0}}) {
     time_pipeline(goal, runs);

@@ -15,7 +15,8 @@ struct Peak {
 Peak device_peak();
 
 /// The least milliseconds that the stages of a frame can take: what the heads of the .cu files count, over the peak. A
-/// stage is held up by the slowest of memory, operations and shared memory.
+/// stage is held up by the slowest of memory, operations and shared memory. Matching counts the whole range: what
+/// search ranges leave out of it is known to the device alone.
 StageTimes stage_floors(const PipelineOptions& options, int width, int height, int disparities, const Peak& peak);
 
 }  // namespace roadstereo::bench
