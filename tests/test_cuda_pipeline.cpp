@@ -168,6 +168,20 @@ TEST_F(CudaPipeline, TwoInTwoThreadsKnowNothingOfEachOther) {
 
 class CudaMatching : public test::OnDevice {};
 
+TEST_F(CudaMatching, IsDoneWhereItsDeviceIsTheCurrentOne) {
+  int devices = 0;
+  ROADSTEREO_CUDA(cudaGetDeviceCount(&devices));
+  if (devices < 2) GTEST_SKIP() << "there is one GPU";
+  const auto pair = test::textured_pair(40, 34, [](double, double) { return 3; });
+  const auto engine = make_engine("cuda", 1);
+  MatchMaps maps;
+  if (cudaSetDevice(1) != cudaSuccess) GTEST_SKIP() << "the other GPU is taken";
+  EXPECT_THROW(engine->match({pair.reference, pair.target, nullptr, 6}, MatcherOptions{}, maps), Error);
+  ROADSTEREO_CUDA(cudaSetDevice(0));
+  engine->match({pair.reference, pair.target, nullptr, 6}, MatcherOptions{}, maps);
+  EXPECT_EQ(maps.winner.width(), 40);
+}
+
 /// Tiny, for the thread sanitizer.
 TEST_F(CudaMatching, TwoEnginesInTwoThreadsKnowNothingOfEachOther) {
   const auto match = [](std::uint64_t seed) {
@@ -224,6 +238,18 @@ TEST_F(CudaPipeline, GoesOnAfterAFrameThatWasRefused) {
   const Image<float> after = pipeline.process(pair.left.view(), pair.right.view()).disparity;
   const Image<float> expected = fresh.process(pair.left.view(), pair.right.view()).disparity;
   EXPECT_EQ(std::memcmp(after.row(0), expected.row(0), after.pixels() * sizeof(float)), 0);
+}
+
+TEST_F(CudaPipeline, IsUsedWhereItsDeviceIsTheCurrentOne) {
+  int devices = 0;
+  ROADSTEREO_CUDA(cudaGetDeviceCount(&devices));
+  if (devices < 2) GTEST_SKIP() << "there is one GPU";
+  const synth::SyntheticPair pair = frame_of("uav", 0, 2);
+  Pipeline pipeline(options_of("fast", "cuda"), pair.calibration);
+  if (cudaSetDevice(1) != cudaSuccess) GTEST_SKIP() << "the other GPU is taken";
+  EXPECT_THROW(pipeline.process(pair.left.view(), pair.right.view()), Error);
+  ROADSTEREO_CUDA(cudaSetDevice(0));
+  EXPECT_TRUE(pipeline.process(pair.left.view(), pair.right.view()).geometry_found);
 }
 
 TEST_F(CudaPipeline, WithoutARoadTheMapIsThereAll) {

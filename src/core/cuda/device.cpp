@@ -2,8 +2,10 @@
 
 #include <cuda_runtime_api.h>
 
+#include "core/cuda/check.hpp"
 #include "core/cuda/probe.hpp"
 #include "core/sentence.hpp"
+#include "roadstereo/error.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -44,11 +46,20 @@ Device find_device() {
   }
   Device device;
   device.name = name;
+  device.index = index;
   device.multiprocessors = properties.multiProcessorCount;
   status = cudaDeviceGetAttribute(&device.shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, index);
   if (status != cudaSuccess) return unusable("the GPU does not answer: " + said(status));
   device.usable = true;
   return device;
+}
+
+void require_current_device(int index) {
+  int current = 0;
+  ROADSTEREO_CUDA(cudaGetDevice(&current));
+  if (current == index) return;
+  fail("what works on GPU ", index, " is used in a thread whose current one is GPU ", current, ": call cudaSetDevice(",
+       index, ") there first");
 }
 
 }  // namespace roadstereo::cuda

@@ -9,11 +9,15 @@ struct Device {
   bool usable = false;
   std::string name;    ///< e.g. "NVIDIA H200 (compute capability 9.0)"; empty when not usable
   std::string reason;  ///< why not, as a sentence; empty when usable
+  int index = 0;
   int multiprocessors = 0;
   int shared_bytes = 0;  ///< most shared memory of a block
 };
 
 /// Asks the driver for the current device, and whether this binary carries code for it.
 Device find_device();
+
+/// Throws Error unless this is the current device of this thread: each thread has its own, at first 0.
+void require_current_device(int index);
 
 }  // namespace roadstereo::cuda

@@ -36,11 +36,12 @@ class DeviceStages final : public FrameStages {
   /// The device must be usable: members already take memory of it.
   DeviceStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration,
                const Device& device)
-      : options_(options), calibration_(calibration), matcher_(device.multiprocessors) {
+      : options_(options), calibration_(calibration), device_(device.index), matcher_(device.multiprocessors) {
     if (options.narrow_search || options.matcher.prior_slope > 0) coarse_look_.emplace(options.coarse_search);
   }
 
   void prepare(const FrameView& left, const FrameView& right, FrameResult&) override {
+    require_current_device(device_);  // before memory is taken of another
     clock_.mark(StageClock::begin, stream());
     const FrameUpload::Pair frames = upload_.upload(left, right, options_.white_level, stream());
     width_ = left.width;
@@ -154,6 +155,7 @@ class DeviceStages final : public FrameStages {
 
   PipelineOptions options_;
   std::optional<StereoCalibration> calibration_;
+  int device_;
   Stream own_stream_;
   cudaStream_t stream_ = own_stream_.get();  ///< or the caller's
   bool download_ = true;

@@ -11,11 +11,12 @@ namespace {
 
 class CudaEngine final : public StereoEngine {
  public:
-  explicit CudaEngine(const Device& device) : matcher_(device.multiprocessors) {}
+  explicit CudaEngine(const Device& device) : device_(device.index), matcher_(device.multiprocessors) {}
 
   void match(const MatchInput& input, const MatcherOptions& options, MatchMaps& maps) override {
     validate(input);
     options.validate();
+    require_current_device(device_);
     const DeviceMatchMaps& found = matcher_.match(upload(input), options, stream_.get());
     const int width = input.reference.width(), height = input.reference.height();
     download(found.disparity, width, height, maps.disparity);
@@ -80,6 +81,7 @@ class CudaEngine final : public StereoEngine {
         cudaMemcpyAsync(to.row(0), from.data, to.pixels() * sizeof(T), cudaMemcpyDeviceToHost, stream_.get()));
   }
 
+  int device_;
   Stream stream_;
   DeviceMatcher matcher_;
   DeviceArray<std::int16_t> images_[2];

@@ -64,6 +64,9 @@ class Memory {
   std::size_t count_ = 0;
 };
 
+constexpr int devices = 2;  // so that one can be the wrong one
+thread_local int current_device = 0;
+
 /// One for the process, as a device's memory is.
 Memory& memory() {
   static Memory all;
@@ -77,11 +80,16 @@ std::size_t roadstereo::cuda::emulated::allocations() {
 }
 
 cudaError_t cudaGetDeviceCount(int* count) {
-  *count = 1;
+  *count = devices;
   return cudaSuccess;
 }
 cudaError_t cudaGetDevice(int* device) {
-  *device = 0;
+  *device = current_device;
+  return cudaSuccess;
+}
+cudaError_t cudaSetDevice(int device) {
+  if (device < 0 || device >= devices) return cudaErrorInvalidValue;
+  current_device = device;
   return cudaSuccess;
 }
 cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int) {
