@@ -10,6 +10,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 export PATH=$PATH:/usr/local/cuda/bin
+[ -z "${CXX:-}" ] || export CUDAHOSTCXX=${CUDAHOSTCXX:-$CXX}  # nvcc would take the usual g++, maybe too new
 filter=${SANITIZER_FILTER:-*}
 googletest=${ROADSTEREO_GTEST_SOURCE:-/usr/src/googletest}
 missing=()
