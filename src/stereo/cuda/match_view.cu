@@ -32,11 +32,20 @@ constexpr float some_cost = -4.0F;
 /// Windows of up to so many taps have their weights in registers.
 constexpr int taps_of_default = 28, taps_of_paper = 60;
 
-/// Offsets of the window's taps in shared memory; a kernel's parameters are constants to it.
+/// Offsets of the window's taps in shared memory, in bytes: a kernel's parameters are constants to it, which then take
+/// part in the address of a read. Numbered in costs, the addresses of all taps would be computed before and kept in
+/// local memory.
 template <int most>
 struct TapOffsets {
-  int at[most > 0 ? most : 1];
+  int bytes[most > 0 ? most : 1];
+
+  __device__ const int4& costs(const int4* centre, int tap) const {
+    return *reinterpret_cast<const int4*>(reinterpret_cast<const unsigned char*>(centre) + bytes[tap]);
+  }
 };
+
+/// So many taps are asked for together whether the window has them; those that it has not weigh nothing.
+constexpr int taps_at_once = 5;
 
 /// Where the tile and its surroundings lie, in the view's own coordinates.
 struct Tile {
@@ -354,7 +363,7 @@ __device__ Aggregate aggregate_clipped(const ViewToMatch& view, const ViewSettin
   if (most > 0) {
     ROADSTEREO_UNROLL
     for (int t = 0; t < most; ++t) {
-      if (t < settings.tap_count) add_clipped(centre[offsets.at[t]], weights.of_tap[t], sums);
+      if (t < settings.tap_count) add_clipped(offsets.costs(centre, t), weights.of_tap[t], sums);
     }
   } else {
     for (int t = 0; t < settings.tap_count; ++t) {
@@ -371,8 +380,12 @@ __device__ float4 whole_energies(int tap_count, const TapOffsets<most>& offsets,
                                  const int4* centre) {
   Aggregate sums{make_float4(0, 0, 0, 0), make_float4(0, 0, 0, 0)};
   ROADSTEREO_UNROLL
-  for (int t = 0; t < most; ++t) {
-    if (t < tap_count) add_whole(centre[offsets.at[t]], weights.of_tap[t], sums);
+  for (int first = 0; first < most; first += taps_at_once) {
+    if (first >= tap_count) continue;
+    ROADSTEREO_UNROLL
+    for (int t = first; t < first + taps_at_once; ++t) {
+      if (t < most) add_whole(offsets.costs(centre, t), weights.of_tap[t], sums);
+    }
   }
   const float scale = weights.inverse_sum;
   return make_float4(sums.weighted.x * scale, sums.weighted.y * scale, sums.weighted.z * scale,
@@ -537,7 +550,7 @@ void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const W
   const int columns = tile_columns + 2 * (settings.reach_across + settings.block_radius);
   TapOffsets<most> offsets{};
   for (int t = 0; most > 0 && t < settings.tap_count; ++t) {
-    offsets.at[t] = taps_on_host[t].dv * columns + taps_on_host[t].du;
+    offsets.bytes[t] = (taps_on_host[t].dv * columns + taps_on_host[t].du) * static_cast<int>(sizeof(int4));
   }
   launch(match_tiles<most>, {static_cast<unsigned>(plan.blocks), threads, plan.shared_bytes}, stream, view, settings,
          offsets, energies, plan.energies_per_block, winners);
