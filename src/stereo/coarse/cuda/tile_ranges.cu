@@ -1,7 +1,10 @@
 // Floor: a coarse pixel is read twice, once for each view, and a little more at the tiles' borders. A thread counts
 // runs of equal disparities down a column, so that few additions meet in one counter.
 
+#include <climits>
+
 #include "core/cuda/launch.hpp"
+#include "core/cuda/unroll.hpp"
 #include "stereo/coarse/cuda/tile_ranges.hpp"
 
 namespace roadstereo::cuda {
@@ -9,6 +12,7 @@ namespace {
 
 constexpr int threads = 256;
 constexpr int rows_a_run = 16;
+constexpr int rows_at_once = 8;  // whose disparities are on their way together: memory takes long
 
 /// What the threads of a block share about their tile.
 struct Found {
@@ -23,28 +27,40 @@ struct Tile {
   bool of_target;
 };
 
-__device__ bool holds(const TileSpan& span, int tile) {
-  return span.first <= tile && tile <= span.last;
-}
+/// The columns of a view that belong to a tile, as tiles_of() says; those outside the image belong to the outermost.
+struct TileColumns {
+  __device__ TileColumns(const CoarseTiles& tiles, int tile)
+      : first(tile == 0 ? INT_MIN : tile * tiles.columns - tile_overlap),
+        end(tile + 1 == tiles.across ? INT_MAX : (tile + 1) * tiles.columns + tile_overlap) {}
+  __device__ bool hold(int column) const { return first <= column && column < end; }
+  int first, end;
+};
 
 /// Counts the pixels of one column of the map, from `first` to `end`, that lie in the tile.
 __device__ void count_run(const Plane<const float>& coarse, const CoarseTiles& tiles, const Tile& tile, int factor,
                           int u, int first, int end, std::uint32_t* counts, int bins) {
   const float inverse_factor = 1.0F / static_cast<float>(factor);
+  const TileColumns columns(tiles, tile.column);
   int of_run = 0;
   std::uint32_t length = 0;
-  for (int v = first; v < end; ++v) {
-    const float disparity = __ldg(&coarse(u, v));
-    if (disparity != disparity) continue;
-    const int column = tile.of_target ? tile_target_column(u, disparity, inverse_factor) : u;
-    if (!holds(tiles_of(column, tiles.columns, tiles.across), tile.column)) continue;
-    const int bin = disparity_bin(disparity, bins);
-    if (bin != of_run && length > 0) {
-      atomicAdd(&counts[of_run], length);
-      length = 0;
+  for (int v = first; v < end; v += rows_at_once) {
+    float disparities[rows_at_once];
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < rows_at_once; ++k) disparities[k] = __ldg(&coarse(u, v + k < end ? v + k : v));
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < rows_at_once; ++k) {
+      const float disparity = disparities[k];
+      if (v + k >= end || disparity != disparity) continue;
+      const int column = tile.of_target ? tile_target_column(u, disparity, inverse_factor) : u;
+      if (!columns.hold(column)) continue;
+      const int bin = disparity_bin(disparity, bins);
+      if (bin != of_run && length > 0) {
+        atomicAdd(&counts[of_run], length);
+        length = 0;
+      }
+      of_run = bin;
+      ++length;
     }
-    of_run = bin;
-    ++length;
   }
   if (length > 0) atomicAdd(&counts[of_run], length);
 }
