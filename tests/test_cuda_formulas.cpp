@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "road/map_sample.hpp"
 #include "stereo/block_correlation.hpp"
 #include "stereo/mid_grey.hpp"
 #include "stereo/sub_pixel.hpp"
@@ -126,6 +127,14 @@ TEST(CudaPrior, CostsGrowToItsReachAndCountLessWhereACostIsSmall) {
   EXPECT_FLOAT_EQ(prior_share(0.0F), 0.2F);
   EXPECT_FLOAT_EQ(prior_share(0.04F), 0.6F);
   EXPECT_EQ(prior_share(0.5F), 1);
+}
+
+TEST(CudaCells, AreTheSameInWholeNumbers) {
+  for (const int size : {1, 7, 24, 25, 360, 375, 640, 1242, 2160, 3840, 6144, 8191, 8192}) {
+    for (int at = 0; at < size; ++at) {
+      ASSERT_EQ(cell_of(at, size), cell_of(static_cast<double>(at), size)) << at << " of " << size;
+    }
+  }
 }
 
 }  // namespace

@@ -36,6 +36,10 @@ inline MapSample map_sample(int width, int height) {
 ROADSTEREO_HD inline int cell_of(double at, int size) {
   return static_cast<int>(at * cells_per_side / size);
 }
+/// The same of a pixel in whole numbers: a quotient in double precision is never rounded up to one that it is below.
+ROADSTEREO_HD inline int cell_of(int at, int size) {
+  return at * cells_per_side / size;
+}
 
 /// What is left of a fit to tell how good it is. Deviations are from the weighted means.
 struct FitMoments {

@@ -22,10 +22,10 @@ struct FitState {
   PlaneTerms start, plane;  ///< of the first step, of this one
   float step[3];            ///< the plane's disparity minus the start's: at the origin, along v, along u
   double scale;
-  double narrow_from;  ///< scale of the window that the median is taken in
   double far_u, far_v;
   float origin_u, origin_v;
-  int good;
+  float per_window;  ///< 1 / window of the scale
+  int good, settled;
 };
 
 /// Threads of a block that fits up to `count` points: eight for each, unless that is very few.
@@ -55,24 +55,19 @@ class BlockFit {
     FittedPlane fitted{start, 0, 0, 0, begin(start)};
     if (fitted.points < 3) return fitted;
     const double first_scale = fit_.start_scale_px > 0 ? fit_.start_scale_px : start_scale();
-    if (leader()) state_.scale = first_scale;
+    if (leader()) take_scale(first_scale);
     __syncthreads();
-    bool settled = false;
     for (fitted.iterations = 1; fitted.iterations <= fit_.max_iterations; ++fitted.iterations) {
       const PlaneTerms last = state_.plane;
       const double last_scale = state_.scale;
       step();
       if (state_.good == 0) return fitted;
       update_residuals();
-      const double median = median_below(static_cast<float>(tukey * last_scale));
-      const double scale = narrowed_scale(median, last_scale);
-      const PlaneTerms now = state_.plane;
-      settled =
-          robust_fit_settled(now.disparity(state_.far_u, state_.far_v) - last.disparity(state_.far_u, state_.far_v),
-                             now.a2 - last.a2, scale, last_scale);
-      if (leader()) state_.scale = scale;
+      const auto window = static_cast<float>(tukey * last_scale);
+      const SelectedKey median = select_magnitude(window, false);
+      if (leader()) narrow(last, last_scale, magnitude_of(median, window));
       __syncthreads();
-      if (settled) break;
+      if (state_.settled != 0) break;
     }
     fitted.plane = state_.plane;
     fitted.scale_px = state_.scale;
@@ -117,26 +112,46 @@ class BlockFit {
   /// The scale's clamp makes any median beyond it the same.
   __device__ double start_scale() {
     const auto reach = static_cast<float>(1.01 * largest_start_scale_px / normal_from_median);
-    return start_scale_of(median_magnitude(reach, true));
+    return start_scale_of(magnitude_of(select_magnitude(reach, true), reach));
   }
 
-  /// Median of the magnitudes below `reach`, 0 of none. With `all`, larger ones count as `reach`.
-  __device__ double median_magnitude(float reach, bool all) {
-    constexpr float keys = 4294967040.0F;  // the largest float below 2³²
-    const float per_key = keys / reach;
+  /// Magnitudes as keys, in steps of reach / magnitude_keys: the largest float below 2³².
+  static constexpr float magnitude_keys = 4294967040.0F;
+
+  /// Median of the magnitudes below `reach`. With `all`, larger ones count as `reach`.
+  __device__ SelectedKey select_magnitude(float reach, bool all) {
+    const float per_key = magnitude_keys / reach;
     const auto key = [&](int i, std::uint32_t& out) {
       const float magnitude = fabsf(residuals_[i]);
       out = magnitude < reach ? static_cast<std::uint32_t>(magnitude * per_key) : 0xFFFFFFFFU;
       return all ? magnitude == magnitude : magnitude < reach;
     };
-    const SelectedKey median = block_select(points_.count, key, MiddleRank{}, state_.select);
-    return median.of > 0 ? static_cast<double>(median.key) / keys * reach : 0;
+    return block_select(points_.count, key, MiddleRank{}, state_.select);
   }
-  __device__ double median_below(float reach) { return median_magnitude(reach, false); }
+  /// 0 of none.
+  __device__ static double magnitude_of(const SelectedKey& median, float reach) {
+    return median.of > 0 ? static_cast<double>(median.key) / magnitude_keys * reach : 0;
+  }
+
+  // One thread does what needs double precision, of which small GPUs have little, and leaves it to the others.
+
+  __device__ void take_scale(double scale) {
+    state_.scale = scale;
+    state_.per_window = static_cast<float>(1 / (tukey * scale));
+  }
+
+  /// The scale after a step, and whether that was the last one; from the plane and the scale before it.
+  __device__ void narrow(const PlaneTerms& last, double last_scale, double median) {
+    const double scale = narrowed_scale(median, last_scale);
+    const PlaneTerms& now = state_.plane;
+    const double by = now.disparity(state_.far_u, state_.far_v) - last.disparity(state_.far_u, state_.far_v);
+    state_.settled = robust_fit_settled(by, now.a2 - last.a2, scale, last_scale) ? 1 : 0;
+    take_scale(scale);
+  }
 
   /// Weights, sums and the next plane; state_.good says whether there is one.
   __device__ void step() {
-    const auto per_window = static_cast<float>(1 / (tukey * state_.scale));
+    const float per_window = state_.per_window;
     float n = 0, su = 0, sv = 0, sr = 0, uu = 0, uv = 0, vv = 0, ur = 0, vr = 0;
     for (int i = thread(); i < points_.count; i += threads()) {
       const float residual = residuals_[i];
