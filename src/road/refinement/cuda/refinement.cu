@@ -5,12 +5,14 @@
 #include <cmath>
 
 #include "core/cuda/launch.hpp"
+#include "core/cuda/unroll.hpp"
 #include "road/refinement/cuda/refinement.hpp"
 
 namespace roadstereo::cuda {
 namespace {
 
 constexpr int tile_columns = 32, thread_rows = 8;
+constexpr int rows_at_once = 4;  // of a thread, when a tile is read
 constexpr int most_shared_bytes = 48 << 10;
 
 struct Maps {
@@ -33,11 +35,22 @@ __device__ float full_disparity(const Maps& maps, const RowLine& line, float res
   return maps.shift.whole_pixel ? with_whole_shift(residual, maps.shift, u, v) : with_shift(residual, line, u);
 }
 
-__device__ MeasuredHeight measured_at(const Maps& maps, const RowLines& lines, const VarianceBounds& bounds, int u,
-                                      int v) {
+/// What the maps hold of a pixel.
+struct MapPixel {
+  float residual, variance;
+};
+
+/// Of the nearest pixel, where there is none at the place: reads that depend on nothing are on their way together.
+__device__ MapPixel read_pixel(const Maps& maps, int u, int v) {
+  const int column = min(max(u, 0), maps.residual.width - 1), row = min(max(v, 0), maps.residual.height - 1);
+  return {__ldg(&maps.residual(column, row)), __ldg(&maps.variance(column, row))};
+}
+
+__device__ MeasuredHeight measured_at(const Maps& maps, const MapPixel& pixel, const RowLines& lines,
+                                      const VarianceBounds& bounds, int u, int v) {
   if (u < 0 || u >= maps.residual.width || v < 0 || v >= maps.residual.height) return not_measured();
-  const float disparity = full_disparity(maps, lines.shift, __ldg(&maps.residual(u, v)), u, v);
-  return measured(disparity, __ldg(&maps.variance(u, v)), lines.road.at(static_cast<float>(u)), bounds);
+  const float disparity = full_disparity(maps, lines.shift, pixel.residual, u, v);
+  return measured(disparity, pixel.variance, lines.road.at(static_cast<float>(u)), bounds);
 }
 
 /// The pixels of a tile and a border around it in shared memory: lines of the rows, and three planes of numbers.
@@ -57,16 +70,30 @@ struct Tile {
     const int thread = static_cast<int>(threadIdx.y) * tile_columns + static_cast<int>(threadIdx.x);
     for (int y = thread; y < rows; y += tile_columns * thread_rows) lines[y] = row_lines(maps, top + y);
     __syncthreads();
-    for (int y = static_cast<int>(threadIdx.y); y < rows; y += thread_rows) {
-      for (int x = static_cast<int>(threadIdx.x); x < columns; x += tile_columns) {
-        const MeasuredHeight pixel = measured_at(maps, lines[y], bounds, left + x, top + y);
-        float* at = numbers + y * columns + x;
-        at[0] = pixel.value;
-        at[size()] = pixel.precision;
-        at[2 * size()] = pixel.variance;
+    for (int x = static_cast<int>(threadIdx.x); x < columns; x += tile_columns) {
+      for (int y = static_cast<int>(threadIdx.y); y < rows; y += rows_at_once * thread_rows) {
+        fill_rows(maps, bounds, x, y);
       }
     }
     __syncthreads();
+  }
+
+ private:
+  /// Pixels of a column, from row `first` on.
+  __device__ void fill_rows(const Maps& maps, const VarianceBounds& bounds, int x, int first) const {
+    MapPixel pixels[rows_at_once];
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < rows_at_once; ++k) pixels[k] = read_pixel(maps, left + x, top + first + k * thread_rows);
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < rows_at_once; ++k) {
+      const int y = first + k * thread_rows;
+      if (y >= rows) break;
+      const MeasuredHeight pixel = measured_at(maps, pixels[k], lines[y], bounds, left + x, top + y);
+      float* at = numbers + y * columns + x;
+      at[0] = pixel.value;
+      at[size()] = pixel.precision;
+      at[2 * size()] = pixel.variance;
+    }
   }
 };
 
@@ -77,7 +104,7 @@ struct Untiled {
 
   __device__ RowLine road(int v) const { return row_lines(maps, v).road; }
   __device__ MeasuredHeight operator()(int u, int v) const {
-    return measured_at(maps, row_lines(maps, v), bounds, u, v);
+    return measured_at(maps, read_pixel(maps, u, v), row_lines(maps, v), bounds, u, v);
   }
 };
 
@@ -93,6 +120,7 @@ __device__ float quotient(float a, float b) {
 template <class Pixels>
 __device__ RefinedPixel refine_pixel(const Maps& maps, const Pixels& pixels, const RefinementSettings& settings, int u,
                                      int v) {
+  const float residual = __ldg(&maps.residual(u, v));  // on its way while the window is added up
   const MeasuredHeight centre = pixels(u, v);
   float weights = 0, away = 0;
   for (int dv = -settings.radius; dv <= settings.radius; dv += settings.step) {
@@ -109,7 +137,7 @@ __device__ RefinedPixel refine_pixel(const Maps& maps, const Pixels& pixels, con
   const float mean = centre.value + (weights > 0 ? away / weights : 0);
   const float precision = fmaxf(centre.precision, weights * settings.mean.share);
   const float road = pixels.road(v).at(static_cast<float>(u));
-  return refined_pixel(maps.residual(u, v), mean, precision, road, settings.worst_sigma, nanf(""));
+  return refined_pixel(residual, mean, precision, road, settings.worst_sigma, nanf(""));
 }
 
 template <int rows_each>
