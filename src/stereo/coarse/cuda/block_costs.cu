@@ -45,12 +45,15 @@ struct Segment {
   float inverse_whole;  ///< 1 / pixels of a whole block
 };
 
-/// Loads a view's columns from `begin` on and sums them.
+/// Loads a view's columns from `begin` on and sums them: where the rows are known, all of a column at once.
+template <int known_rows>
 __device__ void load_columns(const ViewColumns& view, const Plane<const std::int16_t>& image, int begin, int first_row,
-                             int rows) {
+                             int radius) {
+  const int rows = known_rows > 0 ? known_rows : 2 * radius + 1;
   for (int i = static_cast<int>(threadIdx.x); i < view.count; i += warps * warp_lanes) {
     const int column = view.first + i;
     ColumnSums sums{0, 0};
+    ROADSTEREO_UNROLL
     for (int r = 0; r < rows; ++r) {
       const int v = first_row + r;
       const bool inside = column >= begin && column < image.width && v >= 0 && v < image.height;
@@ -178,8 +181,8 @@ __global__ void block_costs_of_segments(CoarsePair pair, int radius, float noise
   of.noise_variance = noise_variance;
   of.inverse_whole = 1.0F / static_cast<float>((2 * radius + 1) * inside);
   if (blockIdx.x == 0 && threadIdx.x == 0) first_seen[v] = of.first_other;
-  load_columns(of.own, pair.reference, 0, first_row, 2 * radius + 1);
-  load_columns(of.other, pair.target, of.first_other, first_row, 2 * radius + 1);
+  load_columns<known_block>(of.own, pair.reference, 0, first_row, radius);
+  load_columns<known_block>(of.other, pair.target, of.first_other, first_row, radius);
   __syncthreads();
   fill_parts(of.own, of);
   fill_parts(of.other, of);
