@@ -5,6 +5,7 @@
 
 #include "core/cuda/grey.hpp"
 #include "core/cuda/launch.hpp"
+#include "core/cuda/unroll.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -20,28 +21,58 @@ struct GreyPair {
   Plane<std::int16_t> left, right;
 };
 
+/// The samples of a pixel, as they are read: what is made of them waits until others are on their way too.
+struct Samples {
+  unsigned first, second, third;  ///< the last two of colours only
+};
+
 template <class Sample>
-__device__ std::int16_t level_of(const DeviceFrame& frame, int u, int v) {
+__device__ Samples read_samples(const DeviceFrame& frame, int u, int v) {
   const auto* row = static_cast<const unsigned char*>(frame.data) + v * frame.stride_bytes;
   const Sample* pixel = reinterpret_cast<const Sample*>(row) + static_cast<std::ptrdiff_t>(u) * frame.channels;
-  if (frame.channels == 1) return grey_level(frame.weights, static_cast<float>(__ldg(pixel)));
-  return grey_level(frame.weights, static_cast<float>(__ldg(pixel)), static_cast<float>(__ldg(pixel + 1)),
-                    static_cast<float>(__ldg(pixel + 2)));
+  const bool colours = frame.channels != 1;
+  return {__ldg(pixel), colours ? __ldg(pixel + 1) : 0U, colours ? __ldg(pixel + 2) : 0U};
 }
 
-__device__ std::int16_t level_at(const DeviceFrame& frame, int u, int v) {
-  return frame.sample_bytes == 2 ? level_of<unsigned short>(frame, u, v) : level_of<unsigned char>(frame, u, v);
+__device__ Samples samples_at(const DeviceFrame& frame, int u, int v) {
+  return frame.sample_bytes == 2 ? read_samples<unsigned short>(frame, u, v) : read_samples<unsigned char>(frame, u, v);
 }
 
-/// Converts the pixels of this thread and returns what they show.
-__device__ int convert_pixels(const GreyPair& pair, std::int16_t first_left, std::int16_t first_right) {
+__device__ std::int16_t level_of(const DeviceFrame& frame, const Samples& samples) {
+  if (frame.channels == 1) return grey_level(frame.weights, static_cast<float>(samples.first));
+  return grey_level(frame.weights, static_cast<float>(samples.first), static_cast<float>(samples.second),
+                    static_cast<float>(samples.third));
+}
+
+/// A pixel of both images.
+struct PixelPair {
+  Samples left, right;
+};
+
+__device__ PixelPair read_pair(const GreyPair& pair, int u, int v) {
+  return {samples_at(pair.left_frame, u, v), samples_at(pair.right_frame, u, v)};
+}
+
+/// Converts the pixels of this thread and returns what they show, against the first ones.
+__device__ int convert_pixels(const GreyPair& pair, const PixelPair& first) {
   const int v = static_cast<int>(blockIdx.y * block_rows + threadIdx.y);
-  if (v >= pair.left.height) return 0;
-  int shown = 0;
+  const int begin = static_cast<int>(blockIdx.x) * columns_each * block_columns + static_cast<int>(threadIdx.x);
+  if (v >= pair.left.height || begin >= pair.left.width) return 0;
+  PixelPair pixels[columns_each];
+  ROADSTEREO_UNROLL
   for (int k = 0; k < columns_each; ++k) {
-    const int u = (static_cast<int>(blockIdx.x) * columns_each + k) * block_columns + static_cast<int>(threadIdx.x);
+    const int u = begin + k * block_columns;
+    pixels[k] = read_pair(pair, u < pair.left.width ? u : begin, v);
+  }
+  const std::int16_t first_left = level_of(pair.left_frame, first.left);
+  const std::int16_t first_right = level_of(pair.right_frame, first.right);
+  int shown = 0;
+  ROADSTEREO_UNROLL
+  for (int k = 0; k < columns_each; ++k) {
+    const int u = begin + k * block_columns;
     if (u >= pair.left.width) break;
-    const std::int16_t left = level_at(pair.left_frame, u, v), right = level_at(pair.right_frame, u, v);
+    const std::int16_t left = level_of(pair.left_frame, pixels[k].left);
+    const std::int16_t right = level_of(pair.right_frame, pixels[k].right);
     pair.left(u, v) = left;
     pair.right(u, v) = right;
     shown |= (left != first_left ? left_varies : 0) | (right != first_right ? right_varies : 0) |
@@ -72,13 +103,14 @@ __global__ void pair_to_grey(GreyPair pair, int* votes, PairFindings* findings) 
   const bool first_thread = threadIdx.x == 0 && threadIdx.y == 0;
   if (first_thread) *of_block = 0;
   __syncthreads();
-  const std::int16_t first_left = level_at(pair.left_frame, 0, 0), first_right = level_at(pair.right_frame, 0, 0);
-  const int shown = convert_pixels(pair, first_left, first_right);
+  const PixelPair first = read_pair(pair, 0, 0);
+  const int shown = convert_pixels(pair, first);
   const int of_warp = (warp_has(shown, left_varies) ? left_varies : 0) |
                       (warp_has(shown, right_varies) ? right_varies : 0) | (warp_has(shown, differ) ? differ : 0);
   if (threadIdx.x == 0 && of_warp != 0) atomicOr(of_block, of_warp);
   __syncthreads();
-  if (first_thread) report(*of_block, votes, first_left, first_right, findings);
+  if (!first_thread) return;
+  report(*of_block, votes, level_of(pair.left_frame, first.left), level_of(pair.right_frame, first.right), findings);
 }
 
 }  // namespace
