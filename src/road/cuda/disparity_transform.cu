@@ -5,6 +5,7 @@
 #include "core/cuda/block_select.hpp"
 #include "core/cuda/last_block.hpp"
 #include "core/cuda/launch.hpp"
+#include "core/cuda/unroll.hpp"
 #include "road/cuda/disparity_transform.hpp"
 #include "road/transformed.hpp"
 
@@ -30,6 +31,18 @@ struct Place {
   __device__ Place()
       : u(static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x)), v(static_cast<int>(blockIdx.y) * block_rows) {}
   int u, v;
+};
+
+/// The disparities of a thread's rows, on their way together; NaN below the map and beside it.
+struct Column {
+  __device__ Column(const Plane<const float>& disparity, const Place& at) {
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < block_rows; ++k) {
+      const bool inside = at.u < disparity.width && at.v + k < disparity.height;
+      rows[k] = inside ? __ldg(disparity.row(at.v + k) + at.u) : NAN;
+    }
+  }
+  float rows[block_rows];
 };
 
 /// Shared memory of both kernels.
@@ -64,8 +77,12 @@ __global__ void measure_heights(Plane<const float> disparity, PlaneSource source
   const bool of_sample = at.u < disparity.width && sample.has(at.u);
   float lowest = INFINITY;
   int valid = 0;
-  for (int v = at.v; v < at.v + block_rows && v < disparity.height && at.u < disparity.width; ++v) {
-    const float height = above_road(__ldg(disparity.row(v) + at.u), road_at_row(road.a0, road.a1, v), road.a2, at.u);
+  const Column column(disparity, at);
+  ROADSTEREO_UNROLL
+  for (int k = 0; k < block_rows; ++k) {
+    const int v = at.v + k;
+    if (v >= disparity.height || at.u >= disparity.width) break;
+    const float height = above_road(column.rows[k], road_at_row(road.a0, road.a1, v), road.a2, at.u);
     if (of_sample && sample.has(v)) sample.heights[sample.index(v) * sample.columns + sample.index(at.u)] = height;
     if (!(height == height)) continue;
     ++valid;
@@ -109,8 +126,12 @@ __global__ void shift_heights(Plane<const float> disparity, PlaneSource source, 
   const double delta_t = state->delta_t, limit = state->limit;
   const Place at;
   Spread all{0, 0, 0}, road{0, 0, 0};
-  for (int v = at.v; v < at.v + block_rows && v < disparity.height && at.u < disparity.width; ++v) {
-    const float height = above_road(__ldg(disparity.row(v) + at.u), road_at_row(plane.a0, plane.a1, v), plane.a2, at.u);
+  const Column column(disparity, at);
+  ROADSTEREO_UNROLL
+  for (int k = 0; k < block_rows; ++k) {
+    const int v = at.v + k;
+    if (v >= disparity.height || at.u >= disparity.width) break;
+    const float height = above_road(column.rows[k], road_at_row(plane.a0, plane.a1, v), plane.a2, at.u);
     const float value = height + static_cast<float>(delta_t);
     transformed(at.u, v) = value;
     const double residual = value - delta_t;
