@@ -2,6 +2,7 @@
 // 60 operations in double precision a point for the moments.
 
 #include "core/cuda/launch.hpp"
+#include "core/cuda/unroll.hpp"
 #include "road/cuda/road_fit.hpp"
 #include "road/cuda/robust_fit.hpp"
 #include "road/map_sample.hpp"
@@ -25,14 +26,30 @@ __device__ int threads() {
   return static_cast<int>(blockDim.x);
 }
 
-/// A thread writes the places that it will work on.
+/// A thread writes the places that it will work on. Maps and mask are read for several at once: memory takes long.
 __device__ void take_sample(const MaskedMap& map, const SampledMap& sampled) {
-  for (int i = thread(); i < sampled.sample.count(); i += threads()) {
-    const int u = sampled.sample.at(i % sampled.sample.columns), v = sampled.sample.at(i / sampled.sample.columns);
-    const bool counts = map.mask.data == nullptr || map.mask(u, v) != 0;
-    sampled.u[i] = static_cast<float>(u);
-    sampled.v[i] = static_cast<float>(v);
-    sampled.d[i] = counts ? __ldg(map.disparity.row(v) + u) : nanf("");
+  constexpr int at_once = 6;
+  const int count = sampled.sample.count();
+  for (int first = thread(); first < count; first += at_once * threads()) {
+    int u[at_once], v[at_once];
+    float d[at_once];
+    bool counts[at_once];
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < at_once; ++k) {
+      const int i = first + k * threads() < count ? first + k * threads() : first;
+      u[k] = sampled.sample.at(i % sampled.sample.columns);
+      v[k] = sampled.sample.at(i / sampled.sample.columns);
+      d[k] = map.disparity(u[k], v[k]);  // __ldg would be put off until it is needed
+      counts[k] = map.mask.data == nullptr || __ldg(map.mask.row(v[k]) + u[k]) != 0;
+    }
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < at_once; ++k) {
+      const int i = first + k * threads();
+      if (i >= count) break;
+      sampled.u[i] = static_cast<float>(u[k]);
+      sampled.v[i] = static_cast<float>(v[k]);
+      sampled.d[i] = counts[k] ? d[k] : nanf("");
+    }
   }
 }
 
