@@ -4,6 +4,7 @@
 
 #include "core/cuda/block_reduce.hpp"
 #include "core/cuda/block_select.hpp"
+#include "core/cuda/unroll.hpp"
 #include "road/cuda/robust_plane.hpp"
 #include "road/robust_weights.hpp"
 
@@ -83,15 +84,28 @@ class BlockFit {
   /// First residuals, and the points that the host calls front and back. Returns how many points there are.
   __device__ int begin(const PlaneTerms& start) {
     int first = points_.count, last = -1, found = 0;
-    for (int i = thread(); i < points_.count; i += threads()) {
-      const float d = points_.d[i];
-      const auto residual = static_cast<float>(static_cast<double>(d) - start.disparity(points_.u[i], points_.v[i]));
-      first_[i] = residuals_[i] = residual;
-      weights_[i] = 0;
-      if (d != d) continue;
-      first = first < i ? first : i;
-      last = i;
-      ++found;
+    constexpr int at_once = 4;  // whose reads are on their way together
+    for (int base = thread(); base < points_.count; base += at_once * threads()) {
+      float u[at_once], v[at_once], d[at_once];
+      ROADSTEREO_UNROLL
+      for (int k = 0; k < at_once; ++k) {
+        const int i = base + k * threads() < points_.count ? base + k * threads() : base;
+        u[k] = points_.u[i];
+        v[k] = points_.v[i];
+        d[k] = points_.d[i];
+      }
+      ROADSTEREO_UNROLL
+      for (int k = 0; k < at_once; ++k) {
+        const int i = base + k * threads();
+        if (i >= points_.count) break;
+        const auto residual = static_cast<float>(static_cast<double>(d[k]) - start.disparity(u[k], v[k]));
+        first_[i] = residuals_[i] = residual;
+        weights_[i] = 0;
+        if (d[k] != d[k]) continue;
+        first = first < i ? first : i;
+        last = i;
+        ++found;
+      }
     }
     auto* scratch = reinterpret_cast<int*>(state_.scratch);
     first = block_best(first, Least{}, scratch);
