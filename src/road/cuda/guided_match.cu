@@ -3,6 +3,7 @@
 
 #include "core/cuda/block_reduce.hpp"
 #include "core/cuda/launch.hpp"
+#include "core/cuda/unroll.hpp"
 #include "core/unshrink.hpp"
 #include "road/cuda/guided_match.hpp"
 
@@ -92,22 +93,48 @@ class PlaceSearch {
     memory_.squares[lane_] = squares;
   }
 
-  /// The right image along the block's rows, each column shifted by the plane; a lane for each column.
+  /// Where the strip of a row begins in the right image: a whole column, and how far behind it.
+  struct RowStart {
+    int column;
+    float place;
+  };
+
+  __device__ RowStart row_start(int row, int first, int count) const {
+    const double slope = -plane_.a2, drift = slope * (count - 1);
+    const double x = first - plane_.disparity(first, row);
+    const int column = static_cast<int>(floor(x + (drift < 0 ? drift : 0.0)));
+    return {column, static_cast<float>(x - column)};
+  }
+
+  /// The right image along the block's rows, each column shifted by the plane; a lane for each column. Double precision
+  /// is slow on small GPUs: a lane finds the start of one row for all.
   __device__ void sample_strip() {
     const int count = guided_width + 2 * range_, first = u_ - guided_half_width - range_;
-    if (lane_ >= count) return;
-    const double slope = -plane_.a2, drift = slope * (count - 1);
+    const int row_of_lane = lane_ < guided_height ? lane_ : guided_height - 1;
+    const RowStart own = row_start(v_ + row_of_lane - guided_half_height, first, count);
+    RowStart starts[guided_height];
+    ROADSTEREO_UNROLL
     for (int y = 0; y < guided_height; ++y) {
-      const int row = v_ + y - guided_half_height;
-      const double x = first - plane_.disparity(first, row);
-      const int base = static_cast<int>(floor(x + (drift < 0 ? drift : 0.0)));
-      const float place = static_cast<float>(x - base) + static_cast<float>(lane_) * static_cast<float>(slope);
-      const float whole = floorf(place), part = place - whole;
-      const int column = base + lane_ + static_cast<int>(whole), last = pair_.right.width - 1;
-      const std::int16_t* greys = pair_.right.row(row);
-      const float left = __ldg(greys + (column < last ? column : last));
-      const float right = __ldg(greys + (column + 1 < last ? column + 1 : last));
-      memory_.strip[y][lane_] = (1 - part) * left + part * right - mid_grey;
+      starts[y] = {__shfl_sync(whole_warp, own.column, y), __shfl_sync(whole_warp, own.place, y)};
+    }
+    if (lane_ >= count) return;
+    const auto slope = static_cast<float>(-plane_.a2);
+    float parts[guided_height];
+    int left[guided_height], right[guided_height];
+    ROADSTEREO_UNROLL
+    for (int y = 0; y < guided_height; ++y) {
+      const float place = starts[y].place + static_cast<float>(lane_) * slope, whole = floorf(place);
+      const int column = starts[y].column + lane_ + static_cast<int>(whole), last = pair_.right.width - 1;
+      const std::int16_t* greys = pair_.right.row(v_ + y - guided_half_height);
+      parts[y] = place - whole;
+      left[y] = __ldg(greys + (column < last ? column : last));
+      right[y] = __ldg(greys + (column + 1 < last ? column + 1 : last));
+    }
+    ROADSTEREO_UNROLL
+    for (int y = 0; y < guided_height; ++y) {
+      const float part = parts[y];
+      memory_.strip[y][lane_] =
+          (1 - part) * static_cast<float>(left[y]) + part * static_cast<float>(right[y]) - mid_grey;
     }
   }
 
