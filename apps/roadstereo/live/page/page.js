@@ -131,7 +131,7 @@
     }
     const chip = document.createElement("span");
     chip.className = `chip ${damage.severity}`;
-    chip.textContent = damage.severity;
+    chip.textContent = damage.severity.replace("unresolvable", "un\u00adresolv\u00adable");  // may break on a phone
     cell(made, chip);
     return made;
   }
