@@ -33,17 +33,19 @@ struct Place {
   int u, v;
 };
 
-/// The disparities of a thread's rows, on their way together; NaN below the map and beside it.
-struct Column {
-  __device__ Column(const Plane<const float>& disparity, const Place& at) {
-    ROADSTEREO_UNROLL
-    for (int k = 0; k < block_rows; ++k) {
-      const bool inside = at.u < disparity.width && at.v + k < disparity.height;
-      rows[k] = inside ? __ldg(disparity.row(at.v + k) + at.u) : NAN;
-    }
-  }
+/// Tells `use(v, height)` how far the pixels of a thread lie above the road; they are read together.
+template <class Use>
+__device__ void for_each_height(const Plane<const float>& disparity, const PlaneTerms& road, const Place& at, Use use) {
+  if (at.u >= disparity.width) return;
   float rows[block_rows];
-};
+  ROADSTEREO_UNROLL
+  for (int k = 0; k < block_rows; ++k) rows[k] = __ldg(disparity.row(min(at.v + k, disparity.height - 1)) + at.u);
+  ROADSTEREO_UNROLL
+  for (int k = 0; k < block_rows; ++k) {
+    const int v = at.v + k;
+    if (v < disparity.height) use(v, above_road(rows[k], road_at_row(road.a0, road.a1, v), road.a2, at.u));
+  }
+}
 
 /// Shared memory of both kernels.
 struct Shared {
@@ -77,17 +79,12 @@ __global__ void measure_heights(Plane<const float> disparity, PlaneSource source
   const bool of_sample = at.u < disparity.width && sample.has(at.u);
   float lowest = INFINITY;
   int valid = 0;
-  const Column column(disparity, at);
-  ROADSTEREO_UNROLL
-  for (int k = 0; k < block_rows; ++k) {
-    const int v = at.v + k;
-    if (v >= disparity.height || at.u >= disparity.width) break;
-    const float height = above_road(column.rows[k], road_at_row(road.a0, road.a1, v), road.a2, at.u);
+  for_each_height(disparity, road, at, [&](int v, float height) {
     if (of_sample && sample.has(v)) sample.heights[sample.index(v) * sample.columns + sample.index(at.u)] = height;
-    if (!(height == height)) continue;
+    if (!(height == height)) return;
     ++valid;
     lowest = height < lowest ? height : lowest;
-  }
+  });
   lowest = block_best(lowest, Least{}, reinterpret_cast<float*>(shared.sums));
   const int own[1] = {valid};
   const int valid_of_block = *block_sums(own, reinterpret_cast<int*>(shared.sums));
@@ -126,19 +123,14 @@ __global__ void shift_heights(Plane<const float> disparity, PlaneSource source, 
   const double delta_t = state->delta_t, limit = state->limit;
   const Place at;
   Spread all{0, 0, 0}, road{0, 0, 0};
-  const Column column(disparity, at);
-  ROADSTEREO_UNROLL
-  for (int k = 0; k < block_rows; ++k) {
-    const int v = at.v + k;
-    if (v >= disparity.height || at.u >= disparity.width) break;
-    const float height = above_road(column.rows[k], road_at_row(plane.a0, plane.a1, v), plane.a2, at.u);
+  for_each_height(disparity, plane, at, [&](int v, float height) {
     const float value = height + static_cast<float>(delta_t);
     transformed(at.u, v) = value;
     const double residual = value - delta_t;
-    if (!(residual == residual)) continue;
+    if (!(residual == residual)) return;
     all.add(residual);
     if (fabs(residual) <= limit) road.add(residual);
-  }
+  });
   const double own[spread_sums] = {all.n, all.sum, all.squares, road.n, road.sum, road.squares};
   const double* total = block_sums(own, shared.sums);
   const int block = static_cast<int>(blockIdx.y * gridDim.x + blockIdx.x);
