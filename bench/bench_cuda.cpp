@@ -72,10 +72,10 @@ PipelineOptions options_of(const std::string& name, const Size& size) {
 
 /// Until memory is made, kernels are loaded, and an idle GPU has raised its clock.
 void warm_up(Pipeline& pipeline, const FrameView& left, const FrameView& right) {
-  constexpr int fewest_frames = 10;
-  constexpr double least_ms = 300;
+  constexpr int min_frames = 10;
+  constexpr double min_ms = 300;
   const auto start = Clock::now();
-  for (int frame = 0; frame < fewest_frames || ms_since(start) < least_ms; ++frame) pipeline.process(left, right);
+  for (int frame = 0; frame < min_frames || ms_since(start) < min_ms; ++frame) pipeline.process(left, right);
 }
 
 struct Goal {
@@ -93,7 +93,7 @@ void print_stages(const std::vector<StageTimes>& frames, const StageTimes& floor
                                                                  {"coarse", &StageTimes::coarse},
                                                                  {"match", &StageTimes::match},
                                                                  {"refinement", &StageTimes::refinement},
-                                                                 {"road geometry", &StageTimes::road_geometry},
+                                                                 {"road geometry", &StageTimes::roll},
                                                                  {"transform", &StageTimes::transform}};
   for (const auto& [name, member] : stages) {
     std::vector<double> values;
@@ -110,7 +110,7 @@ void time_pipeline(const Goal& goal, int runs) {
   const synth::SyntheticPair pair = make_pair(goal.size);
   const FrameOnDevice left(pair.left), right(pair.right);
   Pipeline pipeline(options_of(goal.preset, goal.size), pair.calibration);
-  pipeline.use_device({.stream = nullptr, .download = false});
+  pipeline.set_device_options({.stream = nullptr, .download = false});
   warm_up(pipeline, left.view(), right.view());
   std::vector<double> ms;
   std::vector<StageTimes> stages;

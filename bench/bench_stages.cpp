@@ -24,7 +24,7 @@ struct Frame {
   RoadModelEstimate road;
   MatchMaps maps;
   Image<float> disparity, transformed;
-  RoadGeometry geometry;
+  RollEstimate geometry;
   DamageMap damage;
 
   Frame(int width, int height, int disparities) {
@@ -44,7 +44,7 @@ struct Frame {
     transform_target(right, shift, 0, target, first_column);
     make_engine("cpu", 0)->match(input(), MatcherOptions{}, maps);
     add_shift(maps.disparity, shift, 0, disparity);
-    geometry = fit_road_geometry(disparity, std::nullopt, road.model, 0, {});
+    geometry = estimate_roll(disparity, std::nullopt, road.model, 0, {});
     transform_disparity(disparity, geometry, 0, {}, 0, transformed);
   }
   MatchInput input() const { return {left, target, first_column.data(), shift.disparities}; }
@@ -90,7 +90,7 @@ void register_all() {
   add_stage("verify_road", [](Frame& f) { verify_road_model(f.left, f.right, f.road.model, f.pair.calibration, {}); });
   add_stage("transform_target", [](Frame& f) { transform_target(f.right, f.shift, 0, f.target, f.first_column); });
   add_stage("add_shift", [](Frame& f) { add_shift(f.maps.disparity, f.shift, 0, f.disparity); });
-  add_stage("road_geometry", [](Frame& f) { fit_road_geometry(f.disparity, std::nullopt, f.road.model, 0, {}); });
+  add_stage("roll", [](Frame& f) { estimate_roll(f.disparity, std::nullopt, f.road.model, 0, {}); });
   add_stage("transform_disparity",
             [](Frame& f) { transform_disparity(f.disparity, f.geometry, 0, {}, 0, f.transformed); });
   add_stage("damage", [](Frame& f) {

@@ -35,17 +35,17 @@ Work matching(const MatcherOptions& options, double pixels, int disparities) {
   }
   const double surroundings = (tile_columns + 2 * across) * (tile_rows + 2 * down) / (tile_columns * tile_rows);
   const double block = 2 * options.block_radius + 1, window = static_cast<double>(taps.size());
-  const double views = options.target_volume ? 2 : 1, costs = views * pixels * disparities;
+  const double views = options.match_both_views ? 2 : 1, costs = views * pixels * disparities;
   return {.bytes = pixels * (2 * 26 + 22),
           .operations = costs * (surroundings * (4 + block + 8) + window + 6),
           .shared_bytes = costs * 4 * ((block + 2) * surroundings + window)};
 }
 
 /// stereo/coarse/cuda/*.cu, with the pair at half its size, or less.
-Work coarse_look(const PipelineOptions& options, int width, double pixels, int disparities) {
-  constexpr int most_columns = 800;
+Work coarse_search(const PipelineOptions& options, int width, double pixels, int disparities) {
+  constexpr int max_columns = 800;
   int factor = std::max(2, options.coarse_search.factor);
-  while (options.coarse_search.factor == 0 && factor < 8 && width / factor > most_columns) factor *= 2;
+  while (options.coarse_search.factor == 0 && factor < 8 && width / factor > max_columns) factor *= 2;
   const double coarse = pixels / (factor * factor), costs = coarse * (disparities - 1.0) / factor;
   return {.bytes = 4 * pixels + 32 * coarse + (4 + 12 + 24) * costs, .operations = costs * (62 + 5 + 14)};
 }
@@ -70,7 +70,7 @@ StageTimes stage_floors(const PipelineOptions& options, int width, int height, i
   StageTimes floors;
   floors.prepare = Work{.bytes = 6 * pixels, .operations = 16 * pixels}.ms(peak);
   floors.perspective = Work{.bytes = 4 * pixels, .operations = 20 * pixels}.ms(peak);
-  floors.coarse = coarse_look(options, width, pixels, disparities).ms(peak);
+  floors.coarse = coarse_search(options, width, pixels, disparities).ms(peak);
   floors.match = matching(options.matcher, pixels, disparities).ms(peak);
   floors.refinement = Work{.bytes = 16 * pixels,
                            .operations = 14 * neighbours * neighbours * pixels,

@@ -1,31 +1,33 @@
 #!/usr/bin/env bash
-# Runs the tests with the address and undefined-behaviour sanitizers, and those of the embedded library with the thread
-# sanitizer. Left out, because sanitizers make them last too long: the experiments of `evaluate`, the tests on real data
-# and in a browser, and the largest comparisons with the reference engine, whose small ones take the same ways through
-# the code. Under the thread sanitizer also what has no threads, or the same as another test: other scenes and presets.
-# Threads of emulated kernels are threads to it.
+# Builds with sanitizers and runs the tests.
+#   scripts/check_sanitizers.sh asan|asan-all|tsan [options of CMake]
+#   asan      address and undefined-behaviour sanitizer: the libraries, and the kernels, which run emulated
+#   asan-all  the same, and the commands
+#   tsan      thread sanitizer: what is about threads, recordings, cameras, and every kernel, whose threads are threads to it
+# Left out by label: slow, whose short siblings take the same ways through the code, real data and browsers.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-slow='DamageCommand.Evaluate|odd_large|large_windows|_100$|Peers.Fast|RoadScene|InBrowser|CudaPreset.*/paper|CudaPipeline.Allocates'
-same_threads='Cuda(Preset|Pipeline)|EveryPreset.*/(paper|fast)|NamedScene|OfScene|Synth.Truth|Synth.EveryScene|FindDamage.(Kerb|Intact|Measures)|RowAlignment.FindsTheOffset|Pipeline.(Straight|Corrected|Colour|RollOf|WorksWithout|RowsThat|Refuses)'
-threaded=(test_alignment test_carry_over test_coarse_search test_damage test_engines test_parallel test_perspective
-          test_pipeline test_queues test_refinement test_road_geometry test_road_model test_synth)
-kernels=(test_cuda_block test_cuda_coarse test_cuda_disparity_transform test_cuda_emulation test_cuda_grey
-         test_cuda_guided_match test_cuda_perspective test_cuda_pipeline test_cuda_refinement test_cuda_road_fit
-         test_cuda_road_verification test_cuda_robust_plane)
+programs=(test_embedded test_cuda test_io test_live)
+with='.'
+case ${1:-} in
+  asan) ;;
+  asan-all) programs+=(test_flight test_cli) ;;
+  tsan)
+    programs=(test_embedded test_cuda test_live test_flight)
+    with='^(threads|cuda|live|flight)$'
+    ;;
+  *)
+    sed -n '2,/^set/s/^# *//p' "$0" >&2
+    exit 2
+    ;;
+esac
+preset=${1%-all}
+shift
 
-# check <preset> <tests left out> [<programs, all of them without any>]
-check() {
-  local preset=$1 left_out=$2 targets=()
-  shift 2
-  [ $# -eq 0 ] || targets=(--target "$@")
-  cmake --preset "$preset"
-  cmake --build --preset "$preset" -j "$(nproc)" "${targets[@]}"
-  ctest --test-dir "build-$preset" --output-on-failure -j "$(nproc)" --label-exclude real_data --exclude-regex "$left_out"
-}
-
+cmake --preset "$preset" "$@"
+cmake --build --preset "$preset" -j "$(nproc)" --target "${programs[@]}"
 export UBSAN_OPTIONS=print_stacktrace=1
-check asan "$slow"
-check tsan "$slow|$same_threads|NOT_BUILT" "${threaded[@]}" "${kernels[@]}"
-echo "Sanitizers: good."
+export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp"
+./scripts/run_tests.sh "build-$preset" --label-regex "$with" --label-exclude '^(slow|real_data|browser)$'
+echo "Sanitizers: $preset is good."

@@ -1,6 +1,10 @@
 #!/usr/bin/env bash
-# Runs clang-tidy with .clang-tidy over the library and the command line. Needs the build folder of scripts/test.sh.
-#   scripts/check_tidy.sh [--all]
+# Runs clang-tidy with .clang-tidy. Needs the build folder of scripts/test.sh.
+#   scripts/check_tidy.sh        the sources that a change touches
+#   scripts/check_tidy.sh --all  the library and the command line, with the analyzer
+# A change is what differs from the merge base with origin/main. Where HEAD is origin/main itself, as in a fresh clone, it
+# is the last 20 commits. A changed header counts as the source of its name. Of a change of more than 24 sources the 24
+# that were changed last are looked at: scripts/check_all.sh looks at the rest.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -8,21 +12,39 @@ if [ ! -f build/compile_commands.json ]; then
   echo "build/compile_commands.json is missing: run scripts/test.sh first" >&2
   exit 2
 fi
-# The compile commands come from GCC, some of whose warning options clang does not know. Left to --all: the analyzer, which
-# follows paths through the embedded library and takes a third of the time there (the sanitizers see what they find), and
-# the experiments of `evaluate`.
+# The compile commands come from GCC, whose precompiled headers clang does not read.
+mkdir -p build/tidy
+sed -E 's# (-Winvalid-pch )?-include [^ ]*cmake_pch\.hxx##' build/compile_commands.json >build/tidy/compile_commands.json
+
+# Standard input: files, one a line. Only what this build compiles: there may be no CUDA, for example.
 tidy() {
-  # Only what this build compiles: there may be no CUDA, for example.
-  while read -r -d '' file; do
-    if grep -qF "\"file\": \"$PWD/$file\"" build/compile_commands.json; then printf '%s\0' "$file"; fi
-  done | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build --quiet --extra-arg=-Wno-unknown-warning-option "$@"
+  while read -r file; do
+    if grep -qF "\"file\": \"$PWD/$file\"" build/tidy/compile_commands.json; then printf '%s\0' "$file"; fi
+  done | xargs -0 -r -n 1 -P "$(nproc)" \
+    clang-tidy -p build/tidy --quiet --extra-arg=-Wno-unknown-warning-option "$@"
 }
-analyzer='-clang-analyzer-*'
-experiments=(-not -path 'apps/roadstereo/evaluate/*')
+
+# Commits since the change began, and what is not committed yet; the file that was changed last comes first.
+changed() {
+  local base depth
+  base=$(git merge-base HEAD origin/main 2>/dev/null || git rev-parse HEAD)
+  if [ "$base" = "$(git rev-parse HEAD)" ]; then
+    depth=$(git rev-list --count --first-parent HEAD)
+    base=$(git rev-parse "HEAD~$((depth > 20 ? 20 : depth - 1))")
+  fi
+  { git diff --name-only HEAD
+    git log --format= --name-only "$base..HEAD"; } |
+    grep -E '^(src|apps)/.*\.[ch]pp$' | sed 's/\.hpp$/.cpp/' | awk '!seen[$0]++' | head -n 24 || true
+}
+
+# The analyzer follows paths through the embedded library and takes a third of the time there; the sanitizers see what
+# it finds. Elsewhere it mostly follows paths through other libraries.
 if [ "${1:-}" = --all ]; then
-  analyzer=
-  experiments=()
+  find src -name '*.cpp' -not -path 'src/io/*' | tidy
+  find src/io apps -name '*.cpp' | tidy '--checks=-clang-analyzer-*'
+else
+  files=$(changed)
+  printf '%s\n' "$files" | tidy '--checks=-clang-analyzer-*'
+  echo "Tidy: $(printf '%s\n' "$files" | grep -c .) changed sources."
 fi
-find src -name '*.cpp' -not -path 'src/io/*' -print0 | tidy "--checks=$analyzer"
-find src/io apps -name '*.cpp' "${experiments[@]}" -print0 | tidy '--checks=-clang-analyzer-*'
 echo "Tidy: good."

@@ -28,7 +28,7 @@ cmake --build --preset standalone -j "$(nproc)"
 build-standalone/bin/bench_cuda 1 >/dev/null  # says so and stops here where there is no usable GPU
 export ROADSTEREO_NEEDS_GPU=1  # tests of the kernels fail where they would be skipped
 # Each test is a process with a context of its own, of half a gigabyte: those of a hundred cores fill a GPU.
-ctest --test-dir build-standalone --output-on-failure -j "$(($(nproc) < 8 ? $(nproc) : 8))"
+./scripts/run_tests.sh build-standalone -j "$(($(nproc) < 8 ? $(nproc) : 8))"
 
 sanitize() {
   local test=$1 filter=$2 tests tool
@@ -43,10 +43,8 @@ sanitize() {
     compute-sanitizer --tool "$tool" --error-exitcode 1 "$test" --gtest_filter="$filter" --gtest_brief=1
   done
 }
-for test in build-standalone/bin/test_cuda*; do
-  [[ $test == *_formulas ]] || sanitize "$test" "$filter"  # formulas are checked on the host
-done
-sanitize build-standalone/bin/test_engines "${SANITIZER_FILTER:-*cuda*-*odd_large*}"
+sanitize build-standalone/bin/test_cuda "$filter"
+sanitize build-standalone/bin/test_embedded "${SANITIZER_FILTER:-*cuda*-Slow*}"
 
 build-standalone/bin/bench_cuda
 echo "GPU: good."

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs with apt what the build needs and is missing, and says what that is. Debian 12, Ubuntu 22.04 or later.
-#   scripts/install_deps.sh            compiler, CMake, libraries
-#   scripts/install_deps.sh --checks   also what the format, tidy and aarch64 checks and the tests in a browser and in GDAL need
+#   scripts/install_deps.sh               compiler, CMake, libraries
+#   scripts/install_deps.sh --checks      also what .ci/run needs
+#   scripts/install_deps.sh --all-checks  also what scripts/check_all.sh needs: browser, another architecture
 set -euo pipefail
 
 geographiclib=libgeographiclib-dev
@@ -12,12 +13,13 @@ packages=(build-essential cmake ninja-build pkg-config
           libgdal-dev libpugixml-dev "$geographiclib"
           libgstreamer-plugins-base1.0-dev librosbag-storage-dev libcpp-httplib-dev
           libgtest-dev libbenchmark-dev)
+checks=(clang-format-14 clang-tidy gdal-bin libsensor-msgs-dev gstreamer1.0-plugins-base)
 case "${1:-}" in
   "") ;;
-  --checks) packages+=(clang-format-14 clang-tidy g++-aarch64-linux-gnu qemu-user googletest
-                       chromium chromium-driver python3-selenium gdal-bin
-                       libsensor-msgs-dev gstreamer1.0-plugins-base) ;;
-  *) echo "usage: $0 [--checks]" >&2; exit 2 ;;
+  --checks) packages+=("${checks[@]}") ;;
+  --all-checks) packages+=("${checks[@]}" g++-aarch64-linux-gnu qemu-user googletest
+                           chromium chromium-driver python3-selenium) ;;
+  *) echo "usage: $0 [--checks|--all-checks]" >&2; exit 2 ;;
 esac
 
 optional=(librosbag-storage-dev libsensor-msgs-dev)  # ROS 1 bags; newer distributions no longer have them

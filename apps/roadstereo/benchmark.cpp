@@ -45,15 +45,10 @@ StereoPair make_pair(const Arguments& arguments) {
 }
 
 void add_stages(const StageTimes& ms, std::vector<Timing>& stages) {
-  const std::pair<const char*, double> values[] = {{"prepare", ms.prepare},
-                                                   {"road model", ms.road_model},
-                                                   {"perspective", ms.perspective},
-                                                   {"coarse", ms.coarse},
-                                                   {"match", ms.match},
-                                                   {"refinement", ms.refinement},
-                                                   {"road geometry", ms.road_geometry},
-                                                   {"transform", ms.transform},
-                                                   {"deliver", ms.deliver}};
+  const std::pair<const char*, double> values[] = {
+      {"prepare", ms.prepare},    {"road model", ms.road_model}, {"perspective", ms.perspective},
+      {"coarse", ms.coarse},      {"match", ms.match},           {"refinement", ms.refinement},
+      {"road geometry", ms.roll}, {"transform", ms.transform},   {"deliver", ms.deliver}};
   if (stages.empty()) {
     for (const auto& [name, value] : values) stages.push_back({name, {}});
   }
@@ -96,14 +91,14 @@ BenchmarkReport measure(const Arguments& arguments) {
   }
   if (before) report.scratch_bytes = allocations()->peak_bytes - before->live_bytes;
 
-  std::vector<io::PeerMatcher> peers;
+  std::vector<io::PeerMatcher> baselines;
   if (!arguments.no_peers) {
     const PeerPair grey = peer_pair(pair, result.shift);
     for (const std::string& name : io::peer_names()) {
-      peers.emplace_back(name, report.disparities);
-      peers.back().set_pair(grey.reference, grey.target);
-      peers.back().match();
-      report.peers.push_back({name, {}});
+      baselines.emplace_back(name, report.disparities);
+      baselines.back().set_pair(grey.reference, grey.target);
+      baselines.back().match();
+      report.baselines.push_back({name, {}});
     }
   }
   std::size_t allocated = 0;
@@ -114,7 +109,8 @@ BenchmarkReport measure(const Arguments& arguments) {
     report.total.ms.push_back(time_ms(process));
     if (before) allocated += allocations()->count - count;
     add_stages(result.ms, report.stages);
-    for (std::size_t i = 0; i < peers.size(); ++i) report.peers[i].ms.push_back(time_ms([&] { peers[i].match(); }));
+    for (std::size_t i = 0; i < baselines.size(); ++i)
+      report.baselines[i].ms.push_back(time_ms([&] { baselines[i].match(); }));
   }
   if (before) report.allocations = static_cast<double>(allocated) / arguments.runs;
   report.peak_memory_bytes = peak_memory_bytes();

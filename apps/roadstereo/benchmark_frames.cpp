@@ -22,13 +22,13 @@ StereoPair synthetic_pair(int width, int height) {
 }
 
 PeerPair peer_pair(const StereoPair& pair, const PerspectiveShift& shift) {
-  PeerPair peers;
+  PeerPair baselines;
   GreyImage right;
   std::vector<int> first_column;
-  to_grey(pair.left.view(), pair.white_level, peers.reference);
+  to_grey(pair.left.view(), pair.white_level, baselines.reference);
   to_grey(pair.right.view(), pair.white_level, right);
-  transform_target(right, shift, 0, peers.target, first_column);
-  return peers;
+  transform_target(right, shift, 0, baselines.target, first_column);
+  return baselines;
 }
 
 }  // namespace roadstereo::cli

@@ -62,9 +62,9 @@ std::string report_text(const BenchmarkReport& report) {
   for (const Timing& stage : report.stages) text += timing_line(stage) + "\n";
   text += timing_line(report.total) + fmt::format("   {:.0f} Mde/s\n", report.mde_per_s());
   text += timing_line(report.first) + "   road model found anew\n";
-  if (!report.peers.empty())
+  if (!report.baselines.empty())
     text += fmt::format("\n  {:<14} {:>9} {:>9} {:>9}   total / OpenCV\n", "OpenCV", "median", "min", "max");
-  for (const Timing& peer : report.peers) {
+  for (const Timing& peer : report.baselines) {
     text += timing_line(peer) + fmt::format("   {:.2f}\n", report.total.median() / peer.median());
   }
   text += "\n";
@@ -93,7 +93,7 @@ std::string report_json(const BenchmarkReport& report) {
   document["first_frame"] = timing_json(report.first);
   document["mde_per_s"] = report.mde_per_s();
   document["peers"] = nlohmann::ordered_json::array();
-  for (const Timing& peer : report.peers) {
+  for (const Timing& peer : report.baselines) {
     nlohmann::ordered_json entry = timing_json(peer);
     entry["ratio"] = report.total.median() / peer.median();
     document["peers"].push_back(entry);

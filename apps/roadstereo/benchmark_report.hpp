@@ -27,7 +27,7 @@ struct BenchmarkReport {
   std::vector<Timing> stages;  ///< of frames whose road model is known from the frame before
   Timing total{"total", {}};
   Timing first{"first frame", {}};  ///< road model found anew
-  std::vector<Timing> peers;
+  std::vector<Timing> baselines;
   std::optional<double> allocations;         ///< per frame
   std::optional<std::size_t> scratch_bytes;  ///< most in use beyond what was there before the pipeline was made
   std::size_t peak_memory_bytes = 0;         ///< of the whole process

@@ -73,7 +73,7 @@ void run(const Arguments& arguments) {
   folder.commit();
   if (arguments.quiet) return;
   fmt::print("{}: {}\n", arguments.files.transformed, damage_text(damage));
-  if (!damage.metric) fmt::print("  figures are in pixels: {}\n", damage.unmetric_reason);
+  if (!damage.metric) fmt::print("  figures are in pixels: {}\n", damage.non_metric_reason);
   fmt::print("  report    {}\n  pictures  {}\n", (folder.path() / "report.html").string(),
              (folder.path() / "overlay.png").string());
 }

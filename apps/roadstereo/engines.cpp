@@ -18,7 +18,7 @@ std::string engines_json() {
     list.push_back({{"name", engine.name}, {"description", engine.description}, {"exact", engine.exact}});
   }
   auto absent = nlohmann::ordered_json::array();
-  for (const AbsentEngine& engine : absent_engines()) {
+  for (const UnavailableEngine& engine : unavailable_engines()) {
     absent.push_back({{"name", engine.name}, {"reason", engine.reason}});
   }
   const nlohmann::ordered_json document = {
@@ -31,7 +31,7 @@ std::string engines_table() {
   for (const EngineInfo& engine : engines()) {
     table += fmt::format("{:<12} {}{}\n", engine.name, engine.description, engine.exact ? " (exact)" : "");
   }
-  for (const AbsentEngine& engine : absent_engines()) {
+  for (const UnavailableEngine& engine : unavailable_engines()) {
     table += fmt::format("{:<12} not here: {}\n", engine.name, engine.reason);
   }
   return table + fmt::format("{:<12} {}\n", "auto", "stands for " + resolve_engine_name("auto"));

@@ -45,7 +45,7 @@ void place_names(Arguments& arguments) {
     if (is_input(word, settings.source)) {
       settings.source.push_back(word);
     } else if (is_setting(word)) {
-      settings.treatment.settings.push_back(word);
+      settings.processing.settings.push_back(word);
     } else if (settings.calibration.size() == 1) {
       settings.calibration.push_back(word);
     } else {
@@ -66,7 +66,7 @@ void find_damage(const Pipeline& pipeline, Inspection& inspection) {
     inspection.damage = pipeline.find_damage();
   } catch (const Error& error) {
     const FrameResult& result = inspection.result;
-    inspection.damage = no_damage(result.disparity.width(), result.disparity.height(), "no road was found");
+    inspection.damage = make_empty_damage_map(result.disparity.width(), result.disparity.height(), "no road was found");
     inspection.warnings.push_back(std::string("damage was not looked for: ") + error.what());
   }
 }
@@ -78,8 +78,8 @@ void process(Inspection& inspection) {
   inspection.threads = used_threads(inspection.options);
   inspection.warnings = inspection.result.warnings;
   find_damage(pipeline, inspection);
-  if (inspection.pair.calibration && inspection.result.geometry_found) {
-    inspection.plane = road_plane(inspection.result.geometry.plane, *inspection.pair.calibration);
+  if (inspection.pair.calibration && inspection.result.roll_found) {
+    inspection.plane = ground_plane(inspection.result.geometry.plane, *inspection.pair.calibration);
   }
 }
 
@@ -96,11 +96,11 @@ void refuse_flight_options(const FlightSettings& settings) {
 void inspect_pair(const FlightSettings& settings) {
   refuse_flight_options(settings);
   Inspection inspection;
-  inspection.options = make_options(settings.treatment);
-  inspection.preset = settings.treatment.preset;
+  inspection.options = make_options(settings.processing);
+  inspection.preset = settings.processing.preset;
   inspection.files = {settings.source[0], settings.source[1], settings.calibration};
   inspection.pair = read_pair(inspection.files);
-  if (!sets_white_level(settings.treatment)) inspection.options.white_level = inspection.pair.white_level;
+  if (!sets_white_level(settings.processing)) inspection.options.white_level = inspection.pair.white_level;
 
   io::OutputFolder folder(settings.output);  // before the work, which would be lost on a folder that takes nothing
   process(inspection);
@@ -204,7 +204,7 @@ void add_inspect(CLI::App& app) {
   add_flight_options(*command, arguments->settings);
   add_track_options(*command, arguments->settings.track);
   add_source_options(*command, arguments->settings.choice);
-  add_treatment_options(*command, arguments->settings.treatment);
+  add_processing_options(*command, arguments->settings.processing);
   command->callback([arguments] { inspect(*arguments); });
 }
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <utility>
 
-#include "flight/flight_facts.hpp"
 #include "flight/flight_results.hpp"
+#include "flight/provenance.hpp"
 #include "flight/run_flight.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/version.hpp"
@@ -24,7 +24,7 @@ std::optional<std::int64_t> frames_to_do(const FlightSettings& settings, const i
 }
 
 io::FlightJournal open_journal(const FlightSettings& settings, const PipelineOptions& options, FlightFolder& folder) {
-  const io::FlightFacts facts = flight_facts(settings, options);
+  const io::Provenance facts = provenance(settings, options);
   if (settings.resume && std::filesystem::exists(folder.journal())) {
     return io::FlightJournal::resume(folder.journal(), facts);
   }
@@ -66,7 +66,7 @@ void inspect_flight(const FlightSettings& settings) {
   settings.validate();
   auto stop = std::make_unique<StopSignals>();  // before any thread
   FlightRun run;
-  run.options = make_options(settings.treatment);
+  run.options = make_options(settings.processing);
   std::optional<FlightPlaces> places;
   if (!settings.track.file.empty()) places.emplace(settings.track);
   RectifiedSource source(io::open_source(settings.source, make_source_options(settings.choice)), settings.calibration);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "pair_source.hpp"
+#include "roadstereo/ground_plane.hpp"
 #include "roadstereo/pipeline.hpp"
-#include "roadstereo/road_plane.hpp"
 
 namespace roadstereo::cli {
 
@@ -20,7 +20,7 @@ struct Inspection {
   int threads = 0;     ///< the threads it ran on
   FrameResult result;
   DamageMap damage;
-  std::optional<RoadPlane> plane;     ///< in space; only with a calibration and a road
+  std::optional<GroundPlane> plane;   ///< in space; only with a calibration and a road
   std::vector<std::string> warnings;  ///< the pipeline's and the command's own
 };
 

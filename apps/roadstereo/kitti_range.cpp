@@ -7,7 +7,7 @@ namespace roadstereo::cli {
 
 namespace {
 
-constexpr float largest_kitti_disparity = 255.99F;
+constexpr float max_kitti_disparity = 255.99F;
 
 }  // namespace
 
@@ -19,7 +19,7 @@ KittiRange fit_kitti_range(ImageView<const float> disparity) {
       const float d = disparity(u, v);
       if (std::isnan(d)) continue;
       ++range.valid;
-      const bool fits = d >= 0 && d <= largest_kitti_disparity;
+      const bool fits = d >= 0 && d <= max_kitti_disparity;
       if (fits) range.disparity(u, v) = d;
       if (!fits) ++range.lost;
     }

@@ -64,8 +64,8 @@ Table row_table(const ResolutionLimits& limits, int rows) {
                {"1 sigma mm", "std_error_mm"},
                {"told apart mm", "resolvable_depth_mm"},
                {"area cm2", "resolvable_area_cm2"},
-               {"GSD across mm", "across_mm"},
-               {"along mm", "along_mm"},
+               {"GSD across mm", "gsd_across_mm"},
+               {"along mm", "gsd_along_mm"},
                {"swath m", "swath_m"}},
               {}};
   for (const RowResolution& row : limits.rows(rows)) {
@@ -73,7 +73,7 @@ Table row_table(const ResolutionLimits& limits, int rows) {
     table.rows.push_back({Cell(row.row_px, 0), Cell(row.ahead_m, 2), Cell(row.distance_m, 2), Cell(row.disparity_px, 1),
                           Cell(finite(mm * row.step_m), 1), Cell(mm * row.std_error_m, 2),
                           Cell(finite(mm * row.resolvable_depth_m), 1), Cell(cm2 * row.resolvable_area_m2, 1),
-                          Cell(mm * row.across_m, 2), Cell(mm * row.along_m, 2), Cell(row.swath_m, 2)});
+                          Cell(mm * row.gsd_across_m, 2), Cell(mm * row.gsd_along_m, 2), Cell(row.swath_m, 2)});
   }
   return table;
 }
@@ -81,7 +81,7 @@ Table row_table(const ResolutionLimits& limits, int rows) {
 /// What can be said of one of ASTM's depths.
 std::string verdict(const ResolutionLimits& limits, double depth_m) {
   const std::optional<RowResolution> farthest = limits.farthest(depth_m);
-  const double highest = limits.highest_camera_m(depth_m);
+  const double highest = limits.max_camera_height_m(depth_m);
   const std::string from = highest > 0 ? fmt::format("; in the middle row up to a height of {:.2f} m", highest) : "";
   if (!farthest)
     return fmt::format("At this height {:.0f} mm can be told apart nowhere in view{}.", mm * depth_m, from);
@@ -107,7 +107,7 @@ nlohmann::ordered_json limits_json(const Arguments& arguments, const ResolutionL
     document["astm"].push_back({{"depth_mm", mm * depth},
                                 {"up_to_ahead_m", json_number(farthest ? farthest->ahead_m : std::nan(""))},
                                 {"up_to_distance_m", json_number(farthest ? farthest->distance_m : std::nan(""))},
-                                {"up_to_height_m", limits.highest_camera_m(depth)}});
+                                {"up_to_height_m", limits.max_camera_height_m(depth)}});
   }
   return document;
 }
@@ -115,11 +115,11 @@ nlohmann::ordered_json limits_json(const Arguments& arguments, const ResolutionL
 /// Depths against the place on the road, with ASTM's depths.
 Frame limits_figure(const Arguments& arguments, const ResolutionLimits& limits) {
   constexpr int points = 200;
-  constexpr double most_mm = 1000;
+  constexpr double max_mm = 1000;
   io::Curve step{"one pixel of disparity", {}, {}}, error{"one standard error", {}, {}}, told{"told apart", {}, {}};
   for (const RowResolution& row : limits.rows(points)) {
     for (io::Curve* curve : {&step, &error, &told}) curve->x.push_back(row.ahead_m);
-    const auto shown = [&](double depth) { return mm * depth < most_mm ? mm * depth : std::nan(""); };
+    const auto shown = [&](double depth) { return mm * depth < max_mm ? mm * depth : std::nan(""); };
     step.y.push_back(shown(row.step_m));
     error.y.push_back(shown(row.std_error_m));
     told.y.push_back(shown(row.resolvable_depth_m));
@@ -132,8 +132,8 @@ Frame limits_figure(const Arguments& arguments, const ResolutionLimits& limits) 
                   false,
                   true};
   for (const double depth : astm_depths_m) panel.horizontal_lines.push_back(mm * depth);
-  constexpr double least_reach_mm = 70;  // ASTM's depths are always in the picture
-  double reach = least_reach_mm;
+  constexpr double min_reach_mm = 70;  // ASTM's depths are always in the picture
+  double reach = min_reach_mm;
   for (const double depth : step.y) reach = std::fmax(reach, depth);
   panel.y_highest = reach;
   constexpr int width = 900, height = 560;

@@ -31,7 +31,7 @@ constexpr const char* footer =
     "130 a flight that Ctrl-C ended.";
 
 /// Says what went wrong in one line, whatever the message's own line breaks.
-int complain(std::string message, int exit_code) {
+int report_error(std::string message, int exit_code) {
   std::replace(message.begin(), message.end(), '\n', ' ');
   roadstereo::cli::say("roadstereo: {}\n", message);
   return exit_code;
@@ -58,7 +58,7 @@ int run(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& wanted) {  // --help, --version
     return app.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    return complain(fmt::format("{} (see {})", error.what(), help_command(app)), exit_bad_input);
+    return report_error(fmt::format("{} (see {})", error.what(), help_command(app)), exit_bad_input);
   }
 }
 
@@ -96,9 +96,9 @@ void quieten_decoders() {
 /// by page, which costs a millisecond a frame.
 void keep_memory() {
 #ifdef __GLIBC__
-  constexpr int largest_kept = 64 << 20;
-  ::mallopt(M_MMAP_THRESHOLD, largest_kept);
-  ::mallopt(M_TRIM_THRESHOLD, 4 * largest_kept);
+  constexpr int max_kept = 64 << 20;
+  ::mallopt(M_MMAP_THRESHOLD, max_kept);
+  ::mallopt(M_TRIM_THRESHOLD, 4 * max_kept);
 #endif
 }
 
@@ -112,14 +112,14 @@ int main(int argc, char** argv) {
     describe(app);
     return run(app, argc, argv);
   } catch (const roadstereo::SystemError& error) {
-    return complain(error.what(), exit_failure);
+    return report_error(error.what(), exit_failure);
   } catch (const roadstereo::Error& error) {
-    return complain(error.what(), exit_bad_input);
+    return report_error(error.what(), exit_bad_input);
   } catch (const roadstereo::cli::Interrupted&) {
-    return complain("stopped; go on with --resume", exit_interrupted);
+    return report_error("stopped; go on with --resume", exit_interrupted);
   } catch (const std::bad_alloc&) {
-    return complain("out of memory", exit_failure);
+    return report_error("out of memory", exit_failure);
   } catch (const std::exception& error) {
-    return complain(error.what(), exit_failure);
+    return report_error(error.what(), exit_failure);
   }
 }

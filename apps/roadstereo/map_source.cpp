@@ -7,7 +7,7 @@
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/calibration_file.hpp"
 #include "roadstereo/io/image_file.hpp"
-#include "roadstereo/road_geometry.hpp"
+#include "roadstereo/roll.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -30,7 +30,8 @@ struct Pairing {
   double value = 0;     ///< of the transformed map
 };
 
-std::vector<Pairing> pair_up(const Image<float>& transformed, const Image<float>& disparity, const RoadModel& plane) {
+std::vector<Pairing> pair_up(const Image<float>& transformed, const Image<float>& disparity,
+                             const DisparityPlane& plane) {
   std::vector<Pairing> pairs;
   for (int v = 0; v < transformed.height(); ++v) {
     for (int u = 0; u < transformed.width(); ++u) {
@@ -64,17 +65,17 @@ Scale fit_scale(const std::vector<Pairing>& pairs) {
 
 /// Turns the map's own scale into pixels of disparity.
 void scale_to_pixels(const MapFiles& files, TransformedMap& map) {
-  constexpr std::size_t least_pairs = 100;
-  constexpr double least_correlation = 0.8;
+  constexpr std::size_t min_pairs = 100;
+  constexpr double min_correlation = 0.8;
   const std::vector<Pairing> pairs = pair_up(map.transformed, *map.disparity, *map.plane);
-  if (pairs.size() < least_pairs) {
-    fail(files.transformed, " and ", files.disparity, " share ", pairs.size(), " valid pixels; at least ", least_pairs,
+  if (pairs.size() < min_pairs) {
+    fail(files.transformed, " and ", files.disparity, " share ", pairs.size(), " valid pixels; at least ", min_pairs,
          " are needed");
   }
   const Scale scale = fit_scale(pairs);
-  if (!(scale.correlation >= least_correlation)) {
+  if (!(scale.correlation >= min_correlation)) {
     fail(files.disparity, " does not belong to ", files.transformed,
-         ": above the road they agree with a correlation of ", scale.correlation, "; at least ", least_correlation,
+         ": above the road they agree with a correlation of ", scale.correlation, "; at least ", min_correlation,
          " is needed");
   }
   for (int v = 0; v < map.transformed.height(); ++v) {
@@ -84,9 +85,9 @@ void scale_to_pixels(const MapFiles& files, TransformedMap& map) {
   }
 }
 
-RoadModel fit_road(const Image<float>& disparity, const std::string& file) {
+DisparityPlane fit_road(const Image<float>& disparity, const std::string& file) {
   try {
-    return fit_road_geometry(disparity, std::nullopt, std::nullopt, 0, {}).plane;
+    return estimate_roll(disparity, std::nullopt, std::nullopt, 0, {}).plane;
   } catch (const Error& error) {
     fail(file, ": ", error.what());
   }

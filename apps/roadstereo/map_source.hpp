@@ -23,7 +23,7 @@ struct TransformedMap {
   Image<float> transformed;    ///< pixels when the disparity map is there, else of any scale
   std::optional<Frame> image;  ///< left image
   std::optional<Image<float>> disparity;
-  std::optional<RoadModel> plane;  ///< of the road in `disparity`
+  std::optional<DisparityPlane> plane;  ///< of the road in `disparity`
   std::optional<StereoCalibration> calibration;
 };
 

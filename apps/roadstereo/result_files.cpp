@@ -36,11 +36,11 @@ void add_clouds(const Inspection& inspection, io::OutputFolder& folder) {
                                                         inspection.options.white_level, *inspection.pair.calibration);
   folder.add("cloud.ply", io::encode_ply(cloud));
   if (!inspection.plane) return;
-  folder.add("road_cloud.ply", io::encode_ply(io::to_road_frame(cloud, road_frame(*inspection.plane))));
+  folder.add("road_cloud.ply", io::encode_ply(io::to_road_axes(cloud, road_axes(*inspection.plane))));
 }
 
-std::optional<RoadGeometry> known_geometry(const FrameResult& result) {
-  if (!result.geometry_found) return std::nullopt;
+std::optional<RollEstimate> known_geometry(const FrameResult& result) {
+  if (!result.roll_found) return std::nullopt;
   return result.geometry;
 }
 

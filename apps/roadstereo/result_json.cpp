@@ -38,7 +38,7 @@ Json calibration_json(const StereoPair& pair) {
           {"disparity_offset_px", json_number(rig.disparity_offset_px)}};
 }
 
-Json model_json(const RoadModel& model) {
+Json model_json(const DisparityPlane& model) {
   return {{"a0", json_number(model.a0)}, {"a1", json_number(model.a1)}, {"a2", json_number(model.a2)}};
 }
 
@@ -54,7 +54,7 @@ Json estimate_json(const RoadModelEstimate& road) {
 Json rows_json(const RowAlignment& rows) {
   const bool known = rows.known();
   return {{"median_px", known ? json_number(rows.median_px) : Json(nullptr)},
-          {"spread_px", known ? json_number(rows.spread_px) : Json(nullptr)},
+          {"sigma_px", known ? json_number(rows.sigma_px) : Json(nullptr)},
           {"points", rows.points}};
 }
 
@@ -65,33 +65,33 @@ Json times_json(const StageTimes& ms) {
           {"coarse", json_number(ms.coarse)},
           {"match", json_number(ms.match)},
           {"refinement", json_number(ms.refinement)},
-          {"road_geometry", json_number(ms.road_geometry)},
+          {"roll", json_number(ms.roll)},
           {"transform", json_number(ms.transform)},
           {"deliver", json_number(ms.deliver)},
           {"total", json_number(ms.total)}};
 }
 
 void add_geometry(Json& document, const FrameResult& result) {
-  const RoadGeometry& geometry = result.geometry;
-  const auto known = [&](double value) { return result.geometry_found ? json_number(value) : Json(nullptr); };
-  document["road_model"] = result.geometry_found ? model_json(geometry.plane) : Json(nullptr);
+  const RollEstimate& geometry = result.geometry;
+  const auto known = [&](double value) { return result.roll_found ? json_number(value) : Json(nullptr); };
+  document["road_model"] = result.roll_found ? model_json(geometry.plane) : Json(nullptr);
   document["alpha0"] = known(geometry.alpha0);
   document["alpha1"] = known(geometry.alpha1);
   document["roll_rad"] = known(geometry.roll_rad);
   document["roll_stderr_rad"] = known(geometry.roll_stderr_rad);
-  document["roll_observable"] = result.geometry_found && geometry.roll_observable;
+  document["roll_observable"] = result.roll_found && geometry.roll_observable;
   document["residual_px"] = known(geometry.residual_px);
   document["delta_p"] = json_number(result.shift.delta_p);
   document["delta_t"] = known(result.delta_t);
   document["disparities"] = result.shift.disparities;
   document["valid_fraction"] = json_number(result.valid_share);
   document["sigma_px"] = json_number(median(finite_values(result.sigma)));
-  document["sigma_d_px"] = known(result.spread.road_px);
-  document["sigma_d_all_px"] = known(result.spread.all_px);
+  document["sigma_d_px"] = known(result.spread.sigma_road_px);
+  document["sigma_d_all_px"] = known(result.spread.sigma_all_px);
   document["road_fraction"] = known(result.spread.road_share);
 }
 
-void add_plane(Json& document, const std::optional<RoadPlane>& plane) {
+void add_plane(Json& document, const std::optional<GroundPlane>& plane) {
   document["camera_height_m"] = plane ? json_number(plane->height_m) : Json(nullptr);
   document["camera_pitch_rad"] = plane ? json_number(plane->pitch_rad) : Json(nullptr);
 }

@@ -33,8 +33,8 @@ std::string engine_text(const Inspection& inspection) {
 }
 
 std::string roll_text(const FrameResult& result) {
-  if (!result.geometry_found) return "unknown: too few pixels have a disparity";
-  const RoadGeometry& geometry = result.geometry;
+  if (!result.roll_found) return "unknown: too few pixels have a disparity";
+  const RollEstimate& geometry = result.geometry;
   std::string angle = fmt::format("{:.3f}° ± {:.3f}°", degrees(geometry.roll_rad), degrees(geometry.roll_stderr_rad));
   if (geometry.roll_observable) return angle;
   const bool trusted = result.road.reliable || result.warnings.empty();
@@ -48,19 +48,20 @@ std::string term(double factor, char coordinate) {
 }
 
 std::string road_text(const FrameResult& result) {
-  if (!result.geometry_found) return "unknown";
-  const RoadModel& plane = result.geometry.plane;
+  if (!result.roll_found) return "unknown";
+  const DisparityPlane& plane = result.geometry.plane;
   return fmt::format("d = {:.2f}{}{} px", plane.a0, term(plane.a1, 'v'), term(plane.a2, 'u'));
 }
 
-std::string camera_text(const RoadPlane& plane) {
+std::string camera_text(const GroundPlane& plane) {
   return fmt::format("{:.3f} m above the road, looking {:.1f}° {} its horizon", plane.height_m,
                      degrees(std::abs(plane.pitch_rad)), plane.pitch_rad < 0 ? "above" : "below");
 }
 
 std::string spread_text(const FrameResult& result) {
-  if (!result.geometry_found) return "unknown";
-  return fmt::format("{:.3f} px on the road, {:.3f} px over everything", result.spread.road_px, result.spread.all_px);
+  if (!result.roll_found) return "unknown";
+  return fmt::format("{:.3f} px on the road, {:.3f} px over everything", result.spread.sigma_road_px,
+                     result.spread.sigma_all_px);
 }
 
 std::string time_text(const FrameResult& result) {

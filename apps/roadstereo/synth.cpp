@@ -19,9 +19,9 @@ namespace roadstereo::cli {
 
 namespace {
 
-constexpr int most_frames = 1'000'000;
-constexpr double least_rate_hz = 0.001;
-constexpr double largest_rate_hz = 100'000;
+constexpr int max_frames = 1'000'000;
+constexpr double min_rate_hz = 0.001;
+constexpr double max_rate_hz = 100'000;
 
 /// The command line of `synth`.
 struct Arguments {
@@ -67,11 +67,11 @@ class Frames {
 
 void make_frames(const Arguments& arguments) {
   if (arguments.output.empty()) fail("synth needs --output DIR (see roadstereo synth --help)");
-  if (arguments.frames < 1 || arguments.frames > most_frames) {
-    fail("--frames is ", arguments.frames, "; it must be between 1 and ", most_frames);
+  if (arguments.frames < 1 || arguments.frames > max_frames) {
+    fail("--frames is ", arguments.frames, "; it must be between 1 and ", max_frames);
   }
-  if (!(arguments.rate_hz >= least_rate_hz && arguments.rate_hz <= largest_rate_hz)) {
-    fail("--rate is ", arguments.rate_hz, "; it must be between ", least_rate_hz, " and ", largest_rate_hz,
+  if (!(arguments.rate_hz >= min_rate_hz && arguments.rate_hz <= max_rate_hz)) {
+    fail("--rate is ", arguments.rate_hz, "; it must be between ", min_rate_hz, " and ", max_rate_hz,
          " frames per second");
   }
   const synth::Scene first = make_scene(arguments.scene);

@@ -15,7 +15,7 @@ int main() {
     const double degrees = 180 / std::numbers::pi;
     std::cout << "roll " << result.geometry.roll_rad * degrees << " degrees, the truth is " << pair.roll_rad * degrees
               << "\n";
-    return result.geometry_found ? 0 : 1;
+    return result.roll_found ? 0 : 1;
   } catch (const roadstereo::Error& error) {
     std::cerr << error.what() << "\n";
     return 2;

@@ -7,7 +7,7 @@ namespace roadstereo {
 /// How well the rows of a pair agree: the offset v_right − v_left of matched points.
 struct RowAlignment {
   double median_px = 0;  ///< median vertical offset, pixels
-  double spread_px = 0;  ///< robust standard deviation (1.4826 · MAD), pixels
+  double sigma_px = 0;   ///< robust standard deviation (1.4826 · MAD), pixels
   int points = 0;        ///< matched points; with fewer than 20 nothing is known
 
   bool known() const { return points >= 20; }

@@ -10,22 +10,22 @@
 
 namespace roadstereo {
 
-/// A cut through a damage: what stands below (positive) or above (negative) the undamaged road along a straight line of
-/// the image. The undamaged road is at depth 0 all along. One entry per pixel of the line, in all four lists.
+/// Depth profile of a damage along a straight line of the image. Depths are relative to the undamaged road: positive
+/// below it, negative above it. All four lists have one entry per pixel of the line.
 struct CrossSection {
-  bool metric = false;                    ///< whether positions are metres; else pixels
+  bool metric = false;                    ///< whether `position` is in metres; else pixels
   std::vector<std::array<int, 2>> pixel;  ///< (u, v)
-  std::vector<double> position;           ///< where the line of sight meets the undamaged road, from the first pixel
-  std::vector<double> depth;              ///< measured, in the unit of `DamageMap::depth`; NaN in holes
-  std::vector<double> filled;  ///< the same with what was interpolated in the holes; NaN where nothing is known
+  std::vector<double> position;           ///< on the undamaged road: distance from the first pixel's intersection
+  std::vector<double> depth;              ///< measured depth, in the unit of `DamageMap::depth`; NaN in holes
+  std::vector<double> filled;             ///< depth with interpolated holes; NaN where no depth is available
 };
 
-/// The cut through the deepest pixel along the long axis of the damage, with undamaged road at both ends as far as the
-/// image shows it. `disparity` (ℓ, pixels, NaN invalid, may be empty) has the map's size; its NaN are the holes.
-/// Without a calibration that is all it is used for, so that ℓ' does as well. Positions are metres when the map is
-/// metric, disparity and calibration are there, and intact road is near. Throws Error when the sizes differ or the
-/// deepest pixel lies outside the map.
-CrossSection cross_section(const DamageMap& map, const Damage& damage, ImageView<const float> disparity = {},
-                           const std::optional<StereoCalibration>& calibration = {});
+/// Extract the profile through the deepest pixel along the major axis of the damage, with a margin of undamaged road at
+/// both ends where the image shows it. `disparity` is ℓ in pixels, NaN invalid, of the map's size, or empty; its NaN
+/// mark the holes. Without a calibration only these holes are used, so ℓ' may be given instead. Positions are in metres
+/// if the map is metric, `disparity` and `calibration` are given, and at least 30 pixels of intact road surround the
+/// damage. Throws Error when the sizes differ or the deepest pixel lies outside the map.
+CrossSection extract_cross_section(const DamageMap& map, const Damage& damage, ImageView<const float> disparity = {},
+                                   const std::optional<StereoCalibration>& calibration = {});
 
 }  // namespace roadstereo

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "roadstereo/calibration.hpp"
+#include "roadstereo/ground_plane.hpp"
 #include "roadstereo/image.hpp"
 #include "roadstereo/road_model.hpp"
-#include "roadstereo/road_plane.hpp"
 
 namespace roadstereo {
 
@@ -19,105 +19,107 @@ enum class DamageKind {
 };
 const char* name_of(DamageKind kind);
 
-/// ASTM D6433's table for potholes: depth against mean diameter.
+/// Severity of a pothole by ASTM D6433, from its depth and mean diameter.
 enum class Severity {
   unknown,       ///< no calibration
-  unresolvable,  ///< below what the rig can tell apart at this distance
-  minor,         ///< shallower than 13 mm or narrower than 100 mm: not in the table
+  unresolvable,  ///< shallower than the depth that the rig resolves at this distance
+  minor,         ///< shallower than 13 mm or narrower than 100 mm: below the table of ASTM D6433
   low,
   medium,
   high
 };
 const char* name_of(Severity severity);
 
-/// Severity of a pothole by ASTM D6433: depth 13–25, 25–50, > 50 mm against mean diameter 100–200, 200–450, 450–750 mm.
+/// Look up the severity of a pothole in the table of ASTM D6433: depth 13–25, 25–50, > 50 mm by mean diameter 100–200,
+/// 200–450, > 450 mm. Smaller values, and NaN, give `minor`.
 Severity astm_severity(double depth_m, double diameter_m);
 
 struct DamageOptions {
-  double threshold_sigma = 5;     ///< depth that counts as damage, in standard errors of the road's surface
-  double min_depth_m = 0.005;     ///< ... and in metres along the road's normal, when calibrated
-  double max_depth_m = 0.3;       ///< what lies deeper is no damage but a ditch
-  double max_height_m = 0.12;     ///< what rises higher is no damage but a kerb, an island or a vehicle
-  double min_area_m2 = 0.001;     ///< on the road's surface, when calibrated
-  double min_area_share = 0.001;  ///< share of the image; instead of min_area_m2 without a calibration
-  bool protrusions = true;        ///< find bumps, heave and debris as well
+  double threshold_sigma = 5;     ///< minimum depth in standard deviations of the intact road, 1 … 100
+  double min_depth_m = 0.005;     ///< minimum depth along the road's normal, metres, 0 … 10; used when calibrated
+  double max_depth_m = 0.3;       ///< maximum depth, metres, min_depth_m … 10; deeper regions are ditches
+  double max_height_m = 0.12;     ///< maximum height, metres, min_depth_m … 10; higher regions are kerbs or vehicles
+  double min_area_m2 = 0.001;     ///< minimum area on the road's surface, m², 0 … 1e4; used when calibrated
+  double min_area_share = 0.001;  ///< minimum area as a share of the image, 0 … 1; used without a calibration
+  bool protrusions = true;        ///< whether to find bumps, heave and debris too
 
+  /// Throws Error naming the first option out of range.
   void validate() const;
 };
 
-/// What is known of a frame. Views have one size; an empty view is absent.
+/// Maps and geometry of one frame. All views are W×H; an empty view is absent.
 struct DamageInput {
-  ImageView<const float> transformed;  ///< ℓ', pixels; NaN invalid; depressions below the road, protrusions above it
-  ImageView<const float> disparity;    ///< ℓ, pixels; needed for everything metric
-  ImageView<const float> sigma;        ///< standard error of ℓ, pixels; without it noise is measured in the map
-  ImageView<const std::int16_t>
-      grey;  ///< left image as `to_grey` gives it: helps to draw outlines where matching left holes
-  std::optional<RoadModel> plane;                ///< the road's plane in ℓ; needed for everything metric
-  std::optional<StereoCalibration> calibration;  ///< needed for everything metric
+  ImageView<const float> transformed;  ///< ℓ', pixels; NaN invalid. Depressions lie below the road, protrusions above
+  ImageView<const float> disparity;    ///< ℓ, pixels; required for metric results
+  ImageView<const float> sigma;  ///< standard error of ℓ, pixels; when absent, noise is estimated from `transformed`
+  ImageView<const std::int16_t> grey;            ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
+  std::optional<DisparityPlane> plane;           ///< the road's plane in ℓ; required for metric results
+  std::optional<StereoCalibration> calibration;  ///< required for metric results
 };
 
-/// A figure with its standard error.
-struct Measured {
+/// A measured value with its standard error.
+struct Measurement {
   double value = 0;
   double std_error = 0;
 };
 
-/// A damage in metres. Depth counts along the road's normal from the undamaged surface interpolated across the hole;
-/// it is positive for depressions and for protrusions alike.
+/// Metric properties of a damage. Depth is measured along the road's normal from the undamaged surface, interpolated
+/// across the damage. It is positive for depressions and for protrusions.
 struct DamageMetrics {
-  Measured area_m2;       ///< on the road's surface
-  Measured max_depth_m;   ///< largest depth (height, of a protrusion)
-  Measured mean_depth_m;  ///< over the whole region, holes included
-  Measured volume_m3;
-  double length_m = 0;                 ///< longer side of the smallest oriented box on the road
-  double width_m = 0;                  ///< its shorter side
-  double angle_rad = 0;                ///< of the longer side against the road's x axis, −π/2 … π/2, towards y
-  double diameter_m = 0;               ///< mean diameter: of the circle of this area
-  std::array<double, 3> centroid_m{};  ///< camera frame, on the undamaged surface
-  std::array<double, 2> road_centroid_m{};  ///< (x, y) in the frame of `road_frame`
+  Measurement area_m2;       ///< on the road's surface
+  Measurement max_depth_m;   ///< maximum depth, or height of a protrusion
+  Measurement mean_depth_m;  ///< mean over the region, interpolated holes included
+  Measurement volume_m3;
+  double length_m = 0;    ///< longer side of the minimum-area rectangle on the road
+  double width_m = 0;     ///< shorter side of that rectangle
+  double angle_rad = 0;   ///< from the road's x axis to the longer side, positive towards y, −π/2 … π/2
+  double diameter_m = 0;  ///< diameter of the circle of equal area
+  std::array<double, 3> centroid_m{};       ///< on the undamaged surface, camera frame
+  std::array<double, 2> road_centroid_m{};  ///< (x, y) of the centroid in the axes of `road_axes`
   double distance_m = 0;                    ///< from the left camera to the centroid
-  double resolvable_depth_m = 0;  ///< smallest depth that this rig tells apart there: threshold_sigma standard errors
+  double resolvable_depth_m = 0;            ///< smallest resolvable depth here: threshold_sigma standard errors
   Severity severity = Severity::unknown;
 };
 
-/// One damage: a connected region of the left image.
+/// One damage: a connected component of the left image.
 struct Damage {
-  int id = 0;  ///< its value in `DamageMap::ids`, 1 … 65535
+  int id = 0;  ///< value in `DamageMap::ids`, 1 … 65535
   DamageKind kind = DamageKind::depression;
   std::size_t pixels = 0;
-  double measured_share = 0;             ///< share of the pixels that have a disparity
+  double measured_share = 0;             ///< share of the pixels with a disparity, 0 … 1
   std::array<double, 2> centroid_px{};   ///< (u, v)
-  std::array<int, 4> box_px{};           ///< first and last column and row: u0, v0, u1, v1
-  std::array<int, 2> deepest_px{};       ///< (u, v) of the largest depth
-  Measured max_depth_px;                 ///< largest departure from the road in ℓ'
-  double mean_depth_px = 0;              ///< over the pixels that have a disparity
-  bool cut_by_border = false;            ///< reaches the border of the image: it may be larger than seen
+  std::array<int, 4> box_px{};           ///< bounding box, both ends inclusive: u0, v0, u1, v1
+  std::array<int, 2> deepest_px{};       ///< (u, v) of the maximum depth
+  Measurement max_depth_px;              ///< maximum |depth| in ℓ', pixels
+  double mean_depth_px = 0;              ///< mean |depth| over the pixels with a disparity
+  bool cut_by_border = false;            ///< touches the border of the image: it may continue outside
   std::optional<DamageMetrics> metrics;  ///< absent without a calibration
 };
 
-/// Damage of one frame.
+/// Damage of one frame. Images are W×H of the input.
 struct DamageMap {
   std::vector<Damage> damages;  ///< deepest first
-  Image<std::uint16_t> ids;     ///< of the damage at each pixel, 0 none
-  Image<std::uint8_t> road;     ///< 255 on the road region (damage included), 0 off it
-  Image<float> surface;         ///< ℓ' of the undamaged road, pixels, continued across damage and off the road
-  Image<float> depth;  ///< below the undamaged road, negative above: metres along the normal when calibrated, else
-                       ///< pixels of ℓ'; interpolated in the holes of damages; NaN elsewhere without a disparity
-  double noise_px =
-      0;  ///< standard deviation of the intact road, in means of a few pixels, around `surface`; pixels, robust
-  bool metric = false;          ///< whether `depth` is in metres
-  std::string unmetric_reason;  ///< why not
+  Image<std::uint16_t> ids;     ///< id of the damage at each pixel; 0: none
+  Image<std::uint8_t> road;     ///< 255 in the road region, damage included; 0 outside
+  Image<float> surface;         ///< ℓ' of the undamaged road, pixels; extrapolated across damage and off the road
+  Image<float> depth;   ///< depth below the undamaged road, negative above it: metres along the road's normal if
+                        ///< `metric`, else pixels of ℓ'. Interpolated in the holes of damages; NaN in other holes
+  double noise_px = 0;  ///< robust standard deviation of the intact road around `surface`, per cell, pixels
+  bool metric = false;  ///< whether `depth` is in metres
+  std::string non_metric_reason;  ///< why `metric` is false; empty if it is true
 };
 
-/// Finds and measures what differs from the road. No damage is a result, not an error.
-/// Throws Error when the map has no disparities, one value only, or the views do not agree in size.
+/// Find and measure the regions that differ from the road's surface: IRLS fit of a quadratic road surface, hysteresis
+/// thresholding of the depth below it, measurement of each connected component. A frame without damage gives an empty
+/// list. `threads` 0 uses all cores. Throws Error when the map is smaller than 32×32, has no valid pixel or only one
+/// value, when fewer than 32 samples lie on the road, and when the sizes of the views differ.
 DamageMap find_damage(const DamageInput& input, const DamageOptions& options = {}, int threads = 0);
 
-/// The same into an earlier result, whose maps keep their memory when the sizes are equal: fresh memory costs about as
-/// much as painting it. `result` is unspecified after an error.
+/// Find damage, reusing the memory of an earlier result of the same size: allocating the maps takes about as long as
+/// filling them. `result` is unspecified after an error.
 void find_damage(const DamageInput& input, const DamageOptions& options, int threads, DamageMap& result);
 
-/// The result where nothing was found and no road either; `reason` says why nothing is metric.
-DamageMap no_damage(int width, int height, const std::string& reason);
+/// Make a result without road and without damage. `reason` becomes `non_metric_reason`.
+DamageMap make_empty_damage_map(int width, int height, const std::string& reason);
 
 }  // namespace roadstereo

@@ -6,12 +6,14 @@ struct CUstream_st;
 
 namespace roadstereo {
 
-/// How a pipeline with the engine `cuda` shares a device with its caller (`Pipeline::use_device`). A pipeline belongs
-/// to the device that is current in the thread that makes it, and is used where the same one is: `process` refuses any
-/// other. When it returns, the device has ended the frame. Frames in device memory need no use_device.
-struct DeviceUse {
-  /// Where all work is enqueued: a cudaStream_t of the caller, which must outlive the pipeline, or its next use_device.
-  /// Null: a stream of the pipeline's own. Frames in device memory must be complete, or be made in this stream.
+/// How a pipeline with the engine `cuda` shares a device with its caller (`Pipeline::set_device_options`). A pipeline
+/// belongs to the device that is current in the thread that makes it, and is used where the same one is: `process`
+/// refuses any other. When it returns, the device has ended the frame. Frames in device memory need no
+/// set_device_options.
+struct DeviceOptions {
+  /// Where all work is enqueued: a cudaStream_t of the caller, which must outlive the pipeline, or its next
+  /// set_device_options. Null: a stream of the pipeline's own. Frames in device memory must be complete, or be made in
+  /// this stream.
   CUstream_st* stream = nullptr;
   /// Copy the maps to the host. False leaves the images of FrameResult empty: they are in `Pipeline::device_maps`
   /// alone, and `find_damage` has nothing to look at.

@@ -21,20 +21,20 @@ struct MatcherOptions {
   WindowShape aggregation_shape = WindowShape::disc;  ///< `disc` keeps the taps within the ellipse
   double sigma_space = 6.0;                           ///< σ0 of eq. omega0, pixels
   double sigma_colour = 20.0;                         ///< σ1 of eq. omega1, 8-bit grey levels
-  double texture_noise = 1.0;    ///< grey-level noise below which texture is no evidence; 0 is plain NCC, 0 … 50
+  double ncc_noise_sigma = 1.0;  ///< grey-level noise below which texture is no evidence; 0 is plain NCC, 0 … 50
   bool left_right_check = true;  ///< eq. lrc
   /// Match the target view too, with costs aggregated by its own weights, as the paper does. False projects the
   /// reference's winners into the target view instead, where the nearest of several hides the others: half the work.
-  bool target_volume = false;
+  bool match_both_views = false;
   /// Cost that a disparity pays for each pixel away from the prior, in units of the correlation; 0 ignores the prior.
-  double prior_slope = 0.08;
-  double prior_reach = 8.0;  ///< pixels away at which it stops growing, so that damage can leave the prior
-  double consistency = 1.0;  ///< δr of eq. lrc, pixels²
+  double prior_weight = 0.08;
+  double prior_truncation_px = 8.0;  ///< pixels away at which it stops growing, so that damage can leave the prior
+  double lr_max_diff_px = 1.0;       ///< δr of eq. lrc, pixels²
   /// Standard error added to what fails the check: refinement keeps it where better-known neighbours agree. 0 makes it
   /// invalid, as the paper does.
-  double hidden_sigma_px = 1.0;
-  bool sub_pixel = true;         ///< eq. subpixel
-  bool drop_range_ends = false;  ///< a winner at the end of its range, which may be no minimum, is invalid
+  double occlusion_sigma_px = 1.0;
+  bool sub_pixel = true;               ///< eq. subpixel
+  bool reject_range_boundary = false;  ///< a winner at the end of its range, which may be no minimum, is invalid
 
   void validate() const;
   bool operator==(const MatcherOptions&) const = default;
@@ -79,7 +79,7 @@ struct MatchInput {
 
 /// What matching leaves. Sizes are those of the reference image.
 struct MatchMaps {
-  Image<float> disparity;      ///< sub-pixel; NaN invalid, as what fails the left–right check with hidden_sigma_px 0
+  Image<float> disparity;  ///< sub-pixel; NaN invalid, as what fails the left–right check with occlusion_sigma_px 0
   Image<std::int16_t> winner;  ///< winner-take-all on the reference volume; −1 where nothing can match
   /// Winner-take-all on the target volume, or the reference's winners projected, in target coordinates; −1 likewise.
   Image<std::int16_t> target_winner;
@@ -107,13 +107,13 @@ struct EngineInfo {
 const std::vector<EngineInfo>& engines();
 
 /// An engine that is known, but not in `engines()`.
-struct AbsentEngine {
+struct UnavailableEngine {
   std::string name;
   std::string reason;  ///< why this build or this machine has it not, as a sentence
 };
 
 /// Every known engine that cannot be used, for example `cuda` without a GPU.
-const std::vector<AbsentEngine>& absent_engines();
+const std::vector<UnavailableEngine>& unavailable_engines();
 
 /// Makes the engine called `name`; "auto" takes the first of the registry. `threads` 0 takes all cores.
 /// Throws Error naming the engines that exist, or why the one that was asked for cannot be used.

@@ -15,10 +15,10 @@ enum class ShiftPrecision { whole_pixel, sub_pixel };
 struct PerspectiveOptions {
   bool enabled = true;  ///< false: no shift, plain stereo over the full range
   ShiftPrecision shift = ShiftPrecision::sub_pixel;
-  double deepest_damage_m = 0.10;  ///< deepest damage below the road to be measured, metres; needs a calibration
-  double highest_bump_m = 0.05;    ///< highest bump above the road to be measured, metres; needs a calibration
-  int disparities = 0;             ///< number of disparities D searched after the shift; 0 derives it, 1 … 1024
-  double delta_p_px = -1;          ///< δp: the road's disparity after the shift, pixels; negative derives it
+  double max_damage_depth_m = 0.10;  ///< deepest damage below the road to be measured, metres; needs a calibration
+  double max_bump_height_m = 0.05;   ///< highest bump above the road to be measured, metres; needs a calibration
+  int disparities = 0;               ///< number of disparities D searched after the shift; 0 derives it, 1 … 1024
+  double delta_p_px = -1;            ///< δp: the road's disparity after the shift, pixels; negative derives it
 
   void validate() const;
 };
@@ -26,7 +26,7 @@ struct PerspectiveOptions {
 /// The shift of the perspective transformation: the target pixel at column x of the transformed image comes from
 /// column x − shift(x, v) of the target image, shift = max(0, road disparity − δp).
 struct PerspectiveShift {
-  RoadModel road;       ///< Δu
+  DisparityPlane road;  ///< Δu
   double delta_p = 0;   ///< δp, pixels
   int disparities = 1;  ///< D: residual disparities 0 … D−1 are searched
   bool whole_pixel = false;

@@ -14,12 +14,12 @@
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/refinement.hpp"
-#include "roadstereo/road_geometry.hpp"
 #include "roadstereo/road_model.hpp"
+#include "roadstereo/roll.hpp"
 
 namespace roadstereo {
 
-struct DeviceUse;
+struct DeviceOptions;
 struct DeviceMaps;
 
 struct PipelineOptions {
@@ -34,7 +34,7 @@ struct PipelineOptions {
   CoarseSearchOptions coarse_search;
   MatcherOptions matcher;
   RefinementOptions refinement;
-  RoadGeometryOptions road_geometry;
+  RollOptions roll;
   DamageOptions damage;  ///< of `Pipeline::find_damage`
 
   /// Throws Error naming the first option that is out of range.
@@ -51,13 +51,13 @@ struct StageTimes {
   double prepare = 0;  ///< conversion to grey, checks of the pair
   double road_model = 0;
   double perspective = 0;
-  double coarse = 0;         ///< coarse look: disparities of each tile, prior
-  double match = 0;          ///< cost, aggregation, winner-take-all, left–right check, sub-pixel
-  double refinement = 0;     ///< smoothing by the standard errors
-  double road_geometry = 0;  ///< roll and projection model
-  double transform = 0;      ///< disparity transformation
-  double deliver = 0;        ///< maps from a device to the host; nothing with the engines of the host
-  double total = 0;          ///< on the host's clock: with the engine cuda more than the stages, which the device times
+  double coarse = 0;      ///< coarse look: disparities of each tile, prior
+  double match = 0;       ///< cost, aggregation, winner-take-all, left–right check, sub-pixel
+  double refinement = 0;  ///< smoothing by the standard errors
+  double roll = 0;        ///< roll and projection model
+  double transform = 0;   ///< disparity transformation
+  double deliver = 0;     ///< maps from a device to the host; nothing with the engines of the host
+  double total = 0;       ///< on the host's clock: with the engine cuda more than the stages, which the device times
 };
 
 /// The paper's result for one pair.
@@ -68,24 +68,24 @@ struct FrameResult {
   Image<float> transformed;  ///< ℓ': the intact road lies at `delta_t`, damage below, bumps above; NaN invalid
   RoadModelEstimate road;    ///< before matching
   PerspectiveShift shift;
-  RoadGeometry geometry;        ///< after matching; valid only when `geometry_found`
-  bool geometry_found = false;  ///< false when too few disparities were valid; `transformed` is then all NaN
-  double delta_t = 0;           ///< δt, pixels
-  TransformedSpread spread;     ///< σ_d
-  double valid_share = 0;       ///< share of the pixels that have a disparity
-  RowAlignment rows;            ///< measured when the road model was estimated anew
+  RollEstimate geometry;    ///< after matching; valid only when `roll_found`
+  bool roll_found = false;  ///< false when too few disparities were valid; `transformed` is then all NaN
+  double delta_t = 0;       ///< δt, pixels
+  RoadResiduals spread;     ///< σ_d
+  double valid_share = 0;   ///< share of the pixels that have a disparity
+  RowAlignment rows;        ///< measured when the road model was estimated anew
   StageTimes ms;
   double mde_per_s = 0;  ///< millions of disparity evaluations per second: W·H·D / total time
   std::vector<std::string> warnings;
 };
 
 /// What one frame hands to the next: all that is needed to go on where an earlier run ended, to the same bits.
-struct CarriedState {
-  int width = 0;                  ///< size of the frames, pixels; 0 before the first one
-  int height = 0;                 ///< pixels
-  std::optional<RoadModel> road;  ///< the last frame's road model; absent when it was not reliable
-  double roll_rad = 0;            ///< ψ(t), where the descent of ψ(t+1) starts; 0 when it could not be observed
-  double row_offset_px = 0;       ///< of the target's rows; measured whenever the road model is estimated anew
+struct PipelineState {
+  int width = 0;                       ///< size of the frames, pixels; 0 before the first one
+  int height = 0;                      ///< pixels
+  std::optional<DisparityPlane> road;  ///< the last frame's road model; absent when it was not reliable
+  double roll_rad = 0;                 ///< ψ(t), where the descent of ψ(t+1) starts; 0 when it could not be observed
+  double row_offset_px = 0;            ///< of the target's rows; measured whenever the road model is estimated anew
 };
 
 /// The way through, section 3 of the paper in order. Holds what carries over between frames (road model, ψ, scratch
@@ -115,10 +115,10 @@ class Pipeline {
   void find_damage(DamageMap& result) const;
 
   /// What the next frame will start from.
-  const CarriedState& carried() const;
+  const PipelineState& carried() const;
 
   /// Goes on from there: the next frame starts from `carried`.
-  void carry_on(const CarriedState& carried);
+  void restore(const PipelineState& carried);
 
   /// Makes the memory and starts the threads that frames of this size need, so that the first takes no longer than any
   /// other whose road model is found anew. Forgets the last frame. Throws Error for a size that `process` refuses.
@@ -129,7 +129,7 @@ class Pipeline {
 
   /// Engine cuda: shares a device with the caller (roadstereo/device.hpp), from the next frame on. Such a pipeline also
   /// takes frames whose data lie in device memory. Throws Error for any other engine.
-  void use_device(const DeviceUse& use);
+  void set_device_options(const DeviceOptions& use);
   /// Engine cuda: the last frame's maps in device memory. Throws Error for any other engine, or without a frame.
   DeviceMaps device_maps() const;
 

@@ -9,19 +9,20 @@
 
 namespace roadstereo {
 
-/// The surface of a damage and its surroundings as a grid of points, row by row as in the image.
-/// Metric: where the lines of sight meet the undamaged road, x to the camera's right and y forward, metres; else
-/// pixels, y up in the image. Both from the middle of the grid.
+/// Depth of a damage and its surroundings on a grid, sampled row by row from the image. All four images have one size.
+/// Coordinates are relative to the middle of the grid. Metric: intersections of the lines of sight with the undamaged
+/// road, x to the camera's right, y forward, metres. Otherwise: pixels, y up in the image.
 struct Relief {
-  bool metric = false;  ///< whether x and y are metres
+  bool metric = false;  ///< whether x and y are in metres
   Image<float> x, y;
-  Image<float> depth;            ///< in the unit of `DamageMap::depth`; NaN where nothing is known
-  Image<std::uint8_t> measured;  ///< 255 where the depth was measured, 0 where it was interpolated or is unknown
+  Image<float> depth;            ///< in the unit of `DamageMap::depth`; NaN where no depth is available
+  Image<std::uint8_t> measured;  ///< 255 where the depth was measured; 0 where it was interpolated or is missing
 };
 
-/// The relief of the damage's box and a margin around it, at most `most_points` (2 … 1000) points a side. `disparity`
-/// and `calibration` as for `cross_section`. Throws Error when the sizes differ.
-Relief damage_relief(const DamageMap& map, const Damage& damage, ImageView<const float> disparity,
-                     const std::optional<StereoCalibration>& calibration, int most_points);
+/// Extract the relief of the damage's bounding box with a margin, at most `max_points` (2 … 1000) samples per side.
+/// `disparity` and `calibration` as for `extract_cross_section`. Throws Error when the sizes differ or `max_points` is
+/// out of range.
+Relief extract_relief(const DamageMap& map, const Damage& damage, ImageView<const float> disparity,
+                      const std::optional<StereoCalibration>& calibration, int max_points);
 
 }  // namespace roadstereo

@@ -10,77 +10,80 @@
 
 namespace roadstereo {
 
-/// Where the left camera is over a plane road. Its rows are level: no roll.
+/// Pose of the left camera over a planar road, without roll.
 struct CameraPose {
   double height_m = 2;                      ///< above the road, 0.05 … 1000
-  double pitch_rad = std::numbers::pi / 2;  ///< of the optical axis below the horizon, −π/2 … π/2; π/2: straight down
+  double pitch_rad = std::numbers::pi / 2;  ///< of the optical axis below the horizon, −π/2 … π/2; π/2 looks down
 
+  /// Throws Error naming the first value out of range.
   void validate() const;
 };
 
 struct ResolutionOptions {
-  /// Standard error of the disparity of one pixel, pixels, 0.001 … 10. 0.1 px is the root mean square error of the
-  /// default preset on rendered damage with ordinary texture (docs/accuracy.md); `sigma.tiff` tells it for a picture.
+  /// Standard error of a disparity, pixels, 0.001 … 10. 0.1 px is the root mean square error of the default preset on
+  /// rendered damage with ordinary texture (docs/accuracy.md); `sigma.tiff` gives it for an image.
   double sigma_px = 0.1;
-  double threshold_sigma = DamageOptions{}.threshold_sigma;  ///< standard errors that tell a depth apart, 0.1 … 100
-  double min_area_m2 = DamageOptions{}.min_area_m2;          ///< segmentation keeps nothing smaller, 0 … 100
-  MatcherOptions matcher;                                    ///< its windows bound the smallest area
+  double threshold_sigma = DamageOptions{}.threshold_sigma;  ///< resolvable depth in standard errors, 0.1 … 100
+  double min_area_m2 = DamageOptions{}.min_area_m2;          ///< minimum area of the segmentation, m², 0 … 100
+  MatcherOptions matcher;                                    ///< its support window bounds the resolvable area
 
+  /// Throws Error naming the first option out of range.
   void validate() const;
 };
 
-/// What can be told apart where the road is seen in one row of the left image. Depths count along the road's normal.
+/// Resolution on the road in one row of the left image. Depths are along the road's normal.
 struct RowResolution {
   double row_px = 0;
-  double ahead_m = 0;             ///< on the road, from the foot of the camera, at the column of the principal point
-  double distance_m = 0;          ///< from the camera, along the ray of that column
+  double ahead_m = 0;             ///< distance on the road from the point below the camera, at the principal column
+  double distance_m = 0;          ///< from the camera along the ray of that column
   double disparity_px = 0;        ///< of the road
-  double step_m = 0;              ///< depth below the road that lowers the disparity by one pixel; infinite: by none
-  double std_error_m = 0;         ///< depth of one standard error
-  double resolvable_depth_m = 0;  ///< depth of threshold_sigma standard errors; infinite when none is enough
-  double across_m = 0;            ///< road per pixel along the row
-  double along_m = 0;             ///< road per pixel along the column
-  double swath_m = 0;             ///< width of the road that both cameras see; 0: the road is too close for both
-  double resolvable_area_m2 = 0;  ///< smallest area told apart
+  double step_m = 0;              ///< depth that lowers the disparity by one pixel; infinity if there is none
+  double std_error_m = 0;         ///< depth of one standard error of the disparity
+  double resolvable_depth_m = 0;  ///< depth of threshold_sigma standard errors; infinity if there is none
+  double gsd_across_m = 0;        ///< ground sampling distance along the row, metres per pixel
+  double gsd_along_m = 0;         ///< ground sampling distance along the column, metres per pixel
+  double swath_m = 0;             ///< width of the road in view of both cameras; 0 if the road is too close
+  double resolvable_area_m2 = 0;  ///< smallest resolvable area
 };
 
-/// What a rig can tell apart of a road at a height and a pitch.
+/// Depth and area that a rig resolves on a planar road from a height and a pitch.
 ///
-/// The road's normal towards the road is n = (0, cos θ, sin θ), a pixel's ray r = ((u − u_o)/f, (v − v_o)/f, 1), and
-/// the road lies at Z = h / (n·r). With D = d + doffs = f·b / Z, a disparity lower by δ at the same pixel means Z' =
-/// f·b / (D − δ), and the point Z'·r lies n·Z'r − h = h·(Z'/Z − 1) = h·δ / (D − δ) below the road. Straight down and
-/// for small δ that is Z²·δ / (f·b). A pixel covers Z/f of the road along the row and Z²/(h·f) along the column. The
-/// smallest area is that of the window that a disparity rests on, an ellipse of 2(R + r) + 1 columns and 2(aspect·R +
-/// r) + 1 rows (block radius r, aggregation radius R), π/4 · columns · rows · across · along, and no less than
+/// The unit normal towards the road is n = (0, cos θ, sin θ). The ray of a pixel is r = ((u − u_o)/f, (v − v_o)/f, 1);
+/// it meets the road at Z = h / (n·r). Let D = d + doffs = f·b / Z. A disparity lower by δ at the same pixel gives Z' =
+/// f·b / (D − δ); the point Z'·r lies n·Z'r − h = h·(Z'/Z − 1) = h·δ / (D − δ) below the road. For a camera that looks
+/// straight down and small δ this is Z²·δ / (f·b). A pixel covers Z/f of the road along the row and Z²/(h·f) along the
+/// column. The resolvable area is that of the support window of a disparity, an ellipse of 2(R + r) + 1 columns and
+/// 2(aspect·R + r) + 1 rows (block radius r, aggregation radius R): π/4 · columns · rows · across · along, at least
 /// min_area_m2.
 class ResolutionLimits {
  public:
-  /// Throws Error for options out of range, a calibration without a size, and when no row of the image shows the road.
+  /// Throws Error for options out of range, for a calibration without a size, and if no row of the image shows the
+  /// road.
   ResolutionLimits(const StereoCalibration& calibration, const CameraPose& pose, const ResolutionOptions& options = {});
 
-  /// First row that shows the road within a kilometre (of the distance along z), 0 … height − 1.
+  /// First row that shows the road at Z ≤ 1 km, 0 … height − 1.
   double first_row() const { return first_row_; }
   double last_row() const;
 
   RowResolution at_row(double v) const;
 
-  /// `count` rows, evenly from the last (nearest) to the first; at least 2.
+  /// Resolution of `count` evenly spaced rows, from the last (nearest) to the first; at least 2.
   std::vector<RowResolution> rows(int count) const;
 
-  /// Depth below the road of a disparity that is lower by `change_px`, metres; infinite when no point has it.
+  /// Depth below the road, metres, at which the disparity of row v is lower by `change_px`; infinity if there is none.
   double depth_m(double v, double change_px) const;
 
-  /// The farthest row in view where that depth is told apart; absent when there is none.
+  /// Farthest row in view that resolves `depth_m`; absent if there is none.
   std::optional<RowResolution> farthest(double depth_m) const;
 
-  /// The greatest height from which that depth is told apart in the middle row, at this pitch; 0 when that row does
-  /// not show the road.
-  double highest_camera_m(double depth_m) const;
+  /// Maximum camera height, metres, at which the middle row resolves `depth_m` at this pitch; 0 if that row does not
+  /// show the road.
+  double max_camera_height_m(double depth_m) const;
 
  private:
-  /// n·r of a row.
+  /// n·r at row v.
   double slant(double v) const;
-  /// d + doffs of the road.
+  /// D = d + doffs of the road at row v, pixels.
   double road_disparity(double v) const;
 
   StereoCalibration calibration_;

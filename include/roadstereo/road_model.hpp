@@ -10,7 +10,7 @@ namespace roadstereo {
 
 /// The road in disparity space: d(u, v) = a0 + a1·v + a2·u, pixels. Exact for a plane. With a2 = 0 it is
 /// Δu(v) of eq. relation_vd.
-struct RoadModel {
+struct DisparityPlane {
   double a0 = 0;
   double a1 = 0;
   double a2 = 0;
@@ -30,16 +30,16 @@ struct RoadModelOptions {
 
 /// What is known of the road before matching.
 struct RoadModelEstimate {
-  RoadModel model;
-  bool reliable = false;            ///< false: the evidence is poor, `reason` says why, and the search must be wide
-  bool carried_over = false;        ///< the last frame's model, verified on this frame
-  std::string reason;               ///< empty when reliable
-  int matches = 0;                  ///< reliable correspondences found over the whole image
-  int inliers = 0;                  ///< of those, on the road
-  double residual_px = 0;           ///< robust standard deviation of the inliers around the model, pixels
-  double lowest_px = 0;             ///< 1st percentile of the residuals of the correspondences near the road, pixels
-  double highest_px = 0;            ///< 99th percentile of the same, pixels
-  double largest_disparity_px = 0;  ///< 99th percentile of all correspondences, for a search without a model
+  DisparityPlane model;
+  bool reliable = false;        ///< false: the evidence is poor, `reason` says why, and the search must be wide
+  bool tracked = false;         ///< the last frame's model, verified on this frame
+  std::string reason;           ///< empty when reliable
+  int matches = 0;              ///< reliable correspondences found over the whole image
+  int inliers = 0;              ///< of those, on the road
+  double residual_px = 0;       ///< robust standard deviation of the inliers around the model, pixels
+  double residual_p01_px = 0;   ///< 1st percentile of the residuals of the correspondences near the road, pixels
+  double residual_p99_px = 0;   ///< 99th percentile of the same, pixels
+  double max_disparity_px = 0;  ///< 99th percentile of all correspondences, for a search without a model
 };
 
 /// Finds the road from the images alone: reliable correspondences from a dense coarse-to-fine search along the rows,
@@ -52,7 +52,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
 
 /// Checks `previous` (the last frame's model) on this pair and refines it. `reliable` is false when it no longer fits.
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                    const RoadModel& previous, const std::optional<StereoCalibration>& calibration,
+                                    const DisparityPlane& previous, const std::optional<StereoCalibration>& calibration,
                                     const RoadModelOptions& options, int threads = 0);
 
 }  // namespace roadstereo

@@ -11,70 +11,71 @@
 
 namespace roadstereo::synth {
 
-/// Pose and optics of the rig over the road. The road's frame: X to the right, Y forward along the road, Z up,
-/// metres; the left camera stands at (x_m, y_m, camera_height_m), the right one on the left camera's x axis.
+/// Pose and optics of a rig over the road. Road frame: X to the right, Y forward along the road, Z up, metres. The left
+/// camera is at (x_m, y_m, camera_height_m), the right camera on its x axis.
 struct Rig {
-  int width = 640;               ///< pixels
-  int height = 360;              ///< pixels
-  double focal_px = 350;         ///< pixels
-  double baseline_m = 0.12;      ///< metres
-  double camera_height_m = 2.0;  ///< metres above the road's plane
-  double pitch_deg = 60;         ///< below the horizon: 90 looks straight down, 5 is street view
-  double roll_deg = 0;           ///< about the optical axis, positive turns the image clockwise
-  double x_m = 0;                ///< where on the road the left camera stands
+  int width = 640;               ///< pixels, 32 … 8192
+  int height = 360;              ///< pixels, 32 … 8192
+  double focal_px = 350;         ///< 0.2 … 50 image widths
+  double baseline_m = 0.12;      ///< 0.005 … 10
+  double camera_height_m = 2.0;  ///< above the plane of the road, 0.05 … 500
+  double pitch_deg = 60;         ///< of the optical axis below the horizon, 0 … 90; 90 looks straight down
+  double roll_deg = 0;           ///< about the optical axis, −60 … 60; positive rotates the image clockwise
+  double x_m = 0;                ///< position of the left camera on the road, −1e5 … 1e5
   double y_m = 0;
 
+  /// Throws Error naming the first value out of range.
   void validate() const;
   StereoCalibration calibration() const;
 };
 
-/// A depression or a rise with an irregular outline and a steep wall.
+/// Pothole or bump with an irregular outline and a steep wall.
 struct Blob {
   double x_m = 0, y_m = 0;    ///< centre on the road
-  double radius_m = 0.2;      ///< mean radius
-  double depth_m = 0.05;      ///< positive below the road, negative above
-  double irregularity = 0.2;  ///< relative variation of the radius, 0 … 0.5; roughens the floor, too
-  double wall_share = 0.25;   ///< share of the radius over which the wall rises, 0.02 … 1
-  std::uint32_t seed = 1;     ///< shape of the outline and of the floor
+  double radius_m = 0.2;      ///< mean radius, 0.005 … 20
+  double depth_m = 0.05;      ///< −2 … 2, not 0; positive below the road, negative above it
+  double irregularity = 0.2;  ///< relative variation of the radius and of the floor, 0 … 0.5
+  double wall_share = 0.25;   ///< share of the radius that the wall takes, 0.02 … 1
+  std::uint32_t seed = 1;     ///< of the outline and the floor
 };
 
-/// A crack: a groove along a polyline, with the profile of a V.
+/// Crack: a groove with a V-shaped profile along a polyline.
 struct Crack {
-  std::vector<std::array<double, 2>> points_m;
-  double width_m = 0.01;  ///< where it is widest
-  double depth_m = 0.02;
-  double irregularity = 0;  ///< 0 is as wide everywhere; up to 0.9: width varies by this share, least at the ends
-  std::uint32_t seed = 1;   ///< of the width
+  std::vector<std::array<double, 2>> points_m;  ///< at least 2 distinct points (x, y)
+  double width_m = 0.01;                        ///< maximum width, 0.0005 … 1
+  double depth_m = 0.02;                        ///< 0.0001 … 1
+  double irregularity = 0;                      ///< relative variation of the width, 0 … 0.9; the ends are narrowest
+  std::uint32_t seed = 1;                       ///< of the width
 };
 
-/// A kerb: everything right of x_m is higher by height_m.
+/// Kerb: the road right of x_m is higher by height_m.
 struct Kerb {
   double x_m = 1.5;
-  double height_m = 0.12;
-  double width_m = 0.02;  ///< of the slanted face
+  double height_m = 0.12;  ///< −1 … 1
+  double width_m = 0.02;   ///< of the slanted face, 0.001 … 10
 };
 
-/// Texture and wear of a road.
+/// Shape, texture and damage of a road.
 struct Road {
-  double camber = 0.0;            ///< sideways fall of the crown, m per m²: Z = −camber · X²
-  double texture_contrast = 1.0;  ///< 1 is ordinary asphalt; 0.1 is nearly texture-free
-  bool lane_marking = true;       ///< white dashes along X = −1.5 m, edge line along X = −5 m
+  double camber = 0.0;            ///< Z = −camber · X², 1/m, −0.1 … 0.1
+  double texture_contrast = 1.0;  ///< relative to ordinary asphalt, 0 … 4; 0.1 is almost textureless
+  bool lane_marking = true;       ///< whether there are white dashes at X = −1.5 m and an edge line at X = −5 m
   std::vector<Blob> blobs;
   std::vector<Crack> cracks;
   std::vector<Kerb> kerbs;
   std::uint32_t seed = 1;
 };
 
-/// What the cameras do to the picture.
+/// Image degradation by the cameras.
 struct Degradation {
-  double noise_grey = 0;      ///< standard deviation, 8-bit grey levels
-  double blur_px = 0;         ///< Gaussian blur, standard deviation, pixels
-  double motion_blur_px = 0;  ///< length of horizontal-and-vertical motion, pixels
-  double motion_blur_angle_deg = 0;
-  double gain_difference = 0;    ///< right image is (1 + gain_difference) as bright
-  double exposure = 1;           ///< multiplies both images before clipping at white
-  double row_offset_px = 0;      ///< vertical rectification error: the right image lies this much lower, pixels
-  std::uint32_t noise_seed = 1;  ///< other seed, other noise
+  double noise_grey = 0;             ///< standard deviation of the noise, 8-bit grey levels, 0 … 100
+  double blur_px = 0;                ///< standard deviation of a Gaussian blur, pixels, 0 … 50
+  double motion_blur_px = 0;         ///< length of a linear motion blur, pixels, 0 … 200
+  double motion_blur_angle_deg = 0;  ///< direction of the motion, from the rows, −360 … 360
+  double gain_difference = 0;        ///< the right image is scaled by 1 + gain_difference, −0.95 … 10
+  double exposure = 1;               ///< scale of both images before they are clipped at white, 0.01 … 100
+  double row_offset_px = 0;          ///< vertical rectification error: shifts the right image down, −100 … 100
+  std::uint32_t noise_seed = 1;
 };
 
 struct Scene {
@@ -82,76 +83,77 @@ struct Scene {
   Rig rig;
   Road road;
   Degradation degradation;
-  int supersampling = 3;  ///< rays per pixel and side, 1 … 8
+  int supersampling = 3;  ///< rays per pixel and axis, 1 … 8
 
+  /// Throws Error naming the first value out of range, and if a camera is below the surface.
   void validate() const;
 };
 
-/// One damage as it really is.
+/// Ground truth of one damage.
 struct DamageTruth {
-  int id = 0;               ///< its value in `labels`
+  int id = 0;               ///< value in `SyntheticPair::labels`
   std::string kind;         ///< "pothole", "bump" or "crack"
   double x_m = 0, y_m = 0;  ///< centroid on the road
-  double depth_m = 0;       ///< largest depth below the undamaged road (height above it for a bump)
+  double depth_m = 0;       ///< maximum depth below the undamaged road; height above it for a bump
   double mean_depth_m = 0;
-  double area_m2 = 0;  ///< in the road's plane
+  double area_m2 = 0;  ///< in the plane of the road
   double volume_m3 = 0;
 };
 
-/// A pair with its truth. Maps have the image's size and belong to the left camera.
+/// Stereo pair with ground truth. All maps are W×H of the left image.
 struct SyntheticPair {
   Frame left;  ///< 8-bit grey
   Frame right;
   StereoCalibration calibration;
-  Image<double> disparity;      ///< from the ray's intersection with the surface; NaN for sky: above the
-                                ///< horizon or more than a kilometre away
-  Image<std::uint8_t> visible;  ///< 255 where the right camera sees the point too
-  Image<std::uint16_t> labels;  ///< id of the damage at the pixel, 0 = none
-  RoadModel plane;              ///< the road's plane in disparity space (without camber and damage), exact
-  double roll_rad = 0;          ///< ψ of that plane as the paper defines it; 0 where it is not defined,
-                                ///< because the camera looks straight down
+  Image<double> disparity;      ///< exact, pixels; NaN for sky: above the horizon, or road farther than 1 km
+  Image<std::uint8_t> visible;  ///< 255 where the right camera sees the point, too
+  Image<std::uint16_t> labels;  ///< id of the damage at the pixel; 0: none
+  DisparityPlane plane;         ///< exact plane of the road in disparity space, without camber and damage
+  double roll_rad = 0;          ///< ψ of that plane as in the paper; 0 if the camera looks straight down
   std::vector<DamageTruth> damages;
 };
 
-/// Renders one pair by casting rays at the road's height field. Deterministic for any number of threads.
+/// Render a stereo pair by casting rays at the height field of the road. The result does not depend on `threads`; 0
+/// uses all cores. Throws Error when the scene is not valid.
 SyntheticPair render(const Scene& scene, int threads = 0);
 
-/// Named scenes ("demo", "uav", "street", "nadir", "close", "low_texture", "noise", "blur", "overexposed", …).
+/// Names of the predefined scenes ("demo", "uav", "street", "nadir", "close", "low_texture", "noise", …).
 std::vector<std::string> scene_names();
 
-/// Throws Error naming the nearest known scene.
+/// Predefined scene of that name. Throws Error suggesting the nearest name if there is none.
 Scene named_scene(const std::string& name);
 
-/// A scene drawn at random: rig, road, damage and (when `degraded`) wear of the picture. Same seed, same scene.
+/// Draw a random scene: rig, road, damage and, if `degraded`, image degradation. The same seed gives the same scene.
 Scene random_scene(std::uint64_t seed, bool degraded = false);
 
-/// The scene `frame` steps of `step_m` further along the road, with the rig swaying a little: frames of one flight.
-/// The road with its damage stays where it is; frame 0 is the scene itself.
+/// Frame `frame` of a short flight: the rig is `frame` steps of `step_m` further along the road and sways slightly. The
+/// road and its damage do not move. Frame 0 is the scene itself. Throws Error if `frame` is negative or `step_m` is not
+/// finite.
 Scene next_frame(const Scene& scene, int frame, double step_m = 0.1);
 
-/// How a rig flies along the road, relative to the pose it has in the scene. Rolling and pitching are sine waves, the
-/// height rises from the scene's and comes back; periods are in frames. From each frame of `jumps` on the pose is
-/// another one at once, as after a bump, a turn or a cut: the first jump leads there, the second back, and so on.
+/// Flight of a rig along the road, relative to its pose in the scene. Roll and pitch are sine waves; the height rises
+/// from that of the scene and returns. Periods are in frames. Each frame in `jumps` toggles an additional offset of the
+/// pose: the first jump adds it, the second removes it, and so on.
 struct FlightPath {
   double roll_deg = 6;        ///< amplitude, 0 … 45
   double roll_period = 100;   ///< 2 … 1e6
-  double pitch_deg = 4;       ///< amplitude, 0 … 45; the optical axis stays between the horizon and straight down
+  double pitch_deg = 4;       ///< amplitude, 0 … 45; the pitch is clamped to 0 … 90°
   double pitch_period = 130;  ///< 2 … 1e6
-  double climb_m = 0.5;       ///< highest above the scene's height, 0 … 100
+  double climb_m = 0.5;       ///< maximum height above that of the scene, 0 … 100
   double climb_period = 170;  ///< 2 … 1e6
   double step_m = 0.1;        ///< along the road per frame, −10 … 10
-  std::vector<int> jumps;     ///< frames, at least 1, each at most once
-  double jump_roll_deg = 5;   ///< what a jump adds, −45 … 45
-  double jump_pitch_deg = 4;  ///< −45 … 45
-  double jump_climb_m = 0.3;  ///< −100 … 100
-  double jump_step_m = 0;     ///< every jump, along the road; −1000 … 1000
+  std::vector<int> jumps;     ///< frames, ≥ 1, without duplicates
+  double jump_roll_deg = 5;   ///< offset of the roll, −45 … 45
+  double jump_pitch_deg = 4;  ///< offset of the pitch, −45 … 45
+  double jump_climb_m = 0.3;  ///< offset of the height, −100 … 100
+  double jump_step_m = 0;     ///< added along the road at every jump, −1000 … 1000
 
-  /// Throws Error naming the first figure that is out of range.
+  /// Throws Error naming the first value out of range.
   void validate() const;
 };
 
-/// The scene as the rig sees it `frame` frames into the flight. The road with its damage stays where it is; frame 0 is
-/// the scene itself. Throws Error when the flight leads where no rig can be, into the ground for example.
+/// Scene at frame `frame` of the flight. The road and its damage do not move. Frame 0 is the scene itself. Throws Error
+/// if the path is not valid, `frame` is negative, or the pose is out of range, for example below the ground.
 Scene flight_frame(const Scene& scene, const FlightPath& path, int frame);
 
 }  // namespace roadstereo::synth

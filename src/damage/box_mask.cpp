@@ -4,7 +4,7 @@
 
 namespace roadstereo {
 
-BoxMask BoxMask::within(const Box& box) const {
+BoxMask BoxMask::cropped(const CellBox& box) const {
   BoxMask part(box);
   const int first_column = std::max(box.first_column, box_.first_column);
   const int last_column = std::min(box.last_column, box_.last_column);

@@ -4,248 +4,274 @@
 #include <cmath>
 #include <numbers>
 
-#include "damage/connected_regions.hpp"
+#include "damage/connected_components.hpp"
 #include "damage/contours.hpp"
-#include "damage/grow.hpp"
+#include "damage/morphology.hpp"
 #include "damage/outline.hpp"
 
 namespace roadstereo {
 namespace {
 
-/// Adds to `allowed` the cells without a measurement that belong to the depressions around them: what a steep, dark
-/// wall leaves. A gap that reaches the border of the picture, or lies in the road, belongs to none.
-void allow_holes(const DepthCells& relief, const Thresholds& thresholds, Image<std::uint8_t>& allowed) {
-  constexpr double least_share = 0.35;  // of its surroundings that is deep
-  for (const ConnectedRegion& gap : ConnectedRegions(relief.known, ConnectedRegions::Of::unset)) {
-    if (gap.touches_border) continue;
-    int around = 0;
-    int deep = 0;
-    const auto look = [&](int i, int j) {
-      if (relief.known(i, j) == 0) return;
-      ++around;
-      deep += relief.depth(i, j) > 0.5F * thresholds.depth(i, j) ? 1 : 0;
-    };
-    for (const CellRun& run : gap.runs) {
-      look(run.first - 1, run.row);
-      look(run.last + 1, run.row);
-      for (int i = run.first; i <= run.last; ++i) {
-        look(i, run.row - 1);
-        look(i, run.row + 1);
-      }
-    }
-    if (deep >= least_share * around) paint(gap, 255, allowed);
-  }
-}
+/// Constants of the candidate search. `_sigmas` are standard deviations of a cell of the intact road, `_radii` are
+/// multiples of the radius √(area / π) of a region, `_share` are shares of 1. Unless stated otherwise they were chosen
+/// on synthetic roads and on the labelled pothole maps (docs/method.md, Damage; `evaluate damage`).
+struct SegmentationConstants {
+  // Gaps without a measurement that belong to a depression: occluded or dark walls.
+  float gap_depth_share = 0.5F;      ///< of the minimum depth of a core, from which a neighbour of the gap is deep
+  double min_deep_gap_share = 0.35;  ///< of the neighbours of the gap that must be deep
 
-/// What the cells of a damage of this kind are marked with.
-std::uint8_t mark_of(DamageKind kind) {
+  // Extent of a region.
+  float min_core_area_share = 0.1F;  ///< of the minimum area of a damage, for its core
+  float min_level_sigmas = 2;        ///< minimum depth at the outline
+  double min_steepness = 2;          ///< without a calibration; 2 is the rim of a paraboloid (see `Outline`)
+  float foot_sigmas = 0.5F;          ///< minimum depth at the foot of the wall
+  int max_level_attempts = 8;        ///< maximum number of levels to separate touching damages
+  float level_factor = 1.25F;        ///< between these levels
+  std::size_t max_hole_divisor = 4;  ///< holes up to 1/4 of the image are filled
+
+  // Surroundings: kerbs, verges and vehicles are not surrounded by road.
+  double margin_radii = 0.5;       ///< width of the band around the region
+  int min_margin_cells = 3;        ///< minimum width of that band
+  float max_hollow_sigmas = 10;    ///< maximum depth of a hollow around a pothole, which counts as road
+  double min_road_share = 0.6;     ///< of the band that must be road
+  double max_border_share = 0.25;  ///< of the contour that may lie on the border of the image
+};
+constexpr SegmentationConstants constants{};
+
+/// Label of a cell that belongs to a damage; 0: none.
+std::uint8_t label_of(DamageKind kind) {
   return kind == DamageKind::depression ? 1 : 2;
 }
 
-/// What lies around a region, within half of its radius.
-struct Surroundings {
-  double on_road = 0;  ///< share of the cells that lie on the road, or no deeper than the outline
-  double open = 0;     ///< share of the region's rim that is the border of the picture
+/// Inputs of the search.
+struct SearchInput {
+  const DepthCells& depth_cells;
+  const Image<std::uint8_t>& road;
+  const Thresholds& thresholds;
+  const ImageEdges& image_edges;
 };
 
-/// Share of the rim of a region that is the border of the picture.
-double open_share(const BoxMask& region, int columns, int rows) {
-  const Box& box = region.box();
-  double rim = 0;
-  double open = 0;
+/// Images of the search for one kind of damage, of one size.
+struct SearchImages {
+  Image<float> depth;             ///< positive inside this kind of damage
+  Image<std::uint8_t> allowed;    ///< 255 where a cell may belong to a damage
+  Image<std::uint8_t> visited;    ///< scratch of flood fills
+  Image<std::uint8_t>& assigned;  ///< `label_of` the damage that the cell belongs to; shared by both kinds
+
+  DepthField field() { return {depth, allowed, visited}; }
+};
+
+/// Add to `allowed` the gaps that are enclosed by a depression. A gap that touches the border of the image or lies in
+/// the intact road belongs to none.
+void include_enclosed_gaps(const DepthCells& depth_cells, const Thresholds& thresholds, Image<std::uint8_t>& allowed) {
+  for (const ConnectedComponent& gap : ConnectedComponents(depth_cells.valid, ConnectedComponents::Foreground::zero)) {
+    if (gap.touches_border) continue;
+    int neighbours = 0;
+    int deep = 0;
+    const auto count = [&](int i, int j) {
+      if (depth_cells.valid(i, j) == 0) return;
+      ++neighbours;
+      deep += depth_cells.depth(i, j) > constants.gap_depth_share * thresholds.min_depth(i, j) ? 1 : 0;
+    };
+    for (const CellRun& run : gap.runs) {
+      count(run.first - 1, run.row);
+      count(run.last + 1, run.row);
+      for (int i = run.first; i <= run.last; ++i) {
+        count(i, run.row - 1);
+        count(i, run.row + 1);
+      }
+    }
+    if (deep >= constants.min_deep_gap_share * neighbours) fill_component(gap, 255, allowed);
+  }
+}
+
+SearchImages make_search_images(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& assigned) {
+  const DepthCells& cells = input.depth_cells;
+  SearchImages images{cells.depth, cells.valid, Image<std::uint8_t>(cells.depth.width(), cells.depth.height(), 0),
+                      assigned};
+  if (kind == DamageKind::protrusion) {
+    float* const depths = images.depth.row(0);
+    for (std::size_t k = 0; k < images.depth.pixels(); ++k) depths[k] = -depths[k];
+  } else {
+    include_enclosed_gaps(cells, input.thresholds, images.allowed);
+  }
+  return images;
+}
+
+/// Mask of the allowed cells deeper than the threshold.
+Image<std::uint8_t> core_cells(const SearchImages& images, const Thresholds& thresholds) {
+  const int width = images.depth.width();
+  Image<std::uint8_t> cores(width, images.depth.height());
+  std::vector<float> min_depths(static_cast<std::size_t>(width));
+  for (int j = 0; j < images.depth.height(); ++j) {
+    thresholds.min_depths(j, min_depths.data());
+    const float* const depths = images.depth.row(j);
+    const float* const limits = min_depths.data();
+    const std::uint8_t* const allowed = images.allowed.row(j);
+    std::uint8_t* const row = cores.row(j);
+    for (int i = 0; i < width; ++i) {
+      const std::uint8_t deep = depths[i] > limits[i] ? 255 : 0;
+      row[i] = allowed[i] & deep;
+    }
+  }
+  return cores;
+}
+
+/// Maximum depth, or height, of a damage at the core.
+float max_depth(const ConnectedComponent& core, DamageKind kind, const Thresholds& thresholds) {
+  const CellRun& first = core.runs.front();
+  return kind == DamageKind::depression ? thresholds.max_depth(first.first, first.row)
+                                        : thresholds.max_height(first.first, first.row);
+}
+
+/// Recompute the bounding box and the size, and remove cells that are assigned to the other kind. False if a cell is
+/// assigned to another damage of the same kind.
+bool update_extent(Candidate& candidate, const Image<std::uint8_t>& assigned) {
+  const CellBox around = candidate.box();
+  CellBox box;
+  candidate.size = 0;
+  for (int j = around.first_row; j <= around.last_row; ++j) {
+    for (int i = around.first_column; i <= around.last_column; ++i) {
+      if (!candidate.cells(i, j)) continue;
+      if (assigned(i, j) == label_of(candidate.kind)) return false;
+      if (assigned(i, j) != 0) {
+        candidate.cells.set(i, j, false);
+        continue;
+      }
+      box.add(i, j);
+      ++candidate.size;
+    }
+  }
+  candidate.cells = candidate.cells.cropped(box);
+  return true;
+}
+
+/// Extend the region from the flood fill at its level to its outline: to the foot of the wall, and for depressions to
+/// the edge in the image. False if it runs into another damage of the same kind.
+bool extend_region(const SearchInput& input, SearchImages& images, Candidate& candidate) {
+  const std::size_t max_hole = images.depth.pixels() / constants.max_hole_divisor;
+  if (input.thresholds.metric()) {
+    const float min_depth = constants.foot_sigmas * static_cast<float>(input.depth_cells.noise);
+    grow_to_wall_foot(images.field(), candidate.level, min_depth, candidate.cells);
+  }
+  fill_holes(candidate.cells.cells(), max_hole);
+  if (!update_extent(candidate, images.assigned)) return false;
+  if (candidate.size == 0 || candidate.kind == DamageKind::protrusion || input.image_edges.grey.empty()) return true;
+  refine_outline_by_image(input.image_edges, images.depth.width(), images.depth.height(), candidate.cells);
+  fill_holes(candidate.cells.cells(), max_hole);
+  return update_extent(candidate, images.assigned);
+}
+
+/// Segment the region around a core. If it runs into another damage, the level is raised above the saddle between them.
+/// Size 0 if there is no such region.
+Candidate segment(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images) {
+  const DepthField field = images.field();
+  const bool metric = input.thresholds.metric();
+  Candidate candidate;
+  candidate.kind = kind;
+  const float floor = floor_depth(field, core);
+  if (floor > max_depth(core, kind, input.thresholds)) return candidate;
+  const float min_level = constants.min_level_sigmas * static_cast<float>(input.depth_cells.noise);
+  const Outline outline = find_outline(field, core, floor, min_level, metric);
+  if (!metric && outline.steepness < constants.min_steepness) return candidate;
+  candidate.level = outline.level;
+  for (int i = 0; i < constants.max_level_attempts; ++i, candidate.level *= constants.level_factor) {
+    candidate.cells = flood_fill(field, core, candidate.level);
+    if (candidate.box().empty()) break;
+    if (extend_region(input, images, candidate)) return candidate;
+  }
+  candidate.size = 0;
+  return candidate;
+}
+
+/// Share of the contour of a region, with its cells at the border of the image, that lies on that border.
+double border_share(const BoxMask& region, int columns, int rows) {
+  const CellBox& box = region.box();
+  double contour = 0;
+  double border = 0;
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
       if (!region(i, j)) continue;
       const bool at_border = i == 0 || j == 0 || i + 1 == columns || j + 1 == rows;
-      if (!at_border && !on_contour(region, i, j, columns, rows)) continue;
-      ++rim;
-      open += at_border ? 1 : 0;
+      if (!at_border && !is_on_contour(region, i, j, columns, rows)) continue;
+      ++contour;
+      border += at_border ? 1 : 0;
     }
   }
-  return rim > 0 ? open / rim : 0;
+  return contour > 0 ? border / contour : 0;
 }
 
-Surroundings surroundings_of(const Candidate& candidate, const DepthCells& relief, const Image<std::uint8_t>& road,
-                             const Image<std::uint8_t>& taken) {
-  constexpr double half = 0.5;
-  constexpr float hollow = 10;  // standard deviations: the bowl around a pothole is no deeper
-  constexpr int least_reach = 3;
+/// Share of the band around a candidate that is road, or a hollow no deeper than the outline. Cells of other damages do
+/// not count; 1 if no cell is left.
+double road_share(const SearchInput& input, const Candidate& candidate, const Image<std::uint8_t>& assigned) {
   const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
-  const int reach = std::max(least_reach, static_cast<int>(half * radius));
-  const Box around = candidate.box().grown(reach, road.width(), road.height());
-  const BoxMask grown = grow(candidate.cells, reach, around);
+  const int margin = std::max(constants.min_margin_cells, static_cast<int>(constants.margin_radii * radius));
+  const CellBox around = candidate.box().grown(margin, input.road.width(), input.road.height());
+  const BoxMask dilated = dilate(candidate.cells, margin, around);
   const float sign = sign_of(candidate.kind);
-  const float bowl = candidate.kind == DamageKind::depression
-                         ? std::min(candidate.level, hollow * static_cast<float>(relief.noise))
-                         : 0.0F;
+  const float max_hollow =
+      candidate.kind == DamageKind::depression
+          ? std::min(candidate.level, constants.max_hollow_sigmas * static_cast<float>(input.depth_cells.noise))
+          : 0.0F;
   double cells = 0;
   double on_road = 0;
   for (int j = around.first_row; j <= around.last_row; ++j) {
     for (int i = around.first_column; i <= around.last_column; ++i) {
-      if (!grown(i, j) || candidate.cells(i, j) || taken(i, j) != 0) continue;
+      if (!dilated(i, j) || candidate.cells(i, j) || assigned(i, j) != 0) continue;
       ++cells;
-      if (relief.known(i, j) == 0) continue;
-      const float depth = sign * relief.depth(i, j);
-      on_road += road(i, j) != 0 || (depth > 0 && depth <= bowl) ? 1 : 0;
+      if (input.depth_cells.valid(i, j) == 0) continue;
+      const float depth = sign * input.depth_cells.depth(i, j);
+      on_road += input.road(i, j) != 0 || (depth > 0 && depth <= max_hollow) ? 1 : 0;
     }
   }
-  return {cells == 0 ? 1 : on_road / cells, open_share(candidate.cells, road.width(), road.height())};
+  return cells == 0 ? 1 : on_road / cells;
 }
 
-class Search {
- public:
-  Search(const DepthCells& relief, const Image<std::uint8_t>& road, const Thresholds& thresholds,
-         const Witness& witness, DamageKind kind)
-      : relief_(relief),
-        road_(road),
-        thresholds_(thresholds),
-        witness_(witness),
-        kind_(kind),
-        depth_(relief.depth),
-        allowed_(relief.known),
-        reached_(relief.depth.width(), relief.depth.height(), 0) {
-    if (kind == DamageKind::protrusion) turn_over();
-    if (kind == DamageKind::depression) allow_holes(relief, thresholds, allowed_);
-  }
-
-  /// Adds what is found to `found`; cells of `taken` belong to others.
-  void run(std::vector<Candidate>& found, Image<std::uint8_t>& taken) {
-    const ConnectedRegions regions(cores_of_depth());
-    std::vector<ConnectedRegion> cores(regions.begin(), regions.end());
-    std::sort(cores.begin(), cores.end(), [](const auto& one, const auto& other) { return one.size > other.size; });
-    for (const ConnectedRegion& core : cores) {
-      const CellRun& first = core.runs.front();
-      if (taken(first.first, first.row) == 0) add(core, found, taken);
+/// Assign the cells of a candidate to its kind.
+void assign(const Candidate& candidate, Image<std::uint8_t>& assigned) {
+  const CellBox& box = candidate.box();
+  for (int row = box.first_row; row <= box.last_row; ++row) {
+    for (int column = box.first_column; column <= box.last_column; ++column) {
+      if (candidate.cells(column, row)) assigned(column, row) = label_of(candidate.kind);
     }
   }
+}
 
- private:
-  void turn_over() {
-    float* const depths = depth_.row(0);
-    for (std::size_t k = 0; k < depth_.pixels(); ++k) depths[k] = -depths[k];
-  }
+/// Segment the region around a core and add it to `found` if it is large enough and surrounded by road.
+void add_candidate(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images,
+                   std::vector<Candidate>& found) {
+  const float min_cells = input.thresholds.min_cells(core.runs.front().first, core.runs.front().row);
+  if (static_cast<float>(core.size) < constants.min_core_area_share * min_cells) return;
+  Candidate candidate = segment(input, core, kind, images);
+  if (candidate.size == 0 || static_cast<float>(candidate.size) < min_cells) return;
+  if (road_share(input, candidate, images.assigned) < constants.min_road_share) return;
+  if (border_share(candidate.cells, input.road.width(), input.road.height()) > constants.max_border_share) return;
+  assign(candidate, images.assigned);
+  found.push_back(std::move(candidate));
+}
 
-  Image<std::uint8_t> cores_of_depth() const {
-    const int width = depth_.width();
-    Image<std::uint8_t> cores(width, depth_.height());
-    std::vector<float> least(static_cast<std::size_t>(width));
-    for (int j = 0; j < depth_.height(); ++j) {
-      thresholds_.depths(j, least.data());
-      const float* const depths = depth_.row(j);
-      const float* const limits = least.data();
-      const std::uint8_t* const allowed = allowed_.row(j);
-      std::uint8_t* const row = cores.row(j);
-      for (int i = 0; i < width; ++i) {
-        const std::uint8_t deep = depths[i] > limits[i] ? 255 : 0;
-        row[i] = allowed[i] & deep;
-      }
-    }
-    return cores;
-  }
-
-  void add(const ConnectedRegion& core, std::vector<Candidate>& found, Image<std::uint8_t>& taken) {
-    constexpr double least_on_road = 0.6;
-    constexpr double most_open = 0.25;
-    const float least = thresholds_.least_cells(core.runs.front().first, core.runs.front().row);
-    if (static_cast<float>(core.size) < 0.1F * least) return;
-    Candidate candidate = draw(core, taken);
-    if (candidate.size == 0 || static_cast<float>(candidate.size) < least) return;
-    const Surroundings around = surroundings_of(candidate, relief_, road_, taken);
-    if (around.on_road < least_on_road || around.open > most_open) return;
-    const Box& box = candidate.box();
-    for (int row = box.first_row; row <= box.last_row; ++row) {
-      for (int column = box.first_column; column <= box.last_column; ++column) {
-        if (candidate.cells(column, row)) taken(column, row) = mark_of(kind_);
-      }
-    }
-    found.push_back(std::move(candidate));
-  }
-
-  /// No damage is as deep, or as high.
-  float most_depth(const ConnectedRegion& core) const {
+/// Add the candidates of one kind, from the largest core to the smallest.
+void find_kind(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& assigned,
+               std::vector<Candidate>& found) {
+  SearchImages images = make_search_images(input, kind, assigned);
+  const ConnectedComponents components(core_cells(images, input.thresholds));
+  std::vector<ConnectedComponent> cores(components.begin(), components.end());
+  std::sort(cores.begin(), cores.end(), [](const auto& one, const auto& other) { return one.size > other.size; });
+  for (const ConnectedComponent& core : cores) {
     const CellRun& first = core.runs.front();
-    return kind_ == DamageKind::depression ? thresholds_.deepest(first.first, first.row)
-                                           : thresholds_.highest(first.first, first.row);
+    if (assigned(first.first, first.row) == 0) add_candidate(input, core, kind, images, found);
   }
-
-  /// The region around a core. Where it would run into another damage, only what lies deeper than the saddle between
-  /// them; empty when there is none.
-  Candidate draw(const ConnectedRegion& core, const Image<std::uint8_t>& taken) {
-    constexpr int tries = 8;
-    constexpr float deeper = 1.25F;
-    constexpr float noise_floor = 2;  // standard deviations of the road
-    constexpr double bowl = 2;        // a paraboloid's rim is twice as steep as the cone
-    const DepthField field{depth_, allowed_, reached_};
-    Candidate candidate;
-    candidate.kind = kind_;
-    const float floor = floor_depth(field, core);
-    if (floor > most_depth(core)) return candidate;
-    const Outline outline =
-        find_outline(field, core, floor, noise_floor * static_cast<float>(relief_.noise), thresholds_.metric());
-    if (!thresholds_.metric() && outline.steepness < bowl) return candidate;
-    candidate.level = outline.level;
-    for (int i = 0; i < tries; ++i, candidate.level *= deeper) {
-      candidate.cells = flood(field, core, candidate.level);
-      if (candidate.box().empty()) break;
-      if (fill_out(field, taken, candidate)) return candidate;
-    }
-    candidate.size = 0;
-    return candidate;
-  }
-
-  /// Grows what was flooded to the region that is measured. False when it runs into another damage.
-  bool fill_out(const DepthField& field, const Image<std::uint8_t>& taken, Candidate& candidate) const {
-    constexpr float foot = 0.5F;  // standard deviations of the road, where the region is known to hang together
-    if (thresholds_.metric()) {
-      grow_to_foot(field, candidate.level, foot * static_cast<float>(relief_.noise), candidate.cells);
-    }
-    fill_enclosed(candidate.cells.cells(), depth_.pixels() / 4);
-    if (!measure_extent(candidate, taken)) return false;
-    if (candidate.size == 0 || kind_ == DamageKind::protrusion || witness_.grey.empty()) return true;
-    extend_by_image(witness_, depth_.width(), depth_.height(), candidate.cells);
-    fill_enclosed(candidate.cells.cells(), depth_.pixels() / 4);
-    return measure_extent(candidate, taken);
-  }
-
-  /// Box and size. False when the region has cells of another damage of its kind; those of the other kind it gives up.
-  static bool measure_extent(Candidate& candidate, const Image<std::uint8_t>& taken) {
-    const Box around = candidate.box();
-    Box box;
-    candidate.size = 0;
-    for (int j = around.first_row; j <= around.last_row; ++j) {
-      for (int i = around.first_column; i <= around.last_column; ++i) {
-        if (!candidate.cells(i, j)) continue;
-        if (taken(i, j) == mark_of(candidate.kind)) return false;
-        if (taken(i, j) != 0) {
-          candidate.cells.set(i, j, false);
-          continue;
-        }
-        box.add(i, j);
-        ++candidate.size;
-      }
-    }
-    candidate.cells = candidate.cells.within(box);
-    return true;
-  }
-
-  const DepthCells& relief_;
-  const Image<std::uint8_t>& road_;
-  const Thresholds& thresholds_;
-  const Witness& witness_;
-  DamageKind kind_;
-  Image<float> depth_;  ///< positive inside the kind of damage that is looked for
-  Image<std::uint8_t> allowed_;
-  Image<std::uint8_t> reached_;  ///< scratch of floods
-};
+}
 
 }  // namespace
 
-std::vector<Candidate> find_candidates(const DepthCells& relief, const Image<std::uint8_t>& road,
-                                       const Thresholds& thresholds, const Witness& witness, bool protrusions) {
+std::vector<Candidate> find_candidates(const DepthCells& depth_cells, const Image<std::uint8_t>& road,
+                                       const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions) {
+  const SearchInput input{depth_cells, road, thresholds, image_edges};
   std::vector<Candidate> found;
-  Image<std::uint8_t> taken(relief.depth.width(), relief.depth.height(), 0);
-  Search(relief, road, thresholds, witness, DamageKind::depression).run(found, taken);
-  if (protrusions) Search(relief, road, thresholds, witness, DamageKind::protrusion).run(found, taken);
+  Image<std::uint8_t> assigned(depth_cells.depth.width(), depth_cells.depth.height(), 0);
+  find_kind(input, DamageKind::depression, assigned, found);
+  if (protrusions) find_kind(input, DamageKind::protrusion, assigned, found);
   return found;
 }
 

@@ -10,23 +10,24 @@
 
 namespace roadstereo {
 
-/// Depths count positive inside a damage: 1 for depressions, −1 for protrusions.
+/// Sign that makes depths positive inside a damage: 1 for depressions, −1 for protrusions.
 inline float sign_of(DamageKind kind) {
   return kind == DamageKind::depression ? 1.0F : -1.0F;
 }
 
-/// A damage before it is measured.
+/// Region of a damage before measurement.
 struct Candidate {
   DamageKind kind = DamageKind::depression;
-  BoxMask cells;         ///< its box is the smallest
+  BoxMask cells;         ///< stored in its bounding box
   std::size_t size = 0;  ///< cells
-  float level = 0;       ///< depth at its outline, pixels of ℓ'
+  float level = 0;       ///< depth at the outline, pixels of ℓ'
 
-  const Box& box() const { return cells.box(); }
+  const CellBox& box() const { return cells.box(); }
 };
 
-/// Regions that depart from the road by more than the thresholds and that the road surrounds, deepest first.
-std::vector<Candidate> find_candidates(const DepthCells& relief, const Image<std::uint8_t>& road,
-                                       const Thresholds& thresholds, const Witness& witness, bool protrusions);
+/// Find candidates: connected components deeper than the thresholds (cores), extended to their outlines, that are
+/// surrounded by road. Depressions come first, each kind by decreasing size of the core. Regions do not overlap.
+std::vector<Candidate> find_candidates(const DepthCells& depth_cells, const Image<std::uint8_t>& road,
+                                       const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions);
 
 }  // namespace roadstereo

@@ -4,51 +4,51 @@
 
 namespace roadstereo {
 
-Between between(int pixel, int factor, int count) {
+LinearTaps linear_taps(int pixel, int factor, int count) {
   const float half = 0.5F * static_cast<float>(factor - 1);
   const float x =
       std::clamp((static_cast<float>(pixel) - half) / static_cast<float>(factor), 0.0F, static_cast<float>(count - 1));
   const int first = static_cast<int>(x);
-  const float share = x - static_cast<float>(first);
-  return {first, share > 0 ? first + 1 : first, share};
+  const float weight = x - static_cast<float>(first);
+  return {first, weight > 0 ? first + 1 : first, weight};
 }
 
-float at_pixel(const Image<float>& cells, int factor, int u, int v) {
-  const auto [left, right, s] = between(u, factor, cells.width());
-  const auto [above, below, t] = between(v, factor, cells.height());
+float interpolate_bilinear(const Image<float>& cells, int factor, int u, int v) {
+  const auto [left, right, s] = linear_taps(u, factor, cells.width());
+  const auto [above, below, t] = linear_taps(v, factor, cells.height());
   return (1 - t) * ((1 - s) * cells(left, above) + s * cells(right, above)) +
          t * ((1 - s) * cells(left, below) + s * cells(right, below));
 }
 
-PixelRows::PixelRows(const Image<float>& cells, int factor, int width) : cells_(cells), factor_(factor) {
+RowUpsampler::RowUpsampler(const Image<float>& cells, int factor, int width) : cells_(cells), factor_(factor) {
   columns_.reserve(static_cast<std::size_t>(width));
-  for (int u = 0; u < width; ++u) columns_.push_back(between(u, factor, cells.width()));
+  for (int u = 0; u < width; ++u) columns_.push_back(linear_taps(u, factor, cells.width()));
 }
 
-void PixelRows::spread(int row, Spread& into) const {
-  if (into.row == row) return;
-  into.row = row;
-  into.values.resize(columns_.size());
+void RowUpsampler::interpolate_row(int row, InterpolatedRow& result) const {
+  if (result.row == row) return;
+  result.row = row;
+  result.values.resize(columns_.size());
   const float* const cells = cells_.row(row);
   for (std::size_t u = 0; u < columns_.size(); ++u) {
-    const auto& [left, right, share] = columns_[u];
-    into.values[u] = (1 - share) * cells[left] + share * cells[right];
+    const auto& [left, right, weight] = columns_[u];
+    result.values[u] = (1 - weight) * cells[left] + weight * cells[right];
   }
 }
 
-void PixelRows::read(int v, float* values) {
-  const auto [above, below, share] = between(v, factor_, cells_.height());
+void RowUpsampler::read(int v, float* values) {
+  const auto [above, below, weight] = linear_taps(v, factor_, cells_.height());
   if (below_.row == above) std::swap(above_, below_);
-  spread(above, above_);
+  interpolate_row(above, above_);
   if (below == above) {
     std::copy(above_.values.begin(), above_.values.end(), values);
     return;
   }
-  spread(below, below_);
+  interpolate_row(below, below_);
   const float* const one = above_.values.data();
   const float* const other = below_.values.data();
   const auto width = static_cast<int>(columns_.size());
-  for (int u = 0; u < width; ++u) values[u] = (1 - share) * one[u] + share * other[u];
+  for (int u = 0; u < width; ++u) values[u] = (1 - weight) * one[u] + weight * other[u];
 }
 
 }  // namespace roadstereo

@@ -6,39 +6,41 @@
 
 namespace roadstereo {
 
-/// The two cells that a pixel lies between, along one axis.
-struct Between {
-  int first = 0, second = 0;  ///< one and the same in the middle of a cell and beyond the border
-  float share = 0;            ///< of the second, 0 … 1
+/// Two taps of a linear interpolation between the centres of cells, along one axis.
+struct LinearTaps {
+  int first = 0, second = 0;  ///< cells; equal at the centre of a cell and beyond the outermost centres
+  float weight = 0;           ///< of the second cell, 0 … 1
 };
 
-/// Cells are squares of `factor` pixels; there are `count` of them.
-Between between(int pixel, int factor, int count);
+/// Taps of a pixel. Cells are squares of `factor` pixels; there are `count` of them along the axis.
+LinearTaps linear_taps(int pixel, int factor, int count);
 
-/// A map of cells between their middles, at pixel (u, v): bilinear, continued at the border. NaN where a neighbour is.
-float at_pixel(const Image<float>& cells, int factor, int u, int v);
+/// Interpolate a map of cells bilinearly at pixel (u, v). Beyond the outermost centres the border is replicated. NaN if
+/// a tap is NaN.
+float interpolate_bilinear(const Image<float>& cells, int factor, int u, int v);
 
-/// The same for whole rows of pixels, best read from the top down: each row of cells is spread out but once.
-class PixelRows {
+/// Bilinear upsampling of a map of cells to pixels, row by row. Fastest from top to bottom: each row of cells is then
+/// interpolated along the row only once.
+class RowUpsampler {
  public:
-  /// The map must live as long as this. `width` is that of the picture, in pixels.
-  PixelRows(const Image<float>& cells, int factor, int width);
+  /// The map must outlive this. `width` is the width of the image in pixels.
+  RowUpsampler(const Image<float>& cells, int factor, int width);
 
-  /// Writes the `width` values of row v.
+  /// Write the `width` values of pixel row v.
   void read(int v, float* values);
 
  private:
-  /// A row of cells, interpolated along the row only.
-  struct Spread {
+  /// A row of cells, interpolated along the row.
+  struct InterpolatedRow {
     int row = -1;
     std::vector<float> values;
   };
-  void spread(int row, Spread& into) const;
+  void interpolate_row(int row, InterpolatedRow& result) const;
 
   const Image<float>& cells_;
   int factor_;
-  std::vector<Between> columns_;  ///< of every pixel of a row
-  Spread above_, below_;
+  std::vector<LinearTaps> columns_;  ///< one per pixel of a row
+  InterpolatedRow above_, below_;
 };
 
 }  // namespace roadstereo

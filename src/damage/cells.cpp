@@ -12,26 +12,26 @@
 namespace roadstereo {
 namespace {
 
-/// Sums over the rows of one row of cells, column by column.
+/// Column sums over the pixel rows of one row of cells.
 struct ColumnSums {
   std::vector<double> sum;
-  std::vector<int> count;  ///< of the valid pixels
+  std::vector<int> count;  ///< valid pixels
 
   explicit ColumnSums(int columns) : sum(static_cast<std::size_t>(columns)), count(static_cast<std::size_t>(columns)) {}
   void clear() {
     std::fill(sum.begin(), sum.end(), 0.0);
     std::fill(count.begin(), count.end(), 0);
   }
-  /// Adds a row of the picture.
+  /// Add the valid pixels of an image row.
   void add(const float* values, const float* sigma, int width) {
-    constexpr float worst_sigma = 1;  // pixels
-    constexpr float largest = std::numeric_limits<float>::max();
+    constexpr float max_sigma_px = 1;
+    constexpr float max_finite = std::numeric_limits<float>::max();
     double* const sums = sum.data();
     int* const counts = count.data();
     for (int u = 0; u < width; ++u) {
-      const int finite = std::abs(values[u]) <= largest ? 1 : 0;
-      const int vague = sigma[u] > worst_sigma ? 1 : 0;
-      const int valid = finite & ~vague;
+      const int finite = std::abs(values[u]) <= max_finite ? 1 : 0;
+      const int uncertain = sigma[u] > max_sigma_px ? 1 : 0;
+      const int valid = finite & ~uncertain;
       const float value = valid != 0 ? values[u] : 0.0F;
       counts[u] += valid;
       sums[u] += static_cast<double>(value);
@@ -39,7 +39,7 @@ struct ColumnSums {
   }
 };
 
-/// Means of the cells of a row, from sums whose columns fill them all.
+/// Means of a row of cells. The sums have `factor` columns per cell, also for a cell that the border clips.
 void mean_row(const ColumnSums& columns, int factor, bool last_row, int cells, float* means) {
   for (int i = 0; i < cells; ++i) {
     double sum = 0;
@@ -48,38 +48,40 @@ void mean_row(const ColumnSums& columns, int factor, bool last_row, int cells, f
       sum += columns.sum[static_cast<std::size_t>(k)];
       count += columns.count[static_cast<std::size_t>(k)];
     }
-    const bool cut = last_row || i + 1 == cells;  // by the border of the picture
-    const bool known = count > 0 && (cut ? 4 : 2) * count >= factor * factor;
-    means[i] = known ? static_cast<float>(sum / count) : std::numeric_limits<float>::quiet_NaN();
+    const bool may_be_clipped = last_row || i + 1 == cells;  // by the border of the image
+    const bool valid = count > 0 && (may_be_clipped ? 4 : 2) * count >= factor * factor;
+    means[i] = valid ? static_cast<float>(sum / count) : std::numeric_limits<float>::quiet_NaN();
   }
 }
 
-void require_values(ImageView<const float> transformed) {
-  std::optional<float> one;
+/// Throws Error unless the map has two different valid values.
+void require_variation(ImageView<const float> transformed) {
+  std::optional<float> value;
   for (int v = 0; v < transformed.height(); ++v) {
     const float* row = transformed.row(v);
     for (int u = 0; u < transformed.width(); ++u) {
       if (!std::isfinite(row[u])) continue;
-      if (one && *one != row[u]) return;
-      one = row[u];
+      if (value && *value != row[u]) return;
+      value = row[u];
     }
   }
-  if (!one) fail("the transformed map has no valid pixel");
-  fail("the transformed map shows nothing: every valid pixel is ", *one);
+  if (!value) fail("the transformed map has no valid pixel");
+  fail("the transformed map is constant: every valid pixel is ", *value);
 }
 
 }  // namespace
 
 int cell_factor(int width, int height) {
-  constexpr double most_cells = 300e3;
-  constexpr double least_pixels = 57e3;  // of a picture whose cells hold more than one: matching's window is wider
+  constexpr double max_cells = 300e3;
+  // From this size on, cells of 2×2 pixels lose no detail: the support window of matching is wider.
+  constexpr double min_pixels = 57e3;
   const double pixels = static_cast<double>(width) * height;
-  return std::max(pixels > least_pixels ? 2 : 1, static_cast<int>(std::ceil(std::sqrt(pixels / most_cells))));
+  return std::max(pixels > min_pixels ? 2 : 1, static_cast<int>(std::ceil(std::sqrt(pixels / max_cells))));
 }
 
 Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigma, int factor, int threads) {
   constexpr int rows_per_band = 16;
-  require_values(transformed);
+  require_variation(transformed);
   const int height = transformed.height();
   Cells cells;
   cells.factor = factor;
@@ -88,11 +90,11 @@ Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigm
   cells.value.resize((transformed.width() + factor - 1) / factor, (height + factor - 1) / factor);
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     ColumnSums columns(cells.width() * factor);
-    const std::vector<float> exact(sigma.empty() ? static_cast<std::size_t>(transformed.width()) : 0, 0.0F);
+    const std::vector<float> zero_sigma(sigma.empty() ? static_cast<std::size_t>(transformed.width()) : 0, 0.0F);
     for (int j = first; j < last; ++j) {
       columns.clear();
       for (int v = j * factor; v < std::min((j + 1) * factor, height); ++v) {
-        columns.add(transformed.row(v), sigma.empty() ? exact.data() : sigma.row(v), transformed.width());
+        columns.add(transformed.row(v), sigma.empty() ? zero_sigma.data() : sigma.row(v), transformed.width());
       }
       mean_row(columns, factor, j + 1 == cells.height(), cells.width(), cells.value.row(j));
     }

@@ -8,23 +8,26 @@
 
 namespace roadstereo {
 
-/// The line around a region.
-struct Contour {
-  double slope = 0;  ///< mean along it, pixels of ℓ' per cell
-  double area = 0;   ///< inside, cells
+/// Contour of a region: the cells of the region that have a 4-neighbour outside it.
+struct ContourStatistics {
+  double slope = 0;  ///< mean magnitude of the depth gradient on the contour, pixels of ℓ' per cell
+  double area = 0;   ///< of the region, cells
 };
 
-/// Around a region as it is.
-Contour contour_of(const DepthField& field, const BoxMask& region);
+ContourStatistics measure_contour(const DepthField& field, const BoxMask& region);
 
-inline constexpr int contour_levels = 24;
+inline constexpr int contour_level_count = 24;
 
-/// Around what hangs together with `seeds` within a box and lies deeper than each of the levels, which rise.
-std::array<Contour, contour_levels> contours_around(const DepthField& field, const ConnectedRegion& seeds,
-                                                    const std::array<float, contour_levels>& levels, const Box& within);
+/// Measure the contours of the component that contains `seeds` above each of the ascending `levels`, inside `within`.
+/// These components are one branch of the component tree (max-tree) of the depth; one flood computes all of them.
+std::array<ContourStatistics, contour_level_count> measure_contours(
+    const DepthField& field, const ConnectedComponent& seeds, const std::array<float, contour_level_count>& levels,
+    const CellBox& within);
 
-/// Whether a cell of the region has a neighbour in the picture that is none; and all that have.
-bool on_contour(const BoxMask& region, int i, int j, int columns, int rows);
+/// Whether cell (i, j) of the region is on its contour. The border of the image is no contour.
+bool is_on_contour(const BoxMask& region, int i, int j, int columns, int rows);
+
+/// All cells of the contour, row by row.
 std::vector<CellIndex> contour_cells(const BoxMask& region, int columns, int rows);
 
 }  // namespace roadstereo

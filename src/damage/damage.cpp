@@ -17,16 +17,16 @@ namespace {
 template <class Value>
 void require_size(ImageView<Value> view, ImageView<const float> transformed, const char* name) {
   if (view.empty() || (view.width() == transformed.width() && view.height() == transformed.height())) return;
-  fail("the ", name, " has ", view.width(), "×", view.height(), " pixels and the transformed map ", transformed.width(),
-       "×", transformed.height(), "; they must have one size");
+  fail("the ", name, " has ", view.width(), "×", view.height(), " pixels; it must have ", transformed.width(), "×",
+       transformed.height(), " like the transformed map");
 }
 
 void require_input(const DamageInput& input) {
-  constexpr int least_size = 32;
+  constexpr int min_size = 32;
   const auto& map = input.transformed;
-  if (map.width() < least_size || map.height() < least_size) {
-    fail("the transformed map has ", map.width(), "×", map.height(), " pixels; at least ", least_size, "×", least_size,
-         " are needed");
+  if (map.width() < min_size || map.height() < min_size) {
+    fail("the transformed map has ", map.width(), "×", map.height(), " pixels; it must have at least ", min_size, "×",
+         min_size);
   }
   require_size(input.disparity, map, "disparity map");
   require_size(input.sigma, map, "map of standard errors");
@@ -34,28 +34,28 @@ void require_input(const DamageInput& input) {
   if (input.calibration) input.calibration->validate(map.width(), map.height(), "calibration");
 }
 
-/// Why nothing is measured in metres, or nothing.
-std::string missing_for_metres(const DamageInput& input) {
+/// Reason why results cannot be metric; empty if they can.
+std::string reason_for_pixels(const DamageInput& input) {
   if (!input.calibration) return "there is no calibration";
   if (input.disparity.empty()) return "there is no disparity map";
-  if (!input.plane) return "the plane of the road is not known";
+  if (!input.plane) return "the plane of the road is not available";
   return {};
 }
 
-/// The road region and the surface: each is found with the other's help.
+/// Fit the road surface and find the road region by alternating between them.
 void find_road(const Cells& cells, const SurfaceCoordinates& coordinates, RoadSurface& surface,
                Image<std::uint8_t>& road) {
   surface = fit_road_surface(cells, coordinates);
   road = find_road_region(cells, surface);
-  for (const Sampling sampling : {Sampling::rough, Sampling::fine}) {
+  for (const Sampling sampling : {Sampling::coarse, Sampling::fine}) {
     surface = refit_road_surface(cells, coordinates, road, surface, sampling);
     road = find_road_region(cells, surface);
   }
 }
 
-Witness make_witness(const DamageInput& input, const Cells& cells) {
-  constexpr int window_px = 10;  // radius of the block and of the aggregation
-  return {input.grey, cells.factor, (window_px + cells.factor - 1) / cells.factor};
+ImageEdges make_image_edges(const DamageInput& input, const Cells& cells) {
+  constexpr int window_radius_px = 10;  // of the support window: block radius + aggregation radius
+  return {input.grey, cells.factor, (window_radius_px + cells.factor - 1) / cells.factor};
 }
 
 }  // namespace
@@ -69,13 +69,13 @@ void DamageOptions::validate() const {
   require_range("damage", "min_area_share", min_area_share, 0.0, 1.0);
 }
 
-DamageMap no_damage(int width, int height, const std::string& reason) {
+DamageMap make_empty_damage_map(int width, int height, const std::string& reason) {
   DamageMap none;
   none.ids.assign(width, height, 0);
   none.road.assign(width, height, 0);
   none.surface.assign(width, height, std::numeric_limits<float>::quiet_NaN());
   none.depth = none.surface;
-  none.unmetric_reason = reason;
+  none.non_metric_reason = reason;
   return none;
 }
 
@@ -94,14 +94,15 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
   RoadSurface surface;
   Image<std::uint8_t> road;
   find_road(cells, coordinates, surface, road);
-  const DepthCells relief = make_depth_cells(cells, surface);
-  result.unmetric_reason = missing_for_metres(input);
-  result.metric = result.unmetric_reason.empty();
+  const DepthCells depth_cells = make_depth_cells(cells, surface);
+  result.non_metric_reason = reason_for_pixels(input);
+  result.metric = result.non_metric_reason.empty();
   result.noise_px = surface.noise;
-  const Thresholds thresholds(input, options, cells, coordinates, relief.noise, result.metric);
-  const Segmentation found{cells, surface, road, relief,
-                           find_candidates(relief, road, thresholds, make_witness(input, cells), options.protrusions)};
-  measure_damage(input, options, found, threads, result);
+  const Thresholds thresholds(input, options, cells, coordinates, depth_cells.noise, result.metric);
+  const Segmentation segmentation{
+      cells, surface, road, depth_cells,
+      find_candidates(depth_cells, road, thresholds, make_image_edges(input, cells), options.protrusions)};
+  measure_damage(input, options, segmentation, threads, result);
 }
 
 }  // namespace roadstereo

@@ -1,15 +1,16 @@
 #pragma once
 
 #include "damage/measurement.hpp"
-#include "roadstereo/surroundings.hpp"
+#include "roadstereo/pixel_box.hpp"
 
 namespace roadstereo {
 
-/// The pixels among which those of a candidate lie.
-PixelBox pixels_of(const Candidate& candidate, const Cells& cells);
+/// Bounding box of the pixels of a candidate, with a margin of one cell.
+PixelBox pixel_box(const Candidate& candidate, const Cells& cells);
 
-/// Fills the maps of `result` at full size: ids, road, surface, and depth in pixels of ℓ'. Where a damage was not
-/// measured, or a single island in it lies no deeper than its outline, depth is what surrounds the gap.
-void paint_maps(const DamageInput& input, const Segmentation& found, int threads, DamageMap& result);
+/// Fill the maps of `result` at full resolution: ids, road, surface, and depth in pixels of ℓ'. Outlines run between
+/// the centres of cells. Inside a damage, holes and cells no deeper than the outline are interpolated from their
+/// surroundings.
+void fill_maps(const DamageInput& input, const Segmentation& segmentation, int threads, DamageMap& result);
 
 }  // namespace roadstereo

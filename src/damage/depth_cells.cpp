@@ -8,54 +8,54 @@
 namespace roadstereo {
 namespace {
 
-/// Sums of values and their weights in one resolution.
-struct Level {
+/// Level of a pyramid: weighted sums of values, and their weights, 0 … 1.
+struct PyramidLevel {
   Image<float> sum, weight;
 };
 
-/// Adds neighbouring cells of a row in twos.
-void add_in_twos(const float* fine, int width, float* coarse) {
-  const std::ptrdiff_t twos = width / 2;
-  for (std::ptrdiff_t i = 0; i < twos; ++i) coarse[i] = coarse[i] + fine[2 * i] + fine[2 * i + 1];
+/// Add pairs of neighbouring cells of a row to the cells of the next coarser level.
+void add_pairs(const float* fine, int width, float* coarse) {
+  const std::ptrdiff_t pairs = width / 2;
+  for (std::ptrdiff_t i = 0; i < pairs; ++i) coarse[i] = coarse[i] + fine[2 * i] + fine[2 * i + 1];
   if (width % 2 != 0) coarse[width / 2] += fine[width - 1];
 }
 
-Level halve(const Level& fine) {
+/// Pull: downsample a level by 2.
+PyramidLevel pull(const PyramidLevel& fine) {
   const int width = fine.sum.width();
-  Level coarse;
+  PyramidLevel coarse;
   coarse.sum.assign((width + 1) / 2, (fine.sum.height() + 1) / 2, 0.0F);
   coarse.weight.assign(coarse.sum.width(), coarse.sum.height(), 0.0F);
   for (int j = 0; j < fine.sum.height(); ++j) {
-    add_in_twos(fine.sum.row(j), width, coarse.sum.row(j / 2));
-    add_in_twos(fine.weight.row(j), width, coarse.weight.row(j / 2));
+    add_pairs(fine.sum.row(j), width, coarse.sum.row(j / 2));
+    add_pairs(fine.weight.row(j), width, coarse.weight.row(j / 2));
   }
-  // A coarse cell that knows anything knows it fully: weights would else fade with every step.
+  // Weights saturate at 1. Sums become means where the weight is larger.
   float* const sums = coarse.sum.row(0);
   float* const weights = coarse.weight.row(0);
   for (std::size_t k = 0; k < coarse.sum.pixels(); ++k) {
-    const float most = std::max(weights[k], 1.0F);
-    sums[k] /= most;
+    sums[k] /= std::max(weights[k], 1.0F);
     weights[k] = std::min(weights[k], 1.0F);
   }
   return coarse;
 }
 
-/// Fills what is missing in a level from the next coarser one.
-void fill_from(const Level& coarse, Level& fine) {
+/// Push: fill the cells of weight below 1 from the next coarser level, upsampled bilinearly.
+void push(const PyramidLevel& coarse, PyramidLevel& fine) {
   const int width = fine.sum.width();
-  PixelRows rows(coarse.sum, 2, width);
-  std::vector<float> filling(static_cast<std::size_t>(width));
+  RowUpsampler rows(coarse.sum, 2, width);
+  std::vector<float> upsampled(static_cast<std::size_t>(width));
   for (int j = 0; j < fine.sum.height(); ++j) {
     float* const weights = fine.weight.row(j);
     float* const sums = fine.sum.row(j);
     if (std::all_of(weights, weights + width, [](float weight) { return weight >= 1; })) continue;
-    rows.read(j, filling.data());
-    for (int i = 0; i < width; ++i) sums[i] += (1 - weights[i]) * filling[static_cast<std::size_t>(i)];
+    rows.read(j, upsampled.data());
+    for (int i = 0; i < width; ++i) sums[i] += (1 - weights[i]) * upsampled[static_cast<std::size_t>(i)];
     std::fill(weights, weights + width, 1.0F);
   }
 }
 
-/// Sums of five neighbours with the weights 1 4 6 4 1, along the rows and across them; nothing lies beyond the border.
+/// Separable binomial filter 1 4 6 4 1, not normalised. Cells beyond the border are 0.
 Image<float> binomial_sums(const Image<float>& values) {
   const int width = values.width();
   const int height = values.height();
@@ -82,8 +82,8 @@ Image<float> binomial_sums(const Image<float>& values) {
   return sums;
 }
 
-/// Binomial mean, 5×5, of the cells that have a weight; 0 where none has.
-Image<float> smooth(const Level& level) {
+/// Binomial mean, 5×5, of the cells of weight 1; 0 where there is none.
+Image<float> binomial_means(const PyramidLevel& level) {
   Image<float> means = binomial_sums(level.sum);
   const Image<float> weights = binomial_sums(level.weight);
   float* const mean = means.row(0);
@@ -94,43 +94,43 @@ Image<float> smooth(const Level& level) {
 
 }  // namespace
 
-void interpolate_gaps(Image<float>& values, const Image<std::uint8_t>& known) {
-  Level level{std::move(values), Image<float>(known.width(), known.height())};
-  const std::uint8_t* const is_known = known.row(0);
+void fill_gaps(Image<float>& values, const Image<std::uint8_t>& valid) {
+  PyramidLevel level{std::move(values), Image<float>(valid.width(), valid.height())};
+  const std::uint8_t* const is_valid = valid.row(0);
   float* const sums = level.sum.row(0);
   float* const weights = level.weight.row(0);
-  const std::size_t count = known.pixels();
+  const std::size_t count = valid.pixels();
   for (std::size_t k = 0; k < count; ++k) {
-    weights[k] = is_known[k] != 0 ? 1.0F : 0.0F;
-    sums[k] = is_known[k] != 0 ? sums[k] : 0.0F;
+    weights[k] = is_valid[k] != 0 ? 1.0F : 0.0F;
+    sums[k] = is_valid[k] != 0 ? sums[k] : 0.0F;
   }
-  std::vector<Level> pyramid{std::move(level)};
-  while (pyramid.back().sum.width() > 1 || pyramid.back().sum.height() > 1) pyramid.push_back(halve(pyramid.back()));
-  for (std::size_t k = pyramid.size() - 1; k-- > 0;) fill_from(pyramid[k + 1], pyramid[k]);
+  std::vector<PyramidLevel> pyramid{std::move(level)};
+  while (pyramid.back().sum.width() > 1 || pyramid.back().sum.height() > 1) pyramid.push_back(pull(pyramid.back()));
+  for (std::size_t k = pyramid.size() - 1; k-- > 0;) push(pyramid[k + 1], pyramid[k]);
   values = std::move(pyramid.front().sum);
 }
 
 DepthCells make_depth_cells(const Cells& cells, const RoadSurface& surface) {
-  DepthCells relief;
-  relief.noise = surface.noise;
-  Level measured{Image<float>(cells.width(), cells.height()), Image<float>(cells.width(), cells.height())};
-  relief.known.resize(cells.width(), cells.height());
+  DepthCells result;
+  result.noise = surface.noise;
+  PyramidLevel raw{Image<float>(cells.width(), cells.height()), Image<float>(cells.width(), cells.height())};
+  result.valid.resize(cells.width(), cells.height());
   const float* const road = surface.value.row(0);
-  const float* const seen = cells.value.row(0);
-  float* const sums = measured.sum.row(0);
-  float* const weights = measured.weight.row(0);
-  std::uint8_t* const known = relief.known.row(0);
-  const std::size_t count = relief.known.pixels();
+  const float* const measured = cells.value.row(0);
+  float* const sums = raw.sum.row(0);
+  float* const weights = raw.weight.row(0);
+  std::uint8_t* const valid = result.valid.row(0);
+  const std::size_t count = result.valid.pixels();
   for (std::size_t k = 0; k < count; ++k) {
-    const float depth = road[k] - seen[k];
-    const bool is_known = depth == depth;  // not NaN
-    sums[k] = is_known ? depth : 0.0F;
-    weights[k] = is_known ? 1.0F : 0.0F;
-    known[k] = is_known ? 255 : 0;
+    const float depth = road[k] - measured[k];
+    const bool is_valid = depth == depth;  // not NaN
+    sums[k] = is_valid ? depth : 0.0F;
+    weights[k] = is_valid ? 1.0F : 0.0F;
+    valid[k] = is_valid ? 255 : 0;
   }
-  relief.depth = smooth(measured);
-  interpolate_gaps(relief.depth, relief.known);
-  return relief;
+  result.depth = binomial_means(raw);
+  fill_gaps(result.depth, result.valid);
+  return result;
 }
 
 }  // namespace roadstereo

@@ -5,17 +5,17 @@
 
 namespace roadstereo {
 
-/// How far the seen surface lies below the undamaged road.
+/// Depth of the measured surface below the undamaged road, per cell.
 struct DepthCells {
-  Image<float> depth;         ///< pixels of ℓ', smoothed over a cell or two; interpolated where nothing was measured
-  Image<std::uint8_t> known;  ///< 255 where it was measured
-  double noise = 0;           ///< of a cell of the intact road, pixels
+  Image<float> depth;  ///< pixels of ℓ', 5×5 binomial mean of the valid cells; interpolated where none is valid
+  Image<std::uint8_t> valid;  ///< 255 where the cell was measured
+  double noise = 0;           ///< robust standard deviation of a cell of the intact road, pixels
 };
 
 DepthCells make_depth_cells(const Cells& cells, const RoadSurface& surface);
 
-/// Replaces the cells that `known` leaves out by what surrounds them: means of ever larger cells, interpolated
-/// (push–pull).
-void interpolate_gaps(Image<float>& values, const Image<std::uint8_t>& known);
+/// Push–pull interpolation (Gortler et al., "The Lumigraph", 1996): replaces the cells where `valid` is 0 by means of
+/// ever larger neighbourhoods. At least one cell must be valid.
+void fill_gaps(Image<float>& values, const Image<std::uint8_t>& valid);
 
 }  // namespace roadstereo

@@ -12,8 +12,8 @@ double dot(const FrameGeometry::Point& one, const FrameGeometry::Point& other) {
   return one[0] * other[0] + one[1] * other[1] + one[2] * other[2];
 }
 
-/// ℓ' = ℓ − road + δt: the median over a sample of pixels tells δt, whoever made the map.
-double find_delta_t(const DamageInput& input) {
+/// Estimate δt of ℓ' = ℓ − road + δt (eq. (29), disparity_transformation): median over every seventh pixel and row.
+double estimate_delta_t(const DamageInput& input) {
   constexpr int step = 7;
   std::vector<double> deltas;
   for (int v = step / 2; v < input.disparity.height(); v += step) {
@@ -30,29 +30,29 @@ double find_delta_t(const DamageInput& input) {
 
 FrameGeometry::FrameGeometry(const DamageInput& input)
     : calibration_(*input.calibration),
-      model_(*input.plane),
-      plane_(road_plane(*input.plane, *input.calibration)),
-      frame_(road_frame(plane_)),
-      delta_t_(find_delta_t(input)) {}
+      disparity_plane_(*input.plane),
+      ground_plane_(ground_plane(*input.plane, *input.calibration)),
+      axes_(road_axes(ground_plane_)),
+      delta_t_(estimate_delta_t(input)) {}
 
 double FrameGeometry::pixel_area(const Point& road) const {
   const double f = calibration_.focal_px;
-  return road[2] * road[2] * road[2] / (f * f * dot(plane_.normal, road));
+  return road[2] * road[2] * road[2] / (f * f * dot(ground_plane_.normal, road));
 }
 
-double FrameGeometry::depth_between(const Point& road, const Point& seen) const {
-  return dot(plane_.normal, seen) - dot(plane_.normal, road);
+double FrameGeometry::depth_between(const Point& road, const Point& measured) const {
+  return dot(ground_plane_.normal, measured) - dot(ground_plane_.normal, road);
 }
 
-double FrameGeometry::metres_per_pixel(const Point& seen, double disparity) const {
-  return dot(plane_.normal, seen) / (disparity + calibration_.disparity_offset_px);
+double FrameGeometry::metres_per_pixel(const Point& measured, double disparity) const {
+  return dot(ground_plane_.normal, measured) / (disparity + calibration_.disparity_offset_px);
 }
 
 void FrameGeometry::depths_to_metres(int v, int width, const float* surface, float* depths) const {
-  // On the ray of a pixel n·P = h·D / (d + doffs), where D is the plane's own d + doffs there.
-  const auto height = static_cast<float>(plane_.height_m);
-  const auto first = static_cast<float>(model_.disparity(0, v) + calibration_.disparity_offset_px);
-  const auto slope = static_cast<float>(model_.a2);
+  // On the line of sight of a pixel n·P = h·D / (d + doffs), with D = d + doffs of the plane at that pixel.
+  const auto height = static_cast<float>(ground_plane_.height_m);
+  const auto first = static_cast<float>(disparity_plane_.disparity(0, v) + calibration_.disparity_offset_px);
+  const auto slope = static_cast<float>(disparity_plane_.a2);
   const auto delta_t = static_cast<float>(delta_t_);
   for (int u = 0; u < width; ++u) {
     const float plane = first + slope * static_cast<float>(u);

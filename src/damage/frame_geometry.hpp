@@ -6,33 +6,37 @@
 
 namespace roadstereo {
 
-/// Rays of one frame against its road. Needs everything that is metric.
+/// Metric geometry of the lines of sight of one frame and its undamaged road. Points are in the camera frame, metres.
 class FrameGeometry {
  public:
   using Point = std::array<double, 3>;
 
+  /// `input` must have a disparity map, a plane and a calibration.
   explicit FrameGeometry(const DamageInput& input);
 
-  /// Disparity of the undamaged surface, whose ℓ' is `surface`.
-  double road_disparity(int u, int v, double surface) const { return model_.disparity(u, v) + surface - delta_t_; }
+  /// Disparity of the undamaged road at a pixel, from its ℓ'.
+  double road_disparity(int u, int v, double surface) const {
+    return disparity_plane_.disparity(u, v) + surface - delta_t_;
+  }
   Point point(int u, int v, double disparity) const { return calibration_.point_m(u, v, disparity); }
-  /// Area of the road that one pixel covers where it lies at `road`: Z³ / (f²·n·P).
+  /// Area of the road in one pixel, m², where its line of sight meets the road at `road`: Z³ / (f²·n·P).
   double pixel_area(const Point& road) const;
-  /// Depth along the normal between two points of one ray.
-  double depth_between(const Point& road, const Point& seen) const;
-  /// Metres of depth per pixel of disparity: n·P / (d + doffs).
-  double metres_per_pixel(const Point& seen, double disparity) const;
-  const RoadFrame& frame() const { return frame_; }
+  /// Depth along the road's normal from `road` to `measured`, two points of one line of sight.
+  double depth_between(const Point& road, const Point& measured) const;
+  /// Depth along the road's normal per pixel of disparity at `measured`, metres: n·P / (d + doffs).
+  double metres_per_pixel(const Point& measured, double disparity) const;
+  const RoadAxes& axes() const { return axes_; }
   double focal_px() const { return calibration_.focal_px; }
 
-  /// Turns a row's depths from pixels of ℓ' to metres along the road's normal; `surface` is ℓ' of the undamaged road.
+  /// Convert a row of depths in place from pixels of ℓ' to metres along the road's normal. `surface` is ℓ' of the
+  /// undamaged road.
   void depths_to_metres(int v, int width, const float* surface, float* depths) const;
 
  private:
   StereoCalibration calibration_;
-  RoadModel model_;
-  RoadPlane plane_;
-  RoadFrame frame_;
+  DisparityPlane disparity_plane_;
+  GroundPlane ground_plane_;
+  RoadAxes axes_;
   double delta_t_ = 0;
 };
 

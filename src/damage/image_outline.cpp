@@ -6,60 +6,60 @@
 
 #include "core/median.hpp"
 #include "damage/contours.hpp"
-#include "damage/grow.hpp"
+#include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
 
 namespace roadstereo {
 namespace {
 
-/// Median of grey levels and their robust standard deviation: a sunlit wall does not make a dark hole grey.
+/// Robust statistics of grey levels, 1/16 grey level. Robust, since one wall of a dark hole may be sunlit.
 struct Tone {
-  double middle = 0;
-  double deviation = 0;
+  double median = 0;
+  double sigma = 0;  ///< from the median absolute deviation
   std::size_t cells = 0;
 };
 
-/// A map of the cells of a box.
+/// Values of the cells of a box.
 struct BoxMap {
-  Box box;
+  CellBox box;
   Image<float> values;
 
   float operator()(int i, int j) const { return values(i - box.first_column, j - box.first_row); }
 };
 
-/// Of the cells that are `inside` and not `without`.
-Tone tone_of(const BoxMap& tones, const BoxMask& inside, const BoxMask* without) {
-  const Box& box = tones.box;
+/// Tone of the cells of `included` that are not in `excluded` (may be null).
+Tone tone_of(const BoxMap& grey, const BoxMask& included, const BoxMask* excluded) {
+  const CellBox& box = grey.box;
   std::vector<float> values;
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
-      if (inside(i, j) && (without == nullptr || !(*without)(i, j))) values.push_back(tones(i, j));
+      if (included(i, j) && (excluded == nullptr || !(*excluded)(i, j))) values.push_back(grey(i, j));
     }
   }
   if (values.empty()) return {};
-  const float middle = take_median(values);
-  for (float& value : values) value = std::abs(value - middle);
-  return {middle, gaussian_mad * take_median(values), values.size()};
+  const float median = take_median(values);
+  for (float& value : values) value = std::abs(value - median);
+  return {median, gaussian_mad * take_median(values), values.size()};
 }
 
-/// Grey level between two tones at which both are as likely: each as many deviations away.
-double border_between(const Tone& one, const Tone& other) {
-  return (one.middle * other.deviation + other.middle * one.deviation) / (one.deviation + other.deviation);
+/// Decision threshold between two tones: the grey level at equal distance from both in standard deviations.
+double threshold_between(const Tone& one, const Tone& other) {
+  return (one.median * other.sigma + other.median * one.sigma) / (one.sigma + other.sigma);
 }
 
-/// Mean grey levels of the cells of a box, in sixteenths.
-BoxMap grey_cells(const Witness& witness, const Box& box) {
-  const int factor = witness.factor;
+/// Mean grey levels of the cells of a box, 1/16 grey level.
+BoxMap grey_cells(const ImageEdges& image_edges, const CellBox& box) {
+  const int factor = image_edges.factor;
   BoxMap cells{box, Image<float>(box.columns(), box.rows())};
   for (int j = 0; j < box.rows(); ++j) {
     const int first_v = (box.first_row + j) * factor;
-    const int end_v = std::min(first_v + factor, witness.grey.height());
+    const int end_v = std::min(first_v + factor, image_edges.grey.height());
     for (int i = 0; i < box.columns(); ++i) {
       const int first_u = (box.first_column + i) * factor;
-      const int end_u = std::min(first_u + factor, witness.grey.width());
+      const int end_u = std::min(first_u + factor, image_edges.grey.width());
       int sum = 0;
       for (int v = first_v; v < end_v; ++v) {
-        for (int u = first_u; u < end_u; ++u) sum += witness.grey(u, v);
+        for (int u = first_u; u < end_u; ++u) sum += image_edges.grey(u, v);
       }
       cells.values(i, j) = static_cast<float>(sum) / static_cast<float>((end_u - first_u) * (end_v - first_v));
     }
@@ -67,9 +67,9 @@ BoxMap grey_cells(const Witness& witness, const Box& box) {
   return cells;
 }
 
-/// Mean of 3×3 cells: single stones are no edge.
-BoxMap smoothed(const Witness& witness, const Box& box, int columns, int rows) {
-  const BoxMap grey = grey_cells(witness, box.grown(1, columns, rows));
+/// Grey levels after a 3×3 box filter, which suppresses single stones.
+BoxMap smooth_grey_cells(const ImageEdges& image_edges, const CellBox& box, int columns, int rows) {
+  const BoxMap grey = grey_cells(image_edges, box.grown(1, columns, rows));
   BoxMap result{box, Image<float>(box.columns(), box.rows())};
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
@@ -87,30 +87,30 @@ BoxMap smoothed(const Witness& witness, const Box& box, int columns, int rows) {
 
 }  // namespace
 
-void extend_by_image(const Witness& witness, int columns, int rows, BoxMask& region) {
-  constexpr double least_difference = 1.5;  // standard deviations
-  constexpr std::size_t least_cells = 30;
-  const int reach = witness.reach;
-  const Box around = region.box().grown(3 * reach, columns, rows);
-  const BoxMap tones = smoothed(witness, around, columns, rows);
-  const BoxMask band = grow(region, reach, around);
-  const BoxMask beyond = grow(region, 3 * reach, around);
-  const Tone inside = tone_of(tones, shrink_mask(region, 2, around), nullptr);
-  const Tone outside = tone_of(tones, beyond, &band);
-  if (inside.cells < least_cells || outside.cells < least_cells) return;
-  const double spread = std::sqrt(0.5 * (inside.deviation * inside.deviation + outside.deviation * outside.deviation));
-  if (std::abs(inside.middle - outside.middle) < least_difference * spread || spread == 0) return;
-  const double border = border_between(inside, outside);
-  const bool dark = inside.middle < outside.middle;
-  std::vector<CellIndex> open = contour_cells(region, columns, rows);
-  region = region.within(around);
-  while (!open.empty()) {
-    const CellIndex cell = open.back();
-    open.pop_back();
-    for_neighbours(cell.column, cell.row, columns, rows, [&](int i, int j) {
-      if (region(i, j) || !band(i, j) || (tones(i, j) < border) != dark) return;
+void refine_outline_by_image(const ImageEdges& image_edges, int columns, int rows, BoxMask& region) {
+  constexpr double min_difference = 1.5;  // standard deviations
+  constexpr std::size_t min_cells = 30;
+  const int radius = image_edges.window_radius;
+  const CellBox around = region.box().grown(3 * radius, columns, rows);
+  const BoxMap grey = smooth_grey_cells(image_edges, around, columns, rows);
+  const BoxMask near = dilate(region, radius, around);
+  const BoxMask far = dilate(region, 3 * radius, around);
+  const Tone inside = tone_of(grey, erode(region, 2, around), nullptr);
+  const Tone outside = tone_of(grey, far, &near);
+  if (inside.cells < min_cells || outside.cells < min_cells) return;
+  const double sigma = std::sqrt(0.5 * (inside.sigma * inside.sigma + outside.sigma * outside.sigma));
+  if (std::abs(inside.median - outside.median) < min_difference * sigma || sigma == 0) return;
+  const double threshold = threshold_between(inside, outside);
+  const bool is_dark = inside.median < outside.median;
+  std::vector<CellIndex> front = contour_cells(region, columns, rows);
+  region = region.cropped(around);
+  while (!front.empty()) {
+    const CellIndex cell = front.back();
+    front.pop_back();
+    for_each_neighbour(cell.column, cell.row, columns, rows, [&](int i, int j) {
+      if (region(i, j) || !near(i, j) || (grey(i, j) < threshold) != is_dark) return;
       region.set(i, j);
-      open.push_back({i, j});
+      front.push_back({i, j});
     });
   }
 }

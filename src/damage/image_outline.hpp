@@ -6,17 +6,17 @@
 
 namespace roadstereo {
 
-/// The left image, and how far the window of matching reaches over an edge in it.
-struct Witness {
-  ImageView<const std::int16_t> grey;  ///< empty: there is none
-  int factor = 1;                      ///< pixels along the side of a cell
-  int reach = 0;                       ///< cells
+/// Left image for the refinement of outlines by grey level.
+struct ImageEdges {
+  ImageView<const std::int16_t> grey;  ///< 1/16 grey level; empty if there is no image
+  int factor = 1;                      ///< side of a cell, pixels
+  int window_radius = 0;               ///< radius of the support window of matching, cells
 };
 
-/// Moves the outline of a depression out to where the picture shows its edge. The window of matching carries the road's
-/// disparity some pixels over the rim of a steep wall, and what the rim hides has none: there the picture is the better
-/// witness, when inside and outside differ in it. Cells within the witness's reach of the region join it when their
-/// grey is nearer to the inside's than to the road's and they hang together with it.
-void extend_by_image(const Witness& witness, int columns, int rows, BoxMask& region);
+/// Region growing by grey level: extends a depression to its edge in the image. The support window of matching carries
+/// the disparity of the road over the rim of a steep wall, and occluded parts of the wall have no disparity; the image
+/// shows both. Cells within `window_radius` of the region join it if they are connected to it and their grey level is
+/// closer to the tone inside than to that of the road. The region is unchanged if inside and road are too similar.
+void refine_outline_by_image(const ImageEdges& image_edges, int columns, int rows, BoxMask& region);
 
 }  // namespace roadstereo

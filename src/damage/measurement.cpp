@@ -10,7 +10,7 @@
 namespace roadstereo {
 namespace {
 
-/// Figures in pixels; `depth` of the result is still in pixels.
+/// Sums over the pixels of one damage. Depths are in pixels of ℓ'.
 struct PixelSums {
   Damage damage;
   double u = 0, v = 0, depth = 0;
@@ -31,31 +31,34 @@ void add_pixel(const DamageInput& input, const DamageMap& maps, int u, int v, Pi
   sums.depth += std::abs(maps.depth(u, v));
 }
 
-/// The largest depth of the smoothed relief, so that no single wrong pixel decides.
-void find_deepest(const Segmentation& found, const Candidate& candidate, Damage& damage) {
+/// Find the maximum of the smoothed depth cells, which is robust against single wrong pixels.
+void find_deepest(const Segmentation& segmentation, const Candidate& candidate, Damage& damage) {
   const float sign = sign_of(candidate.kind);
-  float largest = 0;
-  const Box& box = candidate.box();
+  float max_depth = 0;
+  const CellBox& box = candidate.box();
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
-      const float depth = sign * found.relief.depth(i, j);
-      if (!candidate.cells(i, j) || found.relief.known(i, j) == 0 || depth <= largest) continue;
-      largest = depth;
-      // The middle of a cell that the border cuts may lie outside the picture.
-      damage.deepest_px = {std::min(static_cast<int>(found.cells.middle(i)), found.cells.image_width - 1),
-                           std::min(static_cast<int>(found.cells.middle(j)), found.cells.image_height - 1)};
+      const float depth = sign * segmentation.depth_cells.depth(i, j);
+      if (!candidate.cells(i, j) || segmentation.depth_cells.valid(i, j) == 0 || depth <= max_depth) continue;
+      max_depth = depth;
+      // The centre of a cell that the border clips may lie outside the image.
+      const Cells& cells = segmentation.cells;
+      damage.deepest_px = {std::min(static_cast<int>(cells.middle(i)), cells.image_width - 1),
+                           std::min(static_cast<int>(cells.middle(j)), cells.image_height - 1)};
     }
   }
-  damage.max_depth_px.value = largest;
+  damage.max_depth_px.value = max_depth;
 }
 
-Damage measure_in_pixels(const DamageInput& input, const Segmentation& found, std::size_t k, const DamageMap& maps) {
-  const Candidate& candidate = found.candidates[k];
+/// Measure candidate `k` in pixels.
+Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentation, std::size_t k,
+                         const DamageMap& maps) {
+  const Candidate& candidate = segmentation.candidates[k];
   PixelSums sums;
   Damage& damage = sums.damage;
   damage.id = static_cast<int>(k + 1);
   damage.kind = candidate.kind;
-  const PixelBox box = pixels_of(candidate, found.cells);
+  const PixelBox box = pixel_box(candidate, segmentation.cells);
   for (int v = box.v0; v <= box.v1; ++v) {
     for (int u = box.u0; u <= box.u1; ++u) {
       if (maps.ids(u, v) == damage.id) add_pixel(input, maps, u, v, sums);
@@ -67,12 +70,12 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& found, st
     damage.measured_share = static_cast<double>(sums.measured) / pixels;
     damage.mean_depth_px = sums.measured > 0 ? sums.depth / static_cast<double>(sums.measured) : 0;
   }
-  find_deepest(found, candidate, damage);
+  find_deepest(segmentation, candidate, damage);
   return damage;
 }
 
-/// Gives every pixel of the damages its new number.
-void renumber(const std::vector<Damage>& damages, const std::vector<std::uint16_t>& new_id, Image<std::uint16_t>& ids) {
+/// Replace the id of every pixel by `new_id[id]`. `damages` bound the rows to visit.
+void relabel(const std::vector<Damage>& damages, const std::vector<std::uint16_t>& new_id, Image<std::uint16_t>& ids) {
   int top = ids.height();
   int bottom = -1;
   for (const Damage& damage : damages) {
@@ -86,15 +89,15 @@ void renumber(const std::vector<Damage>& damages, const std::vector<std::uint16_
   }
 }
 
-/// Drops what is not deeper than its own standard error says it must be, or reaches beyond the road, and numbers the
-/// rest anew, deepest first.
+/// Remove damages shallower than three standard errors of their depth, and those without finite metric values, which
+/// extend beyond the road. Number the others by decreasing depth.
 void keep_significant(DamageMap& result) {
-  constexpr double least_sigmas = 3;
+  constexpr double min_std_errors = 3;
   std::vector<Damage> kept;
   for (const Damage& damage : result.damages) {
     const bool finite =
         !damage.metrics || std::isfinite(damage.metrics->max_depth_m.value + damage.metrics->area_m2.value);
-    if (damage.pixels > 0 && finite && damage.max_depth_px.value >= least_sigmas * damage.max_depth_px.std_error) {
+    if (damage.pixels > 0 && finite && damage.max_depth_px.value >= min_std_errors * damage.max_depth_px.std_error) {
       kept.push_back(damage);
     }
   }
@@ -108,24 +111,25 @@ void keep_significant(DamageMap& result) {
     new_id[static_cast<std::size_t>(kept[k].id)] = static_cast<std::uint16_t>(k + 1);
     kept[k].id = static_cast<int>(k + 1);
   }
-  renumber(result.damages, new_id, result.ids);
+  relabel(result.damages, new_id, result.ids);
   result.damages = std::move(kept);
 }
 
 }  // namespace
 
-void measure_damage(const DamageInput& input, const DamageOptions& options, const Segmentation& found, int threads,
-                    DamageMap& result) {
-  paint_maps(input, found, threads, result);
+void measure_damage(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
+                    int threads, DamageMap& result) {
+  fill_maps(input, segmentation, threads, result);
   result.damages.clear();
   std::vector<SurfaceOffset> offsets;
-  offsets.reserve(found.candidates.size());
-  for (std::size_t k = 0; k < found.candidates.size(); ++k) {
-    const SurfaceOffset offset = offsets.emplace_back(local_surface_offset(found, found.candidates[k]));
-    Damage& damage = result.damages.emplace_back(measure_in_pixels(input, found, k, result));
+  offsets.reserve(segmentation.candidates.size());
+  for (std::size_t k = 0; k < segmentation.candidates.size(); ++k) {
+    const SurfaceOffset offset =
+        offsets.emplace_back(estimate_surface_offset(segmentation, segmentation.candidates[k]));
+    Damage& damage = result.damages.emplace_back(measure_in_pixels(input, segmentation, k, result));
     const auto [u, v] = damage.deepest_px;
-    const double own = input.sigma.empty() ? result.noise_px : input.sigma(u, v);
-    const double sigma = std::isfinite(own) ? own : result.noise_px;
+    const double sigma_at_deepest = input.sigma.empty() ? result.noise_px : input.sigma(u, v);
+    const double sigma = std::isfinite(sigma_at_deepest) ? sigma_at_deepest : result.noise_px;
     damage.max_depth_px.value += sign_of(damage.kind) * offset.value;
     damage.max_depth_px.std_error = std::hypot(sigma, offset.std_error);
   }

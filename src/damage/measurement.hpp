@@ -8,17 +8,18 @@
 
 namespace roadstereo {
 
-/// What segmentation has found, in cells.
+/// Result of the segmentation, in cells.
 struct Segmentation {
   const Cells& cells;
   const RoadSurface& surface;
   const Image<std::uint8_t>& road;
-  const DepthCells& relief;
+  const DepthCells& depth_cells;
   std::vector<Candidate> candidates;
 };
 
-/// Paints the regions into maps of full size and measures each of them. `result.metric` says whether in metres.
-void measure_damage(const DamageInput& input, const DamageOptions& options, const Segmentation& found, int threads,
-                    DamageMap& result);
+/// Fill the maps of `result` at full resolution and measure every candidate, in metres if `result.metric` is set.
+/// Candidates that are not deep enough are removed; the others are numbered by decreasing depth.
+void measure_damage(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
+                    int threads, DamageMap& result);
 
 }  // namespace roadstereo

@@ -10,11 +10,12 @@ namespace {
 
 using Point = std::array<double, 2>;
 
-double turn(const Point& a, const Point& b, const Point& c) {
+/// Cross product of b − a and c − a: positive for a counterclockwise turn.
+double cross(const Point& a, const Point& b, const Point& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// Andrew's monotone chain: the corners against the clock, the first not repeated.
+/// Andrew's monotone chain. Corners are counterclockwise; the first is not repeated.
 std::vector<Point> convex_hull(std::vector<Point> points) {
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -24,7 +25,7 @@ std::vector<Point> convex_hull(std::vector<Point> points) {
   const auto add_chain = [&hull](auto first, auto last) {
     const std::size_t start = hull.size();
     for (auto point = first; point != last; ++point) {
-      while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), *point) <= 0) hull.pop_back();
+      while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), *point) <= 0) hull.pop_back();
       hull.push_back(*point);
     }
     hull.pop_back();
@@ -34,24 +35,25 @@ std::vector<Point> convex_hull(std::vector<Point> points) {
   return hull;
 }
 
-/// Sides of the rectangle along the direction (c, s).
+/// Sides of the bounding rectangle along and across the direction (c, s).
 std::array<double, 2> sides_along(const std::vector<Point>& hull, double c, double s) {
-  double low_along = std::numeric_limits<double>::infinity();
-  double high_along = -low_along;
-  double low_across = low_along;
-  double high_across = -low_along;
+  double min_along = std::numeric_limits<double>::infinity();
+  double max_along = -min_along;
+  double min_across = min_along;
+  double max_across = -min_along;
   for (const Point& point : hull) {
     const double along = c * point[0] + s * point[1];
     const double across = c * point[1] - s * point[0];
-    low_along = std::min(low_along, along);
-    high_along = std::max(high_along, along);
-    low_across = std::min(low_across, across);
-    high_across = std::max(high_across, across);
+    min_along = std::min(min_along, along);
+    max_along = std::max(max_along, along);
+    min_across = std::min(min_across, across);
+    max_across = std::max(max_across, across);
   }
-  return {high_along - low_along, high_across - low_across};
+  return {max_along - min_along, max_across - min_across};
 }
 
-double half_turn(double angle) {
+/// Add or subtract π once towards −π/2 … π/2.
+double wrap_half_turn(double angle) {
   if (angle > std::numbers::pi / 2) return angle - std::numbers::pi;
   if (angle <= -std::numbers::pi / 2) return angle + std::numbers::pi;
   return angle;
@@ -62,16 +64,16 @@ double half_turn(double angle) {
 OrientedBox oriented_box(std::vector<Point> points) {
   const std::vector<Point> hull = convex_hull(std::move(points));
   OrientedBox best;
-  double least_area = std::numeric_limits<double>::infinity();
+  double min_area = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; hull.size() > 1 && k < hull.size(); ++k) {
     const Point& from = hull[k];
     const Point& to = hull[(k + 1) % hull.size()];
     const double angle = std::atan2(to[1] - from[1], to[0] - from[0]);
     const auto [along, across] = sides_along(hull, std::cos(angle), std::sin(angle));
-    if (along * across >= least_area) continue;
-    least_area = along * across;
+    if (along * across >= min_area) continue;
+    min_area = along * across;
     best = {std::max(along, across), std::min(along, across),
-            half_turn(half_turn(along >= across ? angle : angle + std::numbers::pi / 2))};
+            wrap_half_turn(wrap_half_turn(along >= across ? angle : angle + std::numbers::pi / 2))};
   }
   return best;
 }

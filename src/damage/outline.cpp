@@ -7,28 +7,28 @@
 
 #include "core/median.hpp"
 #include "damage/contours.hpp"
-#include "damage/grow.hpp"
+#include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
 
 namespace roadstereo {
 namespace {
 
-/// Mean slope along the contour against that of a cone of its opening and of depth `floor`.
-double steepness_of(const Contour& contour, float floor) {
+/// Mean slope on the contour relative to that of a cone of the same area and of depth `floor`.
+double steepness_of(const ContourStatistics& contour, float floor) {
   return contour.slope * std::sqrt(contour.area / std::numbers::pi) / floor;
 }
 
-/// As far around the seeds as a contour is looked for.
-Box box_around(const DepthField& field, const ConnectedRegion& seeds) {
+/// Box in which contours around the seeds are measured.
+CellBox search_box(const DepthField& field, const ConnectedComponent& seeds) {
   const int size = std::max(seeds.box.columns(), seeds.box.rows());
   return seeds.box.grown(size + 16, field.depth.width(), field.depth.height());
 }
 
-/// Median depth of the cells between two distances from a region; 0 where none is known.
+/// Median depth of the allowed cells between two distances from a region; 0 if there is none.
 float median_around(const DepthField& field, const BoxMask& region, int near, int far) {
-  const Box around = region.box().grown(far, field.depth.width(), field.depth.height());
-  const BoxMask inner = grow(region, near, around);
-  const BoxMask outer = grow(region, far, around);
+  const CellBox around = region.box().grown(far, field.depth.width(), field.depth.height());
+  const BoxMask inner = dilate(region, near, around);
+  const BoxMask outer = dilate(region, far, around);
   std::vector<float> depths;
   for (int j = around.first_row; j <= around.last_row; ++j) {
     for (int i = around.first_column; i <= around.last_column; ++i) {
@@ -38,98 +38,100 @@ float median_around(const DepthField& field, const BoxMask& region, int near, in
   return depths.empty() ? 0 : take_median(depths);
 }
 
-/// Adds the neighbours that are deeper than `lowest`, `steps` times.
-void grow_over(const DepthField& field, float lowest, int steps, BoxMask& region) {
+/// Add the allowed neighbours that are deeper than `min_depth`, `steps` times.
+void grow_deeper(const DepthField& field, float min_depth, int steps, BoxMask& region) {
   const int columns = field.depth.width();
   const int rows = field.depth.height();
-  std::vector<CellIndex> rim = contour_cells(region, columns, rows);
-  region = region.within(region.box().grown(steps, columns, rows));
+  std::vector<CellIndex> front = contour_cells(region, columns, rows);
+  region = region.cropped(region.box().grown(steps, columns, rows));
   std::vector<CellIndex> next;
-  for (int k = 0; k < steps && !rim.empty(); ++k) {
+  for (int k = 0; k < steps && !front.empty(); ++k) {
     next.clear();
-    for (const CellIndex cell : rim) {
-      for_neighbours(cell.column, cell.row, columns, rows, [&](int i, int j) {
-        if (region(i, j) || field.allowed(i, j) == 0 || field.depth(i, j) <= lowest) return;
+    for (const CellIndex cell : front) {
+      for_each_neighbour(cell.column, cell.row, columns, rows, [&](int i, int j) {
+        if (region(i, j) || field.allowed(i, j) == 0 || field.depth(i, j) <= min_depth) return;
         region.set(i, j);
         next.push_back({i, j});
       });
     }
-    rim.swap(next);
+    front.swap(next);
   }
 }
 
 }  // namespace
 
-float floor_depth(const DepthField& field, const ConnectedRegion& seeds) {
+float floor_depth(const DepthField& field, const ConnectedComponent& seeds) {
   std::vector<float> depths;
   depths.reserve(seeds.size);
   for (const CellRun& run : seeds.runs) {
     const float* const row = field.depth.row(run.row);
     depths.insert(depths.end(), row + run.first, row + run.last + 1);
   }
-  const auto at = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() * 3 / 4);
-  std::nth_element(depths.begin(), at, depths.end());
-  return *at;
+  const auto rank = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() * 3 / 4);
+  std::nth_element(depths.begin(), rank, depths.end());
+  return *rank;
 }
 
-BoxMask flood(const DepthField& field, const ConnectedRegion& seeds, float level) {
+BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, float level) {
   const int columns = field.depth.width();
   const int rows = field.depth.height();
-  Box box;
+  CellBox box;
   std::vector<CellIndex> cells;
-  const auto take = [&](int i, int j) {
-    if (field.reached(i, j) != 0 || field.allowed(i, j) == 0 || field.depth(i, j) <= level) return;
-    field.reached(i, j) = 255;
+  const auto visit = [&](int i, int j) {
+    if (field.visited(i, j) != 0 || field.allowed(i, j) == 0 || field.depth(i, j) <= level) return;
+    field.visited(i, j) = 255;
     box.add(i, j);
     cells.push_back({i, j});
   };
   for (const CellRun& run : seeds.runs) {
-    for (int i = run.first; i <= run.last; ++i) take(i, run.row);
+    for (int i = run.first; i <= run.last; ++i) visit(i, run.row);
   }
   std::size_t next = 0;
   while (next < cells.size()) {
     const CellIndex cell = cells[next++];
-    for_neighbours(cell.column, cell.row, columns, rows, take);
+    for_each_neighbour(cell.column, cell.row, columns, rows, visit);
   }
   BoxMask region(box);
   for (const CellIndex& cell : cells) {
     region.set(cell.column, cell.row);
-    field.reached(cell.column, cell.row) = 0;
+    field.visited(cell.column, cell.row) = 0;
   }
   return region;
 }
 
-Outline find_outline(const DepthField& field, const ConnectedRegion& seeds, float floor, float lowest, bool metric) {
-  constexpr double cones = 3;            // a paraboloid's rim is twice as steep as the cone
-  constexpr double share_of_best = 0.9;  // where nothing is that steep
-  constexpr float highest_share = 0.9F;
-  constexpr float halfway = 0.6F;
-  const float highest = std::max(lowest, highest_share * floor);
-  std::array<float, contour_levels> level{};
-  for (std::size_t k = 0; k < contour_levels; ++k) {
-    level[k] = lowest + (highest - lowest) * static_cast<float>(k) / (contour_levels - 1);
+Outline find_outline(const DepthField& field, const ConnectedComponent& seeds, float floor, float min_level,
+                     bool metric) {
+  constexpr double wall_steepness = 3;  // of a wall; the rim of a paraboloid has 2
+  constexpr double min_share = 0.9;     // of the maximum steepness, if that is below wall_steepness
+  constexpr float max_level_share = 0.9F;
+  constexpr float min_non_metric_share = 0.6F;
+  const float max_level = std::max(min_level, max_level_share * floor);
+  std::array<float, contour_level_count> level{};
+  for (std::size_t k = 0; k < contour_level_count; ++k) {
+    level[k] = min_level + (max_level - min_level) * static_cast<float>(k) / (contour_level_count - 1);
   }
-  const auto contours = contours_around(field, seeds, level, box_around(field, seeds));
-  std::array<double, contour_levels> steepness{};
-  for (std::size_t k = 0; k < contour_levels; ++k) steepness[k] = steepness_of(contours[k], floor);
+  const auto contours = measure_contours(field, seeds, level, search_box(field, seeds));
+  std::array<double, contour_level_count> steepness{};
+  for (std::size_t k = 0; k < contour_level_count; ++k) steepness[k] = steepness_of(contours[k], floor);
   auto k = static_cast<std::size_t>(std::max_element(steepness.begin(), steepness.end()) - steepness.begin());
-  const double enough = std::min(cones, share_of_best * steepness[k]);
-  const double best = steepness[k];
-  while (k > 0 && steepness[k - 1] >= enough) --k;
-  return {metric ? level[k] : std::max(level[k], halfway * floor), best};
+  const double max_steepness = steepness[k];
+  const double min_steepness = std::min(wall_steepness, min_share * max_steepness);
+  while (k > 0 && steepness[k - 1] >= min_steepness) --k;
+  return {metric ? level[k] : std::max(level[k], min_non_metric_share * floor), max_steepness};
 }
 
-void grow_to_foot(const DepthField& field, float level, float least, BoxMask& region) {
-  constexpr double beyond = 1.5;         // a foot is round
-  constexpr float above_hollow = 0.15F;  // of the depth at the outline, over what lies around
-  const Contour contour = contour_of(field, region);
+void grow_to_wall_foot(const DepthField& field, float level, float min_depth, BoxMask& region) {
+  constexpr double rounding = 1.5;   // the wall flattens towards its foot
+  constexpr float min_rise = 0.15F;  // above the surroundings, of the depth at the outline
+  const ContourStatistics contour = measure_contour(field, region);
   if (contour.slope <= 0) return;
   const double radius = std::sqrt(contour.area / std::numbers::pi);
+  // Cells in which the extrapolated wall rises by `drop`.
   const auto run = [&](float drop) { return static_cast<int>(std::ceil(std::min(drop / contour.slope, radius))); };
-  const int reach = std::max(1, run(level));
-  const float hollow = std::clamp(median_around(field, region, reach, 2 * reach + 1), 0.0F, level);
-  const int steps = static_cast<int>(std::ceil(beyond * run(level - hollow)));
-  grow_over(field, std::max(least, hollow + above_hollow * (level - hollow)), steps, region);
+  const int full_run = std::max(1, run(level));
+  const float hollow = std::clamp(median_around(field, region, full_run, 2 * full_run + 1), 0.0F, level);
+  const int steps = static_cast<int>(std::ceil(rounding * run(level - hollow)));
+  grow_deeper(field, std::max(min_depth, hollow + min_rise * (level - hollow)), steps, region);
 }
 
 }  // namespace roadstereo

@@ -1,38 +1,42 @@
 #pragma once
 
 #include "damage/box_mask.hpp"
-#include "damage/connected_regions.hpp"
+#include "damage/connected_components.hpp"
 
 namespace roadstereo {
 
-/// What an outline is drawn in: depth above 0 inside the damage, cells that may not be entered are 0 in `allowed`.
+/// Field in which outlines are searched. All images have one size.
 struct DepthField {
-  const Image<float>& depth;
-  const Image<std::uint8_t>& allowed;
-  Image<std::uint8_t>& reached;  ///< scratch of the same size, all 0 between two floods
+  const Image<float>& depth;           ///< pixels of ℓ', positive inside the kind of damage that is searched
+  const Image<std::uint8_t>& allowed;  ///< 0: the cell cannot belong to a damage
+  Image<std::uint8_t>& visited;        ///< scratch; all 0 between calls
 };
 
-/// The cells that hang together with `seeds` and lie deeper than `level`.
-BoxMask flood(const DepthField& field, const ConnectedRegion& seeds, float level);
+/// Flood fill: the component of allowed cells deeper than `level` that contains `seeds`.
+BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, float level);
 
-/// Depth that a quarter of the seeds exceed: the floor, whatever single cells say.
-float floor_depth(const DepthField& field, const ConnectedRegion& seeds);
+/// Depth of the floor: 75th percentile of the depths of the seeds, robust against single outliers.
+float floor_depth(const DepthField& field, const ConnectedComponent& seeds);
 
-/// Where a damage begins.
+/// Outline of a damage.
 struct Outline {
-  float level = 0;  ///< depth, pixels of ℓ'
-  double steepness =
-      0;  ///< of its wall where it is steepest: 1 is a cone of the same opening and depth, 2 the rim of a bowl
+  float level = 0;  ///< depth at the outline, pixels of ℓ'
+  /// Maximum over the levels of the mean slope on the contour, relative to that of a cone of the same area and depth: 1
+  /// for a cone, 2 for a paraboloid.
+  double steepness = 0;
 };
 
-/// A wide hollow around a pothole belongs to the road's own shape, and the wall to the pothole: of the contours around
-/// `seeds`, from the steepest outwards, the last one along which the mean slope is still three times that of a cone
-/// with the same opening and depth `floor`. Never below `lowest`. Where nothing says how deep a hollow really is
-/// (`metric` is false), no higher than 0.6 of the depth: halfway up the wall.
-Outline find_outline(const DepthField& field, const ConnectedRegion& seeds, float floor, float lowest, bool metric);
+/// Select the level of the outline from the slopes of the contours around `seeds` in the component tree. A wide shallow
+/// hollow around a pothole belongs to the shape of the road; the wall belongs to the pothole. Starting at the steepest
+/// contour, the level descends as long as the mean slope is at least three times that of a cone of the same area and of
+/// depth `floor`, or 0.9 of the maximum if that is less. It does not fall below `min_level`. If `metric` is false, the
+/// depth of a hollow is not known in metres; the level is then at least 0.6 · `floor`, about halfway up the wall.
+Outline find_outline(const DepthField& field, const ConnectedComponent& seeds, float floor, float min_level,
+                     bool metric);
 
-/// Grows a region to the foot of its wall: over cells that are deeper than what lies around it, no farther than the
-/// wall's own slope, continued, reaches. `least` is the depth that noise makes.
-void grow_to_foot(const DepthField& field, float level, float least, BoxMask& region);
+/// Grow a region to the foot of its wall: over allowed cells that are deeper than the surroundings and than
+/// `min_depth`, at most as far as the wall, extrapolated with its mean slope, takes to reach the depth of the
+/// surroundings.
+void grow_to_wall_foot(const DepthField& field, float level, float min_depth, BoxMask& region);
 
 }  // namespace roadstereo

@@ -11,11 +11,11 @@ namespace roadstereo {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double farthest_m = 1000;
+constexpr double max_distance_m = 1000;  // along Z
 constexpr double right_angle = std::numbers::pi / 2;
 constexpr double to_degrees = 180 / std::numbers::pi;
 
-/// The pixels that one disparity rests on: the ellipse of aggregation and the blocks around it.
+/// Area of the support window of a disparity, pixels: the ellipse of the aggregation widened by the block.
 double window_pixels(const MatcherOptions& matcher) {
   const double radius = matcher.aggregation_radius;
   const double columns = 2 * (radius + matcher.block_radius) + 1;
@@ -42,14 +42,14 @@ ResolutionLimits::ResolutionLimits(const StereoCalibration& calibration, const C
     : calibration_(calibration), pose_(pose), options_(options) {
   pose.validate();
   options.validate();
-  if (calibration.width < 1 || calibration.height < 1) fail("the calibration says no image size; one is needed");
+  if (calibration.width < 1 || calibration.height < 1) fail("the calibration has no image size; it must have one");
   calibration.validate(calibration.width, calibration.height, "the calibration");
-  const double least_slant = pose.height_m / farthest_m;
-  if (slant(last_row()) < least_slant) {
+  const double min_slant = pose.height_m / max_distance_m;
+  if (slant(last_row()) < min_slant) {
     fail("the road is not in view: the camera looks ", pose.pitch_rad * to_degrees,
-         "° below the horizon, and the last row of the image shows no road within ", farthest_m, " m");
+         "° below the horizon; the last row of the image must show the road within ", max_distance_m, " m");
   }
-  while (first_row_ < last_row() && slant(first_row_) < least_slant) first_row_ += 1;
+  while (first_row_ < last_row() && slant(first_row_) < min_slant) first_row_ += 1;
 }
 
 double ResolutionLimits::last_row() const {
@@ -65,8 +65,8 @@ double ResolutionLimits::road_disparity(double v) const {
 }
 
 double ResolutionLimits::depth_m(double v, double change_px) const {
-  const double left = road_disparity(v) - change_px;
-  return left > 0 ? pose_.height_m * change_px / left : infinite;
+  const double lower = road_disparity(v) - change_px;
+  return lower > 0 ? pose_.height_m * change_px / lower : infinite;
 }
 
 RowResolution ResolutionLimits::at_row(double v) const {
@@ -81,10 +81,11 @@ RowResolution ResolutionLimits::at_row(double v) const {
   row.step_m = depth_m(v, 1);
   row.std_error_m = pose_.height_m * options_.sigma_px / road_disparity(v);
   row.resolvable_depth_m = depth_m(v, options_.threshold_sigma * options_.sigma_px);
-  row.across_m = z / f;
-  row.along_m = z * z / (pose_.height_m * f);
-  row.swath_m = std::clamp(calibration_.width - row.disparity_px, 0.0, double(calibration_.width)) * row.across_m;
-  row.resolvable_area_m2 = std::max(options_.min_area_m2, window_pixels(options_.matcher) * row.across_m * row.along_m);
+  row.gsd_across_m = z / f;
+  row.gsd_along_m = z * z / (pose_.height_m * f);
+  row.swath_m = std::clamp(calibration_.width - row.disparity_px, 0.0, double(calibration_.width)) * row.gsd_across_m;
+  row.resolvable_area_m2 =
+      std::max(options_.min_area_m2, window_pixels(options_.matcher) * row.gsd_across_m * row.gsd_along_m);
   return row;
 }
 
@@ -98,19 +99,20 @@ std::vector<RowResolution> ResolutionLimits::rows(int count) const {
 
 std::optional<RowResolution> ResolutionLimits::farthest(double depth_m) const {
   const double change = options_.threshold_sigma * options_.sigma_px;
-  const auto is_told_apart = [&](double v) { return this->depth_m(v, change) <= depth_m; };
-  double near = last_row(), far = first_row_;  // disparities fall from the last row to the first, if they change at all
-  if (!is_told_apart(near)) return std::nullopt;
-  if (is_told_apart(far)) return at_row(far);
-  constexpr double close_px = 0.01;
-  while (near - far > close_px) {
+  const auto is_resolved = [&](double v) { return this->depth_m(v, change) <= depth_m; };
+  // Bisection: disparities do not increase from the last row to the first.
+  double near = last_row(), far = first_row_;
+  if (!is_resolved(near)) return std::nullopt;
+  if (is_resolved(far)) return at_row(far);
+  constexpr double tolerance_px = 0.01;
+  while (near - far > tolerance_px) {
     const double middle = (near + far) / 2;
-    (is_told_apart(middle) ? near : far) = middle;
+    (is_resolved(middle) ? near : far) = middle;
   }
   return at_row(near);
 }
 
-double ResolutionLimits::highest_camera_m(double depth_m) const {
+double ResolutionLimits::max_camera_height_m(double depth_m) const {
   // h·δ / (D − δ) = depth with D = f·b·slant / h: h² / depth + h = f·b·slant / δ
   const double change = options_.threshold_sigma * options_.sigma_px;
   const double right =

@@ -3,49 +3,50 @@
 #include <algorithm>
 #include <cmath>
 
-#include "damage/connected_regions.hpp"
-#include "damage/grow.hpp"
+#include "damage/connected_components.hpp"
+#include "damage/morphology.hpp"
 
 namespace roadstereo {
 namespace {
 
-Image<std::uint8_t> near_surface(const Cells& cells, const RoadSurface& surface) {
-  constexpr double reach = 3;  // standard deviations of the road
-  const auto most = static_cast<float>(reach * surface.noise);
+/// Mask of the cells near the surface.
+Image<std::uint8_t> cells_near_surface(const Cells& cells, const RoadSurface& surface) {
+  constexpr double max_sigmas = 3;
+  const auto max_distance = static_cast<float>(max_sigmas * surface.noise);
   const int width = cells.width();
   Image<std::uint8_t> near(width, cells.height());
   for (int j = 0; j < cells.height(); ++j) {
-    const float* const seen = cells.value.row(j);
+    const float* const measured = cells.value.row(j);
     const float* const road = surface.value.row(j);
     std::uint8_t* const row = near.row(j);
-    for (int i = 0; i < width; ++i) row[i] = std::abs(seen[i] - road[i]) <= most ? 255 : 0;
+    for (int i = 0; i < width; ++i) row[i] = std::abs(measured[i] - road[i]) <= max_distance ? 255 : 0;
   }
   return near;
 }
 
-/// The largest part of a mask that hangs together.
-Image<std::uint8_t> largest_part(const Image<std::uint8_t>& mask) {
-  const ConnectedRegions regions(mask);
-  Image<std::uint8_t> part(mask.width(), mask.height(), 0);
-  const auto largest = std::max_element(regions.begin(), regions.end(),
+/// Largest connected component of a mask.
+Image<std::uint8_t> largest_component(const Image<std::uint8_t>& mask) {
+  const ConnectedComponents components(mask);
+  Image<std::uint8_t> result(mask.width(), mask.height(), 0);
+  const auto largest = std::max_element(components.begin(), components.end(),
                                         [](const auto& one, const auto& other) { return one.size < other.size; });
-  if (largest != regions.end()) paint(*largest, 255, part);
-  return part;
+  if (largest != components.end()) fill_component(*largest, 255, result);
+  return result;
 }
 
 }  // namespace
 
 Image<std::uint8_t> find_road_region(const Cells& cells, const RoadSurface& surface) {
-  constexpr int bridge = 2;  // cells; narrower connections are none
-  constexpr std::size_t speck = 30;
-  Image<std::uint8_t> near = near_surface(cells, surface);
-  fill_enclosed(near, speck);
-  const Image<std::uint8_t> region = grow(largest_part(shrink_mask(near, bridge)), bridge + 1);
-  const std::uint8_t* const within = region.row(0);
-  std::uint8_t* const road = near.row(0);
-  const std::size_t count = near.pixels();
-  for (std::size_t k = 0; k < count; ++k) road[k] &= within[k];
-  return near;
+  constexpr int opening_radius = 2;  // cells; connections of up to twice this width are cut
+  constexpr std::size_t max_speck_cells = 30;
+  Image<std::uint8_t> road = cells_near_surface(cells, surface);
+  fill_holes(road, max_speck_cells);
+  const Image<std::uint8_t> region = dilate(largest_component(erode(road, opening_radius)), opening_radius + 1);
+  const std::uint8_t* const inside = region.row(0);
+  std::uint8_t* const row = road.row(0);
+  const std::size_t count = road.pixels();
+  for (std::size_t k = 0; k < count; ++k) row[k] &= inside[k];
+  return road;
 }
 
 }  // namespace roadstereo

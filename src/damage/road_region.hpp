@@ -5,8 +5,9 @@
 
 namespace roadstereo {
 
-/// Cells whose value lies near the surface and that hang together with the largest such part of the picture: the
-/// road, and not the verge or a wall that happens to be as high. 255 inside; what the road encloses is not filled.
+/// Find the road region: cells within 3 standard deviations of the surface that belong to its largest connected
+/// component after a morphological opening. Verges and walls of the same height are separate components. 255 inside;
+/// holes of more than 30 cells, such as damage, stay 0.
 Image<std::uint8_t> find_road_region(const Cells& cells, const RoadSurface& surface);
 
 }  // namespace roadstereo

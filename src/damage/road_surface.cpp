@@ -12,12 +12,13 @@
 namespace roadstereo {
 namespace {
 
-constexpr std::size_t plane_terms = 3;
-constexpr std::size_t quadratic_terms = 6;
-using Terms = Vector<quadratic_terms>;
+/// Terms of the surface, in the order 1, x, y, x², xy, y²; a plane has the first three.
+constexpr std::size_t plane_term_count = 3;
+constexpr std::size_t quadratic_term_count = 6;
+using Coefficients = Vector<quadratic_term_count>;
 using Values = std::vector<double>;
 
-/// Cells that may be road, one element each. `residual` is the value less the fit so far.
+/// Sampled cells, structure of arrays. `residual` is the value minus the current fit.
 struct Samples {
   Values x, y, scale, value, residual;
 
@@ -28,15 +29,16 @@ struct Samples {
   }
 };
 
-/// A regular sample of the cells that may be road. Residuals are against `earlier` where it is given.
-Samples draw_samples(const Cells& cells, const SurfaceCoordinates& coordinates, const Image<std::uint8_t>* region,
+/// Take a regular sample of the valid cells, inside `region` if it is given. Residuals are relative to `earlier` if it
+/// is given. A coarse sample of too few cells is replaced by a fine one. The size is even (see `accumulate`).
+Samples sample_cells(const Cells& cells, const SurfaceCoordinates& coordinates, const Image<std::uint8_t>* region,
                      const RoadSurface* earlier, Sampling sampling) {
-  constexpr std::size_t least_samples = 32;
-  const int most_samples = sampling == Sampling::rough ? 1'500 : 6'000;
-  const double share = static_cast<double>(cells.value.pixels()) / most_samples;
-  const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(share))));
-  const int most_columns = cells.width() / step + 1, most_rows = cells.height() / step + 1;
-  Samples samples(static_cast<std::size_t>(most_columns) * static_cast<std::size_t>(most_rows));
+  constexpr std::size_t min_samples = 32;
+  const int max_samples = sampling == Sampling::coarse ? 1'500 : 6'000;
+  const double cells_per_sample = static_cast<double>(cells.value.pixels()) / max_samples;
+  const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(cells_per_sample))));
+  const int max_columns = cells.width() / step + 1, max_rows = cells.height() / step + 1;
+  Samples samples(static_cast<std::size_t>(max_columns) * static_cast<std::size_t>(max_rows));
   std::size_t count = 0;
   for (int j = step / 2; j < cells.height(); j += step) {
     for (int i = step / 2; i < cells.width(); i += step) {
@@ -50,15 +52,15 @@ Samples draw_samples(const Cells& cells, const SurfaceCoordinates& coordinates, 
       ++count;
     }
   }
-  if (count < least_samples) {
-    if (sampling == Sampling::rough) return draw_samples(cells, coordinates, region, earlier, Sampling::fine);
-    fail("the transformed map has ", count, " valid places on the road; at least ", least_samples, " are needed");
+  if (count < min_samples) {
+    if (sampling == Sampling::coarse) return sample_cells(cells, coordinates, region, earlier, Sampling::fine);
+    fail("the transformed map has ", count, " valid samples on the road; it must have at least ", min_samples);
   }
-  samples.resize(count - count % 2);  // they are added up in twos
+  samples.resize(count - count % 2);
   return samples;
 }
 
-/// Middle and half-width of the shortest interval that holds a third of the values: the road, whatever else is seen.
+/// Shortest interval that contains a third of the values: a robust start, since the other values may be outliers.
 struct Shorth {
   double middle = 0;
   double half_width = 0;
@@ -66,127 +68,139 @@ struct Shorth {
 
 Shorth shorth_of(Values values) {
   std::sort(values.begin(), values.end());
-  const std::size_t held = values.size() / 3;
+  const std::size_t count = values.size() / 3;
   std::size_t best = 0;
-  for (std::size_t i = 0; i + held < values.size(); ++i) {
-    if (values[i + held] - values[i] < values[best + held] - values[best]) best = i;
+  for (std::size_t i = 0; i + count < values.size(); ++i) {
+    if (values[i + count] - values[i] < values[best + count] - values[best]) best = i;
   }
-  return {0.5 * (values[best] + values[best + held]), 0.5 * (values[best + held] - values[best])};
+  return {0.5 * (values[best] + values[best + count]), 0.5 * (values[best + count] - values[best])};
 }
 
-/// Robust standard deviation of the residuals that are not far out.
-double spread_of(const Values& residuals, double reach) {
-  std::vector<float> sizes;
-  sizes.reserve(residuals.size());
+/// Standard deviation from the MAD of the residuals of magnitude up to `max_residual`; 0 if there are none.
+double robust_sigma(const Values& residuals, double max_residual) {
+  std::vector<float> magnitudes;
+  magnitudes.reserve(residuals.size());
   for (const double residual : residuals) {
-    if (std::abs(residual) <= reach) sizes.push_back(static_cast<float>(std::abs(residual)));
+    if (std::abs(residual) <= max_residual) magnitudes.push_back(static_cast<float>(std::abs(residual)));
   }
-  return sizes.empty() ? 0 : gaussian_mad * static_cast<double>(take_median(sizes));
+  return magnitudes.empty() ? 0 : gaussian_mad * static_cast<double>(take_median(magnitudes));
 }
 
-/// The normal equations of a weighted fit.
-struct Equations {
-  Matrix<quadratic_terms> normal{};
-  Terms right{};
+/// Normal equations of a weighted fit.
+struct NormalEquations {
+  Matrix<quadratic_term_count> matrix{};
+  Coefficients right{};
 };
 
-/// The first `terms` terms of the fit; the others are 0, and so are those that the samples do not tell apart from the
-/// ones before.
-template <std::size_t terms>
-Terms solve(const Equations& equations) {
-  constexpr double smallest = 1e-13;  // some rounding errors
-  Matrix<terms> factor{};
-  Vector<terms> right{};
-  for (std::size_t i = 0; i < terms; ++i) {
+/// Solve for the first `count` terms; the others are 0. Terms that depend linearly on earlier ones are 0, too.
+template <std::size_t count>
+Coefficients solve(const NormalEquations& equations) {
+  constexpr double rank_tolerance = 1e-13;  // relative to the diagonal: some hundred rounding errors
+  Matrix<count> factor{};
+  Vector<count> right{};
+  for (std::size_t i = 0; i < count; ++i) {
     right[i] = equations.right[i];
-    for (std::size_t j = 0; j <= i; ++j) factor[i][j] = equations.normal[i][j];
+    for (std::size_t j = 0; j <= i; ++j) factor[i][j] = equations.matrix[i][j];
   }
-  factor_in_place(factor, smallest);
-  const Vector<terms> solved = solve_factored(factor, right);
-  Terms solution{};
+  factor_in_place(factor, rank_tolerance);
+  const Vector<count> solved = solve_factored(factor, right);
+  Coefficients solution{};
   std::copy(solved.begin(), solved.end(), solution.begin());
   return solution;
 }
 
-/// Two samples side by side.
-struct Two {
+/// Two samples that are processed together, as vectors of two doubles.
+struct SamplePair {
   double first = 0, second = 0;
 
   double sum() const { return first + second; }
-  Two& operator+=(Two other) { return *this = {first + other.first, second + other.second}; }
+  SamplePair& operator+=(SamplePair other) { return *this = {first + other.first, second + other.second}; }
 };
-Two operator*(Two a, Two b) {
+SamplePair operator*(SamplePair a, SamplePair b) {
   return {a.first * b.first, a.second * b.second};
 }
 
-/// Roots of Tukey's weights of residuals that are given as shares of the reach.
-Two roots_of_weights(Two shares) {
-  const Two squares = shares * shares;
+/// Square roots of the Tukey weights (1 − r²)² of residuals r, given relative to the truncation.
+SamplePair roots_of_weights(SamplePair residuals) {
+  const SamplePair squares = residuals * residuals;
   return {std::max(0.0, 1 - squares.first), std::max(0.0, 1 - squares.second)};
 }
 
-/// Sums over the samples with Tukey's weights. The terms are scale · (1, x, y, x², xy, y²), so that the normal matrix
-/// holds no more than the sums of weight · scale² · x^a·y^b for a + b ≤ 4.
-Equations add_up(const Samples& samples, double reach) {
-  constexpr std::size_t powers = 15;
-  std::array<Two, powers> left{};
-  std::array<Two, quadratic_terms> right{};
-  const Two per_reach{1 / reach, 1 / reach};
+/// Accumulate the normal equations with Tukey weights truncated at `max_residual`. The plain loop is
+///
+///     for each sample:
+///       w = tukey_weight(residual / max_residual)
+///       t = scale · (1, x, y, x², xy, y²)
+///       matrix += w · t · tᵀ
+///       right  += w · t · value
+///
+/// The 36 elements of t·tᵀ are scale² times only 15 different monomials x^a·y^b, a + b ≤ 4, so their moments are
+/// accumulated instead, for two samples at a time, and the matrix is assembled at the end. Moments 0 … 5 belong to the
+/// terms, 6 … 14 to x³, x²y, xy², y³, x⁴, x³y, x²y², xy³, y⁴.
+NormalEquations accumulate(const Samples& samples, double max_residual) {
+  constexpr std::size_t moment_count = 15;
+  std::array<SamplePair, moment_count> moments{};
+  std::array<SamplePair, quadratic_term_count> right{};
+  const SamplePair inverse_max{1 / max_residual, 1 / max_residual};
   for (std::size_t k = 0; k < samples.size(); k += 2) {
-    const auto two = [k](const Values& values) { return Two{values[k], values[k + 1]}; };
-    const Two x = two(samples.x), y = two(samples.y), scale = two(samples.scale);
-    const Two root = roots_of_weights(two(samples.residual) * per_reach);
-    const Two once = root * root * scale, twice = once * scale, seen = once * two(samples.value);
-    const Two xx = x * x, xy = x * y, yy = y * y;
-    const std::array<Two, quadratic_terms> basis{Two{1, 1}, x, y, xx, xy, yy};
+    const auto pair = [k](const Values& values) { return SamplePair{values[k], values[k + 1]}; };
+    const SamplePair x = pair(samples.x), y = pair(samples.y), scale = pair(samples.scale);
+    const SamplePair root = roots_of_weights(pair(samples.residual) * inverse_max);
+    const SamplePair ws = root * root * scale, wss = ws * scale, wsv = ws * pair(samples.value);
+    const SamplePair xx = x * x, xy = x * y, yy = y * y;
+    const std::array<SamplePair, quadratic_term_count> basis{SamplePair{1, 1}, x, y, xx, xy, yy};
     for (std::size_t i = 0; i < basis.size(); ++i) {
-      left[i] += twice * basis[i];
-      right[i] += seen * basis[i];
+      moments[i] += wss * basis[i];
+      right[i] += wsv * basis[i];
     }
-    const Two cube = twice * xx, mixed = twice * xy, other = twice * yy;
-    const std::array<Two, powers - quadratic_terms> higher{cube * x,  cube * y,  other * x,  other * y, cube * xx,
-                                                           cube * xy, cube * yy, mixed * yy, other * yy};
-    for (std::size_t i = 0; i < higher.size(); ++i) left[quadratic_terms + i] += higher[i];
+    const SamplePair wxx = wss * xx, wxy = wss * xy, wyy = wss * yy;
+    const std::array<SamplePair, moment_count - quadratic_term_count> higher{
+        wxx * x, wxx * y, wyy * x, wyy * y, wxx * xx, wxx * xy, wxx * yy, wxy * yy, wyy * yy};
+    for (std::size_t i = 0; i < higher.size(); ++i) moments[quadratic_term_count + i] += higher[i];
   }
-  // Which power of x and y is the product of two terms.
-  constexpr std::array<std::array<std::size_t, quadratic_terms>, quadratic_terms> product{{{0, 1, 2, 3, 4, 5},
-                                                                                           {1, 3, 4, 6, 7, 8},
-                                                                                           {2, 4, 5, 7, 8, 9},
-                                                                                           {3, 6, 7, 10, 11, 12},
-                                                                                           {4, 7, 8, 11, 12, 13},
-                                                                                           {5, 8, 9, 12, 13, 14}}};
-  Equations equations;
-  for (std::size_t i = 0; i < quadratic_terms; ++i) {
+  // Moment of the product of two terms.
+  constexpr std::array<std::array<std::size_t, quadratic_term_count>, quadratic_term_count> moment_of{
+      {{0, 1, 2, 3, 4, 5},
+       {1, 3, 4, 6, 7, 8},
+       {2, 4, 5, 7, 8, 9},
+       {3, 6, 7, 10, 11, 12},
+       {4, 7, 8, 11, 12, 13},
+       {5, 8, 9, 12, 13, 14}}};
+  NormalEquations equations;
+  for (std::size_t i = 0; i < quadratic_term_count; ++i) {
     equations.right[i] = right[i].sum();
-    for (std::size_t j = 0; j < quadratic_terms; ++j) equations.normal[i][j] = left[product[i][j]].sum();
+    for (std::size_t j = 0; j < quadratic_term_count; ++j) equations.matrix[i][j] = moments[moment_of[i][j]].sum();
   }
   return equations;
 }
 
-/// What a solution gives at a place of the road.
-double quadratic(const Terms& c, double x, double y, double scale) {
+/// ℓ' of the surface at (x, y).
+double quadratic(const Coefficients& c, double x, double y, double scale) {
   return scale * (c[0] + x * (c[1] + c[3] * x + c[4] * y) + y * (c[2] + c[5] * y));
 }
 
-/// Steps of the reweighted fit with the first `terms` terms; `spread` and the residuals are brought up to date.
-template <std::size_t terms>
-Terms iterate(Samples& samples, int steps, double& spread) {
-  constexpr double tukey = 4.7;
-  constexpr double widest = 3;  // of the spread, for what counts when it is measured anew
-  Terms solution{};
-  for (int i = 0; i < steps; ++i) {
-    solution = solve<terms>(add_up(samples, tukey * spread));
+/// Iteratively reweighted least squares (IRLS) with the first `count` terms. Updates the residuals and their standard
+/// deviation `sigma`, which at most halves in one iteration.
+template <std::size_t count>
+Coefficients fit_irls(Samples& samples, int iterations, double& sigma) {
+  constexpr double tukey_sigmas = 4.7;  // 95 % efficiency on normal residuals
+  constexpr double max_sigmas = 3;      // of the residuals from which sigma is estimated
+  Coefficients solution{};
+  for (int i = 0; i < iterations; ++i) {
+    solution = solve<count>(accumulate(samples, tukey_sigmas * sigma));
     for (std::size_t k = 0; k < samples.size(); ++k) {
       samples.residual[k] = samples.value[k] - quadratic(solution, samples.x[k], samples.y[k], samples.scale[k]);
     }
-    const double measured = spread_of(samples.residual, widest * spread);
-    spread = std::max(measured, 0.5 * spread);
-    if (measured == 0) break;
+    const double estimate = robust_sigma(samples.residual, max_sigmas * sigma);
+    sigma = std::max(estimate, 0.5 * sigma);
+    if (estimate == 0) break;
   }
   return solution;
 }
 
-RoadSurface evaluate(const Terms& solution, double noise, const Cells& cells, const SurfaceCoordinates& coordinates) {
+/// Evaluate the surface at every cell.
+RoadSurface evaluate(const Coefficients& solution, double noise, const Cells& cells,
+                     const SurfaceCoordinates& coordinates) {
   RoadSurface surface;
   surface.noise = noise;
   surface.value.resize(cells.width(), cells.height());
@@ -203,25 +217,25 @@ RoadSurface evaluate(const Terms& solution, double noise, const Cells& cells, co
 }  // namespace
 
 RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates) {
-  constexpr int plane_steps = 6;
-  constexpr int quadratic_steps = 8;
-  constexpr double least_spread = 1e-3;
-  Samples samples = draw_samples(cells, coordinates, nullptr, nullptr, Sampling::rough);
+  constexpr int plane_iterations = 6;
+  constexpr int quadratic_iterations = 8;
+  constexpr double min_relative_sigma = 1e-3;
+  Samples samples = sample_cells(cells, coordinates, nullptr, nullptr, Sampling::coarse);
   const Shorth start = shorth_of(samples.value);
   for (std::size_t k = 0; k < samples.size(); ++k) samples.residual[k] = samples.value[k] - start.middle;
-  double spread = std::max({start.half_width, least_spread * std::abs(start.middle), 1e-9});
-  iterate<plane_terms>(samples, plane_steps, spread);
-  const Terms solution = iterate<quadratic_terms>(samples, quadratic_steps, spread);
-  return evaluate(solution, spread, cells, coordinates);
+  double sigma = std::max({start.half_width, min_relative_sigma * std::abs(start.middle), 1e-9});
+  fit_irls<plane_term_count>(samples, plane_iterations, sigma);
+  const Coefficients solution = fit_irls<quadratic_term_count>(samples, quadratic_iterations, sigma);
+  return evaluate(solution, sigma, cells, coordinates);
 }
 
 RoadSurface refit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
                                const Image<std::uint8_t>& region, const RoadSurface& earlier, Sampling sampling) {
-  constexpr int steps = 6;
-  Samples samples = draw_samples(cells, coordinates, &region, &earlier, sampling);
-  double spread = std::max(earlier.noise, 1e-9);
-  const Terms solution = iterate<quadratic_terms>(samples, steps, spread);
-  return evaluate(solution, spread, cells, coordinates);
+  constexpr int iterations = 6;
+  Samples samples = sample_cells(cells, coordinates, &region, &earlier, sampling);
+  double sigma = std::max(earlier.noise, 1e-9);
+  const Coefficients solution = fit_irls<quadratic_term_count>(samples, iterations, sigma);
+  return evaluate(solution, sigma, cells, coordinates);
 }
 
 }  // namespace roadstereo

@@ -6,29 +6,30 @@
 
 namespace roadstereo {
 
-/// Where each cell lies on the road, and what one unit of height there does to ℓ'.
+/// Position of each cell on the road, and the change of ℓ' per unit of height there.
 struct SurfaceCoordinates {
-  Image<float> x, y;   ///< metres on the road when calibrated, else shares of the image; NaN where there is no road
-  Image<float> scale;  ///< pixels of ℓ' for a metre of height when calibrated, else 1
+  Image<float> x, y;   ///< metres on the road if calibrated, else −1 … 1 over the image; NaN where there is no road
+  Image<float> scale;  ///< pixels of ℓ' per metre of height if calibrated, else 1; NaN where there is no road
 };
 
-/// From the plane and the calibration when both are there, else from the image alone.
+/// Coordinates from the plane and the calibration if both are given, else from the image.
 SurfaceCoordinates surface_coordinates(const Cells& cells, const DamageInput& input);
 
-/// The undamaged road, a quadratic of the road's coordinates: a plane cannot follow a camber.
+/// Undamaged road: a quadratic in the coordinates of the road, times `scale`. A plane does not fit a camber.
 struct RoadSurface {
   Image<float> value;  ///< ℓ' of the road at each cell, pixels; NaN where there is no road
-  double noise = 0;    ///< standard deviation of the cells around it, pixels, robust
+  double noise = 0;    ///< robust standard deviation of the cells around it, pixels
 };
 
-/// How many cells a fit looks at: the first fits only say where the road is.
-enum class Sampling { rough, fine };
+/// Density of the regular sample that a fit uses: about 1500 or 6000 cells.
+enum class Sampling { coarse, fine };
 
-/// Rough robust fit (Tukey's weights) to the cells near the value that most of them have.
-/// Throws Error when fewer than 32 cells can be used.
+/// Fit the road surface by iteratively reweighted least squares (IRLS) with Tukey weights to a coarse sample, first a
+/// plane, then a quadratic. Starts from the shorth of the values, the shortest interval that contains a third of them.
+/// Throws Error when fewer than 32 samples are valid.
 RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates);
 
-/// The same to the cells of `region` (0 = leave out), from an earlier fit on.
+/// Refit the quadratic by IRLS to the cells where `region` is not 0, starting from an earlier fit. Throws likewise.
 RoadSurface refit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
                                const Image<std::uint8_t>& region, const RoadSurface& earlier, Sampling sampling);
 

@@ -27,12 +27,12 @@ const char* name_of(Severity severity) {
 }
 
 Severity astm_severity(double depth_m, double diameter_m) {
-  constexpr double least_depth_m = 0.013, least_diameter_m = 0.1;
+  constexpr double min_depth_m = 0.013, min_diameter_m = 0.1;
   constexpr std::array<double, 2> depths_m{0.025, 0.050}, diameters_m{0.2, 0.45};
   using enum Severity;
   constexpr std::array<std::array<Severity, 3>, 3> table{
       {{low, low, medium}, {low, medium, high}, {medium, medium, high}}};
-  if (!(depth_m >= least_depth_m) || !(diameter_m >= least_diameter_m)) return minor;
+  if (!(depth_m >= min_depth_m) || !(diameter_m >= min_diameter_m)) return minor;
   const std::size_t row = depth_m > depths_m[1] ? 2 : depth_m > depths_m[0] ? 1 : 0;
   const std::size_t column = diameter_m > diameters_m[1] ? 2 : diameter_m > diameters_m[0] ? 1 : 0;
   return table[row][column];

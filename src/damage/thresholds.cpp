@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "roadstereo/road_plane.hpp"
+#include "roadstereo/ground_plane.hpp"
 
 namespace roadstereo {
 
@@ -17,15 +17,15 @@ Thresholds::Thresholds(const DamageInput& input, const DamageOptions& options, c
       metric_(metric),
       noise_(static_cast<float>(options.threshold_sigma * noise)),
       min_depth_m_(metric ? options.min_depth_m : 0) {
-  if (metric) height_m_ = road_plane(*input.plane, *input.calibration).height_m;
+  if (metric) camera_height_m_ = ground_plane(*input.plane, *input.calibration).height_m;
 }
 
-void Thresholds::depths(int j, float* row) const {
+void Thresholds::min_depths(int j, float* row) const {
   const float* const scale = scale_.row(j);
   const float noise = noise_;
-  const double least = min_depth_m_;
+  const double min_depth_m = min_depth_m_;
   const int width = scale_.width();
-  for (int i = 0; i < width; ++i) row[i] = std::max(noise, static_cast<float>(least * scale[i]));
+  for (int i = 0; i < width; ++i) row[i] = std::max(noise, static_cast<float>(min_depth_m * scale[i]));
 }
 
 float Thresholds::in_pixels(double metres, int i, int j) const {
@@ -33,16 +33,16 @@ float Thresholds::in_pixels(double metres, int i, int j) const {
   return metric_ && !std::isnan(scale) ? static_cast<float>(metres * scale) : std::numeric_limits<float>::infinity();
 }
 
-float Thresholds::least_cells(int i, int j) const {
-  constexpr double least_pixels = 64;  // fewer is less than matching's window
+float Thresholds::min_cells(int i, int j) const {
+  constexpr double min_pixels = 64;  // about the area of the support window of matching
   if (!metric_ || std::isnan(scale_(i, j))) {
     return static_cast<float>(options_.min_area_share * static_cast<double>(cells_.value.pixels()));
   }
   const StereoCalibration& calibration = *input_.calibration;
   const double z = calibration.depth_m(input_.plane->disparity(cells_.middle(i), cells_.middle(j)));
-  const double pixel_m2 = z * z * z / (calibration.focal_px * calibration.focal_px * height_m_);
-  const double cell_share = 1.0 / (cells_.factor * cells_.factor);
-  return static_cast<float>(std::max(options_.min_area_m2 / pixel_m2, least_pixels) * cell_share);
+  const double pixel_m2 = z * z * z / (calibration.focal_px * calibration.focal_px * camera_height_m_);
+  const double cells_per_pixel = 1.0 / (cells_.factor * cells_.factor);
+  return static_cast<float>(std::max(options_.min_area_m2 / pixel_m2, min_pixels) * cells_per_pixel);
 }
 
 }  // namespace roadstereo

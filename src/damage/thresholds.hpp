@@ -5,24 +5,25 @@
 
 namespace roadstereo {
 
-/// What decides which departures from the road are damage, cell by cell: standard errors and shares of the picture, or
-/// metres where they are known and more. Depths in pixels of ℓ'.
+/// Thresholds of the segmentation, per cell. Depths are in pixels of ℓ'. Metric limits apply if the frame is
+/// calibrated.
 class Thresholds {
  public:
-  /// `noise` is that of a cell of the intact road. The coordinates must live as long as this.
+  /// `noise`: standard deviation of a cell of the intact road. All references must outlive this.
   Thresholds(const DamageInput& input, const DamageOptions& options, const Cells& cells,
              const SurfaceCoordinates& coordinates, double noise, bool metric);
 
   bool metric() const { return metric_; }
-  /// Depth that counts.
-  float depth(int i, int j) const { return std::max(noise_, static_cast<float>(min_depth_m_ * scale_(i, j))); }
-  /// The same of a whole row.
-  void depths(int j, float* row) const;
-  /// A depression that is deeper is no damage, and no protrusion that is higher.
-  float deepest(int i, int j) const { return in_pixels(options_.max_depth_m, i, j); }
-  float highest(int i, int j) const { return in_pixels(options_.max_height_m, i, j); }
-  /// Area that counts, cells.
-  float least_cells(int i, int j) const;
+  /// Minimum depth of a core: the larger of threshold_sigma standard deviations and min_depth_m.
+  float min_depth(int i, int j) const { return std::max(noise_, static_cast<float>(min_depth_m_ * scale_(i, j))); }
+  /// Minimum depths of row j.
+  void min_depths(int j, float* row) const;
+  /// Maximum depth of a depression; infinity if it is not metric.
+  float max_depth(int i, int j) const { return in_pixels(options_.max_depth_m, i, j); }
+  /// Maximum height of a protrusion; infinity if it is not metric.
+  float max_height(int i, int j) const { return in_pixels(options_.max_height_m, i, j); }
+  /// Minimum area, cells.
+  float min_cells(int i, int j) const;
 
  private:
   float in_pixels(double metres, int i, int j) const;
@@ -30,11 +31,11 @@ class Thresholds {
   const DamageInput& input_;
   const DamageOptions& options_;
   const Cells& cells_;
-  const Image<float>& scale_;
+  const Image<float>& scale_;  ///< pixels of ℓ' per metre of height
   bool metric_;
-  float noise_;
+  float noise_;  ///< threshold_sigma standard deviations
   double min_depth_m_;
-  double height_m_ = 0;  ///< of the camera
+  double camera_height_m_ = 0;
 };
 
 }  // namespace roadstereo

@@ -9,16 +9,17 @@
 namespace roadstereo {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-template <class A, class B>
-void require_equal_sizes(const A& a, const B& b, const char* name) {
-  if (a.width() == b.width() && a.height() == b.height()) return;
-  fail("the disparity map has ", a.width(), "×", a.height(), " pixels, but the ", name, " has ", b.width(), "×",
-       b.height());
+/// Throws Error naming the sizes unless they are equal.
+template <class View>
+void require_size(const View& view, ImageView<const float> disparity, const char* name) {
+  if (view.width() == disparity.width() && view.height() == disparity.height()) return;
+  fail("the ", name, " has ", view.width(), "×", view.height(), " pixels; it must have ", disparity.width(), "×",
+       disparity.height(), " like the disparity map");
 }
 
-/// Signed errors of the labelled pixels that have a disparity; counts the labelled ones.
+/// Signed errors of the labelled pixels with a disparity. Adds the number of labelled pixels to `labelled`.
 std::vector<double> signed_errors(ImageView<const float> disparity, ImageView<const float> truth,
                                   const std::optional<ImageView<const std::uint8_t>>& mask, std::size_t& labelled) {
   std::vector<double> errors;
@@ -32,6 +33,7 @@ std::vector<double> signed_errors(ImageView<const float> disparity, ImageView<co
   return errors;
 }
 
+/// Median of the magnitudes; the mean of the middle two if their number is even.
 double median_magnitude(std::vector<double> errors) {
   for (double& error : errors) error = std::abs(error);
   const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
@@ -43,28 +45,28 @@ double median_magnitude(std::vector<double> errors) {
 }  // namespace
 
 double DisparityScore::density() const {
-  return truth_pixels == 0 ? 0 : static_cast<double>(given_pixels) / static_cast<double>(truth_pixels);
+  return labelled_pixels == 0 ? 0 : static_cast<double>(valid_pixels) / static_cast<double>(labelled_pixels);
 }
 
 DisparityScore score_disparity(ImageView<const float> disparity, ImageView<const float> truth,
                                const std::optional<ImageView<const std::uint8_t>>& mask,
                                std::span<const double> tolerances_px) {
-  require_equal_sizes(disparity, truth, "truth");
-  if (mask) require_equal_sizes(disparity, *mask, "mask");
+  require_size(truth, disparity, "ground truth");
+  if (mask) require_size(*mask, disparity, "mask");
   DisparityScore score;
-  const std::vector<double> errors = signed_errors(disparity, truth, mask, score.truth_pixels);
-  score.given_pixels = errors.size();
-  const auto given = static_cast<double>(errors.size());
-  const auto labelled = static_cast<double>(score.truth_pixels);
+  const std::vector<double> errors = signed_errors(disparity, truth, mask, score.labelled_pixels);
+  score.valid_pixels = errors.size();
+  const auto valid = static_cast<double>(errors.size());
+  const auto labelled = static_cast<double>(score.labelled_pixels);
   for (const double tolerance : tolerances_px) {
-    if (!(tolerance >= 0)) fail("a disparity error tolerance is ", tolerance, " px; it must not be negative");
+    if (!(tolerance >= 0)) fail("the tolerance is ", tolerance, " px; it must be at least 0");
     const auto bad = static_cast<double>(
         std::count_if(errors.begin(), errors.end(), [&](double error) { return std::abs(error) > tolerance; }));
-    score.bad_share.push_back(given > 0 ? bad / given : nothing);
-    score.bad_or_missing_share.push_back(labelled > 0 ? (bad + labelled - given) / labelled : nothing);
+    score.bad_share.push_back(valid > 0 ? bad / valid : nan);
+    score.bad_or_missing_share.push_back(labelled > 0 ? (bad + labelled - valid) / labelled : nan);
   }
   if (errors.empty()) {
-    score.rms_px = score.mean_px = score.median_px = nothing;
+    score.rms_px = score.mean_px = score.median_px = nan;
     return score;
   }
   double sum = 0, squares = 0;
@@ -72,8 +74,8 @@ DisparityScore score_disparity(ImageView<const float> disparity, ImageView<const
     sum += error;
     squares += error * error;
   }
-  score.mean_px = sum / given;
-  score.rms_px = std::sqrt(squares / given);
+  score.mean_px = sum / valid;
+  score.rms_px = std::sqrt(squares / valid);
   score.median_px = median_magnitude(errors);
   return score;
 }

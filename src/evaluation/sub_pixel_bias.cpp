@@ -9,7 +9,7 @@
 namespace roadstereo {
 
 SubPixelBias::SubPixelBias(int bins) {
-  if (bins < 2) fail("the phase of the disparities is split into ", bins, " bins; it takes at least 2");
+  if (bins < 2) fail("the number of phase bins is ", bins, "; it must be at least 2");
   bins_.resize(static_cast<std::size_t>(bins));
 }
 
@@ -19,16 +19,17 @@ void SubPixelBias::add(ImageView<const float> disparity, ImageView<const float> 
     return image.width() == truth.width() && image.height() == truth.height();
   };
   if (!has_size_of_truth(disparity) || !has_size_of_truth(mask)) {
-    fail("map, truth (", truth.width(), "×", truth.height(), ") and mask differ in size");
+    fail("the ground truth has ", truth.width(), "×", truth.height(),
+         " pixels; the disparity map and the mask must have the same size");
   }
-  constexpr double gross_px = 1;
+  constexpr double max_error_px = 1;  // larger errors are mismatches
   for (int v = 0; v < truth.height(); ++v) {
     for (int u = 0; u < truth.width(); ++u) {
-      const double real = truth(u, v);
-      const double error = disparity(u, v) - real;
-      const bool counts = mask(u, v) != 0 && std::abs(error) <= gross_px;  // not when either is NaN
-      if (!counts) continue;
-      const double phase = real - std::floor(real);
+      const double true_disparity = truth(u, v);
+      const double error = disparity(u, v) - true_disparity;
+      const bool is_match = mask(u, v) != 0 && std::abs(error) <= max_error_px;  // false for NaN
+      if (!is_match) continue;
+      const double phase = true_disparity - std::floor(true_disparity);
       const auto bin = static_cast<std::size_t>(phase * static_cast<double>(bins_.size()));
       bins_[std::min(bin, bins_.size() - 1)].sum_px += error;
       bins_[std::min(bin, bins_.size() - 1)].count += 1;
@@ -56,8 +57,8 @@ double SubPixelBias::ripple_px() const {
   std::vector<double> means = means_px();
   std::erase_if(means, [](double mean) { return std::isnan(mean); });
   if (means.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto [least, most] = std::minmax_element(means.begin(), means.end());
-  return *most - *least;
+  const auto [min, max] = std::minmax_element(means.begin(), means.end());
+  return *max - *min;
 }
 
 }  // namespace roadstereo

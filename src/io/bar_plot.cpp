@@ -32,11 +32,11 @@ PlotAxes make_axes(const BarGroups& bars) {
 
 /// The value of a bar that is cut off, upwards in its top.
 void draw_cut_value(cv::Mat& picture, const cv::Rect& bar, double value) {
-  constexpr int most_length = 60;
+  constexpr int max_length = 60;
   constexpr int two_digits = 10;
   const int height = std::clamp(bar.width - 4, 6, plot_text);
-  const cv::Point centre(bar.x + bar.width / 2, bar.y + most_length / 2);
-  put_text_upwards(picture, number_text(value, value < two_digits ? 1 : 0), centre, height, most_length, paper);
+  const cv::Point centre(bar.x + bar.width / 2, bar.y + max_length / 2);
+  put_text_upwards(picture, number_text(value, value < two_digits ? 1 : 0), centre, height, max_length, paper);
 }
 
 }  // namespace

@@ -50,13 +50,13 @@ void require_consistent(const BarTable& table) {
 
 /// The value of a bar of full length among the rows that share a base: no more than three times that.
 double full_value(const BarTable& table, const BarColumn& column, std::size_t base) {
-  constexpr double most_bases = 3;
+  constexpr double max_bases = 3;
   double longest = 1e-9;
   for (std::size_t i = 0; i < column.values.size(); ++i) {
     if (table.bases[i] == base && std::isfinite(column.values[i])) longest = std::max(longest, column.values[i]);
   }
   const double of_base = column.values[base];
-  return of_base > 0 ? std::min(longest, most_bases * of_base) : longest;
+  return of_base > 0 ? std::min(longest, max_bases * of_base) : longest;
 }
 
 cv::Scalar bar_colour(const BarTable& table, const BarColumn& column, std::size_t row) {

@@ -7,8 +7,8 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr double least_baseline_m = 0.005;
-constexpr double most_baseline_m = 10;
+constexpr double min_baseline_m = 0.005;
+constexpr double max_baseline_m = 10;
 
 void check_finite(double value, const std::string& source, const std::string& name) {
   if (std::isfinite(value)) return;
@@ -27,10 +27,10 @@ void check_focal(double focal, int width, const std::string& source, const std::
 
 void check_baseline(double baseline, const std::string& source, const std::string& name) {
   check_finite(baseline, source, name);
-  if (baseline >= least_baseline_m && baseline <= most_baseline_m) return;
+  if (baseline >= min_baseline_m && baseline <= max_baseline_m) return;
   const char* hint = baseline < 0 ? "; are the left and the right camera swapped?" : "";
-  fail(source, ": the baseline is ", baseline == 0 ? 0.0 : baseline, "; it must be between ", least_baseline_m, " and ",
-       most_baseline_m, " metres (", name, ")", hint);
+  fail(source, ": the baseline is ", baseline == 0 ? 0.0 : baseline, "; it must be between ", min_baseline_m, " and ",
+       max_baseline_m, " metres (", name, ")", hint);
 }
 
 bool is_rotation(const std::array<double, 9>& r) {

@@ -10,12 +10,12 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{1} << 20U;
+constexpr std::size_t max_bytes = std::size_t{1} << 20U;
 
 enum class Format { plain_yaml, opencv_stereo, ros_camera_info, kitti, middlebury, k_txt, unknown };
 
 CalibrationText read_text(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_file(path, most_bytes);
+  const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
   if (std::find(bytes.begin(), bytes.end(), std::uint8_t{0}) != bytes.end()) {
     fail(path, ": this is not a text file; a calibration is one");
   }

@@ -117,13 +117,13 @@ ColourScale spread_scale(ImageView<const float> map, const std::string& label) {
 }
 
 ColourScale transformed_scale(ImageView<const float> transformed, double delta_t) {
-  constexpr double least_reach_px = 1;
-  constexpr double most_scatters = 20;
+  constexpr double min_reach_px = 1;
+  constexpr double max_scatters = 20;
   const std::vector<double> ends = percentiles(transformed, {0.25, 99.75});
   double reach = 0;
   for (const double end : ends) reach = std::max(reach, std::abs(end - delta_t));
-  reach = std::min(reach, most_scatters * road_scatter(transformed, delta_t));
-  reach = std::max(reach, least_reach_px);
+  reach = std::min(reach, max_scatters * road_scatter(transformed, delta_t));
+  reach = std::max(reach, min_reach_px);
   return {delta_t - reach, delta_t + reach, true, "transformed, px (red: below road)"};
 }
 

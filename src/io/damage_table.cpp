@@ -34,7 +34,7 @@ Json finite(double value) {
 
 std::string damages_json(const DamageMap& map) {
   Json document = {{"version", version}, {"metric", map.metric}};
-  document["unmetric_reason"] = map.metric ? Json(nullptr) : Json(map.unmetric_reason);
+  document["non_metric_reason"] = map.metric ? Json(nullptr) : Json(map.non_metric_reason);
   document["size"] = {{"width", map.ids.width()}, {"height", map.ids.height()}};
   document["noise_px"] = finite(map.noise_px);
   document["damages"] = Json::array();

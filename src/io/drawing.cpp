@@ -84,10 +84,10 @@ void lay_colour(cv::Mat picture, const cv::Mat& cover, const cv::Scalar& colour)
 
 }  // namespace
 
-void put_text_upwards(cv::Mat& picture, const std::string& text, cv::Point centre, int height, int most_length,
+void put_text_upwards(cv::Mat& picture, const std::string& text, cv::Point centre, int height, int max_length,
                       const cv::Scalar& colour) {
   const std::string ascii = to_ascii(text);
-  const int fitting = fitting_height(ascii, height, most_length);
+  const int fitting = fitting_height(ascii, height, max_length);
   int below_base = 0;
   const cv::Size size = text_size(ascii, fitting, below_base);
   const int margin = thickness_for(fitting) + 1;
@@ -100,9 +100,9 @@ void put_text_upwards(cv::Mat& picture, const std::string& text, cv::Point centr
   lay_colour(picture(visible), line(visible - wanted.tl()), colour);
 }
 
-int fitting_height(const std::string& text, int height, int most_length) {
+int fitting_height(const std::string& text, int height, int max_length) {
   constexpr int least = 6;
-  while (height > least && text_width(text, height) > most_length) --height;
+  while (height > least && text_width(text, height) > max_length) --height;
   return height;
 }
 

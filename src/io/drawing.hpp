@@ -23,12 +23,12 @@ int text_width(const std::string& text, int height);
 void put_text(cv::Mat& picture, const std::string& text, cv::Point at, int height, const cv::Scalar& colour,
               Align align = Align::left);
 
-/// Writes one line reading upwards, centred on `centre`; made smaller when it is longer than `most_length`.
-void put_text_upwards(cv::Mat& picture, const std::string& text, cv::Point centre, int height, int most_length,
+/// Writes one line reading upwards, centred on `centre`; made smaller when it is longer than `max_length`.
+void put_text_upwards(cv::Mat& picture, const std::string& text, cv::Point centre, int height, int max_length,
                       const cv::Scalar& colour);
 
-/// The largest height up to `height` at which the line is no longer than `most_length`.
-int fitting_height(const std::string& text, int height, int most_length);
+/// The largest height up to `height` at which the line is no longer than `max_length`.
+int fitting_height(const std::string& text, int height, int max_length);
 
 /// Round numbers (1, 2 or 5 times a power of ten apart) from `lowest` to `highest`, at most `most` of them.
 struct Ticks {

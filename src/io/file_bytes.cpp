@@ -26,10 +26,10 @@ std::size_t size_of_ordinary_file(const std::string& path) {
 
 }  // namespace
 
-std::vector<std::uint8_t> read_file(const std::string& path, std::size_t most_bytes) {
+std::vector<std::uint8_t> read_file(const std::string& path, std::size_t max_bytes) {
   const std::size_t size = size_of_ordinary_file(path);
-  if (size > most_bytes) {
-    fail(path, ": the file has ", size, " bytes; a file of this kind has at most ", most_bytes);
+  if (size > max_bytes) {
+    fail(path, ": the file has ", size, " bytes; a file of this kind has at most ", max_bytes);
   }
   errno = 0;
   std::ifstream file(path, std::ios::binary);

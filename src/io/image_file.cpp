@@ -16,9 +16,9 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{1} << 30U;
-constexpr int least_side = 32;
-constexpr int most_side = 8192;
+constexpr std::size_t max_bytes = std::size_t{1} << 30U;
+constexpr int min_side = 32;
+constexpr int max_side = 8192;
 constexpr double kitti_steps = 256;  // per pixel of disparity
 
 cv::Mat decode(const std::string& path, const std::vector<std::uint8_t>& bytes) {
@@ -55,7 +55,7 @@ cv::Mat decode_checked(const std::string& path, const std::vector<std::uint8_t>&
   } else {
     header = check_tiff(path, bytes);
   }
-  check_size(path, header.width, header.height, least, most_side);
+  check_size(path, header.width, header.height, least, max_side);
   return decode(path, essential.empty() ? bytes : essential);
 }
 
@@ -82,7 +82,7 @@ ChannelOrder order_of(const cv::Mat& mat) {
   return mat.channels() == 3 ? ChannelOrder::bgr : ChannelOrder::bgra;
 }
 
-std::uint16_t largest_sample(const FrameView& frame) {
+std::uint16_t max_sample(const FrameView& frame) {
   const int channels = channel_count(frame.order);
   const int colours = channels == 4 ? 3 : channels;  // opacity says nothing about light
   std::uint16_t largest = 0;
@@ -130,10 +130,10 @@ Image<float> disparity_from_png(const std::string& path, const std::vector<std::
 }
 
 std::uint16_t kitti_value(float disparity) {
-  constexpr float most_px = 255.99F;
+  constexpr float max_px = 255.99F;
   if (!std::isfinite(disparity)) return 0;
-  if (disparity < 0 || disparity > most_px) {
-    fail("a disparity is ", disparity, " px; a 16-bit PNG holds 0 … ", most_px, " px, a TIFF holds any");
+  if (disparity < 0 || disparity > max_px) {
+    fail("a disparity is ", disparity, " px; a 16-bit PNG holds 0 … ", max_px, " px, a TIFF holds any");
   }
   return static_cast<std::uint16_t>(std::max(std::lround(kitti_steps * disparity), 1L));
 }
@@ -147,19 +147,19 @@ Frame decode_frame(const std::string& path, const std::vector<std::uint8_t>& byt
   }
   if (is_tiff(bytes)) check_tiff_depth(path, check_tiff(path, bytes));
   ImageHeader header;
-  const cv::Mat mat = decode_checked(path, bytes, least_side, header);
+  const cv::Mat mat = decode_checked(path, bytes, min_side, header);
   check_frame_depth(path, mat);
   return frame_from(mat, order_of(mat));
 }
 
 Frame read_frame(const std::string& path) {
-  return decode_frame(path, read_file(path, most_bytes));
+  return decode_frame(path, read_file(path, max_bytes));
 }
 
 double find_white_level(const FrameView& left, const FrameView& right) {
   if (left.sample != right.sample) fail("one image of the pair has 8 bits, the other 16; both must have the same");
   if (left.sample == SampleType::u8) return 255;
-  const int largest = std::max(largest_sample(left), largest_sample(right));
+  const int largest = std::max(max_sample(left), max_sample(right));
   for (const int white : {1023, 4095, 16383}) {
     if (largest <= white) return white;
   }
@@ -167,7 +167,7 @@ double find_white_level(const FrameView& left, const FrameView& right) {
 }
 
 Image<float> read_disparity(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_file(path, most_bytes);
+  const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
   if (is_pfm(bytes)) return read_pfm(path, bytes);
   if (is_tiff(bytes)) return disparity_from_tiff(path, bytes);
   if (is_png(bytes)) return disparity_from_png(path, bytes);

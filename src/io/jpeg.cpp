@@ -9,13 +9,13 @@
 
 namespace roadstereo::io {
 
-std::vector<std::uint8_t> encode_jpeg(const FrameView& frame, int quality, int most_width) {
+std::vector<std::uint8_t> encode_jpeg(const FrameView& frame, int quality, int max_width) {
   if (frame.sample != SampleType::u8) fail("a JPEG holds 8 bits per sample, not 16");
   cv::Mat pixels = frame.order == ChannelOrder::grey ? mat_over(frame) : to_bgr(frame, 255);
-  if (pixels.cols > most_width) {
-    const double scale = static_cast<double>(most_width) / pixels.cols;
+  if (pixels.cols > max_width) {
+    const double scale = static_cast<double>(max_width) / pixels.cols;
     cv::Mat small;
-    cv::resize(pixels, small, {most_width, std::max(1, cvRound(scale * pixels.rows))}, 0, 0, cv::INTER_AREA);
+    cv::resize(pixels, small, {max_width, std::max(1, cvRound(scale * pixels.rows))}, 0, 0, cv::INTER_AREA);
     pixels = small;
   }
   std::vector<std::uint8_t> bytes;

@@ -25,7 +25,7 @@ void draw_scale_bar(cv::Mat& canvas, cv::Rect area, const ColourScale& scale, in
 /// Draws the v-disparity histogram with its axes. The histogram's rows fill `plot` from top to bottom; tick
 /// numbers and axis names lie left of it and below it.
 void draw_v_disparity(cv::Mat& canvas, cv::Rect plot, ImageView<const float> disparity,
-                      const std::optional<RoadGeometry>& geometry, int text_height);
+                      const std::optional<RollEstimate>& geometry, int text_height);
 
 /// Room that the axes of draw_v_disparity need to the left of the plot and below it.
 cv::Size v_disparity_margin(int image_height, int text_height);

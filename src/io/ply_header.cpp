@@ -12,8 +12,8 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr std::size_t most_header_bytes = 65536;
-constexpr std::size_t most_shown = 60;
+constexpr std::size_t max_header_bytes = 65536;
+constexpr std::size_t max_shown = 60;
 
 using NamedType = std::pair<std::string_view, PlyType>;
 constexpr std::array<NamedType, 16> type_names{{{"char", PlyType::i8},
@@ -37,7 +37,7 @@ constexpr std::array<NamedType, 16> type_names{{{"char", PlyType::i8},
 class HeaderReader {
  public:
   HeaderReader(const std::string& path, std::span<const std::uint8_t> bytes)
-      : path_(path), text_(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), most_header_bytes)) {}
+      : path_(path), text_(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), max_header_bytes)) {}
 
   PlyHeader read() {
     if (next_line() != "ply") fail(path_, " is not a PLY file: it does not begin with \"ply\"");
@@ -63,7 +63,7 @@ class HeaderReader {
 
  private:
   [[noreturn]] void refuse(std::string_view line, const char* reason) const {
-    fail(path_, ": the PLY header has the line \"", line.substr(0, most_shown), "\"; ", reason);
+    fail(path_, ": the PLY header has the line \"", line.substr(0, max_shown), "\"; ", reason);
   }
 
   std::string_view next_line() {

@@ -15,7 +15,7 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{4} << 30U;
+constexpr std::size_t max_bytes = std::size_t{4} << 30U;
 
 template <class Value>
 double value_at(const std::uint8_t* bytes, bool swapped) {
@@ -59,7 +59,7 @@ class Values {
   std::size_t bytes_left() const { return data_.size() - at_; }
 
   /// Bytes that a value takes at the least; the last one of a text has no space behind it.
-  std::size_t least_size(PlyType type) const { return encoding_ == PlyEncoding::ascii ? 1 : size_of(type); }
+  std::size_t min_size(PlyType type) const { return encoding_ == PlyEncoding::ascii ? 1 : size_of(type); }
 
   void skip_list(const PlyProperty& property) {
     const double length = next(property.count_type);
@@ -95,8 +95,8 @@ class Values {
     const auto [end, error] = std::from_chars(digits, last, value);
     if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::quiet_NaN();
     if (error != std::errc{} || end != last) {
-      constexpr std::size_t most_shown = 40;
-      fail(path_, ": \"", std::string(first, last).substr(0, most_shown), "\" stands where a number must be");
+      constexpr std::size_t max_shown = 40;
+      fail(path_, ": \"", std::string(first, last).substr(0, max_shown), "\" stands where a number must be");
     }
     return value;
   }
@@ -111,7 +111,7 @@ class Values {
 void check_count(const std::string& path, const PlyElement& element, const Values& values) {
   std::size_t least = 0;
   for (const PlyProperty& property : element.properties) {
-    least += values.least_size(property.is_list ? property.count_type : property.type);
+    least += values.min_size(property.is_list ? property.count_type : property.type);
   }
   if (least > 0 && element.count > values.bytes_left() / least) {
     fail(path, ": the file is truncated: its header promises ", element.count, " of \"", element.name, "\", and ",
@@ -223,7 +223,7 @@ PointCloud read_vertices(const std::string& path, const PlyElement& vertex, Valu
 }  // namespace
 
 PointCloud read_ply(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_file(path, most_bytes);
+  const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
   const PlyHeader header = read_ply_header(path, bytes);
   Values values(path, header, std::span(bytes).subspan(header.bytes));
   for (const PlyElement& element : header.elements) {

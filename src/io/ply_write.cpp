@@ -26,8 +26,8 @@ std::vector<std::uint8_t> encode_ply(const PointCloud& cloud) {
   }
   const std::string header = ply_header(cloud);
   std::vector<std::uint8_t> bytes(header.begin(), header.end());
-  constexpr std::size_t most_per_point = 3 * sizeof(float) + 3;
-  bytes.reserve(bytes.size() + cloud.points.size() * most_per_point);
+  constexpr std::size_t max_per_point = 3 * sizeof(float) + 3;
+  bytes.reserve(bytes.size() + cloud.points.size() * max_per_point);
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     for (const float x : cloud.points[i]) append_float(x, bytes);
     if (!cloud.colours.empty()) bytes.insert(bytes.end(), cloud.colours[i].begin(), cloud.colours[i].end());

@@ -23,12 +23,12 @@ PointCloud cloud_from_disparity(ImageView<const float> disparity, const FrameVie
   }
   const double largest = left.sample == SampleType::u16 ? 65535.0 : 255.0;
   const cv::Mat picture = to_bgr(left, white_level > 0 ? white_level : largest);
-  const double least_px = calibration.focal_px / farthest_baselines;
+  const double min_px = calibration.focal_px / farthest_baselines;
   PointCloud cloud;
   for (int v = 0; v < disparity.height(); ++v) {
     for (int u = 0; u < disparity.width(); ++u) {
       const double d = disparity(u, v);
-      if (!std::isfinite(d) || d + calibration.disparity_offset_px < least_px) continue;
+      if (!std::isfinite(d) || d + calibration.disparity_offset_px < min_px) continue;
       const auto& bgr = picture.at<cv::Vec3b>(v, u);
       cloud.points.push_back(to_float(calibration.point_m(u, v, d)));
       cloud.colours.push_back({bgr[2], bgr[1], bgr[0]});
@@ -37,7 +37,7 @@ PointCloud cloud_from_disparity(ImageView<const float> disparity, const FrameVie
   return cloud;
 }
 
-PointCloud to_road_frame(const PointCloud& cloud, const RoadFrame& road) {
+PointCloud to_road_axes(const PointCloud& cloud, const RoadAxes& road) {
   PointCloud turned{{}, cloud.colours};
   turned.points.reserve(cloud.points.size());
   for (const auto& [x, y, z] : cloud.points) turned.points.push_back(to_float(road.to_road({x, y, z})));

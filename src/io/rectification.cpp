@@ -110,8 +110,8 @@ bool lies_inside(const PixelMap& map, cv::Size size) {
 /// looks outside.
 std::pair<PixelMap, PixelMap> inner_maps(const StereoRig& rig, cv::Size size, RectifiedCameras& cameras) {
   constexpr double zoom = 1.01;
-  constexpr int most_steps = 160;  // about five times the focal length
-  for (int step = 0; step < most_steps; ++step) {
+  constexpr int max_steps = 160;  // about five times the focal length
+  for (int step = 0; step < max_steps; ++step) {
     PixelMap left =
         pixel_map(rig.left_matrix, rig.left_distortion, rig.fisheye, cameras.left_rotation, cameras.left, size);
     PixelMap right =

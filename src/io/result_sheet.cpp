@@ -9,9 +9,9 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr int picture_width = 900;         // of one panel, so that the sheet is about 2000 wide
-constexpr int least_picture_height = 260;  // an axis must fit beside it
-constexpr int most_picture_height = 900;
+constexpr int picture_width = 900;       // of one panel, so that the sheet is about 2000 wide
+constexpr int min_picture_height = 260;  // an axis must fit beside it
+constexpr int max_picture_height = 900;
 constexpr int text_height = 14;
 constexpr int title_height = 20;
 
@@ -33,14 +33,14 @@ constexpr int panel_head = 2 * title_height;
 /// The image's size scaled into the panel, its shape kept.
 cv::Size picture_size(int width, int height) {
   const double scale =
-      std::min(static_cast<double>(picture_width) / width, static_cast<double>(most_picture_height) / height);
+      std::min(static_cast<double>(picture_width) / width, static_cast<double>(max_picture_height) / height);
   return {std::max(cvRound(scale * width), 1), std::max(cvRound(scale * height), 1)};
 }
 
 void draw_picture(cv::Mat& canvas, cv::Rect panel, const cv::Mat& picture, cv::Size size) {
-  const bool shrinks = size.width < picture.cols;
+  const bool downsamples = size.width < picture.cols;
   cv::Mat scaled;
-  cv::resize(picture, scaled, size, 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_NEAREST);
+  cv::resize(picture, scaled, size, 0, 0, downsamples ? cv::INTER_AREA : cv::INTER_NEAREST);
   scaled.copyTo(canvas(cv::Rect(panel.x, panel.y + panel_head, size.width, size.height)));
 }
 
@@ -52,20 +52,20 @@ void draw_map(cv::Mat& canvas, cv::Rect panel, const SheetLayout& layout, ImageV
               const ColourScale& scale) {
   draw_picture(canvas, panel, colour_pixels(map, scale), layout.picture);
   const cv::Rect bar(panel.x + layout.picture.width, panel.y + panel_head, panel.width - layout.picture.width,
-                     std::max(layout.picture.height, least_picture_height));
+                     std::max(layout.picture.height, min_picture_height));
   draw_scale_bar(canvas, bar, scale, text_height);
 }
 
 }  // namespace
 
 Frame result_sheet(const FrameView& left, ImageView<const float> disparity, ImageView<const float> transformed,
-                   double delta_t, const std::optional<RoadGeometry>& geometry, const std::string& title) {
+                   double delta_t, const std::optional<RollEstimate>& geometry, const std::string& title) {
   const ColourScale disparity_scale = spread_scale(disparity, "disparity, px");
   const ColourScale damage_scale = transformed_scale(transformed, delta_t);
   const cv::Size axis = v_disparity_margin(disparity.height(), text_height);
   SheetLayout layout;
   layout.picture = picture_size(left.width, left.height);
-  const int height = std::max(layout.picture.height, least_picture_height);
+  const int height = std::max(layout.picture.height, min_picture_height);
   const int bar = std::max(scale_bar_width(disparity_scale, height, text_height),
                            scale_bar_width(damage_scale, height, text_height));
   const int width = std::max(layout.picture.width, picture_width);

@@ -14,8 +14,8 @@ constexpr double line_opacity = 0.7;
 
 /// The part of the (disparity, row) plane that a plot shows.
 struct PlotRange {
-  double lowest_px = 0;
-  double highest_px = 1;
+  double residual_p01_px = 0;
+  double residual_p99_px = 1;
   int rows = 1;
   int columns = 1;
 };
@@ -25,16 +25,16 @@ PlotRange plot_range(ImageView<const float> disparity) {
   const std::vector<double> ends = percentiles(disparity, {0.5, 99.5});
   if (ends.empty()) return range;
   const double margin = std::max(0.06 * (ends[1] - ends[0]), 1.0);
-  range.lowest_px = ends[0] - margin;
-  if (ends[0] >= 0) range.lowest_px = std::max(range.lowest_px, 0.0);
-  range.highest_px = ends[1] + margin;
+  range.residual_p01_px = ends[0] - margin;
+  if (ends[0] >= 0) range.residual_p01_px = std::max(range.residual_p01_px, 0.0);
+  range.residual_p99_px = ends[1] + margin;
   return range;
 }
 
 /// Pixels per cell of the histogram. Cells are at least an eighth of a pixel of disparity wide, and a
 /// disparity is shared between the two nearest, so that disparities in fixed steps leave no stripes.
 cv::Mat count_pixels(ImageView<const float> disparity, const PlotRange& range, cv::Size plot) {
-  const double span = range.highest_px - range.lowest_px;
+  const double span = range.residual_p99_px - range.residual_p01_px;
   const int columns = std::clamp(static_cast<int>(8 * span), 1, plot.width);
   const int rows = std::min(plot.height, range.rows);
   cv::Mat counts = cv::Mat::zeros(rows, columns, CV_32FC1);
@@ -42,8 +42,8 @@ cv::Mat count_pixels(ImageView<const float> disparity, const PlotRange& range, c
     const float* in = disparity.row(v);
     auto* out = counts.ptr<float>(static_cast<int>(static_cast<std::int64_t>(v) * rows / range.rows));
     for (int u = 0; u < range.columns; ++u) {
-      if (!(in[u] >= range.lowest_px && in[u] < range.highest_px)) continue;
-      const double place = std::clamp((in[u] - range.lowest_px) / span * columns - 0.5, 0.0, columns - 1.0);
+      if (!(in[u] >= range.residual_p01_px && in[u] < range.residual_p99_px)) continue;
+      const double place = std::clamp((in[u] - range.residual_p01_px) / span * columns - 0.5, 0.0, columns - 1.0);
       const int column = static_cast<int>(place);
       const auto share = static_cast<float>(place - column);
       out[column] += 1 - share;
@@ -66,10 +66,11 @@ cv::Mat histogram_picture(ImageView<const float> disparity, const PlotRange& ran
 }
 
 /// Draws the road's disparity at column `u` over the rows.
-void draw_road_line(cv::Mat& picture, const PlotRange& range, const RoadModel& road, double u, bool dashed, int width) {
+void draw_road_line(cv::Mat& picture, const PlotRange& range, const DisparityPlane& road, double u, bool dashed,
+                    int width) {
   const auto place = [&](double row_share) {
     const double v = row_share * (range.rows - 1);
-    const double x = (road.disparity(u, v) - range.lowest_px) / (range.highest_px - range.lowest_px);
+    const double x = (road.disparity(u, v) - range.residual_p01_px) / (range.residual_p99_px - range.residual_p01_px);
     return cv::Point2d(x * picture.cols, row_share * (picture.rows - 1));
   };
   constexpr int pieces = 60;
@@ -83,12 +84,12 @@ void draw_road_line(cv::Mat& picture, const PlotRange& range, const RoadModel& r
   }
 }
 
-bool has_visible_roll(const RoadModel& road, int columns) {
+bool has_visible_roll(const DisparityPlane& road, int columns) {
   constexpr double visible_px = 0.5;
   return std::abs(road.a2) * columns > visible_px;
 }
 
-void draw_road(cv::Mat& picture, const PlotRange& range, const RoadModel& road, int text_height) {
+void draw_road(cv::Mat& picture, const PlotRange& range, const DisparityPlane& road, int text_height) {
   const int width = std::max(1, text_height / 8);
   cv::Mat over = picture.clone();
   draw_road_line(over, range, road, 0.5 * (range.columns - 1), false, width);
@@ -100,7 +101,7 @@ void draw_road(cv::Mat& picture, const PlotRange& range, const RoadModel& road, 
 }
 
 /// What the lines are, in the corner that a road leaves empty: disparities grow downwards.
-void draw_legend(cv::Mat& picture, const RoadModel& road, int columns, int text_height) {
+void draw_legend(cv::Mat& picture, const DisparityPlane& road, int columns, int text_height) {
   std::vector<std::string> lines{"road, middle"};
   if (has_visible_roll(road, columns)) lines.emplace_back("road, sides");
   const int sample = 2 * text_height;
@@ -127,9 +128,10 @@ void draw_axes(cv::Mat& canvas, cv::Rect plot, const PlotRange& range, int text_
   const int tick = text_height / 2;
   const int line = std::max(1, text_height / 12);
   cv::rectangle(canvas, plot, ink);
-  const Ticks across = round_ticks(range.lowest_px, range.highest_px, std::clamp(plot.width / (6 * text_height), 2, 9));
+  const Ticks across =
+      round_ticks(range.residual_p01_px, range.residual_p99_px, std::clamp(plot.width / (6 * text_height), 2, 9));
   for (const double value : across.values) {
-    const double share = (value - range.lowest_px) / (range.highest_px - range.lowest_px);
+    const double share = (value - range.residual_p01_px) / (range.residual_p99_px - range.residual_p01_px);
     const int x = plot.x + cvRound(share * (plot.width - 1));
     cv::line(canvas, {x, plot.br().y}, {x, plot.br().y + tick}, ink, line);
     put_text(canvas, number_text(value, across.decimals), {x, plot.br().y + tick + text_height + text_height / 2},
@@ -158,7 +160,7 @@ cv::Size v_disparity_margin(int image_height, int text_height) {
 }
 
 void draw_v_disparity(cv::Mat& canvas, cv::Rect plot, ImageView<const float> disparity,
-                      const std::optional<RoadGeometry>& geometry, int text_height) {
+                      const std::optional<RollEstimate>& geometry, int text_height) {
   const PlotRange range = plot_range(disparity);
   cv::Mat picture = histogram_picture(disparity, range, plot.size());
   if (geometry) {
@@ -169,7 +171,7 @@ void draw_v_disparity(cv::Mat& canvas, cv::Rect plot, ImageView<const float> dis
   draw_axes(canvas, plot, range, text_height);
 }
 
-Frame v_disparity_picture(ImageView<const float> disparity, const std::optional<RoadGeometry>& geometry) {
+Frame v_disparity_picture(ImageView<const float> disparity, const std::optional<RollEstimate>& geometry) {
   const int height = std::clamp(disparity.height(), 300, 1200);
   const int text_height = text_height_for(height);
   const cv::Size margin = v_disparity_margin(disparity.height(), text_height);

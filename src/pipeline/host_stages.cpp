@@ -10,7 +10,7 @@
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/coarse_search.hpp"
-#include "stereo/coarse/road_chance.hpp"
+#include "stereo/coarse/road_plausibility.hpp"
 #include "stereo/window.hpp"
 
 namespace roadstereo {
@@ -40,9 +40,9 @@ class HostStages final : public FrameStages {
       : options_(options),
         calibration_(calibration),
         threads_(resolve_threads(options.threads)),
-        support_(support_pixels(options.matcher)),
+        support_(effective_samples(options.matcher)),
         engine_(make_engine(options.engine, options.threads)) {
-    if (options.narrow_search || options.matcher.prior_slope > 0) {
+    if (options.narrow_search || options.matcher.prior_weight > 0) {
       coarse_search_.emplace(options.coarse_search, options.threads);
     }
   }
@@ -59,7 +59,7 @@ class HostStages final : public FrameStages {
 
   GreyPair grey(FrameResult& result) override { return {result.grey, right_}; }
 
-  RoadModelEstimate verify_road(const RoadModel& previous, const FrameResult& result) override {
+  RoadModelEstimate verify_road(const DisparityPlane& previous, const FrameResult& result) override {
     return verify_road_model(result.grey, right_, previous, calibration_, options_.road_model, threads_);
   }
 
@@ -67,7 +67,7 @@ class HostStages final : public FrameStages {
     transform_target(right_, result.shift, threads_, transformed_target_, first_column_);
   }
 
-  void look_coarsely(const FrameResult& result) override {
+  void search_coarsely(const FrameResult& result) override {
     match_input_ = {result.grey, transformed_target_, first_column_.data(), result.shift.disparities};
     if (!coarse_search_) return;
     const auto road = [shift = shift_terms(result.shift)](double u, double v) {
@@ -88,28 +88,27 @@ class HostStages final : public FrameStages {
                        result.disparity, result.sigma);
   }
 
-  bool fit_geometry(const std::optional<RoadModel>& prior, double initial_roll_rad, double least_share,
+  bool fit_geometry(const std::optional<DisparityPlane>& prior, double initial_roll_rad, double min_share,
                     FrameResult& result) override {
     result.valid_share = valid_share(result.disparity);
-    if (result.valid_share < least_share) return false;
-    result.geometry =
-        fit_road_geometry(result.disparity, std::nullopt, prior, initial_roll_rad, options_.road_geometry, threads_);
+    if (result.valid_share < min_share) return false;
+    result.geometry = estimate_roll(result.disparity, std::nullopt, prior, initial_roll_rad, options_.roll, threads_);
     return true;
   }
 
   void transform(FrameResult& result) override {
-    result.delta_t = transform_disparity(result.disparity, result.geometry, result.shift.delta_p,
-                                         options_.road_geometry, threads_, result.transformed);
-    result.spread = measure_spread(result.transformed, result.delta_t, threads_);
+    result.delta_t = transform_disparity(result.disparity, result.geometry, result.shift.delta_p, options_.roll,
+                                         threads_, result.transformed);
+    result.spread = measure_residuals(result.transformed, result.delta_t, threads_);
   }
 
-  void leave_untransformed(FrameResult& result) override {
+  void invalidate_transformed(FrameResult& result) override {
     result.transformed.assign(result.grey.width(), result.grey.height(), std::numeric_limits<float>::quiet_NaN());
   }
 
   void deliver(FrameResult&) override {}
 
-  void use_device(const DeviceUse&) override { fail_without_device(); }
+  void set_device_options(const DeviceOptions&) override { fail_without_device(); }
   DeviceMaps device_maps() const override { fail_without_device(); }
 
  private:

@@ -53,9 +53,9 @@ void visit_options(Options& o, Visitor visit) {
 
   visit("perspective.enabled", o.perspective.enabled, "shift the rows of the target image by the road model");
   visit("perspective.shift", o.perspective.shift, "whole_pixel or sub_pixel");
-  visit("perspective.deepest_damage_m", o.perspective.deepest_damage_m,
+  visit("perspective.max_damage_depth_m", o.perspective.max_damage_depth_m,
         "deepest damage to be measured, metres (needs a calibration)");
-  visit("perspective.highest_bump_m", o.perspective.highest_bump_m,
+  visit("perspective.max_bump_height_m", o.perspective.max_bump_height_m,
         "highest bump to be measured, metres (needs a calibration)");
   visit("perspective.disparities", o.perspective.disparities, "disparities searched after the shift; 0 derives it");
   visit("perspective.delta_p_px", o.perspective.delta_p_px,
@@ -63,16 +63,17 @@ void visit_options(Options& o, Visitor visit) {
 
   visit("coarse_search.factor", o.coarse_search.factor, "shrinks the pair by 2, 4 or 8; 0 derives it");
   visit("coarse_search.block_radius", o.coarse_search.block_radius, "radius of its correlation block, coarse pixels");
-  visit("coarse_search.texture_noise", o.coarse_search.texture_noise,
+  visit("coarse_search.ncc_noise_sigma", o.coarse_search.ncc_noise_sigma,
         "noise below which its texture is no evidence, 8-bit grey levels");
   visit("coarse_search.step_penalty", o.coarse_search.step_penalty,
         "cost of a change by one coarse pixel along the row");
   visit("coarse_search.jump_penalty", o.coarse_search.jump_penalty, "cost of a larger change along the row");
-  visit("coarse_search.road_pull", o.coarse_search.road_pull,
+  visit("coarse_search.road_prior_weight", o.coarse_search.road_prior_weight,
         "cost of a coarse pixel away from the road where nothing is known");
-  visit("coarse_search.road_reach", o.coarse_search.road_reach, "coarse pixels away at which that cost stops growing");
-  visit("coarse_search.row_error_px", o.coarse_search.row_error_px, "error of the rows, coarse pixels");
-  visit("coarse_search.known_within_px", o.coarse_search.known_within_px,
+  visit("coarse_search.road_prior_truncation_px", o.coarse_search.road_prior_truncation_px,
+        "coarse pixels away at which that cost stops growing");
+  visit("coarse_search.row_offset_sigma_px", o.coarse_search.row_offset_sigma_px, "error of the rows, coarse pixels");
+  visit("coarse_search.half_weight_sigma_px", o.coarse_search.half_weight_sigma_px,
         "standard error at which the road pulls half as strongly, coarse pixels");
 
   visit("matcher.block_radius", o.matcher.block_radius, "radius of the correlation block, pixels");
@@ -82,40 +83,40 @@ void visit_options(Options& o, Visitor visit) {
   visit("matcher.aggregation_shape", o.matcher.aggregation_shape, "square or disc");
   visit("matcher.sigma_space", o.matcher.sigma_space, "sigma 0 of the bilateral weights, pixels");
   visit("matcher.sigma_colour", o.matcher.sigma_colour, "sigma 1 of the bilateral weights, 8-bit grey levels");
-  visit("matcher.texture_noise", o.matcher.texture_noise,
+  visit("matcher.ncc_noise_sigma", o.matcher.ncc_noise_sigma,
         "noise below which texture is no evidence, 8-bit grey levels");
   visit("matcher.left_right_check", o.matcher.left_right_check, "remove pixels that the two views see differently");
-  visit("matcher.target_volume", o.matcher.target_volume, "match the target view too, not only project the winners");
-  visit("matcher.prior_slope", o.matcher.prior_slope, "cost of a pixel away from the coarse map; 0 ignores it");
-  visit("matcher.prior_reach", o.matcher.prior_reach, "pixels away at which that cost stops growing");
-  visit("matcher.consistency", o.matcher.consistency, "delta r of the left-right check, pixels squared");
-  visit("matcher.hidden_sigma_px", o.matcher.hidden_sigma_px,
+  visit("matcher.match_both_views", o.matcher.match_both_views,
+        "match the target view too, not only project the winners");
+  visit("matcher.prior_weight", o.matcher.prior_weight, "cost of a pixel away from the coarse map; 0 ignores it");
+  visit("matcher.prior_truncation_px", o.matcher.prior_truncation_px, "pixels away at which that cost stops growing");
+  visit("matcher.lr_max_diff_px", o.matcher.lr_max_diff_px,
+        "largest difference of the left-right check, pixels (delta r of eq. lrc is its square)");
+  visit("matcher.occlusion_sigma_px", o.matcher.occlusion_sigma_px,
         "standard error added to what fails the left-right check, pixels; 0 makes it invalid");
   visit("matcher.sub_pixel", o.matcher.sub_pixel, "refine the winner by a parabola");
-  visit("matcher.drop_range_ends", o.matcher.drop_range_ends, "a winner at the end of its range is invalid");
+  visit("matcher.reject_range_boundary", o.matcher.reject_range_boundary,
+        "a winner at the end of its range is invalid");
 
   visit("refinement.radius", o.refinement.radius,
         "of the neighbours that a disparity is averaged with, pixels; 0 is off");
   visit("refinement.step", o.refinement.step, "distance between those neighbours, pixels");
-  visit("refinement.reach_sigmas", o.refinement.reach_sigmas,
+  visit("refinement.truncation_sigmas", o.refinement.truncation_sigmas,
         "joint standard errors at which a neighbour loses its weight");
-  visit("refinement.most_sigma_px", o.refinement.most_sigma_px,
+  visit("refinement.max_agreement_sigma_px", o.refinement.max_agreement_sigma_px,
         "a disparity known less well agrees with its neighbours no more easily than this, pixels");
-  visit("refinement.worst_sigma_px", o.refinement.worst_sigma_px,
+  visit("refinement.max_sigma_px", o.refinement.max_sigma_px,
         "a disparity known less well than that is invalid, pixels");
-  visit("refinement.least_sigma_px", o.refinement.least_sigma_px,
-        "standard error that no disparity falls below, pixels");
+  visit("refinement.min_sigma_px", o.refinement.min_sigma_px, "standard error that no disparity falls below, pixels");
 
-  visit("road_geometry.solver", o.road_geometry.solver, "gradient_descent, closed_form or robust");
-  visit("road_geometry.initial_lambda", o.road_geometry.initial_lambda, "first learning rate of the descent");
-  visit("road_geometry.roll_threshold_rad", o.road_geometry.roll_threshold_rad,
-        "step below which the descent has converged, radians");
-  visit("road_geometry.max_iterations", o.road_geometry.max_iterations, "most steps of a solver");
-  visit("road_geometry.delta_t_px", o.road_geometry.delta_t_px,
-        "the road's value in the transformed map, pixels; negative derives it");
-  visit("road_geometry.max_roll_stderr_rad", o.road_geometry.max_roll_stderr_rad,
+  visit("roll.solver", o.roll.solver, "gradient_descent, closed_form or robust");
+  visit("roll.initial_lambda", o.roll.initial_lambda, "first learning rate of the descent");
+  visit("roll.roll_threshold_rad", o.roll.roll_threshold_rad, "step below which the descent has converged, radians");
+  visit("roll.max_iterations", o.roll.max_iterations, "most steps of a solver");
+  visit("roll.delta_t_px", o.roll.delta_t_px, "the road's value in the transformed map, pixels; negative derives it");
+  visit("roll.max_roll_stderr_rad", o.roll.max_roll_stderr_rad,
         "the roll is observable below this standard error, radians");
-  visit("road_geometry.min_gradient_px", o.road_geometry.min_gradient_px,
+  visit("roll.min_gradient_px", o.roll.min_gradient_px,
         "... and when the road's disparity changes by this over the image, pixels");
 
   visit("damage.threshold_sigma", o.damage.threshold_sigma,

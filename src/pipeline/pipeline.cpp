@@ -49,7 +49,7 @@ struct Pipeline::State {
   int threads = 1;
   std::unique_ptr<FrameStages> stages;
 
-  CarriedState carried;
+  PipelineState carried;
   int width = 0, height = 0;  ///< of the frame, pixels
   bool has_frame = false;     ///< whether `result` belongs to one frame, whole
   bool has_maps = false;      ///< whether the maps that a device keeps do
@@ -98,21 +98,21 @@ void Pipeline::State::find_road() {
 }
 
 void Pipeline::State::measure_rows(const GreyPair& grey) {
-  constexpr double largest_offset_px = 0.5;
-  constexpr double largest_spread_px = 1.0;
+  constexpr double max_offset_px = 0.5;
+  constexpr double max_spread_px = 1.0;
   result.rows = measure_row_alignment(grey.left, grey.right, threads);
   carried.row_offset_px = 0;
   if (!result.rows.known()) return;
-  constexpr double largest_correction_px = 2.0;
-  constexpr double least_correction_px = 0.1;
+  constexpr double max_correction_px = 2.0;
+  constexpr double min_correction_px = 0.1;
   const double offset = std::abs(result.rows.median_px);
-  if (options.correct_rows && offset >= least_correction_px && offset <= largest_correction_px &&
-      result.rows.spread_px <= largest_spread_px) {
+  if (options.correct_rows && offset >= min_correction_px && offset <= max_correction_px &&
+      result.rows.sigma_px <= max_spread_px) {
     carried.row_offset_px = result.rows.median_px;
   }
-  if (std::abs(result.rows.median_px) > largest_offset_px || result.rows.spread_px > largest_spread_px) {
+  if (std::abs(result.rows.median_px) > max_offset_px || result.rows.sigma_px > max_spread_px) {
     result.warnings.push_back(sentence("the rows of the pair do not agree: vertical offset ", result.rows.median_px,
-                                       " px (median of ", result.rows.points, " points, spread ", result.rows.spread_px,
+                                       " px (median of ", result.rows.points, " points, spread ", result.rows.sigma_px,
                                        " px); rectify the pair"));
   }
 }
@@ -128,17 +128,17 @@ void Pipeline::State::transform_perspective() {
 void Pipeline::State::match() {
   constexpr double reach_without_road_px = 2;
   MatcherOptions matcher = options.matcher;
-  if (!result.shift.enabled) matcher.prior_reach = std::min(matcher.prior_reach, reach_without_road_px);
+  if (!result.shift.enabled) matcher.prior_truncation_px = std::min(matcher.prior_truncation_px, reach_without_road_px);
   stages->match(matcher, result);
 }
 
 /// Roll angle and projection model, section 3.3.
 void Pipeline::State::find_geometry() {
-  constexpr double least_valid_share = 0.01;
+  constexpr double min_valid_share = 0.01;
   result.geometry = {};
   const auto prior = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
-  result.geometry_found = stages->fit_geometry(prior, carried.roll_rad, least_valid_share, result);
-  if (!result.geometry_found) {
+  result.roll_found = stages->fit_geometry(prior, carried.roll_rad, min_valid_share, result);
+  if (!result.roll_found) {
     result.warnings.push_back(sentence("only ", 100 * result.valid_share, " % of the pixels have a disparity"));
   }
 }
@@ -147,14 +147,14 @@ void Pipeline::State::find_geometry() {
 void Pipeline::State::transform() {
   result.delta_t = 0;
   result.spread = {};
-  if (!result.geometry_found) {
-    stages->leave_untransformed(result);
+  if (!result.roll_found) {
+    stages->invalidate_transformed(result);
     return;
   }
   stages->transform(result);
   // Nothing vouches for a plane that the images did not show before matching and that few disparities lie on.
-  constexpr double least_road_share = 0.3;
-  if (!result.road.reliable && result.spread.road_share < least_road_share) {
+  constexpr double min_road_share = 0.3;
+  if (!result.road.reliable && result.spread.road_share < min_road_share) {
     result.geometry.roll_observable = false;
     result.warnings.push_back(
         sentence("only ", 100 * result.spread.road_share,
@@ -167,7 +167,7 @@ void Pipeline::State::summarise() {
   carried.width = width;
   carried.height = height;
   carried.road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
-  carried.roll_rad = result.geometry_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
+  carried.roll_rad = result.roll_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   result.mde_per_s = static_cast<double>(width) * height * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
 }
 
@@ -197,14 +197,14 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
   s.result.ms.road_model = watch.lap();
   s.transform_perspective();
   s.result.ms.perspective = watch.lap();
-  s.stages->look_coarsely(s.result);
+  s.stages->search_coarsely(s.result);
   s.result.ms.coarse = watch.lap();
   s.match();
   s.result.ms.match = watch.lap();
   s.stages->refine(s.result);
   s.result.ms.refinement = watch.lap();
   s.find_geometry();
-  s.result.ms.road_geometry = watch.lap();
+  s.result.ms.roll = watch.lap();
   s.transform();
   s.result.ms.transform = watch.lap();
   s.stages->deliver(s.result);
@@ -245,8 +245,8 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
   if (frame.disparity.empty()) {
     fail("the frame has no maps on the host, where damage is looked for: it is none, or they were left on the device");
   }
-  if (!frame.geometry_found) {
-    result = no_damage(frame.disparity.width(), frame.disparity.height(), "no road was found");
+  if (!frame.roll_found) {
+    result = make_empty_damage_map(frame.disparity.width(), frame.disparity.height(), "no road was found");
     return;
   }
   DamageInput input;
@@ -259,18 +259,18 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
   find_damage(input, options, threads, result);
 }
 
-const CarriedState& Pipeline::carried() const {
+const PipelineState& Pipeline::carried() const {
   return state_->carried;
 }
 
-void Pipeline::carry_on(const CarriedState& carried) {
+void Pipeline::restore(const PipelineState& carried) {
   state_->has_frame = state_->has_maps = false;
   state_->carried = carried;
 }
 
-void Pipeline::use_device(const DeviceUse& use) {
+void Pipeline::set_device_options(const DeviceOptions& use) {
   state_->has_frame = false;
-  state_->stages->use_device(use);
+  state_->stages->set_device_options(use);
 }
 
 DeviceMaps Pipeline::device_maps() const {
@@ -280,7 +280,7 @@ DeviceMaps Pipeline::device_maps() const {
 }
 
 void Pipeline::reset() {
-  carry_on({});
+  restore({});
 }
 
 const PipelineOptions& Pipeline::options() const {

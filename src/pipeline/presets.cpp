@@ -11,24 +11,24 @@ PipelineOptions paper_preset() {
   options.correct_rows = false;
   options.road_model.with_roll = false;  // eq. relation_vd: Δu depends on v alone
   options.perspective.shift = ShiftPrecision::whole_pixel;
-  options.coarse_search.road_pull = 0;
-  options.matcher.prior_slope = 0;  // the costs alone decide
-  options.matcher.target_volume = true;
+  options.coarse_search.road_prior_weight = 0;
+  options.matcher.prior_weight = 0;  // the costs alone decide
+  options.matcher.match_both_views = true;
   options.matcher.block_radius = 5;  // 120-connected system
   options.matcher.aggregation_radius = 5;
   options.matcher.aggregation_aspect = 1;
   options.matcher.aggregation_step = 1;
   options.matcher.aggregation_shape = WindowShape::square;
-  options.matcher.sigma_space = 1.5;   // σ0
-  options.matcher.sigma_colour = 5.5;  // σ1
-  options.matcher.texture_noise = 0;   // eq. c as written
-  options.matcher.consistency = 1;     // δr
-  options.matcher.hidden_sigma_px = 0;
-  options.matcher.drop_range_ends = false;
+  options.matcher.sigma_space = 1.5;    // σ0
+  options.matcher.sigma_colour = 5.5;   // σ1
+  options.matcher.ncc_noise_sigma = 0;  // eq. c as written
+  options.matcher.lr_max_diff_px = 1;   // δr
+  options.matcher.occlusion_sigma_px = 0;
+  options.matcher.reject_range_boundary = false;
   options.refinement.radius = 0;
-  options.refinement.worst_sigma_px = 1000;  // the left-right check alone decides
-  options.road_geometry.solver = RollSolver::gradient_descent;
-  options.road_geometry.initial_lambda = 10;  // λ(0)
+  options.refinement.max_sigma_px = 1000;  // the left-right check alone decides
+  options.roll.solver = RollSolver::gradient_descent;
+  options.roll.initial_lambda = 10;  // λ(0)
   return options;
 }
 
@@ -37,12 +37,12 @@ PipelineOptions paper_preset() {
 PipelineOptions fast_preset() {
   PipelineOptions options;
   options.coarse_search.factor = 4;
-  options.matcher.drop_range_ends = true;
-  options.matcher.hidden_sigma_px = 0;
+  options.matcher.reject_range_boundary = true;
+  options.matcher.occlusion_sigma_px = 0;
   options.matcher.block_radius = 5;
   options.matcher.aggregation_radius = 0;
   options.refinement.radius = 0;
-  options.refinement.worst_sigma_px = 1000;  // the left-right check alone decides
+  options.refinement.max_sigma_px = 1000;  // the left-right check alone decides
   return options;
 }
 
@@ -71,7 +71,7 @@ void PipelineOptions::validate() const {
   coarse_search.validate();
   matcher.validate();
   refinement.validate();
-  road_geometry.validate();
+  roll.validate();
   damage.validate();
 }
 

@@ -7,9 +7,9 @@ namespace roadstereo {
 namespace {
 
 /// A frame of a road seen from above that never was: texture, and in the right one the same shifted row by row.
-class MadeUpFrame {
+class SyntheticTexture {
  public:
-  MadeUpFrame(int width, int height, double white_level, bool right)
+  SyntheticTexture(int width, int height, double white_level, bool right)
       : width_(width), height_(height), samples_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
     const double white = white_level > 0 ? white_level : 65535;
     auto sample = samples_.begin();
@@ -40,8 +40,8 @@ class MadeUpFrame {
 }  // namespace
 
 void Pipeline::warm_up(int width, int height) {
-  const MadeUpFrame left(width, height, options().white_level, false);
-  const MadeUpFrame right(width, height, options().white_level, true);
+  const SyntheticTexture left(width, height, options().white_level, false);
+  const SyntheticTexture right(width, height, options().white_level, true);
   constexpr int frames = 2;  // found anew, and carried over
   for (int frame = 0; frame < frames; ++frame) process(left.view(), right.view());
   reset();

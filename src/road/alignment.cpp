@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/downsample.hpp"
 #include "core/parallel.hpp"
-#include "core/shrink.hpp"
 #include "road/block_alignment.hpp"
 #include "road/plane_fit.hpp"
 #include "road/strip_correlation.hpp"
@@ -18,8 +18,8 @@ namespace {
 constexpr int coarse_width = 120;
 constexpr int half_block = 4;
 constexpr int refined_radius = 8;
-constexpr float least_correlation = 0.7f;
-constexpr float least_deviation = 2.0f * grey_scale;
+constexpr float min_correlation = 0.7f;
+constexpr float min_deviation = 2.0f * grey_scale;
 constexpr int cells_across = 15;
 constexpr int cells_down = 9;
 
@@ -34,7 +34,7 @@ struct Pyramid {
 /// that noise does not make offsets of half a pixel look good.
 class SmoothPatch {
  public:
-  static constexpr int largest_radius = 16;
+  static constexpr int max_radius = 16;
 
   /// As far as the image goes, but for its outermost pixels.
   SmoothPatch(ImageView<const std::int16_t> image, int u, int v, int radius)
@@ -49,7 +49,7 @@ class SmoothPatch {
   ImageView<const std::int16_t> view() const { return {pixels_.data(), width_, height_, pitch}; }
 
  private:
-  static constexpr int pitch = 2 * largest_radius + 1;
+  static constexpr int pitch = 2 * max_radius + 1;
 
   void smooth_row(ImageView<const std::int16_t> image, int y) {
     const std::int16_t* above = image.row(first_v_ + y - 1) + first_u_ - 1;
@@ -117,7 +117,7 @@ Offset search(ImageView<const std::int16_t> left, const Place& place, ImageView<
   const CorrelationBlock block(left, place.u, place.v, half_block, half_block);
   const int first = std::max(lowest.du, half_block - place.u);
   const int count = std::min(highest.du, right.width() - half_block - 1 - place.u) - first + 1;
-  if (block.deviation < least_deviation || count < 1) return best;
+  if (block.deviation < min_deviation || count < 1) return best;
   StripCorrelations correlations;
   for (int dv = lowest.dv; dv <= highest.dv; ++dv) {
     const int top = place.v + dv - half_block;
@@ -125,7 +125,7 @@ Offset search(ImageView<const std::int16_t> left, const Place& place, ImageView<
     for (int y = 0; y < block.height; ++y) {
       copy_strip(right.row(top + y) + place.u + first - half_block, count + block.width - 1, strip.row(y));
     }
-    correlate_strip(block, strip, count, least_deviation, correlations);
+    correlate_strip(block, strip, count, min_deviation, correlations);
     const auto at = std::max_element(correlations.begin(), correlations.begin() + count);
     if (*at > best.correlation) best = {first + static_cast<int>(at - correlations.begin()), dv, *at};
   }
@@ -134,15 +134,15 @@ Offset search(ImageView<const std::int16_t> left, const Place& place, ImageView<
 
 /// The vertical offset of a block to a fraction of a pixel.
 std::optional<double> refined_offset(const Pyramid& pair, const Place& place, const Offset& offset) {
-  constexpr int room = SmoothPatch::largest_radius - refined_radius;  // for the slant of the road
+  constexpr int room = SmoothPatch::max_radius - refined_radius;  // for the slant of the road
   const SmoothPatch left(pair.left, place.u, place.v, refined_radius);
   const SmoothPatch right(pair.right, place.u + offset.du, place.v + offset.dv, refined_radius + room);
   // From the one patch's coordinates to the other's.
   const int shift_u = left.first_u() - right.first_u(), shift_v = left.first_v() - right.first_v();
   const BlockAlignment start{.du = static_cast<double>(offset.du + shift_u),
                              .dv = static_cast<double>(offset.dv + shift_v)};
-  const auto aligned =
-      align_block(left.view(), place.u - left.first_u(), place.v - left.first_v(), right.view(), start, refined_radius);
+  const auto aligned = affine_lucas_kanade(left.view(), place.u - left.first_u(), place.v - left.first_v(),
+                                           right.view(), start, refined_radius);
   if (!aligned) return std::nullopt;
   return aligned->dv - shift_v;
 }
@@ -161,14 +161,14 @@ std::vector<double> measure_cells(const Pyramid& pair, int cell_v) {
                                   (cell_v + 1) * pair.small_left.height() / cells_down);
     if (!place) continue;
     const Offset coarse = search(pair.small_left, *place, pair.small_right, {-columns, -rows}, {0, rows}, strip);
-    if (coarse.correlation < least_correlation) continue;
-    const Place full{static_cast<int>(std::lround(unshrink(place->u, pair.factor))),
-                     static_cast<int>(std::lround(unshrink(place->v, pair.factor)))};
+    if (coarse.correlation < min_correlation) continue;
+    const Place full{static_cast<int>(std::lround(to_full_resolution(place->u, pair.factor))),
+                     static_cast<int>(std::lround(to_full_resolution(place->v, pair.factor)))};
     if (!inside(pair.left, full.u, full.v)) continue;
     const Offset fine =
         search(pair.left, full, pair.right, {coarse.du * pair.factor - reach, coarse.dv * pair.factor - reach},
                {coarse.du * pair.factor + reach, coarse.dv * pair.factor + reach}, strip);
-    if (fine.correlation < least_correlation) continue;
+    if (fine.correlation < min_correlation) continue;
     if (const auto dv = refined_offset(pair, full, fine)) offsets.push_back(*dv);
   }
   return offsets;
@@ -180,7 +180,7 @@ RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView
                                    int threads) {
   int factor = 1;
   while (left.width() / (2 * factor) >= coarse_width) factor *= 2;
-  const Pyramid pair{left, right, factor, shrink(left, factor), shrink(right, factor)};
+  const Pyramid pair{left, right, factor, downsample(left, factor), downsample(right, factor)};
   std::vector<std::vector<double>> by_row(cells_down);
   parallel_for(cells_down, threads,
                [&](int cell_v, int) { by_row[static_cast<std::size_t>(cell_v)] = measure_cells(pair, cell_v); });
@@ -192,7 +192,7 @@ RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView
   std::sort(offsets.begin(), offsets.end());
   alignment.median_px = offsets[offsets.size() / 2];
   for (double& offset : offsets) offset -= alignment.median_px;
-  alignment.spread_px = normal_from_median * median_magnitude(offsets);
+  alignment.sigma_px = normal_from_median * median_magnitude(offsets);
   return alignment;
 }
 

@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::size_t parameters = 6;  // du, dv, shear, stretch, gain, offset
 using Parameters = Vector<parameters>;
-constexpr double smallest_share = 1e-5;  // sums of single precision leave that much of nothing
+constexpr double min_share = 1e-5;  // sums of single precision leave that much of nothing
 
-constexpr int most_radius = 8;
+constexpr int max_radius = 8;
 constexpr std::size_t columns = 20;  ///< of the largest block, up to whole vectors of four
 using Columns = std::array<float, columns>;
 
@@ -95,7 +95,7 @@ class LeftBlock {
 
   int u_, v_, radius_;
   double mean_ = 0, squares_ = 0;
-  std::array<Columns, 2 * most_radius + 1> rows_{};
+  std::array<Columns, 2 * max_radius + 1> rows_{};
 };
 
 /// Row y of the block in the right image under the parameters p; false when it leaves the image.
@@ -184,25 +184,25 @@ std::optional<Equations> set_up(const LeftBlock& block, ImageView<const std::int
 
 }  // namespace
 
-std::optional<BlockAlignment> align_block(ImageView<const std::int16_t> left, int u, int v,
-                                          ImageView<const std::int16_t> right, const BlockAlignment& start,
-                                          int radius) {
-  constexpr int most_steps = 12;
+std::optional<BlockAlignment> affine_lucas_kanade(ImageView<const std::int16_t> left, int u, int v,
+                                                  ImageView<const std::int16_t> right, const BlockAlignment& start,
+                                                  int radius) {
+  constexpr int max_steps = 12;
   constexpr double converged_px = 0.01;
   constexpr double farthest_px = 1.5;
-  constexpr double least_correlation = 0.85;
+  constexpr double min_correlation = 0.85;
   if (u < radius || v < radius || u + radius >= left.width() || v + radius >= left.height()) return std::nullopt;
   const LeftBlock block(left, u, v, radius);
   Parameters p{start.du, start.dv, start.shear, start.stretch, 1, 0};
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     const auto equations = set_up(block, right, p);
     if (!equations) return std::nullopt;
-    const auto change = solve_positive_definite(equations->a, equations->b, smallest_share);
+    const auto change = solve_positive_definite(equations->a, equations->b, min_share);
     if (!change) return std::nullopt;
     for (std::size_t i = 0; i < parameters; ++i) p[i] += (*change)[i];
     if (std::abs(p[0] - start.du) > farthest_px || std::abs(p[1] - start.dv) > farthest_px) return std::nullopt;
     if (std::max(std::abs((*change)[0]), std::abs((*change)[1])) > converged_px) continue;
-    if (equations->correlation < least_correlation) return std::nullopt;
+    if (equations->correlation < min_correlation) return std::nullopt;
     return BlockAlignment{p[0], p[1], p[2], p[3]};
   }
   return std::nullopt;

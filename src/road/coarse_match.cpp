@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/downsample.hpp"
 #include "core/parallel.hpp"
-#include "core/shrink.hpp"
 #include "road/row_correlation.hpp"
 
 namespace roadstereo {
@@ -13,9 +13,9 @@ namespace {
 
 constexpr int half_width = row_block_half_width;
 constexpr int half_height = row_block_half_height;
-constexpr float least_deviation = 1.2f * grey_scale;  ///< of a block with texture
-constexpr float least_correlation = 0.7f;
-constexpr float least_margin = 0.03f;  ///< by which the best must beat every other but its neighbours
+constexpr float min_deviation = 1.2f * grey_scale;  ///< of a block with texture
+constexpr float min_correlation = 0.7f;
+constexpr float min_margin = 0.03f;  ///< by which the best must beat every other but its neighbours
 constexpr int band_rows = 12;
 
 std::ptrdiff_t padded(int size) {
@@ -42,7 +42,7 @@ class PaddedImage {
       : pixels_(scratch_vector<std::int16_t>(layout.row_size() * static_cast<std::size_t>(image.height() / factor))),
         view_(pixels_.data() + layout.front, layout.width, image.height() / factor,
               static_cast<std::ptrdiff_t>(layout.row_size())) {
-    shrink(image, factor, view_);
+    downsample(image, factor, view_);
   }
 
   int height() const { return view_.height(); }
@@ -112,7 +112,7 @@ void describe_blocks(const PaddedImage& image, int v, int width, BandMemory& mem
   for (int u = half_width; u + half_width < width; ++u) {
     const float mean = static_cast<float>(block_sum(sums + u)) / row_block_pixels;
     const float variance = static_cast<float>(block_sum(squares + u)) / row_block_pixels - mean * mean;
-    const bool textured = variance >= least_deviation * least_deviation;
+    const bool textured = variance >= min_deviation * min_deviation;
     blocks.mean[u] = mean;
     blocks.inverse_deviation[u] = textured ? 1 / std::sqrt(variance) : 0;
   }
@@ -134,11 +134,11 @@ std::size_t collect(const RowCorrelations& row, BandMemory& memory, int v, int f
   find_rivals(row, left.disparity, memory.rivals());
   std::size_t found = 0;
   for (int u = 0; u < row.width; ++u) {
-    if (left.correlation[u] < least_correlation) continue;
+    if (left.correlation[u] < min_correlation) continue;
     const int d = static_cast<int>(left.disparity[u]);
     if (std::abs(right.disparity[u - d] - left.disparity[u]) > 1) continue;
-    if (memory.rivals()[u] > left.correlation[u] - least_margin) continue;
-    matches[found++] = {unshrink(u, factor), unshrink(v, factor), refine(row, u, d) * factor};
+    if (memory.rivals()[u] > left.correlation[u] - min_margin) continue;
+    matches[found++] = {to_full_resolution(u, factor), to_full_resolution(v, factor), refine(row, u, d) * factor};
   }
   return found;
 }

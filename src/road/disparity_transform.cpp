@@ -7,14 +7,14 @@
 #include "core/scratch.hpp"
 #include "road/plane_fit.hpp"
 #include "road/transformed.hpp"
-#include "roadstereo/road_geometry.hpp"
+#include "roadstereo/roll.hpp"
 
 namespace roadstereo {
 namespace {
 
 constexpr int rows_per_band = 64;
 
-void subtract_road(ImageView<const float> disparity, const RoadModel& plane, int v, float* out) {
+void subtract_road(ImageView<const float> disparity, const DisparityPlane& plane, int v, float* out) {
   const float* in = disparity.row(v);
   const double at_row = road_at_row(plane.a0, plane.a1, v);
   for (int u = 0; u < disparity.width(); ++u) out[u] = above_road(in[u], at_row, plane.a2, u);
@@ -22,8 +22,8 @@ void subtract_road(ImageView<const float> disparity, const RoadModel& plane, int
 
 }  // namespace
 
-double transform_disparity(ImageView<const float> disparity, const RoadGeometry& geometry, double least_delta_t,
-                           const RoadGeometryOptions& options, int threads, Image<float>& transformed) {
+double transform_disparity(ImageView<const float> disparity, const RollEstimate& geometry, double min_delta_t,
+                           const RollOptions& options, int threads, Image<float>& transformed) {
   const int height = disparity.height();
   transformed.resize(disparity.width(), height);
   auto lowest = scratch_vector(static_cast<std::size_t>(height), std::numeric_limits<float>::infinity());
@@ -37,7 +37,7 @@ double transform_disparity(ImageView<const float> disparity, const RoadGeometry&
     }
   });
   double delta_t = options.delta_t_px;
-  if (delta_t < 0) delta_t = derived_delta_t(*std::min_element(lowest.begin(), lowest.end()), least_delta_t);
+  if (delta_t < 0) delta_t = derived_delta_t(*std::min_element(lowest.begin(), lowest.end()), min_delta_t);
   parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
       float* out = transformed.row(v);
@@ -47,7 +47,7 @@ double transform_disparity(ImageView<const float> disparity, const RoadGeometry&
   return delta_t;
 }
 
-TransformedSpread measure_spread(ImageView<const float> transformed, double delta_t, int threads) {
+RoadResiduals measure_residuals(ImageView<const float> transformed, double delta_t, int threads) {
   auto residuals = scratch_vector<double>();
   const int step = spread_step(static_cast<double>(transformed.pixels()));
   for (int v = step / 2; v < transformed.height(); v += step) {

@@ -9,12 +9,12 @@
 #include "road/cubic.hpp"
 #include "road/shift_terms_of.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/road_plane.hpp"
+#include "roadstereo/ground_plane.hpp"
 
 namespace roadstereo {
 namespace {
 
-constexpr int most_disparities = 1024;
+constexpr int max_disparities = 1024;
 constexpr int rows_per_band = 32;
 
 /// Room beyond the wanted range, so that the winner at its end still has neighbours and a small error of the road
@@ -29,23 +29,22 @@ struct SearchRange {
 
 /// Residual disparities of the deepest damage and the highest bump where the road is nearest to the camera. A point
 /// at distance e beyond the road plane has the road's disparity times h / (h + e), h = distance of camera and plane.
-SearchRange physical_range(const RoadModel& road, const StereoCalibration& calibration, int width, int height,
+SearchRange physical_range(const DisparityPlane& road, const StereoCalibration& calibration, int width, int height,
                            const PerspectiveOptions& options) {
-  const double h = road_plane(road, calibration).height_m;
+  const double h = ground_plane(road, calibration).height_m;
   const std::array<double, 4> corners{road.disparity(0, 0), road.disparity(width - 1, 0), road.disparity(0, height - 1),
                                       road.disparity(width - 1, height - 1)};
   const double nearest = *std::max_element(corners.begin(), corners.end()) + calibration.disparity_offset_px;
-  const double bump = std::min(options.highest_bump_m, 0.5 * h);
-  return {nearest * options.deepest_damage_m / (h + options.deepest_damage_m), nearest * bump / (h - bump)};
+  const double bump = std::min(options.max_bump_height_m, 0.5 * h);
+  return {nearest * options.max_damage_depth_m / (h + options.max_damage_depth_m), nearest * bump / (h - bump)};
 }
 
 /// Disparities of a search without a road model: all that the correspondences show, but not more than a quarter of the
 /// image, since wrong ones lie anywhere.
 int full_range(const RoadModelEstimate& road, int width) {
   const double largest = width / 4.0;
-  const double shown = road.matches > 0 ? road.largest_disparity_px * 1.1 + 8 : largest;
-  return std::clamp(static_cast<int>(std::ceil(std::min(shown, largest))) + 1, 8,
-                    std::min(most_disparities, width - 1));
+  const double shown = road.matches > 0 ? road.max_disparity_px * 1.1 + 8 : largest;
+  return std::clamp(static_cast<int>(std::ceil(std::min(shown, largest))) + 1, 8, std::min(max_disparities, width - 1));
 }
 
 /// Pixels that cubic interpolation reads beyond the ends of a row: copies of the border.
@@ -104,12 +103,13 @@ void PerspectiveOptions::validate() const {
   const auto require = [](bool good, const char* name, double value, const char* rule) {
     if (!good) fail("perspective.", name, " is ", value, "; it must be ", rule);
   };
-  require(deepest_damage_m > 0 && deepest_damage_m <= 2, "deepest_damage_m", deepest_damage_m,
+  require(max_damage_depth_m > 0 && max_damage_depth_m <= 2, "max_damage_depth_m", max_damage_depth_m,
           "above 0 and at most 2 metres");
-  require(highest_bump_m > 0 && highest_bump_m <= 2, "highest_bump_m", highest_bump_m, "above 0 and at most 2 metres");
-  require(disparities >= 0 && disparities <= most_disparities, "disparities", disparities,
+  require(max_bump_height_m > 0 && max_bump_height_m <= 2, "max_bump_height_m", max_bump_height_m,
+          "above 0 and at most 2 metres");
+  require(disparities >= 0 && disparities <= max_disparities, "disparities", disparities,
           "between 1 and 1024, or 0 to derive it");
-  require(delta_p_px <= most_disparities, "delta_p_px", delta_p_px, "at most 1024, or negative to derive it");
+  require(delta_p_px <= max_disparities, "delta_p_px", delta_p_px, "at most 1024, or negative to derive it");
 }
 
 double PerspectiveShift::at(double x, double v) const {
@@ -127,7 +127,7 @@ PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::opti
   }
   shift.road = road.model;
   // What the correspondences show of the road's unevenness, and what is to be measured where a scale is known.
-  SearchRange range{std::max(0.0, -road.lowest_px), std::max(0.0, road.highest_px)};
+  SearchRange range{std::max(0.0, -road.residual_p01_px), std::max(0.0, road.residual_p99_px)};
   if (calibration) {
     const SearchRange physical = physical_range(road.model, *calibration, width, height, options);
     range = {std::max(range.below, physical.below), std::max(range.above, physical.above)};
@@ -142,7 +142,7 @@ PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::opti
     shift.delta_p = std::ceil(range.below);
     const double above = options.delta_p_px >= 0 ? options.delta_p_px - shift.delta_p : 0;
     shift.disparities = std::clamp(static_cast<int>(std::ceil(shift.delta_p + above + range.above)) + 1, 1,
-                                   std::min(most_disparities, width - 1));
+                                   std::min(max_disparities, width - 1));
   }
   if (options.delta_p_px >= 0) shift.delta_p = options.delta_p_px;
   return shift;

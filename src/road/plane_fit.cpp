@@ -37,8 +37,8 @@ void PlaneSums::add(const PlaneSums& other) {
   s_.dd += other.s_.dd;
 }
 
-std::optional<RoadModel> PlaneSums::plane(bool with_roll) const {
-  RoadModel model;
+std::optional<DisparityPlane> PlaneSums::plane(bool with_roll) const {
+  DisparityPlane model;
   if (!solve_slopes({s_.n, uu(), uv(), vv(), ud(), vd()}, with_roll, model.a1, model.a2)) return std::nullopt;
   model.a0 = mean_d() - model.a1 * mean_v() - model.a2 * mean_u();
   return model;
@@ -51,10 +51,10 @@ double median_magnitude(std::span<double> values) {
   return std::abs(*middle);
 }
 
-std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> points, const RoadModel& start,
-                                            double start_scale_px, bool with_roll, int max_iterations) {
+std::optional<IrlsPlaneFit> fit_plane_irls(std::span<const DisparityPoint> points, const DisparityPlane& start,
+                                           double start_scale_px, bool with_roll, int max_iterations) {
   if (points.size() < 3) return std::nullopt;
-  RobustPlane fit{start, start_scale_px, 0, scratch_vector<double>(points.size())};
+  IrlsPlaneFit fit{start, start_scale_px, 0, scratch_vector<double>(points.size())};
   auto near = scratch_vector<double>();
   near.reserve(points.size());
   for (fit.iterations = 1; fit.iterations <= max_iterations; ++fit.iterations) {
@@ -64,7 +64,7 @@ std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> poin
       fit.weights[i] = tukey_weight((p.d - fit.plane.disparity(p.u, p.v)) / (tukey * fit.scale_px));
       if (fit.weights[i] > 0) sums.add(p, fit.weights[i]);
     }
-    const std::optional<RoadModel> plane = sums.plane(with_roll);
+    const std::optional<DisparityPlane> plane = sums.plane(with_roll);
     if (!plane) return std::nullopt;
     // The scale comes from the residuals in the window that is left, so that it narrows onto the road.
     near.clear();
@@ -83,12 +83,12 @@ std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> poin
   return fit;
 }
 
-std::optional<RoadModel> plane_through(const DisparityPoint& a, const DisparityPoint& b, const DisparityPoint& c) {
+std::optional<DisparityPlane> plane_through(const DisparityPoint& a, const DisparityPoint& b, const DisparityPoint& c) {
   const double bu = b.u - a.u, bv = b.v - a.v, bd = b.d - a.d;
   const double cu = c.u - a.u, cv = c.v - a.v, cd = c.d - a.d;
   const double determinant = bu * cv - bv * cu;
   if (std::abs(determinant) < 1e-6) return std::nullopt;
-  RoadModel model;
+  DisparityPlane model;
   model.a2 = (bd * cv - bv * cd) / determinant;
   model.a1 = (bu * cd - bd * cu) / determinant;
   model.a0 = a.d - model.a1 * a.v - model.a2 * a.u;
@@ -98,18 +98,18 @@ std::optional<RoadModel> plane_through(const DisparityPoint& a, const DisparityP
 namespace {
 
 /// Points drawn to judge planes, in groups, and the most that those behind a group can add.
-class Jury {
+class PreemptiveScorer {
  public:
-  Jury(PlaneVotes votes, ScratchVector<DisparityPoint> points) : votes_(votes), points_(std::move(points)) {
+  PreemptiveScorer(PlaneScore votes, ScratchVector<DisparityPoint> points) : votes_(votes), points_(std::move(points)) {
     double rest = 0;
     for (std::size_t group = groups; group-- > 0;) {
       rest_[group] = rest;
-      for (const DisparityPoint& p : of_group(group)) rest += votes_({&p, 1}, RoadModel{p.d, 0, 0});
+      for (const DisparityPoint& p : of_group(group)) rest += votes_({&p, 1}, DisparityPlane{p.d, 0, 0});
     }
   }
 
   /// All votes for the plane; some smaller number than `least` when there cannot be as many.
-  double judge(const RoadModel& plane, double least) const {
+  double judge(const DisparityPlane& plane, double least) const {
     double score = 0;
     for (std::size_t group = 0; group < groups; ++group) {
       score += votes_(of_group(group), plane);
@@ -126,15 +126,15 @@ class Jury {
     return std::span(points_).subspan(first, last - first);
   }
 
-  PlaneVotes votes_;
+  PlaneScore votes_;
   ScratchVector<DisparityPoint> points_;
   std::array<double, groups> rest_{};
 };
 
 }  // namespace
 
-std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, PlaneVotes votes,
-                                      FunctionRef<bool(const RoadModel&)> possible) {
+std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, PlaneScore votes,
+                                           FunctionRef<bool(const DisparityPlane&)> possible) {
   constexpr int trials = 300;
   constexpr std::size_t voters = 400;
   if (points.size() < 3) return std::nullopt;
@@ -143,8 +143,8 @@ std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, Pl
   auto drawn = scratch_vector<DisparityPoint>();
   drawn.reserve(voters);
   for (std::size_t i = 0; i < voters; ++i) drawn.push_back(draw());
-  const Jury jury(votes, std::move(drawn));
-  std::optional<RoadModel> best;
+  const PreemptiveScorer jury(votes, std::move(drawn));
+  std::optional<DisparityPlane> best;
   double best_score = 0;
   for (int trial = 0; trial < trials; ++trial) {
     const DisparityPoint &a = draw(), &b = draw(), &c = draw();
@@ -159,8 +159,8 @@ std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, Pl
   return best;
 }
 
-std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, double tolerance_px) {
-  const auto votes = [tolerance_px](std::span<const DisparityPoint> voters, const RoadModel& plane) {
+std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, double tolerance_px) {
+  const auto votes = [tolerance_px](std::span<const DisparityPoint> voters, const DisparityPlane& plane) {
     double sum = 0;
     for (const DisparityPoint& p : voters) {
       const double x = (p.d - plane.disparity(p.u, p.v)) / tolerance_px;
@@ -168,7 +168,7 @@ std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, do
     }
     return sum;
   };
-  return search_plane(points, votes, [](const RoadModel&) { return true; });
+  return ransac_plane(points, votes, [](const DisparityPlane&) { return true; });
 }
 
 }  // namespace roadstereo

@@ -42,7 +42,7 @@ class PlaneSums {
   double dd() const { return s_.dd - s_.d * s_.d / s_.n; }
 
   /// The least-squares plane; nothing when the points lie on one line of the image. `with_roll` false keeps a2 = 0.
-  std::optional<RoadModel> plane(bool with_roll = true) const;
+  std::optional<DisparityPlane> plane(bool with_roll = true) const;
 
  private:
   double origin_u_, origin_v_;
@@ -50,8 +50,8 @@ class PlaneSums {
 };
 
 /// A plane through most of the points, and how well it fits those.
-struct RobustPlane {
-  RoadModel plane;
+struct IrlsPlaneFit {
+  DisparityPlane plane;
   double scale_px = 0;  ///< robust standard deviation of the inliers
   int iterations = 0;
   ScratchVector<double> weights = scratch_vector<double>();  ///< Tukey weights of the points, 0 … 1
@@ -59,23 +59,23 @@ struct RobustPlane {
 
 /// Iteratively reweighted least squares with Tukey's biweight from a starting plane, down from a window of
 /// `start_scale_px`. Nothing when too few points stay.
-std::optional<RobustPlane> fit_robust_plane(std::span<const DisparityPoint> points, const RoadModel& start,
-                                            double start_scale_px, bool with_roll, int max_iterations);
+std::optional<IrlsPlaneFit> fit_plane_irls(std::span<const DisparityPoint> points, const DisparityPlane& start,
+                                           double start_scale_px, bool with_roll, int max_iterations);
 
 /// What points say to a plane, added up: positive for, negative against. A point can say no more for a plane than for
 /// one that it lies on.
-using PlaneVotes = FunctionRef<double(std::span<const DisparityPoint>, const RoadModel&)>;
+using PlaneScore = FunctionRef<double(std::span<const DisparityPoint>, const DisparityPlane&)>;
 
 /// The plane through three of the points that gets the most votes of the others: a start that no outliers pull. Only
 /// planes that `possible` accepts are tried. Deterministic. Nothing when no plane has more votes for it than against.
-std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, PlaneVotes votes,
-                                      FunctionRef<bool(const RoadModel&)> possible);
+std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, PlaneScore votes,
+                                           FunctionRef<bool(const DisparityPlane&)> possible);
 
 /// The same where every point within `tolerance_px` votes for a plane and none against it.
-std::optional<RoadModel> search_plane(std::span<const DisparityPoint> points, double tolerance_px);
+std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, double tolerance_px);
 
 /// The plane through three points; nothing when they lie on one line of the image.
-std::optional<RoadModel> plane_through(const DisparityPoint& a, const DisparityPoint& b, const DisparityPoint& c);
+std::optional<DisparityPlane> plane_through(const DisparityPoint& a, const DisparityPoint& b, const DisparityPoint& c);
 
 /// Median of |values|; reorders them. 0 when empty.
 double median_magnitude(std::span<double> values);

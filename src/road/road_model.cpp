@@ -4,12 +4,12 @@
 #include <cmath>
 #include <span>
 
+#include "core/downsample.hpp"
 #include "core/sentence.hpp"
-#include "core/shrink.hpp"
 #include "road/coarse_match.hpp"
-#include "road/guided_match.hpp"
 #include "road/plane_fit.hpp"
-#include "road/road_judgement.hpp"
+#include "road/plane_match.hpp"
+#include "road/road_assessment.hpp"
 #include "road/road_search.hpp"
 #include "roadstereo/error.hpp"
 
@@ -18,7 +18,7 @@ namespace {
 
 /// How much a match speaks for a plane. The road is what fills the lower part of the picture, and nothing but damage
 /// lies below it: a match beyond the plane speaks against it, one in front of it (a vehicle, a verge) hardly.
-double vote(const DisparityPoint& point, const RoadModel& plane, double tolerance_px, int height) {
+double vote(const DisparityPoint& point, const DisparityPlane& plane, double tolerance_px, int height) {
   const double expected = plane.disparity(point.u, point.v);
   if (expected <= 0) return 0;  // above the horizon
   const double relative = (point.d - expected) / tolerance_px;
@@ -28,24 +28,24 @@ double vote(const DisparityPoint& point, const RoadModel& plane, double toleranc
   return relative < 0 ? -0.7 * weight : -0.1 * weight;
 }
 
-std::optional<RoadModel> search_road(std::span<const DisparityPoint> matches, double tolerance_px, int height,
-                                     const TiltLimit& limit) {
-  const auto votes = [&](std::span<const DisparityPoint> points, const RoadModel& plane) {
+std::optional<DisparityPlane> search_road(std::span<const DisparityPoint> matches, double tolerance_px, int height,
+                                          const TiltLimit& limit) {
+  const auto votes = [&](std::span<const DisparityPoint> points, const DisparityPlane& plane) {
     double sum = 0;
     for (const DisparityPoint& p : points) sum += vote(p, plane, tolerance_px, height);
     return sum;
   };
-  return search_plane(matches, votes, [&](const RoadModel& plane) { return limit.can_be_road(plane); });
+  return ransac_plane(matches, votes, [&](const DisparityPlane& plane) { return limit.can_be_road(plane); });
 }
 
 /// The same plane in the coordinates of the image shrunk by `factor`.
-RoadModel shrink_model(const RoadModel& plane, int factor) {
-  const double centre = unshrink(0, factor);
+DisparityPlane downsample_plane(const DisparityPlane& plane, int factor) {
+  const double centre = to_full_resolution(0, factor);
   return {plane.disparity(centre, centre) / factor, plane.a1, plane.a2};
 }
 
-ScratchVector<DisparityPoint> unshrink_points(ScratchVector<DisparityPoint> points, int factor) {
-  for (DisparityPoint& p : points) p = {unshrink(p.u, factor), unshrink(p.v, factor), p.d * factor};
+ScratchVector<DisparityPoint> points_to_full_resolution(ScratchVector<DisparityPoint> points, int factor) {
+  for (DisparityPoint& p : points) p = {to_full_resolution(p.u, factor), to_full_resolution(p.v, factor), p.d * factor};
   return points;
 }
 
@@ -63,14 +63,14 @@ void measure_range(std::span<const DisparityPoint> matches, RoadModelEstimate& e
     const double residual = p.d - expected;
     if (near_road(residual, expected)) residuals.push_back(residual);
   }
-  if (residuals.size() < static_cast<std::size_t>(fewest_matches)) return;
-  estimate.lowest_px = percentile(residuals, lowest_residual_share);
-  estimate.highest_px = percentile(residuals, highest_residual_share);
+  if (residuals.size() < static_cast<std::size_t>(min_matches)) return;
+  estimate.residual_p01_px = percentile(residuals, residual_p01);
+  estimate.residual_p99_px = percentile(residuals, residual_p99);
 }
 
 /// What the fine search around a plane and a robust fit leave.
 struct Refinement {
-  RoadEvidence evidence;
+  PlaneFitStatistics evidence;
   ScratchVector<DisparityPoint> points = scratch_vector<DisparityPoint>();  ///< full-size coordinates
 };
 
@@ -97,7 +97,7 @@ class FinePair {
   ImageView<const std::int16_t> shrunk(ImageView<const std::int16_t> image, std::int16_t* pixels) const {
     if (factor_ == 1) return image;
     const ImageView<std::int16_t> small(pixels, image.width() / factor_, image.height() / factor_);
-    shrink(image, factor_, small);
+    downsample(image, factor_, small);
     return small;
   }
 
@@ -106,24 +106,24 @@ class FinePair {
   ImageView<const std::int16_t> left_, right_;
 };
 
-Refinement refine_road(const FinePair& pair, const RoadModel& plane, Origin origin, const FineSearch& search,
+Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, Origin origin, const FineSearch& search,
                        const TiltLimit& limit, bool with_roll, int threads) {
   constexpr double tolerance = 1.0;  // of the vote, pixels of the shrunk image
   const int factor = pair.factor();
   const int height = pair.left().height() * factor;
-  GuidedMatches found =
-      match_near_plane(pair.left(), pair.right(), shrink_model(plane, factor), search.range_px, search.places, threads);
+  PlaneMatches found = match_along_plane(pair.left(), pair.right(), downsample_plane(plane, factor), search.range_px,
+                                         search.places, threads);
   Refinement result;
-  RoadEvidence& evidence = result.evidence;
+  PlaneFitStatistics& evidence = result.evidence;
   evidence.tried = found.tried;
-  result.points = unshrink_points(std::move(found.points), factor);
+  result.points = points_to_full_resolution(std::move(found.points), factor);
   evidence.points = static_cast<int>(result.points.size());
-  if (evidence.points < fewest_matches) return result;
+  if (evidence.points < min_matches) return result;
   // The supposed plane may lie between a road and its pavement: vote anew with the sharper points.
   const auto start = origin == Origin::last_frame ? std::optional(plane)
                                                   : search_road(result.points, tolerance * factor, height, limit);
   if (!start) return result;
-  const auto fit = fit_robust_plane(result.points, *start, fine_fit_scale * factor, with_roll, fine_fit_iterations);
+  const auto fit = fit_plane_irls(result.points, *start, fine_fit_scale * factor, with_roll, fine_fit_iterations);
   if (!fit) return result;
   evidence.plane = fit->plane;
   evidence.scale_px = fit->scale_px;
@@ -132,9 +132,9 @@ Refinement refine_road(const FinePair& pair, const RoadModel& plane, Origin orig
     if (fit->weights[i] > 0) rows.push_back(result.points[i].v);
   }
   evidence.inliers = static_cast<int>(rows.size());
-  evidence.found = evidence.inliers >= fewest_matches;
+  evidence.found = evidence.inliers >= min_matches;
   if (evidence.found) {
-    evidence.rows_covered = (percentile(rows, highest_row_share) - percentile(rows, lowest_row_share)) / height;
+    evidence.rows_covered = (percentile(rows, row_p95) - percentile(rows, row_p05)) / height;
   }
   return result;
 }
@@ -147,7 +147,7 @@ bool look_swapped(ImageView<const std::int16_t> left, ImageView<const std::int16
   const std::size_t pixels = left.pixels() / static_cast<std::size_t>(factor * factor);
   if (matches > pixels / usual_share) return false;
   const auto swapped = match_coarsely(right, left, factor, max_disparity_px, threads);
-  return swapped.size() > std::max<std::size_t>(3 * matches, fewest_matches);
+  return swapped.size() > std::max<std::size_t>(3 * matches, min_matches);
 }
 
 }  // namespace
@@ -176,14 +176,14 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   }
   RoadModelEstimate estimate;
   estimate.matches = static_cast<int>(matches.size());
-  if (estimate.matches < fewest_matches) {
+  if (estimate.matches < min_matches) {
     estimate.reason = sentence("only ", matches.size(), " reliable correspondences in the whole image");
     return estimate;
   }
   auto disparities = scratch_vector<double>();
   disparities.reserve(matches.size());
   for (const DisparityPoint& p : matches) disparities.push_back(p.d);
-  estimate.largest_disparity_px = percentile(disparities, 0.99);
+  estimate.max_disparity_px = percentile(disparities, 0.99);
 
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   const auto coarse = search_road(matches, 0.8 * factor, left.height(), limit);
@@ -205,7 +205,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
 }
 
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                    const RoadModel& previous, const std::optional<StereoCalibration>& calibration,
+                                    const DisparityPlane& previous, const std::optional<StereoCalibration>& calibration,
                                     const RoadModelOptions& options, int threads) {
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   const FinePair fine(left, right);
@@ -215,7 +215,7 @@ RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageVie
                                                                close_search_again, limit, options.with_roll, threads)
                                                  : Refinement();
   RoadModelEstimate estimate =
-      judge_again(around.evidence, close.evidence, previous, left.width(), left.height(), calibration, options);
+      assess_tracked_road(around.evidence, close.evidence, previous, left.width(), left.height(), calibration, options);
   measure_range(around.points, estimate);
   return estimate;
 }

@@ -7,8 +7,8 @@
 // How the road is looked for, on the host and on the device.
 namespace roadstereo {
 
-inline constexpr int coarse_width = 120;   ///< the coarse search shrinks the image to between this and twice this
-inline constexpr int fewest_matches = 40;  ///< below this nothing is known
+inline constexpr int coarse_width = 120;  ///< the coarse search shrinks the image to between this and twice this
+inline constexpr int min_matches = 40;    ///< below this nothing is known
 
 /// Power of two that brings the image near the width of the coarse search.
 inline int coarse_factor(int width) {
@@ -40,12 +40,12 @@ inline constexpr int fine_fit_iterations = 50;
 inline constexpr double fine_fit_scale = 0.5;
 
 /// The rows of the inliers between these shares count as covered.
-inline constexpr double lowest_row_share = 0.05;
-inline constexpr double highest_row_share = 0.95;
+inline constexpr double row_p05 = 0.05;
+inline constexpr double row_p95 = 0.95;
 
 /// Shares of the residuals near the road that bound its range.
-inline constexpr double lowest_residual_share = 0.01;
-inline constexpr double highest_residual_share = 0.99;
+inline constexpr double residual_p01 = 0.01;
+inline constexpr double residual_p99 = 0.99;
 
 /// Whether a correspondence is near the road: far enough from it to show damage, bumps and a road that is not flat,
 /// not so far that vehicles and houses count.

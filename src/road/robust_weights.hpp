@@ -11,7 +11,7 @@ namespace roadstereo {
 inline constexpr double tukey = 4.685;
 
 /// Residuals below this are rounding, not noise.
-inline constexpr double smallest_scale_px = 1e-3;
+inline constexpr double min_scale_px = 1e-3;
 
 /// Turns a median of magnitudes into the standard deviation of a normal distribution.
 inline constexpr double normal_from_median = 1.4826;
@@ -26,7 +26,7 @@ ROADSTEREO_HD Real tukey_weight(Real x) {
 /// The scale after a step: that of the residuals in the window that is left, so that it narrows onto the road.
 ROADSTEREO_HD inline double narrowed_scale(double median_magnitude, double scale) {
   const double wished = normal_from_median * median_magnitude;
-  if (wished < smallest_scale_px) return smallest_scale_px;
+  if (wished < min_scale_px) return min_scale_px;
   return wished > scale ? scale : wished;
 }
 
@@ -37,13 +37,13 @@ ROADSTEREO_HD inline bool robust_fit_settled(double by_px, double by_a2, double 
 }
 
 /// Window that the robust fit of a map begins with: wide enough for a start that is a pixel off, too narrow for kerbs.
-inline constexpr double least_start_scale_px = 0.2;
-inline constexpr double largest_start_scale_px = 0.6;
+inline constexpr double min_start_scale_px = 0.2;
+inline constexpr double max_start_scale_px = 0.6;
 
 ROADSTEREO_HD inline double start_scale_of(double median_magnitude) {
   const double scale = normal_from_median * median_magnitude;
-  if (scale < least_start_scale_px) return least_start_scale_px;
-  return scale > largest_start_scale_px ? largest_start_scale_px : scale;
+  if (scale < min_start_scale_px) return min_start_scale_px;
+  return scale > max_start_scale_px ? max_start_scale_px : scale;
 }
 
 /// Moments of points of disparity space: their weight, and sums of products of deviations from the means.

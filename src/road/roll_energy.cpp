@@ -46,13 +46,13 @@ double wrap_roll(double roll) {
   return wrapped <= -pi / 2 ? wrapped + pi : wrapped;
 }
 
-double roll_of_plane(const RoadModel& plane) {
+double roll_of_plane(const DisparityPlane& plane) {
   if (plane.a1 == 0) return plane.a2 == 0 ? 0 : std::numbers::pi / 2;
   return std::atan(-plane.a2 / plane.a1);
 }
 
-RollSolution descend_roll(const RollEnergy& energy, double initial_roll, const RoadGeometryOptions& options) {
-  constexpr double longest_step = std::numbers::pi / 8;
+RollSolution descend_roll(const RollEnergy& energy, double initial_roll, const RollOptions& options) {
+  constexpr double max_step = std::numbers::pi / 8;
   const double normaliser = energy.normaliser();
   RollSolution solution{initial_roll, 0};
   if (!(normaliser > 0)) return solution;
@@ -62,10 +62,10 @@ RollSolution descend_roll(const RollEnergy& energy, double initial_roll, const R
   double gradient = slope(solution.roll);
   while (solution.iterations < options.max_iterations) {
     ++solution.iterations;
-    double step = std::clamp(-lambda * gradient, -longest_step, longest_step);
+    double step = std::clamp(-lambda * gradient, -max_step, max_step);
     if (std::abs(step) < options.roll_threshold_rad &&
         energy.value(solution.roll) > energy.value(solution.roll + std::numbers::pi / 2)) {
-      step = longest_step;  // at the maximum the gradient vanishes as well
+      step = max_step;  // at the maximum the gradient vanishes as well
     }
     // Backtracking: a step that climbs is halved.
     while (energy.value(solution.roll + step) > energy.value(solution.roll) &&

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "road/plane_fit.hpp"
-#include "roadstereo/road_geometry.hpp"
+#include "roadstereo/roll.hpp"
 
 namespace roadstereo {
 
@@ -34,10 +34,10 @@ struct RollSolution {
 };
 
 /// Eq. e_min_gd with the learning rate of eq. adaptive_lambda.
-RollSolution descend_roll(const RollEnergy& energy, double initial_roll, const RoadGeometryOptions& options);
+RollSolution descend_roll(const RollEnergy& energy, double initial_roll, const RollOptions& options);
 
 /// The same minimum from the least-squares plane: ψ = atan(−a2 / a1).
-double roll_of_plane(const RoadModel& plane);
+double roll_of_plane(const DisparityPlane& plane);
 
 /// The same angle in (−π/2, π/2]: the energy repeats after π.
 double wrap_roll(double roll);

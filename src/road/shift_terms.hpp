@@ -6,7 +6,7 @@
 
 namespace roadstereo {
 
-/// A plane in disparity space: a0 + a1·v + a2·u. As RoadModel, for kernels.
+/// A plane in disparity space: a0 + a1·v + a2·u. As DisparityPlane, for kernels.
 struct PlaneTerms {
   double a0 = 0, a1 = 0, a2 = 0;
 

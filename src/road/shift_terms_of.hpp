@@ -6,7 +6,7 @@
 namespace roadstereo {
 
 /// The road as kernels take it.
-inline PlaneTerms plane_terms(const RoadModel& road) {
+inline PlaneTerms plane_terms(const DisparityPlane& road) {
   return {road.a0, road.a1, road.a2};
 }
 

@@ -55,12 +55,12 @@ HWY_INLINE Float sum_products(const CorrelationBlock& block, const Strip& strip,
   return hn::Add(even, odd);
 }
 
-void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float least_deviation,
+void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float min_deviation,
                      StripCorrelations& correlations) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float per_pixel = hn::Set(df, 1.0f / static_cast<float>(block.width * block.height));
-  const Float least_variance = hn::Set(df, least_deviation * least_deviation);
+  const Float min_variance = hn::Set(df, min_deviation * min_deviation);
   const Float per_deviation = hn::Set(df, 1.0f / block.deviation);
   ColumnSums sums;
   sum_columns(strip, count + block.width - 1 + lanes, block.height, sums);
@@ -72,7 +72,7 @@ void correlate_strip(const CorrelationBlock& block, const Strip& strip, int coun
     }
     const Float mean = hn::Mul(sum, per_pixel);
     const Float variance = hn::NegMulAdd(mean, mean, hn::Mul(squares, per_pixel));
-    const auto textured = hn::Ge(variance, least_variance);
+    const auto textured = hn::Ge(variance, min_variance);
     const Float covariance = hn::Mul(sum_products(block, strip, i), per_pixel);
     const Float safe = hn::IfThenElse(textured, variance, hn::Set(df, 1.0f));
     const Float correlation = hn::Div(hn::Mul(covariance, per_deviation), hn::Sqrt(safe));
@@ -80,8 +80,8 @@ void correlate_strip(const CorrelationBlock& block, const Strip& strip, int coun
   }
 }
 
-constexpr int most_sampled = 32;  ///< columns
-constexpr int most_drift = 16;    ///< pixels by which they may fall behind or run ahead along the strip
+constexpr int max_sampled = 32;  ///< columns
+constexpr int max_drift = 16;    ///< pixels by which they may fall behind or run ahead along the strip
 
 /// A column lies between two pixels of a few that come into question; each counts by its distance from the column, and
 /// beyond a pixel's distance not at all.
@@ -93,7 +93,7 @@ void sample_strip(const std::int16_t* image_row, int image_width, double x, doub
   const double drift = (step - 1) * (count - 1);
   const int base = static_cast<int>(std::floor(x + std::min(0.0, drift)));
   const int taps = static_cast<int>(std::abs(drift)) + 3;
-  std::array<std::int16_t, most_sampled + most_drift + 16> pixels{};
+  std::array<std::int16_t, max_sampled + max_drift + 16> pixels{};
   const int first = std::max(0, base), last = std::min(image_width, base + count + taps);
   std::copy(image_row + first, image_row + last, pixels.data() + (first - base));
   const auto start = static_cast<float>(x - base);
@@ -116,7 +116,7 @@ void sample_strip(const std::int16_t* image_row, int image_width, double x, doub
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include "road/guided_search.hpp"
+#include "road/plane_search.hpp"
 
 namespace roadstereo {
 
@@ -125,7 +125,7 @@ HWY_EXPORT(sample_strip);
 
 CorrelationBlock::CorrelationBlock(ImageView<const std::int16_t> image, int u, int v, int half_width, int half_height)
     : width(2 * half_width + 1), height(2 * half_height + 1) {
-  std::uint32_t sum = 0, squares = 0;  // most_width · most_height squares of at most 4080 fit
+  std::uint32_t sum = 0, squares = 0;  // max_width · max_height squares of at most 4080 fit
   for (int y = -half_height; y <= half_height; ++y) {
     const std::int16_t* row = image.row(v + y) + u - half_width;
     for (int x = 0; x < width; ++x) {
@@ -143,9 +143,9 @@ CorrelationBlock::CorrelationBlock(ImageView<const std::int16_t> image, int u, i
   }
 }
 
-void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float least_deviation,
+void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float min_deviation,
                      StripCorrelations& correlations) {
-  HWY_DYNAMIC_DISPATCH(correlate_strip)(block, strip, count, least_deviation, correlations);
+  HWY_DYNAMIC_DISPATCH(correlate_strip)(block, strip, count, min_deviation, correlations);
 }
 
 void sample_strip(const std::int16_t* image_row, int image_width, double x, double step, int count, float* strip_row) {

@@ -10,13 +10,13 @@ namespace roadstereo {
 
 /// A block of an image without its mean.
 struct CorrelationBlock {
-  static constexpr int most_width = 15;
-  static constexpr int most_height = 9;
+  static constexpr int max_width = 15;
+  static constexpr int max_height = 9;
 
   int width = 0;
   int height = 0;
-  float deviation = 0;                                              ///< standard deviation of its grey levels
-  std::array<float, std::size_t{most_width} * most_height> values;  ///< row by row, `width` apart
+  float deviation = 0;                                            ///< standard deviation of its grey levels
+  std::array<float, std::size_t{max_width} * max_height> values;  ///< row by row, `width` apart
 
   /// Cuts it out around (u, v), 2·half_width + 1 columns wide; the image must hold it whole.
   CorrelationBlock(ImageView<const std::int16_t> image, int u, int v, int half_width, int half_height);
@@ -24,22 +24,22 @@ struct CorrelationBlock {
 
 /// As many rows of another image as the block has, each of columns that the block can begin at.
 struct Strip {
-  static constexpr int most_counts = 112;
+  static constexpr int max_counts = 112;
   static constexpr int guard = 16;  ///< columns behind those that are compared; read, and without effect
-  static constexpr int pitch = most_counts + CorrelationBlock::most_width + guard;
+  static constexpr int pitch = max_counts + CorrelationBlock::max_width + guard;
 
-  std::array<float, static_cast<std::size_t>(pitch* CorrelationBlock::most_height)> values;
+  std::array<float, static_cast<std::size_t>(pitch* CorrelationBlock::max_height)> values;
 
   float* row(int y) { return values.data() + static_cast<std::ptrdiff_t>(y) * pitch; }
   const float* row(int y) const { return values.data() + static_cast<std::ptrdiff_t>(y) * pitch; }
 };
 
 /// Correlation of a block with the part of a strip that begins at each column; the last `guard` mean nothing.
-using StripCorrelations = std::array<float, Strip::most_counts + Strip::guard>;
+using StripCorrelations = std::array<float, Strip::max_counts + Strip::guard>;
 
 /// Normalised correlations at the first `count` columns; −1 where the strip's part has a smaller standard deviation
-/// than `least_deviation`. The strip's grey levels should lie around 0, so that rounding does not count.
-void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float least_deviation,
+/// than `min_deviation`. The strip's grey levels should lie around 0, so that rounding does not count.
+void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float min_deviation,
                      StripCorrelations& correlations);
 
 /// Fills a row of a strip with the grey levels of an image at the columns x + k·step, k from 0 to count − 1, minus

@@ -38,9 +38,9 @@ inline constexpr double spread_nearest_px = 3.0;
 
 /// Residuals up to this are the road's; `median` is that of the near ones' magnitudes.
 ROADSTEREO_HD inline double spread_limit(double median) {
-  constexpr double narrowest_limit_px = 1.0;
+  constexpr double min_limit_px = 1.0;
   const double limit = 3 * normal_from_median * median;
-  return limit < narrowest_limit_px ? narrowest_limit_px : limit;
+  return limit < min_limit_px ? min_limit_px : limit;
 }
 
 /// Sums behind a standard deviation.

@@ -7,7 +7,7 @@
 namespace roadstereo {
 
 /// A block whose variance (fixed-point grey²) is below this has no texture: its cost is 1.
-constexpr float smallest_variance = 0.25F;
+constexpr float min_variance = 0.25F;
 
 /// One view's part of a block of n pixels, of grey levels less mid-grey: S = n·mean + residue, mean whole. Aligned, so
 /// that a GPU reads it in one piece.
@@ -25,7 +25,7 @@ ROADSTEREO_HD inline BlockPart block_part(int sum, int square, int pixels, float
   const int residue = sum - mean * pixels;
   const auto e = static_cast<float>(residue);
   const float variance = (static_cast<float>(square - mean * (sum + residue)) - e * e * inverse_n) * inverse_n;
-  return {sum, mean, e, variance >= smallest_variance ? 1.0F / sqrtf(variance + noise_variance) : 0.0F};
+  return {sum, mean, e, variance >= min_variance ? 1.0F / sqrtf(variance + noise_variance) : 0.0F};
 }
 
 /// The matching cost c(p, d) of eq. c: 1 − n·cov / (n σ_own σ_other), from Σ own·other and 1 / n.

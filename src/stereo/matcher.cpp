@@ -43,11 +43,11 @@ void MatcherOptions::validate() const {
   require_range("matcher", "aggregation_step", aggregation_step, 1, 2);
   require_range("matcher", "sigma_space", sigma_space, 0.1, 1000.0);
   require_range("matcher", "sigma_colour", sigma_colour, 0.1, 100000.0);
-  require_range("matcher", "texture_noise", texture_noise, 0.0, 50.0);
-  require_range("matcher", "prior_slope", prior_slope, 0.0, 100.0);
-  require_range("matcher", "prior_reach", prior_reach, 0.0, 1000.0);
-  require_range("matcher", "consistency", consistency, 0.0, 1000.0);
-  require_range("matcher", "hidden_sigma_px", hidden_sigma_px, 0.0, 10.0);
+  require_range("matcher", "ncc_noise_sigma", ncc_noise_sigma, 0.0, 50.0);
+  require_range("matcher", "prior_weight", prior_weight, 0.0, 100.0);
+  require_range("matcher", "prior_truncation_px", prior_truncation_px, 0.0, 1000.0);
+  require_range("matcher", "lr_max_diff_px", lr_max_diff_px, 0.0, 1024.0);
+  require_range("matcher", "occlusion_sigma_px", occlusion_sigma_px, 0.0, 10.0);
 }
 
 void SearchRanges::assign(int width, int height, int disparities) {
@@ -75,7 +75,7 @@ std::vector<Tap> window_taps(const MatcherOptions& options) {
   return taps;
 }
 
-double support_pixels(const MatcherOptions& options) {
+double effective_samples(const MatcherOptions& options) {
   const double side = 2 * options.block_radius + 1;
   double weights = 0, squares = 0;
   for (const Tap& tap : window_taps(options)) {

@@ -14,7 +14,7 @@ namespace {
 
 struct Registry {
   std::vector<EngineInfo> usable;  ///< best first
-  std::vector<AbsentEngine> absent;
+  std::vector<UnavailableEngine> absent;
 };
 
 Registry make_registry() {
@@ -49,7 +49,7 @@ const std::vector<EngineInfo>& engines() {
   return registry().usable;
 }
 
-const std::vector<AbsentEngine>& absent_engines() {
+const std::vector<UnavailableEngine>& unavailable_engines() {
   return registry().absent;
 }
 
@@ -62,7 +62,7 @@ const EngineInfo& find_engine(const std::string& name) {
     if (info.name == name) return info;
     known += ", " + info.name;
   }
-  for (const AbsentEngine& absent : absent_engines()) {
+  for (const UnavailableEngine& absent : unavailable_engines()) {
     if (absent.name == name) fail("the engine ", name, " cannot be used: ", absent.reason, "; there are: ", known);
   }
   fail("there is no engine called '", name, "'; this build has: ", known);

@@ -6,14 +6,14 @@
 namespace roadstereo::synth {
 namespace {
 
-struct Turn {
+struct SineCosine {
   double sine;
   double cosine;
 };
 
-/// Sine and cosine of an angle, exact at right angles: a camera that looks straight down must see a plane at
-/// one depth, and cos(π/2) in floating point is not 0.
-Turn turn_by(double degrees) {
+/// Sine and cosine of an angle, exact at 0° and 90°: a camera that looks straight down must see a plane at constant
+/// depth, but cos(π/2) is not 0 in floating point.
+SineCosine sine_cosine(double degrees) {
   const double radians = degrees * std::numbers::pi / 180.0;
   if (degrees == 90) return {1, 0};
   if (degrees == 0) return {0, 1};
@@ -34,8 +34,8 @@ StereoCalibration Rig::calibration() const {
 }
 
 Camera left_camera(const Rig& rig) {
-  const Turn pitch = turn_by(rig.pitch_deg);
-  const Turn roll = turn_by(rig.roll_deg);
+  const SineCosine pitch = sine_cosine(rig.pitch_deg);
+  const SineCosine roll = sine_cosine(rig.roll_deg);
   const Vec3 level_right{1, 0, 0};
   const Vec3 level_down{0, -pitch.sine, -pitch.cosine};
   Camera camera;
@@ -56,33 +56,33 @@ Camera right_camera(const Rig& rig, double row_offset_px) {
   return camera;
 }
 
-RoadModel plane_model(const Rig& rig) {
-  // On Z = 0 the ray's depth is -height / direction.z, and direction.z is affine in (u, v).
+DisparityPlane road_disparity_plane(const Rig& rig) {
+  // A ray meets Z = 0 at depth −height / direction.z, and direction.z is affine in (u, v).
   const Camera camera = left_camera(rig);
   const double scale = -rig.baseline_m / rig.camera_height_m;
-  RoadModel plane;
+  DisparityPlane plane;
   plane.a1 = scale * camera.down.z;
   plane.a2 = scale * camera.right.z;
   plane.a0 = scale * rig.focal_px * camera.forward.z - plane.a1 * camera.cy_px - plane.a2 * camera.cx_px;
   return plane;
 }
 
-double paper_roll(const RoadModel& plane) {
+double roll_angle(const DisparityPlane& plane) {
   if (plane.a1 == 0) return plane.a2 == 0 ? 0.0 : std::numbers::pi / 2;
   return std::atan(-plane.a2 / plane.a1);
 }
 
-FootprintModel::FootprintModel(const Camera& camera, double to_middle_m) : camera_(camera), to_middle_m_(to_middle_m) {
-  const double height = camera.origin.z + camera.right.z * to_middle_m;
+FootprintModel::FootprintModel(const Camera& camera, double midpoint_offset_m)
+    : camera_(camera), midpoint_offset_m_(midpoint_offset_m) {
+  const double height = camera.origin.z + camera.right.z * midpoint_offset_m;
   inverse_depth_per_column_ = -camera.right.z / (height * camera.focal_px);
   inverse_depth_per_row_ = -camera.down.z / (height * camera.focal_px);
 }
 
 Footprint FootprintModel::at(double depth, double u, double v) const {
-  // The point is C + Z·D; its derivative is Z·D' − Z²·(1/Z)'·D. Far to the sides D leads across the road,
-  // too. That part counts for a third only, for the several rays of a pixel average over it; it would blur
-  // the distance.
-  const double column = (u - camera_.cx_px) / camera_.focal_px - to_middle_m_ / depth;
+  // The point is C + Z·D; its derivative is Z·D' − Z²·(1/Z)'·D. The lateral component of D is reduced to a third: the
+  // rays of a pixel average over it already, and the full component would blur distant texture at the sides.
+  const double column = (u - camera_.cx_px) / camera_.focal_px - midpoint_offset_m_ / depth;
   const double row = (v - camera_.cy_px) / camera_.focal_px;
   const Vec3 sight = camera_.forward + camera_.down * row + camera_.right * (column / 3);
   const double across = depth / camera_.focal_px;

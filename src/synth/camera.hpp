@@ -14,8 +14,8 @@ struct Vec3 {
   Vec3 operator*(double s) const { return {x * s, y * s, z * s}; }
 };
 
-/// A line of sight in the road's frame. The direction has length 1 along the optical axis, so that the
-/// parameter of a point on the ray is its depth Z in the camera.
+/// Line of sight in the road frame. The direction has length 1 along the optical axis, so that the parameter of a point
+/// is its depth Z in the camera.
 struct Ray {
   Vec3 origin;
   Vec3 direction;
@@ -23,7 +23,7 @@ struct Ray {
   Vec3 at(double depth) const { return origin + direction * depth; }
 };
 
-/// A pinhole camera over the road.
+/// Pinhole camera in the road frame.
 struct Camera {
   Vec3 origin;
   Vec3 right;  ///< x axis of the camera frame
@@ -40,34 +40,34 @@ struct Camera {
 
 Camera left_camera(const Rig& rig);
 
-/// The right camera, whose image lies `row_offset_px` lower than a rectified one.
+/// Right camera, with its image shifted down by `row_offset_px`.
 Camera right_camera(const Rig& rig, double row_offset_px);
 
-/// Disparity of the plane Z = 0 as a function of the left pixel.
-RoadModel plane_model(const Rig& rig);
+/// Plane Z = 0 in the disparity space of the left camera.
+DisparityPlane road_disparity_plane(const Rig& rig);
 
-/// ψ of a plane in disparity space, in (−π/2, π/2]; 0 when the disparity does not change over the image.
-double paper_roll(const RoadModel& plane);
+/// Roll angle ψ of a plane in disparity space, radians, (−π/2, π/2]; 0 if the disparity is constant.
+double roll_angle(const DisparityPlane& plane);
 
-/// What one pixel covers of the road, along X and along Y, metres.
+/// Size of one pixel on the road along X and along Y, metres.
 struct Footprint {
   double x = 0;
   double y = 0;
 };
 
-/// Footprints on the plane Z = 0, as seen from the middle between the two cameras: so both pictures of a
-/// point have the same sharpness.
+/// Pixel footprints on the plane Z = 0, seen from the midpoint between the two cameras, so that a point has the same
+/// sharpness in both images.
 class FootprintModel {
  public:
-  /// `to_middle_m` is the way from the camera to the middle along its x axis.
-  FootprintModel(const Camera& camera, double to_middle_m);
+  /// `midpoint_offset_m`: offset of the midpoint from the camera along its x axis.
+  FootprintModel(const Camera& camera, double midpoint_offset_m);
   Footprint at(double depth, double u, double v) const;
 
  private:
   Camera camera_;
-  double to_middle_m_;
+  double midpoint_offset_m_;
   double inverse_depth_per_column_ = 0;  ///< d(1/Z)/du on the plane
-  double inverse_depth_per_row_ = 0;
+  double inverse_depth_per_row_ = 0;     ///< d(1/Z)/dv
 };
 
 }  // namespace roadstereo::synth

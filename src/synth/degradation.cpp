@@ -13,28 +13,30 @@ namespace {
 
 constexpr int rows_per_band = 16;
 
-std::vector<double> gaussian_weights(double deviation) {
-  const int reach = std::max(1, static_cast<int>(std::ceil(4 * deviation)));
+/// Gaussian kernel, truncated at 4 standard deviations; sums to 1.
+std::vector<double> gaussian_kernel(double sigma) {
+  const int radius = std::max(1, static_cast<int>(std::ceil(4 * sigma)));
   std::vector<double> weights;
   double sum = 0;
-  for (int i = -reach; i <= reach; ++i) {
-    weights.push_back(std::exp(-0.5 * i * i / (deviation * deviation)));
+  for (int i = -radius; i <= radius; ++i) {
+    weights.push_back(std::exp(-0.5 * i * i / (sigma * sigma)));
     sum += weights.back();
   }
   for (double& weight : weights) weight /= sum;
   return weights;
 }
 
-/// Filters along the rows (columns when `vertical`); beyond the border the last pixel goes on.
-void filter(const Image<float>& in, const std::vector<double>& weights, bool vertical, int threads, Image<float>& out) {
-  const int reach = static_cast<int>(weights.size() / 2);
-  const double* centre = weights.data() + reach;
+/// Convolve along the rows, or along the columns if `vertical`. The border is replicated.
+void convolve(const Image<float>& in, const std::vector<double>& kernel, bool vertical, int threads,
+              Image<float>& out) {
+  const int radius = static_cast<int>(kernel.size() / 2);
+  const double* centre = kernel.data() + radius;
   out.resize(in.width(), in.height());
   parallel_rows(in.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
       for (int u = 0; u < in.width(); ++u) {
         double sum = 0;
-        for (int i = -reach; i <= reach; ++i) {
+        for (int i = -radius; i <= radius; ++i) {
           const int column = vertical ? u : std::clamp(u + i, 0, in.width() - 1);
           const int row = vertical ? std::clamp(v + i, 0, in.height() - 1) : v;
           sum += centre[i] * static_cast<double>(in(column, row));
@@ -45,6 +47,7 @@ void filter(const Image<float>& in, const std::vector<double>& weights, bool ver
   });
 }
 
+/// Bilinear interpolation; the border is replicated.
 double bilinear(const Image<float>& image, double u, double v) {
   u = std::clamp(u, 0.0, image.width() - 1.0);
   v = std::clamp(v, 0.0, image.height() - 1.0);
@@ -56,6 +59,7 @@ double bilinear(const Image<float>& image, double u, double v) {
   return (1 - b) * ((1 - a) * at(0, 0) + a * at(1, 0)) + b * ((1 - a) * at(0, 1) + a * at(1, 1));
 }
 
+/// Linear motion blur: mean over taps along the motion.
 void motion_blur(const Image<float>& in, double length, double angle_deg, int threads, Image<float>& out) {
   const int taps = 2 * static_cast<int>(std::ceil(length)) + 1;
   const double angle = angle_deg * std::numbers::pi / 180;
@@ -76,17 +80,18 @@ void motion_blur(const Image<float>& in, double length, double angle_deg, int th
   });
 }
 
-Frame digitise(const Image<float>& light, double factor, double noise_grey, std::uint64_t noise_key, int threads) {
+/// Scale, add Gaussian noise, clip and quantise to 8 bits.
+Frame quantise(const Image<float>& irradiance, double scale, double noise_grey, std::uint64_t noise_key, int threads) {
   Frame frame;
-  frame.width = light.width();
-  frame.height = light.height();
-  frame.bytes.resize(light.pixels());
-  parallel_rows(light.height(), rows_per_band, threads, [&](int first, int last, int) {
+  frame.width = irradiance.width();
+  frame.height = irradiance.height();
+  frame.bytes.resize(irradiance.pixels());
+  parallel_rows(irradiance.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
-      for (int u = 0; u < light.width(); ++u) {
+      for (int u = 0; u < irradiance.width(); ++u) {
         const auto pixel =
-            static_cast<std::size_t>(v) * static_cast<std::size_t>(light.width()) + static_cast<std::size_t>(u);
-        double grey = static_cast<double>(light(u, v)) * factor;
+            static_cast<std::size_t>(v) * static_cast<std::size_t>(irradiance.width()) + static_cast<std::size_t>(u);
+        double grey = static_cast<double>(irradiance(u, v)) * scale;
         if (noise_grey > 0) grey += noise_grey * normal_value(mix64(noise_key) + pixel);
         frame.bytes[pixel] = static_cast<std::uint8_t>(std::clamp(grey + 0.5, 0.0, 255.0));
       }
@@ -97,19 +102,19 @@ Frame digitise(const Image<float>& light, double factor, double noise_grey, std:
 
 }  // namespace
 
-Frame take_picture(Image<float>& light, const Degradation& degradation, double gain, std::uint64_t noise_key,
-                   int threads) {
+Frame simulate_camera(Image<float>& irradiance, const Degradation& degradation, double gain, std::uint64_t noise_key,
+                      int threads) {
   Image<float> scratch;
   if (degradation.blur_px > 0) {
-    const std::vector<double> weights = gaussian_weights(degradation.blur_px);
-    filter(light, weights, false, threads, scratch);
-    filter(scratch, weights, true, threads, light);
+    const std::vector<double> kernel = gaussian_kernel(degradation.blur_px);
+    convolve(irradiance, kernel, false, threads, scratch);
+    convolve(scratch, kernel, true, threads, irradiance);
   }
   if (degradation.motion_blur_px > 0) {
-    motion_blur(light, degradation.motion_blur_px, degradation.motion_blur_angle_deg, threads, scratch);
-    std::swap(light, scratch);
+    motion_blur(irradiance, degradation.motion_blur_px, degradation.motion_blur_angle_deg, threads, scratch);
+    std::swap(irradiance, scratch);
   }
-  return digitise(light, gain * degradation.exposure, degradation.noise_grey, noise_key, threads);
+  return quantise(irradiance, gain * degradation.exposure, degradation.noise_grey, noise_key, threads);
 }
 
 }  // namespace roadstereo::synth

@@ -6,10 +6,10 @@
 
 namespace roadstereo::synth {
 
-// Random numbers as functions of a key: no state, so that neither the number of threads nor the order of the
-// pixels matters, and no standard distribution, so that every standard library draws the same.
+// Counter-based random numbers: stateless functions of a key, so that results do not depend on the number of threads or
+// the order of the pixels. Standard distributions are avoided, because they differ between standard libraries.
 
-/// A 32-bit mix in which every input bit reaches every output bit.
+/// 32-bit integer hash (lowbias32 of C. Wellons): every input bit affects every output bit.
 inline std::uint32_t mix32(std::uint32_t h) {
   h ^= h >> 16;
   h *= 0x7feb352du;
@@ -19,7 +19,7 @@ inline std::uint32_t mix32(std::uint32_t h) {
   return h;
 }
 
-/// The same for 64 bits (the finaliser of SplitMix64).
+/// 64-bit integer hash (finaliser of SplitMix64).
 inline std::uint64_t mix64(std::uint64_t h) {
   h += 0x9e3779b97f4a7c15u;
   h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -27,25 +27,26 @@ inline std::uint64_t mix64(std::uint64_t h) {
   return h ^ (h >> 31);
 }
 
-/// Uniform in [0, 1) from the upper bits of a hash.
+/// Uniform value in [0, 1) from the upper 53 bits of a hash.
 inline double unit_interval(std::uint64_t hash) {
   return static_cast<double>(hash >> 11) * 0x1p-53;
 }
 
-/// Standard normal value of a key (Box and Muller).
+/// Standard normal value of a key (Box–Muller transform).
 inline double normal_value(std::uint64_t key) {
   const double radius = std::sqrt(-2.0 * std::log(1.0 - unit_interval(mix64(key))));
   return radius * std::cos(2.0 * std::numbers::pi * unit_interval(mix64(key ^ 0xd1b54a32d192ed03u)));
 }
 
-/// A sequence of draws for the construction of scenes.
-class Draws {
+/// Sequence of random values for the construction of scenes.
+class RandomSequence {
  public:
-  explicit Draws(std::uint64_t seed) : state_(mix64(seed)) {}
+  explicit RandomSequence(std::uint64_t seed) : state_(mix64(seed)) {}
 
-  double uniform(double low, double high) { return low + (high - low) * unit_interval(mix64(state_++)); }
-  int integer(int low, int high) { return low + static_cast<int>(uniform(0, high - low + 1)); }
-  bool chance(double probability) { return uniform(0, 1) < probability; }
+  double uniform(double lower, double upper) { return lower + (upper - lower) * unit_interval(mix64(state_++)); }
+  /// Uniform integer in [first, last].
+  int integer(int first, int last) { return first + static_cast<int>(uniform(0, last - first + 1)); }
+  bool bernoulli(double probability) { return uniform(0, 1) < probability; }
   std::uint32_t seed() { return static_cast<std::uint32_t>(mix64(state_++) >> 32); }
 
  private:

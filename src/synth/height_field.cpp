@@ -9,60 +9,61 @@
 namespace roadstereo::synth {
 namespace {
 
-/// Boxes are this much larger than the damage, so that its surface never lies on a face.
+/// Margin of bounding boxes, so that the surface does not coincide with a face.
 constexpr double box_margin_m = 1e-6;
 
-bool clip_axis(double low, double high, double origin, double direction, double& enter, double& leave) {
-  if (direction == 0) return origin >= low && origin <= high;
-  const double a = (low - origin) / direction;
-  const double b = (high - origin) / direction;
+/// Clip the interval [enter, leave] of a ray to a slab along one axis.
+bool clip_axis(double lower, double upper, double origin, double direction, double& enter, double& leave) {
+  if (direction == 0) return origin >= lower && origin <= upper;
+  const double a = (lower - origin) / direction;
+  const double b = (upper - origin) / direction;
   enter = std::max(enter, std::min(a, b));
   leave = std::min(leave, std::max(a, b));
   return enter <= leave;
 }
 
-/// Smallest root of a·t² + b·t + c in [from, to]. Computed so that nothing cancels when a is tiny.
+/// Smallest root of a·t² + b·t + c in [from, to], without cancellation for small a; infinity if there is none.
 double first_root(double a, double b, double c, double from, double to) {
   const double discriminant = b * b - 4 * a * c;
   if (discriminant < 0) return no_hit;
   const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
   double best = no_hit;
-  const auto offer = [&](double t) {
+  const auto consider = [&](double t) {
     if (t >= from && t <= to) best = std::min(best, t);
   };
-  if (q != 0) offer(c / q);
-  if (a != 0) offer(q / a);
+  if (q != 0) consider(c / q);
+  if (a != 0) consider(q / a);
   return best;
 }
 
 }  // namespace
 
-void Box::include(const Box& other) {
-  low = {std::min(low.x, other.low.x), std::min(low.y, other.low.y), std::min(low.z, other.low.z)};
-  high = {std::max(high.x, other.high.x), std::max(high.y, other.high.y), std::max(high.z, other.high.z)};
+void AxisAlignedBox::include(const AxisAlignedBox& other) {
+  lower = {std::min(lower.x, other.lower.x), std::min(lower.y, other.lower.y), std::min(lower.z, other.lower.z)};
+  upper = {std::max(upper.x, other.upper.x), std::max(upper.y, other.upper.y), std::max(upper.z, other.upper.z)};
 }
 
-bool Box::clip(const Ray& ray, double& enter, double& leave) const {
-  return clip_axis(low.z, high.z, ray.origin.z, ray.direction.z, enter, leave) &&
-         clip_axis(low.y, high.y, ray.origin.y, ray.direction.y, enter, leave) &&
-         clip_axis(low.x, high.x, ray.origin.x, ray.direction.x, enter, leave);
+bool AxisAlignedBox::clip(const Ray& ray, double& enter, double& leave) const {
+  return clip_axis(lower.z, upper.z, ray.origin.z, ray.direction.z, enter, leave) &&
+         clip_axis(lower.y, upper.y, ray.origin.y, ray.direction.y, enter, leave) &&
+         clip_axis(lower.x, upper.x, ray.origin.x, ray.direction.x, enter, leave);
 }
 
 BlobShape::BlobShape(const Blob& blob) : blob_(blob), roughness_(0.8 * blob.irregularity) {
-  // The first harmonic would only move the centre: they start with the second.
-  Draws draws(blob.seed);
+  // Harmonics start with the second: the first would only shift the centre.
+  RandomSequence random(blob.seed);
   double sum = 0;
   std::array<double, harmonics> amplitude{};
   for (int k = 0; k < harmonics; ++k) {
-    amplitude[static_cast<std::size_t>(k)] = draws.uniform(0.3, 1.0) / (k + 2);
+    amplitude[static_cast<std::size_t>(k)] = random.uniform(0.3, 1.0) / (k + 2);
     sum += amplitude[static_cast<std::size_t>(k)];
   }
   for (std::size_t k = 0; k < harmonics; ++k) {
-    const double phase = draws.uniform(0, 2 * std::numbers::pi);
+    const double phase = random.uniform(0, 2 * std::numbers::pi);
     cosine_share_[k] = blob.irregularity * amplitude[k] / sum * std::cos(phase);
     sine_share_[k] = blob.irregularity * amplitude[k] / sum * std::sin(phase);
   }
-  largest_radius_ = blob.radius_m * (1 + blob.irregularity);
+  max_radius_ = blob.radius_m * (1 + blob.irregularity);
   floor_radius_ = blob.radius_m * (1 - blob.irregularity) * (1 - blob.wall_share);
 }
 
@@ -91,7 +92,7 @@ DamageSample BlobShape::sample(double x, double y) const {
   const double dx = x - blob_.x_m;
   const double dy = y - blob_.y_m;
   const double r2 = dx * dx + dy * dy;
-  if (r2 >= largest_radius_ * largest_radius_) return {};
+  if (r2 >= max_radius_ * max_radius_) return {};
   double share = 1;
   if (r2 > floor_radius_ * floor_radius_) {
     const double r = std::sqrt(r2);
@@ -101,11 +102,11 @@ DamageSample BlobShape::sample(double x, double y) const {
   return {-blob_.depth_m * share * (1 + floor_roughness(dx, dy)), blob_.depth_m > 0 ? 1 - 0.4 * share : 1.0, true};
 }
 
-double BlobShape::lowest() const {
+double BlobShape::min_offset() const {
   return std::min(0.0, -blob_.depth_m * (1 + roughness_));
 }
 
-double BlobShape::highest() const {
+double BlobShape::max_offset() const {
   return std::max(0.0, -blob_.depth_m * (1 + roughness_));
 }
 
@@ -114,21 +115,21 @@ double BlobShape::march_step() const {
 }
 
 CrackShape::CrackShape(const Crack& crack) : crack_(crack) {
-  Draws draws(crack.seed);
+  RandomSequence random(crack.seed);
   const auto half_width = [&](std::size_t point) {
-    const bool end = point == 0 || point + 1 == crack.points_m.size();
-    return crack.width_m / 2 * (1 - crack.irregularity * (end ? 1 : draws.uniform(0, 1)));
+    const bool is_end = point == 0 || point + 1 == crack.points_m.size();
+    return crack.width_m / 2 * (1 - crack.irregularity * (is_end ? 1 : random.uniform(0, 1)));
   };
   double start_width = half_width(0);
-  const double reach = crack.width_m / 2 + box_margin_m;
+  const double margin = crack.width_m / 2 + box_margin_m;
   for (std::size_t i = 1; i < crack.points_m.size(); ++i) {
     const auto& a = crack.points_m[i - 1];
     const auto& b = crack.points_m[i];
     const double dx = b[0] - a[0];
     const double dy = b[1] - a[1];
-    Box ground;
-    ground.low = {std::min(a[0], b[0]) - reach, std::min(a[1], b[1]) - reach, 0};
-    ground.high = {std::max(a[0], b[0]) + reach, std::max(a[1], b[1]) + reach, 0};
+    AxisAlignedBox ground;
+    ground.lower = {std::min(a[0], b[0]) - margin, std::min(a[1], b[1]) - margin, 0};
+    ground.upper = {std::max(a[0], b[0]) + margin, std::max(a[1], b[1]) + margin, 0};
     const double end_width = half_width(i);
     const double growth = end_width - start_width;
     segments_.push_back({a[0], a[1], dx, dy, 1 / (dx * dx + dy * dy), start_width, growth, ground});
@@ -137,10 +138,10 @@ CrackShape::CrackShape(const Crack& crack) : crack_(crack) {
 }
 
 DamageSample CrackShape::sample(double x, double y) const {
-  double nearest2 = 1;  // squared distance from the line, as a share of the half width there
+  double min_distance2 = 1;  // squared distance from the polyline, relative to the half width there
   for (const Segment& segment : segments_) {
-    if (x < segment.ground.low.x || x > segment.ground.high.x || y < segment.ground.low.y ||
-        y > segment.ground.high.y) {
+    if (x < segment.ground.lower.x || x > segment.ground.upper.x || y < segment.ground.lower.y ||
+        y > segment.ground.upper.y) {
       continue;
     }
     const double px = x - segment.x;
@@ -149,10 +150,10 @@ DamageSample CrackShape::sample(double x, double y) const {
     const double ex = px - along * segment.dx;
     const double ey = py - along * segment.dy;
     const double half_width = segment.half_width + along * segment.half_width_growth;
-    nearest2 = std::min(nearest2, (ex * ex + ey * ey) / (half_width * half_width));
+    min_distance2 = std::min(min_distance2, (ex * ex + ey * ey) / (half_width * half_width));
   }
-  if (nearest2 >= 1) return {};
-  const double share = 1 - std::sqrt(nearest2);
+  if (min_distance2 >= 1) return {};
+  const double share = 1 - std::sqrt(min_distance2);
   return {-crack_.depth_m * share, 1 - 0.8 * smooth_step(1.5 * share), true};
 }
 
@@ -184,13 +185,13 @@ void HeightField::add_strips(const std::vector<Kerb>& kerbs) {
 }
 
 void HeightField::add_blob(const BlobShape& shape, const Blob& blob) {
-  const double reach = shape.largest_radius() + box_margin_m;
-  Box ground;
-  ground.low = {blob.x_m - reach, blob.y_m - reach, 0};
-  ground.high = {blob.x_m + reach, blob.y_m + reach, 0};
+  const double radius = shape.max_radius() + box_margin_m;
+  AxisAlignedBox ground;
+  ground.lower = {blob.x_m - radius, blob.y_m - radius, 0};
+  ground.upper = {blob.x_m + radius, blob.y_m + radius, 0};
   Piece piece;
   piece.blob = &shape;
-  piece.box = box_over(ground, shape.lowest(), shape.highest());
+  piece.box = box_over(ground, shape.min_offset(), shape.max_offset());
   piece.parts = {piece.box};
   piece.march_step = shape.march_step();
   pieces_.push_back(std::move(piece));
@@ -207,24 +208,24 @@ void HeightField::add_crack(const CrackShape& shape) {
   pieces_.push_back(std::move(piece));
 }
 
-Box HeightField::box_over(const Box& ground, double lowest, double highest) const {
-  // The undamaged road is monotonic between these places, so that its extremes over the box are among them.
-  double bottom = no_hit;
-  double top = -no_hit;
-  const auto offer = [&](double x) {
-    if (x < ground.low.x || x > ground.high.x) return;
-    bottom = std::min(bottom, undamaged(x));
-    top = std::max(top, undamaged(x));
+AxisAlignedBox HeightField::box_over(const AxisAlignedBox& ground, double min_offset, double max_offset) const {
+  // The undamaged road is monotonic between these positions, so that its extrema over the box are among them.
+  double min_height = no_hit;
+  double max_height = -no_hit;
+  const auto consider = [&](double x) {
+    if (x < ground.lower.x || x > ground.upper.x) return;
+    min_height = std::min(min_height, undamaged(x));
+    max_height = std::max(max_height, undamaged(x));
   };
-  offer(ground.low.x);
-  offer(ground.high.x);
+  consider(ground.lower.x);
+  consider(ground.upper.x);
   for (const Strip& strip : strips_) {
-    if (std::isfinite(strip.x)) offer(strip.x);
-    if (camber_ != 0) offer(std::clamp(strip.slope / (2 * camber_), strip.x, strip.end));
+    if (std::isfinite(strip.x)) consider(strip.x);
+    if (camber_ != 0) consider(std::clamp(strip.slope / (2 * camber_), strip.x, strip.end));
   }
-  Box box = ground;
-  box.low.z = bottom + lowest - box_margin_m;
-  box.high.z = top + highest + box_margin_m;
+  AxisAlignedBox box = ground;
+  box.lower.z = min_height + min_offset - box_margin_m;
+  box.upper.z = max_height + max_offset + box_margin_m;
   return box;
 }
 
@@ -260,8 +261,8 @@ DamageSample HeightField::damage(double x, double y) const {
 
 int HeightField::damage_id(double x, double y) const {
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const Box& box = pieces_[i].box;
-    if (x < box.low.x || x > box.high.x || y < box.low.y || y > box.high.y) continue;
+    const AxisAlignedBox& box = pieces_[i].box;
+    if (x < box.lower.x || x > box.upper.x || y < box.lower.y || y > box.upper.y) continue;
     if (pieces_[i].sample(x, y).inside) return static_cast<int>(i) + 1;
   }
   return 0;
@@ -279,14 +280,14 @@ double HeightField::strip_hit(const Strip& strip, const Ray& ray, double from, d
 
 double HeightField::undamaged_hit(const Ray& ray, double from) const {
   if (strips_.size() == 1) return strip_hit(strips_.front(), ray, from, no_hit);
-  // Strips meet at edges where rounding may push the root a little outside of both: allow for that.
-  constexpr double slack = 1e-13;
+  // At an edge between strips rounding may put the root slightly outside both of them.
+  constexpr double tolerance = 1e-13;
   double best = no_hit;
   for (const Strip& strip : strips_) {
     double enter = from;
     double leave = no_hit;
     if (!clip_axis(strip.x, strip.end, ray.origin.x, ray.direction.x, enter, leave)) continue;
-    best = std::min(best, strip_hit(strip, ray, std::max(from, enter * (1 - slack)), leave * (1 + slack)));
+    best = std::min(best, strip_hit(strip, ray, std::max(from, enter * (1 - tolerance)), leave * (1 + tolerance)));
   }
   return best;
 }

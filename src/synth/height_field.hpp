@@ -11,32 +11,33 @@ namespace roadstereo::synth {
 
 inline constexpr double no_hit = std::numeric_limits<double>::infinity();
 
-/// A box with faces along the axes.
-struct Box {
-  Vec3 low{no_hit, no_hit, no_hit};
-  Vec3 high{-no_hit, -no_hit, -no_hit};
+/// Axis-aligned bounding box; empty by default.
+struct AxisAlignedBox {
+  Vec3 lower{no_hit, no_hit, no_hit};
+  Vec3 upper{-no_hit, -no_hit, -no_hit};
 
-  void include(const Box& other);
-  /// Shrinks [enter, leave] to the part of the ray inside the box; false when none is left.
+  /// Extend the box to contain another one.
+  void include(const AxisAlignedBox& other);
+  /// Clip the interval [enter, leave] of the ray to the box (slab method); false if nothing is left.
   bool clip(const Ray& ray, double& enter, double& leave) const;
 };
 
-/// What damage does to the road at a point.
+/// Effect of damage on the road at a point.
 struct DamageSample {
-  double offset = 0;  ///< of the surface against the undamaged one, metres, upwards
-  double light = 1;   ///< share of the light that gets in
-  bool inside = false;
+  double offset = 0;    ///< height above the undamaged surface, metres
+  double light = 1;     ///< share of the light that reaches the point, 0 … 1
+  bool inside = false;  ///< whether the point belongs to a damage
 };
 
-/// A pothole or a bump, ready to be sampled.
+/// Pothole or bump: outline of Fourier harmonics, smoothstep wall, noisy floor.
 class BlobShape {
  public:
   explicit BlobShape(const Blob& blob);
   DamageSample sample(double x, double y) const;
-  double largest_radius() const { return largest_radius_; }
-  double lowest() const;  ///< bounds of the offset
-  double highest() const;
-  double march_step() const;  ///< along the ground, fine enough to meet every wall
+  double max_radius() const { return max_radius_; }
+  double min_offset() const;
+  double max_offset() const;
+  double march_step() const;  ///< for ray marching, along the ground: a fraction of the width of the wall
 
  private:
   static constexpr int harmonics = 5;
@@ -46,18 +47,18 @@ class BlobShape {
   Blob blob_;
   std::array<double, harmonics> cosine_share_{};
   std::array<double, harmonics> sine_share_{};
-  double largest_radius_ = 0;
-  double floor_radius_ = 0;  ///< the floor reaches at least this far
+  double max_radius_ = 0;
+  double floor_radius_ = 0;  ///< lower bound of the radius of the floor
   double roughness_ = 0;
 };
 
-/// A crack, ready to be sampled: a groove with the profile of a V along every segment of its line.
+/// Crack: a V-shaped groove along the segments of a polyline.
 class CrackShape {
  public:
   struct Segment {
     double x, y, dx, dy, inverse_length2;
-    double half_width, half_width_growth;  ///< at the start, and from there to the end
-    Box ground;                            ///< its z is not used
+    double half_width, half_width_growth;  ///< at the start, and its increase to the end
+    AxisAlignedBox ground;                 ///< z is not used
   };
 
   explicit CrackShape(const Crack& crack);
@@ -70,43 +71,44 @@ class CrackShape {
   std::vector<Segment> segments_;
 };
 
-/// The road's surface Z(X, Y).
+/// Surface Z(X, Y) of a road.
 class HeightField {
  public:
-  /// A damage with the boxes outside which it leaves the road alone.
+  /// Shape of a damage with bounding boxes.
   struct Piece {
     const BlobShape* blob = nullptr;
     const CrackShape* crack = nullptr;
-    Box box;                 ///< around all of it
-    std::vector<Box> parts;  ///< tighter: one for a blob, one per segment of a crack
+    AxisAlignedBox box;
+    std::vector<AxisAlignedBox> parts;  ///< tighter boxes: one for a blob, one per segment of a crack
     double march_step = 0;
 
     DamageSample sample(double x, double y) const { return blob ? blob->sample(x, y) : crack->sample(x, y); }
   };
 
   explicit HeightField(const Road& road);
-  HeightField(const HeightField&) = delete;  // pieces point to their shapes
+  HeightField(const HeightField&) = delete;  // pieces point to members
   HeightField& operator=(const HeightField&) = delete;
 
-  /// The road before the damage: camber and kerbs. It depends on x alone.
+  /// Height of the undamaged road: camber and kerbs. It depends on x only.
   double undamaged(double x) const;
   double undamaged_slope(double x) const;
-  /// Sum of the kerbs' heights left of x: what the surface is longer than its projection, for the texture.
+  /// Sum of the heights of the kerbs left of x: arc length of the surface in excess of x, for the texture.
   double kerb_rise(double x) const;
 
-  /// All damage together.
+  /// Combined effect of all damages.
   DamageSample damage(double x, double y) const;
   double height(double x, double y) const { return undamaged(x) + damage(x, y).offset; }
-  /// Id of the damage at a point: place in `pieces` plus 1, the first one where several overlap; 0 for none.
+  /// Id of the damage at a point, 1 + index in `pieces`; the first of several that overlap; 0: none.
   int damage_id(double x, double y) const;
 
   const std::vector<Piece>& pieces() const { return pieces_; }
-  const Box& damage_box() const { return damage_box_; }
-  /// Depth at which the ray first meets the undamaged road at or behind `from`, where it must be above it.
+  const AxisAlignedBox& damage_box() const { return damage_box_; }
+  /// Depth of the first intersection of the ray with the undamaged road at a depth ≥ `from`; infinity if there is none.
+  /// The ray must be above the road at `from`.
   double undamaged_hit(const Ray& ray, double from) const;
 
  private:
-  /// A strip of the road between two kerb edges: Z = −camber·X² + rise + slope·(X − x).
+  /// Strip of the road between two kerb edges: Z = −camber·X² + rise + slope·(X − x).
   struct Strip {
     double x;    ///< left edge
     double end;  ///< right edge
@@ -116,7 +118,8 @@ class HeightField {
 
   const Strip& strip_at(double x) const;
   double strip_hit(const Strip& strip, const Ray& ray, double from, double to) const;
-  Box box_over(const Box& ground, double lowest, double highest) const;
+  /// Box over a rectangle of the ground, for offsets of the surface between the two bounds.
+  AxisAlignedBox box_over(const AxisAlignedBox& ground, double min_offset, double max_offset) const;
   void add_strips(const std::vector<Kerb>& kerbs);
   void add_blob(const BlobShape& shape, const Blob& blob);
   void add_crack(const CrackShape& shape);
@@ -126,7 +129,7 @@ class HeightField {
   std::vector<BlobShape> blobs_;
   std::vector<CrackShape> cracks_;
   std::vector<Piece> pieces_;
-  Box damage_box_;
+  AxisAlignedBox damage_box_;
 };
 
 }  // namespace roadstereo::synth

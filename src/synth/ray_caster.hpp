@@ -6,33 +6,39 @@
 
 namespace roadstereo::synth {
 
-/// Where a ray first meets the road.
+/// First intersection of a ray with the road.
 struct Hit {
-  double depth = no_hit;     ///< infinite when it never does
+  double depth = no_hit;     ///< infinity if there is none
   bool near_damage = false;  ///< false: no damage changes the road there
 };
 
-/// Finds the first meeting of rays with the road. Keeps scratch memory: one per thread.
+/// Ray casting against a height field: closed form for the undamaged road, ray marching and Ridders' root finding near
+/// damage. Keeps scratch memory; use one per thread.
 class RayCaster {
  public:
   explicit RayCaster(const HeightField& field) : field_(field) {}
 
-  /// The depth is exact to `tolerance`, relative; 0 is as exact as the numbers are.
+  /// First intersection, with the depth accurate to a relative `tolerance`; 0: to floating-point precision.
   Hit first_hit(const Ray& ray, double tolerance);
 
-  /// All damage that the last ray came near, at a point of that ray's neighbourhood.
+  /// Combined effect, at a point near the last ray, of the damages whose boxes that ray crosses.
   DamageSample damage_near_last_ray(double x, double y) const;
 
  private:
+  /// Interval of depths inside a box.
   struct Span {
     double enter;
     double leave;
   };
 
-  void collect(const Ray& ray);
+  /// Find the damages and the spans that the ray crosses, by increasing depth.
+  void collect_spans(const Ray& ray);
+  /// Height of the ray above the surface.
   double clearance(const Ray& ray, double depth) const;
+  /// First intersection inside a span by ray marching; infinity if there is none.
   double march(const Ray& ray, const Span& span, double tolerance) const;
-  double refine(const Ray& ray, double above, double below, double tolerance) const;
+  /// Root of the clearance between two depths by Ridders' method.
+  double find_root(const Ray& ray, double above, double below, double tolerance) const;
 
   const HeightField& field_;
   std::vector<const HeightField::Piece*> active_;

@@ -8,17 +8,17 @@
 
 namespace roadstereo::synth {
 
-/// A crack as roads have them: it wanders, in steps of about 3 cm, around its heading (0 = along the road).
+/// Random polyline of a crack: it wanders around its heading (0: along the road) in steps of 3 cm.
 inline std::vector<std::array<double, 2>> wandering_line(double x, double y, double heading_rad, double length_m,
                                                          std::uint64_t seed) {
   constexpr double step = 0.03;
-  Draws draws(seed);
+  RandomSequence random(seed);
   std::vector<std::array<double, 2>> points{{x, y}};
   double bend = 0;
   const int steps = static_cast<int>(std::ceil(length_m / step));
   for (int i = 0; i < steps; ++i) {
-    // Bends are pulled back, so that the line wanders but does not curl up.
-    bend = 0.75 * bend + draws.uniform(-0.6, 0.6);
+    // First-order autoregressive process, so that the line does not curl up.
+    bend = 0.75 * bend + random.uniform(-0.6, 0.6);
     x += step * std::sin(heading_rad + bend);
     y += step * std::cos(heading_rad + bend);
     points.push_back({x, y});
@@ -26,7 +26,7 @@ inline std::vector<std::array<double, 2>> wandering_line(double x, double y, dou
   return points;
 }
 
-/// The families of rigs that the scenes are drawn from.
+/// Families of rigs that scenes are based on.
 Rig uav_rig();
 Rig street_rig();
 Rig close_rig();

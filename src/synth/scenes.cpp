@@ -105,14 +105,14 @@ Scene flat() {
   return scene;
 }
 
-Scene worn(const std::function<void(Scene&)>& wear) {
+Scene degraded_uav(const std::function<void(Scene&)>& degrade) {
   Scene scene = uav();
-  wear(scene);
+  degrade(scene);
   return scene;
 }
 
-/// The UAV's view, each with one thing that makes it hard.
-std::vector<std::pair<std::string, std::function<void(Scene&)>>> wears() {
+/// Variants of the UAV scene with one difficulty each.
+std::vector<std::pair<std::string, std::function<void(Scene&)>>> uav_variants() {
   return {
       {"low_texture",
        [](Scene& s) {
@@ -136,7 +136,9 @@ std::vector<std::pair<std::string, std::function<void(Scene&)>>> wears() {
 std::vector<std::pair<std::string, std::function<Scene()>>> catalogue() {
   std::vector<std::pair<std::string, std::function<Scene()>>> scenes = {
       {"demo", demo}, {"uav", uav}, {"street", street}, {"nadir", nadir}, {"close", close}, {"flat", flat}};
-  for (const auto& entry : wears()) scenes.emplace_back(entry.first, [wear = entry.second] { return worn(wear); });
+  for (const auto& entry : uav_variants()) {
+    scenes.emplace_back(entry.first, [degrade = entry.second] { return degraded_uav(degrade); });
+  }
   return scenes;
 }
 
@@ -150,8 +152,8 @@ std::vector<std::string> scene_names() {
 
 Scene named_scene(const std::string& name) {
   const auto scenes = catalogue();
-  for (const auto& [known, make] : scenes) {
-    if (known != name) continue;
+  for (const auto& [scene_name, make] : scenes) {
+    if (scene_name != name) continue;
     Scene scene = make();
     scene.name = name;
     return scene;
@@ -165,16 +167,16 @@ Scene named_scene(const std::string& name) {
 Scene next_frame(const Scene& scene, int frame, double step_m) {
   if (frame < 0) fail("frame is ", frame, "; it must not be negative");
   if (!std::isfinite(step_m)) fail("step_m is ", step_m, "; it must be a finite number");
-  // Slow waves whose periods share no beat, so that the sway does not repeat; all are 0 at frame 0.
+  // Slow sine waves of incommensurate periods, so that the motion does not repeat; all are 0 at frame 0.
   const double t = frame;
   Scene next = scene;
   next.rig.y_m += t * step_m;
   next.rig.x_m += 0.02 * std::sin(0.047 * t);
   next.rig.camera_height_m *= 1 + 0.012 * std::sin(0.131 * t);
   next.rig.roll_deg = std::clamp(scene.rig.roll_deg + 0.9 * std::sin(0.093 * t), -60.0, 60.0);
-  // A camera that looks straight down must not tip over backwards: its pitch only falls.
-  const double nod = 0.5 * std::sin(0.171 * t);
-  next.rig.pitch_deg = std::clamp(scene.rig.pitch_deg + nod, 0.0, 90.0);
+  // The pitch is clamped: a camera that looks straight down must not tilt backwards.
+  const double pitch_change = 0.5 * std::sin(0.171 * t);
+  next.rig.pitch_deg = std::clamp(scene.rig.pitch_deg + pitch_change, 0.0, 90.0);
   next.degradation.noise_seed += static_cast<std::uint32_t>(frame);
   return next;
 }

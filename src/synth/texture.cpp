@@ -13,44 +13,45 @@ namespace {
 constexpr double road_grey = 112;
 constexpr double paint_grey = 205;
 
-/// Brightness of other ground against the road's.
+/// Brightness of other ground, relative to the road.
 constexpr double pavement_tone = 1.2;
 constexpr double kerbstone_tone = 1.5;
 constexpr double verge_tone = 0.72;
 
-/// The road ends here; beyond is earth and grass.
+/// Left edge of the road, metres; beyond it are earth and grass.
 constexpr double verge_x = -5.4;
 
-/// Sun in the left, in front of the camera and 45 degrees high: walls turned away from it are dark.
+/// Direction to the sun: to the left, in front of the camera, elevation 45°.
 constexpr Vec3 to_sun{-0.5, 0.5, 0.70710678118654752};
 constexpr double ambient = 0.45;
 
-/// Wavelengths below `finest` footprints are invisible, above `coarsest` footprints fully there.
-constexpr double finest = 1.6;
-constexpr double full = 3.4;
+/// Wavelengths, in footprints, below which a structure is invisible and above which it has its full contrast.
+constexpr double min_wavelength = 1.6;
+constexpr double full_wavelength = 3.4;
 
-/// Share of a structure of the given wavelength that a pixel resolves.
+/// Contrast of a structure of that wavelength in a pixel, 0 … 1.
 double resolved(double wavelength, double footprint) {
-  return smooth_step((wavelength / footprint - finest) / (full - finest));
+  return smooth_step((wavelength / footprint - min_wavelength) / (full_wavelength - min_wavelength));
 }
 
-/// 1 inside |x| < half, 0 outside, with an edge as wide as a pixel and a half.
-double bar(double x, double half, double footprint) {
-  const double width = std::max(1.5 * footprint, 0.002);
-  return smooth_step((half - std::abs(x)) / width + 0.5);
+/// Bar: 1 for |x| < half_width, 0 outside, with an edge 1.5 pixels wide.
+double bar(double x, double half_width, double footprint) {
+  const double edge = std::max(1.5 * footprint, 0.002);
+  return smooth_step((half_width - std::abs(x)) / edge + 0.5);
 }
 
 double distance_to_multiple(double x, double period) {
   return x - period * std::round(x / period);
 }
 
+/// Lambertian shading with ambient light; 1 on a level surface.
 double lambert(double slope_x, double slope_y) {
   const double towards =
       (to_sun.z - slope_x * to_sun.x - slope_y * to_sun.y) / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
   return ambient + (1 - ambient) * std::max(0.0, towards) / to_sun.z;
 }
 
-double fractal_noise(double x, double y, double z, std::uint32_t seed) {
+double noise_at(double x, double y, double z, std::uint32_t seed) {
   return z == 0 ? gradient_noise(x, y, seed) : gradient_noise(x, y, z, seed);
 }
 
@@ -66,24 +67,24 @@ Texture::Texture(const Road& road, const HeightField& field)
 }
 
 double Texture::octaves(double x, double y, double z, double footprint, std::uint32_t seed) const {
-  // The finest grain that can be seen is the strongest, and above it strength falls slowly: so a window of
-  // some pixels sees the same roughness at every distance, and the road does not look cloudy.
-  constexpr double amplitude = 0.078 / gradient_noise_deviation;
+  // The finest resolved octave is the strongest and coarser octaves decay slowly, so that a window of some pixels has
+  // the same contrast at every distance and the road does not look cloudy.
+  constexpr double amplitude = 0.078 / gradient_noise_sigma;
   constexpr double decay_per_octave = 0.80;
-  constexpr double shortest = 0.001;
+  constexpr double min_wavelength_m = 0.001;
   constexpr int count = 15;
   constexpr double octaves_used = 6;
-  const double octave_of_finest = std::max(0.0, std::log2(4 * footprint / shortest));
-  // The turn and the shift of the lattice from octave to octave keep its lines from showing.
+  const double finest_octave = std::max(0.0, std::log2(4 * footprint / min_wavelength_m));
+  // The lattice is rotated and shifted between octaves to hide its lines.
   constexpr double turn_cosine = 0.8;
   constexpr double turn_sine = 0.6;
   double sum = 0;
-  double wavelength = shortest;
+  double wavelength = min_wavelength_m;
   double strength = 0;
   double lx = x;
   double ly = y;
   for (int k = 0; k < count; ++k, wavelength *= 2) {
-    const double above = k - octave_of_finest;
+    const double above = k - finest_octave;
     if (above >= octaves_used) break;
     strength = above <= 0 ? 1 : above < 1 ? std::pow(decay_per_octave, above) : strength * decay_per_octave;
     const double next = turn_cosine * lx - turn_sine * ly;
@@ -91,20 +92,20 @@ double Texture::octaves(double x, double y, double z, double footprint, std::uin
     lx = next;
     const double weight = amplitude * strength * resolved(wavelength, footprint) * std::min(1.0, octaves_used - above);
     if (weight <= 0) continue;
-    // Two lattice steps make one period.
+    // One period is two lattice steps.
     const double scale = 2 / wavelength;
-    sum += weight * fractal_noise(lx * scale + 0.37 * k, ly * scale, z * scale, seed + static_cast<std::uint32_t>(k));
+    sum += weight * noise_at(lx * scale + 0.37 * k, ly * scale, z * scale, seed + static_cast<std::uint32_t>(k));
   }
   return sum;
 }
 
 double Texture::aggregate(double x, double y, double z, const Footprint& footprint) const {
-  // Seen at a flat angle a pixel is long and narrow. Then the grain that survives is long and narrow too: the
-  // streaks that paver and tyres leave along the road, in classes of 1, 4, 16 and 64 times as long as wide.
+  // Anisotropic filtering: at a grazing angle the footprint of a pixel is elongated, and so is the grain that it
+  // resolves, like the streaks that pavers and tyres leave along the road. Four classes of aspect ratio 1, 4, 16, 64.
   const double narrow = std::min(footprint.x, footprint.y);
   const double level = std::clamp(0.5 * std::log2(footprint.y / narrow), 0.0, 3.0);
   const double class_below = std::floor(level);
-  // One class rules over half of the way to the next, which saves the other's cost.
+  // A single class is used for half of the range between two classes, to save time.
   const double blend = smooth_step(2 * (level - class_below) - 0.5);
   double sum = 0;
   for (int i = 0; i < 2; ++i) {
@@ -112,7 +113,7 @@ double Texture::aggregate(double x, double y, double z, const Footprint& footpri
     if (share == 0) continue;
     const int stretch_class = static_cast<int>(class_below) + i;
     const double stretch = std::ldexp(1.0, 2 * stretch_class);
-    // Half of the stretched length: the rays within a pixel average what is left.
+    // 0.6 of the stretched length: the rays of a pixel average over the rest.
     const double width = std::max(footprint.x, 0.6 * footprint.y / stretch);
     sum +=
         std::sqrt(share) * octaves(x, y / stretch, z, width, seed_ + 1000u * static_cast<std::uint32_t>(stretch_class));
@@ -126,7 +127,7 @@ double Texture::stones(double x, double y, double cell, double footprint, std::u
   const double cx = x / cell;
   const double cy = y / cell;
   const double edge = std::max(0.15, 1.5 * footprint / cell);
-  // Stones keep to the middle of their cell, so that only the four nearest cells can reach a point.
+  // Stones stay near the centre of their cell, so that only the four nearest cells affect a point.
   const double first_x = std::floor(cx - 0.5);
   const double first_y = std::floor(cy - 0.5);
   double sum = 0;
@@ -146,7 +147,7 @@ double Texture::stones(double x, double y, double cell, double footprint, std::u
 }
 
 double Texture::patches(double x, double y, double footprint) const {
-  const double noise = gradient_noise(x / 0.9, y / 1.6, seed_ + 77u) / gradient_noise_deviation;
+  const double noise = gradient_noise(x / 0.9, y / 1.6, seed_ + 77u) / gradient_noise_sigma;
   const double edge = std::max(0.25, footprint * 4);
   return -0.16 * smooth_step((noise - 1.4) / edge + 0.5);
 }
@@ -160,15 +161,15 @@ double Texture::pavement(double x, double y, const Footprint& footprint) const {
   const double length = beyond < 0 ? kerbstone_length : slab;
   const double along = bar(distance_to_multiple(y, length), half_joint, footprint.y);
   const double across = beyond < -half_joint ? 0 : bar(distance_to_multiple(beyond, slab), half_joint, footprint.x);
-  const double sharp = resolved(length, 3 * std::max(footprint.x, footprint.y));
+  const double contrast = resolved(length, 3 * std::max(footprint.x, footprint.y));
   const double tone = pavement_tone + (kerbstone_tone - pavement_tone) *
                                           bar(beyond + kerbstone_width / 2, kerbstone_width / 2, footprint.x);
-  return tone * (1 - 0.35 * sharp * std::max(across, along));
+  return tone * (1 - 0.35 * contrast * std::max(across, along));
 }
 
 double Texture::verge(double x, double y, const Footprint& footprint) const {
-  // The asphalt ends in a ragged line.
-  const double raggedness = 0.12 * gradient_noise(y / 0.7, 0.5, seed_ + 78u) / gradient_noise_deviation;
+  // The edge of the asphalt is irregular.
+  const double raggedness = 0.12 * gradient_noise(y / 0.7, 0.5, seed_ + 78u) / gradient_noise_sigma;
   const double width = std::max(0.04, 1.5 * footprint.x);
   return smooth_step((verge_x + raggedness - x) / width + 0.5);
 }
@@ -186,8 +187,7 @@ double Texture::paint(double x, double y, const Footprint& footprint) const {
 }
 
 double Texture::grey(const SurfacePoint& point, const Footprint& footprint) const {
-  // Along a kerb's face the texture follows the face, and within damage it follows the depth: walls are not
-  // smeared.
+  // The texture follows the faces of kerbs and the depth of damage, so that it is not smeared on walls.
   const double x = point.x + field_.kerb_rise(point.x);
   const double fine = std::min(footprint.x, footprint.y);
   const double coarse = std::max(footprint.x, footprint.y);
@@ -197,13 +197,13 @@ double Texture::grey(const SurfacePoint& point, const Footprint& footprint) cons
   if (x > kerb_x_) {
     base = pavement(x, point.y, footprint);
   } else {
-    const double wild = verge(x, point.y, footprint);
-    base += wild * (verge_tone - 1);
-    grain = grain * (1 + 0.5 * wild) + patches(x, point.y, fine) * (1 - wild);
+    const double verge_share = verge(x, point.y, footprint);
+    base += verge_share * (verge_tone - 1);
+    grain = grain * (1 + 0.5 * verge_share) + patches(x, point.y, fine) * (1 - verge_share);
   }
   double grey = road_grey * base * std::max(0.15, 1 + contrast_ * grain);
   if (lane_marking_) {
-    // Paint is gone where the road is.
+    // There is no paint inside damage.
     const double share = paint(x, point.y, footprint) * smooth_step((point.light - 0.6) / 0.4) *
                          std::clamp(0.85 + 1.5 * contrast_ * grain, 0.2, 1.0);
     grey += share * (paint_grey * (1 + 0.4 * contrast_ * grain) - grey);

@@ -5,21 +5,22 @@
 
 namespace roadstereo::synth {
 
-/// A point of the road as light leaves it.
+/// Point on the surface of the road, for shading.
 struct SurfacePoint {
   double x = 0;
   double y = 0;
-  double offset = 0;  ///< of the surface against the undamaged road, metres
-  double light = 1;   ///< share of the sun and sky that reaches the point
+  double offset = 0;  ///< height above the undamaged road, metres
+  double light = 1;   ///< share of the light that reaches the point, 0 … 1
   double slope_x = 0;
   double slope_y = 0;
 };
 
-/// What the road looks like: brightness in grey levels at exposure 1, the same from every direction. Detail
-/// that a pixel of the given footprint could not resolve is left out, as the optics of a camera would.
+/// Procedural texture of a road with Lambertian shading: the same brightness from every direction. Detail finer than
+/// the footprint of a pixel is filtered out analytically, as by the optics of a camera.
 class Texture {
  public:
   Texture(const Road& road, const HeightField& field);
+  /// Brightness at exposure 1, 8-bit grey levels.
   double grey(const SurfacePoint& point, const Footprint& footprint) const;
 
  private:
@@ -38,7 +39,7 @@ class Texture {
   std::uint32_t seed_;
 };
 
-/// Brightness of the sky for a line of sight, grey levels.
+/// Brightness of the sky in a direction, 8-bit grey levels.
 double sky_grey(const Vec3& direction);
 
 }  // namespace roadstereo::synth

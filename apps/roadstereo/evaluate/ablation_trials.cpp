@@ -19,20 +19,21 @@ const std::vector<double>& tolerances_px() {
 }
 constexpr std::size_t above_half = 0, above_1 = 1, above_2 = 2;
 
-/// What is collected of one variant.
+/// Scores and times of one variant.
 struct Trials {
   std::vector<DisparityScore> kitti, clean, hard, damage;
   std::vector<double> match_ms, total_ms;
 };
 
 Pipeline make_pipeline(const Variant& variant, MethodTask task, const MethodSettings& methods) {
-  task.shows_a_road = variant.with_perspective;
+  task.is_road = variant.with_perspective;
   PipelineOptions options = method_options(variant.preset, task, methods);
   apply_settings(variant.settings, options);
   return Pipeline(options, task.pair.calibration);
 }
 
-void time_again(Pipeline& pipeline, const StereoPair& pair, Trials& trials) {
+/// Process a pair that has been processed before, and add its times.
+void time_second_pass(Pipeline& pipeline, const StereoPair& pair, Trials& trials) {
   const StageTimes& ms = pipeline.process(pair.left.view(), pair.right.view()).ms;
   trials.match_ms.push_back(ms.match);
   trials.total_ms.push_back(ms.total);
@@ -41,12 +42,12 @@ void time_again(Pipeline& pipeline, const StereoPair& pair, Trials& trials) {
 void run_kitti(const AblationOptions& options, std::vector<Trials>& trials) {
   for (const KittiFiles& files : find_kitti_frames(options.kitti, "")) {
     const KittiFrame frame = read_kitti_frame(files);
-    if (!frame.road) fail(files.name, " has no road mask in ", options.kitti, "/road");
+    if (!frame.road) fail(options.kitti, "/road: frame ", files.name, " has no road mask");
     for (std::size_t i = 0; i < trials.size(); ++i) {
       Pipeline pipeline = make_pipeline(ablation_variants()[i], {frame.pair}, options.methods);
       const FrameResult& result = pipeline.process(frame.pair.left.view(), frame.pair.right.view());
       trials[i].kitti.push_back(score_disparity(result.disparity, frame.truth, frame.road->view(), tolerances_px()));
-      time_again(pipeline, frame.pair, trials[i]);
+      time_second_pass(pipeline, frame.pair, trials[i]);
     }
   }
 }
@@ -56,51 +57,52 @@ void run_rendered(const AblationOptions& options, std::vector<Trials>& trials) {
   for (const SynthGroup& group : synth_groups()) {
     const bool clean = &group == &synth_groups().front();
     for (const synth::Scene& scene : scenes) {
-      const SynthCase example = make_synth_case(group, scene, options.methods.threads);
+      const SynthCase test_case = make_synth_case(group, scene, options.methods.threads);
       for (std::size_t i = 0; i < trials.size(); ++i) {
-        Pipeline pipeline = make_pipeline(ablation_variants()[i], {example.pair, example.disparities}, options.methods);
-        const Image<float>& map = pipeline.process(example.pair.left.view(), example.pair.right.view()).disparity;
+        Pipeline pipeline =
+            make_pipeline(ablation_variants()[i], {test_case.pair, test_case.disparities}, options.methods);
+        const Image<float>& map = pipeline.process(test_case.pair.left.view(), test_case.pair.right.view()).disparity;
         auto& scores = clean ? trials[i].clean : trials[i].hard;
-        scores.push_back(score_disparity(map, example.truth, example.visible.view(), tolerances_px()));
-        trials[i].damage.push_back(score_disparity(map, example.truth, example.damage.view(), tolerances_px()));
-        if (clean && options.kitti.empty()) time_again(pipeline, example.pair, trials[i]);
+        scores.push_back(score_disparity(map, test_case.truth, test_case.visible.view(), tolerances_px()));
+        trials[i].damage.push_back(score_disparity(map, test_case.truth, test_case.damage.view(), tolerances_px()));
+        if (clean && options.kitti.empty()) time_second_pass(pipeline, test_case.pair, trials[i]);
       }
     }
   }
 }
 
-AblationFigures summarise(const Trials& trials) {
+AblationResult summarise(const Trials& trials) {
   const DisparityScore clean = mean_score(trials.clean);
-  AblationFigures figures;
-  figures.clean_median_px = clean.median_px;
-  figures.clean_bad_or_missing = clean.bad_or_missing_share[above_1];
-  figures.hard_bad_or_missing = mean_score(trials.hard).bad_or_missing_share[above_1];
+  AblationResult result;
+  result.clean_median_px = clean.median_px;
+  result.clean_bad_or_missing = clean.bad_or_missing_share[above_1];
+  result.hard_bad_or_missing = mean_score(trials.hard).bad_or_missing_share[above_1];
   const DisparityScore damage = mean_score(trials.damage);
-  figures.damage_rms_px = damage.rms_px;
-  figures.damage_bad_or_missing = damage.bad_or_missing_share[above_half];
-  figures.match_ms = median(trials.match_ms);
-  figures.total_ms = median(trials.total_ms);
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  figures.kitti_density = figures.kitti_rms_px = figures.kitti_bad = figures.kitti_bad_or_missing = unknown;
-  if (trials.kitti.empty()) return figures;
+  result.damage_rms_px = damage.rms_px;
+  result.damage_bad_or_missing = damage.bad_or_missing_share[above_half];
+  result.match_ms = median(trials.match_ms);
+  result.total_ms = median(trials.total_ms);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  result.kitti_density = result.kitti_rms_px = result.kitti_bad = result.kitti_bad_or_missing = nan;
+  if (trials.kitti.empty()) return result;
   const DisparityScore kitti = mean_score(trials.kitti);
-  figures.kitti_density = kitti.density();
-  figures.kitti_rms_px = kitti.rms_px;
-  figures.kitti_bad = kitti.bad_share[above_2];
-  figures.kitti_bad_or_missing = kitti.bad_or_missing_share[above_2];
-  return figures;
+  result.kitti_density = kitti.density();
+  result.kitti_rms_px = kitti.rms_px;
+  result.kitti_bad = kitti.bad_share[above_2];
+  result.kitti_bad_or_missing = kitti.bad_or_missing_share[above_2];
+  return result;
 }
 
 }  // namespace
 
-std::vector<AblationFigures> measure_ablation(const AblationOptions& options) {
+std::vector<AblationResult> measure_ablation(const AblationOptions& options) {
   std::vector<Trials> trials(ablation_variants().size());
   if (!options.kitti.empty()) run_kitti(options, trials);
   run_rendered(options, trials);
-  std::vector<AblationFigures> figures;
-  figures.reserve(trials.size());
-  for (const Trials& of_variant : trials) figures.push_back(summarise(of_variant));
-  return figures;
+  std::vector<AblationResult> results;
+  results.reserve(trials.size());
+  for (const Trials& of_variant : trials) results.push_back(summarise(of_variant));
+  return results;
 }
 
 }  // namespace roadstereo::cli

@@ -8,24 +8,24 @@
 namespace roadstereo::cli {
 
 struct AblationOptions {
-  std::string kitti;  ///< folder laid out as KITTI Stereo 2015; empty leaves those columns out
+  std::string kitti;  ///< folder with the layout of KITTI Stereo 2015; empty: no KITTI columns
   std::string sizes = "small";
   MethodSettings methods;
 };
 
-/// What one variant reaches. NaN without the frames for it.
-struct AblationFigures {
+/// Accuracy and times of one variant. NaN if there are no frames for a value.
+struct AblationResult {
   double kitti_density = 0, kitti_rms_px = 0;            ///< inside the road masks, means over the frames
   double kitti_bad = 0, kitti_bad_or_missing = 0;        ///< e_p(2), e_p+(2), shares
-  double clean_median_px = 0, clean_bad_or_missing = 0;  ///< rendered, unspoilt: median |error|, e_p+(1)
-  double hard_bad_or_missing = 0;                        ///< rendered, mean over the spoilt groups: e_p+(1)
-  double damage_rms_px = 0, damage_bad_or_missing = 0;   ///< rendered, mean over all groups, on damage: e_r, e_p+(0.5)
+  double clean_median_px = 0, clean_bad_or_missing = 0;  ///< rendered without degradation: median |error|, e_p+(1)
+  double hard_bad_or_missing = 0;                        ///< rendered, mean over the degraded groups: e_p+(1)
+  double damage_rms_px = 0, damage_bad_or_missing = 0;   ///< rendered, on damage, mean over all groups: e_r, e_p+(0.5)
   double match_ms = 0, total_ms = 0;                     ///< medians over the frames
 };
 
-/// Matches every frame with every variant, one frame after the other, so that all variants see the same machine. What
-/// is scored is a pair that is seen for the first time; what is timed is the same pair once more, with the memory there
-/// and the road model carried over. Times are KITTI's where there is a folder, else those of the clean rendered pairs.
-std::vector<AblationFigures> measure_ablation(const AblationOptions& options);
+/// Match every frame with every variant, frame by frame, so that all variants run under the same load. The first match
+/// of a pair is scored; the second is timed, with memory allocated and the road model tracked. Times are those of the
+/// KITTI frames if there is a folder, else those of the clean rendered pairs.
+std::vector<AblationResult> measure_ablation(const AblationOptions& options);
 
 }  // namespace roadstereo::cli

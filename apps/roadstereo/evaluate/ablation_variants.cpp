@@ -11,21 +11,23 @@ std::vector<Variant> default_variants() {
       {"shift without roll", "default", {"road_model.with_roll=false"}},
       {"rows not corrected", "default", {"correct_rows=false"}},
       {"search not narrowed", "default", {"narrow_search=false"}},
-      {"no prior", "default", {"matcher.prior_slope=0"}},
-      {"prior without road's pull", "default", {"coarse_search.road_pull=0"}},
-      {"prior not smoothed along rows", "default", {"coarse_search.step_penalty=0", "coarse_search.jump_penalty=0"}},
+      {"no prior", "default", {"matcher.prior_weight=0"}},
+      {"no road prior", "default", {"coarse_search.road_prior_weight=0"}},
+      {"no scanline optimisation of the prior",
+       "default",
+       {"coarse_search.step_penalty=0", "coarse_search.jump_penalty=0"}},
       {"block 11x11", "default", {"matcher.block_radius=5"}},
       {"no aggregation", "default", {"matcher.aggregation_radius=0"}},
-      {"no texture noise", "default", {"matcher.texture_noise=0", "coarse_search.texture_noise=0"}},
+      {"no texture noise", "default", {"matcher.ncc_noise_sigma=0", "coarse_search.ncc_noise_sigma=0"}},
       {"no left-right check", "default", {"matcher.left_right_check=false"}},
-      {"target volume matched too", "default", {"matcher.target_volume=true"}},
+      {"target volume matched too", "default", {"matcher.match_both_views=true"}},
       {"no sub-pixel parabola", "default", {"matcher.sub_pixel=false"}},
-      {"range ends dropped", "default", {"matcher.drop_range_ends=true"}},
+      {"range ends dropped", "default", {"matcher.reject_range_boundary=true"}},
       {"no refinement", "default", {"refinement.radius=0"}},
   };
 }
 
-/// The paper's own ideas taken away, then ours added to it.
+/// The paper without its components, then with components of the default preset.
 std::vector<Variant> paper_variants() {
   return {
       {"paper", "paper"},
@@ -36,13 +38,13 @@ std::vector<Variant> paper_variants() {
       {"paper + sub-pixel shift", "paper", {"perspective.shift=sub_pixel"}},
       {"paper + shift with roll", "paper", {"road_model.with_roll=true"}},
       {"paper + rows corrected", "paper", {"correct_rows=true"}},
-      {"paper + prior", "paper", {"matcher.prior_slope=0.08", "coarse_search.road_pull=0.4"}},
-      {"paper + texture noise", "paper", {"matcher.texture_noise=1"}},
+      {"paper + prior", "paper", {"matcher.prior_weight=0.08", "coarse_search.road_prior_weight=0.4"}},
+      {"paper + texture noise", "paper", {"matcher.ncc_noise_sigma=1"}},
       {"paper + block 5x5, wide window",
        "paper",
        {"matcher.block_radius=2", "matcher.aggregation_radius=6", "matcher.aggregation_step=2",
         "matcher.aggregation_shape=disc", "matcher.sigma_space=6", "matcher.sigma_colour=20"}},
-      {"paper + range ends dropped", "paper", {"matcher.drop_range_ends=true"}},
+      {"paper + range ends dropped", "paper", {"matcher.reject_range_boundary=true"}},
       {"paper + refinement", "paper", {"refinement.radius=8"}},
   };
 }

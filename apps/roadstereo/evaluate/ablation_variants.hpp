@@ -5,19 +5,18 @@
 
 namespace roadstereo::cli {
 
-/// A preset with one idea taken away, or one added.
+/// Preset with one component removed or added.
 struct Variant {
   std::string name;
-  std::string preset;                   ///< where it starts from
+  std::string preset;
   std::vector<std::string> settings{};  ///< KEY=VALUE
-  bool with_perspective = true;         ///< false: no shift, and the disparities of the whole scene are searched
+  bool with_perspective = true;         ///< false: no perspective transformation; the full disparity range is searched
 };
 
-/// "default" with its ideas taken away one at a time, then "paper" without its own and with ours. A preset as it is
-/// stands before its variants.
+/// The preset "default" and its variants, then the preset "paper" and its variants. A preset precedes its variants.
 const std::vector<Variant>& ablation_variants();
 
-/// Index of the preset that a variant is compared with.
+/// Index of the preset that a variant is based on.
 std::size_t base_of(std::size_t variant);
 
 }  // namespace roadstereo::cli

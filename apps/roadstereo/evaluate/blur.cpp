@@ -20,10 +20,10 @@ struct Arguments {
 };
 
 constexpr const char* note =
-    "Density, e_r and e_p over the pixels that both cameras see, mean over the directions. SGBM gets the pair as the\n"
-    "default preset has transformed it, which helps: otherwise it would see nothing of the leftmost columns. The "
-    "paper\n"
-    "shows blurred frames but gives no figures.\n";
+    "Means over the directions, over the pixels that both cameras see. SGBM gets the pair as transformed by the "
+    "default\n"
+    "preset; without it SGBM has no disparity in the leftmost columns. The paper shows blurred frames but no "
+    "numbers.\n";
 
 constexpr double percent = 100;
 
@@ -33,13 +33,13 @@ Table make_table(const std::vector<BlurTrial>& trials, const BlurOptions& option
                {"length px", "length_px"},
                {"density %", "density_percent"},
                {"e_r px", "rms_px"},
-               {"> 1 px or missing %", "wrong_percent"}},
+               {"e_p+(1) %", "e_p_or_missing_1px_percent"}},
               {}};
   for (const std::string& method : blur_methods()) {
     for (const double length : blur_lengths(options)) {
       const BlurTrial mean = mean_over_directions(trials, method, length);
       table.rows.push_back({method, Cell(length, 1), Cell(percent * mean.density, 1), Cell(mean.rms_px, 3),
-                            Cell(percent * mean.wrong, 1)});
+                            Cell(percent * mean.bad_or_missing, 1)});
     }
   }
   return table;
@@ -71,13 +71,13 @@ nlohmann::ordered_json trials_json(const std::vector<BlurTrial>& trials) {
                    {"direction_deg", trial.direction_deg},
                    {"density", trial.density},
                    {"rms_px", trial.rms_px},
-                   {"wrong", trial.wrong}});
+                   {"bad_or_missing", trial.bad_or_missing}});
   }
   return all;
 }
 
 void run(const Arguments& arguments) {
-  const std::vector<BlurTrial> trials = try_blur(arguments.trials);
+  const std::vector<BlurTrial> trials = run_blur_trials(arguments.trials);
   const Table table = make_table(trials, arguments.trials);
   if (!arguments.files.json.empty()) {
     write_report(arguments.files.json,
@@ -93,14 +93,16 @@ void add_blur(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("blur", "Density and error against motion blur, on synthetic roads");
   const auto arguments = std::make_shared<Arguments>();
   BlurOptions& trials = arguments->trials;
-  command->add_option("--scene", trials.scene, "A named scene")->type_name("NAME")->capture_default_str();
-  command->add_option("--longest", trials.longest_px, "Longest motion")->type_name("PX")->capture_default_str();
-  command->add_option("--steps", trials.steps, "Lengths from 0 to the longest")->capture_default_str();
+  command->add_option("--scene", trials.scene, "Name of the scene")->type_name("NAME")->capture_default_str();
+  command->add_option("--max-length", trials.max_px, "Maximum length of the motion")
+      ->type_name("PX")
+      ->capture_default_str();
+  command->add_option("--steps", trials.steps, "Number of lengths from 0 to the maximum")->capture_default_str();
   command->add_option("--directions", trials.directions_deg, "Directions of the motion; 0 is along the rows")
       ->type_name("DEG,…")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--noise", trials.noise_grey, "Noise, standard deviation in grey levels")
+  command->add_option("--noise", trials.noise_grey, "Standard deviation of the noise, 8-bit grey levels")
       ->type_name("GREY")
       ->capture_default_str();
   add_method_options(*command, trials.methods);

@@ -14,10 +14,10 @@
 namespace roadstereo::cli {
 namespace {
 
-constexpr const char* peer = "SGBM";
+constexpr const char* baseline = "SGBM";
 constexpr std::array presets{"default", "paper"};
 
-/// One blurred pair and what is right about it.
+/// Blurred pair with ground truth.
 struct BlurredPair {
   StereoPair pair;
   Image<float> truth;
@@ -30,13 +30,13 @@ BlurredPair render_blurred(const BlurOptions& options, double length_px, double 
   scene.degradation.noise_grey = options.noise_grey;
   scene.degradation.motion_blur_px = length_px;
   scene.degradation.motion_blur_angle_deg = direction_deg;
-  synth::SyntheticPair made = synth::render(scene, options.methods.threads);
+  synth::SyntheticPair rendered = synth::render(scene, options.methods.threads);
   BlurredPair blurred;
-  blurred.truth = exact_map(made);
-  blurred.visible = std::move(made.visible);
-  blurred.pair.left = std::move(made.left);
-  blurred.pair.right = std::move(made.right);
-  blurred.pair.calibration = made.calibration;
+  blurred.truth = exact_map(rendered);
+  blurred.visible = std::move(rendered.visible);
+  blurred.pair.left = std::move(rendered.left);
+  blurred.pair.right = std::move(rendered.right);
+  blurred.pair.calibration = rendered.calibration;
   return blurred;
 }
 
@@ -46,13 +46,13 @@ BlurTrial score(const BlurredPair& blurred, const Image<float>& disparity) {
   BlurTrial trial;
   trial.density = score.density();
   trial.rms_px = score.rms_px;
-  trial.wrong = score.bad_or_missing_share.front();
+  trial.bad_or_missing = score.bad_or_missing_share.front();
   return trial;
 }
 
-Image<float> match_peer(const StereoPair& pair, const PerspectiveShift& shift, int threads) {
+Image<float> match_baseline(const StereoPair& pair, const PerspectiveShift& shift, int threads) {
   const PeerPair grey = peer_pair(pair, shift);
-  io::PeerMatcher matcher(peer, shift.disparities);
+  io::PeerMatcher matcher(baseline, shift.disparities);
   matcher.set_pair(grey.reference, grey.target);
   matcher.match();
   Image<float> disparity;
@@ -60,8 +60,8 @@ Image<float> match_peer(const StereoPair& pair, const PerspectiveShift& shift, i
   return disparity;
 }
 
-/// Every method on one pair.
-std::vector<BlurTrial> try_pair(const BlurredPair& blurred, const MethodSettings& methods) {
+/// Run every method on one pair.
+std::vector<BlurTrial> run_pair(const BlurredPair& blurred, const MethodSettings& methods) {
   std::vector<BlurTrial> trials;
   std::optional<PerspectiveShift> shift;
   for (const char* name : presets) {
@@ -74,38 +74,38 @@ std::vector<BlurTrial> try_pair(const BlurredPair& blurred, const MethodSettings
     trials.push_back(score(blurred, result.disparity));
     trials.back().method = name;
   }
-  trials.push_back(score(blurred, match_peer(blurred.pair, *shift, methods.threads)));
-  trials.back().method = peer;
+  trials.push_back(score(blurred, match_baseline(blurred.pair, *shift, methods.threads)));
+  trials.back().method = baseline;
   return trials;
 }
 
 }  // namespace
 
 void BlurOptions::validate() const {
-  if (!(longest_px > 0 && longest_px <= 100)) fail("--longest is ", longest_px, "; it must be above 0 and at most 100");
+  if (!(max_px > 0 && max_px <= 100)) fail("--max-length is ", max_px, "; it must be above 0 and at most 100");
   if (steps < 2 || steps > 1000) fail("--steps is ", steps, "; it must be between 2 and 1000");
-  if (directions_deg.empty()) fail("--directions is empty; give at least one angle");
+  if (directions_deg.empty()) fail("--directions is empty; it must have at least one angle");
   if (!(noise_grey >= 0 && noise_grey <= 50)) fail("--noise is ", noise_grey, "; it must be between 0 and 50");
 }
 
 const std::vector<std::string>& blur_methods() {
-  static const std::vector<std::string> methods{presets[0], presets[1], peer};
+  static const std::vector<std::string> methods{presets[0], presets[1], baseline};
   return methods;
 }
 
 std::vector<double> blur_lengths(const BlurOptions& options) {
   std::vector<double> lengths;
   lengths.reserve(static_cast<std::size_t>(options.steps));
-  for (int i = 0; i < options.steps; ++i) lengths.push_back(options.longest_px * i / (options.steps - 1));
+  for (int i = 0; i < options.steps; ++i) lengths.push_back(options.max_px * i / (options.steps - 1));
   return lengths;
 }
 
-std::vector<BlurTrial> try_blur(const BlurOptions& options) {
+std::vector<BlurTrial> run_blur_trials(const BlurOptions& options) {
   options.validate();
   std::vector<BlurTrial> all;
   for (const double length : blur_lengths(options)) {
     for (const double direction : options.directions_deg) {
-      for (BlurTrial& trial : try_pair(render_blurred(options, length, direction), options.methods)) {
+      for (BlurTrial& trial : run_pair(render_blurred(options, length, direction), options.methods)) {
         trial.length_px = length;
         trial.direction_deg = direction;
         all.push_back(std::move(trial));
@@ -124,12 +124,12 @@ BlurTrial mean_over_directions(const std::vector<BlurTrial>& trials, const std::
     if (trial.method != method || trial.length_px != length_px) continue;
     mean.density += trial.density;
     mean.rms_px += trial.rms_px;
-    mean.wrong += trial.wrong;
+    mean.bad_or_missing += trial.bad_or_missing;
     count += 1;
   }
   mean.density /= count;
   mean.rms_px /= count;
-  mean.wrong /= count;
+  mean.bad_or_missing /= count;
   return mean;
 }
 

@@ -8,8 +8,8 @@
 
 namespace roadstereo::cli {
 
-/// Where every method gives a disparity, 255, so that what a method leaves out (a margin, occlusions) decides nothing.
-/// `maps` has one map per entry of method_names(). BM gives few disparities and has no say.
+/// Mask of the pixels where every method has a disparity, 255 inside, so that missing disparities (margins, occlusions)
+/// do not affect a comparison. `maps` has one map per entry of method_names(). BM is ignored, since it is too sparse.
 Image<std::uint8_t> common_pixels(const std::vector<Image<float>>& maps,
                                   const std::optional<ImageView<const std::uint8_t>>& mask);
 

@@ -18,42 +18,42 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double least_share = 1.0 / 3;
+constexpr double min_share = 1.0 / 3;
 
 bool is_depression(const DamageMap& map, std::uint16_t id) {
   return id != 0 && map.damages[id - 1U].kind == DamageKind::depression;
 }
 
-/// Labelled regions that are found, and depressions that no label knows.
+/// Count labels, found labels and false positives.
 void count_regions(const DamageMap& map, const Image<std::uint8_t>& label, LabelResult& result) {
   const LabelRegions regions = label_regions(label);
   std::vector<std::size_t> covered(regions.sizes.size(), 0);
-  std::map<std::uint16_t, std::size_t> labelled_of;
+  std::map<std::uint16_t, std::size_t> labelled_pixels;  // by id of the damage
   for (int v = 0; v < label.height(); ++v) {
     for (int u = 0; u < label.width(); ++u) {
       const int region = regions.ids(u, v);
       if (region == 0 || !is_depression(map, map.ids(u, v))) continue;
       ++covered[static_cast<std::size_t>(region - 1)];
-      ++labelled_of[map.ids(u, v)];
+      ++labelled_pixels[map.ids(u, v)];
     }
   }
-  result.labelled = regions.sizes.size();
+  result.labels = regions.sizes.size();
   for (std::size_t k = 0; k < covered.size(); ++k) {
-    const bool hit = static_cast<double>(covered[k]) >= least_share * static_cast<double>(regions.sizes[k]);
-    result.hit += hit ? 1U : 0U;
+    const bool is_found = static_cast<double>(covered[k]) >= min_share * static_cast<double>(regions.sizes[k]);
+    result.found += is_found ? 1U : 0U;
   }
   for (const Damage& damage : map.damages) {
     if (damage.kind != DamageKind::depression) continue;
-    const double labelled = static_cast<double>(labelled_of[static_cast<std::uint16_t>(damage.id)]);
-    result.invented += labelled < least_share * static_cast<double>(damage.pixels) ? 1U : 0U;
+    const double labelled = static_cast<double>(labelled_pixels[static_cast<std::uint16_t>(damage.id)]);
+    result.false_positives += labelled < min_share * static_cast<double>(damage.pixels) ? 1U : 0U;
   }
 }
 
 LabelResult score_frame(const std::string& name, const DamageMap& map, const Image<std::uint8_t>& label,
                         const Image<float>& measured, const std::string& label_file) {
   if (label.width() != map.ids.width() || label.height() != map.ids.height()) {
-    fail(label_file, " has ", label.width(), "×", label.height(), " pixels and the map ", map.ids.width(), "×",
-         map.ids.height(), "; they must have one size");
+    fail(label_file, " has ", label.width(), "×", label.height(), " pixels; it must have ", map.ids.width(), "×",
+         map.ids.height(), " like the map");
   }
   LabelResult result;
   result.frame = name;
@@ -67,7 +67,7 @@ LabelResult score_frame(const std::string& name, const DamageMap& map, const Ima
   return result;
 }
 
-std::string picture_of(const fs::path& root, const std::string& name) {
+std::string image_of(const fs::path& root, const std::string& name) {
   for (const char* ending : {".jpg", ".png"}) {
     const fs::path path = root / "rgb" / (name + ending);
     if (fs::is_regular_file(path)) return path.string();
@@ -81,7 +81,7 @@ std::vector<fs::path> maps_in(const fs::path& folder) {
     if (entry.path().extension() == ".png") maps.push_back(entry.path());
   }
   std::sort(maps.begin(), maps.end());
-  if (maps.empty()) fail(folder.string(), " has no PNG in it");
+  if (maps.empty()) fail(folder.string(), ": the folder contains no PNG file");
   return maps;
 }
 
@@ -92,7 +92,7 @@ std::vector<LabelResult> score_labelled_maps(const std::string& folder) {
   std::vector<LabelResult> results;
   for (const fs::path& path : maps_in(root / "disp_tg")) {
     const std::string name = path.stem().string();
-    const TransformedMap source = read_transformed_map({path.string(), picture_of(root, name), "", {}});
+    const TransformedMap source = read_transformed_map({path.string(), image_of(root, name), "", {}});
     GreyImage grey;
     if (source.image) to_grey(source.image->view(), 0, grey);
     DamageInput input;
@@ -125,7 +125,7 @@ Table label_table(const std::vector<LabelResult>& results) {
                {"F", "f"},
                {"labels", "labels"},
                {"found", "found"},
-               {"invented", "invented"},
+               {"false positives", "false_positives"},
                {"measured %", "measured_percent"}},
               {}};
   const auto row = [&](const LabelResult& one) -> std::vector<Cell> {
@@ -133,9 +133,9 @@ Table label_table(const std::vector<LabelResult>& results) {
             Cell(one.score.precision(), 3),
             Cell(one.score.recall(), 3),
             Cell(one.score.f(), 3),
-            Cell(static_cast<double>(one.labelled), 0),
-            Cell(static_cast<double>(one.hit), 0),
-            Cell(static_cast<double>(one.invented), 0),
+            Cell(static_cast<double>(one.labels), 0),
+            Cell(static_cast<double>(one.found), 0),
+            Cell(static_cast<double>(one.false_positives), 0),
             Cell(percent * static_cast<double>(one.measured) / static_cast<double>(one.score.truth), 1)};
   };
   LabelResult all;
@@ -143,9 +143,9 @@ Table label_table(const std::vector<LabelResult>& results) {
   for (const LabelResult& one : results) {
     table.rows.push_back(row(one));
     all.score.add(one.score);
-    all.labelled += one.labelled;
-    all.hit += one.hit;
-    all.invented += one.invented;
+    all.labels += one.labels;
+    all.found += one.found;
+    all.false_positives += one.false_positives;
     all.measured += one.measured;
   }
   table.rows.push_back(row(all));

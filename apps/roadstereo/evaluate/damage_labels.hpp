@@ -9,23 +9,24 @@
 
 namespace roadstereo::cli {
 
-/// Depressions found against the labels of one frame.
+/// Depressions of one frame compared with its labels.
 struct LabelResult {
   std::string frame;
-  RegionScore score;
-  std::size_t labelled = 0;  ///< regions of the label
-  std::size_t hit = 0;       ///< ... that a depression covers by a third
-  std::size_t invented = 0;  ///< depressions of which less than a third is labelled
-  std::size_t measured = 0;  ///< labelled pixels that have a disparity
+  RegionScore score;                ///< pixels
+  std::size_t labels = 0;           ///< connected components of the label
+  std::size_t found = 0;            ///< labels that depressions cover by at least a third
+  std::size_t false_positives = 0;  ///< depressions of which less than a third is labelled
+  std::size_t measured = 0;         ///< labelled pixels with a disparity
 };
 
-/// Transformed maps with labels: DIR/disp_tg, DIR/label, DIR/rgb (may be missing). Throws Error naming what is missing.
+/// Score transformed maps with labels: folder/disp_tg, folder/label, and folder/rgb if present. Throws Error naming the
+/// file that is missing.
 std::vector<LabelResult> score_labelled_maps(const std::string& folder);
 
-/// Stereo pairs with labels, as `find_scan_frames` finds them.
+/// Score stereo pairs with labels, in the layout of `find_scan_frames`.
 std::vector<LabelResult> score_labelled_pairs(const std::string& folder, const std::string& preset);
 
-/// One row per frame and one for all pixels.
+/// Table with one row per frame and one for all pixels.
 Table label_table(const std::vector<LabelResult>& results);
 
 }  // namespace roadstereo::cli

@@ -11,7 +11,7 @@ namespace {
 
 RoadResult score_frame(const KittiFiles& files, const std::string& preset_name) {
   const KittiFrame frame = read_kitti_frame(files);
-  if (!frame.road) fail(files.left, " has no mask of the road");
+  if (!frame.road) fail(files.left, ": the frame has no road mask");
   Pipeline pipeline(preset(preset_name), frame.pair.calibration);
   pipeline.process(frame.pair.left.view(), frame.pair.right.view());
   const DamageMap map = pipeline.find_damage();
@@ -38,7 +38,7 @@ std::vector<RoadResult> score_intact_roads(const std::string& folder, const std:
 }
 
 Table road_table(const std::vector<RoadResult>& results) {
-  Table table{"Road region, and damage found on intact road",
+  Table table{"Road region, and false damage on intact road",
               {{"frame", "frame"},
                {"IoU", "iou"},
                {"precision", "precision"},
@@ -49,12 +49,12 @@ Table road_table(const std::vector<RoadResult>& results) {
   const auto count = static_cast<double>(results.size());
   std::vector<double> means(5, 0);
   for (const RoadResult& one : results) {
-    const std::vector<double> figures{one.road.iou(), one.road.precision(), one.road.recall(),
-                                      static_cast<double>(one.depressions), static_cast<double>(one.protrusions)};
+    const std::vector<double> values{one.road.iou(), one.road.precision(), one.road.recall(),
+                                     static_cast<double>(one.depressions), static_cast<double>(one.protrusions)};
     std::vector<Cell> row{Cell(one.frame)};
-    for (std::size_t k = 0; k < figures.size(); ++k) {
-      row.emplace_back(figures[k], k < 3 ? 3 : 0);
-      means[k] += figures[k] / count;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      row.emplace_back(values[k], k < 3 ? 3 : 0);
+      means[k] += values[k] / count;
     }
     table.rows.push_back(std::move(row));
   }

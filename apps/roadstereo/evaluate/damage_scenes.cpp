@@ -10,15 +10,15 @@
 namespace roadstereo::cli {
 namespace {
 
-constexpr double least_share = 1.0 / 3;
-constexpr double sub_pixel_px = 0.03;  // bias of the sub-pixel step, docs/accuracy.md
-constexpr std::size_t least_pixels = 64;
+constexpr double min_share = 1.0 / 3;
+constexpr double sub_pixel_bias_px = 0.03;  // docs/accuracy.md
+constexpr std::size_t min_pixels = 64;
 
-/// What the labels of one damage cover.
+/// Pixels of one damage of the ground truth.
 struct Cover {
   std::size_t pixels = 0;
-  bool whole = true;
-  double disparity = 0;
+  bool fully_visible = true;
+  double disparity = 0;  ///< sum
   std::vector<double> sigmas;
   std::map<std::uint16_t, std::size_t> found;  ///< pixels by the id found there
 };
@@ -38,7 +38,7 @@ std::map<int, Cover> covers_of(const SceneCase& scene) {
       Cover& cover = covers[labels(u, v)];
       ++cover.pixels;
       cover.disparity += scene.pair.disparity(u, v);
-      if (u == 0 || v == 0 || u + 1 == labels.width() || v + 1 == labels.height()) cover.whole = false;
+      if (u == 0 || v == 0 || u + 1 == labels.width() || v + 1 == labels.height()) cover.fully_visible = false;
       if (!std::isnan(scene.frame.sigma(u, v))) cover.sigmas.push_back(scene.frame.sigma(u, v));
       if (scene.map.ids(u, v) != 0) ++cover.found[scene.map.ids(u, v)];
     }
@@ -46,17 +46,17 @@ std::map<int, Cover> covers_of(const SceneCase& scene) {
   return covers;
 }
 
-/// The damage that covers at least a third of the truth.
+/// Id of the region that covers most of the damage, at least a third; 0 if there is none.
 std::uint16_t best_match(const Cover& cover) {
   std::uint16_t best = 0;
-  std::size_t most = 0;
+  std::size_t max_pixels = 0;
   for (const auto& [id, pixels] : cover.found) {
-    if (pixels > most) {
-      most = pixels;
+    if (pixels > max_pixels) {
+      max_pixels = pixels;
       best = id;
     }
   }
-  return static_cast<double>(most) >= least_share * static_cast<double>(cover.pixels) ? best : 0;
+  return static_cast<double>(max_pixels) >= min_share * static_cast<double>(cover.pixels) ? best : 0;
 }
 
 SceneDamage describe(const std::string& name, const SceneCase& scene, const synth::DamageTruth& truth,
@@ -65,55 +65,55 @@ SceneDamage describe(const std::string& name, const SceneCase& scene, const synt
   damage.scene = name;
   damage.truth = truth;
   damage.pixels = cover.pixels;
-  damage.whole = cover.whole;
+  damage.fully_visible = cover.fully_visible;
   damage.depth_px = truth.depth_m * cover.disparity / static_cast<double>(cover.pixels) / height_m;
-  damage.std_error_px =
-      std::hypot(scene.map.noise_px, cover.sigmas.empty() ? scene.map.noise_px : median(cover.sigmas), sub_pixel_px);
+  damage.std_error_px = std::hypot(scene.map.noise_px, cover.sigmas.empty() ? scene.map.noise_px : median(cover.sigmas),
+                                   sub_pixel_bias_px);
   const std::uint16_t id = best_match(cover);
   if (id == 0) return damage;
   damage.found = scene.map.damages[id - 1U];
   const auto own = static_cast<double>(cover.found.at(id));
-  constexpr double mostly = 0.8;  // of the region that lies on any damage
+  constexpr double min_own_share = 0.8;  // of the part of the region that lies on any damage
   std::size_t on_damage = 0;
   for (int v = 0; v < scene.map.ids.height(); ++v) {
     for (int u = 0; u < scene.map.ids.width(); ++u) {
       on_damage += scene.map.ids(u, v) == id && scene.pair.labels(u, v) != 0 ? 1U : 0U;
     }
   }
-  damage.alone = own >= mostly * static_cast<double>(on_damage);
+  damage.is_single = own >= min_own_share * static_cast<double>(on_damage);
   return damage;
 }
 
-std::size_t count_invented(const SceneCase& scene) {
-  std::vector<std::size_t> real(scene.map.damages.size(), 0);
+std::size_t count_false_positives(const SceneCase& scene) {
+  std::vector<std::size_t> true_pixels(scene.map.damages.size(), 0);
   for (int v = 0; v < scene.map.ids.height(); ++v) {
     for (int u = 0; u < scene.map.ids.width(); ++u) {
       const std::uint16_t id = scene.map.ids(u, v);
-      if (id != 0 && scene.pair.labels(u, v) != 0) ++real[id - 1U];
+      if (id != 0 && scene.pair.labels(u, v) != 0) ++true_pixels[id - 1U];
     }
   }
-  std::size_t invented = 0;
-  for (std::size_t k = 0; k < real.size(); ++k) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < true_pixels.size(); ++k) {
     const auto pixels = static_cast<double>(scene.map.damages[k].pixels);
-    invented += static_cast<double>(real[k]) < least_share * pixels ? 1U : 0U;
+    count += static_cast<double>(true_pixels[k]) < min_share * pixels ? 1U : 0U;
   }
-  return invented;
+  return count;
 }
 
-bool tells_apart(const SceneDamage& damage) {
-  constexpr double standard_errors = 3;
-  return damage.pixels >= least_pixels && damage.depth_px > standard_errors * damage.std_error_px;
+bool is_resolvable(const SceneDamage& damage) {
+  constexpr double min_std_errors = 3;
+  return damage.pixels >= min_pixels && damage.depth_px > min_std_errors * damage.std_error_px;
 }
 
-/// One figure of a damage, measured and true.
-struct Figure {
+/// Quantity of a damage, measured and true.
+struct Quantity {
   const char* name;
-  Measured (*measured)(const DamageMetrics&);
+  Measurement (*measured)(const DamageMetrics&);
   double (*truth)(const synth::DamageTruth&);
 };
 
-constexpr Figure figures[] = {
-    {"largest depth", [](const DamageMetrics& m) { return m.max_depth_m; },
+constexpr Quantity quantities[] = {
+    {"maximum depth", [](const DamageMetrics& m) { return m.max_depth_m; },
      [](const synth::DamageTruth& t) { return t.depth_m; }},
     {"mean depth", [](const DamageMetrics& m) { return m.mean_depth_m; },
      [](const synth::DamageTruth& t) { return t.mean_depth_m; }},
@@ -122,39 +122,39 @@ constexpr Figure figures[] = {
      [](const synth::DamageTruth& t) { return t.volume_m3; }},
 };
 
-bool comparable(const SceneDamage& damage) {
-  return damage.found && damage.found->metrics && damage.whole && damage.alone && !damage.found->cut_by_border &&
-         damage.truth.kind != "crack";
+bool is_comparable(const SceneDamage& damage) {
+  return damage.found && damage.found->metrics && damage.fully_visible && damage.is_single &&
+         !damage.found->cut_by_border && damage.truth.kind != "crack";
 }
 
-std::vector<Cell> figure_row(const Figure& figure, const SceneResults& results) {
-  constexpr double least_depth_m = 0.020;
-  constexpr double most_error_m = 0.002;
+std::vector<Cell> quantity_row(const Quantity& quantity, const SceneResults& results) {
+  constexpr double min_depth_m = 0.020;
+  constexpr double max_error_m = 0.002;
   constexpr double percent = 100;
   double count = 0;
   double within = 0;
   std::vector<double> errors;
-  double good = 0;
-  double good_errors = 0;
+  double precise = 0;
+  double precise_errors = 0;
   for (const SceneDamage& damage : results.damages) {
-    if (!comparable(damage)) continue;
+    if (!is_comparable(damage)) continue;
     const DamageMetrics& metrics = *damage.found->metrics;
-    const Measured measured = figure.measured(metrics);
-    const double truth = figure.truth(damage.truth);
+    const Measurement measured = quantity.measured(metrics);
+    const double truth = quantity.truth(damage.truth);
     const double relative = measured.value / truth - 1;
     ++count;
     within += std::abs(measured.value - truth) <= 2 * measured.std_error ? 1 : 0;
     errors.push_back(relative);
-    if (damage.truth.depth_m < least_depth_m || metrics.max_depth_m.std_error > most_error_m) continue;
-    ++good;
-    good_errors += std::abs(relative);
+    if (damage.truth.depth_m < min_depth_m || metrics.max_depth_m.std_error > max_error_m) continue;
+    ++precise;
+    precise_errors += std::abs(relative);
   }
-  return {Cell(figure.name),
+  return {Cell(quantity.name),
           Cell(count, 0),
           Cell(percent * within / count, 1),
           Cell(percent * median(errors), 1),
-          Cell(good, 0),
-          Cell(percent * good_errors / good, 1)};
+          Cell(precise, 0),
+          Cell(percent * precise_errors / precise, 1)};
 }
 
 }  // namespace
@@ -168,15 +168,15 @@ SceneResults score_scenes(int scenes, std::uint64_t first_seed, bool degraded, c
     Pipeline pipeline(preset(preset_name), pair.calibration);
     const FrameResult& frame = pipeline.process(pair.left.view(), pair.right.view());
     const DamageMap map = pipeline.find_damage();
-    const SceneCase example{pair, frame, map};
-    const std::map<int, Cover> covers = covers_of(example);
+    const SceneCase scene_case{pair, frame, map};
+    const std::map<int, Cover> covers = covers_of(scene_case);
     for (const synth::DamageTruth& truth : pair.damages) {
       const auto cover = covers.find(truth.id);
       if (cover == covers.end()) continue;  // out of view
-      results.damages.push_back(describe(scene.name, example, truth, cover->second, scene.rig.camera_height_m));
+      results.damages.push_back(describe(scene.name, scene_case, truth, cover->second, scene.rig.camera_height_m));
     }
     results.found += map.damages.size();
-    results.invented += count_invented(example);
+    results.false_positives += count_false_positives(scene_case);
   }
   return results;
 }
@@ -184,7 +184,7 @@ SceneResults score_scenes(int scenes, std::uint64_t first_seed, bool degraded, c
 Table detection_table(const SceneResults& results) {
   Table table{"Damage found",
               {{"kind", "kind"},
-               {"seen", "seen"},
+               {"in view", "in_view"},
                {"found", "found"},
                {"> 3 std. errors", "deeper_than_3_std_errors"},
                {"found", "found_of_those"},
@@ -193,19 +193,19 @@ Table detection_table(const SceneResults& results) {
   double all = 0;
   double all_found = 0;
   for (const char* kind : {"pothole", "bump", "crack"}) {
-    double seen = 0;
+    double in_view = 0;
     double found = 0;
     double deep = 0;
     double deep_found = 0;
     for (const SceneDamage& damage : results.damages) {
       if (damage.truth.kind != kind) continue;
-      ++seen;
+      ++in_view;
       found += damage.found ? 1 : 0;
-      if (!tells_apart(damage)) continue;
+      if (!is_resolvable(damage)) continue;
       ++deep;
       deep_found += damage.found ? 1 : 0;
     }
-    table.rows.push_back({Cell(kind), Cell(seen, 0), Cell(found, 0), Cell(deep, 0), Cell(deep_found, 0),
+    table.rows.push_back({Cell(kind), Cell(in_view, 0), Cell(found, 0), Cell(deep, 0), Cell(deep_found, 0),
                           Cell(deep > 0 ? deep_found / deep : std::nan(""), 3)});
     if (std::string(kind) == "crack") continue;
     all += deep;
@@ -217,15 +217,15 @@ Table detection_table(const SceneResults& results) {
 }
 
 Table measurement_table(const SceneResults& results) {
-  Table table{"Measured against the truth: potholes and bumps that are found, whole and alone",
-              {{"figure", "figure"},
-               {"number", "number"},
+  Table table{"Measured against the truth: found potholes and bumps that are fully visible and do not merge",
+              {{"quantity", "quantity"},
+               {"count", "count"},
                {"within 2 std. errors %", "within_2_std_errors_percent"},
                {"median error %", "median_error_percent"},
-               {"precise ones", "precise"},
+               {"precise", "precise"},
                {"mean |error| %", "mean_abs_error_percent"}},
               {}};
-  for (const Figure& figure : figures) table.rows.push_back(figure_row(figure, results));
+  for (const Quantity& quantity : quantities) table.rows.push_back(quantity_row(quantity, results));
   return table;
 }
 

@@ -7,8 +7,8 @@ namespace roadstereo::cli {
 namespace {
 
 constexpr const char* evaluate_footer =
-    R"(Every experiment prints a table, beside the paper's figures where it has some; --json writes the same figures to a
-file, --figure a picture of them.
+    R"(Every experiment prints a table, with the published values where the paper has some. --json writes the same values to
+a file, --figure draws them.
 
 Example:
   roadstereo evaluate score disparity.tiff truth.png --tolerances 1,2,3 --figure error.png)";
@@ -16,7 +16,8 @@ Example:
 }  // namespace
 
 void add_evaluate(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("evaluate", "Accuracy against ground truth: the paper's experiments and more");
+  CLI::App* command =
+      app.add_subcommand("evaluate", "Accuracy against ground truth: the experiments of the paper and others");
   command->footer(evaluate_footer);
   command->require_subcommand(1);
   add_score(*command);

@@ -6,7 +6,7 @@ class App;
 
 namespace roadstereo::cli {
 
-// Each adds one experiment to `evaluate`; it runs when it is parsed.
+// Each function adds one experiment as a subcommand of `evaluate`.
 void add_kitti(CLI::App& evaluate);
 void add_middlebury(CLI::App& evaluate);
 void add_score(CLI::App& evaluate);

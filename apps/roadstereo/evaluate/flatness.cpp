@@ -28,9 +28,10 @@ struct Arguments {
 };
 
 constexpr const char* note =
-    "The paper's road regions were drawn by hand; masks made from the truth itself leave out what is not flat. Every\n"
-    "valid disparity of the mask counts, wrong matches too. Least squares gives the smallest σ_d by definition; the\n"
-    "robust solver leaves outliers out of the fit but not of σ_d.\n";
+    "The road regions of the paper were drawn by hand; masks derived from the ground truth exclude what is not flat. "
+    "All\n"
+    "valid disparities of the mask count, mismatches included. Least squares minimises σ_d by definition; the robust\n"
+    "solver excludes outliers from the fit but not from σ_d.\n";
 
 Flatness mean_of(const std::vector<FlatnessFrame>& frames, Flatness FlatnessFrame::*source) {
   Flatness mean;
@@ -87,7 +88,7 @@ Frame draw(const std::vector<FlatnessFrame>& frames) {
 }
 
 void run(const Arguments& arguments) {
-  preset(arguments.preset);  // one that does not exist is refused by its name, before any work
+  preset(arguments.preset);  // throws now if there is no such preset
   std::vector<FlatnessFrame> frames;
   for (const KittiFiles& files : find_kitti_frames(arguments.data, arguments.road_masks)) {
     frames.push_back(measure_frame(files, arguments.preset, arguments.methods));
@@ -105,16 +106,14 @@ void run(const Arguments& arguments) {
 
 void add_flatness(CLI::App& evaluate) {
   CLI::App* command =
-      evaluate.add_subcommand("flatness", "σ_d of the transformed road with and without the roll, on KITTI frames");
+      evaluate.add_subcommand("flatness", "σ_d of the transformed road with and without roll, on KITTI frames");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("DIR", arguments->data, "Folder with image_2, image_3 and disp_noc_0")->required();
   command
       ->add_option("--road-masks", arguments->road_masks,
-                   "Folder of road masks, files named like the frames; DIR/road when left out")
+                   "Folder of road masks, named like the frames; default: DIR/road")
       ->type_name("DIR");
-  command->add_option("--preset", arguments->preset, "Preset that matches the frames")
-      ->type_name("NAME")
-      ->capture_default_str();
+  command->add_option("--preset", arguments->preset, "Preset for matching")->type_name("NAME")->capture_default_str();
   add_method_options(*command, arguments->methods);
   command->footer("Example:\n  roadstereo evaluate flatness kitti2015 --figure flatness.png");
   add_report_options(*command, arguments->files);

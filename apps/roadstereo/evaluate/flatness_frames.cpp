@@ -9,11 +9,11 @@
 namespace roadstereo::cli {
 namespace {
 
-/// The mask belongs to the truth.
+/// Throws Error unless mask and truth have one size.
 void require_size(const Image<std::uint8_t>& mask, const Image<float>& truth, const std::string& path) {
   if (mask.width() == truth.width() && mask.height() == truth.height()) return;
-  fail(path, " has ", mask.width(), "×", mask.height(), " pixels and the ground truth ", truth.width(), "×",
-       truth.height(), "; they must be equal");
+  fail(path, " has ", mask.width(), "×", mask.height(), " pixels; it must have ", truth.width(), "×", truth.height(),
+       " like the ground truth");
 }
 
 }  // namespace
@@ -22,18 +22,18 @@ Flatness measure_flatness(ImageView<const float> disparity, ImageView<const std:
   Flatness flatness;
   flatness.without_roll_px = transformed_deviation(disparity, mask, fit_without_roll(disparity, mask));
   for (std::size_t i = 0; i < roll_solvers().size(); ++i) {
-    RoadGeometryOptions options;
+    RollOptions options;
     options.solver = roll_solvers()[i].solver;
-    const RoadGeometry geometry = fit_road_geometry(disparity, mask, std::nullopt, 0, options, threads);
-    flatness.with_roll_px[i] = transformed_deviation(disparity, mask, geometry.plane);
-    flatness.roll_rad[i] = geometry.roll_rad;
+    const RollEstimate estimate = estimate_roll(disparity, mask, std::nullopt, 0, options, threads);
+    flatness.with_roll_px[i] = transformed_deviation(disparity, mask, estimate.plane);
+    flatness.roll_rad[i] = estimate.roll_rad;
   }
   return flatness;
 }
 
 FlatnessFrame measure_frame(const KittiFiles& files, const std::string& preset, const MethodSettings& methods) {
   const KittiFrame frame = read_kitti_frame(files);
-  if (!frame.road) fail(files.name, " has no road mask; give the folder of the masks with --road-masks");
+  if (!frame.road) fail(files.name, ": the frame has no road mask; --road-masks gives the folder of the masks");
   require_size(*frame.road, frame.truth, files.road);
   const Image<float> matched = run_method(preset, MethodTask{frame.pair}, methods);
   return {files.name, measure_flatness(frame.truth, *frame.road, methods.threads),

@@ -10,24 +10,25 @@
 
 namespace roadstereo::cli {
 
-/// σ_d of one road, pixels (eq. sigma_d).
+/// σ_d of one road, pixels (eq. (37), sigma_d).
 struct Flatness {
-  double without_roll_px = 0;            ///< ψ = 0, only α0 and α1 are fitted
-  std::array<double, 3> with_roll_px{};  ///< ψ by each of roll_solvers()
-  std::array<double, 3> roll_rad{};      ///< what they found
+  double without_roll_px = 0;            ///< with ψ = 0; only α0 and α1 are fitted
+  std::array<double, 3> with_roll_px{};  ///< with ψ by each of roll_solvers()
+  std::array<double, 3> roll_rad{};      ///< ψ by each of roll_solvers()
 };
 
 /// One frame of KITTI Stereo 2015.
 struct FlatnessFrame {
   std::string name;
   Flatness truth;    ///< of the ground truth inside the road mask
-  Flatness matched;  ///< of the preset's own disparities inside the same mask
+  Flatness matched;  ///< of the disparities of the preset inside the same mask
 };
 
+/// Measure the flatness of the road inside the mask.
 Flatness measure_flatness(ImageView<const float> disparity, ImageView<const std::uint8_t> mask, int threads);
 
-/// Reads the frame, matches it with the preset and measures both. Throws Error when the frame has no road mask, or one
-/// of another size.
+/// Read a frame, match it with the preset, and measure ground truth and match. Throws Error when the frame has no road
+/// mask or its size differs.
 FlatnessFrame measure_frame(const KittiFiles& files, const std::string& preset, const MethodSettings& methods);
 
 }  // namespace roadstereo::cli

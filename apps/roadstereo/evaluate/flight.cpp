@@ -26,98 +26,99 @@ struct Arguments {
 };
 
 constexpr const char* note =
-    R"(plane: largest difference to the true plane over the image, which has no camber. afresh: a pipeline that has seen
-no frame before. Times are of the pipeline that carries over, from frames in memory to the result. Every pass is a
-pipeline of its own that has seen the same frames. CPU time, of all threads, hardly knows what else the machine does.
-Memory and threads are there before the first frame, but for --cold.
+    R"(plane: maximum difference from the true plane over the image; the true plane has no camber. independent: a pipeline
+that is reset before every frame. Times are those of the tracking pipeline, from frames in memory to the result. Each
+pass is a separate pipeline that has processed the same frames. CPU time is summed over all threads. Memory is allocated
+and threads are started before the first frame, except with --cold.
 )";
 
-using Frames = std::vector<FlightFrame>;
-using Stage = RoadError FlightResult::*;
-using Figure = double RoadError::*;
+using Frames = std::vector<FlightTrial>;
+using Stage = RoadError StageErrors::*;
+using Quantity = double RoadError::*;
 
-std::vector<double> errors(const Frames& frames, FlightResult FlightFrame::*start, Stage stage, Figure figure) {
+std::vector<double> errors(const Frames& frames, StageErrors FlightTrial::*start, Stage stage, Quantity quantity) {
   std::vector<double> values;
   values.reserve(frames.size());
-  for (const FlightFrame& frame : frames) {
-    const double value = (frame.*start).*stage.*figure;
+  for (const FlightTrial& frame : frames) {
+    const double value = (frame.*start).*stage.*quantity;
     if (!std::isnan(value)) values.push_back(value);
   }
   return values;
 }
 
-double largest(const std::vector<double>& values) {
+double maximum(const std::vector<double>& values) {
   return values.empty() ? NAN : *std::max_element(values.begin(), values.end());
 }
 
-/// By how much the error of a frame that was carried over exceeds that of the same frame afresh, at most.
-double largest_excess(const Frames& frames, Stage stage, Figure figure) {
-  const std::vector<double> carried = errors(frames, &FlightFrame::carried, stage, figure);
-  const std::vector<double> fresh = errors(frames, &FlightFrame::fresh, stage, figure);
+/// Maximum excess of the error of a tracked frame over that of the same frame processed independently.
+double max_excess(const Frames& frames, Stage stage, Quantity quantity) {
+  const std::vector<double> tracked = errors(frames, &FlightTrial::tracked, stage, quantity);
+  const std::vector<double> fresh = errors(frames, &FlightTrial::fresh, stage, quantity);
   std::vector<double> excess;
-  for (std::size_t i = 0; i < carried.size(); ++i) excess.push_back(carried[i] - fresh[i]);
-  return largest(excess);
+  for (std::size_t i = 0; i < tracked.size(); ++i) excess.push_back(tracked[i] - fresh[i]);
+  return maximum(excess);
 }
 
 Table error_table(const Frames& frames, const FlightOptions& options) {
   Table table{fmt::format("{} frames of scene {}, {}, flight {}, preset {}", frames.size(), options.scene, options.size,
                           options.flight, options.preset),
-              {{"road model", "road_model"},
+              {{"estimate", "estimate"},
                {"start", "start"},
                {"psi 95 % rad", "roll_p95_rad"},
-               {"largest", "roll_largest_rad"},
-               {"above afresh", "roll_above_fresh_rad"},
+               {"max", "roll_max_rad"},
+               {"max excess", "roll_max_excess_rad"},
                {"plane 95 % px", "plane_p95_px"},
-               {"largest", "plane_largest_px"},
-               {"above afresh", "plane_above_fresh_px"}},
+               {"max", "plane_max_px"},
+               {"max excess", "plane_max_excess_px"}},
               {}};
-  const auto add = [&](const char* name, const char* start_name, FlightResult FlightFrame::*start, Stage stage) {
-    const bool carried = start == &FlightFrame::carried;
+  const auto add = [&](const char* name, const char* start_name, StageErrors FlightTrial::*start, Stage stage) {
+    const bool is_tracked = start == &FlightTrial::tracked;
     std::vector<Cell> row{name, start_name};
-    for (const auto& [figure, decimals] : {std::pair(&RoadError::roll_rad, 5), std::pair(&RoadError::plane_px, 3)}) {
-      const std::vector<double> values = errors(frames, start, stage, figure);
+    for (const auto& [quantity, decimals] : {std::pair(&RoadError::roll_rad, 5), std::pair(&RoadError::plane_px, 3)}) {
+      const std::vector<double> values = errors(frames, start, stage, quantity);
       row.emplace_back(quantile(values, 0.95), decimals);
-      row.emplace_back(largest(values), decimals);
-      row.emplace_back(carried ? largest_excess(frames, stage, figure) : NAN, decimals);
+      row.emplace_back(maximum(values), decimals);
+      row.emplace_back(is_tracked ? max_excess(frames, stage, quantity) : NAN, decimals);
     }
     table.rows.push_back(row);
   };
-  add("before matching", "carried over", &FlightFrame::carried, &FlightResult::before);
-  add("before matching", "afresh", &FlightFrame::fresh, &FlightResult::before);
-  add("after matching", "carried over", &FlightFrame::carried, &FlightResult::after);
-  add("after matching", "afresh", &FlightFrame::fresh, &FlightResult::after);
+  add("before matching", "tracked", &FlightTrial::tracked, &StageErrors::before);
+  add("before matching", "independent", &FlightTrial::fresh, &StageErrors::before);
+  add("after matching", "tracked", &FlightTrial::tracked, &StageErrors::after);
+  add("after matching", "independent", &FlightTrial::fresh, &StageErrors::after);
   return table;
 }
 
 Table time_table(const Frames& frames, const FlightOptions& options) {
-  Table table{fmt::format("Times, {} threads asked for (0: all), {}", options.methods.threads, cpu_name()),
-              {{"of a frame", "of_a_frame"},
+  Table table{fmt::format("Times, {} threads requested (0: all), {}", options.methods.threads, cpu_name()),
+              {{"time", "time"},
                {"median ms", "median_ms"},
-               {"largest ms", "largest_ms"},
-               {"in frame", "largest_frame"},
-               {"largest / median", "largest_over_median"},
+               {"max ms", "max_ms"},
+               {"in frame", "frame_of_max"},
+               {"max / median", "max_over_median"},
                {"first frame ms", "first_frame_ms"},
                {"first / median", "first_over_median"}},
               {}};
   const auto add = [&](const std::string& name, const auto& time) {
     std::vector<double> times;
     times.reserve(frames.size());
-    for (const FlightFrame& frame : frames) times.push_back(time(frame));
+    for (const FlightTrial& frame : frames) times.push_back(time(frame));
     const auto slowest = std::max_element(times.begin(), times.end());
     const double middle = median(times);
     table.rows.push_back({name, Cell(middle, 2), Cell(*slowest, 2),
                           Cell(static_cast<double>(slowest - times.begin()), 0), Cell(*slowest / middle, 2),
                           Cell(times.front(), 2), Cell(times.front() / middle, 2)});
   };
-  const auto least = [](const std::vector<double>& ms) { return *std::min_element(ms.begin(), ms.end()); };
-  add("first pass", [](const FlightFrame& frame) { return frame.times_ms.front(); });
-  add(fmt::format("least of {} passes", options.passes), [&](const FlightFrame& f) { return least(f.times_ms); });
-  add("the same, CPU time", [&](const FlightFrame& f) { return least(f.cpu_ms); });
+  const auto minimum = [](const std::vector<double>& ms) { return *std::min_element(ms.begin(), ms.end()); };
+  add("first pass", [](const FlightTrial& frame) { return frame.times_ms.front(); });
+  add(fmt::format("min of {} passes", options.passes), [&](const FlightTrial& f) { return minimum(f.times_ms); });
+  add(fmt::format("min of {} passes, CPU time", options.passes),
+      [&](const FlightTrial& f) { return minimum(f.cpu_ms); });
   return table;
 }
 
 nlohmann::ordered_json frames_json(const Frames& frames) {
-  const auto result_json = [](const FlightResult& result) {
+  const auto result_json = [](const StageErrors& result) {
     return nlohmann::ordered_json{{"before_roll_rad", json_number(result.before.roll_rad)},
                                   {"before_plane_px", json_number(result.before.plane_px)},
                                   {"after_roll_rad", json_number(result.after.roll_rad)},
@@ -126,27 +127,27 @@ nlohmann::ordered_json frames_json(const Frames& frames) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < frames.size(); ++i) {
     all.push_back({{"frame", i},
-                   {"estimated_anew", frames[i].estimated_anew},
+                   {"reestimated", frames[i].reestimated},
                    {"reason", frames[i].reason},
-                   {"carried", result_json(frames[i].carried)},
-                   {"fresh", result_json(frames[i].fresh)},
+                   {"tracked", result_json(frames[i].tracked)},
+                   {"independent", result_json(frames[i].fresh)},
                    {"times_ms", frames[i].times_ms},
                    {"cpu_ms", frames[i].cpu_ms}});
   }
   return all;
 }
 
-/// The frames whose road model was estimated anew, and why.
-std::string anew_text(const Frames& frames) {
-  std::string text = "Estimated anew:\n";
+/// List of the frames whose road model was re-estimated, with the reason.
+std::string reestimated_text(const Frames& frames) {
+  std::string text = "Re-estimated:\n";
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].estimated_anew) text += fmt::format("  frame {}{}\n", i, i == 0 ? "" : ": " + frames[i].reason);
+    if (frames[i].reestimated) text += fmt::format("  frame {}{}\n", i, i == 0 ? "" : ": " + frames[i].reason);
   }
   return text;
 }
 
 void run(const Arguments& arguments) {
-  const Frames frames = fly(arguments.flight);
+  const Frames frames = run_flight_trials(arguments.flight);
   const Table accuracy = error_table(frames, arguments.flight);
   const Table times = time_table(frames, arguments.flight);
   if (!arguments.files.json.empty()) {
@@ -156,34 +157,34 @@ void run(const Arguments& arguments) {
                                         {"frames", frames_json(frames)}});
   }
   if (!arguments.files.figure.empty()) write_figure(arguments.files.figure, draw_flight(frames));
-  fmt::print("{}\n{}\n{}\n{}", accuracy.text(), anew_text(frames), times.text(), note);
+  fmt::print("{}\n{}\n{}\n{}", accuracy.text(), reestimated_text(frames), times.text(), note);
 }
 
 }  // namespace
 
 void add_flight(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand(
-      "flight", "What carries over from frame to frame, against the truth and against single frames");
+      "flight", "Tracking from frame to frame, against ground truth and against independent frames");
   const auto arguments = std::make_shared<Arguments>();
   FlightOptions& flight = arguments->flight;
-  command->add_option("--scene", flight.scene, "The named scene where it starts")
+  command->add_option("--scene", flight.scene, "Name of the scene at the start")
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("--frames", flight.frames, "Frames of the flight")->type_name("N")->capture_default_str();
-  command->add_option("--flight", flight.flight, "How the rig rolls, pitches and climbs")
+  command->add_option("--frames", flight.frames, "Number of frames")->type_name("N")->capture_default_str();
+  command->add_option("--flight", flight.flight, "Roll, pitch and height of the rig")
       ->type_name("SPEC")
       ->capture_default_str();
-  command->add_option("--size", flight.size, "Image size; the field of view stays")
+  command->add_option("--size", flight.size, "Image size; the field of view does not change")
       ->type_name("WxH")
       ->capture_default_str();
   command->add_option("--preset", flight.preset, "default, fast or paper")->type_name("NAME")->capture_default_str();
-  command->add_option("--supersampling", flight.supersampling, "Rays per pixel and side when frames are made")
+  command->add_option("--supersampling", flight.supersampling, "Rays per pixel and axis of the renderer")
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--passes", flight.passes, "How often each frame is timed")
+  command->add_option("--passes", flight.passes, "Number of times each frame is timed")
       ->type_name("N")
       ->capture_default_str();
-  command->add_flag("--cold", flight.cold, "The first frame also makes the memory and starts the threads");
+  command->add_flag("--cold", flight.cold, "Allocate memory and start threads in the first frame");
   add_method_options(*command, flight.methods);
   command->footer(flight_help() +
                   "\nExample:\n  roadstereo evaluate flight --flight roll=6,jump=150 --figure flight.png");

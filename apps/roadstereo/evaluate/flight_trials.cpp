@@ -26,21 +26,21 @@ synth::Scene first_scene(const FlightOptions& options) {
 }
 
 Pipeline make_pipeline(const FlightOptions& options, const StereoCalibration& calibration) {
-  PipelineOptions made = preset(options.preset);
-  made.threads = options.methods.threads;
-  apply_settings(options.methods.settings, made);
-  return Pipeline(made, calibration);
+  PipelineOptions pipeline_options = preset(options.preset);
+  pipeline_options.threads = options.methods.threads;
+  apply_settings(options.methods.settings, pipeline_options);
+  return Pipeline(pipeline_options, calibration);
 }
 
 /// ψ of a plane: a1 = α1 cos ψ, a2 = −α1 sin ψ.
-double roll_of(const RoadModel& plane) {
+double roll_of(const DisparityPlane& plane) {
   return std::atan(-plane.a2 / plane.a1);
 }
 
-RoadError road_error(const RoadModel& plane, double roll_rad, const synth::SyntheticPair& truth) {
-  constexpr double least_px = 1;  // straight down the disparity changes by less over the image
+RoadError road_error(const DisparityPlane& plane, double roll_rad, const synth::SyntheticPair& truth) {
+  constexpr double min_px = 1;  // of change over the image; less if the camera looks straight down
   RoadError error;
-  const bool observable = std::hypot(truth.plane.a1, truth.plane.a2) * truth.disparity.height() > least_px;
+  const bool observable = std::hypot(truth.plane.a1, truth.plane.a2) * truth.disparity.height() > min_px;
   error.roll_rad = observable ? std::abs(roll_rad - truth.roll_rad) : std::numeric_limits<double>::quiet_NaN();
   for (int v = 0; v < truth.disparity.height(); ++v) {
     for (int u = 0; u < truth.disparity.width(); ++u) {
@@ -51,24 +51,24 @@ RoadError road_error(const RoadModel& plane, double roll_rad, const synth::Synth
   return error;
 }
 
-/// A pipeline that found no road is as wrong as can be.
-FlightResult compare(const FrameResult& result, const synth::SyntheticPair& truth) {
+/// Errors of a result; infinite where no road was found.
+StageErrors compare(const FrameResult& result, const synth::SyntheticPair& truth) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  FlightResult errors{{infinite, infinite}, {infinite, infinite}};
+  StageErrors errors{{infinite, infinite}, {infinite, infinite}};
   if (result.road.reliable) errors.before = road_error(result.road.model, roll_of(result.road.model), truth);
-  if (result.geometry_found) errors.after = road_error(result.geometry.plane, result.geometry.roll_rad, truth);
+  if (result.roll_found) errors.after = road_error(result.geometry.plane, result.geometry.roll_rad, truth);
   return errors;
 }
 
-FlightFrame try_frame(const synth::SyntheticPair& pair, std::vector<Pipeline>& pipelines, Pipeline& fresh) {
-  FlightFrame frame;
+FlightTrial run_frame(const synth::SyntheticPair& pair, std::vector<Pipeline>& pipelines, Pipeline& fresh) {
+  FlightTrial frame;
   for (Pipeline& pipeline : pipelines) {
     const FrameResult* result = nullptr;
     const std::clock_t start = std::clock();
     frame.times_ms.push_back(time_ms([&] { result = &pipeline.process(pair.left.view(), pair.right.view()); }));
     frame.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
-    frame.carried = compare(*result, pair);
-    frame.estimated_anew = !result->road.carried_over;
+    frame.tracked = compare(*result, pair);
+    frame.reestimated = !result->road.tracked;
     frame.reason = result->warnings.empty() ? "" : result->warnings.front();
   }
   fresh.reset();
@@ -83,12 +83,12 @@ void FlightOptions::validate() const {
   if (passes < 1 || passes > 100) fail("--passes is ", passes, "; it must be between 1 and 100");
 }
 
-std::vector<FlightFrame> fly(const FlightOptions& options) {
+std::vector<FlightTrial> run_flight_trials(const FlightOptions& options) {
   options.validate();
   const synth::FlightPath path = parse_flight(options.flight);
   const synth::Scene first = first_scene(options);
   const StereoCalibration calibration = first.rig.calibration();
-  for (int i = 0; i < options.frames; ++i) synth::flight_frame(first, path, i);  // refused before anything is rendered
+  for (int i = 0; i < options.frames; ++i) synth::flight_frame(first, path, i);  // throws before anything is rendered
   std::vector<Pipeline> pipelines;
   pipelines.reserve(static_cast<std::size_t>(options.passes));
   for (int pass = 0; pass < options.passes; ++pass) {
@@ -96,10 +96,10 @@ std::vector<FlightFrame> fly(const FlightOptions& options) {
     if (!options.cold) pipelines.back().warm_up(first.rig.width, first.rig.height);
   }
   Pipeline fresh = make_pipeline(options, calibration);
-  std::vector<FlightFrame> frames;
+  std::vector<FlightTrial> frames;
   frames.reserve(static_cast<std::size_t>(options.frames));
   for (int i = 0; i < options.frames; ++i) {
-    frames.push_back(try_frame(synth::render(synth::flight_frame(first, path, i)), pipelines, fresh));
+    frames.push_back(run_frame(synth::render(synth::flight_frame(first, path, i)), pipelines, fresh));
   }
   return frames;
 }

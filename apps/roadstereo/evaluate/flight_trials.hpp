@@ -14,39 +14,39 @@ struct FlightOptions {
   std::string flight = "default";
   std::string preset = "default";
   int frames = 300;
-  int supersampling = 1;  ///< rays per pixel and side of the renderer
-  bool cold = false;      ///< the first frame also makes the pipeline's memory and starts its threads
-  int passes = 5;         ///< how often each frame is timed
+  int supersampling = 1;  ///< rays per pixel and axis of the renderer
+  bool cold = false;      ///< whether the first frame allocates memory and starts threads
+  int passes = 5;         ///< number of times each frame is timed, 1 … 100
   MethodSettings methods;
 
-  /// Throws Error naming the option that is out of range.
+  /// Throws Error naming the first option out of range.
   void validate() const;
 };
 
-/// How far a road model is from the truth.
+/// Error of a road plane. Infinite if no road was found.
 struct RoadError {
-  double roll_rad = 0;  ///< |ψ − its true value|; NaN where the camera looks straight down
-  double plane_px = 0;  ///< largest difference to the true plane over the image below the horizon
+  double roll_rad = 0;  ///< |error of ψ|; NaN if the camera looks straight down
+  double plane_px = 0;  ///< maximum difference from the true plane over the image below the horizon
 };
 
-/// What one way of starting a frame led to: before matching and after it.
-struct FlightResult {
+/// Errors of the road model before matching and of the plane after it.
+struct StageErrors {
   RoadError before;
   RoadError after;
 };
 
-struct FlightFrame {
-  FlightResult carried;          ///< by the pipeline that saw the frames before
-  FlightResult fresh;            ///< by one that has seen nothing
-  bool estimated_anew = false;   ///< by the first
-  std::string reason;            ///< why, when it was
-  std::vector<double> times_ms;  ///< of the frame: one per pass
-  std::vector<double> cpu_ms;    ///< of all threads: one per pass
+struct FlightTrial {
+  StageErrors tracked;           ///< of the pipeline that processed the previous frames
+  StageErrors fresh;             ///< of a pipeline that was reset
+  bool reestimated = false;      ///< whether the tracking pipeline re-estimated the road model
+  std::string reason;            ///< for the re-estimation
+  std::vector<double> times_ms;  ///< one per pass
+  std::vector<double> cpu_ms;    ///< of all threads, one per pass
 };
 
-/// Renders the flight frame by frame. Every frame goes through as many pipelines as there are passes, which all have
-/// seen the same frames before, so that each frame is timed several times in one and the same state; and through one
-/// that starts afresh.
-std::vector<FlightFrame> fly(const FlightOptions& options);
+/// Render the flight and process it frame by frame: by one tracking pipeline per pass, which all have processed the
+/// same frames, so that a frame is timed several times in the same state, and by a pipeline that is reset before each
+/// frame.
+std::vector<FlightTrial> run_flight_trials(const FlightOptions& options);
 
 }  // namespace roadstereo::cli

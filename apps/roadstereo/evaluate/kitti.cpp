@@ -17,7 +17,7 @@ namespace roadstereo::cli {
 namespace {
 
 const std::vector<double>& tolerances_px() {
-  static const std::vector<double> tolerances{1, 2, 3};  // the paper's, and 1 px
+  static const std::vector<double> tolerances{1, 2, 3};  // the paper has 2 and 3
   return tolerances;
 }
 
@@ -27,7 +27,7 @@ struct Arguments {
   ReportFiles report;
 };
 
-/// Scores over one kind of pixels, by method and by frame.
+/// Scores over one set of pixels, by method and frame.
 struct Region {
   std::string title, key;
   std::vector<std::string> frames{};
@@ -42,19 +42,19 @@ struct Region {
 
 struct Regions {
   Region road{"Road regions", "road"};
-  Region road_common{"Road regions, where every method but BM gives a disparity", "road_common"};
-  Region everything{"Everything labelled", "all"};
-  Region everything_common{"Everything labelled, where every method but BM gives a disparity", "all_common"};
+  Region road_common{"Road regions, pixels with a disparity of every method except BM", "road_common"};
+  Region all{"All labelled pixels", "all"};
+  Region all_common{"All labelled pixels with a disparity of every method except BM", "all_common"};
 };
 
-/// OpenCV's matchers get as many disparities as is usual for these images, or what the truth needs.
-int peer_disparities(ImageView<const float> truth) {
+/// Number of disparities for OpenCV's matchers: 128, as is usual for KITTI, or more if the ground truth needs them.
+int baseline_disparities(ImageView<const float> truth) {
   constexpr int usual = 128;
-  double largest = 0;
+  double max_disparity = 0;
   for (int v = 0; v < truth.height(); ++v) {
-    for (int u = 0; u < truth.width(); ++u) largest = std::fmax(largest, truth(u, v));
+    for (int u = 0; u < truth.width(); ++u) max_disparity = std::fmax(max_disparity, truth(u, v));
   }
-  return std::max(usual, static_cast<int>(std::ceil(largest)) + 1);
+  return std::max(usual, static_cast<int>(std::ceil(max_disparity)) + 1);
 }
 
 void add_scores(const std::string& frame, const std::vector<Image<float>>& maps, ImageView<const float> truth,
@@ -69,9 +69,9 @@ void add_scores(const std::string& frame, const std::vector<Image<float>>& maps,
 void score_frame(const KittiFiles& files, const MethodSettings& methods, Regions& regions,
                  std::vector<std::vector<io::SheetCell>>* sheet) {
   const KittiFrame frame = read_kitti_frame(files);
-  const std::vector<Image<float>> maps = run_methods({frame.pair, peer_disparities(frame.truth)}, methods);
-  add_scores(files.name, maps, frame.truth, std::nullopt, regions.everything);
-  add_scores(files.name, maps, frame.truth, common_pixels(maps, std::nullopt).view(), regions.everything_common);
+  const std::vector<Image<float>> maps = run_methods({frame.pair, baseline_disparities(frame.truth)}, methods);
+  add_scores(files.name, maps, frame.truth, std::nullopt, regions.all);
+  add_scores(files.name, maps, frame.truth, common_pixels(maps, std::nullopt).view(), regions.all_common);
   if (frame.road) {
     add_scores(files.name, maps, frame.truth, frame.road->view(), regions.road);
     add_scores(files.name, maps, frame.truth, common_pixels(maps, frame.road->view()).view(), regions.road_common);
@@ -82,15 +82,16 @@ void score_frame(const KittiFiles& files, const MethodSettings& methods, Regions
   }
 }
 
+/// Row of published values, e_p in percent.
 std::vector<Cell> published(const std::string& name, double rms_px, double above_2, double above_3) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   DisparityScore score;
   score.rms_px = rms_px;
-  score.mean_px = score.median_px = unknown;
-  score.bad_share = {unknown, above_2 / 100, above_3 / 100};
-  score.bad_or_missing_share = {unknown, unknown, unknown};
+  score.mean_px = score.median_px = nan;
+  score.bad_share = {nan, above_2 / 100, above_3 / 100};
+  score.bad_or_missing_share = {nan, nan, nan};
   std::vector<Cell> row = score_cells(score);
-  row[score_columns({}).size() + tolerances_px().size() - 1] = Cell(unknown, 2);  // density
+  row[score_columns({}).size() + tolerances_px().size() - 1] = Cell(nan, 2);  // density
   row.insert(row.begin(), Cell(name + " (published)"));
   return row;
 }
@@ -112,9 +113,9 @@ Table mean_table(const Region& region) {
   return table;
 }
 
-/// e_r and e_p+(2) of every method, frame by frame.
+/// e_r and e_p+(2) of every method by frame.
 Table frame_table(const Region& region) {
-  Table table{region.title + ", frame by frame: e_r px / e_p+(2) %", {{"frame", "frame"}}, {}};
+  Table table{region.title + ", by frame: e_r px / e_p+(2) %", {{"frame", "frame"}}, {}};
   for (const std::string& name : method_names()) table.columns.push_back({name, name});
   for (std::size_t frame = 0; frame < region.frames.size(); ++frame) {
     table.rows.push_back({Cell(region.frames[frame])});
@@ -148,16 +149,16 @@ void kitti(const Arguments& arguments) {
   const std::vector<KittiFiles> frames = find_kitti_frames(arguments.folder, arguments.road_masks);
   Regions regions;
   std::vector<std::vector<io::SheetCell>> sheet;
-  constexpr std::size_t most_sheet_rows = 4;
+  constexpr std::size_t max_sheet_rows = 4;
   for (const KittiFiles& files : frames) {
-    const bool shown = !arguments.report.figure.empty() && sheet.size() < most_sheet_rows;
+    const bool shown = !arguments.report.figure.empty() && sheet.size() < max_sheet_rows;
     score_frame(files, arguments.methods, regions, shown ? &sheet : nullptr);
   }
   nlohmann::ordered_json document;
   std::vector<std::vector<Frame>> pictures;
   constexpr int cell_width = 620;
   if (!sheet.empty()) pictures.push_back({io::picture_sheet(sheet, cell_width)});
-  for (const Region* region : {&regions.road, &regions.everything}) {
+  for (const Region* region : {&regions.road, &regions.all}) {
     if (region->frames.empty()) continue;
     Table table = mean_table(*region);
     document[region->key] = region_json(*region);
@@ -166,19 +167,20 @@ void kitti(const Arguments& arguments) {
       table.rows.insert(table.rows.end(), paper.rows.begin(), paper.rows.end());
       document["published"] = paper.json();
     }
-    const Region& common = region == &regions.road ? regions.road_common : regions.everything_common;
+    const Region& common = region == &regions.road ? regions.road_common : regions.all_common;
     document[common.key] = region_json(common);
     fmt::print("{}\n{}\n{}\n", table.text(), mean_table(common).text(), frame_table(*region).text());
     if (!sheet.empty()) pictures.push_back(kitti_bars(region->title, method_names(), region->means(), tolerances_px()));
   }
-  fmt::print("{}  published: Table 1 of the paper, on KITTI frames and road regions chosen by hand\n", score_legend());
+  fmt::print("{}  published: Table 1 of the paper, on KITTI frames and road regions selected by hand\n",
+             score_legend());
   if (!arguments.report.json.empty()) write_report(arguments.report.json, document);
   if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, io::collage(pictures));
 }
 
 constexpr const char* kitti_footer =
-    R"(DIR is laid out as KITTI Stereo 2015: image_2, image_3, disp_noc_0, optionally calib_cam_to_cam. OpenCV's matchers get
-the same rectified pairs and 128 disparities, or more where the truth needs them.
+    R"(DIR has the layout of KITTI Stereo 2015: image_2, image_3, disp_noc_0, and optionally calib_cam_to_cam. OpenCV's
+matchers get the same rectified pairs and search 128 disparities, or more if the ground truth needs them.
 
 Example:
   roadstereo evaluate kitti kitti2015 --figure kitti.png --json kitti.json)";
@@ -186,11 +188,11 @@ Example:
 }  // namespace
 
 void add_kitti(CLI::App& evaluate) {
-  CLI::App* command = evaluate.add_subcommand("kitti", "Road disparities on KITTI Stereo 2015: the paper's Table 1");
+  CLI::App* command = evaluate.add_subcommand("kitti", "Road disparities on KITTI Stereo 2015: Table 1 of the paper");
   command->footer(kitti_footer);
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("DIR", arguments->folder, "Folder of the frames")->required();
-  command->add_option("--road-masks", arguments->road_masks, "Folder of road masks; DIR/road when it is there")
+  command->add_option("--road-masks", arguments->road_masks, "Folder of road masks; default: DIR/road if present")
       ->type_name("DIR");
   add_method_options(*command, arguments->methods);
   add_report_options(*command, arguments->report);

@@ -13,16 +13,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string existing(const fs::path& path) {
-  if (!fs::is_regular_file(path)) fail(path.string(), " is missing: every truth of KITTI Stereo 2015 needs its pair");
+std::string require_file(const fs::path& path) {
+  if (!fs::is_regular_file(path))
+    fail(path.string(), ": the file is missing; every ground truth must have its stereo pair");
   return path.string();
 }
 
-std::string if_there(const fs::path& path) {
+std::string path_if_present(const fs::path& path) {
   return fs::is_regular_file(path) ? path.string() : "";
 }
 
-/// P2 of the rectified cameras: focal length by the width that rectification left.
+/// Intrinsics of the rectified cameras (P2) by the width of the rectified images, which differs between recording days.
 std::optional<StereoCalibration> kitti_calibration(int width) {
   struct Day {
     int width;
@@ -40,19 +41,21 @@ std::optional<StereoCalibration> kitti_calibration(int width) {
 std::vector<KittiFiles> find_kitti_frames(const std::string& folder, const std::string& road_masks) {
   const fs::path root = folder;
   const fs::path truths = root / "disp_noc_0";
-  if (!fs::is_directory(truths)) fail(folder, " has no folder disp_noc_0: it must be laid out as KITTI Stereo 2015");
+  if (!fs::is_directory(truths))
+    fail(folder, ": the folder has no disp_noc_0; it must have the layout of KITTI Stereo 2015");
   const fs::path masks = road_masks.empty() ? root / "road" : fs::path(road_masks);
-  if (!road_masks.empty() && !fs::is_directory(masks)) fail(road_masks, " is not a folder of road masks");
+  if (!road_masks.empty() && !fs::is_directory(masks)) fail(road_masks, " is not a folder");
   std::vector<KittiFiles> frames;
   for (const auto& entry : fs::directory_iterator(truths)) {
     const fs::path file = entry.path().filename();
     if (file.extension() != ".png") continue;
     const std::string name = file.stem().string();
     const std::string number = name.substr(0, name.find('_'));
-    frames.push_back({name, existing(root / "image_2" / file), existing(root / "image_3" / file), entry.path().string(),
-                      if_there(root / "calib_cam_to_cam" / (number + ".txt")), if_there(masks / file)});
+    frames.push_back({name, require_file(root / "image_2" / file), require_file(root / "image_3" / file),
+                      entry.path().string(), path_if_present(root / "calib_cam_to_cam" / (number + ".txt")),
+                      path_if_present(masks / file)});
   }
-  if (frames.empty()) fail(truths.string(), " has no PNG in it");
+  if (frames.empty()) fail(truths.string(), ": the folder contains no PNG file");
   std::sort(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return frames;
 }

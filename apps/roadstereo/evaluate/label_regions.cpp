@@ -8,8 +8,8 @@ namespace {
 
 using Pixel = std::array<int, 2>;
 
-/// The pixels that hang together with `start`, marked with `id`.
-std::vector<Pixel> flood(const Image<std::uint8_t>& label, Pixel start, int id, Image<int>& ids) {
+/// Pixels of the component that contains `start`, which are labelled with `id`.
+std::vector<Pixel> flood_fill(const Image<std::uint8_t>& label, Pixel start, int id, Image<int>& ids) {
   std::vector<Pixel> region{start};
   ids(start[0], start[1]) = id;
   for (std::size_t next = 0; next < region.size(); ++next) {
@@ -28,24 +28,25 @@ std::vector<Pixel> flood(const Image<std::uint8_t>& label, Pixel start, int id, 
 }  // namespace
 
 LabelRegions label_regions(const Image<std::uint8_t>& label) {
-  constexpr std::size_t speck = 50;
-  constexpr int left_out = -1;
+  constexpr std::size_t min_pixels = 50;
+  constexpr int ignored = -1;
   LabelRegions regions;
   regions.ids.assign(label.width(), label.height(), 0);
   for (int v = 0; v < label.height(); ++v) {
     for (int u = 0; u < label.width(); ++u) {
       if (label(u, v) == 0 || regions.ids(u, v) != 0) continue;
-      const std::vector<Pixel> region = flood(label, {u, v}, static_cast<int>(regions.sizes.size()) + 1, regions.ids);
-      if (region.size() >= speck) {
+      const std::vector<Pixel> region =
+          flood_fill(label, {u, v}, static_cast<int>(regions.sizes.size()) + 1, regions.ids);
+      if (region.size() >= min_pixels) {
         regions.sizes.push_back(region.size());
         continue;
       }
-      for (const auto& [column, row] : region) regions.ids(column, row) = left_out;
+      for (const auto& [column, row] : region) regions.ids(column, row) = ignored;
     }
   }
   for (int v = 0; v < label.height(); ++v) {
     int* row = regions.ids.row(v);
-    std::replace(row, row + label.width(), left_out, 0);
+    std::replace(row, row + label.width(), ignored, 0);
   }
   return regions;
 }

@@ -7,7 +7,7 @@
 
 namespace roadstereo::cli {
 
-/// The connected regions (by sides and corners) of a label, specks of fewer than 50 pixels left out.
+/// Connected components of a label with 8-connectivity; components of fewer than 50 pixels are ignored.
 struct LabelRegions {
   Image<int> ids;                  ///< 1, 2, …; 0 outside
   std::vector<std::size_t> sizes;  ///< pixels of region k + 1

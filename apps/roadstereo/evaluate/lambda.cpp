@@ -12,7 +12,7 @@
 #include "evaluate/table.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/plot.hpp"
-#include "roadstereo/road_geometry.hpp"
+#include "roadstereo/roll.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -20,38 +20,40 @@ namespace {
 constexpr double published_optimum = 10;
 
 struct Arguments {
-  double lowest = 0.01;
-  double highest = 1e4;
+  double min_lambda = 0.01;
+  double max_lambda = 1e4;
   int count = 25;
   int threads = 0;
   ReportFiles files;
 
   void validate() const {
-    constexpr double largest = 1e6;  // of road_geometry.initial_lambda
-    if (!(lowest > 0 && lowest < highest && highest <= largest)) {
-      fail("--lowest ", lowest, " and --highest ", highest, " must be above 0, in order, and at most ", largest);
+    constexpr double limit = 1e6;  // of roll.initial_lambda
+    if (!(min_lambda > 0 && min_lambda < max_lambda && max_lambda <= limit)) {
+      fail("--min-lambda ", min_lambda, " and --max-lambda ", max_lambda,
+           " must be above 0, in this order, and at most ", limit);
     }
     if (count < 2 || count > 1000) fail("--count is ", count, "; it must be between 2 and 1000");
   }
 };
 
 constexpr const char* note =
-    "The energy is divided so that λ = 10 is Newton's step for a road without roll (docs/method.md): an optimum at 10\n"
-    "confirms that scale and says nothing about the paper's, which is not published. From the second step on\n"
-    "eq. adaptive_lambda makes λ a secant step wherever it began, so that λ(0) costs about one iteration at most. "
-    "First\n"
-    "steps are bounded by π/8 and halved while they climb, within one iteration: large λ(0) are all the same.\n";
+    "The energy is normalised so that λ = 10 is a Newton step for a road without roll (docs/method.md). An optimum at "
+    "10\n"
+    "confirms this normalisation; the one of the paper is not published. From the second step on, eq. (28),\n"
+    "adaptive_lambda, makes λ a secant step for any λ(0), so that λ(0) costs about one iteration at most. The first "
+    "step "
+    "is\n"
+    "limited to π/8 and halved until the energy decreases, within one iteration, so that all large λ(0) are "
+    "equivalent.\n";
 
 Table make_table(const std::vector<LambdaTrial>& trials, std::size_t maps) {
-  Table table{fmt::format("Iterations of the gradient descent against λ(0), {} maps, δψ = π/1.8e6", maps),
-              {{"λ(0)", "lambda"},
-               {"mean", "mean_iterations"},
-               {"most", "most_iterations"},
-               {"largest error rad", "largest_error_rad"}},
-              {}};
+  Table table{
+      fmt::format("Iterations of the gradient descent against λ(0), {} maps, δψ = π/1.8e6", maps),
+      {{"λ(0)", "lambda"}, {"mean", "mean_iterations"}, {"max", "max_iterations"}, {"max error rad", "max_error_rad"}},
+      {}};
   for (const LambdaTrial& trial : trials) {
     table.rows.push_back(
-        {Cell(trial.lambda, 3), Cell(trial.mean(), 2), Cell(trial.most(), 0), Cell(trial.largest_error_rad, 9)});
+        {Cell(trial.lambda, 3), Cell(trial.mean(), 2), Cell(trial.max(), 0), Cell(trial.max_error_rad, 9)});
   }
   return table;
 }
@@ -64,8 +66,8 @@ Frame draw(const std::vector<LambdaTrial>& trials, double optimum) {
     mean.x.push_back(trial.lambda);
     mean.y.push_back(trial.mean());
     most.x.push_back(trial.lambda);
-    most.y.push_back(trial.most());
-    highest = std::max(highest, trial.most() + 1);
+    most.y.push_back(trial.max());
+    highest = std::max(highest, trial.max() + 1);
   }
   const io::Curve paper{
       "optimum of the paper: 10", {published_optimum, published_optimum}, {0, highest}, true, false, true};
@@ -83,8 +85,8 @@ void run(const Arguments& arguments) {
   arguments.validate();
   const std::vector<LambdaMap> maps = make_lambda_maps(arguments.threads);
   std::vector<LambdaTrial> trials;
-  for (const double lambda : geometric_series(arguments.lowest, arguments.highest, arguments.count)) {
-    trials.push_back(try_lambda(lambda, maps, RoadGeometryOptions{}.roll_threshold_rad, arguments.threads));
+  for (const double lambda : geometric_series(arguments.min_lambda, arguments.max_lambda, arguments.count)) {
+    trials.push_back(run_lambda_trial(lambda, maps, RollOptions{}.roll_threshold_rad, arguments.threads));
   }
   const double optimum = best_lambda(trials);
   const Table table = make_table(trials, maps.size());
@@ -102,12 +104,13 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_lambda(CLI::App& evaluate) {
-  CLI::App* command = evaluate.add_subcommand("lambda", "Iterations of the roll angle's descent against λ(0)");
+  CLI::App* command =
+      evaluate.add_subcommand("lambda", "Iterations of the gradient descent on the roll angle against λ(0)");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--lowest", arguments->lowest, "Smallest λ(0)")->capture_default_str();
-  command->add_option("--highest", arguments->highest, "Largest λ(0)")->capture_default_str();
-  command->add_option("--count", arguments->count, "Values between them, equal ratios")->capture_default_str();
-  command->add_option("--threads", arguments->threads, "Worker threads; 0 takes all cores")->capture_default_str();
+  command->add_option("--min-lambda", arguments->min_lambda, "Minimum λ(0)")->capture_default_str();
+  command->add_option("--max-lambda", arguments->max_lambda, "Maximum λ(0)")->capture_default_str();
+  command->add_option("--count", arguments->count, "Number of values, with equal ratios")->capture_default_str();
+  command->add_option("--threads", arguments->threads, "Worker threads; 0: all cores")->capture_default_str();
   command->footer("Example:\n  roadstereo evaluate lambda --figure lambda.png");
   add_report_options(*command, arguments->files);
   command->callback([arguments] { run(*arguments); });

@@ -8,20 +8,20 @@
 #include <utility>
 
 #include "evaluate/roll_maps.hpp"
-#include "roadstereo/road_geometry.hpp"
+#include "roadstereo/roll.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
-/// Enough for the slowest rate; what does not stop by then counts as this many.
-constexpr int most_iterations = 10000;
+/// Enough for the slowest descent. A descent that does not converge counts as this many.
+constexpr int max_iterations = 10000;
 
-RoadGeometry fit(const Image<float>& map, const RoadGeometryOptions& options, int threads) {
-  return fit_road_geometry(map, std::nullopt, std::nullopt, 0, options, threads);
+RollEstimate fit(const Image<float>& map, const RollOptions& options, int threads) {
+  return estimate_roll(map, std::nullopt, std::nullopt, 0, options, threads);
 }
 
 double closed_form_roll(const Image<float>& map, int threads) {
-  RoadGeometryOptions options;
+  RollOptions options;
   options.solver = RollSolver::closed_form;
   return fit(map, options, threads).roll_rad;
 }
@@ -37,7 +37,7 @@ std::vector<LambdaMap> make_lambda_maps(int threads) {
     for (const double pitch : pitches_deg) {
       for (const double roll : rolls_deg) {
         synth::Scene scene = roll_scene({height, pitch}, roll, true, 0);
-        scene.rig.width /= 2;  // λ is normalised: the number of pixels does not matter
+        scene.rig.width /= 2;  // λ is normalised by the number of pixels
         scene.rig.height /= 2;
         scene.rig.focal_px /= 2;
         Image<float> map = exact_map(synth::render(scene, threads));
@@ -53,44 +53,45 @@ double LambdaTrial::mean() const {
   return std::accumulate(iterations.begin(), iterations.end(), 0.0) / static_cast<double>(iterations.size());
 }
 
-double LambdaTrial::most() const {
+double LambdaTrial::max() const {
   return *std::max_element(iterations.begin(), iterations.end());
 }
 
-std::vector<double> geometric_series(double lowest, double highest, int count) {
+std::vector<double> geometric_series(double first, double last, int count) {
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(count));
-  const double ratio = highest / lowest;
-  for (int i = 0; i < count; ++i) values.push_back(lowest * std::pow(ratio, i / std::max(1.0, count - 1.0)));
+  const double ratio = last / first;
+  for (int i = 0; i < count; ++i) values.push_back(first * std::pow(ratio, i / std::max(1.0, count - 1.0)));
   return values;
 }
 
-LambdaTrial try_lambda(double lambda, const std::vector<LambdaMap>& maps, double roll_threshold_rad, int threads) {
-  RoadGeometryOptions options;
+LambdaTrial run_lambda_trial(double lambda, const std::vector<LambdaMap>& maps, double roll_threshold_rad,
+                             int threads) {
+  RollOptions options;
   options.solver = RollSolver::gradient_descent;
   options.initial_lambda = lambda;
   options.roll_threshold_rad = roll_threshold_rad;
-  options.max_iterations = most_iterations;
+  options.max_iterations = max_iterations;
   LambdaTrial trial{lambda, {}, 0};
   for (const LambdaMap& map : maps) {
-    const RoadGeometry geometry = fit(map.disparity, options, threads);
-    trial.iterations.push_back(geometry.iterations);
-    const double error = std::remainder(geometry.roll_rad - map.minimum_rad, std::numbers::pi);
-    trial.largest_error_rad = std::max(trial.largest_error_rad, std::abs(error));
+    const RollEstimate estimate = fit(map.disparity, options, threads);
+    trial.iterations.push_back(estimate.iterations);
+    const double error = std::remainder(estimate.roll_rad - map.minimum_rad, std::numbers::pi);
+    trial.max_error_rad = std::max(trial.max_error_rad, std::abs(error));
   }
   return trial;
 }
 
 double best_lambda(const std::vector<LambdaTrial>& trials) {
-  double least = HUGE_VAL;
-  for (const LambdaTrial& trial : trials) least = std::min(least, trial.mean());
-  double logarithms = 0, count = 0;
+  double min_mean = HUGE_VAL;
+  for (const LambdaTrial& trial : trials) min_mean = std::min(min_mean, trial.mean());
+  double sum_of_logarithms = 0, count = 0;
   for (const LambdaTrial& trial : trials) {
-    if (trial.mean() > least) continue;
-    logarithms += std::log(trial.lambda);
+    if (trial.mean() > min_mean) continue;
+    sum_of_logarithms += std::log(trial.lambda);
     count += 1;
   }
-  return std::exp(logarithms / count);
+  return std::exp(sum_of_logarithms / count);
 }
 
 }  // namespace roadstereo::cli

@@ -7,7 +7,8 @@
 
 namespace roadstereo::cli {
 
-/// Reads a mask from an image: 255 where any colour of the pixel is at least `least`, 0 elsewhere.
-Image<std::uint8_t> read_mask(const std::string& path, int least = 1);
+/// Read a mask from an image: 255 where any colour channel of the pixel is at least `threshold`, 0 elsewhere. Alpha is
+/// ignored.
+Image<std::uint8_t> read_mask(const std::string& path, int threshold = 1);
 
 }  // namespace roadstereo::cli

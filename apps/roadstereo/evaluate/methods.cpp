@@ -14,7 +14,7 @@ Image<float> run_preset(const std::string& name, const MethodTask& task, const M
   return pipeline.process(task.pair.left.view(), task.pair.right.view()).disparity;
 }
 
-Image<float> run_peer(const std::string& name, const MethodTask& task) {
+Image<float> run_baseline(const std::string& name, const MethodTask& task) {
   GreyImage left, right;
   to_grey(task.pair.left.view(), task.pair.white_level, left);
   to_grey(task.pair.right.view(), task.pair.white_level, right);
@@ -27,10 +27,10 @@ Image<float> run_peer(const std::string& name, const MethodTask& task) {
 }  // namespace
 
 void add_method_options(CLI::App& command, MethodSettings& settings) {
-  command.add_option("--threads", settings.threads, "Worker threads; 0 takes all cores")
+  command.add_option("--threads", settings.threads, "Worker threads; 0: all cores")
       ->type_name("N")
       ->capture_default_str();
-  command.add_option("--set", settings.settings, "Sets one option of every preset; may be repeated")
+  command.add_option("--set", settings.settings, "Set an option of every preset; may be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->allow_extra_args(false)
@@ -52,7 +52,7 @@ PipelineOptions method_options(const std::string& preset_name, const MethodTask&
   PipelineOptions options = preset(preset_name);
   options.threads = settings.threads;
   options.white_level = task.pair.white_level;
-  if (!task.shows_a_road) {
+  if (!task.is_road) {
     options.perspective.enabled = false;
     options.perspective.disparities = task.disparities;
   }
@@ -61,9 +61,9 @@ PipelineOptions method_options(const std::string& preset_name, const MethodTask&
 }
 
 Image<float> run_method(const std::string& name, const MethodTask& task, const MethodSettings& settings) {
-  const auto& peers = io::peer_names();
-  const bool is_peer = std::find(peers.begin(), peers.end(), name) != peers.end();
-  return is_peer ? run_peer(name, task) : run_preset(name, task, settings);
+  const auto& baselines = io::peer_names();
+  const bool is_baseline = std::find(baselines.begin(), baselines.end(), name) != baselines.end();
+  return is_baseline ? run_baseline(name, task) : run_preset(name, task, settings);
 }
 
 std::vector<Image<float>> run_methods(const MethodTask& task, const MethodSettings& settings) {

@@ -12,7 +12,7 @@ class App;
 
 namespace roadstereo::cli {
 
-/// What the command line says about the pipeline.
+/// Pipeline options of the command line.
 struct MethodSettings {
   int threads = 0;
   std::vector<std::string> settings;  ///< KEY=VALUE
@@ -21,27 +21,27 @@ struct MethodSettings {
 /// Adds --threads and --set.
 void add_method_options(CLI::App& command, MethodSettings& settings);
 
-/// Who is compared: the presets, then OpenCV's matchers.
+/// Names of the compared methods: the presets, then OpenCV's matchers.
 std::vector<std::string> method_names();
 
-/// Where a method stands among them.
+/// Index of a method in method_names(); their number if there is none of that name.
 std::size_t method_index(const std::string& name);
 
-/// A rectified pair, and how far to search it.
+/// Rectified pair and its disparity range.
 struct MethodTask {
   const StereoPair& pair;
-  int disparities = 128;     ///< for OpenCV's matchers, and for the presets without a road
-  bool shows_a_road = true;  ///< false: no perspective transformation
+  int disparities = 128;  ///< for OpenCV's matchers, and for the presets if the pair shows no road
+  bool is_road = true;    ///< false: no perspective transformation
 };
 
-/// The options of that preset for the pair, with what the command line says on top.
+/// Options of a preset for the pair, with those of the command line applied.
 PipelineOptions method_options(const std::string& preset_name, const MethodTask& task, const MethodSettings& settings);
 
-/// Disparities of one pair, nothing carried over from another: by the preset of that name on the pair as it is, or by
-/// OpenCV's matcher of that name on the same pair in grey.
+/// Compute the disparities of one pair, without state from other pairs: by the preset of that name, or by OpenCV's
+/// matcher of that name on the grey images.
 Image<float> run_method(const std::string& name, const MethodTask& task, const MethodSettings& settings);
 
-/// Those of every method, in the order of method_names().
+/// Disparities of every method, in the order of method_names().
 std::vector<Image<float>> run_methods(const MethodTask& task, const MethodSettings& settings);
 
 }  // namespace roadstereo::cli

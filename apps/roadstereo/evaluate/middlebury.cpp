@@ -24,14 +24,14 @@ struct Arguments {
 /// Left image, truth, our disparities, our errors.
 std::vector<io::SheetCell> sheet_row(const MiddleburyScene& scene, ImageView<const float> ours) {
   const io::ColourScale disparities = io::spread_scale(scene.truth, "disparity, px");
-  const Image<float> errors = absolute_error(ours, scene.truth, scene.seen_twice.view());
+  const Image<float> errors = absolute_error(ours, scene.truth, scene.visible.view());
   return {{scene.name, scene.pair.left},
           {"truth", io::colour_map(scene.truth, disparities)},
           {"default preset", io::colour_map(ours, disparities)},
           {"error of the default preset", io::colour_map(errors, {0, 3, false, "error, px"})}};
 }
 
-/// Rows of every method over the pixels that both cameras see; the default preset's disparities go to `ours`.
+/// Score every method over the pixels that both cameras see. The disparities of the default preset go to `ours`.
 Table score_scene(const MiddleburyScene& scene, const MethodSettings& settings, Image<float>& ours) {
   static const std::vector<double> tolerances_px{0.5, 1, 2};  // the benchmark's "bad 0.5", "bad 1.0", "bad 2.0"
   Table table{fmt::format("{}, {} disparities, pixels that both cameras see", scene.name, scene.disparities),
@@ -41,7 +41,7 @@ Table score_scene(const MiddleburyScene& scene, const MethodSettings& settings, 
   table.columns.insert(table.columns.end(), columns.begin(), columns.end());
   for (const std::string& name : method_names()) {
     const Image<float> map = run_method(name, {scene.pair, scene.disparities, false}, settings);
-    table.rows.push_back(score_cells(score_disparity(map, scene.truth, scene.seen_twice.view(), tolerances_px)));
+    table.rows.push_back(score_cells(score_disparity(map, scene.truth, scene.visible.view(), tolerances_px)));
     table.rows.back().insert(table.rows.back().begin(), Cell(name));
     if (name == "default") ours = map;
   }
@@ -66,8 +66,8 @@ void middlebury(const Arguments& arguments) {
 }
 
 constexpr const char* middlebury_footer =
-    R"(A scene is a folder with im0.png, im1.png, disp0GT.pfm, mask0nocc.png and calib.txt, as in Middlebury v3; DIR is one, or
-has some in it. No road is supposed: the perspective transformation is off, and ndisp disparities are searched.
+    R"(A scene is a folder with im0.png, im1.png, disp0GT.pfm, mask0nocc.png and calib.txt, as in Middlebury v3. DIR is a scene
+or contains scenes. No road is assumed: the perspective transformation is off, and ndisp disparities are searched.
 
 Example:
   roadstereo evaluate middlebury trainingQ --figure middlebury.png)";
@@ -78,7 +78,7 @@ void add_middlebury(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("middlebury", "General scenes of Middlebury v3, without a road");
   command->footer(middlebury_footer);
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("DIR", arguments->folder, "Folder of the scenes, or of one")->required();
+  command->add_option("DIR", arguments->folder, "Folder of a scene, or of scenes")->required();
   add_method_options(*command, arguments->methods);
   add_report_options(*command, arguments->report);
   command->callback([arguments] { middlebury(*arguments); });

@@ -18,18 +18,21 @@ bool is_scene(const fs::path& folder) {
   return fs::is_regular_file(folder / "im0.png");
 }
 
-/// The figure behind "ndisp=": how many disparities the scene needs.
+/// Number of disparities of the scene, from "ndisp=" in calib.txt.
 int read_ndisp(const std::string& path) {
   std::ifstream file(path);
   if (!file) fail("cannot read ", path);
   std::stringstream text;
   text << file.rdbuf();
-  constexpr int most = 1024;
+  constexpr int max_disparities = 1024;
   const std::string key = "ndisp=";
-  const auto at = text.str().find(key);
+  const auto position = text.str().find(key);
+  if (position == std::string::npos) fail(path, ": ndisp is missing; it must be between 1 and ", max_disparities);
   int disparities = 0;
-  if (at != std::string::npos) std::istringstream(text.str().substr(at + key.size())) >> disparities;
-  if (disparities < 1 || disparities > most) fail(path, " must say ndisp= with a number from 1 to ", most);
+  std::istringstream(text.str().substr(position + key.size())) >> disparities;
+  if (disparities < 1 || disparities > max_disparities) {
+    fail(path, ": ndisp is ", disparities, "; it must be between 1 and ", max_disparities);
+  }
   return disparities;
 }
 
@@ -42,7 +45,7 @@ std::vector<std::string> find_middlebury_scenes(const std::string& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (is_scene(entry.path())) scenes.push_back(entry.path().string());
   }
-  if (scenes.empty()) fail("neither ", folder, " nor a folder in it has an im0.png of Middlebury v3");
+  if (scenes.empty()) fail(folder, ": neither the folder nor a subfolder contains im0.png of Middlebury v3");
   std::sort(scenes.begin(), scenes.end());
   return scenes;
 }
@@ -53,8 +56,8 @@ MiddleburyScene read_middlebury_scene(const std::string& folder) {
   scene.name = root.filename().string();
   scene.pair = read_pair({(root / "im0.png").string(), (root / "im1.png").string(), {}});
   scene.truth = io::read_disparity((root / "disp0GT.pfm").string());
-  constexpr int seen_by_both = 255;  // 128: by the left camera alone
-  scene.seen_twice = read_mask((root / "mask0nocc.png").string(), seen_by_both);
+  constexpr int visible_in_both = 255;  // 128: in the left image only
+  scene.visible = read_mask((root / "mask0nocc.png").string(), visible_in_both);
   scene.disparities = read_ndisp((root / "calib.txt").string());
   return scene;
 }

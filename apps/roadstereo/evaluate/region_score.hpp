@@ -7,11 +7,11 @@
 
 namespace roadstereo::cli {
 
-/// How two regions of pixels agree: what was found and what is true.
+/// Pixel counts for the comparison of a found region with the true one.
 struct RegionScore {
-  std::size_t both = 0;
-  std::size_t found = 0;
-  std::size_t truth = 0;
+  std::size_t both = 0;   ///< true positives
+  std::size_t found = 0;  ///< pixels of the found region
+  std::size_t truth = 0;  ///< pixels of the true region
 
   void add(bool is_found, bool is_true) {
     found += is_found ? 1U : 0U;
@@ -25,7 +25,7 @@ struct RegionScore {
   }
   double precision() const { return share(found); }
   double recall() const { return share(truth); }
-  /// Harmonic mean of precision and recall.
+  /// F-measure: harmonic mean of precision and recall.
   double f() const {
     return found + truth > 0 ? 2.0 * static_cast<double>(both) / static_cast<double>(found + truth) : 0;
   }
@@ -33,7 +33,9 @@ struct RegionScore {
   double iou() const { return share(found + truth - both); }
 
  private:
-  double share(std::size_t of) const { return of > 0 ? static_cast<double>(both) / static_cast<double>(of) : 0; }
+  double share(std::size_t total) const {
+    return total > 0 ? static_cast<double>(both) / static_cast<double>(total) : 0;
+  }
 };
 
 }  // namespace roadstereo::cli

@@ -21,7 +21,7 @@ void write_bytes(const std::string& path, const char* bytes, std::size_t size) {
 }  // namespace
 
 void add_report_options(CLI::App& command, ReportFiles& files) {
-  command.add_option("--json", files.json, "Also write the figures to this file")->type_name("FILE");
+  command.add_option("--json", files.json, "Also write the results to this file")->type_name("FILE");
   command.add_option("--figure", files.figure, "Also draw them: a PNG for people")->type_name("FILE");
 }
 

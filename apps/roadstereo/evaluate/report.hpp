@@ -11,16 +11,16 @@ class App;
 
 namespace roadstereo::cli {
 
-/// Where an experiment leaves its figures besides the terminal; empty leaves a file out.
+/// Output files of an experiment; empty: no file.
 struct ReportFiles {
   std::string json;
   std::string figure;
 };
 
-/// Adds --json and --figure.
+/// Add --json and --figure.
 void add_report_options(CLI::App& command, ReportFiles& files);
 
-/// Writes the document as JSON. Throws Error when the file cannot be opened, SystemError when the disk is full.
+/// Write the document as JSON. Throws Error if the file cannot be opened, SystemError if writing fails.
 void write_report(const std::string& path, const nlohmann::ordered_json& document);
 
 /// Writes a picture as PNG. Throws likewise.

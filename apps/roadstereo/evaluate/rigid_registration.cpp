@@ -16,28 +16,30 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr int turns = 36;  // starts about the shortest axis; each of them also upside down
-constexpr std::size_t refined_starts = 6;
+constexpr int rotation_count = 36;  // initial rotations about the shortest axis; each also upside down
+constexpr std::size_t refined_pose_count = 6;
 constexpr std::size_t ranking_points = 500;
-constexpr std::size_t choosing_points = 2000;
+constexpr std::size_t refining_points = 2000;
 constexpr std::size_t final_points = 10000;
-constexpr int ranking_steps = 20;
-constexpr int refining_steps = 80;
-constexpr int polishing_steps = 100;
-constexpr double settled = 1e-5;  // change of a step, of the surface's extent
+constexpr int ranking_iterations = 20;
+constexpr int refining_iterations = 80;
+constexpr int final_iterations = 100;
+constexpr double convergence = 1e-5;  // step length, relative to the extent of the surface
 
+/// Motion with the RMS of its closest distances.
 struct Pose {
   RigidMotion motion;
   double rms = 0;
 };
 
-struct Pairs {
+/// Closest points of the surface, one per point of the cloud.
+struct Correspondences {
   std::vector<ScanSurface::Nearest> nearest;
-  std::vector<double> sorted;  ///< distances
+  std::vector<double> sorted;  ///< distances in ascending order
 };
 
-Pairs find_pairs(const Points& cloud, const ScanSurface& surface, const RigidMotion& motion) {
-  Pairs pairs;
+Correspondences find_correspondences(const Points& cloud, const ScanSurface& surface, const RigidMotion& motion) {
+  Correspondences pairs;
   pairs.nearest.reserve(cloud.size());
   pairs.sorted.reserve(cloud.size());
   for (const Eigen::Vector3d& point : cloud) {
@@ -52,116 +54,120 @@ std::size_t kept_count(double share, std::size_t points) {
   return std::max<std::size_t>(3, static_cast<std::size_t>(share * static_cast<double>(points)));
 }
 
-double trimmed_rms(const Pairs& pairs, double share) {
+/// RMS of the nearest share of the distances.
+double trimmed_rms(const Correspondences& pairs, double share) {
   const std::size_t kept = kept_count(share, pairs.sorted.size());
   double squares = 0;
   for (std::size_t i = 0; i < kept; ++i) squares += pairs.sorted[i] * pairs.sorted[i];
   return std::sqrt(squares / static_cast<double>(kept));
 }
 
-/// The motion that brings the points closest to their partners, over the nearest share of them, in closed form.
-RigidMotion fit_points(const Points& cloud, const ScanSurface& surface, const Pairs& pairs, double share) {
+/// Least-squares motion from the nearest share of the points to their correspondences, in closed form by SVD (Kabsch).
+RigidMotion fit_motion(const Points& cloud, const ScanSurface& surface, const Correspondences& pairs, double share) {
   const double limit = pairs.sorted[kept_count(share, pairs.sorted.size()) - 1];
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
   double count = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (pairs.nearest[i].distance > limit) continue;
-    const Eigen::Vector3d& partner = surface.points()[pairs.nearest[i].index];
+    const Eigen::Vector3d& target = surface.points()[pairs.nearest[i].index];
     from += cloud[i];
-    to += partner;
-    products += cloud[i] * partner.transpose();
+    to += target;
+    products += cloud[i] * target.transpose();
     count += 1;
   }
   const Eigen::Matrix3d covariance = products - from * to.transpose() / count;
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const bool mirrored = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0;
-  const Eigen::Vector3d signs(1, 1, mirrored ? -1 : 1);
+  const bool is_mirrored = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0;
+  const Eigen::Vector3d signs(1, 1, is_mirrored ? -1 : 1);
   RigidMotion motion;
   motion.rotation = svd.matrixV() * signs.asDiagonal() * svd.matrixU().transpose();
   motion.translation = (to - motion.rotation * from) / count;
   return motion;
 }
 
-/// How far a step moves the points of a cloud, at the most.
+/// Upper bound on the distance by which a step moves the points of a cloud.
 double step_length(const RigidMotion& before, const RigidMotion& after, const Eigen::Vector3d& centre, double extent) {
   return (after(centre) - before(centre)).norm() + (after.rotation - before.rotation).norm() * extent;
 }
 
-Pose fit_by_points(const Points& cloud, const ScanSurface& surface, Pose pose, double share, int steps) {
-  const MainAxes axes = main_axes(cloud);
-  const double extent = axes.spread[0];
-  for (int step = 0; step < steps; ++step) {
-    const RigidMotion next = fit_points(cloud, surface, find_pairs(cloud, surface, pose.motion), share);
+/// Trimmed point-to-point ICP.
+Pose icp_point_to_point(const Points& cloud, const ScanSurface& surface, Pose pose, double share, int iterations) {
+  const PrincipalAxes axes = principal_axes(cloud);
+  const double extent = axes.sigma[0];
+  for (int i = 0; i < iterations; ++i) {
+    const RigidMotion next = fit_motion(cloud, surface, find_correspondences(cloud, surface, pose.motion), share);
     const double length = step_length(pose.motion, next, axes.centre, extent);
     pose.motion = next;
-    if (length < settled * extent) break;
+    if (length < convergence * extent) break;
   }
-  pose.rms = trimmed_rms(find_pairs(cloud, surface, pose.motion), share);
+  pose.rms = trimmed_rms(find_correspondences(cloud, surface, pose.motion), share);
   return pose;
 }
 
-/// Tukey's weight of a distance.
+/// Tukey weight of a distance.
 double tukey_weight(double distance, double scale) {
-  constexpr double reach = 4.685;
-  const double share = distance / (reach * scale);
-  return share < 1 ? (1 - share * share) * (1 - share * share) : 0;
+  constexpr double truncation = 4.685;  // 95 % efficiency on normal residuals
+  const double relative = distance / (truncation * scale);
+  return relative < 1 ? (1 - relative * relative) * (1 - relative * relative) : 0;
 }
 
-/// One step of Gauss and Newton on the distances to the planes of the nearest points, about the cloud's place.
-RigidMotion step_to_planes(const Points& cloud, const ScanModel& scan, const RigidMotion& motion, double least_scale) {
-  const Pairs pairs = find_pairs(cloud, scan.even, motion);
-  constexpr double to_sigma = 1.4826;
-  const double scale = std::max(to_sigma * pairs.sorted[pairs.sorted.size() / 2], least_scale);
-  const Eigen::Vector3d pivot = motion(main_axes(cloud).centre);
+/// One Gauss–Newton step of robust point-to-plane ICP, with rotations about the centre of the cloud.
+RigidMotion point_to_plane_step(const Points& cloud, const ScanModel& scan, const RigidMotion& motion,
+                                double min_scale) {
+  const Correspondences pairs = find_correspondences(cloud, scan.voxels, motion);
+  constexpr double gaussian_mad = 1.4826;
+  const double scale = std::max(gaussian_mad * pairs.sorted[pairs.sorted.size() / 2], min_scale);
+  const Eigen::Vector3d pivot = motion(principal_axes(cloud).centre);
   Matrix6 normal_matrix = Matrix6::Zero();
   Vector6 right = Vector6::Zero();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double weight = tukey_weight(pairs.nearest[i].distance, scale);
-    const ScanSurface::Lie& lie = scan.lies[pairs.nearest[i].index];
-    if (weight <= 0 || lie.at_edge) continue;  // a plane does not end where the scan does
+    const ScanSurface::Surfel& surfel = scan.surfels[pairs.nearest[i].index];
+    if (weight <= 0 || surfel.at_edge) continue;  // the tangent plane continues beyond the edge of the scan
     const Eigen::Vector3d point = motion(cloud[i]);
-    const Eigen::Vector3d& normal = lie.normal;
+    const Eigen::Vector3d& normal = surfel.normal;
     Vector6 row;
     row << (point - pivot).cross(normal), normal;
     normal_matrix += weight * row * row.transpose();
-    right -= weight * row * normal.dot(point - scan.even.points()[pairs.nearest[i].index]);
+    right -= weight * row * normal.dot(point - scan.voxels.points()[pairs.nearest[i].index]);
   }
-  constexpr double damping = 1e-6;  // a sphere may turn as it likes
+  constexpr double damping = 1e-6;  // for surfaces that do not constrain all rotations, such as a sphere
   normal_matrix.diagonal() *= 1 + damping;
   const Vector6 solution = normal_matrix.ldlt().solve(right);
-  const Eigen::Vector3d turn = solution.head<3>();
-  const double angle = turn.norm();
+  const Eigen::Vector3d rotation_vector = solution.head<3>();
+  const double angle = rotation_vector.norm();
   const Eigen::Matrix3d rotation =
-      angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
+      angle > 0 ? Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
   RigidMotion next;
   next.rotation = rotation * motion.rotation;
   next.translation = rotation * (motion.translation - pivot) + pivot + solution.tail<3>();
   return next;
 }
 
-Pose fit_to_planes(const Points& cloud, const ScanModel& scan, Pose pose, double share) {
-  const MainAxes axes = main_axes(cloud);
-  constexpr double least_scale_share = 1e-3;
-  const double extent = axes.spread[0];
-  for (int step = 0; step < refining_steps; ++step) {
-    const RigidMotion next = step_to_planes(cloud, scan, pose.motion, least_scale_share * extent);
+/// Robust point-to-plane ICP.
+Pose icp_point_to_plane(const Points& cloud, const ScanModel& scan, Pose pose, double share) {
+  const PrincipalAxes axes = principal_axes(cloud);
+  constexpr double min_scale_share = 1e-3;
+  const double extent = axes.sigma[0];
+  for (int i = 0; i < refining_iterations; ++i) {
+    const RigidMotion next = point_to_plane_step(cloud, scan, pose.motion, min_scale_share * extent);
     if (!next.translation.allFinite() || !next.rotation.allFinite()) break;
     const double length = step_length(pose.motion, next, axes.centre, extent);
     pose.motion = next;
-    if (length < settled * extent) break;
+    if (length < convergence * extent) break;
   }
-  pose.rms = trimmed_rms(find_pairs(cloud, scan.even, pose.motion), share);
+  pose.rms = trimmed_rms(find_correspondences(cloud, scan.voxels, pose.motion), share);
   return pose;
 }
 
-/// Both on their main axes: all turns about the shortest one, and all of them upside down.
-std::vector<RigidMotion> starts(const Points& cloud, const MainAxes& to) {
-  const MainAxes from = main_axes(cloud);
+/// Initial motions: principal axes aligned, with all rotations about the shortest axis, each also upside down.
+std::vector<RigidMotion> initial_motions(const Points& cloud, const PrincipalAxes& to) {
+  const PrincipalAxes from = principal_axes(cloud);
   std::vector<RigidMotion> motions;
-  for (int i = 0; i < 2 * turns; ++i) {
-    const int turn = i / 2;
-    const double angle = 2 * std::numbers::pi * turn / turns;
+  for (int i = 0; i < 2 * rotation_count; ++i) {
+    const int rotation = i / 2;
+    const double angle = 2 * std::numbers::pi * rotation / rotation_count;
     Eigen::Matrix3d local = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     if (i % 2 == 1) local *= Eigen::Vector3d(1, -1, -1).asDiagonal();
     RigidMotion motion;
@@ -172,67 +178,68 @@ std::vector<RigidMotion> starts(const Points& cloud, const MainAxes& to) {
   return motions;
 }
 
-bool is_elsewhere(const RigidMotion& one, const RigidMotion& other, const MainAxes& cloud) {
-  constexpr double most_turn_rad = 10 * std::numbers::pi / 180;
-  constexpr double most_shift = 0.3;  // standard deviations: about a tenth of the extent
-  const double turn = Eigen::AngleAxisd(one.rotation.transpose() * other.rotation).angle();
-  return turn > most_turn_rad || (one(cloud.centre) - other(cloud.centre)).norm() > most_shift * cloud.spread[0];
+/// Whether two motions differ by more than 10° or a tenth of the extent of the cloud.
+bool is_distinct(const RigidMotion& one, const RigidMotion& other, const PrincipalAxes& cloud) {
+  constexpr double max_angle_rad = 10 * std::numbers::pi / 180;
+  constexpr double max_translation = 0.3;  // standard deviations: about a tenth of the extent
+  const double angle = Eigen::AngleAxisd(one.rotation.transpose() * other.rotation).angle();
+  return angle > max_angle_rad || (one(cloud.centre) - other(cloud.centre)).norm() > max_translation * cloud.sigma[0];
 }
 
-/// The starts after a few steps on few points, best first.
-std::vector<Pose> ranked_starts(const Points& cloud, const ScanModel& scan, const RegistrationOptions& options) {
-  constexpr double coarse_side = 0.12;  // of the standard deviation along the longest axis
-  const ScanSurface coarse(thin_out(scan.scan.points(), coarse_side * scan.axes.spread[0]));
-  const Points few = every_nth(cloud, ranking_points);
+/// Initial poses after a coarse ICP, by ascending RMS.
+std::vector<Pose> ranked_poses(const Points& cloud, const ScanModel& scan, const RegistrationOptions& options) {
+  constexpr double coarse_voxel = 0.12;  // side, in standard deviations along the longest axis
+  const ScanSurface coarse(voxel_downsample(scan.scan.points(), coarse_voxel * scan.axes.sigma[0]));
+  const Points few = subsample_evenly(cloud, ranking_points);
   std::vector<Pose> poses;
-  for (const RigidMotion& motion : starts(few, scan.axes)) {
-    poses.push_back(fit_by_points(few, coarse, {motion}, options.trimmed_share, ranking_steps));
+  for (const RigidMotion& motion : initial_motions(few, scan.axes)) {
+    poses.push_back(icp_point_to_point(few, coarse, {motion}, options.trimmed_share, ranking_iterations));
   }
   std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.rms < b.rms; });
   return poses;
 }
 
-/// Of the ranked ones, the first that differ from each other.
-std::vector<Pose> different_poses(const std::vector<Pose>& ranked, const MainAxes& cloud, std::size_t most) {
-  std::vector<Pose> chosen;
+/// The first `max_count` of the ranked poses that are distinct.
+std::vector<Pose> distinct_poses(const std::vector<Pose>& ranked, const PrincipalAxes& cloud, std::size_t max_count) {
+  std::vector<Pose> selected;
   for (const Pose& pose : ranked) {
-    const bool is_new = std::all_of(chosen.begin(), chosen.end(),
-                                    [&](const Pose& other) { return is_elsewhere(pose.motion, other.motion, cloud); });
-    if (is_new && chosen.size() < most) chosen.push_back(pose);
+    const bool is_new = std::all_of(selected.begin(), selected.end(),
+                                    [&](const Pose& other) { return is_distinct(pose.motion, other.motion, cloud); });
+    if (is_new && selected.size() < max_count) selected.push_back(pose);
   }
-  return chosen;
+  return selected;
 }
 
-/// Follows a pose to its end. The last step, when there is one, is taken towards the points of `surface`.
+/// Refine a pose by robust ICP and, with LastStep::least_squares, by point-to-point ICP against `surface`.
 Pose refine(const Points& cloud, const ScanModel& scan, const ScanSurface& surface, const Pose& start,
             const RegistrationOptions& options) {
-  Pose robust = fit_to_planes(cloud, scan, start, options.trimmed_share);
+  Pose robust = icp_point_to_plane(cloud, scan, start, options.trimmed_share);
   if (options.last_step == LastStep::robust) return robust;
-  return fit_by_points(cloud, surface, robust, 1, polishing_steps);
+  return icp_point_to_point(cloud, surface, robust, 1, final_iterations);
 }
 
 }  // namespace
 
 void RegistrationOptions::validate() const {
-  constexpr double least_share = 0.3;
-  if (trimmed_share >= least_share && trimmed_share <= 1) return;
-  fail("trimmed_share is ", trimmed_share, "; it must be between ", least_share, " and 1");
+  constexpr double min_share = 0.3;
+  if (trimmed_share >= min_share && trimmed_share <= 1) return;
+  fail("trimmed_share is ", trimmed_share, "; it must be between ", min_share, " and 1");
 }
 
 Registration register_cloud(const Points& cloud, const ScanModel& scan, const RegistrationOptions& options) {
   options.validate();
-  constexpr std::size_t least_points = 100;
-  if (cloud.size() < least_points) fail("the cloud has ", cloud.size(), " points; registration needs ", least_points);
-  const MainAxes cloud_axes = main_axes(cloud);
-  const Points some = every_nth(cloud, choosing_points);
-  std::vector<Pose> poses = different_poses(ranked_starts(cloud, scan, options), cloud_axes, refined_starts);
-  for (Pose& pose : poses) pose = refine(some, scan, scan.even, pose, options);
+  constexpr std::size_t min_points = 100;
+  if (cloud.size() < min_points) fail("the cloud has ", cloud.size(), " points; it must have at least ", min_points);
+  const PrincipalAxes cloud_axes = principal_axes(cloud);
+  const Points some = subsample_evenly(cloud, refining_points);
+  std::vector<Pose> poses = distinct_poses(ranked_poses(cloud, scan, options), cloud_axes, refined_pose_count);
+  for (Pose& pose : poses) pose = refine(some, scan, scan.voxels, pose, options);
   std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.rms < b.rms; });
-  const Pose best = refine(every_nth(cloud, final_points), scan, scan.scan, poses.front(), options);
+  const Pose best = refine(subsample_evenly(cloud, final_points), scan, scan.scan, poses.front(), options);
   Registration result{best.motion, best.rms, std::numeric_limits<double>::infinity()};
   for (const Pose& pose : poses) {
-    const bool elsewhere = is_elsewhere(pose.motion, poses.front().motion, cloud_axes);
-    if (elsewhere) result.next_rms = std::min(result.next_rms, pose.rms);
+    if (is_distinct(pose.motion, poses.front().motion, cloud_axes))
+      result.next_rms = std::min(result.next_rms, pose.rms);
   }
   return result;
 }

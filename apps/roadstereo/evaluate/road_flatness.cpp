@@ -8,20 +8,20 @@
 namespace roadstereo::cli {
 namespace {
 
-/// Calls `use(u, v, d)` for every valid disparity of the mask.
-template <class Use>
-void for_each_road_pixel(ImageView<const float> disparity, ImageView<const std::uint8_t> mask, const Use& use) {
+/// Call `visit(u, v, d)` for every valid disparity of the mask.
+template <class Visit>
+void for_each_road_pixel(ImageView<const float> disparity, ImageView<const std::uint8_t> mask, const Visit& visit) {
   for (int v = 0; v < disparity.height(); ++v) {
     for (int u = 0; u < disparity.width(); ++u) {
-      if (mask(u, v) != 0 && !std::isnan(disparity(u, v))) use(u, v, static_cast<double>(disparity(u, v)));
+      if (mask(u, v) != 0 && !std::isnan(disparity(u, v))) visit(u, v, static_cast<double>(disparity(u, v)));
     }
   }
 }
 
 }  // namespace
 
-RoadModel fit_without_roll(ImageView<const float> disparity, ImageView<const std::uint8_t> mask) {
-  const double origin = disparity.height() / 2.0;  // near the data, so that large sums do not cancel
+DisparityPlane fit_without_roll(ImageView<const float> disparity, ImageView<const std::uint8_t> mask) {
+  const double origin = disparity.height() / 2.0;  // near the data, to avoid cancellation
   double n = 0, sum_v = 0, sum_d = 0, sum_vv = 0, sum_vd = 0;
   for_each_road_pixel(disparity, mask, [&](int, int v, double d) {
     const double row = v - origin;
@@ -32,15 +32,15 @@ RoadModel fit_without_roll(ImageView<const float> disparity, ImageView<const std
     sum_vd += row * d;
   });
   const double determinant = n * sum_vv - sum_v * sum_v;
-  if (determinant <= 0) fail("the road has disparities in fewer than two rows; a line needs at least two");
-  RoadModel model;
-  model.a1 = (n * sum_vd - sum_v * sum_d) / determinant;
-  model.a0 = (sum_d - model.a1 * sum_v) / n - model.a1 * origin;
-  return model;
+  if (determinant <= 0) fail("the road has disparities in fewer than two rows; it must have at least two");
+  DisparityPlane plane;
+  plane.a1 = (n * sum_vd - sum_v * sum_d) / determinant;
+  plane.a0 = (sum_d - plane.a1 * sum_v) / n - plane.a1 * origin;
+  return plane;
 }
 
 double transformed_deviation(ImageView<const float> disparity, ImageView<const std::uint8_t> mask,
-                             const RoadModel& plane) {
+                             const DisparityPlane& plane) {
   double n = 0, sum = 0, squares = 0;
   for_each_road_pixel(disparity, mask, [&](int u, int v, double d) {
     const double transformed = d - plane.disparity(u, v);

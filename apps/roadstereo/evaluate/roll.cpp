@@ -26,9 +26,9 @@ struct Arguments {
   ReportFiles files;
 
   void validate() const {
-    constexpr double steepest_deg = 45;
-    if (!(trials.largest_roll_deg > 0 && trials.largest_roll_deg <= steepest_deg)) {
-      fail("--largest is ", trials.largest_roll_deg, "; it must be above 0 and at most ", steepest_deg);
+    constexpr double limit_deg = 45;
+    if (!(trials.max_roll_deg > 0 && trials.max_roll_deg <= limit_deg)) {
+      fail("--max-roll is ", trials.max_roll_deg, "; it must be above 0 and at most ", limit_deg);
     }
     if (trials.angles < 1 || trials.angles > 1000) {
       fail("--angles is ", trials.angles, "; it must be between 1 and 1000");
@@ -37,18 +37,18 @@ struct Arguments {
 };
 
 constexpr const char* note =
-    "Rows with camber: the road is no plane (1 cm lower 1.6 m beside its crown), and the truth is the roll against "
-    "the\n"
-    "plane at its crown; what the pictures show of it is not symmetric, and the best plane leans with it.\n";
+    "Rows with camber: the road is not planar (1 cm lower 1.6 m beside its crown). The true roll is that of the "
+    "tangent\n"
+    "plane at the crown; the visible part of the road is not symmetric, which biases the best plane.\n";
 
 Table make_table(const std::vector<RollErrors>& all) {
   Table table{
       "Error of the roll angle, rad",
-      {{"maps", "maps"}, {"solver", "solver"}, {"trials", "trials"}, {"mean", "mean_rad"}, {"largest", "largest_rad"}},
+      {{"maps", "maps"}, {"solver", "solver"}, {"trials", "trials"}, {"mean", "mean_rad"}, {"max", "max_rad"}},
       {{"published: EISATS, rotated", "gradient descent", Cell(NAN, 0), Cell(published_mean_rad, 3), Cell(NAN, 6)}}};
   for (const RollErrors& errors : all) {
     table.rows.push_back({errors.maps, errors.solver, Cell(static_cast<double>(errors.error_rad.size()), 0),
-                          Cell(errors.mean_rad(), 6), Cell(errors.largest_rad(), 6)});
+                          Cell(errors.mean_rad(), 6), Cell(errors.max_rad(), 6)});
   }
   return table;
 }
@@ -73,7 +73,7 @@ io::Curve curve_of(const RollErrors& errors, const std::string& name) {
 
 Frame draw(const std::vector<RollErrors>& all) {
   constexpr const char* hardest = "rolled rig, damage, 5 % outliers";
-  constexpr double smallest_shown_urad = 0.01, largest_shown_urad = 50000;
+  constexpr double min_shown_urad = 0.01, max_shown_urad = 50000;
   io::Panel exact{"Exact maps, damage, 5 % outliers", "roll, degrees", "largest error, microradians", {}};
   io::Panel matched{"Matched pairs, damage, noise", "roll, degrees", "largest error, microradians", {}};
   for (const RollErrors& errors : all) {
@@ -91,9 +91,9 @@ Frame draw(const std::vector<RollErrors>& all) {
                             false,
                             true});
     panel.log_y = true;
-    panel.y_highest = largest_shown_urad;
+    panel.y_highest = max_shown_urad;
   }
-  panels.front().y_lowest = smallest_shown_urad;
+  panels.front().y_lowest = min_shown_urad;
   return io::draw_plot(panels);
 }
 
@@ -110,9 +110,9 @@ nlohmann::ordered_json trials_json(const std::vector<RollErrors>& all) {
 
 void run(const Arguments& arguments) {
   arguments.validate();
-  std::vector<RollErrors> all = try_exact_maps(arguments.trials);
+  std::vector<RollErrors> all = run_exact_trials(arguments.trials);
   if (!arguments.no_pairs) {
-    for (RollErrors& errors : try_matched_maps(arguments.trials)) all.push_back(std::move(errors));
+    for (RollErrors& errors : run_matched_trials(arguments.trials)) all.push_back(std::move(errors));
   }
   const Table table = make_table(all);
   if (!arguments.files.json.empty()) {
@@ -125,13 +125,13 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_roll(CLI::App& evaluate) {
-  CLI::App* command = evaluate.add_subcommand("roll", "Error of the roll angle on synthetic roads under known rolls");
+  CLI::App* command = evaluate.add_subcommand("roll", "Error of the roll angle on synthetic roads with known roll");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--largest", arguments->trials.largest_roll_deg, "Largest roll of exact maps, both ways")
+  command->add_option("--max-roll", arguments->trials.max_roll_deg, "Maximum roll of exact maps, in both directions")
       ->type_name("DEG")
       ->capture_default_str();
-  command->add_option("--angles", arguments->trials.angles, "Angles tried per view")->capture_default_str();
-  command->add_flag("--no-pairs", arguments->no_pairs, "Exact maps only, no matching");
+  command->add_option("--angles", arguments->trials.angles, "Number of angles per view")->capture_default_str();
+  command->add_flag("--no-pairs", arguments->no_pairs, "Exact maps only, without matching");
   add_method_options(*command, arguments->trials.methods);
   command->footer("Example:\n  roadstereo evaluate roll --figure roll.png --json roll.json");
   add_report_options(*command, arguments->files);

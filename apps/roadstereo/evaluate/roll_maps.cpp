@@ -9,17 +9,17 @@
 namespace roadstereo::cli {
 namespace {
 
-constexpr float none = std::numeric_limits<float>::quiet_NaN();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 float nearest_value(const Image<float>& map, double u, double v) {
   const auto column = static_cast<int>(std::lround(u));
   const auto row = static_cast<int>(std::lround(v));
   const bool inside = column >= 0 && row >= 0 && column < map.width() && row < map.height();
-  return inside ? map(column, row) : none;
+  return inside ? map(column, row) : nan;
 }
 
 float bilinear_value(const Image<float>& map, double u, double v) {
-  if (u < 0 || v < 0 || u > map.width() - 1 || v > map.height() - 1) return none;
+  if (u < 0 || v < 0 || u > map.width() - 1 || v > map.height() - 1) return nan;
   const int left = std::min(static_cast<int>(u), map.width() - 2);
   const int top = std::min(static_cast<int>(v), map.height() - 2);
   const double right_share = u - left;
@@ -28,10 +28,10 @@ float bilinear_value(const Image<float>& map, double u, double v) {
   return static_cast<float>((1 - lower_share) * row_value(top) + lower_share * row_value(top + 1));
 }
 
-/// Uniform in [0, 1): std::uniform_real_distribution differs between standard libraries.
+/// Uniform value in [0, 1) from the upper 53 bits. std::uniform_real_distribution differs between standard libraries.
 double uniform(std::mt19937_64& random) {
-  constexpr int spare_bits = 11;
-  return static_cast<double>(random() >> spare_bits) * 0x1p-53;
+  constexpr int unused_bits = 11;
+  return static_cast<double>(random() >> unused_bits) * 0x1p-53;
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ synth::Scene roll_scene(const RollView& view, double roll_deg, bool damaged, dou
   scene.rig.roll_deg = roll_deg;
   scene.road.camber = camber;
   if (!damaged) return scene;
-  // Beside the point below the lower part of the picture, in sizes that grow with the distance to it.
+  // Near the point that is seen in the lower part of the image; sizes are proportional to its distance.
   const double angle = (view.pitch_deg + 10) * std::numbers::pi / 180;
   const double distance = view.height_m / std::sin(angle);
   const double ahead = view.height_m / std::tan(angle);
@@ -69,8 +69,8 @@ Image<float> rotate_map(const Image<float>& map, double roll_rad, Resampling res
   Image<float> rotated(map.width(), map.height());
   for (int v = 0; v < map.height(); ++v) {
     for (int u = 0; u < map.width(); ++u) {
-      const double x = centre_u + (u - centre_u) * c + (v - centre_v) * s;  // eq. x
-      const double y = centre_v + (v - centre_v) * c - (u - centre_u) * s;  // eq. y
+      const double x = centre_u + (u - centre_u) * c + (v - centre_v) * s;  // eq. (18), x
+      const double y = centre_v + (v - centre_v) * c - (u - centre_u) * s;  // eq. (19), y
       rotated(u, v) = resampling == Resampling::nearest ? nearest_value(map, x, y) : bilinear_value(map, x, y);
     }
   }
@@ -78,15 +78,15 @@ Image<float> rotate_map(const Image<float>& map, double roll_rad, Resampling res
 }
 
 void add_outliers(Image<float>& map, double share, std::uint64_t seed) {
-  float largest = 0;
+  float max_disparity = 0;
   for (int v = 0; v < map.height(); ++v) {
-    for (int u = 0; u < map.width(); ++u) largest = std::fmax(largest, map(u, v));
+    for (int u = 0; u < map.width(); ++u) max_disparity = std::fmax(max_disparity, map(u, v));
   }
   std::mt19937_64 random(seed);
   for (int v = 0; v < map.height(); ++v) {
     for (int u = 0; u < map.width(); ++u) {
       if (std::isnan(map(u, v)) || uniform(random) >= share) continue;
-      map(u, v) = static_cast<float>(uniform(random) * static_cast<double>(largest));
+      map(u, v) = static_cast<float>(uniform(random) * static_cast<double>(max_disparity));
     }
   }
 }

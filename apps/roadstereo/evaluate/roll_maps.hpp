@@ -7,27 +7,27 @@
 
 namespace roadstereo::cli {
 
-/// Where a camera stands over the road of the roll experiments.
+/// Pose of the camera in the roll experiments.
 struct RollView {
   double height_m = 2.6;
   double pitch_deg = 60;
 };
 
-/// A road seen from there. `damaged` puts two potholes and a bump into the picture, off its middle, so that they pull
-/// at the roll of whoever lets them.
+/// Road seen from that pose. `damaged` adds two potholes and a bump off the middle of the image, so that they bias a
+/// roll estimate that is not robust.
 synth::Scene roll_scene(const RollView& view, double roll_deg, bool damaged, double camber);
 
-/// The exact disparities of a scene as a matcher would hand them on.
+/// Exact disparities of a rendered pair in single precision, pixels; NaN for sky.
 Image<float> exact_map(const synth::SyntheticPair& pair);
 
 enum class Resampling { nearest, bilinear };
 
-/// The map turned about the centre of the image, so that a road without roll gets the roll `roll_rad` of eqs. x, y.
-/// What comes from outside the map is NaN.
+/// Rotate a map about the centre of the image, so that a road without roll gets the roll `roll_rad` (eqs. (18), x, and
+/// (19), y). Samples from outside the map are NaN.
 Image<float> rotate_map(const Image<float>& map, double roll_rad, Resampling resampling);
 
-/// Replaces `share` of the valid disparities, drawn at random, by uniform ones between 0 and the largest of the map.
-/// The same seed spoils the same pixels on every machine.
+/// Replace a random `share` of the valid disparities by uniform values between 0 and the maximum of the map. The result
+/// for a seed is the same on every platform.
 void add_outliers(Image<float>& map, double share, std::uint64_t seed);
 
 }  // namespace roadstereo::cli

@@ -18,28 +18,30 @@ constexpr double radians_per_degree = std::numbers::pi / 180;
 constexpr double camber = 0.004;  ///< 1 cm at 1.6 m beside the crown
 constexpr double outlier_share = 0.05;
 
-/// The UAV low and high, and a camera that looks along the road.
+/// UAV at two heights, and a camera that looks along the road.
 constexpr RollView views[] = {{2.6, 60}, {4.0, 45}, {1.65, 20}};
 
-struct Wear {
+/// Condition of the maps.
+struct Condition {
   const char* name;
   bool damaged;
   double outliers;
   double camber;
 };
-constexpr Wear wears[] = {{"clean", false, 0, 0},
-                          {"damage", true, 0, 0},
-                          {"damage, 5 % outliers", true, outlier_share, 0},
-                          {"damage, 5 % outliers, camber", true, outlier_share, camber}};
+constexpr Condition conditions[] = {{"clean", false, 0, 0},
+                                    {"damage", true, 0, 0},
+                                    {"damage, 5 % outliers", true, outlier_share, 0},
+                                    {"damage, 5 % outliers, camber", true, outlier_share, camber}};
 
-std::vector<double> angles_between(double largest, int count) {
+/// `count` evenly spaced angles from −max to +max; max alone if `count` is 1.
+std::vector<double> symmetric_angles(double max, int count) {
   std::vector<double> angles;
   angles.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) angles.push_back(count == 1 ? largest : largest * (2.0 * i / (count - 1) - 1));
+  for (int i = 0; i < count; ++i) angles.push_back(count == 1 ? max : max * (2.0 * i / (count - 1) - 1));
   return angles;
 }
 
-/// One kind of map, every solver.
+/// Trials of every solver on one kind of map.
 class Trials {
  public:
   Trials(const std::string& maps, int threads) : threads_(threads) {
@@ -48,11 +50,11 @@ class Trials {
 
   void add(const Image<float>& map, double roll_deg, double roll_rad) {
     for (std::size_t i = 0; i < errors_.size(); ++i) {
-      RoadGeometryOptions options;
+      RollOptions options;
       options.solver = roll_solvers()[i].solver;
-      const RoadGeometry geometry = fit_road_geometry(map, std::nullopt, std::nullopt, 0, options, threads_);
+      const RollEstimate estimate = estimate_roll(map, std::nullopt, std::nullopt, 0, options, threads_);
       errors_[i].roll_deg.push_back(roll_deg);
-      errors_[i].error_rad.push_back(geometry.roll_rad - roll_rad);
+      errors_[i].error_rad.push_back(estimate.roll_rad - roll_rad);
     }
   }
 
@@ -63,30 +65,31 @@ class Trials {
   int threads_;
 };
 
-void try_rolled_rigs(const Wear& wear, const RollTrialOptions& options, std::vector<RollErrors>& all) {
-  Trials trials(std::string("rolled rig, ") + wear.name, options.methods.threads);
+void run_rolled_rigs(const Condition& condition, const RollTrialOptions& options, std::vector<RollErrors>& all) {
+  Trials trials(std::string("rolled rig, ") + condition.name, options.methods.threads);
   std::uint64_t seed = 0;
   for (const RollView& view : views) {
-    for (const double angle : angles_between(options.largest_roll_deg, options.angles)) {
-      const auto pair = synth::render(roll_scene(view, angle, wear.damaged, wear.camber), options.methods.threads);
+    for (const double angle : symmetric_angles(options.max_roll_deg, options.angles)) {
+      const auto pair =
+          synth::render(roll_scene(view, angle, condition.damaged, condition.camber), options.methods.threads);
       Image<float> map = exact_map(pair);
-      add_outliers(map, wear.outliers, ++seed);
+      add_outliers(map, condition.outliers, ++seed);
       trials.add(map, angle, pair.roll_rad);
     }
   }
   trials.move_to(all);
 }
 
-void try_rotated_maps(const Wear& wear, Resampling resampling, const RollTrialOptions& options,
+void run_rotated_maps(const Condition& condition, Resampling resampling, const RollTrialOptions& options,
                       std::vector<RollErrors>& all) {
   const char* name = resampling == Resampling::nearest ? "rotated map (nearest), " : "rotated map (bilinear), ";
-  Trials trials(name + std::string(wear.name), options.methods.threads);
+  Trials trials(name + std::string(condition.name), options.methods.threads);
   std::uint64_t seed = 0;
   for (const RollView& view : views) {
     Image<float> level =
-        exact_map(synth::render(roll_scene(view, 0, wear.damaged, wear.camber), options.methods.threads));
-    add_outliers(level, wear.outliers, ++seed);
-    for (const double angle : angles_between(options.largest_roll_deg, options.angles)) {
+        exact_map(synth::render(roll_scene(view, 0, condition.damaged, condition.camber), options.methods.threads));
+    add_outliers(level, condition.outliers, ++seed);
+    for (const double angle : symmetric_angles(options.max_roll_deg, options.angles)) {
       const double roll = angle * radians_per_degree;
       trials.add(rotate_map(level, roll, resampling), angle, roll);
     }
@@ -94,14 +97,14 @@ void try_rotated_maps(const Wear& wear, Resampling resampling, const RollTrialOp
   trials.move_to(all);
 }
 
-RollErrors try_pairs(double road_camber, const RollTrialOptions& options) {
+RollErrors run_pairs(double road_camber, const RollTrialOptions& options) {
   constexpr double noise_grey = 2;
   PipelineOptions pipeline_options = preset("default");
   pipeline_options.threads = options.methods.threads;
   apply_settings(options.methods.settings, pipeline_options);
   RollErrors errors{road_camber > 0 ? "matched pair, damage, camber" : "matched pair, damage", "robust", {}, {}};
   for (const RollView& view : views) {
-    for (const double angle : angles_between(options.largest_matched_roll_deg, options.angles)) {
+    for (const double angle : symmetric_angles(options.max_matched_roll_deg, options.angles)) {
       synth::Scene scene = roll_scene(view, angle, true, road_camber);
       scene.supersampling = 2;
       scene.degradation.noise_grey = noise_grey;
@@ -123,10 +126,10 @@ double RollErrors::mean_rad() const {
   return sum / static_cast<double>(error_rad.size());
 }
 
-double RollErrors::largest_rad() const {
-  double largest = 0;
-  for (const double error : error_rad) largest = std::max(largest, std::abs(error));
-  return largest;
+double RollErrors::max_rad() const {
+  double max = 0;
+  for (const double error : error_rad) max = std::max(max, std::abs(error));
+  return max;
 }
 
 const std::vector<NamedSolver>& roll_solvers() {
@@ -136,18 +139,18 @@ const std::vector<NamedSolver>& roll_solvers() {
   return solvers;
 }
 
-std::vector<RollErrors> try_exact_maps(const RollTrialOptions& options) {
+std::vector<RollErrors> run_exact_trials(const RollTrialOptions& options) {
   std::vector<RollErrors> all;
-  for (const Wear& wear : wears) try_rolled_rigs(wear, options, all);
-  for (const Wear& wear : wears) {
-    try_rotated_maps(wear, Resampling::bilinear, options, all);
-    try_rotated_maps(wear, Resampling::nearest, options, all);
+  for (const Condition& condition : conditions) run_rolled_rigs(condition, options, all);
+  for (const Condition& condition : conditions) {
+    run_rotated_maps(condition, Resampling::bilinear, options, all);
+    run_rotated_maps(condition, Resampling::nearest, options, all);
   }
   return all;
 }
 
-std::vector<RollErrors> try_matched_maps(const RollTrialOptions& options) {
-  return {try_pairs(0, options), try_pairs(camber, options)};
+std::vector<RollErrors> run_matched_trials(const RollTrialOptions& options) {
+  return {run_pairs(0, options), run_pairs(camber, options)};
 }
 
 }  // namespace roadstereo::cli

@@ -15,7 +15,7 @@
 namespace roadstereo::cli {
 namespace {
 
-/// What the paper measured on a Jetson TX2.
+/// Published values, on a Jetson TX2.
 struct Published {
   double total_ms = 152.889;
   double mde_per_s = 49.231;
@@ -33,25 +33,28 @@ Table make_table(const RuntimeReport& report) {
                           report.threads, cpu_name()),
               {{"method", "method"},
                {"total ms", "total_ms"},
-               {"min ms", "fastest_ms"},
+               {"min ms", "min_ms"},
                {"Mde/s", "mde_per_s"},
                {"roll ms", "roll_ms"},
                {"transform ms", "transform_ms"}},
               {}};
-  for (const Timing& peer : report.peers) table.columns.push_back({"/ " + peer.name, "ratio_to_" + peer.name});
+  for (const Timing& baseline : report.baselines) {
+    table.columns.push_back({"/ " + baseline.name, "ratio_to_" + baseline.name});
+  }
   const auto add = [&](const std::string& name, double total, double fastest, double mde, double roll,
                        double transform) {
     std::vector<Cell> row{name,          Cell(total, 2),    Cell(fastest, 2), Cell(mde, mde < 100 ? 3 : 0),
                           Cell(roll, 3), Cell(transform, 3)};
-    for (const Timing& peer : report.peers) row.emplace_back(total / peer.median(), 2);
+    for (const Timing& baseline : report.baselines) row.emplace_back(total / baseline.median(), 2);
     table.rows.push_back(row);
   };
   for (const PipelineTimes& timed : report.pipelines) {
     add(timed.name, timed.total.median(), timed.total.fastest(), report.mde_per_s(timed.total.median()),
         timed.roll.median(), timed.transform.median());
   }
-  for (const Timing& peer : report.peers) {
-    add("OpenCV " + peer.name, peer.median(), peer.fastest(), report.mde_per_s(peer.median()), NAN, NAN);
+  for (const Timing& baseline : report.baselines) {
+    add("OpenCV " + baseline.name, baseline.median(), baseline.fastest(), report.mde_per_s(baseline.median()), NAN,
+        NAN);
   }
   const Published published;
   std::vector<Cell> row{"published: Jetson TX2, 695×361", Cell(published.total_ms, 3), Cell(NAN, 2),
@@ -62,10 +65,14 @@ Table make_table(const RuntimeReport& report) {
 }
 
 constexpr const char* note =
-    "Whole frames whose road model is known from the frame before; OpenCV matches the pair already transformed, both\n"
-    "searching D (OpenCV rounds up to a multiple of 16), and SGBM runs on one thread. Mde/s is W·H·D/t as the paper\n"
-    "defines it, although a narrowed search evaluates fewer; \", all D\" evaluates every one. roll is the preset's\n"
-    "solver: gradient descent for paper, as published.\n";
+    "Times of complete frames with a tracked road model. OpenCV matches the transformed pair. All search D "
+    "disparities;\n"
+    "OpenCV rounds D up to a multiple of 16, and SGBM runs on one thread. Mde/s is W·H·D/t as in the paper, although "
+    "a\n"
+    "narrowed search evaluates fewer disparities; \", all D\" evaluates all of them. roll: the solver of the preset; "
+    "that "
+    "of\n"
+    "paper is gradient descent, as published.\n";
 
 Frame draw(const RuntimeReport& report) {
   io::BarGroups bars{fmt::format("Time per frame, {}x{}, D {}", report.width, report.height, report.disparities),
@@ -77,7 +84,7 @@ Frame draw(const RuntimeReport& report) {
     bars.groups.push_back(timed.name);
     bars.values[0].push_back(timed.total.median());
   }
-  for (const Timing& peer : report.peers) {
+  for (const Timing& peer : report.baselines) {
     bars.groups.push_back(peer.name);
     bars.values[0].push_back(peer.median());
   }
@@ -107,17 +114,19 @@ void run(const Arguments& arguments) {
 
 void add_runtime(CLI::App& evaluate) {
   CLI::App* command =
-      evaluate.add_subcommand("runtime", "Time per frame and Mde/s of every preset beside OpenCV's matchers");
+      evaluate.add_subcommand("runtime", "Time per frame and Mde/s of every preset and of OpenCV's matchers");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--size", arguments->runtime.size, "Size of the synthetic frame; the paper's by default")
+  command->add_option("--size", arguments->runtime.size, "Size of the synthetic frame; default: as in the paper")
       ->type_name("WxH")
       ->capture_default_str();
   command
       ->add_option("--disparities", arguments->runtime.disparities,
-                   "Disparities searched; the paper's Mde/s implies 30")
+                   "Number of disparities; the Mde/s of the paper implies 30")
       ->type_name("D")
       ->capture_default_str();
-  command->add_option("--runs", arguments->runtime.runs, "Frames timed")->type_name("N")->capture_default_str();
+  command->add_option("--runs", arguments->runtime.runs, "Number of timed frames")
+      ->type_name("N")
+      ->capture_default_str();
   add_method_options(*command, arguments->runtime.methods);
   command->footer("Example:\n  roadstereo evaluate runtime --size 1242x375 --disparities 64");
   add_report_options(*command, arguments->files);

@@ -27,7 +27,7 @@ Pipeline make_pipeline(const std::string& name, bool narrow_search, const Runtim
 void time_frame(Pipeline& pipeline, const StereoPair& pair, PipelineTimes& times) {
   const FrameResult* result = nullptr;
   times.total.ms.push_back(time_ms([&] { result = &pipeline.process(pair.left.view(), pair.right.view()); }));
-  times.roll.ms.push_back(result->ms.road_geometry);
+  times.roll.ms.push_back(result->ms.roll);
   times.transform.ms.push_back(result->ms.transform);
 }
 
@@ -60,17 +60,17 @@ RuntimeReport time_methods(const RuntimeOptions& options) {
     }
   }
   const PeerPair grey = peer_pair(pair, shift);
-  std::vector<io::PeerMatcher> peers;
+  std::vector<io::PeerMatcher> baselines;
   for (const std::string& name : io::peer_names()) {
-    peers.emplace_back(name, options.disparities);
-    peers.back().set_pair(grey.reference, grey.target);
-    peers.back().match();
-    report.peers.push_back({name, {}});
+    baselines.emplace_back(name, options.disparities);
+    baselines.back().set_pair(grey.reference, grey.target);
+    baselines.back().match();
+    report.baselines.push_back({name, {}});
   }
   for (int run = 0; run < options.runs; ++run) {
     for (std::size_t i = 0; i < pipelines.size(); ++i) time_frame(pipelines[i], pair, report.pipelines[i]);
-    for (std::size_t i = 0; i < peers.size(); ++i) {
-      report.peers[i].ms.push_back(time_ms([&] { peers[i].match(); }));
+    for (std::size_t i = 0; i < baselines.size(); ++i) {
+      report.baselines[i].ms.push_back(time_ms([&] { baselines[i].match(); }));
     }
   }
   return report;

@@ -9,16 +9,16 @@
 namespace roadstereo::cli {
 
 struct RuntimeOptions {
-  std::string size = "695x361";  ///< the paper's
-  int disparities = 30;          ///< what its figures imply: 49.231 Mde/s · 152.889 ms / (695 · 361)
-  int runs = 15;
+  std::string size = "695x361";  ///< as in the paper
+  int disparities = 30;          ///< implied by the paper: 49.231 Mde/s · 152.889 ms / (695 · 361); 1 … 1024
+  int runs = 15;                 ///< timed frames, 1 … 100000
   MethodSettings methods;
 
-  /// Throws Error naming the option that is out of range.
+  /// Throws Error naming the first option out of range.
   void validate() const;
 };
 
-/// A preset, timed.
+/// Times of a preset.
 struct PipelineTimes {
   std::string name;
   Timing total;
@@ -29,14 +29,14 @@ struct PipelineTimes {
 struct RuntimeReport {
   int width = 0, height = 0, disparities = 0, threads = 0;
   std::vector<PipelineTimes> pipelines;
-  std::vector<Timing> peers;
+  std::vector<Timing> baselines;
 
-  /// W·H·D / t, millions per second.
+  /// Million disparity evaluations per second: W·H·D / t.
   double mde_per_s(double ms) const;
 };
 
-/// Times every preset, with the search narrowed and over all D, and OpenCV's matchers in turn on the same frames, so
-/// that all see the same machine. The first run of each is left out, and with it the search for the road model.
+/// Time every preset, with and without narrowed search, and OpenCV's matchers. Methods alternate frame by frame, so
+/// that all run under the same load. The first run of each, which estimates the road model, is not timed.
 RuntimeReport time_methods(const RuntimeOptions& options);
 
 }  // namespace roadstereo::cli

@@ -39,7 +39,7 @@ RegistrationOptions registration_options(const Arguments& arguments) {
   return options;
 }
 
-/// One line of the table: who measured which pothole how well.
+/// Row of the table: score of one method on one pothole.
 struct Row {
   std::string frame, method;
   ScanScore score;
@@ -83,32 +83,34 @@ std::vector<Cell> cells(const Row& row) {
                3)};
 }
 
-/// The method's row over all pairs: means of the figures.
+/// Row of the means of a method over all pairs.
 std::vector<Cell> mean_cells(const std::vector<Row>& rows, const std::string& method) {
-  constexpr std::size_t first_figure = 2;
+  constexpr std::size_t first_number = 2;
   std::vector<double> sums(columns().size(), 0);
   double count = 0;
   for (const Row& row : rows) {
     if (row.method != method) continue;
-    const std::vector<Cell> figures = cells(row);
-    for (std::size_t i = first_figure; i < figures.size(); ++i) {
-      const auto value = figures[i].json();
+    const std::vector<Cell> row_cells = cells(row);
+    for (std::size_t i = first_number; i < row_cells.size(); ++i) {
+      const auto value = row_cells[i].json();
       sums[i] += value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
     }
     count += 1;
   }
   std::vector<Cell> result{Cell("mean"), Cell(method)};
-  for (std::size_t i = first_figure; i < sums.size(); ++i)
-    result.emplace_back(sums[i] / count, i == first_figure ? 0 : 3);
+  for (std::size_t i = first_number; i < sums.size(); ++i) {
+    result.emplace_back(sums[i] / count, i == first_number ? 0 : 3);
+  }
   return result;
 }
 
 constexpr const char* legend =
-    R"(  RMS, median, 90 %, 99 %: distance from each labelled pixel's point to the closest point of the scan, mm, none left out
-  covered: points that do not lie beyond the scan's rim (labels reach farther than casts) or over its holes, and their RMS
-  RMS+10: every labelled pixel without a disparity counts as 10 mm
-  pose: what the registration reached with its sample of points (RMS; with --robust of the closest 80 %); next pose:
-  the same of the best pose that is another one
+    R"(  RMS, median, 90 %, 99 %: distance from the point of each labelled pixel to the closest point of the scan, mm, no point
+  excluded
+  covered: points over the scan, not beyond its rim (labels extend farther than casts) or over its holes, and their RMS
+  RMS+10: a labelled pixel without a disparity counts as 10 mm
+  pose: RMS of the registration over its sample of points (with --robust of the closest 80 %); next pose: the same for
+  the best distinct pose
 )";
 
 void print(const std::vector<Row>& rows, const Arguments& arguments) {
@@ -120,13 +122,14 @@ void print(const std::vector<Row>& rows, const Arguments& arguments) {
   if (!arguments.report.json.empty()) write_report(arguments.report.json, table.json());
 }
 
-/// Clouds and scans in units that cannot be right would register somewhere.
-void check_extents(const Points& cloud, const MainAxes& scan) {
-  constexpr double most_ratio = 4;
-  const double ratio = main_axes(cloud).spread[0] / scan.spread[0];
-  if (ratio > 1 / most_ratio && ratio < most_ratio) return;
-  fail("the cloud is ", ratio, " times as large as the scan; it must show the same pothole, in the units that ",
-       "--cloud-unit-mm and --scan-unit-mm say");
+/// Throws Error if the sizes of cloud and scan differ by more than a factor of 4, for example because of wrong units.
+void check_extents(const Points& cloud, const PrincipalAxes& scan) {
+  constexpr double max_ratio = 4;
+  const double ratio = principal_axes(cloud).sigma[0] / scan.sigma[0];
+  if (ratio > 1 / max_ratio && ratio < max_ratio) return;
+  fail("the cloud is ", ratio,
+       " times as large as the scan; the factor must be between 1/4 and 4 "
+       "(units: --cloud-unit-mm, --scan-unit-mm)");
 }
 
 void scan_cloud(const Arguments& arguments) {
@@ -141,7 +144,7 @@ void scan_cloud(const Arguments& arguments) {
   write_figure(arguments.report.figure, distance_plan(cloud, scan, registration.motion));
 }
 
-/// Runs the methods on one pair; adds their rows and, when asked, their distance maps.
+/// Run the methods on one pair. Adds their rows and, if `pictures` is not null, their distance maps.
 void scan_pair(const ScanFiles& files, const Arguments& arguments, std::vector<Row>& rows,
                std::vector<io::SheetCell>* pictures) {
   const StereoPair pair = read_pair(files.pair);
@@ -162,7 +165,8 @@ void scan_pair(const ScanFiles& files, const Arguments& arguments, std::vector<R
 void scan_pairs(const std::vector<ScanFiles>& frames, const Arguments& arguments) {
   for (const std::string& method : arguments.compared) {
     if (method_index(method) == method_names().size()) {
-      fail("--methods names \"", method, "\"; known are ", fmt::format("{}", fmt::join(method_names(), ", ")));
+      fail("--methods contains \"", method, "\"; it must be one of ",
+           fmt::format("{}", fmt::join(method_names(), ", ")));
     }
   }
   std::vector<Row> rows;
@@ -180,11 +184,12 @@ void scan_pairs(const std::vector<ScanFiles>& frames, const Arguments& arguments
 void scan(const Arguments& arguments) {
   const bool is_pair = !arguments.label.empty() || !arguments.scan.empty() || !arguments.calibration.empty();
   if (arguments.inputs.size() == 1) {
-    if (is_pair) fail("--calibration, --label and --scan belong to one pair: LEFT RIGHT");
+    if (is_pair)
+      fail("--calibration, --label and --scan are given with one input; they must be given with a pair LEFT RIGHT");
     scan_pairs(find_scan_frames(arguments.inputs[0]), arguments);
   } else if (is_pair) {
     if (arguments.label.empty() || arguments.scan.empty() || arguments.calibration.empty()) {
-      fail("a pair LEFT RIGHT needs --calibration, --label and --scan");
+      fail("a pair LEFT RIGHT must be given with --calibration, --label and --scan");
     }
     scan_pairs(
         {{"pair", {arguments.inputs[0], arguments.inputs[1], arguments.calibration}, arguments.label, arguments.scan}},
@@ -199,9 +204,8 @@ constexpr const char* scan_footer =
   DIR          left/pM_NN.png, right/, label/ (mask of the pothole), scan/pM_*.ply, calibration_pM*.yaml
   LEFT RIGHT   one pair, with --calibration, --label and --scan
   CLOUD SCAN   the points of a pothole (PLY, metres) and its scan (PLY, millimetres)
-Any rigid motion, but no reflection, may lie between the cloud and the scan. It is found from many starts by robust
-iterated closest points, then polished for the least mean square, as published accuracies are (--robust leaves that
-out).
+The cloud is registered to the scan by a rigid motion without reflection: robust iterative closest points (ICP) from many
+initial poses, then least squares, as for published accuracies (not with --robust).
 
 Examples:
   roadstereo evaluate scan potholes --figure scan.png
@@ -215,7 +219,8 @@ void add_inputs(CLI::App& command, Arguments& arguments) {
       ->allow_extra_args(false);
   command.add_option("--label", arguments.label, "Mask of the pothole in the left image")->type_name("FILE");
   command.add_option("--scan", arguments.scan, "Laser scan of the pothole")->type_name("FILE");
-  command.add_option("--labelled", arguments.labelled, "Pixels of the pothole that CLOUD was made from; 0: its points")
+  command
+      .add_option("--labelled", arguments.labelled, "Number of labelled pixels behind CLOUD; 0: number of its points")
       ->type_name("N");
   command.add_option("--cloud-unit-mm", arguments.cloud_unit_mm, "Unit of CLOUD, millimetres")
       ->capture_default_str()
@@ -232,15 +237,15 @@ void add_scan(CLI::App& evaluate) {
   command->footer(scan_footer);
   const auto arguments = std::make_shared<Arguments>();
   add_inputs(*command, *arguments);
-  command->add_option("--methods", arguments->compared, "Presets and OpenCV's matchers, with commas between")
+  command->add_option("--methods", arguments->compared, "Presets and OpenCV's matchers, separated by commas")
       ->delimiter(',')
       ->expected(1)
       ->allow_extra_args(false)
       ->capture_default_str();
-  command->add_option("--disparities", arguments->disparities, "Disparities that OpenCV's matchers search")
+  command->add_option("--disparities", arguments->disparities, "Number of disparities for OpenCV's matchers")
       ->check(CLI::Range(16, 1024))
       ->capture_default_str();
-  command->add_flag("--robust", arguments->robust, "Leave out the last, least-squares step of the registration");
+  command->add_flag("--robust", arguments->robust, "Omit the final least-squares step of the registration");
   add_method_options(*command, arguments->methods);
   add_report_options(*command, arguments->report);
   command->callback([arguments] { scan(*arguments); });

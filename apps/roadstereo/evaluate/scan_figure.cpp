@@ -75,10 +75,10 @@ io::SheetCell distance_picture(const std::string& method, const ScanScore& score
 }
 
 Frame distance_plan(const Points& cloud, const ScanModel& scan, const RigidMotion& motion) {
-  const MainAxes& axes = scan.axes;
+  const PrincipalAxes& axes = scan.axes;
   constexpr double pixel_mm = 0.5, reach = 3.5;  // standard deviations
-  const int width = static_cast<int>(2 * reach * axes.spread[0] / pixel_mm);
-  const int height = static_cast<int>(2 * reach * axes.spread[1] / pixel_mm);
+  const int width = static_cast<int>(2 * reach * axes.sigma[0] / pixel_mm);
+  const int height = static_cast<int>(2 * reach * axes.sigma[1] / pixel_mm);
   Image<float> map(width, height, nothing);
   const std::vector<ScanDistance> distances = closest_distances(cloud, scan, motion);
   for (std::size_t i = 0; i < cloud.size(); ++i) {

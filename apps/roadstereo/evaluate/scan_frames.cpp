@@ -12,36 +12,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files of a folder with that beginning and ending, sorted.
-std::vector<fs::path> files_in(const fs::path& folder, const std::string& beginning, const std::string& ending) {
+/// Files of a folder with that prefix and suffix, sorted.
+std::vector<fs::path> files_in(const fs::path& folder, const std::string& prefix, const std::string& suffix) {
   if (!fs::is_directory(folder)) fail(folder.string(), " is not a folder");
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with(beginning) && name.ends_with(ending)) files.push_back(entry.path());
+    if (name.starts_with(prefix) && name.ends_with(suffix)) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;
 }
 
-/// "p1" of "p1_05".
+/// Name of the pothole: "p1" for "p1_05".
 std::string pothole_of(const std::string& name) {
   return name.substr(0, name.find('_'));
 }
 
 std::string find_scan(const fs::path& root, const std::string& pothole) {
   const auto scans = files_in(root / "scan", pothole + "_", ".ply");
-  if (scans.empty()) fail((root / "scan").string(), " has no scan called ", pothole, "_….ply");
+  if (scans.empty()) fail((root / "scan").string(), ": the folder contains no scan ", pothole, "_….ply");
   return scans.front().string();
 }
 
 std::string find_calibration(const fs::path& root, const std::string& pothole) {
-  const std::string beginning = "calibration_p";
-  for (const fs::path& path : files_in(root, beginning, ".yaml")) {
-    const std::string served = path.stem().string().substr(beginning.size());
-    if (pothole.size() == 2 && served.find(pothole[1]) != std::string::npos) return path.string();
+  const std::string prefix = "calibration_p";
+  for (const fs::path& path : files_in(root, prefix, ".yaml")) {
+    const std::string potholes = path.stem().string().substr(prefix.size());
+    if (pothole.size() == 2 && potholes.find(pothole[1]) != std::string::npos) return path.string();
   }
-  fail(root.string(), " has no calibration_p….yaml for ", pothole);
+  fail(root.string(), ": the folder contains no calibration_p….yaml for ", pothole);
 }
 
 std::string require_file(const fs::path& path) {
@@ -62,7 +62,7 @@ std::vector<ScanFiles> find_scan_frames(const std::string& folder) {
                       require_file(root / "label" / file),
                       find_scan(root, pothole)});
   }
-  if (frames.empty()) fail((root / "left").string(), " has no pair pM_NN.png");
+  if (frames.empty()) fail((root / "left").string(), ": the folder contains no image pM_NN.png");
   return frames;
 }
 
@@ -77,8 +77,8 @@ Points read_points(const std::string& path, double to_mm) {
 LabelledPoints labelled_points(ImageView<const float> disparity, ImageView<const std::uint8_t> label,
                                const StereoCalibration& calibration) {
   if (label.width() != disparity.width() || label.height() != disparity.height()) {
-    fail("the label has ", label.width(), "×", label.height(), " pixels and the image ", disparity.width(), "×",
-         disparity.height(), "; they must have the same size");
+    fail("the label has ", label.width(), "×", label.height(), " pixels; it must have ", disparity.width(), "×",
+         disparity.height(), " like the image");
   }
   constexpr double to_mm = 1000;
   LabelledPoints found;
@@ -93,7 +93,7 @@ LabelledPoints labelled_points(ImageView<const float> disparity, ImageView<const
       found.pixels.push_back({u, v});
     }
   }
-  if (found.labelled == 0) fail("the label marks no pixel: there is nothing to score");
+  if (found.labelled == 0) fail("the label has no labelled pixel; it must have at least one");
   return found;
 }
 

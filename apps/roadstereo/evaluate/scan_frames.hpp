@@ -10,30 +10,30 @@
 
 namespace roadstereo::cli {
 
-/// A stereo pair of a pothole and the scan of its cast.
+/// Files of a stereo pair of a pothole and of the scan of its cast.
 struct ScanFiles {
   std::string name;
   PairFiles pair;
-  std::string label;  ///< mask of the pothole, left image
+  std::string label;  ///< mask of the pothole in the left image
   std::string scan;
 };
 
-/// The pairs of a folder with left/, right/, label/ (pM_NN.png: pothole M, frame NN), scan/pM_*.ply and
-/// calibration_pM….yaml, whose digits are the potholes that it serves (calibration_p12.yaml: 1 and 2). Sorted by name.
-/// Throws Error naming what is missing.
+/// Find the pairs of a folder with left/, right/, label/ (pM_NN.png: pothole M, frame NN), scan/pM_*.ply and
+/// calibration_pM….yaml, whose digits are the potholes that it applies to (calibration_p12.yaml: 1 and 2). Sorted by
+/// name. Throws Error naming the file or folder that is missing.
 std::vector<ScanFiles> find_scan_frames(const std::string& folder);
 
-/// The points of a cloud from a file, times `to_mm`.
+/// Read the points of a PLY file and scale them by `to_mm`.
 Points read_points(const std::string& path, double to_mm);
 
-/// The points of the labelled pixels that have a disparity, millimetres, and the pixels themselves.
+/// Points of the labelled pixels with a disparity.
 struct LabelledPoints {
-  Points points;
+  Points points;                           ///< camera frame, millimetres
   std::vector<std::array<int, 2>> pixels;  ///< (u, v) of each point
-  std::size_t labelled = 0;                ///< pixels of the label
+  std::size_t labelled = 0;                ///< labelled pixels, with or without a disparity
 };
 
-/// Throws Error when the label has another size than the map or marks nothing.
+/// Reconstruct the points of the labelled pixels. Throws Error when the sizes differ or no pixel is labelled.
 LabelledPoints labelled_points(ImageView<const float> disparity, ImageView<const std::uint8_t> label,
                                const StereoCalibration& calibration);
 

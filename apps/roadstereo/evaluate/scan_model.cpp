@@ -3,15 +3,19 @@
 namespace roadstereo::cli {
 namespace {
 
-constexpr double side = 0.04;  // of the standard deviation along the longest axis: 0.8 mm of a hand's breadth
+constexpr double voxel =
+    0.04;  // side, in standard deviations along the longest axis: about 0.8 mm for a pothole of 8 cm
 
 }  // namespace
 
 ScanModel::ScanModel(const Points& points)
-    : axes(main_axes(points)), scan(points), even(thin_out(points, side * axes.spread[0])), lies(even.lies()) {}
+    : axes(principal_axes(points)),
+      scan(points),
+      voxels(voxel_downsample(points, voxel * axes.sigma[0])),
+      surfels(voxels.surfels()) {}
 
 bool ScanModel::covers(const Eigen::Vector3d& point) const {
-  return !lies[even.nearest(point).index].at_edge;
+  return !surfels[voxels.nearest(point).index].at_edge;
 }
 
 }  // namespace roadstereo::cli

@@ -6,19 +6,19 @@
 
 namespace roadstereo::cli {
 
-/// A laser scan made ready: as it is, and thinned to even spacing with normals and edges.
+/// Laser scan, prepared for registration: all points, and a voxel-downsampled copy with normals and edges.
 struct ScanModel {
-  /// Throws Error when there are fewer than 16 points, or too few of them far enough apart.
+  /// Throws Error for fewer than 16 points, before or after downsampling.
   explicit ScanModel(const Points& points);
 
-  /// Whether the scan goes on around its point nearest to this one. Beyond the rim of the cast, and over holes in the
-  /// scan, there is nothing to measure against.
+  /// Whether the nearest point of the scan is not at its edge. There is no reference beyond the rim of the cast and
+  /// over holes of the scan.
   bool covers(const Eigen::Vector3d& point) const;
 
-  MainAxes axes;
+  PrincipalAxes axes;
   ScanSurface scan;
-  ScanSurface even;                    ///< the means of cubes
-  std::vector<ScanSurface::Lie> lies;  ///< of the points of `even`
+  ScanSurface voxels;                        ///< voxel-downsampled
+  std::vector<ScanSurface::Surfel> surfels;  ///< of the points of `voxels`
 };
 
 }  // namespace roadstereo::cli

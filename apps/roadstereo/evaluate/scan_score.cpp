@@ -28,16 +28,17 @@ std::vector<ScanDistance> closest_distances(const Points& cloud, const ScanModel
 }
 
 ScanScore score_distances(const std::vector<ScanDistance>& distances, std::size_t labelled) {
-  if (distances.empty()) fail("no labelled pixel has a disparity");
+  if (distances.empty()) fail("no labelled pixel has a disparity; at least one must have one");
   if (labelled < distances.size()) {
-    fail("the number of labelled pixels is ", labelled, "; the cloud has ", distances.size(), " points");
+    fail("the number of labelled pixels is ", labelled, "; it must be at least ", distances.size(),
+         ", the number of points");
   }
   std::vector<double> all, covered;
   for (const ScanDistance& distance : distances) {
     all.push_back(distance.mm);
     if (distance.covered) covered.push_back(distance.mm);
   }
-  constexpr double missing_mm = 10;
+  constexpr double missing_mm = 10;  // distance of a labelled pixel without a point
   ScanScore score;
   score.labelled = labelled;
   score.measured = all.size();

@@ -14,9 +14,9 @@
 namespace roadstereo::cli {
 namespace {
 
-constexpr std::size_t neighbours = 16;
+constexpr std::size_t neighbour_count = 16;
 
-/// What nanoflann asks of a set of points.
+/// Adaptor of points for nanoflann.
 struct TreePoints {
   Points points;
 
@@ -33,8 +33,8 @@ struct TreePoints {
 using KdTree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, TreePoints>, TreePoints, 3, std::size_t>;
 
-/// The widest angle about a point, radians, in which it has no neighbour. `axes`: the plane that they lie in.
-double widest_gap(const Eigen::Vector3d& point, const Points& around, const Eigen::Matrix3d& axes) {
+/// Maximum angle, radians, between the directions of successive neighbours in the tangent plane of the point.
+double max_gap(const Eigen::Vector3d& point, const Points& around, const Eigen::Matrix3d& axes) {
   std::vector<double> angles;
   for (const Eigen::Vector3d& neighbour : around) {
     const Eigen::Vector3d local = axes.transpose() * (neighbour - point);
@@ -42,22 +42,22 @@ double widest_gap(const Eigen::Vector3d& point, const Points& around, const Eige
   }
   if (angles.empty()) return 2 * std::numbers::pi;
   std::sort(angles.begin(), angles.end());
-  double widest = angles.front() + 2 * std::numbers::pi - angles.back();
-  for (std::size_t i = 1; i < angles.size(); ++i) widest = std::max(widest, angles[i] - angles[i - 1]);
-  return widest;
+  double max = angles.front() + 2 * std::numbers::pi - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) max = std::max(max, angles[i] - angles[i - 1]);
+  return max;
 }
 
 }  // namespace
 
 struct ScanSurface::Tree {
-  explicit Tree(Points given) : set{std::move(given)}, index(3, set) { index.buildIndex(); }
+  explicit Tree(Points points) : set{std::move(points)}, index(3, set) { index.buildIndex(); }
 
   TreePoints set;
   KdTree index;
 };
 
-MainAxes main_axes(const Points& points) {
-  MainAxes result;
+PrincipalAxes principal_axes(const Points& points) {
+  PrincipalAxes result;
   for (const Eigen::Vector3d& point : points) result.centre += point;
   result.centre /= static_cast<double>(points.size());
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
@@ -68,41 +68,43 @@ MainAxes main_axes(const Points& points) {
   result.axes.col(0) = solver.eigenvectors().col(2);
   result.axes.col(1) = solver.eigenvectors().col(1);
   result.axes.col(2) = result.axes.col(0).cross(result.axes.col(1));
-  result.spread = solver.eigenvalues().reverse().cwiseMax(0).cwiseSqrt();
+  result.sigma = solver.eigenvalues().reverse().cwiseMax(0).cwiseSqrt();
   return result;
 }
 
-Points thin_out(const Points& points, double side) {
-  struct Cube {
+Points voxel_downsample(const Points& points, double side) {
+  struct Voxel {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     int count = 0;
   };
-  std::map<std::array<long, 3>, Cube> cubes;
+  std::map<std::array<long, 3>, Voxel> voxels;
   for (const Eigen::Vector3d& point : points) {
-    std::array<long, 3> at{};
+    std::array<long, 3> index{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      at[axis] = std::lround(point[static_cast<Eigen::Index>(axis)] / side);
+      index[axis] = std::lround(point[static_cast<Eigen::Index>(axis)] / side);
     }
-    Cube& cube = cubes[at];
-    cube.sum += point;
-    ++cube.count;
+    Voxel& voxel = voxels[index];
+    voxel.sum += point;
+    ++voxel.count;
   }
-  Points thinned;
-  thinned.reserve(cubes.size());
-  for (const auto& [at, cube] : cubes) thinned.emplace_back(cube.sum / cube.count);
-  return thinned;
+  Points means;
+  means.reserve(voxels.size());
+  for (const auto& [index, voxel] : voxels) means.emplace_back(voxel.sum / voxel.count);
+  return means;
 }
 
-Points every_nth(const Points& points, std::size_t most) {
-  if (points.size() <= most) return points;
-  Points taken;
-  taken.reserve(most);
-  for (std::size_t i = 0; i < most; ++i) taken.push_back(points[i * points.size() / most]);
-  return taken;
+Points subsample_evenly(const Points& points, std::size_t max_count) {
+  if (points.size() <= max_count) return points;
+  Points subset;
+  subset.reserve(max_count);
+  for (std::size_t i = 0; i < max_count; ++i) subset.push_back(points[i * points.size() / max_count]);
+  return subset;
 }
 
 ScanSurface::ScanSurface(Points points) {
-  if (points.size() < neighbours) fail("a surface needs at least ", neighbours, " points; it has ", points.size());
+  if (points.size() < neighbour_count) {
+    fail("the surface has ", points.size(), " points; it must have at least ", neighbour_count);
+  }
   tree_ = std::make_unique<Tree>(std::move(points));
 }
 
@@ -118,19 +120,20 @@ ScanSurface::Nearest ScanSurface::nearest(const Eigen::Vector3d& point) const {
   return found;
 }
 
-std::vector<ScanSurface::Lie> ScanSurface::lies() const {
-  std::vector<Lie> lies;
-  lies.reserve(points().size());
-  std::array<std::size_t, neighbours> indices{};
-  std::array<double, neighbours> squared{};
-  Points around(neighbours);
+std::vector<ScanSurface::Surfel> ScanSurface::surfels() const {
+  constexpr double min_edge_gap = 2 * std::numbers::pi / 3;
+  std::vector<Surfel> surfels;
+  surfels.reserve(points().size());
+  std::array<std::size_t, neighbour_count> indices{};
+  std::array<double, neighbour_count> squared{};
+  Points around(neighbour_count);
   for (const Eigen::Vector3d& point : points()) {
-    tree_->index.knnSearch(point.data(), neighbours, indices.data(), squared.data());
-    for (std::size_t i = 0; i < neighbours; ++i) around[i] = points()[indices[i]];
-    const Eigen::Matrix3d axes = main_axes(around).axes;
-    lies.push_back({axes.col(2), widest_gap(point, around, axes) > 2 * std::numbers::pi / 3});
+    tree_->index.knnSearch(point.data(), neighbour_count, indices.data(), squared.data());
+    for (std::size_t i = 0; i < neighbour_count; ++i) around[i] = points()[indices[i]];
+    const Eigen::Matrix3d axes = principal_axes(around).axes;
+    surfels.push_back({axes.col(2), max_gap(point, around, axes) > min_edge_gap});
   }
-  return lies;
+  return surfels;
 }
 
 const Points& ScanSurface::points() const {

@@ -9,24 +9,24 @@ namespace roadstereo::cli {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// Centre of gravity of some points, and their main axes as columns: longest first, right-handed.
-struct MainAxes {
+/// Centroid and principal axes of a point cloud. Axes are columns, longest first, right-handed.
+struct PrincipalAxes {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d spread = Eigen::Vector3d::Zero();  ///< standard deviation along each axis
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< standard deviation along each axis
 };
-MainAxes main_axes(const Points& points);
+PrincipalAxes principal_axes(const Points& points);
 
-/// The mean of the points in every cube of that side, in the order of the cubes.
-Points thin_out(const Points& points, double side);
+/// Voxel-grid downsampling: mean of the points in every cube of that side, in the order of the cubes.
+Points voxel_downsample(const Points& points, double side);
 
-/// At most `most` of the points, evenly taken.
-Points every_nth(const Points& points, std::size_t most);
+/// Evenly spaced subset of at most `max_count` points.
+Points subsample_evenly(const Points& points, std::size_t max_count);
 
-/// A surface given by points: who is nearest, and how the surface lies there.
+/// Surface given by points, with a k-d tree for nearest-neighbour search.
 class ScanSurface {
  public:
-  /// Throws Error when there are fewer than 16 points.
+  /// Throws Error for fewer than 16 points.
   explicit ScanSurface(Points points);
   ~ScanSurface();
   ScanSurface(ScanSurface&&) noexcept;
@@ -36,14 +36,16 @@ class ScanSurface {
     std::size_t index = 0;
     double distance = 0;
   };
+  /// Nearest point of the surface.
   Nearest nearest(const Eigen::Vector3d& point) const;
 
-  /// How the surface lies around every point, by the 16 nearest ones.
-  struct Lie {
-    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit vector, of either sign
-    bool at_edge = false;                               ///< nothing follows within a third of the directions
+  /// Surface element at a point.
+  struct Surfel {
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit vector of arbitrary sign
+    bool at_edge = false;                               ///< whether a third of the directions has no neighbour
   };
-  std::vector<Lie> lies() const;
+  /// Surfels of all points from their 16 nearest neighbours (principal component analysis).
+  std::vector<Surfel> surfels() const;
   const Points& points() const;
 
  private:

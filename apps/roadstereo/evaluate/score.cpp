@@ -31,20 +31,23 @@ void score(const Arguments& arguments) {
     mask = read_mask(arguments.mask);
     inside = mask.view();
   }
-  const DisparityScore figures = score_disparity(map, truth, inside, arguments.tolerances_px);
-  if (figures.truth_pixels == 0) fail(arguments.truth, " labels no pixel", inside ? " inside the mask" : "");
+  const DisparityScore result = score_disparity(map, truth, inside, arguments.tolerances_px);
+  if (result.labelled_pixels == 0) {
+    fail(arguments.truth, " has no labelled pixel", inside ? " inside the mask" : "", "; it must have at least one");
+  }
   const double reach = *std::max_element(arguments.tolerances_px.begin(), arguments.tolerances_px.end());
   const Table table{fmt::format("{} against {}: {} of {} labelled pixels have a disparity", arguments.map,
-                                arguments.truth, figures.given_pixels, figures.truth_pixels),
+                                arguments.truth, result.valid_pixels, result.labelled_pixels),
                     score_columns(arguments.tolerances_px),
-                    {score_cells(figures)}};
+                    {score_cells(result)}};
   if (!arguments.report.json.empty()) write_report(arguments.report.json, table.json().front());
   if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, error_figure(map, truth, inside, reach));
   fmt::print("{}", table.text());
 }
 
 constexpr const char* score_footer =
-    R"(Maps and truth: float TIFF or PFM (NaN, in PFM also infinity, is missing), or 16-bit PNG (value / 256 px, 0 missing).
+    R"(Maps and ground truth: float TIFF or PFM (NaN, in PFM also infinity, is missing), or 16-bit PNG (value / 256 px, 0 is
+missing).
 
 Example:
   roadstereo evaluate score out/disparity.tiff disp_noc_0/000003_10.png --mask road/000003_10.png --figure error.png)";
@@ -52,13 +55,13 @@ Example:
 }  // namespace
 
 void add_score(CLI::App& evaluate) {
-  CLI::App* command = evaluate.add_subcommand("score", "Any disparity map against any truth");
+  CLI::App* command = evaluate.add_subcommand("score", "Disparity map against ground truth");
   command->footer(score_footer);
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("MAP", arguments->map, "Disparity map")->required();
-  command->add_option("TRUTH", arguments->truth, "Ground truth, of the same size")->required();
-  command->add_option("--mask", arguments->mask, "Image that is not 0 where pixels count")->type_name("FILE");
-  command->add_option("--tolerances", arguments->tolerances_px, "Disparity error tolerances of e_p, pixels")
+  command->add_option("TRUTH", arguments->truth, "Ground truth of the same size")->required();
+  command->add_option("--mask", arguments->mask, "Image; only pixels that are not 0 count")->type_name("FILE");
+  command->add_option("--tolerances", arguments->tolerances_px, "Tolerances of e_p, pixels")
       ->type_name("PX,PX…")
       ->delimiter(',')
       ->capture_default_str();

@@ -8,12 +8,12 @@
 namespace roadstereo::cli {
 namespace {
 
-/// Mean of what is finite; NaN when nothing is.
-template <class Figure>
-double mean_of(const std::vector<DisparityScore>& scores, const Figure& figure) {
+/// Mean of the finite values; NaN if there is none.
+template <class Value>
+double mean_of(const std::vector<DisparityScore>& scores, const Value& value_of) {
   double sum = 0, count = 0;
   for (const DisparityScore& score : scores) {
-    const double value = figure(score);
+    const double value = value_of(score);
     if (!std::isfinite(value)) continue;
     sum += value;
     count += 1;
@@ -51,14 +51,15 @@ std::vector<Cell> score_cells(const DisparityScore& score) {
 }
 
 std::string score_legend() {
-  return "  e_p: disparities in error by more than so many px; e_p+: missing disparities counted as errors, too\n";
+  return "  e_p(x): share of the disparities with an error above x px; e_p+: missing disparities count as errors, "
+         "too\n";
 }
 
 DisparityScore mean_score(const std::vector<DisparityScore>& scores) {
   DisparityScore mean;
   for (const DisparityScore& score : scores) {
-    mean.truth_pixels += score.truth_pixels;
-    mean.given_pixels += score.given_pixels;
+    mean.labelled_pixels += score.labelled_pixels;
+    mean.valid_pixels += score.valid_pixels;
   }
   mean.rms_px = mean_of(scores, [](const DisparityScore& score) { return score.rms_px; });
   mean.mean_px = mean_of(scores, [](const DisparityScore& score) { return score.mean_px; });

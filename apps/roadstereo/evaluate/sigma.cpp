@@ -22,27 +22,27 @@ struct Arguments {
   ReportFiles report;
 };
 
-/// Every disparity with a truth.
-struct Claims {
-  std::vector<ClaimedError> visible;  ///< what both cameras see
-  std::vector<ClaimedError> damage;   ///< the damage alone
+/// Samples of all disparities with a ground truth.
+struct Samples {
+  std::vector<SigmaSample> visible;  ///< pixels that both cameras see
+  std::vector<SigmaSample> damage;   ///< those on damage
 };
 
-void append(const std::vector<ClaimedError>& more, std::vector<ClaimedError>& all) {
+void append(const std::vector<SigmaSample>& more, std::vector<SigmaSample>& all) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
-Claims match_group(const SynthGroup& group, const std::vector<synth::Scene>& scenes, const Arguments& arguments) {
-  Claims claims;
+Samples match_group(const SynthGroup& group, const std::vector<synth::Scene>& scenes, const Arguments& arguments) {
+  Samples samples;
   for (const synth::Scene& scene : scenes) {
-    const SynthCase example = make_synth_case(group, scene, arguments.methods.threads);
-    Pipeline pipeline(method_options(arguments.preset, {example.pair, example.disparities}, arguments.methods),
-                      example.pair.calibration);
-    const FrameResult& result = pipeline.process(example.pair.left.view(), example.pair.right.view());
-    add_claimed_errors(result.disparity, result.sigma, example.truth, example.visible, claims.visible);
-    add_claimed_errors(result.disparity, result.sigma, example.truth, example.damage, claims.damage);
+    const SynthCase test_case = make_synth_case(group, scene, arguments.methods.threads);
+    Pipeline pipeline(method_options(arguments.preset, {test_case.pair, test_case.disparities}, arguments.methods),
+                      test_case.pair.calibration);
+    const FrameResult& result = pipeline.process(test_case.pair.left.view(), test_case.pair.right.view());
+    add_sigma_samples(result.disparity, result.sigma, test_case.truth, test_case.visible, samples.visible);
+    add_sigma_samples(result.disparity, result.sigma, test_case.truth, test_case.damage, samples.damage);
   }
-  return claims;
+  return samples;
 }
 
 std::vector<Cell> calibration_row(const std::string& group, const char* pixels, const SigmaCalibration& calibration) {
@@ -56,7 +56,7 @@ std::vector<Cell> calibration_row(const std::string& group, const char* pixels, 
 }
 
 Table group_table(const std::vector<SigmaGroup>& groups) {
-  Table table{"Standard errors against errors; of normal errors 68.3 % lie within σ and 95.4 % within 2σ",
+  Table table{"Standard errors against errors; for normal errors 68.3 % lie within σ and 95.4 % within 2σ",
               {{"group", "group"},
                {"where", "where"},
                {"pixels", "pixels"},
@@ -92,29 +92,29 @@ Table bin_table(const std::string& title, const std::vector<SigmaBin>& bins) {
 
 std::string goal_line(const SigmaCalibration& all) {
   const char* outcome = "met";
-  if (all.within_2 < least_within_2) outcome = "missed, they promise too much";
-  if (all.within_2 > most_within_2) outcome = "missed, they are wider than need be";
-  return fmt::format("  goal: {:.0f}–{:.0f} % of all errors within 2σ; here {:.1f} %: {}\n", percent * least_within_2,
-                     percent * most_within_2, percent * all.within_2, outcome);
+  if (all.within_2 < min_within_2) outcome = "missed, σ is too small";
+  if (all.within_2 > max_within_2) outcome = "missed, σ is too large";
+  return fmt::format("  goal: {:.0f}–{:.0f} % of all errors within 2σ; here {:.1f} %: {}\n", percent * min_within_2,
+                     percent * max_within_2, percent * all.within_2, outcome);
 }
 
 void sigma(const Arguments& arguments) {
   const std::vector<synth::Scene> scenes = synth_scenes(arguments.sizes == "small");
-  Claims all;
+  Samples all;
   std::vector<SigmaGroup> groups;
   for (const SynthGroup& group : synth_groups()) {
-    const Claims claims = match_group(group, scenes, arguments);
-    groups.push_back({group.name, calibrate_sigma(claims.visible), calibrate_sigma(claims.damage)});
-    append(claims.visible, all.visible);
-    append(claims.damage, all.damage);
+    const Samples samples = match_group(group, scenes, arguments);
+    groups.push_back({group.name, calibrate_sigma(samples.visible), calibrate_sigma(samples.damage)});
+    append(samples.visible, all.visible);
+    append(samples.damage, all.damage);
   }
   const SigmaGroup overall{"all", calibrate_sigma(all.visible), calibrate_sigma(all.damage)};
   groups.push_back(overall);
   const std::vector<SigmaBin> visible = sigma_bins(std::move(all.visible), bin_count);
   const std::vector<SigmaBin> damage = sigma_bins(std::move(all.damage), bin_count);
   const Table by_group = group_table(groups);
-  const Table by_sigma = bin_table("Tenths of the pixels that both cameras see, by σ", visible);
-  const Table on_damage = bin_table("Tenths of the damage", damage);
+  const Table by_sigma = bin_table("Deciles by σ of the pixels that both cameras see", visible);
+  const Table on_damage = bin_table("Deciles by σ of the pixels on damage", damage);
   fmt::print("{}\n{}\n{}\n{}", by_group.text(), by_sigma.text(), on_damage.text(), goal_line(overall.visible));
   if (!arguments.report.json.empty()) {
     write_report(arguments.report.json,
@@ -124,8 +124,8 @@ void sigma(const Arguments& arguments) {
 }
 
 constexpr const char* sigma_footer =
-    R"(Whether the standard error of every disparity (sigma.tiff of inspect) keeps what it promises: the rendered pairs of
-evaluate synth, whose errors are known.
+    R"(Compares the standard errors of the disparities (sigma.tiff of inspect) with their true errors on the rendered pairs of
+evaluate synth.
 
 Example:
   roadstereo evaluate sigma --sizes small --figure sigma.png)";
@@ -136,7 +136,7 @@ void add_sigma(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("sigma", "Standard errors of the disparities against their true errors");
   command->footer(sigma_footer);
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--preset", arguments->preset, "Whose disparities: default, fast or paper")
+  command->add_option("--preset", arguments->preset, "Preset: default, fast or paper")
       ->type_name("NAME")
       ->capture_default_str();
   add_synth_sizes(*command, arguments->sizes);

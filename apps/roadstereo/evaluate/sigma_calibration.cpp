@@ -11,25 +11,25 @@ namespace {
 
 constexpr double one_sigma_share = 0.683;  // of normal errors lie within σ
 
-/// Share of the errors below so many standard errors.
-double share_within(std::span<const ClaimedError> claims, float sigmas) {
-  const auto within = std::count_if(claims.begin(), claims.end(), [sigmas](const ClaimedError& claim) {
-    return claim.error_px < sigmas * claim.sigma_px;
+/// Share of the errors below `sigmas` standard errors.
+double share_within(std::span<const SigmaSample> samples, float sigmas) {
+  const auto within = std::count_if(samples.begin(), samples.end(), [sigmas](const SigmaSample& sample) {
+    return sample.error_px < sigmas * sample.sigma_px;
   });
-  return static_cast<double>(within) / static_cast<double>(claims.size());
+  return static_cast<double>(within) / static_cast<double>(samples.size());
 }
 
-std::vector<double> errors_of(std::span<const ClaimedError> claims) {
+std::vector<double> errors_of(std::span<const SigmaSample> samples) {
   std::vector<double> errors;
-  errors.reserve(claims.size());
-  for (const ClaimedError& claim : claims) errors.push_back(claim.error_px);
+  errors.reserve(samples.size());
+  for (const SigmaSample& sample : samples) errors.push_back(sample.error_px);
   return errors;
 }
 
-std::vector<double> sigmas_of(std::span<const ClaimedError> claims) {
+std::vector<double> sigmas_of(std::span<const SigmaSample> samples) {
   std::vector<double> sigmas;
-  sigmas.reserve(claims.size());
-  for (const ClaimedError& claim : claims) sigmas.push_back(claim.sigma_px);
+  sigmas.reserve(samples.size());
+  for (const SigmaSample& sample : samples) sigmas.push_back(sample.sigma_px);
   return sigmas;
 }
 
@@ -41,30 +41,30 @@ double root_mean_square(const std::vector<double>& errors) {
 
 }  // namespace
 
-void add_claimed_errors(ImageView<const float> disparity, ImageView<const float> sigma, ImageView<const float> truth,
-                        ImageView<const std::uint8_t> mask, std::vector<ClaimedError>& claims) {
+void add_sigma_samples(ImageView<const float> disparity, ImageView<const float> sigma, ImageView<const float> truth,
+                       ImageView<const std::uint8_t> mask, std::vector<SigmaSample>& samples) {
   for (int v = 0; v < truth.height(); ++v) {
     for (int u = 0; u < truth.width(); ++u) {
       const float error = std::abs(disparity(u, v) - truth(u, v));
-      if (mask(u, v) != 0 && std::isfinite(error)) claims.push_back({error, sigma(u, v)});
+      if (mask(u, v) != 0 && std::isfinite(error)) samples.push_back({error, sigma(u, v)});
     }
   }
 }
 
-SigmaCalibration calibrate_sigma(const std::vector<ClaimedError>& claims) {
-  return {claims.size(), share_within(claims, 1), share_within(claims, 2), median(errors_of(claims)),
-          median(sigmas_of(claims))};
+SigmaCalibration calibrate_sigma(const std::vector<SigmaSample>& samples) {
+  return {samples.size(), share_within(samples, 1), share_within(samples, 2), median(errors_of(samples)),
+          median(sigmas_of(samples))};
 }
 
-std::vector<SigmaBin> sigma_bins(std::vector<ClaimedError> claims, int bins) {
-  std::sort(claims.begin(), claims.end(), [](const auto& a, const auto& b) { return a.sigma_px < b.sigma_px; });
+std::vector<SigmaBin> sigma_bins(std::vector<SigmaSample> samples, int bins) {
+  std::sort(samples.begin(), samples.end(), [](const auto& a, const auto& b) { return a.sigma_px < b.sigma_px; });
   const auto count = static_cast<std::size_t>(bins);
   std::vector<SigmaBin> filled;
   for (std::size_t bin = 0; bin < count; ++bin) {
-    const std::size_t first = bin * claims.size() / count;
-    const std::size_t end = (bin + 1) * claims.size() / count;
+    const std::size_t first = bin * samples.size() / count;
+    const std::size_t end = (bin + 1) * samples.size() / count;
     if (first == end) continue;
-    const std::span<const ClaimedError> part(claims.data() + first, end - first);
+    const std::span<const SigmaSample> part(samples.data() + first, end - first);
     const std::vector<double> errors = errors_of(part);
     filled.push_back({part.size(), median(sigmas_of(part)), quantile(errors, one_sigma_share), root_mean_square(errors),
                       share_within(part, 2)});

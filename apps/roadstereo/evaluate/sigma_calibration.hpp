@@ -7,17 +7,17 @@
 
 namespace roadstereo::cli {
 
-/// One disparity with a truth: how wrong it is, and how wrong it says that it may be.
-struct ClaimedError {
+/// Error and standard error of one disparity.
+struct SigmaSample {
   float error_px = 0;  ///< magnitude
   float sigma_px = 0;  ///< standard error
 };
 
-/// Adds the pixels of the mask that have a disparity and a truth.
-void add_claimed_errors(ImageView<const float> disparity, ImageView<const float> sigma, ImageView<const float> truth,
-                        ImageView<const std::uint8_t> mask, std::vector<ClaimedError>& claims);
+/// Add the pixels of the mask with a disparity and a ground truth.
+void add_sigma_samples(ImageView<const float> disparity, ImageView<const float> sigma, ImageView<const float> truth,
+                       ImageView<const std::uint8_t> mask, std::vector<SigmaSample>& samples);
 
-/// How well the standard errors of some pixels keep what they promise. NaN without pixels.
+/// Calibration of standard errors: errors relative to them. NaN without pixels.
 struct SigmaCalibration {
   std::size_t pixels = 0;
   double within_1 = 0;         ///< share whose error is smaller than σ; 0.683 of normal errors
@@ -26,19 +26,19 @@ struct SigmaCalibration {
   double median_sigma_px = 0;
 };
 
-SigmaCalibration calibrate_sigma(const std::vector<ClaimedError>& claims);
+SigmaCalibration calibrate_sigma(const std::vector<SigmaSample>& samples);
 
-/// The pixels whose standard errors lie next to each other.
+/// Pixels with similar standard errors.
 struct SigmaBin {
   std::size_t pixels = 0;
   double sigma_px = 0;  ///< predicted: median σ
-  double p68_px = 0;    ///< actual: the error that 68.3 % stay below
+  double p68_px = 0;    ///< actual: 68.3th percentile of |error|
   double rms_px = 0;    ///< actual: root mean square error
-  double within_2 = 0;
+  double within_2 = 0;  ///< share whose error is smaller than 2σ
 };
 
-/// Bins of equally many pixels, from the smallest standard error to the largest. Fewer bins when there are fewer
-/// pixels.
-std::vector<SigmaBin> sigma_bins(std::vector<ClaimedError> claims, int bins);
+/// Split the samples into `bins` quantile bins of equal size by ascending standard error; fewer if there are fewer
+/// samples.
+std::vector<SigmaBin> sigma_bins(std::vector<SigmaSample> samples, int bins);
 
 }  // namespace roadstereo::cli

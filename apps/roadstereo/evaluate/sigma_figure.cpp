@@ -50,9 +50,9 @@ io::Panel share_panel(const std::vector<SigmaBin>& visible, const std::vector<Si
   io::Panel panel{"Errors within two standard errors", "predicted standard error, px", "share, %", {}, true, false};
   panel.curves = {bin_curve("both cameras see it", visible, &SigmaBin::within_2, percent),
                   bin_curve("damage", damage, &SigmaBin::within_2, percent)};
-  panel.horizontal_lines = {percent * least_within_2, percent * most_within_2};
+  panel.horizontal_lines = {percent * min_within_2, percent * max_within_2};
   panel.y_highest = percent;
-  double lowest = percent * least_within_2;
+  double lowest = percent * min_within_2;
   for (const io::Curve& curve : panel.curves) {
     for (const double share : curve.y) lowest = std::min(lowest, share);
   }
@@ -69,7 +69,7 @@ Frame group_bars(const std::vector<SigmaGroup>& groups) {
     bars.values[0].push_back(percent * group.visible.within_2);
     bars.values[1].push_back(percent * group.damage.within_2);
   }
-  bars.horizontal_lines = {percent * least_within_2, percent * most_within_2};
+  bars.horizontal_lines = {percent * min_within_2, percent * max_within_2};
   return io::draw_bars(bars, 2 * panel_width);
 }
 

@@ -8,8 +8,8 @@
 namespace roadstereo::cli {
 
 /// The share within 2σ that is aimed at: 0.954 of normal errors, with room for what matching cannot know of itself.
-inline constexpr double least_within_2 = 0.90;
-inline constexpr double most_within_2 = 0.97;
+inline constexpr double min_within_2 = 0.90;
+inline constexpr double max_within_2 = 0.97;
 
 /// What the figure shows of one group of pairs.
 struct SigmaGroup {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "evaluate/baseline_comparison.hpp"
 #include "evaluate/experiments.hpp"
 #include "evaluate/methods.hpp"
 #include "evaluate/report.hpp"
@@ -10,7 +11,6 @@
 #include "evaluate/synth_figure.hpp"
 #include "evaluate/synth_groups.hpp"
 #include "evaluate/synth_scores.hpp"
-#include "evaluate/synth_verdict.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -37,7 +37,7 @@ Table group_table(const std::string& title, const ScoresByGroup& groups) {
 }
 
 Table bias_table(const std::vector<SubPixelBias>& biases) {
-  Table table{"Sub-pixel bias, clean pairs: largest less smallest mean error over 20 phases of the truth",
+  Table table{"Sub-pixel bias, clean pairs: peak-to-peak of the mean error over 20 phases of the true disparity",
               {{"method", "method"}, {"ripple px", "ripple_px"}},
               {}};
   const std::vector<std::string> names = method_names();
@@ -51,16 +51,17 @@ void synth_accuracy(const Arguments& arguments) {
   const std::vector<synth::Scene> scenes = synth_scenes(arguments.sizes == "small");
   const SynthScores scores = score_synth(scenes, arguments.methods);
   const Table visible =
-      group_table(fmt::format("What both cameras see, mean over {} scenes", scenes.size()), scores.visible);
-  const Table damage = group_table("On damage alone", scores.damage);
-  const Table common = group_table("What both cameras see and every method but BM gives", scores.common);
-  const Table common_damage = group_table("Damage that every method but BM gives", scores.common_damage);
+      group_table(fmt::format("Pixels that both cameras see, mean over {} scenes", scenes.size()), scores.visible);
+  const Table damage = group_table("Pixels on damage", scores.damage);
+  const Table common = group_table("Visible pixels with a disparity of every method except BM", scores.common);
+  const Table common_damage =
+      group_table("Pixels on damage with a disparity of every method except BM", scores.common_damage);
   const Table bias = bias_table(scores.biases);
-  const SynthVerdict everywhere = judge_default("What both cameras see", scores.visible, scores.common);
-  const SynthVerdict on_damage = judge_default("Damage", scores.damage, scores.common_damage);
+  const BaselineComparison on_visible = compare_with_baselines("Visible pixels", scores.visible, scores.common);
+  const BaselineComparison on_damage = compare_with_baselines("Pixels on damage", scores.damage, scores.common_damage);
   fmt::print("{}\n{}\n{}\n{}\n{}\n{}\n", visible.text(), damage.text(), common.text(), common_damage.text(),
              bias.text(), score_legend());
-  fmt::print("{}\n{}\n{}\n{}\n", everywhere.table.text(), on_damage.table.text(), everywhere.summary,
+  fmt::print("{}\n{}\n{}\n{}\n", on_visible.table.text(), on_damage.table.text(), on_visible.summary,
              on_damage.summary);
   if (!arguments.report.json.empty()) {
     write_report(arguments.report.json, {{"visible", visible.json()},
@@ -68,15 +69,15 @@ void synth_accuracy(const Arguments& arguments) {
                                          {"common", common.json()},
                                          {"common_damage", common_damage.json()},
                                          {"sub_pixel_bias", bias.json()},
-                                         {"best_visible", everywhere.table.json()},
+                                         {"best_visible", on_visible.table.json()},
                                          {"best_damage", on_damage.table.json()}});
   }
   if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, synth_figure(scores));
 }
 
 constexpr const char* synth_footer =
-    R"(Rendered pairs with exact truth, in groups that each have one thing that spoils a pair. OpenCV's matchers get the same
-pairs and as many disparities as the truth needs; the columns that they leave out for it count as missing.
+    R"(Rendered pairs with exact ground truth, in groups with one kind of degradation each. OpenCV's matchers get the same
+pairs and search as many disparities as the ground truth needs; the left columns without a disparity count as missing.
 
 Example:
   roadstereo evaluate synth --sizes small --figure synth.png)";
@@ -84,7 +85,7 @@ Example:
 }  // namespace
 
 void add_synth_accuracy(CLI::App& evaluate) {
-  CLI::App* command = evaluate.add_subcommand("synth", "Rendered roads with exact truth, clean and spoilt");
+  CLI::App* command = evaluate.add_subcommand("synth", "Rendered roads with exact ground truth, clean and degraded");
   command->footer(synth_footer);
   const auto arguments = std::make_shared<Arguments>();
   add_synth_sizes(*command, arguments->sizes);

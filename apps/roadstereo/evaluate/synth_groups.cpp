@@ -10,7 +10,7 @@
 namespace roadstereo::cli {
 namespace {
 
-/// The same view with other pixels.
+/// Change the image size at a constant field of view.
 void resize(synth::Scene& scene, int width, int height) {
   scene.rig.focal_px *= static_cast<double>(width) / scene.rig.width;
   scene.rig.width = width;
@@ -45,7 +45,7 @@ const std::vector<SynthGroup>& synth_groups() {
       {"motion blur", blur_by_motion},
       {"over-exposure", [](synth::Scene& scene) { scene.degradation.exposure = 2.1; }},
       {"JPEG 60", [](synth::Scene&) {}, 60},
-      {"half a row off", [](synth::Scene& scene) { scene.degradation.row_offset_px = 0.5; }},
+      {"row offset", [](synth::Scene& scene) { scene.degradation.row_offset_px = 0.5; }},
   };
   return groups;
 }
@@ -69,29 +69,29 @@ std::vector<synth::Scene> synth_scenes(bool small) {
 }
 
 SynthCase make_synth_case(const SynthGroup& group, synth::Scene scene, int threads) {
-  group.wear(scene);
-  synth::SyntheticPair made = synth::render(scene, threads);
-  SynthCase example;
-  example.pair.left = std::move(made.left);
-  example.pair.right = std::move(made.right);
+  group.degrade(scene);
+  synth::SyntheticPair rendered = synth::render(scene, threads);
+  SynthCase result;
+  result.pair.left = std::move(rendered.left);
+  result.pair.right = std::move(rendered.right);
   if (group.jpeg_quality > 0) {
-    example.pair.left = io::with_jpeg_loss(example.pair.left, group.jpeg_quality);
-    example.pair.right = io::with_jpeg_loss(example.pair.right, group.jpeg_quality);
+    result.pair.left = io::with_jpeg_loss(result.pair.left, group.jpeg_quality);
+    result.pair.right = io::with_jpeg_loss(result.pair.right, group.jpeg_quality);
   }
-  example.pair.calibration = made.calibration;
-  example.visible = std::move(made.visible);
-  example.truth.resize(made.disparity.width(), made.disparity.height());
-  example.damage.assign(made.labels.width(), made.labels.height(), 0);
-  double largest = 0;
-  for (int v = 0; v < example.truth.height(); ++v) {
-    for (int u = 0; u < example.truth.width(); ++u) {
-      example.truth(u, v) = static_cast<float>(made.disparity(u, v));
-      if (made.labels(u, v) != 0) example.damage(u, v) = example.visible(u, v);
-      largest = std::fmax(largest, made.disparity(u, v));
+  result.pair.calibration = rendered.calibration;
+  result.visible = std::move(rendered.visible);
+  result.truth.resize(rendered.disparity.width(), rendered.disparity.height());
+  result.damage.assign(rendered.labels.width(), rendered.labels.height(), 0);
+  double max_disparity = 0;
+  for (int v = 0; v < result.truth.height(); ++v) {
+    for (int u = 0; u < result.truth.width(); ++u) {
+      result.truth(u, v) = static_cast<float>(rendered.disparity(u, v));
+      if (rendered.labels(u, v) != 0) result.damage(u, v) = result.visible(u, v);
+      max_disparity = std::fmax(max_disparity, rendered.disparity(u, v));
     }
   }
-  example.disparities = static_cast<int>(std::ceil(largest)) + 1;
-  return example;
+  result.disparities = static_cast<int>(std::ceil(max_disparity)) + 1;
+  return result;
 }
 
 }  // namespace roadstereo::cli

@@ -13,32 +13,32 @@ class App;
 
 namespace roadstereo::cli {
 
-/// Adds --sizes, which chooses between the sets of synth_scenes.
+/// Add --sizes, which selects the set of synth_scenes.
 void add_synth_sizes(CLI::App& command, std::string& sizes);
 
-/// What makes the pairs of a group hard.
+/// Group of rendered pairs with one kind of degradation.
 struct SynthGroup {
   std::string name;
-  void (*wear)(synth::Scene& scene) = nullptr;
-  int jpeg_quality = 0;  ///< 0 compresses nothing
+  void (*degrade)(synth::Scene& scene) = nullptr;
+  int jpeg_quality = 0;  ///< 1 … 100; 0: no compression
 };
 
-/// "clean" first, then everything that can spoil a pair, one thing at a time.
+/// All groups: "clean" first, then one kind of degradation each.
 const std::vector<SynthGroup>& synth_groups();
 
-/// The roads that every group shows: named scenes and some drawn at random, 640×360; the small set has three at
-/// 320×180.
+/// Scenes of every group: named and random scenes of 640×360 pixels; the small set has three scenes of 320×180.
 std::vector<synth::Scene> synth_scenes(bool small);
 
-/// One pair with what it is scored on.
+/// Rendered pair with ground truth and masks.
 struct SynthCase {
   StereoPair pair;
-  Image<float> truth;
+  Image<float> truth;           ///< disparity, pixels
   Image<std::uint8_t> visible;  ///< 255 where both cameras see the point
-  Image<std::uint8_t> damage;   ///< 255 where such a point lies on damage
-  int disparities = 0;          ///< that hold the largest true disparity
+  Image<std::uint8_t> damage;   ///< 255 where both cameras see the point and it lies on damage
+  int disparities = 0;          ///< number of disparities that includes the maximum of the truth
 };
 
+/// Degrade and render a scene.
 SynthCase make_synth_case(const SynthGroup& group, synth::Scene scene, int threads);
 
 }  // namespace roadstereo::cli

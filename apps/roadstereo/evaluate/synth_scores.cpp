@@ -6,13 +6,13 @@
 namespace roadstereo::cli {
 namespace {
 
-/// Scores of every method over one kind of pixels, scene by scene.
+/// Scores of every method over one set of pixels, by scene.
 class SceneScores {
  public:
-  void add(const std::vector<Image<float>>& maps, const SynthCase& example, ImageView<const std::uint8_t> mask) {
+  void add(const std::vector<Image<float>>& maps, const SynthCase& test_case, ImageView<const std::uint8_t> mask) {
     scores_.resize(maps.size());
     for (std::size_t i = 0; i < maps.size(); ++i) {
-      scores_[i].push_back(score_disparity(maps[i], example.truth, mask, synth_tolerances_px()));
+      scores_[i].push_back(score_disparity(maps[i], test_case.truth, mask, synth_tolerances_px()));
     }
   }
   std::vector<DisparityScore> means() const {
@@ -30,14 +30,14 @@ void score_group(const SynthGroup& group, const std::vector<synth::Scene>& scene
                  bool clean, SynthScores& scores) {
   SceneScores visible, damage, common, common_damage;
   for (const synth::Scene& scene : scenes) {
-    const SynthCase example = make_synth_case(group, scene, settings.threads);
-    const std::vector<Image<float>> maps = run_methods({example.pair, example.disparities}, settings);
-    visible.add(maps, example, example.visible);
-    damage.add(maps, example, example.damage);
-    common.add(maps, example, common_pixels(maps, example.visible.view()));
-    common_damage.add(maps, example, common_pixels(maps, example.damage.view()));
+    const SynthCase test_case = make_synth_case(group, scene, settings.threads);
+    const std::vector<Image<float>> maps = run_methods({test_case.pair, test_case.disparities}, settings);
+    visible.add(maps, test_case, test_case.visible);
+    damage.add(maps, test_case, test_case.damage);
+    common.add(maps, test_case, common_pixels(maps, test_case.visible.view()));
+    common_damage.add(maps, test_case, common_pixels(maps, test_case.damage.view()));
     for (std::size_t i = 0; clean && i < maps.size(); ++i) {
-      scores.biases[i].add(maps[i], example.truth, example.visible);
+      scores.biases[i].add(maps[i], test_case.truth, test_case.visible);
     }
   }
   scores.visible.push_back(visible.means());

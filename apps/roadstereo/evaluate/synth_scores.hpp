@@ -9,22 +9,22 @@
 
 namespace roadstereo::cli {
 
-/// Scores by group and by method, means over the scenes of the group.
+/// Scores by group and method, means over the scenes of the group.
 using ScoresByGroup = std::vector<std::vector<DisparityScore>>;
 
-/// Over which pixels the rendered pairs are scored.
+/// Scores over different sets of pixels.
 struct SynthScores {
-  ScoresByGroup visible;             ///< what both cameras see
-  ScoresByGroup damage;              ///< the damage alone
-  ScoresByGroup common;              ///< what both cameras see and every method but BM gives
-  ScoresByGroup common_damage;       ///< the same on the damage
+  ScoresByGroup visible;             ///< pixels that both cameras see
+  ScoresByGroup damage;              ///< those on damage
+  ScoresByGroup common;              ///< visible pixels with a disparity of every method except BM
+  ScoresByGroup common_damage;       ///< those on damage
   std::vector<SubPixelBias> biases;  ///< of the clean pairs, one per method
 };
 
 /// Tolerances of the scores, pixels.
 const std::vector<double>& synth_tolerances_px();
 
-/// Matches every scene of every group with every method.
+/// Match every scene of every group with every method.
 SynthScores score_synth(const std::vector<synth::Scene>& scenes, const MethodSettings& settings);
 
 }  // namespace roadstereo::cli

@@ -10,17 +10,18 @@
 namespace roadstereo::cli {
 namespace {
 
-/// Characters on the terminal, not bytes.
+/// Number of UTF-8 characters.
 std::size_t length(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
 }
 
-std::string padded(const std::string& text, std::size_t width, bool to_the_right) {
+std::string padded(const std::string& text, std::size_t width, bool right_aligned) {
   const std::string space(width - std::min(width, length(text)), ' ');
-  return to_the_right ? space + text : text + space;
+  return right_aligned ? space + text : text + space;
 }
 
+/// Line without trailing spaces.
 std::string line(std::string text) {
   text.erase(text.find_last_not_of(' ') + 1);
   return text + "\n";

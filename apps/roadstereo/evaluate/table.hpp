@@ -6,7 +6,7 @@
 
 namespace roadstereo::cli {
 
-/// One cell of a table: text, or a number with the decimals it is shown with. NaN is shown as "–", and null in JSON.
+/// Cell of a table: text, or a number with its number of decimals. NaN is printed as "–" and is null in JSON.
 class Cell {
  public:
   Cell(std::string text) : text_(std::move(text)) {}
@@ -24,21 +24,21 @@ class Cell {
   bool is_number_ = false;
 };
 
-/// A column: its heading on the terminal and its key in JSON.
+/// Column of a table.
 struct Column {
   std::string heading;
-  std::string key;
+  std::string key;  ///< in JSON
 };
 
-/// A small table for the terminal, and the same rows as JSON.
+/// Table for the terminal and for JSON.
 struct Table {
   std::string title;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
 
-  /// Columns as wide as their longest cell; text to the left, numbers to the right.
+  /// Aligned text; numbers are right-aligned.
   std::string text() const;
-  /// An array with one object per row.
+  /// Array with one object per row.
   nlohmann::ordered_json json() const;
 };
 

@@ -16,7 +16,8 @@ void look_for_damage(const std::optional<StereoCalibration>& calibration, const 
     find_damage(job.result, calibration, options.damage, threads, job.damage);
     job.frame.noise_px = job.damage.noise_px;
   } catch (const Error& error) {
-    job.damage = no_damage(job.result.disparity.width(), job.result.disparity.height(), "no road was found");
+    job.damage =
+        make_empty_damage_map(job.result.disparity.width(), job.result.disparity.height(), "no road was found");
     job.frame.warnings.push_back(std::string("damage was not looked for: ") + error.what());
   }
   job.frame.damages = job.damage.damages;

@@ -19,12 +19,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t most_thumbnails = 32;
+constexpr std::int64_t max_thumbnails = 32;
 
 /// Frames from one small picture to the next, for a flight that has come as far as `place`.
 std::int64_t thumbnail_step(std::int64_t place) {
   std::int64_t step = 1;
-  while (place >= step * most_thumbnails) step *= 2;
+  while (place >= step * max_thumbnails) step *= 2;
   return step;
 }
 

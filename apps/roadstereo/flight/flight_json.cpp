@@ -75,7 +75,7 @@ std::string flight_json(const FlightSettings& settings, const FlightRun& run, co
   document["from"] = settings.from;
   document["to"] = settings.to ? Json(*settings.to) : Json(nullptr);
   document["every"] = settings.every;
-  document["preset"] = settings.treatment.preset;
+  document["preset"] = settings.processing.preset;
   document["engine"] = run.engine;
   document["options"] = options_json(run.options);
   document["frames"] = frames_json(summary);

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "processing_options.hpp"
 #include "source_options.hpp"
-#include "treatment_options.hpp"
 
 namespace roadstereo::cli {
 
@@ -28,7 +28,7 @@ struct FlightSettings {
   std::vector<std::string> source;  ///< one name, or left and right
   std::vector<std::string> calibration;
   std::string output;
-  Treatment treatment;
+  ProcessingSettings processing;
   SourceChoice choice;
   bool resume = false;
   std::int64_t from = 0;           ///< first frame of the source, from 0

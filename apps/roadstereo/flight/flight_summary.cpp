@@ -8,7 +8,7 @@
 namespace roadstereo::cli {
 
 void FlightSummary::add(const io::FlightFrame& frame) {
-  constexpr std::size_t most_reasons = 5;
+  constexpr std::size_t max_reasons = 5;
   constexpr double degrees = 180 / std::numbers::pi;  // in a radian
   ++frames;
   good += frame.status == io::FrameStatus::good ? 1 : 0;
@@ -16,11 +16,11 @@ void FlightSummary::add(const io::FlightFrame& frame) {
   failed += frame.status == io::FrameStatus::failed ? 1 : 0;
   if (frame.status == io::FrameStatus::good) {
     road_unknown += frame.road_reliable ? 0 : 1;
-    road_estimated += frame.road_reliable && !frame.road_carried_over ? 1 : 0;
+    road_estimated += frame.road_reliable && !frame.road_tracked ? 1 : 0;
     matching_ms.push_back(frame.matching_ms);
     damage_ms.push_back(frame.damage_ms);
     valid_share.push_back(frame.valid_share);
-  } else if (reasons.size() < most_reasons) {
+  } else if (reasons.size() < max_reasons) {
     reasons.push_back(frame.name + ": " + frame.reason);
   }
   sightings += static_cast<std::int64_t>(frame.damages.size());

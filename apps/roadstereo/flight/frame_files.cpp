@@ -33,7 +33,7 @@ std::string name_of_file(FrameFile file, std::int64_t index) {
 }
 
 std::vector<std::uint8_t> sheet_of(const FlightJob& job) {
-  const auto geometry = job.result.geometry_found ? std::optional(job.result.geometry) : std::nullopt;
+  const auto geometry = job.result.roll_found ? std::optional(job.result.geometry) : std::nullopt;
   return io::encode_png(io::result_sheet(job.pair.left.view(), job.result.disparity, job.result.transformed,
                                          job.result.delta_t, geometry, job.frame.name)
                             .view());

@@ -7,13 +7,13 @@
 namespace roadstereo::cli {
 
 /// Lets threads do something one after the other in a given order, whichever is ready first.
-class InTurn {
+class Sequencer {
  public:
-  explicit InTurn(std::int64_t first) : next_(first) {}
+  explicit Sequencer(std::int64_t first) : next_(first) {}
 
   /// Calls `action` when it is the turn of `place`; never when the order was broken off.
   template <class Action>
-  void when_it_is(std::int64_t place, const Action& action) {
+  void run_in_order(std::int64_t place, const Action& action) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return broken_ || next_ == place; });
     if (broken_) return;

@@ -1,7 +1,7 @@
 #include "flight/match_frame.hpp"
 
 #include "roadstereo/error.hpp"
-#include "roadstereo/road_plane.hpp"
+#include "roadstereo/ground_plane.hpp"
 
 namespace roadstereo::cli {
 
@@ -9,21 +9,21 @@ namespace {
 
 void record(const FrameResult& result, const std::optional<StereoCalibration>& calibration, io::FlightFrame& frame) {
   frame.road_reliable = result.road.reliable;
-  frame.road_carried_over = result.road.carried_over;
+  frame.road_tracked = result.road.tracked;
   frame.valid_share = result.valid_share;
   frame.matching_ms = result.ms.total;
   frame.warnings = result.warnings;
-  if (!result.geometry_found) return;
-  const RoadGeometry& geometry = result.geometry;
+  if (!result.roll_found) return;
+  const RollEstimate& geometry = result.geometry;
   frame.roll_rad = geometry.roll_rad;
   frame.roll_stderr_rad = geometry.roll_stderr_rad;
   frame.roll_observable = geometry.roll_observable;
   frame.alpha0 = geometry.alpha0;
   frame.alpha1 = geometry.alpha1;
   frame.road = geometry.plane;
-  frame.sigma_d_px = result.spread.road_px;
+  frame.sigma_d_px = result.spread.sigma_road_px;
   if (!calibration) return;
-  const RoadPlane plane = road_plane(geometry.plane, *calibration);
+  const GroundPlane plane = ground_plane(geometry.plane, *calibration);
   frame.height_m = plane.height_m;
   frame.pitch_rad = plane.pitch_rad;
 }

@@ -45,11 +45,11 @@ class Line {
   bool run();
 
  private:
-  void go_to_start(io::FrameSource& source) const;
+  void seek(io::FrameSource& source) const;
   void read();
   void match();
   void finish();
-  void put_down(FlightJob& job);
+  void commit_frame(FlightJob& job);
   void add_pictures(FlightJob& job, const std::vector<std::int64_t>& road_damages);
   void stop_all();
   template <class Work>
@@ -63,7 +63,7 @@ class Line {
   BoundedQueue<io::SourcePair> pairs_;  ///< read, to be matched
   BoundedQueue<JobPointer> matched_;    ///< to be finished
   BoundedQueue<JobPointer> free_;       ///< jobs whose memory is not in use
-  InTurn in_turn_;
+  Sequencer in_turn_;
   FirstFailure failure_;
 };
 
@@ -111,7 +111,7 @@ void Line::guarded(const Work& work) {
 }
 
 /// Behind the last frame of an earlier run, which must still be what it was.
-void Line::go_to_start(io::FrameSource& source) const {
+void Line::seek(io::FrameSource& source) const {
   const std::optional<io::FlightFrame>& last = flight_.journal.last();
   if (!last) return source.skip(settings_.from);
   source.skip(last->index);
@@ -125,7 +125,7 @@ void Line::go_to_start(io::FrameSource& source) const {
 
 void Line::read() {
   io::FrameSource& source = flight_.source.source();
-  go_to_start(source);
+  seek(source);
   while (!flight_.stop.wait(0)) {
     std::optional<io::SourcePair> pair = flight_.source.next();
     if (!pair || (settings_.to && pair->index > *settings_.to)) {
@@ -146,10 +146,10 @@ void Line::match() {
     std::optional<JobPointer> job = free_.take();
     if (!job) break;
     if (!pipeline && pair->refused.empty()) {  // white and the size are known from the first good pair on
-      if (!sets_white_level(settings_.treatment)) flight_.options.white_level = flight_.source.white_level();
+      if (!sets_white_level(settings_.processing)) flight_.options.white_level = flight_.source.white_level();
       pipeline.emplace(flight_.options, flight_.source.calibration());
       warm_up(*pipeline, *pair);
-      if (before) pipeline->carry_on(before->carried);
+      if (before) pipeline->restore(before->carried);
     }
     (*job)->place = place++;
     (*job)->pair = std::move(*pair);
@@ -166,13 +166,13 @@ void Line::match() {
 void Line::finish() {
   while (std::optional<JobPointer> job = matched_.take()) {
     finish_frame(flight_.source.calibration(), flight_.options, write_, **job);
-    in_turn_.when_it_is((*job)->place, [&] { put_down(**job); });
+    in_turn_.run_in_order((*job)->place, [&] { commit_frame(**job); });
     free_.put(std::move(*job));
   }
 }
 
 /// Files first: what the journal has is whole.
-void Line::put_down(FlightJob& job) {
+void Line::commit_frame(FlightJob& job) {
   add_pictures(job, flight_.inventory.add(job.frame));
   flight_.folder.write(job.files);
   flight_.journal.append(job.frame);

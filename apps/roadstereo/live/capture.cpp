@@ -16,7 +16,7 @@ double calendar_s() {
 }  // namespace
 
 Capture::Capture(std::unique_ptr<io::FrameSource> first, SourceOpener opener, const CaptureOptions& options,
-                 LiveBoard& board, NewestSlot<CapturedPair>& slot, Recorder* recorder)
+                 LiveBoard& board, LatestValue<CapturedPair>& slot, Recorder* recorder)
     : source_(std::move(first)),
       opener_(std::move(opener)),
       options_(options),

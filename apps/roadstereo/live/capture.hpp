@@ -10,8 +10,8 @@
 #include <string>
 
 #include "live/captured_pair.hpp"
+#include "live/latest_value.hpp"
 #include "live/live_board.hpp"
-#include "live/newest_slot.hpp"
 #include "live/playback.hpp"
 #include "live/recorder.hpp"
 #include "live/retry_pause.hpp"
@@ -32,7 +32,7 @@ class Capture {
  public:
   /// `recorder` may be null.
   Capture(std::unique_ptr<io::FrameSource> first, SourceOpener opener, const CaptureOptions& options, LiveBoard& board,
-          NewestSlot<CapturedPair>& slot, Recorder* recorder);
+          LatestValue<CapturedPair>& slot, Recorder* recorder);
 
   /// Until it is told to stop, or a recording ends. Throws Error when a recording cannot be read any further.
   void run(const std::stop_token& stop);
@@ -51,7 +51,7 @@ class Capture {
   SourceOpener opener_;
   CaptureOptions options_;
   LiveBoard& board_;
-  NewestSlot<CapturedPair>& slot_;
+  LatestValue<CapturedPair>& slot_;
   Recorder* recorder_;
   bool live_;
   bool ended_ = false;

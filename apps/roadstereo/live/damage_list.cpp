@@ -16,7 +16,7 @@ double half_diagonal(const Damage& damage) {
 
 /// How well a depth is known, as a share of itself.
 double uncertainty(const Damage& damage) {
-  const Measured& depth = damage.metrics ? damage.metrics->max_depth_m : damage.max_depth_px;
+  const Measurement& depth = damage.metrics ? damage.metrics->max_depth_m : damage.max_depth_px;
   return depth.std_error / std::max(std::abs(depth.value), 1e-9);
 }
 
@@ -39,7 +39,7 @@ std::array<double, 2> DamageList::expected(const Track& track, Clock::time_point
 }
 
 DamageList::Track* DamageList::nearest(const Damage& damage, const LiveView& view, const std::vector<bool>& taken) {
-  constexpr double least_reach_px = 12;
+  constexpr double min_reach_px = 12;
   Track* best = nullptr;
   double least = HUGE_VAL;
   for (std::size_t i = 0; i < taken.size(); ++i) {
@@ -47,7 +47,7 @@ DamageList::Track* DamageList::nearest(const Damage& damage, const LiveView& vie
     if (taken[i] || track.kind != damage.kind) continue;
     const double away = std::min(distance(expected(track, view.arrival), damage.centroid_px),
                                  distance(track.centre, damage.centroid_px));  // it may have stopped or turned
-    const double reach = std::max({least_reach_px, track.reach, half_diagonal(damage)});
+    const double reach = std::max({min_reach_px, track.reach, half_diagonal(damage)});
     if (away <= reach && away < least) {
       best = &track;
       least = away;
@@ -85,7 +85,7 @@ void DamageList::begin(const Damage& damage, const LiveView& view) {
   track.reach = half_diagonal(damage);
   tracks_.push_back(track);
   entries_.push_front({track.id, view.clock_s, view.number, 1, damage});
-  if (entries_.size() > most_entries) entries_.pop_back();
+  if (entries_.size() > max_entries) entries_.pop_back();
 }
 
 void DamageList::add(const LiveView& view) {

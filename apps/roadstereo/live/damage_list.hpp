@@ -29,7 +29,7 @@ class DamageList {
 
   std::int64_t found() const { return found_; }  ///< of the whole run
 
-  static constexpr std::size_t most_entries = 100;
+  static constexpr std::size_t max_entries = 100;
 
  private:
   /// A damage that is followed from view to view.

@@ -129,10 +129,10 @@ LiveStatus LiveBoard::status(std::int64_t after) {
   return status_now(after, Clock::now());
 }
 
-LiveStatus LiveBoard::wait_for_news(std::int64_t after, double longest_s) {
+LiveStatus LiveBoard::wait_for_news(std::int64_t after, double max_s) {
   std::unique_lock lock(mutex_);
   const LiveState before = state(Clock::now());
-  news_.wait_until(lock, Clock::now() + clock_span(longest_s),
+  news_.wait_until(lock, Clock::now() + clock_span(max_s),
                    [&] { return ended_ || counts_.shown > after || state(Clock::now()) != before; });
   return status_now(after, Clock::now());
 }

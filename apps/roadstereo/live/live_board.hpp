@@ -83,7 +83,7 @@ class LiveBoard {
   LiveStatus status(std::int64_t after = 0);
 
   /// The same once there is a newer view than that, or the state has changed since the call, or time is up.
-  LiveStatus wait_for_news(std::int64_t after, double longest_s);
+  LiveStatus wait_for_news(std::int64_t after, double max_s);
 
   /// The view of that number, or the newest where that is gone; none at the beginning.
   SharedView view(std::int64_t number) const;

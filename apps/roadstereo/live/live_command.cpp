@@ -10,11 +10,11 @@
 #include "live/live_session.hpp"
 #include "live/live_summary.hpp"
 #include "live/terminal_line.hpp"
+#include "processing_options.hpp"
 #include "roadstereo/error.hpp"
 #include "say.hpp"
 #include "source_options.hpp"
 #include "stop_signals.hpp"
-#include "treatment_options.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -24,7 +24,7 @@ struct Arguments {
   std::vector<std::string> names;
   std::vector<std::string> calibration;
   SourceChoice source;
-  Treatment treatment;
+  ProcessingSettings processing;
   std::string record;
   std::string serve;
   double max_age_ms = 500;
@@ -39,8 +39,8 @@ LiveOptions live_options(const Arguments& arguments) {
   if (!std::isfinite(arguments.seconds)) fail("--seconds is ", arguments.seconds, "; it must be a number");
   if (arguments.calibration.size() > 2) fail("--calibration takes one file, or the two of a ROS pair");
   LiveOptions options;
-  options.processing.pipeline = make_options(arguments.treatment);
-  options.processing.find_white_level = !sets_white_level(arguments.treatment);
+  options.processing.pipeline = make_options(arguments.processing);
+  options.processing.find_white_level = !sets_white_level(arguments.processing);
   options.capture.rate_hz = arguments.source.rate_hz;
   options.capture.loop = arguments.loop;
   options.calibration = arguments.calibration;
@@ -136,7 +136,7 @@ void add_live_command(CLI::App& app, const NamedOpener& opener) {
   const auto arguments = std::make_shared<Arguments>();
   add_options(*command, *arguments);
   add_source_options(*command, arguments->source);
-  add_treatment_options(*command, arguments->treatment);
+  add_processing_options(*command, arguments->processing);
   command->callback([arguments, opener] { live(*arguments, opener); });
 }
 

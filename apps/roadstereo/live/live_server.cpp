@@ -23,9 +23,9 @@ namespace {
 using httplib::Request;
 using httplib::Response;
 
-constexpr std::size_t most_connections = 48;  // served at a time
-constexpr int patience_s = 2;                 // with a client that neither asks nor reads
-constexpr double longest_poll_s = 1;
+constexpr std::size_t max_connections = 48;  // served at a time
+constexpr int patience_s = 2;                // with a client that neither asks nor reads
+constexpr double max_poll_s = 1;
 constexpr double farewell_s = 0.5;  // for pages to hear that the run has ended
 
 /// Two programs at one port are refused, but one that has just ended does not block it.
@@ -116,7 +116,7 @@ void LiveServer::State::send_state(const Request& request, Response& response) {
     return;
   }
   last_poll_s = seconds_between(start, Clock::now());
-  nlohmann::ordered_json json = status_json(board.wait_for_news(*after, longest_poll_s), board.max_age_s());
+  nlohmann::ordered_json json = status_json(board.wait_for_news(*after, max_poll_s), board.max_age_s());
   json["session"] = session;
   response.set_content(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), "application/json");
 }
@@ -153,7 +153,7 @@ void LiveServer::State::route() {
 }
 
 void LiveServer::State::listen() {
-  server.new_task_queue = [] { return new ServingThreads(most_connections); };
+  server.new_task_queue = [] { return new ServingThreads(max_connections); };
   server.set_socket_options(share_no_port);
   server.set_tcp_nodelay(true);
   server.set_default_headers(safe_headers());
@@ -183,7 +183,7 @@ LiveServer::LiveServer(const ServeAddress& address, LiveBoard& board)
 }
 
 LiveServer::~LiveServer() {
-  const bool watched = seconds_between(state_->start, Clock::now()) - state_->last_poll_s < 2 * longest_poll_s;
+  const bool watched = seconds_between(state_->start, Clock::now()) - state_->last_poll_s < 2 * max_poll_s;
   if (watched) std::this_thread::sleep_for(clock_span(farewell_s));
   while (!state_->server.is_running() && !state_->ended)
     std::this_thread::yield();  // a stop before the start would be lost

@@ -56,7 +56,7 @@ class LiveSession {
   void join();
 
   LiveBoard board_;
-  NewestSlot<CapturedPair> captured_;
+  LatestValue<CapturedPair> captured_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<Capture> capture_;
   std::unique_ptr<Processing> processing_;

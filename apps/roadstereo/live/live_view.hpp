@@ -8,9 +8,9 @@
 
 #include "live/clock.hpp"
 #include "roadstereo/damage.hpp"
+#include "roadstereo/ground_plane.hpp"
 #include "roadstereo/image.hpp"
-#include "roadstereo/road_geometry.hpp"
-#include "roadstereo/road_plane.hpp"
+#include "roadstereo/roll.hpp"
 
 namespace roadstereo::cli {
 
@@ -26,8 +26,8 @@ struct LiveView {
   double delta_t = 0;                    ///< δt, pixels
   Image<std::uint16_t> ids;              ///< of the damage at each pixel, 0 none
   std::vector<Damage> damages;           ///< deepest first
-  std::optional<RoadGeometry> geometry;  ///< absent when no road was found
-  std::optional<RoadPlane> plane;        ///< absent without a road or a calibration
+  std::optional<RollEstimate> geometry;  ///< absent when no road was found
+  std::optional<GroundPlane> plane;      ///< absent without a road or a calibration
   std::vector<std::string> warnings;
 };
 

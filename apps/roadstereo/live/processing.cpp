@@ -7,7 +7,7 @@
 namespace roadstereo::cli {
 
 Processing::Processing(const ProcessingOptions& options, std::unique_ptr<RectifiedSource> rectifier, LiveBoard& board,
-                       NewestSlot<CapturedPair>& captured)
+                       LatestValue<CapturedPair>& captured)
     : options_(options), rectifier_(std::move(rectifier)), board_(board), captured_(captured) {
   options_.pipeline.validate();
 }
@@ -82,9 +82,9 @@ LiveView Processing::view_of(Matched matched) const {
   view.left = std::move(matched.captured.pair.left);
   view.transformed = std::move(result.transformed);
   view.delta_t = result.delta_t;
-  if (!result.geometry_found) return view;
+  if (!result.roll_found) return view;
   view.geometry = result.geometry;
-  if (matched.calibration) view.plane = road_plane(result.geometry.plane, *matched.calibration);
+  if (matched.calibration) view.plane = ground_plane(result.geometry.plane, *matched.calibration);
   return view;
 }
 

@@ -7,8 +7,8 @@
 
 #include "flight/rectified_source.hpp"
 #include "live/captured_pair.hpp"
+#include "live/latest_value.hpp"
 #include "live/live_board.hpp"
-#include "live/newest_slot.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
@@ -24,7 +24,7 @@ class Processing {
  public:
   /// `rectifier`: only its `rectify` is used. Throws Error when an option is out of range.
   Processing(const ProcessingOptions& options, std::unique_ptr<RectifiedSource> rectifier, LiveBoard& board,
-             NewestSlot<CapturedPair>& captured);
+             LatestValue<CapturedPair>& captured);
 
   /// First step, on a thread of its own: rectifies and matches until the slot is closed and empty.
   void match();
@@ -47,8 +47,8 @@ class Processing {
   ProcessingOptions options_;
   std::unique_ptr<RectifiedSource> rectifier_;
   LiveBoard& board_;
-  NewestSlot<CapturedPair>& captured_;
-  NewestSlot<Matched> matched_;
+  LatestValue<CapturedPair>& captured_;
+  LatestValue<Matched> matched_;
   std::optional<Pipeline> pipeline_;
 };
 

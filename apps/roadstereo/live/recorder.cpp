@@ -24,7 +24,7 @@ Recorder::~Recorder() {
 
 void Recorder::offer(const io::SourcePair& pair, double time_s) {
   const std::lock_guard lock(mutex_);
-  if (!state_.message.empty() || waiting_.size() >= most_waiting) {
+  if (!state_.message.empty() || waiting_.size() >= max_waiting) {
     ++state_.left_out;
     board_.set_recording(state_);
     return;

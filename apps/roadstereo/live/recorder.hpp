@@ -36,7 +36,7 @@ class Recorder {
   /// Copies the pair when there is room for it.
   void offer(const io::SourcePair& pair, double time_s);
 
-  static constexpr std::size_t most_waiting = 8;  ///< pairs
+  static constexpr std::size_t max_waiting = 8;  ///< pairs
 
  private:
   void run();

@@ -8,10 +8,10 @@ namespace roadstereo::cli {
 class RetryPause {
  public:
   RetryPause() = default;
-  RetryPause(double first_s, double longest_s) : first_s_(first_s), longest_s_(longest_s) {}
+  RetryPause(double first_s, double max_s) : first_s_(first_s), max_s_(max_s) {}
 
   double next() {
-    next_s_ = next_s_ == 0 ? first_s_ : std::min(2 * next_s_, longest_s_);
+    next_s_ = next_s_ == 0 ? first_s_ : std::min(2 * next_s_, max_s_);
     return next_s_;
   }
 
@@ -20,7 +20,7 @@ class RetryPause {
 
  private:
   double first_s_ = 0.5;
-  double longest_s_ = 5;
+  double max_s_ = 5;
   double next_s_ = 0;
 };
 

@@ -13,7 +13,7 @@ double degrees(double radians) {
   return radians * 180 / std::numbers::pi;
 }
 
-ordered_json figure(const Measured& measured, double scale, const char* unit) {
+ordered_json figure(const Measurement& measured, double scale, const char* unit) {
   return {{"value", json_number(scale * measured.value)},
           {"error", json_number(scale * measured.std_error)},
           {"unit", unit}};

@@ -12,7 +12,7 @@ namespace roadstereo::cli {
 namespace {
 
 constexpr int quality = 82;
-constexpr int most_width = 1280;  // pixels
+constexpr int max_width = 1280;  // pixels
 
 /// The colours without the bar that colour maps have beside them: the page draws its own.
 FrameView without_bar(const Frame& picture, ImageView<const float> map) {
@@ -23,7 +23,7 @@ FrameView without_bar(const Frame& picture, ImageView<const float> map) {
 }
 
 ViewPicture picture_of(const FrameView& frame) {
-  const std::vector<std::uint8_t> jpeg = io::encode_jpeg(frame, quality, most_width);
+  const std::vector<std::uint8_t> jpeg = io::encode_jpeg(frame, quality, max_width);
   return {{jpeg.begin(), jpeg.end()}, 0};
 }
 

@@ -26,26 +26,26 @@ struct FlightFrame {
   std::string name;         ///< as the source names it
   double time_s = unknown;  ///< since 1970, or since the source's start
   FrameStatus status = FrameStatus::good;
-  std::string reason;                         ///< why it is not good
-  bool road_reliable = false;                 ///< the road was found before matching
-  bool road_carried_over = false;             ///< ... from the frame before; else it was estimated anew
-  double roll_rad = unknown;                  ///< ψ
-  double roll_stderr_rad = unknown;           ///< its standard error
-  bool roll_observable = false;               ///< false when the camera looks straight down
-  double alpha0 = unknown;                    ///< pixels
-  double alpha1 = unknown;                    ///< pixels per pixel
-  RoadModel road{unknown, unknown, unknown};  ///< after matching
-  double height_m = unknown;                  ///< of the camera over the road, when calibrated
-  double pitch_rad = unknown;                 ///< of the optical axis below the road's horizon, when calibrated
-  double sigma_d_px = unknown;                ///< spread of the transformed disparities over the road
-  double valid_share = unknown;               ///< share of the pixels that have a disparity
-  double noise_px = unknown;                  ///< of the intact road
-  double matching_ms = unknown;               ///< time in the pipeline
-  double damage_ms = unknown;                 ///< time in finding and measuring damage
-  std::vector<Damage> damages;                ///< deepest first
+  std::string reason;                              ///< why it is not good
+  bool road_reliable = false;                      ///< the road was found before matching
+  bool road_tracked = false;                       ///< ... from the frame before; else it was estimated anew
+  double roll_rad = unknown;                       ///< ψ
+  double roll_stderr_rad = unknown;                ///< its standard error
+  bool roll_observable = false;                    ///< false when the camera looks straight down
+  double alpha0 = unknown;                         ///< pixels
+  double alpha1 = unknown;                         ///< pixels per pixel
+  DisparityPlane road{unknown, unknown, unknown};  ///< after matching
+  double height_m = unknown;                       ///< of the camera over the road, when calibrated
+  double pitch_rad = unknown;                      ///< of the optical axis below the road's horizon, when calibrated
+  double sigma_d_px = unknown;                     ///< spread of the transformed disparities over the road
+  double valid_share = unknown;                    ///< share of the pixels that have a disparity
+  double noise_px = unknown;                       ///< of the intact road
+  double matching_ms = unknown;                    ///< time in the pipeline
+  double damage_ms = unknown;                      ///< time in finding and measuring damage
+  std::vector<Damage> damages;                     ///< deepest first
   std::vector<std::string> warnings;
   double white_level = 0;  ///< sample value of white that the frame was taken with; 0 is the largest of the sample type
-  CarriedState carried;    ///< what the next frame starts from
+  PipelineState carried;   ///< what the next frame starts from
 };
 
 /// One line of JSON without a line end; numbers are read back to the same bits.

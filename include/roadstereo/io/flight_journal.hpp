@@ -13,18 +13,18 @@
 namespace roadstereo::io {
 
 /// What a flight was made with, as names and values; a flight goes on only with the same.
-using FlightFacts = std::vector<std::pair<std::string, std::string>>;
+using Provenance = std::vector<std::pair<std::string, std::string>>;
 
 /// The record of a flight while it is made: a text file with one line a frame, appended as frames are done. A line
 /// that a kill cut short is left out and written again.
 class FlightJournal {
  public:
   /// Begins a journal; an earlier one is replaced. Throws SystemError when the file cannot be written.
-  static FlightJournal begin(const std::filesystem::path& file, const FlightFacts& facts);
+  static FlightJournal begin(const std::filesystem::path& file, const Provenance& facts);
 
   /// Goes on with one. Throws Error when there is none, or when it was begun with other facts: the sentence names the
   /// first that differs.
-  static FlightJournal resume(const std::filesystem::path& file, const FlightFacts& facts);
+  static FlightJournal resume(const std::filesystem::path& file, const Provenance& facts);
 
   FlightJournal(FlightJournal&& other) noexcept;
   FlightJournal& operator=(FlightJournal&&) = delete;

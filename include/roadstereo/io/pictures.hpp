@@ -4,7 +4,7 @@
 #include <string>
 
 #include "roadstereo/image.hpp"
-#include "roadstereo/road_geometry.hpp"
+#include "roadstereo/roll.hpp"
 
 namespace roadstereo::io {
 
@@ -30,10 +30,10 @@ Frame colour_map(ImageView<const float> map, const ColourScale& scale);
 /// The v-disparity histogram (row against disparity, brighter = more pixels) with the line α0 + α1·y(ψ)
 /// fitted to it: the road's disparity at the middle column of each row, dashed at the first and last column
 /// when there is roll.
-Frame v_disparity_picture(ImageView<const float> disparity, const std::optional<RoadGeometry>& geometry);
+Frame v_disparity_picture(ImageView<const float> disparity, const std::optional<RollEstimate>& geometry);
 
 /// Four titled panels, two by two: left image, disparity, transformed disparity, v-disparity histogram.
 Frame result_sheet(const FrameView& left, ImageView<const float> disparity, ImageView<const float> transformed,
-                   double delta_t, const std::optional<RoadGeometry>& geometry, const std::string& title);
+                   double delta_t, const std::optional<RollEstimate>& geometry, const std::string& title);
 
 }  // namespace roadstereo::io

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "roadstereo/calibration.hpp"
+#include "roadstereo/ground_plane.hpp"
 #include "roadstereo/image.hpp"
-#include "roadstereo/road_plane.hpp"
 
 namespace roadstereo::io {
 
@@ -28,7 +28,7 @@ PointCloud cloud_from_disparity(ImageView<const float> disparity, const FrameVie
                                 const StereoCalibration& calibration);
 
 /// The same points in the axes of the road, metres: the road is z = 0, damage lies below.
-PointCloud to_road_frame(const PointCloud& cloud, const RoadFrame& road);
+PointCloud to_road_axes(const PointCloud& cloud, const RoadAxes& road);
 
 /// Reads the vertices of a PLY file: ascii or binary of either byte order, properties in any order and of any type;
 /// colours when it has red, green and blue (whole numbers up to the type's largest, floats from 0 to 1). Faces and

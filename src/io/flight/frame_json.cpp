@@ -53,20 +53,20 @@ class Reader {
 };
 
 template <class Visit>
-void each_field(Measured& figure, Visit& visit) {
+void each_field(Measurement& figure, Visit& visit) {
   visit("value", figure.value);
   visit("std_error", figure.std_error);
 }
 
 template <class Visit>
-void each_field(RoadModel& model, Visit& visit) {
+void each_field(DisparityPlane& model, Visit& visit) {
   visit("a0", model.a0);
   visit("a1", model.a1);
   visit("a2", model.a2);
 }
 
 template <class Visit>
-void each_field(CarriedState& state, Visit& visit) {
+void each_field(PipelineState& state, Visit& visit) {
   visit("width", state.width);
   visit("height", state.height);
   visit("road", state.road);
@@ -114,7 +114,7 @@ void each_field(FlightFrame& frame, Visit& visit) {
   visit("status", frame.status);
   visit("reason", frame.reason);
   visit("road_reliable", frame.road_reliable);
-  visit("road_carried_over", frame.road_carried_over);
+  visit("road_tracked", frame.road_tracked);
   visit("roll_rad", frame.roll_rad);
   visit("roll_stderr_rad", frame.roll_stderr_rad);
   visit("roll_observable", frame.roll_observable);

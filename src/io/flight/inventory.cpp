@@ -10,7 +10,7 @@ namespace roadstereo::io {
 namespace {
 
 /// Frames that a damage may be missed in between.
-constexpr std::int64_t longest_gap = 2;
+constexpr std::int64_t max_gap = 2;
 
 double depth_of(const Damage& damage) {
   return damage.metrics ? damage.metrics->max_depth_m.value : damage.max_depth_px.value;
@@ -49,9 +49,9 @@ bool is_worse(const RoadDamage& one, const RoadDamage& other) {
 /// The recent sighting that lies most under the damage, or none.
 const FlightInventory::Sighting* FlightInventory::seen_before(const Damage& damage,
                                                               const std::vector<std::int64_t>& taken) const {
-  constexpr double least_overlap = 0.2;
+  constexpr double min_overlap = 0.2;
   const Sighting* best = nullptr;
-  double most = least_overlap;
+  double most = min_overlap;
   for (const Sighting& sighting : recent_) {
     if (sighting.damage.kind != damage.kind) continue;
     if (std::find(taken.begin(), taken.end(), sighting.id) != taken.end()) continue;
@@ -77,7 +77,7 @@ void FlightInventory::remember(const std::vector<Sighting>& sightings) {
   }
   if (!along_u.empty()) motion_px_ = {take_median(along_u), take_median(along_v)};
   const auto outdated = [&](const Sighting& old) {
-    return place_ - old.place > longest_gap ||
+    return place_ - old.place > max_gap ||
            std::any_of(sightings.begin(), sightings.end(), [&](const Sighting& now) { return now.id == old.id; });
   };
   recent_.erase(std::remove_if(recent_.begin(), recent_.end(), outdated), recent_.end());
@@ -86,7 +86,7 @@ void FlightInventory::remember(const std::vector<Sighting>& sightings) {
 
 std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
   ++place_;
-  if (frame.status == FrameStatus::good && !frame.road_carried_over) recent_.clear();  // a cut, or a jump
+  if (frame.status == FrameStatus::good && !frame.road_tracked) recent_.clear();  // a cut, or a jump
   std::vector<std::int64_t> ids;
   std::vector<Sighting> sightings;
   for (const Damage& damage : frame.damages) {

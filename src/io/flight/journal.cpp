@@ -26,7 +26,7 @@ int open_file(const fs::path& file, int flags) {
   return descriptor;
 }
 
-std::string facts_line(const FlightFacts& facts) {
+std::string facts_line(const Provenance& facts) {
   Json document = Json::object();
   for (const auto& [name, value] : facts) document[name] = value;
   return document.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -53,7 +53,7 @@ FlightFrame frame_of(const std::string& line, const fs::path& file, std::int64_t
   }
 }
 
-void require_same(const std::string& begun_with, const FlightFacts& facts, const fs::path& file) {
+void require_same(const std::string& begun_with, const Provenance& facts, const fs::path& file) {
   const Json begun = Json::parse(begun_with, nullptr, false);
   if (!begun.is_object()) fail(file.string(), ": is no journal of a flight; begin anew without --resume");
   for (const auto& [name, value] : facts) {
@@ -89,13 +89,13 @@ void FlightJournal::write_line(const std::string& line) {
   }
 }
 
-FlightJournal FlightJournal::begin(const fs::path& file, const FlightFacts& facts) {
+FlightJournal FlightJournal::begin(const fs::path& file, const Provenance& facts) {
   FlightJournal journal(file, open_file(file, O_CREAT | O_TRUNC));
   journal.write_line(facts_line(facts));
   return journal;
 }
 
-FlightJournal FlightJournal::resume(const fs::path& file, const FlightFacts& facts) {
+FlightJournal FlightJournal::resume(const fs::path& file, const Provenance& facts) {
   std::uintmax_t good_end = 0;
   std::int64_t lines = 0;
   std::optional<FlightFrame> last;

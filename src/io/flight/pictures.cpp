@@ -6,7 +6,7 @@
 #include "roadstereo/io/flight_pictures.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/io/jpeg.hpp"
-#include "roadstereo/surroundings.hpp"
+#include "roadstereo/pixel_box.hpp"
 
 namespace roadstereo::io {
 namespace {
@@ -38,8 +38,8 @@ std::vector<std::uint8_t> frame_thumbnail(const FrameView& left, const DamageMap
 
 std::vector<std::uint8_t> damage_picture(const FrameView& left, const DamageMap& map, const Damage& damage, int side) {
   constexpr double margin_share = 0.4;
-  constexpr int least_margin_px = 16;
-  const PixelBox box = surroundings(map, damage, margin_share, least_margin_px);
+  constexpr int min_margin_px = 16;
+  const PixelBox box = box_with_margin(map, damage, margin_share, min_margin_px);
   const double scale = std::min(1.0, static_cast<double>(side) / std::max(box.width(), box.height()));
   cv::Mat picture = part_of(left, box, scale);
   draw_outline(picture, map, damage, 1, {box.u0, box.v0}, scale);

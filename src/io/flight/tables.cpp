@@ -20,7 +20,7 @@ std::string remarks(const FlightFrame& frame) {
 const char* road_source(const FlightFrame& frame) {
   if (frame.status != FrameStatus::good) return "";
   if (!frame.road_reliable) return "unknown";
-  return frame.road_carried_over ? "carried over" : "estimated";
+  return frame.road_tracked ? "carried over" : "estimated";
 }
 
 }  // namespace

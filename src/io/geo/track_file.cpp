@@ -7,10 +7,10 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{1} << 28U;  // a day at 10 Hz is some 100 MB of GPX
+constexpr std::size_t max_bytes = std::size_t{1} << 28U;  // a day at 10 Hz is some 100 MB of GPX
 
 TrackText read_text(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_file(path, most_bytes);
+  const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
   if (std::find(bytes.begin(), bytes.end(), std::uint8_t{0}) != bytes.end()) {
     fail(path, ": this is not a text file; a track is one: GPX or CSV");
   }

@@ -10,10 +10,10 @@
 namespace roadstereo::io {
 namespace {
 
-double parse_angle(const std::string& where, const std::string& name, std::string_view text, double most_deg) {
+double parse_angle(const std::string& where, const std::string& name, std::string_view text, double max_deg) {
   const double value = parse_figure(where, name, text);
-  if (std::abs(value) > most_deg) {
-    fail(where, ": ", name, " is ", value, "; it must be between ", -most_deg, " and ", most_deg, " degrees");
+  if (std::abs(value) > max_deg) {
+    fail(where, ": ", name, " is ", value, "; it must be between ", -max_deg, " and ", max_deg, " degrees");
   }
   return value;
 }

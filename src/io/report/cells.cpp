@@ -23,7 +23,7 @@ std::string key_attribute(const ReportCell& cell) {
 
 }  // namespace
 
-ReportCell measured_cell(const Measured& figure) {
+ReportCell measured_cell(const Measurement& figure) {
   return {escaped(measured_text(figure, "")), figure.value};
 }
 

@@ -14,7 +14,7 @@ struct ReportCell {
   std::optional<double> key{};
 };
 
-ReportCell measured_cell(const Measured& figure);
+ReportCell measured_cell(const Measurement& figure);
 /// A value with three significant digits.
 ReportCell plain_cell(double value);
 ReportCell fixed_cell(double value, int decimals);

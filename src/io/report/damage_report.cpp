@@ -71,12 +71,12 @@ std::string sections(const DamageReportInput& input) {
   const cv::Mat background = background_of(input);
   const SectionSize size = SectionSize::for_count(damages.size());
   std::string html = "<h2>Each damage</h2>\n";
-  if (damages.size() > most_reliefs) {
-    html += "<p class=\"hint\">The " + std::to_string(most_reliefs) + " deepest of the " +
+  if (damages.size() > max_reliefs) {
+    html += "<p class=\"hint\">The " + std::to_string(max_reliefs) + " deepest of the " +
             std::to_string(damages.size()) + " damages have a 3-D view.</p>\n";
   }
   for (std::size_t i = 0; i < damages.size(); ++i) {
-    html += damage_section(input, background, damages[i], size, i < most_reliefs);
+    html += damage_section(input, background, damages[i], size, i < max_reliefs);
   }
   return html;
 }

@@ -102,7 +102,7 @@ SectionSize SectionSize::for_count(std::size_t damages) {
   constexpr std::size_t few = 10, bytes_of_all = 900000;
   const std::size_t bytes = bytes_of_all / std::max<std::size_t>(1, damages);
   if (damages <= few) return {{480, bytes}, 120};
-  return {{damages <= most_reliefs ? 360 : 160, bytes}, 72};
+  return {{damages <= max_reliefs ? 360 : 160, bytes}, 72};
 }
 
 std::string damage_section(const DamageReportInput& input, const cv::Mat& background, const Damage& damage,
@@ -110,7 +110,7 @@ std::string damage_section(const DamageReportInput& input, const cv::Mat& backgr
   const DamageMap& map = input.map;
   const Crop crop = crop_around(map, damage, size.picture);
   const double reach = reach_of(map, damage);
-  const CrossSection section = cross_section(map, damage, holes_of(input), rig_of(input));
+  const CrossSection section = extract_cross_section(map, damage, holes_of(input), rig_of(input));
   Fields fields;
   fields["id"] = std::to_string(damage.id);
   fields["kind"] = name_of(damage.kind);
@@ -124,7 +124,7 @@ std::string damage_section(const DamageReportInput& input, const cv::Mat& backgr
   fields["profile"] = profile_svg(section, damage, map.metric);
   fields["relief"] = "";
   if (with_relief) {
-    const Relief relief = damage_relief(map, damage, holes_of(input), rig_of(input), size.relief_points);
+    const Relief relief = extract_relief(map, damage, holes_of(input), rig_of(input), size.relief_points);
     fields["relief"] = relief_html(relief, damage, reach);
   }
   return fill(templates::damage, fields);

@@ -17,7 +17,7 @@ struct SectionSize {
 };
 
 /// How many of the deepest damages have a 3-D view.
-inline constexpr std::size_t most_reliefs = 30;
+inline constexpr std::size_t max_reliefs = 30;
 
 /// The section of one damage: its figures, image, depths, cross-section and, `with_relief`, 3-D view. `background` is
 /// that of the report, 8-bit BGR.

@@ -31,17 +31,17 @@ std::string value_text(double value, const std::string& unit) {
   return with_unit(number_text(value, decimals_for(value, 3)), unit);
 }
 
-std::string measured_text(const Measured& figure, const std::string& unit) {
+std::string measured_text(const Measurement& figure, const std::string& unit) {
   const double error = figure.std_error;
   if (!std::isfinite(figure.value) || !(error > 0) || !std::isfinite(error)) return value_text(figure.value, unit);
   const bool small_first_digit = error / std::pow(10.0, first_place(error)) < 3;
-  constexpr int most_digits = 5;  // of the value: more are not read
-  const int most = figure.value == 0 ? most_digits : decimals_for(figure.value, most_digits);
+  constexpr int max_digits = 5;  // of the value: more are not read
+  const int most = figure.value == 0 ? max_digits : decimals_for(figure.value, max_digits);
   const int decimals = std::min(decimals_for(error, small_first_digit ? 2 : 1), most);
   return with_unit(number_text(figure.value, decimals) + "\u00a0±\u00a0" + number_text(error, decimals), unit);
 }
 
-Measured scaled(const Measured& figure, double factor) {
+Measurement scaled(const Measurement& figure, double factor) {
   return {figure.value * factor, figure.std_error * factor};
 }
 

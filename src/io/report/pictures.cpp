@@ -136,10 +136,10 @@ Image<float> heights(const DamageMap& map, const PixelBox& box) {
   return part;
 }
 
-cv::Mat shrunk(const cv::Mat& picture, int most_side) {
+cv::Mat shrunk(const cv::Mat& picture, int max_side) {
   const int longer = std::max(picture.cols, picture.rows);
-  if (longer <= most_side) return picture;
-  const double scale = static_cast<double>(most_side) / longer;
+  if (longer <= max_side) return picture;
+  const double scale = static_cast<double>(max_side) / longer;
   cv::Mat small;
   const cv::Size size(std::max(1, cvRound(scale * picture.cols)), std::max(1, cvRound(scale * picture.rows)));
   cv::resize(picture, small, size, 0, 0, cv::INTER_AREA);
@@ -157,12 +157,12 @@ std::vector<std::uint8_t> encoded(const char* format, const cv::Mat& picture, co
 }  // namespace
 
 std::string picture_uri(const cv::Mat& picture, const PictureLimit& limit) {
-  constexpr int good_quality = 88, least_quality = 60, quality_step = 14;
-  constexpr int least_side = 32;
+  constexpr int good_quality = 88, min_quality = 60, quality_step = 14;
+  constexpr int min_side = 32;
   const std::vector<std::uint8_t> png = encoded(".png", shrunk(picture, limit.side), {});
   std::vector<std::uint8_t> jpeg;
-  for (int side = limit.side; jpeg.empty() || (jpeg.size() > limit.bytes && side > least_side); side = side * 3 / 4) {
-    for (int quality = good_quality; quality >= least_quality; quality -= quality_step) {
+  for (int side = limit.side; jpeg.empty() || (jpeg.size() > limit.bytes && side > min_side); side = side * 3 / 4) {
+    for (int quality = good_quality; quality >= min_quality; quality -= quality_step) {
       jpeg = encoded(".jpg", shrunk(picture, side), {cv::IMWRITE_JPEG_QUALITY, quality});
       if (jpeg.size() <= limit.bytes) break;
     }
@@ -180,10 +180,10 @@ std::string picture_uri(std::span<const std::uint8_t> encoded_picture, const Pic
 
 Crop crop_around(const DamageMap& map, const Damage& damage, const PictureLimit& limit) {
   constexpr double share = 0.25;
-  constexpr int least_margin_px = 8;
+  constexpr int min_margin_px = 8;
   const auto& [u0, v0, u1, v1] = damage.box_px;
   const int longer = std::max(u1 - u0, v1 - v0) + 1;  // a thin one still shows what is around it
-  const PixelBox box = surroundings(map, damage, share, std::max(least_margin_px, longer / 8));
+  const PixelBox box = box_with_margin(map, damage, share, std::max(min_margin_px, longer / 8));
   const double scale = std::min(1.0, static_cast<double>(limit.side) / std::max(box.width(), box.height()));
   return {box, {std::max(1, cvRound(scale * box.width())), std::max(1, cvRound(scale * box.height()))}, limit.bytes};
 }
@@ -199,8 +199,8 @@ std::string depth_svg(const DamageMap& map, const Damage& damage, const Crop& cr
   const Mask interpolated = crop_mask(crop, [&](int u, int v) {
     return !holes.empty() && std::isfinite(map.depth(u, v)) && !std::isfinite(holes(u, v));
   });
-  constexpr int most_cells = 200;  // along a side, so that many small holes do not swell the report
-  const int side = 1 + (std::max(crop.size.width, crop.size.height) - 1) / most_cells;
+  constexpr int max_cells = 200;  // along a side, so that many small holes do not swell the report
+  const int side = 1 + (std::max(crop.size.width, crop.size.height) - 1) / max_cells;
   fields["holes"] = area_path(in_cells(interpolated, side), side);
   fields["cut"] = marks.section == nullptr ? "" : cut_path(*marks.section, crop);
   return fill(templates::depth, fields);

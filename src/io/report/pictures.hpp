@@ -8,7 +8,7 @@
 #include "roadstereo/cross_section.hpp"
 #include "roadstereo/damage.hpp"
 #include "roadstereo/image.hpp"
-#include "roadstereo/surroundings.hpp"
+#include "roadstereo/pixel_box.hpp"
 
 namespace roadstereo::io {
 

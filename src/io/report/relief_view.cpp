@@ -13,7 +13,7 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr double most_steps = 32000;
+constexpr double max_steps = 32000;
 constexpr std::int16_t unknown_step = -32768;
 
 /// Values as whole steps, two bytes each, low byte first.
@@ -28,7 +28,7 @@ Steps in_steps(const Image<float>& values) {
   for (const float* at = begin; at != begin + values.pixels(); ++at) {
     if (std::isfinite(*at)) largest = std::max(largest, static_cast<double>(std::abs(*at)));
   }
-  const double step = largest > 0 ? largest / most_steps : 1;
+  const double step = largest > 0 ? largest / max_steps : 1;
   std::vector<std::uint8_t> bytes;
   bytes.reserve(2 * values.pixels());
   for (const float* at = begin; at != begin + values.pixels(); ++at) {

@@ -48,11 +48,11 @@ std::string severity_chips(const DamageMap& map) {
 
 /// The sum of a figure over the damages of a kind; their errors count as independent.
 template <auto Member>
-Measured total(const DamageMap& map, DamageKind kind) {
-  Measured sum;
+Measurement total(const DamageMap& map, DamageKind kind) {
+  Measurement sum;
   for (const Damage& damage : map.damages) {
     if (damage.kind != kind || !damage.metrics) continue;
-    const Measured& figure = (*damage.metrics).*Member;
+    const Measurement& figure = (*damage.metrics).*Member;
     sum.value += figure.value;
     sum.std_error = std::hypot(sum.std_error, figure.std_error);
   }
@@ -61,8 +61,8 @@ Measured total(const DamageMap& map, DamageKind kind) {
 
 std::string total_cards(const DamageMap& map, DamageKind kind) {
   const bool below = kind == DamageKind::depression;
-  const Measured area = total<&DamageMetrics::area_m2>(map, kind);
-  const Measured volume = total<&DamageMetrics::volume_m3>(map, kind);
+  const Measurement area = total<&DamageMetrics::area_m2>(map, kind);
+  const Measurement volume = total<&DamageMetrics::volume_m3>(map, kind);
   return card(below ? "Depressions" : "Protrusions", measured_text(area, "m²"),
               escaped((below ? "missing volume " : "raised volume ") + measured_text(scaled(volume, litres), "L")));
 }
@@ -103,7 +103,7 @@ std::string summary_notices(const DamageMap& map) {
         "of its surface by more than this rig can tell apart.</p>";
   }
   if (!map.metric) {
-    const std::string why = map.unmetric_reason.empty() ? "the frame has no calibration" : map.unmetric_reason;
+    const std::string why = map.non_metric_reason.empty() ? "the frame has no calibration" : map.non_metric_reason;
     notices +=
         "<p class=\"notice\"><strong>Pixels only.</strong> Nothing here is in metres and no severity is given, "
         "because: " +

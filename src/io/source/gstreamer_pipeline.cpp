@@ -11,7 +11,7 @@ namespace roadstereo::io {
 namespace {
 
 constexpr GstClockTime slice = 100 * GST_MSECOND;  // between looks at what the pipeline says
-constexpr int most_slices = 100;
+constexpr int max_slices = 100;
 
 struct ErrorFree {
   void operator()(GError* error) const { g_error_free(error); }
@@ -87,7 +87,7 @@ void GStreamerPipeline::parse(const std::string& text) {
 void GStreamerPipeline::start(bool drop_when_live) {
   gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
   GstStateChangeReturn state = GST_STATE_CHANGE_ASYNC;
-  for (int i = 0; i < most_slices && state == GST_STATE_CHANGE_ASYNC; ++i) {
+  for (int i = 0; i < max_slices && state == GST_STATE_CHANGE_ASYNC; ++i) {
     state = gst_element_get_state(pipeline_.get(), nullptr, nullptr, slice);
     throw_failure();
   }
@@ -125,7 +125,7 @@ double GStreamerPipeline::taken_at(const GstBuffer* buffer) const {
 }
 
 std::optional<PipelinePicture> GStreamerPipeline::pull() {
-  for (int i = 0; i < most_slices; ++i) {
+  for (int i = 0; i < max_slices; ++i) {
     const std::unique_ptr<GstSample, SampleUnref> sample(gst_app_sink_try_pull_sample(sink_.get(), slice));
     if (sample != nullptr)
       return PipelinePicture{copy_samples(sample.get()), taken_at(gst_sample_get_buffer(sample.get()))};

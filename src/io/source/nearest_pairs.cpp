@@ -42,7 +42,7 @@ bool NearestPairs::can_tell() const {
   const std::size_t left = left_.waiting.size();
   const std::size_t right = right_.waiting.size();
   if (finished_) return left + right > 0;
-  return (left >= 2 && right >= 2) || left >= most_waiting || right >= most_waiting;
+  return (left >= 2 && right >= 2) || left >= max_waiting || right >= max_waiting;
 }
 
 std::optional<std::int64_t> NearestPairs::distance_ns(std::int64_t stamp_ns, const Side& other) const {

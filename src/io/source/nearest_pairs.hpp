@@ -23,10 +23,10 @@ struct MatchedMessages {
 
 /// Pairs two streams of messages by their stamps: each goes with the other's nearest, if that is not nearer to another
 /// and not farther than a limit. Pairs come in the order of time. Keeps a few messages only: a stream may lag behind
-/// the other by up to `most_waiting`.
+/// the other by up to `max_waiting`.
 class NearestPairs {
  public:
-  static constexpr std::size_t most_waiting = 32;  ///< messages of one side
+  static constexpr std::size_t max_waiting = 32;  ///< messages of one side
 
   explicit NearestPairs(double limit_s);
 

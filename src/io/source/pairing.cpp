@@ -31,7 +31,7 @@ ImagePair whole_pair(const ViewFile& left, const ViewFile& right) {
 
 enum class Side { left, right };
 
-ImagePair lonely(const ViewFile& view, Side side) {
+ImagePair unpaired(const ViewFile& view, Side side) {
   const bool left = side == Side::left;
   ImagePair pair;
   pair.name = view.stem;
@@ -46,10 +46,10 @@ std::vector<ImagePair> pair_by_key(const std::vector<ViewFile>& left, const std:
   auto l = left.begin();
   auto r = right.begin();
   while (l != left.end() || r != right.end()) {
-    if (r == right.end() || (l != left.end() && comes_before(l->key, r->key))) {
-      pairs.push_back(lonely(*l++, Side::left));
-    } else if (l == left.end() || comes_before(r->key, l->key)) {
-      pairs.push_back(lonely(*r++, Side::right));
+    if (r == right.end() || (l != left.end() && natural_less(l->key, r->key))) {
+      pairs.push_back(unpaired(*l++, Side::left));
+    } else if (l == left.end() || natural_less(r->key, l->key)) {
+      pairs.push_back(unpaired(*r++, Side::right));
     } else {
       pairs.push_back(whole_pair(*l++, *r++));
     }
@@ -80,9 +80,9 @@ std::vector<ImagePair> pair_by_time(const std::vector<ViewFile>& left, const std
   while (l != left.end() && r != right.end()) {
     const double difference = *l->time_s - *r->time_s;
     if (difference < 0 && next_is_nearer(l, left.end(), *r->time_s)) {
-      pairs.push_back(lonely(*l++, Side::left));
+      pairs.push_back(unpaired(*l++, Side::left));
     } else if (difference > 0 && next_is_nearer(r, right.end(), *l->time_s)) {
-      pairs.push_back(lonely(*r++, Side::right));
+      pairs.push_back(unpaired(*r++, Side::right));
     } else {
       pairs.push_back(whole_pair(*l, *r));
       if (std::abs(difference) > limit_s) pairs.back().refused = apart_text(difference, limit_s);
@@ -90,14 +90,14 @@ std::vector<ImagePair> pair_by_time(const std::vector<ViewFile>& left, const std
       ++r;
     }
   }
-  for (; l != left.end(); ++l) pairs.push_back(lonely(*l, Side::left));
-  for (; r != right.end(); ++r) pairs.push_back(lonely(*r, Side::right));
+  for (; l != left.end(); ++l) pairs.push_back(unpaired(*l, Side::left));
+  for (; r != right.end(); ++r) pairs.push_back(unpaired(*r, Side::right));
   return pairs;
 }
 
 }  // namespace
 
-bool comes_before(const std::string& one, const std::string& other) {
+bool natural_less(const std::string& one, const std::string& other) {
   std::size_t i = 0;
   std::size_t j = 0;
   while (i < one.size() && j < other.size()) {
@@ -117,7 +117,7 @@ bool comes_before(const std::string& one, const std::string& other) {
 
 std::vector<ImagePair> pair_views(std::vector<ViewFile> left, std::vector<ViewFile> right,
                                   double max_time_difference_s) {
-  const auto by_key = [](const ViewFile& a, const ViewFile& b) { return comes_before(a.key, b.key); };
+  const auto by_key = [](const ViewFile& a, const ViewFile& b) { return natural_less(a.key, b.key); };
   std::sort(left.begin(), left.end(), by_key);
   std::sort(right.begin(), right.end(), by_key);
   if (!named_by_time(left) || !named_by_time(right)) return pair_by_key(left, right);

@@ -17,7 +17,7 @@ struct ViewFile {
 };
 
 /// Orders names as people count: "frame2" before "frame10".
-bool comes_before(const std::string& one, const std::string& other);
+bool natural_less(const std::string& one, const std::string& other);
 
 /// Pairs the images of equal key; where both cameras name their images by the time, those nearest in time. What has no
 /// partner, or one that is further away than `max_time_difference_s`, is refused.

@@ -41,19 +41,19 @@ VideoFile::VideoFile(std::string name) : name_(std::move(name)) {
   width_ = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH));
   height_ = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT));
   if (width_ <= 0 || height_ <= 0) fail(name_, ": there are no pictures in the video");
-  constexpr double most_hz = 10000;  // beyond are the ticks of a clock
+  constexpr double max_hz = 10000;  // beyond are the ticks of a clock
   const double rate = capture_.get(cv::CAP_PROP_FPS);
-  if (rate > 0 && rate <= most_hz) rate_hz_ = rate;
-  constexpr double most_pictures = 1e12;
+  if (rate > 0 && rate <= max_hz) rate_hz_ = rate;
+  constexpr double max_pictures = 1e12;
   const double pictures = capture_.get(cv::CAP_PROP_FRAME_COUNT);
-  if (pictures > 0 && pictures < most_pictures) stated_ = std::llround(pictures);
+  if (pictures > 0 && pictures < max_pictures) stated_ = std::llround(pictures);
   grey_ = is_grey(capture_);
 }
 
 /// Behind a picture that cannot be decoded others may follow: OpenCV says the same as at the end.
 bool VideoFile::find_next() {
-  constexpr int most_lost = 64;
-  for (int lost = 0; lost < most_lost; ++lost) {
+  constexpr int max_lost = 64;
+  for (int lost = 0; lost < max_lost; ++lost) {
     if (!capture_.grab()) continue;
     lost_ = lost;
     held_ = true;

@@ -7,17 +7,17 @@
 #include "pipeline/cuda/stage_clock.hpp"
 #include "pipeline/pair_checks.hpp"
 #include "road/cuda/disparity_transform.hpp"
-#include "road/cuda/geometry_judgement.hpp"
 #include "road/cuda/map_sums.hpp"
 #include "road/cuda/perspective.hpp"
 #include "road/cuda/road_fit.hpp"
 #include "road/cuda/road_verification.hpp"
-#include "road/cuda/verification_judgement.hpp"
+#include "road/cuda/roll_assessment.hpp"
+#include "road/cuda/verification_assessment.hpp"
 #include "road/refinement/cuda/refinement_settings.hpp"
 #include "road/shift_terms_of.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
-#include "stereo/coarse/cuda/coarse_look.hpp"
+#include "stereo/coarse/cuda/coarse_search.hpp"
 #include "stereo/cuda/device_matcher.hpp"
 #include "stereo/window.hpp"
 
@@ -37,7 +37,7 @@ class DeviceStages final : public FrameStages {
   DeviceStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration,
                const Device& device)
       : options_(options), calibration_(calibration), device_(device.index), matcher_(device.multiprocessors) {
-    if (options.narrow_search || options.matcher.prior_slope > 0) coarse_look_.emplace(options.coarse_search);
+    if (options.narrow_search || options.matcher.prior_weight > 0) coarse_search_.emplace(options.coarse_search);
   }
 
   void prepare(const FrameView& left, const FrameView& right, FrameResult&) override {
@@ -63,11 +63,12 @@ class DeviceStages final : public FrameStages {
     return {left_on_host_, right_on_host_};
   }
 
-  RoadModelEstimate verify_road(const RoadModel& previous, const FrameResult&) override {
+  RoadModelEstimate verify_road(const DisparityPlane& previous, const FrameResult&) override {
     verification_.run(maps_.grey(), plane(right_), {nullptr, plane_terms(previous)}, options_.road_model.with_roll,
                       stream());
     wait_for_pair();
-    return judge_verification(verification_.figures(), previous, width_, height_, calibration_, options_.road_model);
+    return assess_road_verification(verification_.figures(), previous, width_, height_, calibration_,
+                                    options_.road_model);
   }
 
   void transform_perspective(const FrameResult& result) override {
@@ -77,17 +78,17 @@ class DeviceStages final : public FrameStages {
     clock_.mark(StageClock::transformed_target, stream());
   }
 
-  void look_coarsely(const FrameResult& result) override {
+  void search_coarsely(const FrameResult& result) override {
     input_ = {maps_.grey(), plane(target_), first_column_.data(), result.shift.disparities};
-    if (coarse_look_ && coarse_look_->find({input_.reference, input_.target, input_.first_column, input_.disparities,
-                                            shift_terms(result.shift)},
-                                           stream())) {
+    if (coarse_search_ && coarse_search_->find({input_.reference, input_.target, input_.first_column,
+                                                input_.disparities, shift_terms(result.shift)},
+                                               stream())) {
       if (options_.narrow_search) {
-        input_.reference_ranges = coarse_look_->reference_ranges();
-        input_.target_ranges = coarse_look_->target_ranges();
+        input_.reference_ranges = coarse_search_->reference_ranges();
+        input_.target_ranges = coarse_search_->target_ranges();
       }
-      input_.prior = coarse_look_->prior();
-      input_.prior_factor = coarse_look_->factor();
+      input_.prior = coarse_search_->prior();
+      input_.prior_factor = coarse_search_->factor();
     }
     clock_.mark(StageClock::looked, stream());
   }
@@ -99,18 +100,18 @@ class DeviceStages final : public FrameStages {
 
   void refine(FrameResult& result) override {
     cuda::refine_disparities(matched_.disparity, matched_.variance, shift_terms(result.shift),
-                             refinement_settings(options_.refinement, support_pixels(options_.matcher)),
+                             refinement_settings(options_.refinement, effective_samples(options_.matcher)),
                              maps_.disparity(), maps_.sigma(), stream());
     clock_.mark(StageClock::refined, stream());
   }
 
-  bool fit_geometry(const std::optional<RoadModel>& prior, double initial_roll_rad, double least_share,
+  bool fit_geometry(const std::optional<DisparityPlane>& prior, double initial_roll_rad, double min_share,
                     FrameResult& result) override;
   void transform(FrameResult& result) override;
-  void leave_untransformed(FrameResult&) override;
+  void invalidate_transformed(FrameResult&) override;
   void deliver(FrameResult& result) override;
 
-  void use_device(const DeviceUse& use) override {
+  void set_device_options(const DeviceOptions& use) override {
     wait();
     stream_ = use.stream != nullptr ? use.stream : own_stream_.get();
     download_ = use.download;
@@ -145,13 +146,13 @@ class DeviceStages final : public FrameStages {
 
   /// The end of the frame, around a plane that may still lie in device memory.
   void enqueue_transform(const PlaneSource& road, const FrameResult& result) {
-    transform_.run(maps_.disparity(), road, {options_.road_geometry.delta_t_px, result.shift.delta_p},
-                   maps_.transformed(), stream());
+    transform_.run(maps_.disparity(), road, {options_.roll.delta_t_px, result.shift.delta_p}, maps_.transformed(),
+                   stream());
     clock_.mark(StageClock::transformed, stream());
     if (download_) maps_.download(stream());
   }
 
-  RoadGeometry fit_on_host();
+  RollEstimate fit_on_host();
 
   PipelineOptions options_;
   std::optional<StereoCalibration> calibration_;
@@ -169,7 +170,7 @@ class DeviceStages final : public FrameStages {
   GreyImage left_on_host_, right_on_host_;
   Image<float> disparity_on_host_;
   RoadVerification verification_;
-  std::optional<CoarseLook> coarse_look_;
+  std::optional<CudaCoarseSearch> coarse_search_;
   DeviceMatchInput input_;
   DeviceMatcher matcher_;
   DeviceMatchMaps matched_;
@@ -182,9 +183,9 @@ class DeviceStages final : public FrameStages {
 
 /// The robust fit around a known road goes on into the transformation without the host. Other solvers come back to it
 /// for their plane; without a road before matching, the host searches for one.
-bool DeviceStages::fit_geometry(const std::optional<RoadModel>& prior, double initial_roll_rad, double least_share,
+bool DeviceStages::fit_geometry(const std::optional<DisparityPlane>& prior, double initial_roll_rad, double min_share,
                                 FrameResult& result) {
-  const RoadGeometryOptions& options = options_.road_geometry;
+  const RollOptions& options = options_.roll;
   const MaskedMap map{maps_.disparity(), {}};
   const bool robust = options.solver == RollSolver::robust;
   transformed_ = robust && prior.has_value();
@@ -199,7 +200,7 @@ bool DeviceStages::fit_geometry(const std::optional<RoadModel>& prior, double in
   }
   wait();
   result.valid_share = static_cast<double>(transform_.figures().valid) / (static_cast<double>(width_) * height_);
-  if (result.valid_share < least_share) return false;
+  if (result.valid_share < min_share) return false;
   if (transformed_) {
     result.geometry = finish_road_fit(fit_.figures(), width_, height_, options);
   } else if (robust) {
@@ -213,10 +214,10 @@ bool DeviceStages::fit_geometry(const std::optional<RoadModel>& prior, double in
   return true;
 }
 
-RoadGeometry DeviceStages::fit_on_host() {
+RollEstimate DeviceStages::fit_on_host() {
   download(maps_.disparity(), disparity_on_host_);
   wait();
-  return fit_road_geometry(disparity_on_host_, std::nullopt, std::nullopt, 0, options_.road_geometry, options_.threads);
+  return estimate_roll(disparity_on_host_, std::nullopt, std::nullopt, 0, options_.roll, options_.threads);
 }
 
 void DeviceStages::transform(FrameResult& result) {
@@ -227,10 +228,10 @@ void DeviceStages::transform(FrameResult& result) {
   }
   const TransformFigures& found = transform_.figures();
   result.delta_t = found.delta_t;
-  result.spread = {found.road_px, found.all_px, found.road_share};
+  result.spread = {found.sigma_road_px, found.sigma_all_px, found.road_share};
 }
 
-void DeviceStages::leave_untransformed(FrameResult&) {
+void DeviceStages::invalidate_transformed(FrameResult&) {
   clock_.mark(StageClock::fitted, stream());
   constexpr int every_bit = 0xFF;  // a NaN
   const std::size_t bytes = sizeof(float) * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);

@@ -24,7 +24,7 @@ class StageClock {
     ms.coarse = between(transformed_target, looked);
     ms.match = between(looked, matched);
     ms.refinement = between(matched, refined);
-    ms.road_geometry = between(refined, fitted);
+    ms.roll = between(refined, fitted);
     ms.transform = between(fitted, transformed);
   }
 

@@ -11,18 +11,18 @@ namespace roadstereo::cuda {
 /// What DisparityTransform leaves for the host.
 struct TransformFigures {
   double delta_t;
-  double road_px, all_px, road_share;  ///< TransformedSpread
-  int valid;                           ///< disparities of the map that are not NaN
+  double sigma_road_px, sigma_all_px, road_share;  ///< RoadResiduals
+  int valid;                                       ///< disparities of the map that are not NaN
 };
 
 /// Which δt a transformation takes.
 struct TransformOffset {
-  double given;  ///< RoadGeometryOptions::delta_t_px; negative derives it
+  double given;  ///< RollOptions::delta_t_px; negative derives it
   double least;  ///< of the derived one
 };
 
-/// transform_disparity() and measure_spread() on the device, of a plane that may still lie there: the transformed map
-/// equals the host's bit for bit for the same plane. Two launches; the second knows δt from the first.
+/// transform_disparity() and measure_residuals() on the device, of a plane that may still lie there: the transformed
+/// map equals the host's bit for bit for the same plane. Two launches; the second knows δt from the first.
 class DisparityTransform {
  public:
   /// Enqueues it. `transformed` has the size of `disparity`.

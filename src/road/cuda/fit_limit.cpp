@@ -4,8 +4,8 @@
 namespace roadstereo::cuda {
 
 void require_fit_points(int count) {
-  if (count > most_fit_points) {
-    fail("a plane is to be fitted to ", count, " places at once; the device takes at most ", most_fit_points);
+  if (count > max_fit_points) {
+    fail("a plane is to be fitted to ", count, " places at once; the device takes at most ", max_fit_points);
   }
 }
 

@@ -148,10 +148,10 @@ __device__ FitMoments fit_moments(const SampledMap& sampled, const PlaneTerms& p
 
 /// `max_iterations` 0 measures the plane as it is.
 __global__ void __launch_bounds__(1024) fit_map(MaskedMap map, SampledMap sampled, PlaneSource source,
-                                                int max_iterations, RoadFitFigures* figures, RoadFitFigures* result) {
+                                                int max_iterations, RoadFitStatistics* figures, RoadFitStatistics* result) {
   FitState& state = *shared_memory<FitState>();
   const PlaneTerms start = source.get();
-  RoadFitFigures own{start, {start, 0, 0, 0, 0}, 0, 1, {}};
+  RoadFitStatistics own{start, {start, 0, 0, 0, 0}, 0, 1, {}};
   take_sample(map, sampled);
   if (max_iterations > 0) {
     const DevicePoints points{sampled.u, sampled.v, sampled.d, sampled.sample.count()};

@@ -6,7 +6,7 @@
 
 #include "core/cuda/memory.hpp"
 #include "core/cuda/plane.hpp"
-#include "road/cuda/road_fit_figures.hpp"
+#include "road/cuda/road_fit_statistics.hpp"
 #include "road/cuda/robust_plane.hpp"
 
 namespace roadstereo::cuda {
@@ -17,7 +17,7 @@ struct MaskedMap {
   Plane<const std::uint8_t> mask;
 };
 
-/// The device's part of fit_road_geometry(), one launch of one block; finish_road_fit() does the rest on the host.
+/// The device's part of estimate_roll(), one launch of one block; finish_road_fit() does the rest on the host.
 /// The robust solver needs a prior here: without one the host's function searches for a start, and must be called
 /// instead. The other solvers take the sums of MapSums, and come back with the plane for `measure`.
 class RoadFit {
@@ -28,14 +28,14 @@ class RoadFit {
   void measure(const MaskedMap& map, const PlaneTerms& plane, cudaStream_t stream);
 
   const PlaneTerms* plane() const { return &figures_.data()->plane; }  ///< in device memory
-  const RoadFitFigures& figures() const { return *result_.data(); }    ///< once the stream was synchronised
+  const RoadFitStatistics& figures() const { return *result_.data(); }    ///< once the stream was synchronised
 
  private:
   void enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, cudaStream_t stream);
 
   DeviceArray<float> u_, v_, d_, first_, weights_;
-  DeviceArray<RoadFitFigures> figures_{1};
-  PinnedArray<RoadFitFigures> result_{1};
+  DeviceArray<RoadFitStatistics> figures_{1};
+  PinnedArray<RoadFitStatistics> result_{1};
 };
 
 }  // namespace roadstereo::cuda

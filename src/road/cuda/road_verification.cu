@@ -1,8 +1,8 @@
-// Floor: that of guided_match.cu for 500 and 1500 places, and of robust_fit.hpp for as many points. What it takes is
+// Floor: that of plane_match.cu for 500 and 1500 places, and of robust_fit.hpp for as many points. What it takes is
 // the latency of two searches and two fits one after the other.
 
+#include "core/cuda/downsample.hpp"
 #include "core/cuda/launch.hpp"
-#include "core/cuda/shrink.hpp"
 #include "road/cuda/road_verification.hpp"
 #include "road/cuda/robust_fit.hpp"
 #include "road/road_search.hpp"
@@ -11,7 +11,7 @@ namespace roadstereo::cuda {
 namespace {
 
 /// Points and tried places of a search.
-__device__ void count_places(const SearchMemory& search, FitState& state, SearchFigures& figures) {
+__device__ void count_places(const SearchMemory& search, FitState& state, SearchStatistics& figures) {
   int own[2] = {0, 0};
   for (int i = static_cast<int>(threadIdx.x); i < search.count; i += static_cast<int>(blockDim.x)) {
     own[0] += search.slots.d[i] == search.slots.d[i] ? 1 : 0;
@@ -23,26 +23,26 @@ __device__ void count_places(const SearchMemory& search, FitState& state, Search
 }
 
 /// Inliers and the rows that they cover; a thread's own weights are visible to it.
-__device__ void count_inliers(const SearchMemory& search, FitState& state, SearchFigures& figures) {
+__device__ void count_inliers(const SearchMemory& search, FitState& state, SearchStatistics& figures) {
   const auto row = [&](int i, std::uint32_t& key) {
     key = key_of(search.slots.v[i]);
     return search.weights[i] > 0;
   };
-  const SelectedKey lowest = block_select(search.count, row, ShareRank{lowest_row_share}, state.select);
+  const SelectedKey lowest = block_select(search.count, row, ShareRank{row_p05}, state.select);
   figures.inliers = lowest.of;
-  figures.found = lowest.of >= fewest_matches ? 1 : 0;
+  figures.found = lowest.of >= min_matches ? 1 : 0;
   if (figures.found == 0) return;
-  const SelectedKey highest = block_select(search.count, row, ShareRank{highest_row_share}, state.select);
+  const SelectedKey highest = block_select(search.count, row, ShareRank{row_p95}, state.select);
   figures.lowest_row = value_of(lowest.key);
   figures.highest_row = value_of(highest.key);
 }
 
 /// The fit to what a search found; all threads get the figures.
-__device__ SearchFigures fit_search(const SearchMemory& search, const PlaneTerms& start, const RobustFit& fit) {
+__device__ SearchStatistics fit_search(const SearchMemory& search, const PlaneTerms& start, const RobustFit& fit) {
   FitState& state = *shared_memory<FitState>();
-  SearchFigures figures{{start, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
+  SearchStatistics figures{{start, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
   count_places(search, state, figures);
-  if (figures.points < fewest_matches) return figures;
+  if (figures.points < min_matches) return figures;
   const DevicePoints points{search.slots.u, search.slots.v, search.slots.d, search.count};
   auto* residuals = reinterpret_cast<float*>(&state + 1);
   figures.fit = BlockFit(points, fit, state, residuals, search.first, search.weights).run(start);
@@ -51,8 +51,8 @@ __device__ SearchFigures fit_search(const SearchMemory& search, const PlaneTerms
 }
 
 __global__ void __launch_bounds__(1024)
-    fit_around(SearchMemory search, PlaneSource previous, RobustFit fit, SearchFigures* around) {
-  const SearchFigures found = fit_search(search, previous.get(), fit);
+    fit_around(SearchMemory search, PlaneSource previous, RobustFit fit, SearchStatistics* around) {
+  const SearchStatistics found = fit_search(search, previous.get(), fit);
   if (threadIdx.x == 0) *around = found;
 }
 
@@ -65,16 +65,16 @@ __device__ void measure_range(const SearchMemory& around, const PlaneTerms& road
     key = key_of(static_cast<float>(value));
     return near_road(value, expected);
   };
-  const SelectedKey lowest = block_select(around.count, residual, ShareRank{lowest_residual_share}, state.select);
+  const SelectedKey lowest = block_select(around.count, residual, ShareRank{residual_p01}, state.select);
   figures.near = lowest.of;
-  if (lowest.of < fewest_matches) return;
-  const SelectedKey highest = block_select(around.count, residual, ShareRank{highest_residual_share}, state.select);
-  figures.lowest_px = value_of(lowest.key);
-  figures.highest_px = value_of(highest.key);
+  if (lowest.of < min_matches) return;
+  const SelectedKey highest = block_select(around.count, residual, ShareRank{residual_p99}, state.select);
+  figures.residual_p01_px = value_of(lowest.key);
+  figures.residual_p99_px = value_of(highest.key);
 }
 
 __global__ void __launch_bounds__(1024) fit_close(SearchMemory search, SearchMemory around, RobustFit fit,
-                                                  const SearchFigures* found_around, VerificationFigures* result) {
+                                                  const SearchStatistics* found_around, VerificationFigures* result) {
   VerificationFigures own{*found_around, {}, 0, 0, 0};
   const bool needed = own.around.found != 0;
   if (needed) own.close = fit_search(search, own.around.fit.plane, fit);
@@ -105,7 +105,7 @@ GuidedPair RoadVerification::shrunk(Plane<const std::int16_t> left, Plane<const 
   pixels_.reserve(2 * size);
   const auto small_left = packed_plane(pixels_.data(), width, height);
   const auto small_right = packed_plane(pixels_.data() + size, width, height);
-  shrink(left, right, factor, small_left, small_right, stream);
+  downsample(left, right, factor, small_left, small_right, stream);
   return {small_left, small_right, factor};
 }
 
@@ -113,15 +113,15 @@ void RoadVerification::run(Plane<const std::int16_t> left, Plane<const std::int1
                            bool with_roll, cudaStream_t stream) {
   const GuidedPair pair = shrunk(left, right, stream);
   const auto grid = [&](const FineSearch& search) {
-    return guided_grid(pair.left.width, pair.left.height, search.range_px, search.places);
+    return sample_grid(pair.left.width, pair.left.height, search.range_px, search.places);
   };
-  const GuidedGrid first = grid(first_search_again), second = grid(close_search_again);
+  const SampleGrid first = grid(first_search_again), second = grid(close_search_again);
   const SearchMemory around = around_.memory(first.places()), close = close_.memory(second.places());
   const RobustFit fit{fine_fit_scale * pair.factor, with_roll, fine_fit_iterations};
-  SearchFigures* found_around = found_around_.data();
-  match_near_plane(pair, first, previous, nullptr, around.slots, stream);
+  SearchStatistics* found_around = found_around_.data();
+  match_along_plane(pair, first, previous, nullptr, around.slots, stream);
   launch(fit_around, fit_shape(around.count), stream, around, previous, fit, found_around);
-  match_near_plane(pair, second, {&found_around->fit.plane, {}}, &found_around->found, close.slots, stream);
+  match_along_plane(pair, second, {&found_around->fit.plane, {}}, &found_around->found, close.slots, stream);
   launch(fit_close, fit_shape(close.count > around.count ? close.count : around.count), stream, close, around, fit,
          found_around, result_.data());
 }

@@ -6,9 +6,9 @@
 
 #include "core/cuda/memory.hpp"
 #include "core/cuda/plane.hpp"
-#include "road/cuda/guided_match.hpp"
+#include "road/cuda/plane_match.hpp"
 #include "road/cuda/robust_plane.hpp"
-#include "road/cuda/verification_figures.hpp"
+#include "road/cuda/verification_statistics.hpp"
 
 namespace roadstereo::cuda {
 
@@ -21,7 +21,7 @@ struct SearchMemory {
 };
 
 /// The device's part of verify_road_model(): two searches around the last frame's plane, each with a robust fit. What
-/// the figures say of the road is judge_verification()'s to tell. Four launches, six for large images.
+/// the figures say of the road is assess_road_verification()'s to tell. Four launches, six for large images.
 class RoadVerification {
  public:
   /// Enqueues it. The images must stay until then.
@@ -44,7 +44,7 @@ class RoadVerification {
 
   Search around_, close_;
   DeviceArray<std::int16_t> pixels_;
-  DeviceArray<SearchFigures> found_around_{1};
+  DeviceArray<SearchStatistics> found_around_{1};
   PinnedArray<VerificationFigures> result_{1};
 };
 

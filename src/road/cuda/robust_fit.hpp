@@ -41,7 +41,7 @@ inline std::size_t fit_shared_bytes(int count) {
   return sizeof(FitState) + static_cast<std::size_t>(count) * sizeof(float);
 }
 
-static_assert(sizeof(FitState) + most_fit_points * sizeof(float) <= (48U << 10), "every device has 48 KB for a block");
+static_assert(sizeof(FitState) + max_fit_points * sizeof(float) <= (48U << 10), "every device has 48 KB for a block");
 
 /// A fit in the block that runs.
 class BlockFit {
@@ -125,7 +125,7 @@ class BlockFit {
 
   /// The scale's clamp makes any median beyond it the same.
   __device__ double start_scale() {
-    const auto reach = static_cast<float>(1.01 * largest_start_scale_px / normal_from_median);
+    const auto reach = static_cast<float>(1.01 * max_start_scale_px / normal_from_median);
     return start_scale_of(magnitude_of(select_magnitude(reach, true), reach));
   }
 

@@ -12,11 +12,11 @@ struct DevicePoints {
   const float* u;
   const float* v;
   const float* d;
-  int count;  ///< with the missing ones, at most most_fit_points
+  int count;  ///< with the missing ones, at most max_fit_points
 };
 
 /// As many as a block works on in the shared memory that every device has.
-inline constexpr int most_fit_points = 8192;
+inline constexpr int max_fit_points = 8192;
 
 /// Throws Error when there are more.
 void require_fit_points(int count);
@@ -27,7 +27,7 @@ struct RobustFit {
   int max_iterations;
 };
 
-/// fit_robust_plane() on the device: iteratively reweighted least squares in one block.
+/// fit_plane_irls() on the device: iteratively reweighted least squares in one block.
 class RobustPlaneFit {
  public:
   /// Enqueues the fit of `points`. Throws Error when there are too many.

@@ -28,8 +28,8 @@ struct VarianceBounds {
 /// A disparity (NaN unknown) of the variance given, above the road.
 ROADSTEREO_HD inline MeasuredHeight measured(float disparity, float variance, float road,
                                              const VarianceBounds& bounds) {
-  constexpr float widest_sigma = 10;  // pixels; nothing is known less well than by the search range
-  constexpr float widest = widest_sigma * widest_sigma;
+  constexpr float max_sigma = 10;  // pixels; nothing is known less well than by the search range
+  constexpr float widest = max_sigma * max_sigma;
   const MeasuredHeight nothing = not_measured();
   const bool known = disparity == disparity;
   const float bounded = (widest < variance ? widest : variance) + bounds.least;

@@ -15,12 +15,12 @@ namespace {
 
 constexpr int lanes = 16;  // elements that the kernel may touch behind a row
 constexpr int rows_per_band = 32;
-constexpr int most_lines = 65;
+constexpr int max_lines = 65;
 
 /// What is refined, and how.
 struct Maps {
   ImageView<const float> disparity, variance;
-  RoadModel road;
+  DisparityPlane road;
   RefinementOptions options;
 };
 
@@ -76,7 +76,7 @@ class BandRows {
 /// Refines row v of a band.
 void refine_row(const Maps& maps, const BandRows& rows, const MeanSettings& settings, int radius, int v, float* mean,
                 float* precision, float* refined, float* sigma) {
-  std::array<WindowLine, most_lines> lines;
+  std::array<WindowLine, max_lines> lines;
   std::size_t count = 0;
   for (int dv = -radius; dv <= radius; dv += maps.options.step) {
     if (rows.holds(v + dv)) lines[count++] = {rows.row(v + dv), -radius, maps.options.step};
@@ -85,7 +85,7 @@ void refine_row(const Maps& maps, const BandRows& rows, const MeanSettings& sett
   weighted_mean(rows.row(v), {lines.data(), count}, settings, width, mean, precision);
   const RowLine road = row_line(plane_terms(maps.road), v, 0);
   const float* disparity = maps.disparity.row(v);
-  const auto worst = static_cast<float>(maps.options.worst_sigma_px);
+  const auto worst = static_cast<float>(maps.options.max_sigma_px);
   for (int u = 0; u < width; ++u) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     const RefinedPixel pixel =
@@ -103,15 +103,15 @@ void RefinementOptions::validate() const {
   };
   require(radius >= 0 && radius <= 32, "radius", radius, "between 0 and 32 pixels");
   require(step >= 1 && step <= 16, "step", step, "between 1 and 16 pixels");
-  require(reach_sigmas >= 0.5 && reach_sigmas <= 100, "reach_sigmas", reach_sigmas, "between 0.5 and 100");
-  require(least_sigma_px >= 0.001 && least_sigma_px <= 1, "least_sigma_px", least_sigma_px,
-          "between 0.001 and 1 pixels");
-  require(worst_sigma_px > 0, "worst_sigma_px", worst_sigma_px, "above 0 pixels");
-  require(most_sigma_px >= least_sigma_px && most_sigma_px <= 10, "most_sigma_px", most_sigma_px,
-          "between least_sigma_px and 10 pixels");
+  require(truncation_sigmas >= 0.5 && truncation_sigmas <= 100, "truncation_sigmas", truncation_sigmas,
+          "between 0.5 and 100");
+  require(min_sigma_px >= 0.001 && min_sigma_px <= 1, "min_sigma_px", min_sigma_px, "between 0.001 and 1 pixels");
+  require(max_sigma_px > 0, "max_sigma_px", max_sigma_px, "above 0 pixels");
+  require(max_agreement_sigma_px >= min_sigma_px && max_agreement_sigma_px <= 10, "max_agreement_sigma_px",
+          max_agreement_sigma_px, "between min_sigma_px and 10 pixels");
 }
 
-void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const RoadModel& road,
+void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
                         double support, const RefinementOptions& options, int threads, Image<float>& refined,
                         Image<float>& sigma) {
   options.validate();

@@ -17,13 +17,13 @@ inline int window_radius(const RefinementOptions& options) {
 
 /// `support` is the number of pixels that one disparity rests on.
 inline MeanSettings mean_settings(const RefinementOptions& options, double support) {
-  return {static_cast<float>(options.reach_sigmas * options.reach_sigmas),
+  return {static_cast<float>(options.truncation_sigmas * options.truncation_sigmas),
           static_cast<float>(std::min(1.0, options.step * options.step / support))};
 }
 
 inline VarianceBounds variance_bounds(const RefinementOptions& options) {
-  return {static_cast<float>(options.least_sigma_px * options.least_sigma_px),
-          static_cast<float>(options.most_sigma_px * options.most_sigma_px)};
+  return {static_cast<float>(options.min_sigma_px * options.min_sigma_px),
+          static_cast<float>(options.max_agreement_sigma_px * options.max_agreement_sigma_px)};
 }
 
 }  // namespace roadstereo

@@ -15,9 +15,9 @@ void median_of_rows(const Image<float>& map, int first, int last, Image<float>& 
   }
 }
 
-void fill_hidden(float* disparity, int columns, std::vector<float>& nearest) {
+void fill_occlusions(float* disparity, int columns, std::vector<float>& nearest) {
   const auto target = [&](int u) { return static_cast<std::size_t>(target_column(u, disparity[u])); };
-  const auto hidden = [&](int u) { return !std::isnan(disparity[u]) && is_hidden(disparity[u], nearest[target(u)]); };
+  const auto hidden = [&](int u) { return !std::isnan(disparity[u]) && is_occluded(disparity[u], nearest[target(u)]); };
   nearest.assign(static_cast<std::size_t>(columns), 0);
   for (int u = 0; u < columns; ++u) {
     if (!std::isnan(disparity[u])) nearest[target(u)] = std::max(nearest[target(u)], disparity[u]);

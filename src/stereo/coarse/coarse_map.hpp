@@ -14,6 +14,6 @@ void median_of_rows(const Image<float>& map, int first, int last, Image<float>& 
 /// Gives what the target view does not see the disparity of its farther neighbour along the row. A pixel is hidden when
 /// another one with more than one pixel more of disparity lies on the same target pixel; nothing can match it, so that
 /// its path goes anywhere. `disparity`: one row, in pixels of the map, NaN unknown. `nearest` is scratch memory.
-void fill_hidden(float* disparity, int columns, std::vector<float>& nearest);
+void fill_occlusions(float* disparity, int columns, std::vector<float>& nearest);
 
 }  // namespace roadstereo

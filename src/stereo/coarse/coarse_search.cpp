@@ -3,29 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/downsample.hpp"
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
-#include "core/shrink.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/coarse_column.hpp"
 #include "stereo/coarse/coarse_map.hpp"
 #include "stereo/coarse/coarse_size.hpp"
-#include "stereo/coarse/road_chance.hpp"
+#include "stereo/coarse/road_plausibility.hpp"
 #include "stereo/coarse/scanline.hpp"
 #include "stereo/window.hpp"
 
 namespace roadstereo {
 namespace {
 
-constexpr int fewest_rows = 24;  // of a band
+constexpr int min_rows = 24;  // of a band
 
 /// How far the costs of a pixel leave the road possible.
-float chance_of_road(const float* costs, int count, float road) {
+float road_plausibility(const float* costs, int count, float road) {
   const NearRoad near = near_road(road, count);
   float at_road = no_evidence, least = no_evidence;
   for (int d = near.first; d < near.end; ++d) at_road = std::min(at_road, costs[d]);
   for (int d = 0; d < count; ++d) least = std::min(least, costs[d]);
-  return chance_by_costs(at_road, least);
+  return cost_plausibility(at_road, least);
 }
 
 }  // namespace
@@ -35,13 +35,13 @@ void CoarseSearchOptions::validate() const {
     fail("coarse_search.factor is ", factor, "; it must be 2, 4 or 8, or 0 to derive it");
   }
   require_range("coarse_search", "block_radius", block_radius, 1, 10);
-  require_range("coarse_search", "texture_noise", texture_noise, 0.0, 50.0);
+  require_range("coarse_search", "ncc_noise_sigma", ncc_noise_sigma, 0.0, 50.0);
   require_range("coarse_search", "step_penalty", step_penalty, 0.0, 10.0);
   require_range("coarse_search", "jump_penalty", jump_penalty, 0.0, 10.0);
-  require_range("coarse_search", "road_pull", road_pull, 0.0, 10.0);
-  require_range("coarse_search", "road_reach", road_reach, 0.0, 1000.0);
-  require_range("coarse_search", "row_error_px", row_error_px, 0.0, 10.0);
-  require_range("coarse_search", "known_within_px", known_within_px, 0.01, 10.0);
+  require_range("coarse_search", "road_prior_weight", road_prior_weight, 0.0, 10.0);
+  require_range("coarse_search", "road_prior_truncation_px", road_prior_truncation_px, 0.0, 1000.0);
+  require_range("coarse_search", "row_offset_sigma_px", row_offset_sigma_px, 0.0, 10.0);
+  require_range("coarse_search", "half_weight_sigma_px", half_weight_sigma_px, 0.01, 10.0);
 }
 
 CoarseSearch::CoarseSearch(const CoarseSearchOptions& options, int threads)
@@ -49,12 +49,12 @@ CoarseSearch::CoarseSearch(const CoarseSearchOptions& options, int threads)
   options.validate();
 }
 
-void CoarseSearch::shrink_pair(const MatchInput& input, int factor) {
+void CoarseSearch::downsample_pair(const MatchInput& input, int factor) {
   for (GreyImage* small : {&reference_, &target_}) {
     small->resize(input.reference.width() / factor, input.reference.height() / factor);
   }
-  shrink(input.reference, factor, reference_.view());
-  shrink(input.target, factor, target_.view());
+  downsample(input.reference, factor, reference_.view());
+  downsample(input.target, factor, target_.view());
   first_column_.assign(static_cast<std::size_t>(reference_.height()), 0);
   if (input.first_column == nullptr) return;
   for (std::size_t v = 0; v < first_column_.size(); ++v) {
@@ -67,9 +67,9 @@ void CoarseSearch::shrink_pair(const MatchInput& input, int factor) {
 bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, double)> road) {
   const int width = input.reference.width(), height = input.reference.height();
   ranges_found_ = false;
-  if (!worth_a_coarse_look(width, height)) return false;
+  if (!coarse_search_pays(width, height)) return false;
   prior_.factor = coarse_factor(options_, width);
-  shrink_pair(input, prior_.factor);
+  downsample_pair(input, prior_.factor);
   const int disparities = coarse_disparities(input.disparities, prior_.factor);
   const MatchInput coarse{reference_, target_, first_column_.data(), disparities};
   block_first_columns(coarse, options_.block_radius, block_first_column_);
@@ -77,7 +77,7 @@ bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, doub
 
   MatcherOptions block;
   block.block_radius = options_.block_radius;
-  block.texture_noise = options_.texture_noise;
+  block.ncc_noise_sigma = options_.ncc_noise_sigma;
   for (Worker& worker : workers_) {
     worker.costs.prepare(reference_.width(), coarse.disparities, block);
     worker.evidence.prepare(reference_.width());
@@ -89,14 +89,14 @@ bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, doub
     worker.scratch.resize(1, 0, static_cast<std::ptrdiff_t>(scanline_scratch(reference_.width(), pitch)));
   }
   // A band begins by filling its sums, so it should be high.
-  const int rows = std::max(fewest_rows, (reference_.height() + 4 * threads_ - 1) / (4 * threads_));
+  const int rows = std::max(min_rows, (reference_.height() + 4 * threads_ - 1) / (4 * threads_));
   parallel_rows(reference_.height(), rows, threads_, [&](int first, int last, int worker) {
     match_rows(coarse, first, last, road, workers_[static_cast<std::size_t>(worker)]);
   });
   parallel_rows(reference_.height(), rows, threads_, [&](int first, int last, int worker) {
     correct_rows(first, last, workers_[static_cast<std::size_t>(worker)]);
   });
-  if (input.disparities < fewest_ranged_disparities) return true;
+  if (input.disparities < min_ranged_disparities) return true;
   tile_ranges_.find(prior_.disparity, prior_.factor, width, height, input.disparities);
   ranges_found_ = true;
   return true;
@@ -106,7 +106,7 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, Fun
                               Worker& worker) {
   const cpu::MatchView view(coarse, cpu::MatchView::reference, block_first_column_);
   worker.costs.start(view, first, 0, view.width(), {0, coarse.disparities});
-  worker.evidence.start(coarse.reference, first, evidence_options(options_));
+  worker.evidence.start(coarse.reference, first, texture_uncertainty_options(options_));
   for (int v = first; v < last; ++v) {
     worker.costs.compute(v, worker.row.row(0));
     finish_row(coarse, v, road, worker);
@@ -118,20 +118,22 @@ void CoarseSearch::finish_row(const MatchInput& coarse, int v, FunctionRef<doubl
                               Worker& worker) {
   const int width = reference_.width();
   const auto factor = static_cast<float>(prior_.factor);
-  const std::vector<float>& ignorance = worker.evidence.next();
+  const std::vector<float>& texture_uncertainty = worker.evidence.next();
   const int first_seen = block_first_column_[static_cast<std::size_t>(v)];
   for (int u = 0; u < width; ++u) {
     const auto column = static_cast<std::size_t>(u);
-    worker.centre[column] = static_cast<float>(road(unshrink(u, prior_.factor), unshrink(v, prior_.factor))) / factor;
-    worker.pull[column] = static_cast<float>(options_.road_pull) * ignorance[column];
+    worker.centre[column] =
+        static_cast<float>(road(to_full_resolution(u, prior_.factor), to_full_resolution(v, prior_.factor))) / factor;
+    worker.pull[column] = static_cast<float>(options_.road_prior_weight) * texture_uncertainty[column];
     const int count = std::min(coarse.disparities, u - first_seen + 1);
-    if (std::isnan(worker.centre[column]) || count <= 0 || ignorance[column] < knows_enough) continue;
-    worker.pull[column] *= chance_of_road(worker.row.row(0) + u * worker.costs.pitch(), count, worker.centre[column]);
+    if (std::isnan(worker.centre[column]) || count <= 0 || texture_uncertainty[column] < knows_enough) continue;
+    worker.pull[column] *=
+        road_plausibility(worker.row.row(0) + u * worker.costs.pitch(), count, worker.centre[column]);
   }
-  match_scanline({worker.row.row(0), worker.costs.pitch(), width, coarse.disparities, first_seen},
-                 {worker.centre.data(), worker.pull.data(), static_cast<float>(options_.road_reach)},
-                 {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)}, no_evidence,
-                 worker.scratch.row(0), along_rows_.row(v));
+  optimise_scanline({worker.row.row(0), worker.costs.pitch(), width, coarse.disparities, first_seen},
+                    {worker.centre.data(), worker.pull.data(), static_cast<float>(options_.road_prior_truncation_px)},
+                    {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)}, no_evidence,
+                    worker.scratch.row(0), along_rows_.row(v));
 }
 
 /// The prior from what the rows found, each on its own.
@@ -140,7 +142,7 @@ void CoarseSearch::correct_rows(int first, int last, Worker& worker) {
   median_of_rows(along_rows_, first, last, prior_.disparity);
   for (int v = first; v < last; ++v) {
     float* row = prior_.disparity.row(v);
-    fill_hidden(row, prior_.disparity.width(), worker.nearest);
+    fill_occlusions(row, prior_.disparity.width(), worker.nearest);
     for (int u = 0; u < prior_.disparity.width(); ++u) row[u] *= factor;
   }
 }

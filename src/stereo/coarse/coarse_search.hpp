@@ -5,7 +5,7 @@
 #include "core/function_ref.hpp"
 #include "roadstereo/coarse_search.hpp"
 #include "roadstereo/matcher.hpp"
-#include "stereo/coarse/evidence.hpp"
+#include "stereo/coarse/texture_uncertainty.hpp"
 #include "stereo/coarse/tile_ranges.hpp"
 #include "stereo/cpu/padded_rows.hpp"
 #include "stereo/cpu/tile_costs.hpp"
@@ -30,12 +30,12 @@ class CoarseSearch {
   /// What one thread needs.
   struct Worker {
     cpu::TileCosts costs;
-    Evidence evidence;
+    TextureUncertainty evidence;
     cpu::PaddedRows<float> row, scratch;
     std::vector<float> centre, pull;  ///< of the road, per column
     std::vector<float> nearest;       ///< disparity that the target view sees, per column
   };
-  void shrink_pair(const MatchInput& input, int factor);
+  void downsample_pair(const MatchInput& input, int factor);
   void match_rows(const MatchInput& coarse, int first, int last, FunctionRef<double(double, double)> road,
                   Worker& worker);
   void finish_row(const MatchInput& coarse, int v, FunctionRef<double(double, double)> road, Worker& worker);

@@ -8,19 +8,19 @@
 
 namespace roadstereo {
 
-inline constexpr int fewest_ranged_disparities = 12;  ///< below this narrowing saves nothing
+inline constexpr int min_ranged_disparities = 12;  ///< below this narrowing saves nothing
 
 /// Whether a pair is large enough to gain anything.
-inline bool worth_a_coarse_look(int width, int height) {
-  constexpr int smallest_side = 64;
-  return std::min(width, height) >= smallest_side;
+inline bool coarse_search_pays(int width, int height) {
+  constexpr int min_side = 64;
+  return std::min(width, height) >= min_side;
 }
 
 inline int coarse_factor(const CoarseSearchOptions& options, int width) {
-  constexpr int most_columns = 800;
+  constexpr int max_columns = 800;
   if (options.factor != 0) return options.factor;
   int factor = 2;
-  while (factor < 8 && width / factor > most_columns) factor *= 2;
+  while (factor < 8 && width / factor > max_columns) factor *= 2;
   return factor;
 }
 

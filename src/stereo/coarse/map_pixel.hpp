@@ -37,7 +37,7 @@ ROADSTEREO_HD inline int target_column(int u, float disparity) {
 }
 
 /// Whether the largest disparity on a pixel's target column hides the pixel.
-ROADSTEREO_HD inline bool is_hidden(float disparity, float nearest) {
+ROADSTEREO_HD inline bool is_occluded(float disparity, float nearest) {
   constexpr float more = 1;
   return nearest > disparity + more;  // never where it is NaN
 }

@@ -48,7 +48,7 @@ struct PathEnd {
 };
 
 /// Cheapest way from a path's end to the disparities from d on of the next column: stay, step by one, or jump.
-HWY_INLINE Float arrive(const PathEnd& end, int d, Float step, Float jump) {
+HWY_INLINE Float transition_cost(const PathEnd& end, int d, Float step, Float jump) {
   const Floats df;
   const float* at = end.totals + d;
   const Float stay = hn::Sub(hn::LoadU(df, at), end.cheapest);
@@ -81,7 +81,8 @@ HWY_INLINE PathMemory share_out(const ScanlineCosts& row, float* scratch) {
 }
 
 /// One step from the left and one from the right in each turn: two chains that hide each other's latency.
-HWY_INLINE void follow_paths(const ScanlineCosts& row, const ScanlinePenalties& penalties, const PathMemory& memory) {
+HWY_INLINE void aggregate_scanlines(const ScanlineCosts& row, const ScanlinePenalties& penalties,
+                                    const PathMemory& memory) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float step = hn::Set(df, penalties.step), jump = hn::Set(df, penalties.jump);
@@ -97,19 +98,19 @@ HWY_INLINE void follow_paths(const ScanlineCosts& row, const ScanlinePenalties& 
     const float *cost_forth = row.costs + u * row.pitch, *cost_back = row.costs + w * row.pitch;
     float *to_forth = memory.forth + u * memory.pitch, *to_back = memory.turns[u % 2];
     float* way_back = memory.back + w * memory.pitch;
-    Float least_forth = hn::Set(df, never), least_back = least_forth;
+    Float min_forth = hn::Set(df, never), min_back = min_forth;
     for (int d = 0; d < row.disparities; d += lanes) {
-      const Float total = hn::Add(hn::Load(df, cost_forth + d), arrive(forth, d, step, jump));
-      const Float way = arrive(back, d, step, jump);
+      const Float total = hn::Add(hn::Load(df, cost_forth + d), transition_cost(forth, d, step, jump));
+      const Float way = transition_cost(back, d, step, jump);
       const Float total_back = hn::Add(hn::Load(df, cost_back + d), way);
       hn::Store(total, df, to_forth + d);
       hn::Store(way, df, way_back + d);
       hn::Store(total_back, df, to_back + d);
-      least_forth = hn::Min(least_forth, total);
-      least_back = hn::Min(least_back, total_back);
+      min_forth = hn::Min(min_forth, total);
+      min_back = hn::Min(min_back, total_back);
     }
-    forth = {to_forth, hn::MinOfLanes(df, least_forth)};
-    back = {to_back, hn::MinOfLanes(df, least_back)};
+    forth = {to_forth, hn::MinOfLanes(df, min_forth)};
+    back = {to_back, hn::MinOfLanes(df, min_back)};
   }
 }
 
@@ -139,11 +140,11 @@ HWY_INLINE float take_winner(const float* forth, const float* back, int count, f
   return winner_with_fraction(winner, count, before, totals[winner], after);
 }
 
-void match_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,
-                    float no_evidence, float* scratch, float* disparity) {
+void optimise_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,
+                       float no_evidence, float* scratch, float* disparity) {
   complete_costs(row, guess, no_evidence);
   const PathMemory memory = share_out(row, scratch);
-  follow_paths(row, penalties, memory);
+  aggregate_scanlines(row, penalties, memory);
   for (int u = 0; u < row.columns; ++u) {
     const int count = std::min(row.disparities, u - row.first_seen + 1);
     disparity[u] =
@@ -158,15 +159,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace roadstereo {
 
-HWY_EXPORT(match_scanline);
+HWY_EXPORT(optimise_scanline);
 
 std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch) {
   return static_cast<std::size_t>((2 * columns + 2) * (pitch + scanline_guard) + scanline_guard);
 }
 
-void match_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,
-                    float no_evidence, float* scratch, float* disparity) {
-  HWY_DYNAMIC_DISPATCH(match_scanline)(row, guess, penalties, no_evidence, scratch, disparity);
+void optimise_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,
+                       float no_evidence, float* scratch, float* disparity) {
+  HWY_DYNAMIC_DISPATCH(optimise_scanline)(row, guess, penalties, no_evidence, scratch, disparity);
 }
 
 }  // namespace roadstereo

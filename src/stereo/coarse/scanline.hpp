@@ -31,14 +31,14 @@ struct ScanlinePenalties {
 /// Elements that never win before and behind the disparities of a column of paths.
 inline constexpr std::ptrdiff_t scanline_guard = 16;
 
-/// Elements of scratch memory, aligned for vectors, that match_scanline needs.
+/// Elements of scratch memory, aligned for vectors, that optimise_scanline needs.
 std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch);
 
 /// Takes for every column the disparity of the smallest total cost among all paths along the row that pass through it:
 /// costs of the pixels, guesses and penalties of the changes, by dynamic programming forth and back. Its fraction is
 /// that of eq. subpixel on the total costs; NaN where a column has no counterpart at all. A disparity without a
 /// counterpart costs `no_evidence`, and is never taken.
-void match_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,
-                    float no_evidence, float* scratch, float* disparity);
+void optimise_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,
+                       float no_evidence, float* scratch, float* disparity);
 
 }  // namespace roadstereo

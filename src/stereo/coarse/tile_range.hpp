@@ -37,14 +37,14 @@ ROADSTEREO_HD inline int tile_target_column(int u, float disparity, float invers
 }
 
 /// Pixels that must have matched for a tile's range to be narrowed.
-ROADSTEREO_HD inline std::uint32_t fewest_tile_pixels(int tile_pixels) {
+ROADSTEREO_HD inline std::uint32_t min_tile_pixels(int tile_pixels) {
   return static_cast<std::uint32_t>(tile_pixels / 20);
 }
 
 /// Pixels that must agree on a disparity, of those seen in the tile.
 ROADSTEREO_HD inline std::uint32_t needed_support(std::uint32_t seen) {
-  constexpr double least_support = 0.003;
-  const auto needed = static_cast<std::uint32_t>(least_support * seen);
+  constexpr double min_support = 0.003;
+  const auto needed = static_cast<std::uint32_t>(min_support * seen);
   return needed > 3 ? needed : 3;
 }
 

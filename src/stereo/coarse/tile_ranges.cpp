@@ -44,7 +44,7 @@ void TileRanges::choose(const std::vector<std::uint32_t>& counts, Image<SearchRa
     std::uint32_t seen = 0;
     for (std::size_t d = 0; d < bins_; ++d) seen += of_tile[d];
     SearchRanges::Range& range = ranges(tile % ranges.width(), tile / ranges.width());
-    if (seen < fewest_tile_pixels(tile_pixels)) continue;
+    if (seen < min_tile_pixels(tile_pixels)) continue;
     const std::uint32_t needed = needed_support(seen);
     const auto supported = [&](int d) { return is_supported(of_tile, last + 1, d, factor, needed); };
     int lowest = 0, highest = last;

@@ -205,7 +205,7 @@ HWY_INLINE void aggregate_strip(const AggregationRow& row, const StepList& steps
 #if HWY_TARGET == HWY_SCALAR
 /// The smallest lane of each of four vectors.
 template <class D>
-HWY_INLINE void smallest_lanes(D /*d*/, const hn::Vec<D>* of, hn::TFromD<D>* smallest) {
+HWY_INLINE void min_lanes(D /*d*/, const hn::Vec<D>* of, hn::TFromD<D>* smallest) {
   for (int p = 0; p < 4; ++p) smallest[p] = hn::GetLane(of[p]);
 }
 #else
@@ -223,7 +223,7 @@ HWY_INLINE void fold_blocks(D d, hn::Vec<D> v, hn::TFromD<D>* smallest) {
 /// The smallest lane of each of four vectors. They are halved side by side: the lanes of a 128-bit block become a b a b
 /// and c d c d, then a b c d.
 template <class D>
-HWY_INLINE void smallest_lanes(D d, const hn::Vec<D>* of, hn::TFromD<D>* smallest) {
+HWY_INLINE void min_lanes(D d, const hn::Vec<D>* of, hn::TFromD<D>* smallest) {
   const hn::Repartition<std::uint64_t, D> pairs;
   const auto ab = hn::Min(hn::InterleaveLower(d, of[0], of[1]), hn::InterleaveUpper(d, of[0], of[1]));
   const auto cd = hn::Min(hn::InterleaveLower(d, of[2], of[3]), hn::InterleaveUpper(d, of[2], of[3]));
@@ -245,7 +245,7 @@ struct PlainEnergies {
 /// The smallest energy of each of four pixels. Behind the last disparity the energies are infinite up to a whole
 /// vector.
 template <class Energies>
-HWY_INLINE void smallest_energies(const Energies& energies, int disparities, float* smallest) {
+HWY_INLINE void min_energies(const Energies& energies, int disparities, float* smallest) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   Float vectors[4];
@@ -253,24 +253,24 @@ HWY_INLINE void smallest_energies(const Energies& energies, int disparities, flo
   for (int d = lanes; d < disparities; d += lanes) {
     for (int p = 0; p < 4; ++p) vectors[p] = hn::Min(vectors[p], energies.at(p, d));
   }
-  smallest_lanes(df, vectors, smallest);
+  min_lanes(df, vectors, smallest);
 }
 
 /// The energies of four pixels with what they pay for their distance from the prior.
-struct LeaningEnergies {
+struct RegularisedCosts {
   PlainEnergies plain;
   float centre[4], slope[4];
   float reach;
 
-  HWY_INLINE LeaningEnergies(const AggregationRow& row, const PlainEnergies& energies, int column)
+  HWY_INLINE RegularisedCosts(const AggregationRow& row, const PlainEnergies& energies, int column)
       : plain(energies), reach(row.lean.reach) {
     float smallest[4];
-    smallest_energies(plain, row.disparities, smallest);
+    min_energies(plain, row.disparities, smallest);
     for (int p = 0; p < 4; ++p) {
       const float at = column + p < row.end ? row.lean.centre[column + p] : 0.0f;
       const bool known = at == at;
       centre[p] = known ? at : 0.0f;
-      slope[p] = known ? row.lean.slope * std::min(1.0f, (smallest[p] + lean_offset) / lean_full_at) : 0.0f;
+      slope[p] = known ? row.lean.slope * std::min(1.0f, (smallest[p] + prior_cost_offset) / prior_full_cost) : 0.0f;
     }
   }
 
@@ -287,7 +287,7 @@ HWY_INLINE void take_winners(const Energies& energies, int disparities, std::int
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   float smallest[4];
-  smallest_energies(energies, disparities, smallest);
+  min_energies(energies, disparities, smallest);
   for (int p = 0; p < 4; ++p) {
     const Float lowest = hn::Set(df, smallest[p]);
     winners[p] = 0;
@@ -316,7 +316,7 @@ HWY_INLINE void find_winners(const AggregationRow& row, int strip, float* energi
     if (row.lean.centre == nullptr) {
       take_winners(plain, row.disparities, found.winner + column);
     } else {
-      take_winners(LeaningEnergies(row, plain, strip + column), row.disparities, found.winner + column);
+      take_winners(RegularisedCosts(row, plain, strip + column), row.disparities, found.winner + column);
     }
     for (int p = 0; p < 4; ++p) {
       // A winner at an end has no neighbour there: what is read instead is not used.
@@ -351,13 +351,13 @@ HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns,
     const Float before = hn::LoadU(df, found.before + i), after = hn::LoadU(df, found.after + i);
     const Float best = hn::LoadU(df, found.best + i);
     const Float curvature = hn::Sub(hn::Add(before, after), hn::Add(best, best));
-    const auto curved = hn::Gt(curvature, hn::Set(df, least_curvature));
+    const auto curved = hn::Gt(curvature, hn::Set(df, min_curvature));
     const Float half = hn::Set(df, 0.5f);
     const Float vertex = hn::IfThenElseZero(curved, hn::Div(hn::Mul(half, hn::Sub(before, after)), curvature));
     const Float noise = hn::Div(hn::Mul(hn::Set(df, 2 / row.support), hn::Max(best, hn::Zero(df))), curvature);
     // A winner that leans on the prior need not be a minimum of the costs.
-    const auto sure = hn::Lt(noise, hn::Set(df, sure_variance));
-    const Float reach = hn::IfThenElse(sure, hn::Set(df, sure_reach), half);
+    const auto sure = hn::Lt(noise, hn::Set(df, low_noise_variance));
+    const Float reach = hn::IfThenElse(sure, hn::Set(df, low_noise_truncation_px), half);
     const Float offset = hn::Clamp(vertex, hn::Neg(reach), reach);
     const Float outside = hn::Sub(vertex, offset);
     const Float variance = hn::IfThenElse(curved, hn::MulAdd(outside, outside, noise), hn::Set(df, infinity));

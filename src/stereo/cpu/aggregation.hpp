@@ -22,7 +22,7 @@ struct WindowRow {
 };
 
 /// What winner-take-all leans on: energies at disparity d grow by slope · min(|d − centre|, reach).
-struct LeanRow {
+struct PriorRow {
   const float* centre = nullptr;  ///< per column of the tile; NaN: nothing to lean on there; null: nowhere
   float slope = 0;
   float reach = 0;
@@ -39,7 +39,7 @@ struct AggregationRow {
   WindowRow centre;                       ///< the window row of the pixels themselves
   std::span<const WindowRow> rows;        ///< those that lie in the image
   std::span<const float* const> weights;  ///< ω of every tap, row by row: weights[tap][column]
-  LeanRow lean;
+  PriorRow lean;
   float support = 1;  ///< pixels that an energy rests on
 };
 

@@ -86,7 +86,7 @@ HWY_INLINE Float inverse_deviation(Int sum, Int square, Int mean, Int residue, F
   const Float e = hn::ConvertTo(df, residue);
   const Float variance = hn::Mul(hn::NegMulAdd(hn::Mul(e, e), inverse_n, whole), inverse_n);
   const Float deviation = hn::Sqrt(hn::Add(hn::Max(variance, hn::Zero(df)), noise_variance));
-  const auto textured = hn::Ge(variance, hn::Set(df, smallest_variance));
+  const auto textured = hn::Ge(variance, hn::Set(df, min_variance));
   return hn::IfThenElseZero(textured, hn::Div(hn::Set(df, 1.0f), deviation));
 }
 

@@ -24,20 +24,20 @@ void finish_row(int v, const MatcherOptions& options, MatchMaps& maps) {
   const std::int16_t* winner = maps.winner.row(v);
   const std::int16_t* target_winner = maps.target_winner.row(v);
   float *disparity = maps.disparity.row(v), *variance = maps.variance.row(v);
-  const auto hidden = static_cast<float>(options.hidden_sigma_px * options.hidden_sigma_px);
+  const auto hidden = static_cast<float>(options.occlusion_sigma_px * options.occlusion_sigma_px);
   for (int u = 0; u < maps.winner.width(); ++u) {
     const float offset = disparity[u];
     disparity[u] = std::numeric_limits<float>::quiet_NaN();
     if (winner[u] < 0) continue;
     if (options.left_right_check) {
       const double difference = winner[u] - target_winner[u - winner[u]];
-      if (difference * difference > options.consistency) {
-        if (options.hidden_sigma_px == 0) continue;
+      if (difference * difference > options.lr_max_diff_px) {
+        if (options.occlusion_sigma_px == 0) continue;
         variance[u] += hidden;
       }
     }
     const bool bracketed = !std::isnan(offset);
-    if (!bracketed && options.drop_range_ends) continue;
+    if (!bracketed && options.reject_range_boundary) continue;
     disparity[u] = static_cast<float>(winner[u]) + (bracketed && options.sub_pixel ? offset : 0.0f);
   }
 }
@@ -106,7 +106,7 @@ class CpuEngine final : public StereoEngine {
     const int whole_columns = std::min(ViewMatcher::tile_columns(input.disparities, options), width);
     jobs_.clear();
     for (const MatchView* view : {&reference, &target}) {
-      if (view == &target && !options.target_volume) continue;
+      if (view == &target && !options.match_both_views) continue;
       if (input.ranges == nullptr) {
         cut_evenly(*view, whole_columns, input.disparities, options, threads_, jobs_);
       } else {
@@ -125,7 +125,7 @@ class CpuEngine final : public StereoEngine {
     });
     parallel_rows(height, 32, threads_, [&](int first, int last, int) {
       for (int v = first; v < last; ++v) {
-        if (!options.target_volume) project_winners(maps.winner, v, maps.target_winner);
+        if (!options.match_both_views) project_winners(maps.winner, v, maps.target_winner);
         finish_row(v, options, maps);
       }
     });

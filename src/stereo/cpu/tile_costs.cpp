@@ -28,7 +28,7 @@ void TileCosts::prepare(int columns, int disparities, const MatcherOptions& opti
   const std::ptrdiff_t pitch = padded_disparities(disparities);
   radius_ = options.block_radius;
   ring_ = 2 * radius_ + 2;
-  const double noise = options.texture_noise * grey_scale;
+  const double noise = options.ncc_noise_sigma * grey_scale;
   noise_variance_ = static_cast<float>(noise * noise);
   const std::ptrdiff_t own_columns = columns + 2 * radius_;
   const std::ptrdiff_t other_columns = own_columns + pitch + radius_;

@@ -40,9 +40,9 @@ void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& op
   costs_.resize(static_cast<std::size_t>(ring_), radius_ * pitch, (padded + radius_) * pitch);
   const AggregationScratchSize scratch = aggregation_scratch(ring_, static_cast<int>(taps.size()), pitch);
   scratch_.resize(1, 0, scratch.numbers);
-  support_ = static_cast<float>(support_pixels(options));
-  prior_slope_ = static_cast<float>(options.prior_slope);
-  prior_reach_ = static_cast<float>(options.prior_reach);
+  support_ = static_cast<float>(effective_samples(options));
+  prior_weight_ = static_cast<float>(options.prior_weight);
+  prior_truncation_px_ = static_cast<float>(options.prior_truncation_px);
   prior_.resize(static_cast<std::size_t>(padded));
   steps_.resize(static_cast<std::size_t>(scratch.pointers));
   winner_.resize(static_cast<std::size_t>(padded));
@@ -84,7 +84,7 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
                            .centre = window_row(v),
                            .rows = window_,
                            .weights = tile_weights_.compute(v),
-                           .lean = lean_row(view, v, tile),
+                           .lean = prior_row(view, v, tile),
                            .support = support_};
   const bool reference = view.side() == MatchView::reference;
   const auto original = [&](std::int16_t winner) {
@@ -103,9 +103,9 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
 }
 
 /// The prior of row v, relative to the tile's first disparity.
-LeanRow ViewMatcher::lean_row(const MatchView& view, int v, const Tile& tile) {
+PriorRow ViewMatcher::prior_row(const MatchView& view, int v, const Tile& tile) {
   const DisparityPrior* prior = view.prior();
-  if (prior == nullptr || prior_slope_ == 0) return {};
+  if (prior == nullptr || prior_weight_ == 0) return {};
   const Image<float>& map = prior->disparity;
   const float* row = map.row(std::min(v / prior->factor, map.height() - 1));
   const auto first = static_cast<float>(tile.range.first);
@@ -116,7 +116,7 @@ LeanRow ViewMatcher::lean_row(const MatchView& view, int v, const Tile& tile) {
               row[std::min(x, map.width() - 1)] - first);
     i = end;
   }
-  return {.centre = prior_.data(), .slope = prior_slope_, .reach = prior_reach_};
+  return {.centre = prior_.data(), .slope = prior_weight_, .reach = prior_truncation_px_};
 }
 
 }  // namespace roadstereo::cpu

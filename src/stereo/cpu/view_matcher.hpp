@@ -35,7 +35,7 @@ class ViewMatcher {
   void match(const MatchView& view, const Tile& tile, MatchMaps& maps);
 
  private:
-  LeanRow lean_row(const MatchView& view, int v, const Tile& tile);
+  PriorRow prior_row(const MatchView& view, int v, const Tile& tile);
   void match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps);
   int& half_width(int dv) {
     const int row = dv + rows_;
@@ -55,7 +55,7 @@ class ViewMatcher {
   PaddedRows<float> scratch_;
   std::vector<const float*> steps_;
   float support_ = 1;
-  float prior_slope_ = 0, prior_reach_ = 0;
+  float prior_weight_ = 0, prior_truncation_px_ = 0;
   std::vector<float> prior_;
   std::vector<std::int16_t> winner_;
   std::vector<float> offset_, variance_;

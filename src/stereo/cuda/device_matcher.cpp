@@ -27,15 +27,15 @@ void DeviceMatcher::use(const MatcherOptions& options, cudaStream_t stream) {
     settings_.reach_across = std::max(settings_.reach_across, taps[i].du);
     settings_.reach_down = std::max(settings_.reach_down, taps[i].dv);
   }
-  const double sigma_colour = options.sigma_colour * grey_scale, noise = options.texture_noise * grey_scale;
+  const double sigma_colour = options.sigma_colour * grey_scale, noise = options.ncc_noise_sigma * grey_scale;
   settings_.block_radius = options.block_radius;
   settings_.noise_variance = static_cast<float>(noise * noise);
   settings_.taps = taps_on_device_.data();
   settings_.tap_count = static_cast<int>(taps.size());
   settings_.log2_colour = static_cast<float>(-std::numbers::log2e / (sigma_colour * sigma_colour));
-  settings_.support = static_cast<float>(support_pixels(options));
-  settings_.prior_slope = static_cast<float>(options.prior_slope);
-  settings_.prior_reach = static_cast<float>(options.prior_reach);
+  settings_.support = static_cast<float>(effective_samples(options));
+  settings_.prior_weight = static_cast<float>(options.prior_weight);
+  settings_.prior_truncation_px = static_cast<float>(options.prior_truncation_px);
   ROADSTEREO_CUDA(cudaMemcpyAsync(taps_on_device_.data(), taps_.data(), taps.size() * sizeof(WindowTap),
                                   cudaMemcpyHostToDevice, stream));
   options_ = options;
@@ -92,13 +92,14 @@ const DeviceMatchMaps& DeviceMatcher::match(const DeviceMatchInput& input, const
   first_columns_of_blocks(input.first_column, height, options.block_radius, first_columns_.data(), stream);
   match_view(view_of(input, false), settings_, taps_.data(), plan, energies_.data(),
              {maps_.winner, maps_.disparity, maps_.variance}, stream);
-  if (options.target_volume) {
+  if (options.match_both_views) {
     match_view(view_of(input, true), settings_, taps_.data(), plan, energies_.data(), {maps_.target_winner, {}, {}},
                stream);
   }
-  const auto hidden_variance = static_cast<float>(options.hidden_sigma_px * options.hidden_sigma_px);
-  const FinishSettings finish{!options.target_volume, options.left_right_check, static_cast<float>(options.consistency),
-                              hidden_variance,        options.sub_pixel,        options.drop_range_ends};
+  const auto occlusion_variance = static_cast<float>(options.occlusion_sigma_px * options.occlusion_sigma_px);
+  const FinishSettings finish{
+      !options.match_both_views, options.left_right_check, static_cast<float>(options.lr_max_diff_px),
+      occlusion_variance,        options.sub_pixel,        options.reject_range_boundary};
   finish_rows(maps_.winner, maps_.target_winner, maps_.disparity, maps_.variance, finish, stream);
   return maps_;
 }

@@ -21,12 +21,12 @@ struct MapRow {
 __device__ float finish(int winner, int target_winner, float offset, const FinishSettings& settings, float& variance) {
   if (winner < 0) return NAN;
   const auto difference = static_cast<float>(winner - target_winner);
-  if (settings.left_right_check && difference * difference > settings.consistency) {
-    if (settings.hidden_variance == 0) return NAN;
-    variance += settings.hidden_variance;
+  if (settings.left_right_check && difference * difference > settings.lr_max_diff_px) {
+    if (settings.occlusion_variance == 0) return NAN;
+    variance += settings.occlusion_variance;
   }
   const bool bracketed = offset == offset;
-  if (!bracketed && settings.drop_range_ends) return NAN;
+  if (!bracketed && settings.reject_range_boundary) return NAN;
   return static_cast<float>(winner) + (bracketed && settings.sub_pixel ? offset : 0.0F);
 }
 

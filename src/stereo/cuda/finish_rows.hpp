@@ -9,12 +9,12 @@
 namespace roadstereo::cuda {
 
 struct FinishSettings {
-  bool project;           ///< the target's winners are those of the reference, projected (project_winners)
-  bool left_right_check;  ///< eq. lrc
-  float consistency;      ///< δr, pixels²
-  float hidden_variance;  ///< added to what fails the check, pixels²; 0 makes it invalid
-  bool sub_pixel;         ///< eq. subpixel
-  bool drop_range_ends;   ///< a winner without two neighbours is invalid
+  bool project;                ///< the target's winners are those of the reference, projected (project_winners)
+  bool left_right_check;       ///< eq. lrc
+  float lr_max_diff_px;        ///< δr, pixels²
+  float occlusion_variance;    ///< added to what fails the check, pixels²; 0 makes it invalid
+  bool sub_pixel;              ///< eq. subpixel
+  bool reject_range_boundary;  ///< a winner without two neighbours is invalid
 };
 
 /// Left–right consistency and the sub-pixel disparity, row by row. `disparity` holds the offsets of the winners (NaN:

@@ -437,10 +437,10 @@ __device__ int take_winner(const ViewToMatch& view, const ViewSettings& settings
   const float centre =
       view.prior(min(u / view.prior_factor, view.prior.width - 1), min(v / view.prior_factor, view.prior.height - 1));
   if (!(centre == centre)) return winner;
-  const float slope = settings.prior_slope * prior_share(smallest);
+  const float slope = settings.prior_weight * prior_share(smallest);
   float best = INFINITY;
   for (int d = energies.first(); d < energies.end(); ++d) {
-    const float leaning = energies(d) + prior_cost(slope, settings.prior_reach, centre, static_cast<float>(d));
+    const float leaning = energies(d) + prior_cost(slope, settings.prior_truncation_px, centre, static_cast<float>(d));
     if (leaning < best) {
       best = leaning;
       winner = d;
@@ -560,14 +560,14 @@ void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const W
 
 ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height, int disparities, int multiprocessors) {
   constexpr int blocks_per_multiprocessor = 2;
-  constexpr std::size_t most_energies = std::size_t{64} << 20;  // 256 MB
-  constexpr int reserve = 64;                                   // disparities are counted in multiples of this
+  constexpr std::size_t max_energies = std::size_t{64} << 20;  // 256 MB
+  constexpr int reserve = 64;                                  // disparities are counted in multiples of this
   ViewLaunch plan;
   // The number of disparities follows the road: a few more in the next frame need no new memory.
   const int with_reserve = reserve * static_cast<int>(blocks_for(disparities, reserve));
   plan.energies_per_block = static_cast<std::size_t>(threads) * static_cast<std::size_t>(with_reserve);
   const int tiles = ((width + tile_columns - 1) / tile_columns) * ((height + tile_rows - 1) / tile_rows);
-  const auto room = static_cast<int>(most_energies / plan.energies_per_block);
+  const auto room = static_cast<int>(max_energies / plan.energies_per_block);
   const int resident = blocks_per_multiprocessor * multiprocessors;
   plan.blocks = tiles < resident ? tiles : resident;
   plan.blocks = plan.blocks < room ? plan.blocks : room;

@@ -45,8 +45,8 @@ struct ViewSettings {
   int reach_down;
   float log2_colour;  ///< −log2 e / σ1², per squared step of grey
   float support;      ///< pixels that an energy rests on
-  float prior_slope;
-  float prior_reach;
+  float prior_weight;
+  float prior_truncation_px;
 };
 
 /// What a view leaves: winners (−1 where nothing can match), and of each its distance to the minimum, NaN where it has

@@ -13,7 +13,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Below half a fixed-point step of standard deviation a block has no texture.
-constexpr double smallest_variance = 0.25;
+constexpr double min_variance = 0.25;
 
 /// The matching costs c(p, d), or the aggregated costs E_d(p, d), of all pixels; NaN where p has no counterpart.
 class CostVolume {
@@ -44,7 +44,7 @@ struct Scene {
   const MatchInput& input;
   const MatcherOptions& options;
   std::vector<Tap> window = window_taps(options);
-  double support = support_pixels(options);
+  double support = effective_samples(options);
   std::vector<int> first_column{};  ///< per row: first target column that the whole block of the row sees
 
   Scene(const MatchInput& match_input, const MatcherOptions& match_options)
@@ -85,8 +85,8 @@ double matching_cost(const Scene& scene, int u, int v, int d) {
   const double variance_tar = sum_tar_tar / n - mu_tar * mu_tar;
   // Without texture in a block nothing correlates: the cost is neutral. The camera's noise is added to the deviations,
   // so that texture that may be noise counts less; 0 is the paper's equation.
-  if (variance_ref < smallest_variance || variance_tar < smallest_variance) return 1;
-  const double noise = scene.options.texture_noise * grey_scale;
+  if (variance_ref < min_variance || variance_tar < min_variance) return 1;
+  const double noise = scene.options.ncc_noise_sigma * grey_scale;
   const double sigma_ref = std::sqrt(variance_ref + noise * noise);
   const double sigma_tar = std::sqrt(variance_tar + noise * noise);
   return (sigma_ref * sigma_tar + mu_ref * mu_tar) / (sigma_ref * sigma_tar) -
@@ -150,16 +150,16 @@ const Range& range_at(const Image<Range>& ranges, int u, int v) {
   return ranges(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
 }
 
-/// What a disparity pays for its distance from the prior: slope · min(|d − prior|, prior_reach), slope = prior_slope
-/// but where the smallest cost `best` is small (stereo/window.hpp).
+/// What a disparity pays for its distance from the prior: slope · min(|d − prior|, prior_truncation_px), slope =
+/// prior_weight but where the smallest cost `best` is small (stereo/window.hpp).
 double lean(const Scene& scene, const DisparityPrior* prior, double best, int u, int v, int d) {
   if (prior == nullptr) return 0;
   const Image<float>& map = prior->disparity;
   const double centre =
       map(std::min(u / prior->factor, map.width() - 1), std::min(v / prior->factor, map.height() - 1));
   if (std::isnan(centre)) return 0;
-  const double weight = std::min(1.0, (best + double{lean_offset}) / double{lean_full_at});
-  return weight * scene.options.prior_slope * std::min(std::abs(d - centre), scene.options.prior_reach);
+  const double weight = std::min(1.0, (best + double{prior_cost_offset}) / double{prior_full_cost});
+  return weight * scene.options.prior_weight * std::min(std::abs(d - centre), scene.options.prior_truncation_px);
 }
 
 /// Winner-take-all: the disparity of the smallest cost, −1 where there is none; the smaller disparity wins a tie.
@@ -207,16 +207,16 @@ Refined refine(const Scene& scene, const CostVolume& energy, const Range& search
   const bool first = d == searched.first;
   const bool last = d + 1 == searched.end || std::isnan(energy(u, v, d + 1));
   if (first || last) {
-    if (!scene.options.drop_range_ends) refined.disparity = d;
+    if (!scene.options.reject_range_boundary) refined.disparity = d;
     return refined;
   }
   const double before = energy(u, v, d - 1), best = energy(u, v, d), after = energy(u, v, d + 1);
   const double curvature = before + after - 2 * best;
   refined.disparity = d;
-  if (curvature <= double{least_curvature}) return refined;
+  if (curvature <= double{min_curvature}) return refined;
   const double vertex = (before - after) / (2 * curvature);
   const double noise = 2 * std::max(best, 0.0) / (scene.support * curvature);
-  const double reach = noise < double{sure_variance} ? double{sure_reach} : 0.5;
+  const double reach = noise < double{low_noise_variance} ? double{low_noise_truncation_px} : 0.5;
   const double offset = std::clamp(vertex, -reach, reach);
   if (scene.options.sub_pixel) refined.disparity = d + offset;
   refined.variance = noise + (vertex - offset) * (vertex - offset);
@@ -237,7 +237,7 @@ class ReferenceEngine final : public StereoEngine {
     ranges.assign(scene.width(), scene.height(), input.disparities);
     if (input.ranges != nullptr) ranges = *input.ranges;
     maps.winner = take_winners(scene, energy_ref, ranges.reference, input.prior);
-    if (options.target_volume) {
+    if (options.match_both_views) {
       maps.target_winner =
           take_winners(scene, aggregate(scene, cost, input.target, 1, threads_), ranges.target, nullptr);
     } else {
@@ -249,11 +249,11 @@ class ReferenceEngine final : public StereoEngine {
     for (int v = 0; v < scene.height(); ++v) {
       for (int u = 0; u < scene.width(); ++u) {
         if (maps.winner(u, v) < 0) continue;
-        const bool hidden = options.left_right_check && !consistent(maps, u, v, options.consistency);
-        if (hidden && options.hidden_sigma_px == 0) continue;
+        const bool hidden = options.left_right_check && !consistent(maps, u, v, options.lr_max_diff_px);
+        if (hidden && options.occlusion_sigma_px == 0) continue;
         const Refined refined = refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v));
         maps.disparity(u, v) = static_cast<float>(refined.disparity);
-        const double doubt = hidden ? options.hidden_sigma_px * options.hidden_sigma_px : 0;
+        const double doubt = hidden ? options.occlusion_sigma_px * options.occlusion_sigma_px : 0;
         maps.variance(u, v) = static_cast<float>(refined.variance + doubt);
       }
     }

@@ -235,8 +235,8 @@ void run_kernel(dim3 grid, dim3 size, std::size_t shared_bytes, const std::funct
   if (grid.x == 0 || grid.y == 0 || grid.z == 0 || grid.y > 65535 || grid.z > 65535) {
     throw std::logic_error("a grid has at least one block, and at most 65535 down and deep");
   }
-  constexpr std::size_t most_shared_bytes = std::size_t{48} << 10;  // of the smallest devices
-  if (shared_bytes > most_shared_bytes) throw std::logic_error("a block has at most 48 KB of shared memory");
+  constexpr std::size_t max_shared_bytes = std::size_t{48} << 10;  // of the smallest devices
+  if (shared_bytes > max_shared_bytes) throw std::logic_error("a block has at most 48 KB of shared memory");
   own.scheduler.started = true;
   while (own.fibers.size() < own.threads) own.fibers.push_back(make_fiber());
 #if defined(ROADSTEREO_EMULATED_RACES)

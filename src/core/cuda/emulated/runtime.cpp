@@ -99,8 +99,8 @@ cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int) {
   return cudaSuccess;
 }
 cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int) {
-  constexpr int smallest_of_all_devices = 48 << 10;
-  *value = attribute == cudaDevAttrMaxSharedMemoryPerBlockOptin ? smallest_of_all_devices : 2;
+  constexpr int min_of_all_devices = 48 << 10;
+  *value = attribute == cudaDevAttrMaxSharedMemoryPerBlockOptin ? min_of_all_devices : 2;
   return cudaSuccess;
 }
 cudaError_t cudaDriverGetVersion(int* version) {

@@ -40,7 +40,7 @@ template <class D>
 using TFromD = typename D::T;
 template <class T>
 using ScalableTag = Tag<T>;
-template <class T, std::size_t most_lanes>
+template <class T, std::size_t max_lanes>
 using CappedTag = Tag<T>;
 template <class T, class D>
 using Rebind = Tag<T>;

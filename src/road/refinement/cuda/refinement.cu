@@ -13,7 +13,7 @@ namespace {
 
 constexpr int tile_columns = 32, thread_rows = 8;
 constexpr int rows_at_once = 4;  // of a thread, when a tile is read
-constexpr int most_shared_bytes = 48 << 10;
+constexpr int max_shared_bytes = 48 << 10;
 
 struct Maps {
   Plane<const float> residual, variance;
@@ -186,7 +186,7 @@ void refine_disparities(Plane<const float> residual, Plane<const float> variance
     return dim3(blocks_for(refined.width, tile_columns), blocks_for(refined.height, rows));
   };
   const std::size_t bytes = tile_bytes(rows_each * thread_rows, settings.radius);
-  if (bytes <= most_shared_bytes) {
+  if (bytes <= max_shared_bytes) {
     launch(refine_tiles<rows_each>, {grid(rows_each * thread_rows), block, bytes}, stream, maps, settings, refined,
            sigma);
   } else {

@@ -9,7 +9,7 @@ namespace roadstereo::cuda {
 /// rests on.
 inline RefinementSettings refinement_settings(const RefinementOptions& options, double support) {
   return {window_radius(options), options.step, mean_settings(options, support), variance_bounds(options),
-          static_cast<float>(options.worst_sigma_px)};
+          static_cast<float>(options.max_sigma_px)};
 }
 
 }  // namespace roadstereo::cuda

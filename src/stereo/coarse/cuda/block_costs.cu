@@ -9,7 +9,7 @@
 #include "stereo/block_correlation.hpp"
 #include "stereo/coarse/coarse_column.hpp"
 #include "stereo/coarse/cuda/block_costs.hpp"
-#include "stereo/coarse/road_chance.hpp"
+#include "stereo/coarse/road_plausibility.hpp"
 #include "stereo/mid_grey.hpp"
 
 namespace roadstereo::cuda {

@@ -19,7 +19,7 @@ struct MapRow {
 
   __device__ bool hidden(int u) const {
     const float own = disparity[u];
-    return own == own && is_hidden(own, __int_as_float(nearest[target_column(u, own)]));
+    return own == own && is_occluded(own, __int_as_float(nearest[target_column(u, own)]));
   }
 
   /// What pixel u becomes: itself, or where it is hidden the farther of the neighbours of its run.

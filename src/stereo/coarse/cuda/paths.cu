@@ -42,7 +42,8 @@ __device__ float cheapest_of(const LaneCosts<count>& totals) {
 
 /// Cheapest way from the totals of a column to each disparity of the next: stay, step by one, or jump.
 template <int count>
-__device__ LaneCosts<count> arrive(const LaneCosts<count>& totals, float cheapest, const PathPenalties& penalties) {
+__device__ LaneCosts<count> transition_cost(const LaneCosts<count>& totals, float cheapest,
+                                            const PathPenalties& penalties) {
   const auto lane = static_cast<int>(threadIdx.x);
   const float from_left = __shfl_up_sync(whole_warp, totals.at[count - 1], 1U);
   const float from_right = __shfl_down_sync(whole_warp, totals.at[0], 1U);
@@ -70,7 +71,7 @@ __device__ void follow(const Path<count>& path, int columns, const PathPenalties
     ROADSTEREO_UNROLL
     for (int k = 0; k < ahead; ++k) {
       if (first + k >= columns) break;
-      way = arrive(totals, cheapest_of(totals), penalties);
+      way = transition_cost(totals, cheapest_of(totals), penalties);
       ROADSTEREO_UNROLL
       for (int i = 0; i < count; ++i) totals.at[i] = coming[k].at[i] + way.at[i];
       const int wanted = first + k + ahead;
@@ -146,8 +147,9 @@ int path_pitch(int disparities) {
   return row_kernel(disparities).count * warp_lanes;
 }
 
-void follow_paths(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
-                  const CoarseVolume& forth, const CoarseVolume& back, Plane<float> disparity, cudaStream_t stream) {
+void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
+                         const CoarseVolume& forth, const CoarseVolume& back, Plane<float> disparity,
+                         cudaStream_t stream) {
   const auto rows = static_cast<unsigned>(costs.rows);
   launch(row_kernel(costs.disparities).kernel, {dim3(rows, 2), warp_lanes}, stream, costs, penalties, forth, back);
   launch(take_winners, {dim3(blocks_for(costs.columns, winner_warps), rows), winner_warps * warp_lanes}, stream, forth,

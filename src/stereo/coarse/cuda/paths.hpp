@@ -19,7 +19,8 @@ int path_pitch(int disparities);
 /// Takes for every column of the band's rows the disparity of the cheapest path along the row that passes through it
 /// (stereo/coarse/scanline.hpp), coarse pixels, NaN where a column has no counterpart. `forth` and `back` are scratch
 /// memory of the size of `costs`.
-void follow_paths(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
-                  const CoarseVolume& forth, const CoarseVolume& back, Plane<float> disparity, cudaStream_t stream);
+void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
+                         const CoarseVolume& forth, const CoarseVolume& back, Plane<float> disparity,
+                         cudaStream_t stream);
 
 }  // namespace roadstereo::cuda

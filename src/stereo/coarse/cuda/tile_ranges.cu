@@ -132,7 +132,7 @@ __global__ void range_of_tile(Plane<const float> coarse, int factor, int dispari
   }
   __syncthreads();
   TileRange range{0, static_cast<std::int16_t>(disparities)};
-  if (found.seen >= fewest_tile_pixels(tiles.columns * tiles.rows)) {
+  if (found.seen >= min_tile_pixels(tiles.columns * tiles.rows)) {
     range = choose_range(counts, bins, factor, disparities, found);
   }
   if (threadIdx.x == 0) (tile.of_target ? target : reference)[tile.row * tiles.across + tile.column] = range;

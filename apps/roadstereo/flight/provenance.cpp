@@ -1,0 +1,58 @@
+#include "flight/provenance.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/options.hpp"
+#include "roadstereo/version.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+/// A number that tells contents of files apart (FNV-1a).
+std::string digest(const std::vector<std::string>& files) {
+  constexpr std::uint64_t basis = 0xcbf29ce484222325ULL;
+  constexpr std::uint64_t prime = 0x100000001b3ULL;
+  std::uint64_t hash = basis;
+  for (const std::string& name : files) {
+    std::ifstream file(name, std::ios::binary);
+    if (!file) fail(name, ": cannot be read");
+    for (std::istreambuf_iterator<char> byte(file), end; byte != end; ++byte) {
+      hash = (hash ^ static_cast<unsigned char>(*byte)) * prime;
+    }
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace
+
+io::Provenance provenance(const FlightSettings& settings, const PipelineOptions& options) {
+  io::Provenance facts{{"version", version},
+                       {"source", joined(settings.source)},
+                       {"calibration", joined(settings.calibration)},
+                       {"content of the calibration", digest(settings.calibration)},
+                       {"--from", std::to_string(settings.from)},
+                       {"--every", std::to_string(settings.every)},
+                       {"--write", joined(settings.write)},
+                       {"--layout", settings.choice.layout},
+                       {"--topics", joined(settings.choice.topics)},
+                       {"--max-time-difference", fmt::format("{}", settings.choice.max_time_difference_ms)},
+                       {"--rate", fmt::format("{}", settings.choice.rate_hz)}};
+  for (const OptionText& option : list_options(options)) {
+    if (option.key != "threads") facts.emplace_back(option.key, option.value);
+  }
+  return facts;
+}
+
+}  // namespace roadstereo::cli

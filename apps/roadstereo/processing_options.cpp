@@ -1,0 +1,68 @@
+#include "processing_options.hpp"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <thread>
+
+#include "roadstereo/options.hpp"
+#include "settings.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+std::string joined_presets() {
+  std::string names;
+  for (const std::string& name : preset_names()) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
+}  // namespace
+
+void add_processing_options(CLI::App& command, ProcessingSettings& processing) {
+  command.add_option("--preset", processing.preset, "Where the options start from: " + joined_presets())
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--engine", processing.engine, "Matching engine, see roadstereo engines")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--threads", processing.threads, "Worker threads; 0 takes all cores")
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--set", processing.settings, "Sets one option; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
+PipelineOptions make_options(const ProcessingSettings& processing) {
+  PipelineOptions options = preset(processing.preset);
+  options.engine = processing.engine;
+  options.threads = processing.threads;
+  apply_settings(processing.settings, options);
+  options.validate();
+  return options;
+}
+
+bool sets_white_level(const ProcessingSettings& processing) {
+  return std::any_of(processing.settings.begin(), processing.settings.end(),
+                     [](const std::string& setting) { return split_setting(setting).first == "white_level"; });
+}
+
+int used_threads(const PipelineOptions& options) {
+  if (options.threads > 0) return options.threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+std::string settings_help() {
+  std::string text = "Keys of --set, with the values of the default preset:\n";
+  for (const OptionText& option : list_options(preset("default"))) {
+    text += fmt::format("  {:<38} {:<12} {}\n", option.key, option.value, option.description);
+  }
+  return text;
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Runs the tests of a build folder, says how many were skipped, and fails when those are not the ones that cannot run on
+# this machine. What a test needs is a label of it (tests/labels.cmake).
+#   scripts/run_tests.sh BUILD [options of ctest]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+build=$1
+shift
+cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
+count() { ctest --test-dir "$build" --show-only "$@" | sed -n 's/^Total Tests: //p'; }
+
+missing=()
+data=$(cached ROADSTEREO_DATA)
+[ -n "$data" ] && [ -d "$data" ] || missing+=(real_data)
+[ -x "$(cached ROADSTEREO_OGRINFO)" ] || missing+=(ogrinfo)
+compgen -G '/usr/lib/*/gstreamer-1.0/libgstvideotestsrc.so' >/dev/null || missing+=(gstreamer)
+command -v chromedriver >/dev/null && /usr/bin/python3 -c 'import selenium' 2>/dev/null || missing+=(browser)
+gpus=$(nvidia-smi --list-gpus 2>/dev/null | grep -c '^GPU' || true)
+[ "$gpus" -ge 2 ] || missing+=(two_gpus)
+if [ "$gpus" -eq 0 ] && [ "$(cached ROADSTEREO_CUDA)" != EMULATED ]; then missing+=(cuda); fi
+IFS='|'
+expected=$(count "$@" --label-regex "^(${missing[*]:-none})\$")
+unset IFS
+
+log=$build/Testing/tests.log
+mkdir -p "$build/Testing"
+good=true
+ctest --test-dir "$build" --output-on-failure -j "$(nproc)" "$@" | tee "$log" || good=false
+skipped=$(grep -cE '^[[:space:]]+[0-9]+ - .* \(Skipped\)' "$log" || true)
+echo "$build: $skipped tests skipped, $expected expected (missing here: ${missing[*]:-nothing})."
+if [ "$skipped" -ne "$expected" ]; then
+  echo "That is another number than expected." >&2
+  exit 1
+fi
+$good

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+
+#include "core/cuda/plane.hpp"
+
+namespace roadstereo::cuda {
+
+/// core/downsample.hpp on the device: each pixel of `small` is the mean of factor × factor of the image.
+void downsample(Plane<const std::int16_t> image, int factor, Plane<std::int16_t> small, cudaStream_t stream);
+
+/// The same of two images of one size, in one launch.
+void downsample(Plane<const std::int16_t> first, Plane<const std::int16_t> second, int factor,
+                Plane<std::int16_t> first_small, Plane<std::int16_t> second_small, cudaStream_t stream);
+
+}  // namespace roadstereo::cuda

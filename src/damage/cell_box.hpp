@@ -1,0 +1,38 @@
+#pragma once
+
+#include <algorithm>
+
+#include "roadstereo/image.hpp"
+
+namespace roadstereo {
+
+/// Rectangle of cells; the last column and row are inside. Empty by default.
+struct CellBox {
+  int first_column = 0, first_row = 0, last_column = -1, last_row = -1;
+
+  bool empty() const { return last_column < first_column; }
+  int columns() const { return last_column - first_column + 1; }
+  int rows() const { return last_row - first_row + 1; }
+  bool contains(int column, int row) const {
+    return column >= first_column && column <= last_column && row >= first_row && row <= last_row;
+  }
+  void add(int column, int row) { add_run(row, column, column); }
+  /// Add the cells `first` … `last` of a row.
+  void add_run(int row, int first, int last) {
+    if (empty()) {
+      *this = {first, row, last, row};
+      return;
+    }
+    first_column = std::min(first_column, first);
+    first_row = std::min(first_row, row);
+    last_column = std::max(last_column, last);
+    last_row = std::max(last_row, row);
+  }
+  /// Box with a margin of that many cells, clipped to width×height cells.
+  CellBox grown(int margin, int width, int height) const {
+    return {std::max(0, first_column - margin), std::max(0, first_row - margin),
+            std::min(width - 1, last_column + margin), std::min(height - 1, last_row + margin)};
+  }
+};
+
+}  // namespace roadstereo

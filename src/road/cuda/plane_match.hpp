@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+
+#include "core/cuda/plane.hpp"
+#include "road/cuda/fitted_plane.hpp"
+#include "road/plane_search.hpp"
+
+namespace roadstereo::cuda {
+
+/// The pair as the search sees it, at 1 / factor of its size.
+struct GuidedPair {
+  Plane<const std::int16_t> left, right;
+  int factor;
+};
+
+/// What was found, in device memory: place by place of the grid, so in the host's order. Full-size coordinates.
+struct GuidedSlots {
+  float* u;
+  float* v;
+  float* d;    ///< NaN where nothing was matched
+  int* tried;  ///< 1: the place has texture and both views see it
+};
+
+/// match_along_plane() on the device, around a plane in full-size coordinates; a warp for each place. Where `needed`,
+/// in device memory, is 0, nothing is tried.
+void match_along_plane(const GuidedPair& pair, const SampleGrid& grid, const PlaneSource& plane, const int* needed,
+                       const GuidedSlots& slots, cudaStream_t stream);
+
+}  // namespace roadstereo::cuda

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "road/cuda/fitted_plane.hpp"
+
+namespace roadstereo::cuda {
+
+/// What a search around a plane and the fit to what it found leave: PlaneFitStatistics of the device.
+struct SearchStatistics {
+  FittedPlane fit;
+  int points;                     ///< correspondences
+  int tried;                      ///< textured places of the road that both views see
+  int inliers;                    ///< points with a weight
+  int found;                      ///< 0: too few inliers
+  float lowest_row, highest_row;  ///< 5th and 95th percentile of the inliers' rows, when found
+};
+
+/// What RoadVerification leaves for the host.
+struct VerificationFigures {
+  SearchStatistics around, close;
+  float residual_p01_px, residual_p99_px;  ///< 1st and 99th percentile of the residuals near the road
+  int near;                                ///< correspondences near the road
+};
+
+}  // namespace roadstereo::cuda

@@ -1,0 +1,169 @@
+#include "roadstereo/roll.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/parallel.hpp"
+#include "road/plane_fit.hpp"
+#include "road/roll_assessment.hpp"
+#include "road/roll_energy.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo {
+namespace {
+
+using Mask = std::optional<ImageView<const std::uint8_t>>;
+
+bool usable(ImageView<const float> disparity, const Mask& mask, int u, int v) {
+  return !std::isnan(disparity(u, v)) && (!mask || (*mask)(u, v) != 0);
+}
+
+/// The sums over all usable pixels; added up row by row, so that they do not depend on the number of threads.
+PlaneSums sum_map(ImageView<const float> disparity, const Mask& mask, int threads) {
+  const PlaneSums origin((disparity.width() - 1) / 2.0, (disparity.height() - 1) / 2.0);
+  auto rows = scratch_vector<PlaneSums>(static_cast<std::size_t>(disparity.height()), origin);
+  parallel_rows(disparity.height(), 16, threads, [&](int first, int last, int) {
+    for (int v = first; v < last; ++v) {
+      PlaneSums& row = rows[static_cast<std::size_t>(v)];
+      for (int u = 0; u < disparity.width(); ++u) {
+        if (usable(disparity, mask, u, v)) row.add({static_cast<double>(u), static_cast<double>(v), disparity(u, v)});
+      }
+    }
+  });
+  PlaneSums total = origin;
+  for (const PlaneSums& row : rows) total.add(row);
+  return total;
+}
+
+PlaneSums sum_points(std::span<const DisparityPoint> points) {
+  PlaneSums sums;
+  for (const DisparityPoint& p : points) sums.add(p);
+  return sums;
+}
+
+/// Valid disparities on a regular grid.
+ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, const Mask& mask) {
+  const MapSample sample = map_sample(disparity.width(), disparity.height());
+  auto points = scratch_vector<DisparityPoint>();
+  points.reserve(static_cast<std::size_t>(sample.count()));
+  for (int row = 0; row < sample.rows; ++row) {
+    const int v = sample.at(row);
+    for (int column = 0; column < sample.columns; ++column) {
+      const int u = sample.at(column);
+      if (usable(disparity, mask, u, v)) {
+        points.push_back({static_cast<double>(u), static_cast<double>(v), disparity(u, v)});
+      }
+    }
+  }
+  return points;
+}
+
+/// Adds up the scores of all points of a cell before they are squared. Without weights all count as 1.
+void sum_scores(std::span<const DisparityPoint> points, std::span<const double> weights, const DisparityPlane& plane,
+                int width, int height, FitMoments& moments) {
+  PlaneSums sums(width / 2.0, height / 2.0);
+  for (std::size_t i = 0; i < points.size(); ++i) sums.add(points[i], weights.empty() ? 1 : weights[i]);
+  struct Score {
+    double u = 0, v = 0;
+  };
+  auto cells = scratch_vector<Score>(static_cast<std::size_t>(cells_per_side) * cells_per_side);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const DisparityPoint& p = points[i];
+    const double residual = (weights.empty() ? 1 : weights[i]) * (p.d - plane.disparity(p.u, p.v));
+    const auto column = static_cast<std::size_t>(cell_of(p.u, width));
+    const auto row = static_cast<std::size_t>(cell_of(p.v, height));
+    cells[row * cells_per_side + column].u += residual * (p.u - sums.mean_u());
+    cells[row * cells_per_side + column].v += residual * (p.v - sums.mean_v());
+  }
+  for (const Score& cell : cells) {
+    moments.score_uu += cell.u * cell.u;
+    moments.score_uv += cell.u * cell.v;
+    moments.score_vv += cell.v * cell.v;
+  }
+  moments.uu = sums.uu();
+  moments.uv = sums.uv();
+  moments.vv = sums.vv();
+}
+
+FitMoments fit_moments(std::span<const DisparityPoint> points, std::span<const double> weights,
+                       const DisparityPlane& plane, int width, int height) {
+  FitMoments moments{};
+  sum_scores(points, weights, plane, width, height, moments);
+  PlaneSums residuals;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const DisparityPoint& p = points[i];
+    residuals.add({p.u, p.v, p.d - plane.disparity(p.u, p.v)}, weights.empty() ? 1 : weights[i]);
+  }
+  moments.n = residuals.weight();
+  moments.residuals = residuals.dd();
+  return moments;
+}
+
+/// The start of the robust fit: the model known before matching, or the plane that most of the map agrees with.
+DisparityPlane robust_start(std::span<const DisparityPoint> points, const std::optional<DisparityPlane>& prior,
+                            const DisparityPlane& least_squares) {
+  if (prior) return *prior;
+  constexpr double tolerance_px = 1.0;
+  return ransac_plane(points, tolerance_px).value_or(least_squares);
+}
+
+double start_scale(std::span<const DisparityPoint> points, const DisparityPlane& start) {
+  auto residuals = scratch_vector<double>();
+  residuals.reserve(points.size());
+  for (const DisparityPoint& p : points) residuals.push_back(p.d - start.disparity(p.u, p.v));
+  return start_scale_of(median_magnitude(residuals));
+}
+
+/// Plane, roll angle and iterations; without a fit the least-squares plane, and no weights.
+RollEstimate fit_robustly(std::span<const DisparityPoint> points, const std::optional<DisparityPlane>& prior,
+                          int max_iterations, ScratchVector<double>& weights) {
+  const PlaneSums sums = sum_points(points);
+  require_enough(sums.weight());
+  const std::optional<DisparityPlane> least_squares = sums.plane();
+  if (!least_squares) fail_on_one_line();
+  RollEstimate geometry;
+  geometry.pixels = points.size();
+  const DisparityPlane start = robust_start(points, prior, *least_squares);
+  auto fit = fit_plane_irls(points, start, start_scale(points, start), true, max_iterations);
+  geometry.plane = fit ? fit->plane : *least_squares;
+  geometry.iterations = fit ? fit->iterations : 0;
+  geometry.roll_rad = roll_of_plane(geometry.plane);
+  if (fit) weights = std::move(fit->weights);
+  return geometry;
+}
+
+}  // namespace
+
+void RollOptions::validate() const {
+  const auto require = [](bool good, const char* name, double value, const char* rule) {
+    if (!good) fail("roll.", name, " is ", value, "; it must be ", rule);
+  };
+  require(initial_lambda > 0 && initial_lambda <= 1e6, "initial_lambda", initial_lambda, "above 0 and at most 1e6");
+  require(roll_threshold_rad >= 1e-12 && roll_threshold_rad <= 0.1, "roll_threshold_rad", roll_threshold_rad,
+          "between 1e-12 and 0.1");
+  require(max_iterations >= 1 && max_iterations <= 100000, "max_iterations", max_iterations, "between 1 and 100000");
+  require(delta_t_px <= 10000, "delta_t_px", delta_t_px, "at most 10000, or negative to derive it");
+  require(max_roll_stderr_rad > 0, "max_roll_stderr_rad", max_roll_stderr_rad, "above 0");
+  require(min_gradient_px >= 0, "min_gradient_px", min_gradient_px, "at least 0");
+}
+
+RollEstimate estimate_roll(ImageView<const float> disparity, const Mask& mask,
+                           const std::optional<DisparityPlane>& prior, double initial_roll_rad,
+                           const RollOptions& options, int threads) {
+  options.validate();
+  if (mask && (mask->width() != disparity.width() || mask->height() != disparity.height())) {
+    fail("the mask has ", mask->width(), "×", mask->height(), " pixels and the disparity map ", disparity.width(), "×",
+         disparity.height(), "; they must be equal");
+  }
+  const ScratchVector<DisparityPoint> points = sample_map(disparity, mask);
+  auto weights = scratch_vector<double>();
+  RollEstimate geometry = options.solver == RollSolver::robust
+                              ? fit_robustly(points, prior, options.max_iterations, weights)
+                              : solve_from_sums(sum_map(disparity, mask, threads), initial_roll_rad, options);
+  const FitMoments moments = fit_moments(points, weights, geometry.plane, disparity.width(), disparity.height());
+  assess_roll(moments, disparity.width(), disparity.height(), options, geometry);
+  return geometry;
+}
+
+}  // namespace roadstereo

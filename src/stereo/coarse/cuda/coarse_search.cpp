@@ -1,0 +1,103 @@
+#include "stereo/coarse/cuda/coarse_search.hpp"
+
+#include <algorithm>
+
+#include "core/cuda/downsample.hpp"
+#include "roadstereo/matcher.hpp"
+#include "stereo/coarse/coarse_size.hpp"
+#include "stereo/coarse/cuda/block_costs.hpp"
+#include "stereo/coarse/cuda/coarse_map.hpp"
+#include "stereo/coarse/cuda/paths.hpp"
+#include "stereo/coarse/cuda/road_prior.hpp"
+#include "stereo/coarse/cuda/tile_ranges.hpp"
+#include "stereo/coarse/texture_uncertainty.hpp"
+
+namespace roadstereo::cuda {
+namespace {
+
+std::size_t area(int width, int height) {
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
+CoarseTiles tiles_of_pair(int width, int height, int factor) {
+  const auto tiles_along = [](int pixels, int tile) { return (pixels + tile - 1) / tile; };
+  return {tiles_along(width, SearchRanges::tile_columns), tiles_along(height, SearchRanges::tile_rows),
+          SearchRanges::tile_columns / factor, SearchRanges::tile_rows / factor};
+}
+
+RoadPrior road_prior(const CoarseSearchOptions& options, const ShiftTerms& shift) {
+  return {shift, static_cast<float>(options.road_prior_weight), static_cast<float>(options.road_prior_truncation_px),
+          uncertainty_params(texture_uncertainty_options(options)), options.block_radius};
+}
+
+}  // namespace
+
+bool CudaCoarseSearch::find(const CoarseInput& input, cudaStream_t stream) {
+  ranges_found_ = false;
+  width_ = height_ = 0;
+  const int width = input.reference.width, height = input.reference.height;
+  if (!coarse_search_pays(width, height)) return false;
+  factor_ = coarse_factor(options_, width);
+  width_ = width / factor_;
+  height_ = height / factor_;
+  const CoarseVolume shape = reserve(input);
+  const CoarsePair pair = downsample_pair(input, stream);
+  for (int row = 0; row < height_; row += shape.rows) match_band(pair, input, shape, row, stream);
+  correct_rows(packed_plane<const float>(along_rows_.data(), width_, height_), factor_,
+               packed_plane(prior_.data(), width_, height_), stream);
+  if (input.disparities >= min_ranged_disparities) find_ranges(input, stream);
+  return true;
+}
+
+/// Makes room for everything, and says how many rows are matched at a time.
+CoarseVolume CudaCoarseSearch::reserve(const CoarseInput& input) {
+  const std::size_t pixels = area(width_, height_);
+  for (DeviceArray<std::int16_t>* image : {&reference_, &target_}) image->reserve(pixels);
+  for (DeviceArray<float>* map : {&along_rows_, &prior_}) map->reserve(pixels);
+  first_seen_.reserve(static_cast<std::size_t>(height_));
+  const CoarseTiles tiles = tiles_of_pair(input.reference.width, input.reference.height, factor_);
+  for (DeviceArray<TileRange>* ranges : {&reference_ranges_, &target_ranges_}) {
+    ranges->reserve(area(tiles.across, tiles.down));
+  }
+  const int disparities = coarse_disparities(input.disparities, factor_);
+  CoarseVolume shape{nullptr, width_, disparities, path_pitch(disparities), 0, 0};
+  const std::ptrdiff_t of_row = std::ptrdiff_t{shape.columns} * shape.pitch;
+  shape.rows = static_cast<int>(std::clamp<std::ptrdiff_t>(max_numbers_ / of_row, 1, height_));
+  for (DeviceArray<float>* volume : {&costs_, &forth_, &back_}) {
+    volume->reserve(static_cast<std::size_t>(of_row * shape.rows));
+  }
+  return shape;
+}
+
+CoarsePair CudaCoarseSearch::downsample_pair(const CoarseInput& input, cudaStream_t stream) {
+  const auto reference = packed_plane(reference_.data(), width_, height_);
+  const auto target = packed_plane(target_.data(), width_, height_);
+  downsample(input.reference, input.target, factor_, reference, target, stream);
+  return {reference, target, input.first_column, factor_};
+}
+
+/// The winners of a band of rows along their smoothest paths, with the road as the guess where the picture says
+/// nothing.
+void CudaCoarseSearch::match_band(const CoarsePair& pair, const CoarseInput& input, const CoarseVolume& shape,
+                                  int first_row, cudaStream_t stream) {
+  CoarseVolume costs = shape;
+  costs.first_row = first_row;
+  costs.rows = std::min(shape.rows, height_ - first_row);
+  CoarseVolume forth = costs, back = costs;
+  costs.numbers = costs_.data();
+  forth.numbers = forth_.data();
+  back.numbers = back_.data();
+  const double noise = options_.ncc_noise_sigma * grey_scale;
+  block_costs(pair, options_.block_radius, static_cast<float>(noise * noise), costs, first_seen_.data(), stream);
+  add_road_prior(pair, road_prior(options_, input.shift), first_seen_.data(), costs, stream);
+  aggregate_scanlines(costs, {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)},
+                      first_seen_.data(), forth, back, packed_plane(along_rows_.data(), width_, height_), stream);
+}
+
+void CudaCoarseSearch::find_ranges(const CoarseInput& input, cudaStream_t stream) {
+  const CoarseTiles tiles = tiles_of_pair(input.reference.width, input.reference.height, factor_);
+  find_tile_ranges(prior(), factor_, input.disparities, tiles, reference_ranges_.data(), target_ranges_.data(), stream);
+  ranges_found_ = true;
+}
+
+}  // namespace roadstereo::cuda

@@ -1,0 +1,67 @@
+// `limits` from outside: table, verdicts, figure and JSON.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+
+#include "roadstereo/io/image_file.hpp"
+#include "tests/cli/command_test.hpp"
+
+namespace roadstereo {
+namespace {
+
+class LimitsCommand : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write("rig.yaml", "focal_px: 500\ncx_px: 319.5\ncy_px: 179.5\nbaseline_m: 0.12\nwidth: 640\nheight: 360\n");
+    write("K.txt", "500 0 319.5 0 500 179.5 0 0 1\n0.12\n");
+  }
+
+  Outcome run(const std::string& arguments) const { return CommandTest::run("limits " + arguments); }
+  using CommandTest::write;
+};
+
+TEST_F(LimitsCommand, PrintsTableAndDrawsFigure) {
+  const Outcome outcome = run("--calibration rig.yaml --height 2 --figure limits.png");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("69.0"), std::string::npos) << outcome.out;  // 2 m / 29
+  EXPECT_NE(outcome.out.find("13 mm can be told apart nowhere in view"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("50 mm can be told apart everywhere in view"), std::string::npos) << outcome.out;
+  EXPECT_GT(io::read_frame((folder_ / "limits.png").string()).width, 640);
+}
+
+TEST_F(LimitsCommand, JsonMatchesClosedForm) {
+  const Outcome outcome =
+      run("--calibration K.txt --size 640x360 --height 3 --pitch 45 --sigma-px 0.05 --rows 3 --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto document = nlohmann::json::parse(outcome.out);
+  ASSERT_EQ(document["rows"].size(), 3U);
+  const double z = 3 * std::numbers::sqrt2;  // of the middle row
+  EXPECT_NEAR(document["rows"][1]["row_px"], 179.5, 1e-9);
+  EXPECT_NEAR(document["rows"][1]["disparity_px"], 60 / z, 1e-6);
+  EXPECT_NEAR(document["rows"][1]["std_error_mm"], 1000 * z * z / 60 * 0.05 / std::numbers::sqrt2, 1e-6);
+  ASSERT_EQ(document["astm"].size(), 3U);
+  // h²/0.05 + h = 60 · sin 45° / 0.25
+  const double h = document["astm"][2]["up_to_height_m"];
+  EXPECT_NEAR(h * h / 0.05 + h, 60 * std::numbers::sqrt2 / 2 / 0.25, 1e-6);
+}
+
+TEST_F(LimitsCommand, RejectsBadInput) {
+  expect_complaint(run("--calibration rig.yaml --height 0"), "--height");
+  expect_complaint(run("--calibration rig.yaml --height -2"), "--height");
+  expect_complaint(run("--calibration rig.yaml --height 2 --pitch 91"), "--pitch");
+  expect_complaint(run("--calibration rig.yaml --height 2 --pitch -45"), "not in view");
+  expect_complaint(run("--calibration rig.yaml --height 2 --sigma-px 0"), "--sigma-px");
+  expect_complaint(run("--calibration none.yaml --height 2"), "none.yaml");
+  expect_complaint(run("--calibration K.txt --height 2"), "--size");
+  expect_complaint(run("--calibration rig.yaml --height 2 --size 64"), "64");
+  expect_complaint(run("--calibration rig.yaml --height 2 --size 320x180"), "rig.yaml");
+  expect_complaint(run("--calibration rig.yaml"), "--height");
+  expect_complaint(run("--height 2"), "--calibration");
+}
+
+}  // namespace
+}  // namespace roadstereo

@@ -1,0 +1,100 @@
+// `synth` from outside: pictures, truth and flights.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "tests/cli/road_command_test.hpp"
+
+namespace roadstereo {
+namespace {
+
+namespace fs = std::filesystem;
+using SynthCommand = RoadCommandTest;
+
+TEST_F(SynthCommand, WritesImagesAndTruth) {
+  make_road();
+  const std::set<std::string> expected = {
+      "left.png",          "right.png",        "calibration.yaml", "truth_disparity.tiff",
+      "truth_visible.png", "truth_labels.png", "truth.json"};
+  EXPECT_EQ(names_in(folder_ / "road"), expected);
+  const auto truth = json_file("road/truth.json");
+  EXPECT_TRUE(truth["plane"]["a1"].is_number());
+  EXPECT_TRUE(truth["roll_rad"].is_number());
+  EXPECT_EQ(truth["rig"]["width"], 320);
+  EXPECT_FALSE(truth["damages"].empty());
+}
+
+TEST_F(SynthCommand, NumbersFrames) {
+  const Outcome outcome = run("synth --seed 5 --degraded --frames 2 --size 160x120 --output flight");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(names_in(folder_ / "flight/left"), (std::set<std::string>{"000000.png", "000001.png"}));
+  EXPECT_TRUE(fs::exists(folder_ / "flight/truth_disparity/000001.tiff"));
+  EXPECT_NE(read_text(folder_ / "flight/left/000000.png"), read_text(folder_ / "flight/left/000001.png"));
+}
+
+TEST_F(SynthCommand, FollowsFlightPath) {
+  const Outcome outcome = run(
+      "synth --scene flat --frames 3 --size 64x36 --flight roll=8,period=4,climb=0,jump=2,jump_roll=-3,jump_pitch=0 "
+      "--rate 20 --output flight");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(read_text(folder_ / "flight/times.txt"), "0.000000\n0.050000\n0.100000\n");
+  const double roll = json_file("flight/truth/000000.json")["rig"]["roll_deg"];
+  const double quarter = json_file("flight/truth/000001.json")["rig"]["roll_deg"];
+  const double jumped = json_file("flight/truth/000002.json")["rig"]["roll_deg"];
+  EXPECT_NEAR(quarter - roll, 8, 1e-9);
+  EXPECT_NEAR(jumped - roll, -3, 1e-9);
+}
+
+TEST_F(SynthCommand, RejectsBadFlightPath) {
+  const std::string synth = "synth --frames 9 --size 64x36 --output flight --flight ";
+  expect_complaint(run(synth + "rol=3"), "knows no 'rol'");
+  expect_complaint(run(synth + "roll"), "key=value");
+  expect_complaint(run(synth + "roll=3,step=fast"), "'fast' is no value for step");
+  expect_complaint(run(synth + "roll=90"), "roll_deg is 90; it must be between 0 and 45");
+  expect_complaint(run(synth + "jump=8,jump_climb=-9"), "camera_height_m is -");
+  expect_complaint(run(synth + "default --rate 0"), "--rate is 0");
+  EXPECT_TRUE(names_in(folder_).empty());
+}
+
+TEST_F(SynthCommand, IsDeterministic) {
+  for (const std::string name : {"one --threads 1", "two --threads 2"}) {
+    ASSERT_EQ(run("synth --seed 9 --size 160x120 --output " + name).exit_code, 0);
+  }
+  for (const std::string& name : names_in(folder_ / "one")) {
+    EXPECT_EQ(read_text(folder_ / "one" / name), read_text(folder_ / "two" / name)) << name;
+  }
+}
+
+TEST_F(SynthCommand, AppliesOptions) {
+  ASSERT_EQ(run("synth --size 160x120 --pitch 90 --roll 3 --height 1.5 --focal 200 --baseline 0.2 --noise 2 "
+                "--blur 0.5 "
+                "--gain 0.1 --exposure 1.2 --output road")
+                .exit_code,
+            0);
+  const auto truth = json_file("road/truth.json");
+  EXPECT_EQ(truth["rig"]["pitch_deg"], 90);
+  EXPECT_EQ(truth["rig"]["focal_px"], 200);
+  EXPECT_EQ(truth["degradation"]["noise_grey"], 2);
+  EXPECT_EQ(truth["degradation"]["exposure"], 1.2);
+}
+
+TEST_F(SynthCommand, RejectsBadOptions) {
+  expect_complaint(run("synth --scene dmeo --output road"), 2, "demo");
+  expect_complaint(run("synth --size 640 --output road"), 2, "640x360");
+  expect_complaint(run("synth --frames 0 --output road"), 2, "--frames");
+  expect_complaint(run("synth --scene demo --seed 1 --output road"), 2, "--seed");
+  expect_complaint(run("synth"), 2, "--output");
+  EXPECT_TRUE(names_in(folder_).empty());
+}
+
+TEST_F(SynthCommand, ListsScenes) {
+  const Outcome outcome = run("synth --list");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.out.find("demo\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace roadstereo

@@ -1,0 +1,289 @@
+// The whole pipeline in device memory against the same pipeline on the host, frame after frame.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "roadstereo/device.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/pipeline.hpp"
+#include "roadstereo/synth.hpp"
+#include "tests/cuda/device_copy.hpp"
+#include "tests/cuda/device_test.hpp"
+#include "tests/stereo/textured_pair.hpp"
+#if defined(ROADSTEREO_CUDA_EMULATED)
+#include "core/cuda/emulated/run_kernel.hpp"
+#endif
+
+namespace roadstereo {
+namespace {
+
+constexpr int width = 192, height = 112;
+
+synth::SyntheticPair frame_of(const std::string& name, int frame = 0, int downsample = 1) {
+  synth::Scene scene = synth::named_scene(name);
+  scene.supersampling = 1;
+  scene.rig.focal_px *= static_cast<double>(width) / downsample / scene.rig.width;
+  scene.rig.width = width / downsample;
+  scene.rig.height = height / downsample;
+  return synth::render(synth::flight_frame(scene, {}, frame), 2);
+}
+
+PipelineOptions options_of(const std::string& preset_name, const std::string& engine) {
+  PipelineOptions options = preset(preset_name);
+  options.engine = engine;
+  options.threads = 2;
+  return options;
+}
+
+/// How far two maps differ.
+struct Difference {
+  double same_share = 0;  ///< of the pixels: within 0.01 px, or both invalid
+  double median = 0;      ///< over what both have
+
+  Difference(const Image<float>& a, const Image<float>& b) {
+    std::vector<double> differences;
+    std::size_t same = 0;
+    for (int v = 0; v < a.height(); ++v) {
+      for (int u = 0; u < a.width(); ++u) {
+        const float x = a(u, v), y = b(u, v);
+        const bool neither = std::isnan(x) && std::isnan(y);
+        same += neither || std::abs(x - y) <= 0.01F ? 1U : 0U;
+        if (!std::isnan(x) && !std::isnan(y)) differences.push_back(std::abs(double{x} - double{y}));
+      }
+    }
+    std::sort(differences.begin(), differences.end());
+    same_share = static_cast<double>(same) / static_cast<double>(a.pixels());
+    median = differences.empty() ? 0 : differences[differences.size() / 2];
+  }
+};
+
+class CudaPipeline : public test::OnDevice {};
+using SlowCudaPipeline = CudaPipeline;
+using CudaPipelineTwoGpus = CudaPipeline;
+
+class CudaPreset : public test::OnDevice, public testing::WithParamInterface<std::string> {};
+
+TEST_P(CudaPreset, MatchesHostFrameByFrame) {
+  const StereoCalibration calibration = frame_of("uav").calibration;
+  Pipeline host(options_of(GetParam(), "cpu"), calibration), device(options_of(GetParam(), "cuda"), calibration);
+  for (int frame = 0; frame < 3; ++frame) {
+    const synth::SyntheticPair pair = frame_of("uav", frame);
+    const FrameResult& expected = host.process(pair.left.view(), pair.right.view());
+    const FrameResult& found = device.process(pair.left.view(), pair.right.view());
+    SCOPED_TRACE("frame " + std::to_string(frame));
+    EXPECT_EQ(found.grey, expected.grey);
+    EXPECT_EQ(found.road.reliable, expected.road.reliable);
+    EXPECT_EQ(found.road.tracked, expected.road.tracked);
+    EXPECT_EQ(found.road.tracked, frame > 0);
+    EXPECT_EQ(found.shift.disparities, expected.shift.disparities);
+    for (const double v : {0.0, height - 1.0}) {
+      EXPECT_NEAR(found.road.model.disparity(0, v), expected.road.model.disparity(0, v), 2e-3);
+      EXPECT_NEAR(found.geometry.plane.disparity(0, v), expected.geometry.plane.disparity(0, v), 5e-3);
+    }
+    EXPECT_TRUE(found.roll_found);
+    EXPECT_NEAR(found.geometry.roll_rad, expected.geometry.roll_rad, 2e-4);
+    EXPECT_NEAR(found.geometry.residual_px, expected.geometry.residual_px, 0.02 * expected.geometry.residual_px);
+    EXPECT_EQ(found.delta_t, expected.delta_t);
+    EXPECT_NEAR(found.spread.sigma_road_px, expected.spread.sigma_road_px, 0.02 * expected.spread.sigma_road_px);
+    EXPECT_NEAR(found.valid_share, expected.valid_share, 2e-3);
+    const Difference disparity(expected.disparity, found.disparity), sigma(expected.sigma, found.sigma),
+        transformed(expected.transformed, found.transformed);
+    RecordProperty("same_disparities_" + std::to_string(frame), std::to_string(disparity.same_share));
+    RecordProperty("same_sigmas_" + std::to_string(frame), std::to_string(sigma.same_share));
+    EXPECT_GE(disparity.same_share, 0.99);
+    EXPECT_GE(sigma.same_share, 0.99);
+    EXPECT_LE(disparity.median, 1e-3);
+    EXPECT_LE(transformed.median, 5e-3);
+    EXPECT_EQ(found.warnings, expected.warnings);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Presets, CudaPreset, testing::Values("default", "fast"),
+                         [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Slow, CudaPreset, testing::Values("paper"), [](const auto& test) { return test.param; });
+
+TEST_F(CudaPipeline, TakesAndReturnsDeviceMemory) {
+  const synth::SyntheticPair pair = frame_of("uav");
+  Pipeline usual(options_of("fast", "cuda"), pair.calibration), there(options_of("fast", "cuda"), pair.calibration);
+  const FrameResult& expected = usual.process(pair.left.view(), pair.right.view());
+
+  cudaStream_t stream = nullptr;
+  ROADSTEREO_CUDA(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking));
+  there.set_device_options({.stream = stream, .download = false});
+  const cuda::DeviceArray<std::uint8_t> left = test::to_device(pair.left.bytes),
+                                        right = test::to_device(pair.right.bytes);
+  FrameView left_view = pair.left.view(), right_view = pair.right.view();
+  left_view.data = left.data();
+  right_view.data = right.data();
+  const FrameResult& found = there.process(left_view, right_view);
+  EXPECT_TRUE(found.disparity.empty() && found.sigma.empty() && found.transformed.empty() && found.grey.empty());
+  EXPECT_EQ(found.delta_t, expected.delta_t);
+  EXPECT_EQ(found.geometry.roll_rad, expected.geometry.roll_rad);
+  EXPECT_EQ(found.valid_share, expected.valid_share);
+
+  const DeviceMaps maps = there.device_maps();
+  EXPECT_EQ(maps.stream, stream);
+  ASSERT_EQ(maps.width, width);
+  ASSERT_EQ(maps.height, height);
+  const auto same_bits = [](const Image<float>& image, const float* on_device) {
+    const std::vector<float> copy = test::to_host(on_device, image.pixels());
+    return std::memcmp(copy.data(), image.row(0), image.pixels() * sizeof(float)) == 0;
+  };
+  EXPECT_TRUE(same_bits(expected.disparity, maps.disparity));
+  EXPECT_TRUE(same_bits(expected.sigma, maps.sigma));
+  EXPECT_TRUE(same_bits(expected.transformed, maps.transformed));
+  EXPECT_EQ(test::to_host(maps.grey, 1).front(), expected.grey(0, 0));
+  try {
+    there.find_damage();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("left on the device"), std::string::npos) << error.what();
+  }
+  left_view.data = pair.left.bytes.data();
+  EXPECT_THROW(there.process(left_view, right_view), Error);  // one here, one there
+  there.set_device_options({});                               // before the stream goes
+  ROADSTEREO_CUDA(cudaStreamDestroy(stream));
+}
+
+TEST_F(CudaPipeline, TwoInTwoThreadsAreIndependent) {
+  const synth::SyntheticPair uav = frame_of("uav", 0, 2), street = frame_of("street", 0, 2);
+  const auto run = [](const synth::SyntheticPair& pair, int frames) {
+    Pipeline pipeline(options_of("fast", "cuda"), pair.calibration);
+    for (int frame = 1; frame < frames; ++frame) pipeline.process(pair.left.view(), pair.right.view());
+    const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+    return std::pair(result.geometry.roll_rad, result.delta_t);
+  };
+  const auto alone_uav = run(uav, 2), alone_street = run(street, 2);
+  decltype(run(uav, 2)) beside_uav, beside_street;
+  std::thread first([&] { beside_uav = run(uav, 2); });
+  std::thread second([&] { beside_street = run(street, 2); });
+  first.join();
+  second.join();
+  EXPECT_EQ(beside_uav, alone_uav);
+  EXPECT_EQ(beside_street, alone_street);
+}
+
+class CudaMatching : public test::OnDevice {};
+using CudaMatchingTwoGpus = CudaMatching;
+
+TEST_F(CudaMatchingTwoGpus, UsesItsOwnDevice) {
+  int devices = 0;
+  ROADSTEREO_CUDA(cudaGetDeviceCount(&devices));
+  if (devices < 2) GTEST_SKIP() << "there is one GPU";
+  const auto pair = test::textured_pair(40, 34, [](double, double) { return 3; });
+  const auto engine = make_engine("cuda", 1);
+  MatchMaps maps;
+  if (cudaSetDevice(1) != cudaSuccess) GTEST_SKIP() << "the other GPU is taken";
+  EXPECT_THROW(engine->match({pair.reference, pair.target, nullptr, 6}, MatcherOptions{}, maps), Error);
+  ROADSTEREO_CUDA(cudaSetDevice(0));
+  engine->match({pair.reference, pair.target, nullptr, 6}, MatcherOptions{}, maps);
+  EXPECT_EQ(maps.winner.width(), 40);
+}
+
+/// Tiny, for the thread sanitizer.
+TEST_F(CudaMatching, TwoEnginesInTwoThreadsAreIndependent) {
+  const auto match = [](std::uint64_t seed) {
+    const auto pair = test::textured_pair(
+        40, 34, [](double, double) { return 3; }, seed);
+    MatcherOptions options;
+    options.aggregation_radius = 2;
+    MatchMaps maps;
+    make_engine("cuda", 1)->match({pair.reference, pair.target, nullptr, 6}, options, maps);
+    return maps.winner;
+  };
+  Image<std::int16_t> first, second;
+  std::thread beside([&] { first = match(1); });
+  second = match(2);
+  beside.join();
+  EXPECT_EQ(first, match(1));
+  EXPECT_EQ(second, match(2));
+}
+
+TEST_F(CudaPipeline, RejectsWhatHostRejects) {
+  const synth::SyntheticPair pair = frame_of("uav");
+  Frame grey = pair.left;
+  std::fill(grey.bytes.begin(), grey.bytes.end(), std::uint8_t{90});
+  const auto refusal = [&](const std::string& engine, const Frame& left, const Frame& right) -> std::string {
+    Pipeline pipeline(options_of("default", engine), pair.calibration);
+    try {
+      pipeline.process(left.view(), right.view());
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal("cpu", grey, pair.right), "");
+  EXPECT_EQ(refusal("cuda", grey, pair.right), refusal("cpu", grey, pair.right));
+  EXPECT_EQ(refusal("cuda", pair.left, grey), refusal("cpu", pair.left, grey));
+  EXPECT_EQ(refusal("cuda", pair.left, pair.left), refusal("cpu", pair.left, pair.left));
+  EXPECT_EQ(refusal("cuda", pair.right, pair.left), refusal("cpu", pair.right, pair.left));
+  Frame small = pair.left;
+  small.height = 20;
+  EXPECT_EQ(refusal("cuda", small, small), refusal("cpu", small, small));
+  Frame empty = pair.left;
+  empty.bytes.clear();
+  empty.bytes.shrink_to_fit();
+  EXPECT_EQ(refusal("cuda", empty, pair.right), refusal("cpu", empty, pair.right));
+  Pipeline host(options_of("default", "cpu"));
+  EXPECT_THROW(host.set_device_options({}), Error);
+}
+
+TEST_F(CudaPipeline, ContinuesAfterRejectedFrame) {
+  const synth::SyntheticPair pair = frame_of("uav");
+  Pipeline pipeline(options_of("fast", "cuda"), pair.calibration), fresh(options_of("fast", "cuda"), pair.calibration);
+  EXPECT_THROW(pipeline.process(pair.left.view(), pair.left.view()), Error);
+  EXPECT_THROW(pipeline.device_maps(), Error);
+  const Image<float> after = pipeline.process(pair.left.view(), pair.right.view()).disparity;
+  const Image<float> expected = fresh.process(pair.left.view(), pair.right.view()).disparity;
+  EXPECT_EQ(std::memcmp(after.row(0), expected.row(0), after.pixels() * sizeof(float)), 0);
+}
+
+TEST_F(CudaPipelineTwoGpus, UsesItsOwnDevice) {
+  int devices = 0;
+  ROADSTEREO_CUDA(cudaGetDeviceCount(&devices));
+  if (devices < 2) GTEST_SKIP() << "there is one GPU";
+  const synth::SyntheticPair pair = frame_of("uav", 0, 2);
+  Pipeline pipeline(options_of("fast", "cuda"), pair.calibration);
+  if (cudaSetDevice(1) != cudaSuccess) GTEST_SKIP() << "the other GPU is taken";
+  EXPECT_THROW(pipeline.process(pair.left.view(), pair.right.view()), Error);
+  ROADSTEREO_CUDA(cudaSetDevice(0));
+  EXPECT_TRUE(pipeline.process(pair.left.view(), pair.right.view()).roll_found);
+}
+
+TEST_F(CudaPipeline, WithoutRoadDisparityIsComplete) {
+  // No calibration and noise for a picture: no road model, the host's search for a plane after matching.
+  PipelineOptions options = options_of("default", "cuda");
+  options.perspective.enabled = false;
+  options.perspective.disparities = 40;
+  const synth::SyntheticPair pair = frame_of("street");
+  Pipeline device(options, pair.calibration);
+  options.engine = "cpu";
+  Pipeline host(options, pair.calibration);
+  const FrameResult& found = device.process(pair.left.view(), pair.right.view());
+  const FrameResult& expected = host.process(pair.left.view(), pair.right.view());
+  EXPECT_GE(Difference(expected.disparity, found.disparity).same_share, 0.98);
+  EXPECT_NEAR(found.valid_share, expected.valid_share, 5e-3);
+}
+
+#if defined(ROADSTEREO_CUDA_EMULATED)
+TEST_F(SlowCudaPipeline, AllocatesNothingAfterFirstFrames) {
+  for (const std::string& name : preset_names()) {
+    const synth::SyntheticPair pair = frame_of("uav");
+    Pipeline pipeline(options_of(name, "cuda"), pair.calibration);
+    for (int frame = 0; frame < 2; ++frame) pipeline.process(pair.left.view(), pair.right.view());
+    const std::size_t before = cuda::emulated::allocations();
+    const synth::SyntheticPair next = frame_of("uav", 1);
+    pipeline.process(next.left.view(), next.right.view());
+    EXPECT_EQ(cuda::emulated::allocations(), before) << name;
+  }
+}
+#endif
+
+}  // namespace
+}  // namespace roadstereo

@@ -1,0 +1,79 @@
+// Means of a map over cells, and gaps between known cells interpolated.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "damage/cells.hpp"
+#include "damage/depth_cells.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr float none = std::numeric_limits<float>::quiet_NaN();
+
+TEST(InterpolateGaps, RestoresLinearField) {
+  const double across = 0.03, down = -0.05;
+  const auto field = [&](int i, int j) { return static_cast<float>(7 + across * i + down * j); };
+  for (const int radius : {2, 5, 10}) {
+    Image<float> values(97, 71);
+    Image<std::uint8_t> known(97, 71, 255);
+    for (int j = 0; j < 71; ++j) {
+      for (int i = 0; i < 97; ++i) {
+        values(i, j) = field(i, j);
+        for (const auto& [u, v] : {std::array{25, 30}, std::array{62, 41}}) {
+          if ((i - u) * (i - u) + (j - v) * (j - v) <= radius * radius) known(i, j) = 0;
+        }
+        if (known(i, j) == 0) values(i, j) = none;
+      }
+    }
+    fill_gaps(values, known);
+    const double rise = 2 * radius * std::hypot(across, down);  // of the field over the gap
+    double worst = 0;
+    for (int j = 0; j < 71; ++j) {
+      for (int i = 0; i < 97; ++i) {
+        if (known(i, j) != 0) {
+          ASSERT_EQ(values(i, j), field(i, j));
+        }
+        worst = std::max(worst, static_cast<double>(std::abs(values(i, j) - field(i, j))));
+      }
+    }
+    EXPECT_LT(worst, 0.35 * rise) << "radius " << radius;  // a constant would be wrong by half of it
+  }
+}
+
+TEST(InterpolateGaps, OneKnownCellFillsMap) {
+  Image<float> values(33, 20, none);
+  Image<std::uint8_t> known(33, 20, 0);
+  values(31, 2) = 4.5F;
+  known(31, 2) = 255;
+  fill_gaps(values, known);
+  for (int j = 0; j < 20; ++j) {
+    for (int i = 0; i < 33; ++i) ASSERT_NEAR(values(i, j), 4.5, 1e-5);
+  }
+}
+
+TEST(Cells, AverageValidPixels) {
+  Image<float> map(7, 5, none);
+  map(0, 0) = 2;
+  map(1, 0) = 4;
+  map(2, 0) = 9;  // alone in its cell
+  map(3, 3) = 1;
+  map(2, 2) = std::numeric_limits<float>::infinity();
+  map(2, 3) = 3;
+  map(6, 0) = 5;  // half of a cell that the border cuts
+  const Cells cells = make_cells(map, {}, 2, 1);
+  ASSERT_EQ(cells.width(), 4);
+  ASSERT_EQ(cells.height(), 3);
+  EXPECT_EQ(cells.value(0, 0), 3);
+  EXPECT_TRUE(std::isnan(cells.value(1, 0)));
+  EXPECT_EQ(cells.value(1, 1), 2);
+  EXPECT_EQ(cells.value(3, 0), 5);
+}
+
+}  // namespace
+}  // namespace roadstereo

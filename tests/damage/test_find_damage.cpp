@@ -1,0 +1,446 @@
+// Damage found and measured in maps whose truth is exact, and what is no damage.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "roadstereo/damage.hpp"
+#include "tests/damage/damage_checks.hpp"
+#include "tests/damage/damage_scene.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Within `share` of the truth, and within `errors` standard errors where those are more than the figure's rounding.
+void expect_figure(const char* name, const Measurement& measured, double truth, double share) {
+  constexpr double errors = 3;
+  EXPECT_NEAR(measured.value, truth, share * truth) << name;
+  EXPECT_GT(measured.std_error, 0) << name;
+  EXPECT_LT(measured.std_error, 0.5 * truth) << name;
+  EXPECT_NEAR(measured.value, truth, errors * measured.std_error) << name;
+}
+
+std::array<double, 2> label_centroid(const synth::SyntheticPair& pair, int label) {
+  double u_sum = 0, v_sum = 0, n = 0;
+  for (int v = 0; v < pair.labels.height(); ++v) {
+    for (int u = 0; u < pair.labels.width(); ++u) {
+      if (pair.labels(u, v) != label) continue;
+      u_sum += u;
+      v_sum += v;
+      ++n;
+    }
+  }
+  return {u_sum / n, v_sum / n};
+}
+
+void expect_truth(const DamageMap& map, const synth::SyntheticPair& pair) {
+  ASSERT_TRUE(map.metric) << map.non_metric_reason;
+  ASSERT_EQ(map.damages.size(), pair.damages.size());
+  for (const synth::DamageTruth& known : pair.damages) {
+    SCOPED_TRACE(known.kind);
+    const Damage* found = find(map, pair, known.id);
+    ASSERT_NE(found, nullptr);
+    EXPECT_EQ(found->kind, known.kind == "bump" ? DamageKind::protrusion : DamageKind::depression);
+    EXPECT_FALSE(found->cut_by_border);
+    ASSERT_TRUE(found->metrics);
+    const DamageMetrics& metrics = *found->metrics;
+    expect_figure("depth", metrics.max_depth_m, known.depth_m, 0.05);
+    expect_figure("area", metrics.area_m2, known.area_m2, 0.08);
+    expect_figure("volume", metrics.volume_m3, known.volume_m3, 0.10);
+    expect_figure("mean depth", metrics.mean_depth_m, known.mean_depth_m, 0.10);
+    EXPECT_NEAR(metrics.diameter_m, 2 * std::sqrt(known.area_m2 / std::numbers::pi), 0.04 * metrics.diameter_m);
+    EXPECT_NEAR(metrics.road_centroid_m[0], known.x_m, 0.01 * metrics.distance_m);
+    EXPECT_NEAR(metrics.road_centroid_m[1], known.y_m, 0.01 * metrics.distance_m);
+    const auto centroid = label_centroid(pair, known.id);
+    EXPECT_NEAR(found->centroid_px[0], centroid[0], 1);
+    EXPECT_NEAR(found->centroid_px[1], centroid[1], 1);
+    EXPECT_GE(f_score(map.ids, found->id, pair.labels, known.id), 0.9);
+  }
+}
+
+TEST(FindDamage, MeasuresPotholeAndBump) {
+  const DamageMap map = find_damage(damaged().metric());
+  expect_truth(map, damaged().pair);
+  EXPECT_GT(map.damages[0].metrics->max_depth_m.value, map.damages[1].metrics->max_depth_m.value) << "deepest first";
+  EXPECT_NEAR(map.noise_px, 0.02 / 2, 0.002) << "of cells of 2×2 pixels";
+}
+
+/// The foot of a gentle wall cannot be told from the road: less is found, and the standard error says so.
+TEST(FindDamage, GentleWallIsWithinStandardError) {
+  synth::Scene scene = damaged_scene();
+  for (synth::Blob& blob : scene.road.blobs) blob.wall_share = 0.6;
+  const ExactMaps maps(scene);
+  const DamageMap map = find_damage(maps.metric());
+  for (const synth::DamageTruth& known : maps.pair.damages) {
+    const Damage* found = find(map, maps.pair, known.id);
+    ASSERT_NE(found, nullptr);
+    expect_figure("area", found->metrics->area_m2, known.area_m2, 0.2);
+    expect_figure("volume", found->metrics->volume_m3, known.volume_m3, 0.1);
+    expect_figure("depth", found->metrics->max_depth_m, known.depth_m, 0.05);
+  }
+}
+
+/// Cut by nothing, an outline's box has the extents that the true points have.
+TEST(FindDamage, RoadBoxHasTrueExtents) {
+  const DamageMap map = find_damage(damaged().metric());
+  for (const synth::DamageTruth& known : damaged().pair.damages) {
+    const Damage* found = find(map, damaged().pair, known.id);
+    ASSERT_NE(found, nullptr);
+    const auto [length, width, angle] = truth::extents(truth::points_of(damaged().pair, known.id).road);
+    EXPECT_NEAR(found->metrics->length_m, std::max(length, width), 0.08 * length);
+    EXPECT_LE(found->metrics->width_m, found->metrics->length_m);
+    EXPECT_NEAR(found->metrics->width_m, std::min(length, width), 0.12 * width);
+  }
+}
+
+TEST(FindDamage, MeasuresUnderRolledCamera) {
+  synth::Scene scene = damaged_scene();
+  scene.rig.pitch_deg = 90;
+  scene.rig.roll_deg = 0;
+  scene.road.blobs[0].y_m = 0.05;
+  scene.road.blobs[1].y_m = -0.1;
+  const ExactMaps nadir(scene);
+  expect_truth(find_damage(nadir.metric()), nadir.pair);
+  scene.rig.roll_deg = 12;  // turns the road's axes with it: only lengths are compared
+  const ExactMaps turned(scene);
+  const DamageMap map = find_damage(turned.metric());
+  ASSERT_EQ(map.damages.size(), 2U);
+  const double distance =
+      std::hypot(map.damages[0].metrics->road_centroid_m[0] - map.damages[1].metrics->road_centroid_m[0],
+                 map.damages[0].metrics->road_centroid_m[1] - map.damages[1].metrics->road_centroid_m[1]);
+  const auto& known = turned.pair.damages;
+  EXPECT_NEAR(distance, std::hypot(known[0].x_m - known[1].x_m, known[0].y_m - known[1].y_m), 0.01);
+  for (const auto& one : map.damages) {
+    const auto& same = known[one.kind == DamageKind::depression ? 0 : 1];
+    expect_figure("volume", one.metrics->volume_m3, same.volume_m3, 0.1);
+  }
+}
+
+/// An error of the disparities that belongs to every pixel is no damage, and changes no depth.
+TEST(FindDamage, OffsetOfTransformedMapHasNoEffect) {
+  ExactMaps shifted = damaged();
+  for (int v = 0; v < shifted.transformed.height(); ++v) {
+    for (int u = 0; u < shifted.transformed.width(); ++u) shifted.transformed(u, v) += 64;
+  }
+  const DamageMap map = find_damage(damaged().metric());
+  const DamageMap other = find_damage(shifted.metric());
+  ASSERT_EQ(other.damages.size(), map.damages.size());
+  for (std::size_t k = 0; k < map.damages.size(); ++k) {
+    const double depth = map.damages[k].metrics->max_depth_m.value;
+    EXPECT_NEAR(other.damages[k].metrics->max_depth_m.value, depth, 0.005 * depth);
+  }
+}
+
+/// Pixels of a damage near its wall, in a disk.
+void forget_disk(ExactMaps& maps, double u0, double v0, double radius) {
+  for (int v = 0; v < maps.transformed.height(); ++v) {
+    for (int u = 0; u < maps.transformed.width(); ++u) {
+      if (std::hypot(u - u0, v - v0) <= radius) maps.forget(u, v);
+    }
+  }
+}
+
+TEST(FindDamage, GapInWallBelongsToPothole) {
+  ExactMaps maps = damaged();
+  const Damage* whole = nullptr;
+  const DamageMap before = find_damage(maps.metric());
+  whole = find(before, maps.pair, 1);
+  ASSERT_NE(whole, nullptr);
+  const double u = whole->box_px[0] + 12, v = whole->centroid_px[1];  // within the left wall
+  forget_disk(maps, u, v, 7);
+  const DamageMap map = find_damage(maps.metric());
+  expect_truth(map, maps.pair);
+  EXPECT_EQ(map.ids(static_cast<int>(u), static_cast<int>(v)), find(map, maps.pair, 1)->id);
+  EXPECT_TRUE(std::isfinite(map.depth(static_cast<int>(u), static_cast<int>(v))));
+  EXPECT_LT(find(map, maps.pair, 1)->measured_share, whole->measured_share);
+}
+
+/// Where the rim is missing, too, the hole is not enclosed by what was seen of the pothole.
+TEST(FindDamage, GapOverRimBelongsToPothole) {
+  ExactMaps maps = damaged();
+  const DamageMap before = find_damage(maps.metric());
+  const Damage* whole = find(before, maps.pair, 1);
+  ASSERT_NE(whole, nullptr);
+  const double u = whole->box_px[0] + 9, v = whole->centroid_px[1];
+  forget_disk(maps, u, v, 13);
+  const DamageMap map = find_damage(maps.metric());
+  double hidden = 0, found = 0;
+  for (int row = 0; row < map.ids.height(); ++row) {
+    for (int column = 0; column < map.ids.width(); ++column) {
+      if (std::hypot(column - u, row - v) > 13 || maps.pair.labels(column, row) != 1) continue;
+      ++hidden;
+      found += map.ids(column, row) != 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(found, 0.6 * hidden);
+  expect_truth(map, maps.pair);
+}
+
+TEST(FindDamage, GapsInRoadAreNoDamage) {
+  ExactMaps maps = damaged();
+  forget_disk(maps, 320, 40, 20);
+  forget_disk(maps, 560, 330, 12);
+  for (int v = 0; v < maps.transformed.height(); ++v) {
+    for (int u = 0; u < 30; ++u) maps.forget(u, v);
+  }
+  for (const DamageInput& input : {maps.metric(), maps.pixels()}) {
+    const DamageMap map = find_damage(input);
+    EXPECT_EQ(map.ids(320, 40), 0);
+    EXPECT_EQ(map.ids(560, 330), 0);
+    EXPECT_TRUE(std::isnan(map.depth(320, 40)));
+    for (int v = 0; v < map.ids.height(); ++v) EXPECT_EQ(map.ids(10, v), 0);
+    EXPECT_EQ(map.damages.size(), 2U);
+  }
+}
+
+/// What nobody saw is not the pothole's because the pothole ends there: a gap from the border of the picture into it,
+/// and one from it far into the road.
+TEST(FindDamage, GapBeyondPotholeIsNoDamage) {
+  const auto [middle_u, middle_v] = label_centroid(damaged().pair, 1);
+  for (const bool to_border : {true, false}) {
+    ExactMaps maps = damaged();
+    const int first = to_border ? 0 : static_cast<int>(middle_u) + 30;
+    const int last = to_border ? static_cast<int>(middle_u) - 30 : static_cast<int>(middle_u) + 190;
+    const int row = static_cast<int>(middle_v);
+    for (int v = row - 25; v <= row + 25; ++v) {
+      for (int u = first; u <= last; ++u) maps.forget(u, v);
+    }
+    const DamageMap map = find_damage(maps.metric());
+    ASSERT_NE(find(map, maps.pair, 1), nullptr);
+    int invented = 0;
+    for (int v = row - 25; v <= row + 25; ++v) {
+      for (int u = first; u <= last; ++u) invented += map.ids(u, v) != 0 && maps.pair.labels(u, v) == 0 ? 1 : 0;
+    }
+    EXPECT_EQ(invented, 0) << (to_border ? "at the border" : "in the road");
+  }
+}
+
+TEST(FindDamage, InfinityIsInvalidLikeNan) {
+  ExactMaps missing = damaged();
+  forget_disk(missing, 320, 40, 20);
+  const auto [u, v] = label_centroid(missing.pair, 1);
+  forget_disk(missing, u, v, 4);
+  ExactMaps endless = missing;
+  for (int row = 0; row < endless.transformed.height(); ++row) {
+    for (int column = 0; column < endless.transformed.width(); ++column) {
+      float& value = endless.transformed(column, row);
+      if (std::isnan(value)) value = std::numeric_limits<float>::infinity() * (row % 2 == 0 ? 1.0F : -1.0F);
+    }
+  }
+  for (const bool metric : {true, false}) {
+    const DamageMap one = find_damage(metric ? missing.metric() : missing.pixels());
+    const DamageMap other = find_damage(metric ? endless.metric() : endless.pixels());
+    EXPECT_EQ(one.ids, other.ids);
+    ASSERT_EQ(one.damages.size(), other.damages.size());
+    for (std::size_t k = 0; k < one.damages.size(); ++k) {
+      EXPECT_EQ(one.damages[k].mean_depth_px, other.damages[k].mean_depth_px);
+      EXPECT_EQ(one.damages[k].measured_share, other.damages[k].measured_share);
+    }
+  }
+}
+
+/// Deepest in the last row of a picture whose cells do not divide it: 1000 = 333·3 + 1.
+TEST(FindDamage, DeepestPointIsInsideImage) {
+  constexpr int width = 1300, height = 1000, radius = 90;
+  const StereoCalibration rig{1000, 649.5, 499.5, 0.1, 0, width, height};
+  Image<float> transformed(width, height, 30.0F);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      if (std::hypot(u - 600.0, v - (height - 0.85 * radius)) > radius) continue;
+      transformed(u, v) -= 2 + static_cast<float>((v - (height - 1.85 * radius)) / (0.925 * radius));
+    }
+  }
+  transformed = with_noise(transformed, 0.02);
+  Image<float> disparity = transformed;
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) disparity(u, v) += 20;
+  }
+  DamageInput input;
+  input.transformed = transformed;
+  input.disparity = disparity;
+  input.plane = DisparityPlane{50, 0, 0};  // straight down from 2 m
+  input.calibration = rig;
+  const DamageMap map = find_damage(input);
+  ASSERT_EQ(map.damages.size(), 1U);
+  EXPECT_TRUE(map.damages[0].cut_by_border);
+  EXPECT_LT(map.damages[0].deepest_px[1], height);
+  EXPECT_GE(map.damages[0].deepest_px[1], height - 9);
+  // 4 px of 50: 2 m · 4 / 46
+  EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, 2 * 4 / 46.0, 0.02 * 2 * 4 / 46.0);
+}
+
+TEST(FindDamage, IntactRoadHasNone) {
+  synth::Scene scene = intact_scene();
+  for (const double camber : {0.0, 0.02, 0.04}) {
+    scene.road.camber = camber;
+    const ExactMaps maps(scene);
+    for (const DamageInput& input : {maps.metric(), maps.pixels()}) {
+      const DamageMap map = find_damage(input);
+      EXPECT_TRUE(map.damages.empty()) << "camber " << camber;
+      EXPECT_EQ(map.ids, Image<std::uint16_t>(640, 360, 0));
+      double on_road = 0;
+      for (int v = 0; v < 360; ++v) {
+        for (int u = 0; u < 640; ++u) on_road += map.road(u, v) != 0 ? 1 : 0;
+      }
+      EXPECT_GT(on_road, 0.8 * 640 * 360) << "camber " << camber;
+    }
+  }
+}
+
+TEST(FindDamage, KerbIsNoDamage) {
+  synth::Scene scene = intact_scene();
+  for (const double height_m : {0.05, 0.12, 0.18}) {
+    scene.road.kerbs = {{0.45, height_m, 0.02}};
+    const ExactMaps maps(scene);
+    EXPECT_TRUE(find_damage(maps.metric()).damages.empty()) << height_m;
+    EXPECT_TRUE(find_damage(maps.pixels()).damages.empty()) << height_m;
+  }
+}
+
+/// Lifts a rectangle of the picture: n·p = h − z, so that d grows by the factor h / (h − z).
+ExactMaps with_block(double lift_m) {
+  ExactMaps maps(intact_scene());
+  const double height_m = ground_plane(maps.pair.plane, maps.pair.calibration).height_m;
+  for (int v = 100; v < 260; ++v) {
+    for (int u = 200; u < 420; ++u) {
+      const double change = maps.pair.plane.disparity(u, v) * (height_m / (height_m - lift_m) - 1);
+      maps.disparity(u, v) += static_cast<float>(change);
+      maps.transformed(u, v) += static_cast<float>(change);
+    }
+  }
+  return maps;
+}
+
+TEST(FindDamage, HighBlockIsNoDamageLowBlockIsBump) {
+  for (const double lift_m : {0.2, 0.6})
+    EXPECT_TRUE(find_damage(with_block(lift_m).metric()).damages.empty()) << lift_m;
+  const DamageMap low = find_damage(with_block(0.05).metric());  // debris that a wheel climbs
+  ASSERT_EQ(low.damages.size(), 1U);
+  EXPECT_EQ(low.damages[0].kind, DamageKind::protrusion);
+  EXPECT_NEAR(low.damages[0].metrics->max_depth_m.value, 0.05, 0.0025);
+  EXPECT_NEAR(static_cast<double>(low.damages[0].pixels), 220 * 160, 0.1 * 220 * 160);
+}
+
+TEST(FindDamage, OmitsBumpsUnlessRequested) {
+  DamageOptions options;
+  options.protrusions = false;
+  const DamageMap map = find_damage(damaged().metric(), options);
+  ASSERT_EQ(map.damages.size(), 1U);
+  EXPECT_EQ(map.damages[0].kind, DamageKind::depression);
+}
+
+TEST(FindDamage, AppliesDepthAndAreaLimits) {
+  DamageOptions options;
+  options.min_depth_m = 0.05;  // the bump is 4 cm high
+  EXPECT_EQ(find_damage(damaged().metric(), options).damages.size(), 1U);
+  options = {};
+  options.max_depth_m = 0.03;  // the pothole is 6 cm deep
+  const DamageMap shallow = find_damage(damaged().metric(), options);
+  ASSERT_EQ(shallow.damages.size(), 1U);
+  EXPECT_EQ(shallow.damages[0].kind, DamageKind::protrusion);
+  options = {};
+  options.min_area_m2 = 1;
+  EXPECT_TRUE(find_damage(damaged().metric(), options).damages.empty());
+  options = {};
+  options.min_area_share = 0.5;
+  EXPECT_TRUE(find_damage(damaged().pixels(), options).damages.empty());
+}
+
+TEST(FindDamage, UncalibratedMapHasNoMetrics) {
+  const DamageMap map = find_damage(damaged().pixels());
+  EXPECT_FALSE(map.metric);
+  EXPECT_NE(map.non_metric_reason.find("calibration"), std::string::npos) << map.non_metric_reason;
+  ASSERT_EQ(map.damages.size(), 2U);
+  for (const Damage& damage : map.damages) EXPECT_FALSE(damage.metrics);
+  // Outlines are drawn 0.6 of the way up the wall where nothing says how deep a hollow really is.
+  const synth::SyntheticPair& pair = damaged().pair;
+  Image<std::uint16_t> deep = pair.labels;
+  double floor_px = 0;
+  const auto depth_px = [&](int u, int v) { return pair.plane.disparity(u, v) - pair.disparity(u, v); };
+  for (int v = 0; v < deep.height(); ++v) {
+    for (int u = 0; u < deep.width(); ++u) {
+      if (deep(u, v) == 1) floor_px = std::max(floor_px, depth_px(u, v));
+    }
+  }
+  for (int v = 0; v < deep.height(); ++v) {
+    for (int u = 0; u < deep.width(); ++u) {
+      if (deep(u, v) == 1 && depth_px(u, v) < 0.55 * floor_px) deep(u, v) = 0;
+    }
+  }
+  EXPECT_GE(f_score(map.ids, find(map, pair, 1)->id, deep, 1), 0.93);
+  DamageInput input = damaged().metric();
+  input.disparity = {};
+  EXPECT_NE(find_damage(input).non_metric_reason.find("disparity"), std::string::npos);
+  input = damaged().metric();
+  input.plane.reset();
+  EXPECT_NE(find_damage(input).non_metric_reason.find("plane"), std::string::npos);
+}
+
+TEST(FindDamage, UnitOfUncalibratedMapHasNoEffect) {
+  ExactMaps scaled = damaged();
+  for (int v = 0; v < scaled.transformed.height(); ++v) {
+    for (int u = 0; u < scaled.transformed.width(); ++u) {
+      scaled.transformed(u, v) = 1000 * (scaled.transformed(u, v) + 4);
+    }
+  }
+  const DamageMap map = find_damage(damaged().pixels());
+  const DamageMap other = find_damage(scaled.pixels());
+  ASSERT_EQ(map.damages.size(), other.damages.size());
+  std::size_t different = 0;
+  for (int v = 0; v < map.ids.height(); ++v) {
+    for (int u = 0; u < map.ids.width(); ++u) different += map.ids(u, v) != other.ids(u, v) ? 1U : 0U;
+  }
+  EXPECT_LE(different, map.ids.pixels() / 50'000) << "float rounding moves single pixels at most";
+  for (std::size_t k = 0; k < map.damages.size(); ++k) {
+    const double depth = map.damages[k].max_depth_px.value;
+    EXPECT_NEAR(other.damages[k].max_depth_px.value, 1000 * depth, depth);
+  }
+}
+
+TEST(FindDamage, IsIndependentOfThreads) {
+  const DamageMap one = find_damage(damaged().metric(), {}, 1);
+  for (const int threads : {2, 3, 7, 0}) expect_same(one, find_damage(damaged().metric(), {}, threads));
+}
+
+/// A copy of a map within a wider one that is full of nonsense.
+template <class Value>
+struct Padded {
+  static constexpr int left = 5, right = 8;
+  Image<Value> pixels;
+  ImageView<const Value> view;
+
+  Padded(const Image<Value>& map, Value nonsense) : pixels(map.width() + left + right, map.height(), nonsense) {
+    for (int v = 0; v < map.height(); ++v) std::copy_n(map.row(v), map.width(), pixels.row(v) + left);
+    view = {pixels.row(0) + left, map.width(), map.height(), pixels.width()};
+  }
+};
+
+TEST(FindDamage, StridedViewsGiveSameResult) {
+  const Image<float> sigma(640, 360, 0.03F);
+  GreyImage grey;
+  to_grey(damaged().pair.left.view(), 0, grey);
+  DamageInput dense = damaged().metric();
+  dense.sigma = sigma;
+  dense.grey = grey;
+  const Padded<float> transformed(damaged().transformed, 1e6F), disparity(damaged().disparity, -7.0F),
+      noise(sigma, 9.0F);
+  const Padded<std::int16_t> picture(grey, grey_max);
+  DamageInput strided = dense;
+  strided.transformed = transformed.view;
+  strided.disparity = disparity.view;
+  strided.sigma = noise.view;
+  strided.grey = picture.view;
+  const DamageMap map = find_damage(dense);
+  EXPECT_EQ(map.damages.size(), 2U);
+  expect_same(map, find_damage(strided));
+}
+
+}  // namespace
+}  // namespace roadstereo

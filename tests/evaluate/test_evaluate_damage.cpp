@@ -1,0 +1,85 @@
+// `evaluate damage`: scores against synthetic truth and against labels.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include "tests/cli/command_test.hpp"
+
+namespace roadstereo {
+namespace {
+
+namespace fs = std::filesystem;
+
+using EvaluateDamage = CommandTest;
+using EvaluateDamageRealData = CommandTest;
+
+TEST_F(EvaluateDamage, ScoresSyntheticRoads) {
+  const Outcome outcome = run("evaluate damage --scenes 3 --json score.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("Damage found"), std::string::npos);
+  EXPECT_NE(outcome.out.find("Measured against the truth"), std::string::npos);
+  const auto score = nlohmann::json::parse(read_text(folder_ / "score.json"));
+  EXPECT_EQ(score["experiment"], "damage");
+  EXPECT_EQ(score["scenes"], 3);
+  EXPECT_EQ(score["false_positives"], 0);
+  const auto& detection = score["detection"];
+  ASSERT_EQ(detection.size(), 4U);
+  EXPECT_EQ(detection[3]["recall"], 1.0);
+  EXPECT_EQ(score["measurement"].size(), 4U);
+}
+
+TEST_F(EvaluateDamage, RejectsOtherFolders) {
+  const Outcome outcome = run("evaluate damage .");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+}
+
+/// Scores of the frames of a folder, without the line of them all.
+nlohmann::json frames_in(const fs::path& report) {
+  auto rows = nlohmann::json::parse(read_text(report))["rows"];
+  rows.erase(rows.size() - 1);
+  return rows;
+}
+
+TEST_F(EvaluateDamageRealData, TransformedMapsMatchLabels) {
+  const auto data = data_folder("transformed");
+  if (!data) GTEST_SKIP() << "ROADSTEREO_DATA has no folder transformed";
+  ASSERT_EQ(run("evaluate damage '" + data->string() + "' --json score.json").exit_code, 0);
+  const auto rows = frames_in(folder_ / "score.json");
+  EXPECT_GE(rows.size(), 6U);
+  for (const auto& row : rows) {
+    EXPECT_GE(row["f"], 0.886) << row;
+    EXPECT_EQ(row["false_positives"], 0) << row;
+  }
+}
+
+TEST_F(EvaluateDamageRealData, PotholePairsMatchLabels) {
+  const auto data = data_folder("potholes");
+  if (!data) GTEST_SKIP() << "ROADSTEREO_DATA has no folder potholes";
+  ASSERT_EQ(run("evaluate damage '" + data->string() + "' --json score.json").exit_code, 0);
+  const auto rows = frames_in(folder_ / "score.json");
+  EXPECT_FALSE(rows.empty());
+  for (const auto& row : rows) {
+    EXPECT_GE(row["f"], 0.80) << row;
+    EXPECT_EQ(row["false_positives"], 0) << row;
+  }
+}
+
+TEST_F(EvaluateDamageRealData, IntactStreetsHaveLittle) {
+  const auto data = data_folder("kitti2015");
+  if (!data) GTEST_SKIP() << "ROADSTEREO_DATA has no folder kitti2015";
+  ASSERT_EQ(run("evaluate damage '" + data->string() + "' --json score.json").exit_code, 0);
+  const auto rows = frames_in(folder_ / "score.json");
+  EXPECT_FALSE(rows.empty());
+  double found = 0;
+  for (const auto& row : rows) {
+    found += row["false_depressions"].get<double>() + row["false_protrusions"].get<double>();
+  }
+  EXPECT_LE(found / static_cast<double>(rows.size()), 0.25);
+}
+
+}  // namespace
+}  // namespace roadstereo

@@ -1,0 +1,335 @@
+// Whole recordings from the command line: what is written, what goes wrong, and going on after a stop or a kill.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "roadstereo/io/image_file.hpp"
+#include "roadstereo/synth.hpp"
+#include "tests/cli/command_test.hpp"
+
+namespace roadstereo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int distinct_frames = 4;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// The cells of a line of CSV without quotes.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (const char letter : line) {
+    if (letter == ',') {
+      cells.emplace_back();
+    } else if (letter != '\r') {
+      cells.back() += letter;
+    }
+  }
+  return cells;
+}
+
+class FlightCommand : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    synth::Scene scene = synth::named_scene("uav");
+    scene.rig.focal_px *= 256.0 / scene.rig.width;
+    scene.rig.width = 256;
+    scene.rig.height = 144;
+    scene.supersampling = 1;
+    fs::create_directories(folder_ / "left");
+    fs::create_directories(folder_ / "right");
+    for (int i = 0; i < distinct_frames; ++i) {
+      const synth::SyntheticPair pair = synth::render(synth::next_frame(scene, i));
+      write("left/" + std::to_string(i) + ".png", io::encode_png(pair.left.view()));
+      write("right/" + std::to_string(i) + ".png", io::encode_png(pair.right.view()));
+      if (i > 0) continue;
+      rig_ = pair.calibration;
+      write("rig.yaml", "focal_px: " + std::to_string(rig_.focal_px) + "\ncx_px: " + std::to_string(rig_.cx_px) +
+                            "\ncy_px: " + std::to_string(rig_.cy_px) + "\nbaseline_m: 0.12\nwidth: 256\nheight: 144\n");
+    }
+  }
+
+  /// A flight to and fro over the same frames, `frames` of them, ten a second.
+  void write_list(int frames) const {
+    std::string list;
+    for (int i = 0; i < frames; ++i) {
+      const int turn = i % (2 * distinct_frames - 2);
+      const std::string name = std::to_string(turn < distinct_frames ? turn : 2 * distinct_frames - 2 - turn) + ".png";
+      list += "left/" + name + " right/" + name + " " + std::to_string(0.1 * i) + "\n";
+    }
+    write("flight.txt", list);
+  }
+
+  std::vector<std::string> rows(const std::string& name) const { return lines_of(read_text(folder_ / name)); }
+
+  /// frames.csv without what a clock tells.
+  std::vector<std::vector<std::string>> figures(const std::string& output) const {
+    std::vector<std::vector<std::string>> table;
+    for (const std::string& row : rows(output + "/frames.csv")) {
+      std::vector<std::string> cells = cells_of(row);
+      cells.erase(cells.begin() + 19, cells.begin() + 21);
+      table.push_back(cells);
+    }
+    return table;
+  }
+
+  /// Every file of a folder of results but those that tell the time of processing.
+  std::map<std::string, std::string> files(const std::string& output) const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / output)) {
+      const std::string name = fs::relative(entry.path(), folder_ / output).string();
+      const bool timed = name == "frames.csv" || name == "summary.json" || name == "report.html" ||
+                         name == "flight/journal.jsonl" || name == "flight/lock";
+      if (entry.is_regular_file() && !timed) all[name] = read_text(entry.path());
+    }
+    return all;
+  }
+
+  void expect_same(const std::string& output, const std::string& expected) const {
+    EXPECT_EQ(figures(output), figures(expected));
+    const auto found = files(output);
+    const auto wanted = files(expected);
+    ASSERT_EQ(found.size(), wanted.size());
+    for (const auto& [name, content] : wanted) {
+      ASSERT_TRUE(found.count(name)) << name;
+      EXPECT_TRUE(found.at(name) == content) << name << " differs";
+    }
+  }
+
+  /// Starts `inspect` with these words and leaves it running.
+  pid_t start(const std::vector<std::string>& words) const {
+    const pid_t child = ::fork();
+    if (child != 0) return child;
+    if (::chdir(folder_.c_str()) != 0) ::_exit(127);
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::dup2(nowhere, STDERR_FILENO);
+    std::vector<char*> arguments{const_cast<char*>(ROADSTEREO_BINARY), const_cast<char*>("inspect")};
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    ::execv(ROADSTEREO_BINARY, arguments.data());
+    ::_exit(127);
+  }
+
+  void wait_for_lines(const std::string& journal, std::size_t least) const {
+    for (int i = 0; i < 20000 && lines_of(read_text(folder_ / journal)).size() < least; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
+  static int end_of(pid_t child) {
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return status;
+  }
+
+  StereoCalibration rig_;
+};
+
+TEST_F(FlightCommand, FolderGivesTablesReportAndPictures) {
+  write("left/1.png", std::string("no picture"));
+  const Outcome outcome = run("inspect . --calibration rig.yaml --output out --rate 10 --write disparity,cloud");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("4 (1 refused, 0 failed)"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("4 of 4 frames"), std::string::npos) << outcome.err;
+  const std::vector<std::string> frames = rows("out/frames.csv");
+  ASSERT_EQ(frames.size(), 5U);
+  EXPECT_EQ(frames[1].rfind("0,0,0,good,", 0), 0U) << frames[1];
+  EXPECT_EQ(frames[2].rfind("1,1,0.1,refused,", 0), 0U) << frames[2];
+  EXPECT_NE(frames[2].find("left/1.png"), std::string::npos) << frames[2];
+  EXPECT_NE(frames[3].find(",carried over,"), std::string::npos) << "over the frame that is missing: " << frames[3];
+  const nlohmann::json summary = json_file("out/summary.json");
+  EXPECT_EQ(summary["frames"]["good"], 3);
+  EXPECT_EQ(summary["frames"]["refused"], 1);
+  EXPECT_TRUE(summary["run"]["complete"].get<bool>());
+  EXPECT_NEAR(summary["height_m"]["median"].get<double>(), synth::named_scene("uav").rig.camera_height_m, 0.3);
+  EXPECT_EQ(summary["damages"]["sightings"], rows("out/damages.csv").size() - 1);
+  EXPECT_GT(fs::file_size(folder_ / "out/report.html"), 10000U);
+  for (const int i : {0, 2, 3}) {
+    EXPECT_EQ(
+        io::read_disparity((folder_ / "out/disparity" / ("00000" + std::to_string(i) + ".tiff")).string()).width(),
+        256);
+    EXPECT_TRUE(fs::exists(folder_ / "out/cloud" / ("00000" + std::to_string(i) + ".ply")));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "out/disparity/000001.tiff"));
+}
+
+TEST_F(FlightCommand, FromToAndEverySelectFrames) {
+  write_list(12);
+  const Outcome outcome = run("inspect flight.txt --output out --from 2 --to 9 --every 3 --json --quiet");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["frames"]["total"], 3);
+  std::vector<std::string> taken;
+  for (const std::string& row : rows("out/frames.csv")) taken.push_back(row.substr(0, row.find(',')));
+  EXPECT_EQ(taken, (std::vector<std::string>{"frame", "2", "5", "8"}));
+}
+
+TEST_F(FlightCommand, SecondRunReplacesFirst) {
+  write_list(6);
+  EXPECT_EQ(run("inspect flight.txt --output out --write disparity --quiet").exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out/disparity/000005.tiff"));
+  EXPECT_EQ(run("inspect flight.txt --output out --to 1 --quiet").exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "out/disparity/000005.tiff"));
+  EXPECT_EQ(rows("out/frames.csv").size(), 3U);
+}
+
+TEST_F(FlightCommand, ResumesAfterCutJournal) {
+  write_list(9);
+  const std::string command = "inspect flight.txt --calibration rig.yaml --write disparity --quiet --output ";
+  ASSERT_EQ(run(command + "whole").exit_code, 0);
+  const std::vector<std::string> journal = rows("whole/flight/journal.jsonl");
+  ASSERT_EQ(journal.size(), 10U);
+  for (const std::size_t frames : {std::size_t{0}, std::size_t{1}, std::size_t{5}, std::size_t{9}}) {
+    // As a kill leaves it: some frames done, half a line of the next, its file there already, a staging folder.
+    fs::remove_all(folder_ / "cut");
+    fs::copy(folder_ / "whole", folder_ / "cut", fs::copy_options::recursive);
+    for (const char* result : {"frames.csv", "damages.csv", "summary.json", "report.html"}) {
+      fs::remove(folder_ / "cut" / result);
+    }
+    std::string text;
+    for (std::size_t i = 0; i <= frames; ++i) text += journal[i] + "\n";
+    if (frames < 9) text += journal[frames + 1].substr(0, 100);
+    write("cut/flight/journal.jsonl", text);
+    fs::create_directories(folder_ / "cut/.roadstereo-abcdef/new");
+    write("cut/.roadstereo-abcdef/new/frames.csv", std::string("half"));
+    const Outcome outcome = run(command + "cut --resume");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(json_file("cut/summary.json")["run"]["resumed_at_frame"], frames);
+    expect_same("cut", "whole");
+  }
+}
+
+TEST_F(FlightCommand, ResumesAfterKillWithoutBrokenFile) {
+  write_list(40);
+  const std::vector<std::string> words{"flight.txt", "--calibration", "rig.yaml", "--write", "disparity", "--output"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), words.begin(), words.end());
+    return more;
+  };
+  ASSERT_EQ(end_of(start(with({"whole"}))), 0);
+  for (const std::size_t lines : {std::size_t{2}, std::size_t{9}, std::size_t{20}}) {
+    const pid_t child = start(with({"killed", "--resume"}));
+    wait_for_lines("killed/flight/journal.jsonl", lines);
+    ::kill(child, SIGKILL);
+    end_of(child);
+    for (const auto& entry : fs::directory_iterator(folder_ / "killed/disparity")) {
+      EXPECT_EQ(io::read_disparity(entry.path().string()).width(), 256) << entry.path();
+    }
+  }
+  EXPECT_EQ(end_of(start(with({"killed", "--resume"}))), 0);
+  expect_same("killed", "whole");
+}
+
+TEST_F(FlightCommand, CtrlCEndsAfterFramesInFlight) {
+  write_list(5000);
+  const pid_t child = start({"flight.txt", "--output", "out", "--preset", "fast"});
+  wait_for_lines("out/flight/journal.jsonl", 4);
+  ::kill(child, SIGINT);
+  const int status = end_of(child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  const std::size_t frames = rows("out/frames.csv").size() - 1;
+  EXPECT_GE(frames, 3U);
+  EXPECT_LT(frames, 5000U);
+  EXPECT_EQ(rows("out/flight/journal.jsonl").size(), frames + 1);
+  EXPECT_FALSE(json_file("out/summary.json")["run"]["complete"].get<bool>());
+  EXPECT_NE(read_text(folder_ / "out/report.html").find("stopped before its end"), std::string::npos);
+  for (const auto& entry : fs::directory_iterator(folder_ / "out")) {
+    EXPECT_NE(entry.path().filename().string()[0], '.') << "left over: " << entry.path();
+  }
+}
+
+TEST_F(FlightCommand, RejectsResumeOfOtherFlight) {
+  write_list(3);
+  EXPECT_EQ(run("inspect flight.txt --output out --quiet").exit_code, 0);
+  expect_complaint(run("inspect flight.txt --output out --quiet --resume --every 2"), "--every \"1\", not \"2\"");
+  expect_complaint(run("inspect flight.txt --output out --quiet --resume --preset fast"), "begun with");
+  EXPECT_EQ(run("inspect flight.txt --output out --quiet --resume --threads 1").exit_code, 0)
+      << "threads change nothing";
+}
+
+TEST_F(FlightCommand, ResumeNeedsSameFramesAndCalibration) {
+  write_list(6);
+  const std::string command = "inspect flight.txt --calibration rig.yaml --output out --quiet ";
+  EXPECT_EQ(run(command + "--to 2").exit_code, 0);
+  const std::string rig = read_text(folder_ / "rig.yaml");
+  write("rig.yaml", rig + "# another line\n");
+  expect_complaint(run(command + "--resume"), "content of the calibration");
+  write("rig.yaml", rig);
+  const std::string list = read_text(folder_ / "flight.txt");
+  write("flight.txt", list.substr(list.find('\n') + 1));  // without the first frame
+  expect_complaint(run(command + "--resume"), "frame 2 was \"2\" and is now \"3\"");
+  write("flight.txt", list);
+  EXPECT_EQ(run(command + "--resume").exit_code, 0);
+  EXPECT_EQ(rows("out/frames.csv").size(), 7U);
+}
+
+TEST_F(FlightCommand, MistypedOptionKeepsEarlierResult) {
+  write_list(3);
+  EXPECT_EQ(run("inspect flight.txt --output out --quiet").exit_code, 0);
+  const std::string frames = read_text(folder_ / "out/frames.csv");
+  expect_complaint(run("inspect flight.txt --output out --quiet --threads -1"), "threads is -1");
+  expect_complaint(run("inspect flight.txt --output out --quiet --from 3"), "has 3 frames");
+  expect_complaint(run("inspect flight.txt --output out --quiet --engine abacus"), "abacus");
+  EXPECT_EQ(read_text(folder_ / "out/frames.csv"), frames);
+}
+
+TEST_F(FlightCommand, ContinuesWithoutReaderOfStdout) {
+  write_list(3);
+  EXPECT_EQ(std::system(("cd '" + folder_.string() +
+                         "' && '" ROADSTEREO_BINARY "' inspect flight.txt --output out >/dev/null 2>/dev/full")
+                            .c_str()),
+            0);
+  EXPECT_EQ(rows("out/frames.csv").size(), 4U);
+  const int status =
+      std::system(("'" ROADSTEREO_BINARY "' inspect nowhere --output '" + folder_.string() + "' 2>&-").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+}
+
+TEST_F(FlightCommand, LocksOutputFolder) {
+  write_list(3);
+  fs::create_directories(folder_ / "out/flight");
+  const int lock = ::open((folder_ / "out/flight/lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
+  ASSERT_EQ(::flock(lock, LOCK_EX), 0);
+  expect_complaint(run("inspect flight.txt --output out --quiet"), "another program is writing");
+  ::close(lock);
+  EXPECT_EQ(run("inspect flight.txt --output out --quiet").exit_code, 0);
+}
+
+TEST_F(FlightCommand, RejectsBadInput) {
+  write_list(3);
+  expect_complaint(run("inspect flight.txt --output out --write everything"), "--write has \"everything\"");
+  expect_complaint(run("inspect flight.txt --output out --write cloud"), "needs --calibration");
+  expect_complaint(run("inspect flight.txt --output out --from 2 --to 1"), "--to is 1");
+  expect_complaint(run("inspect flight.txt --output out --every 0"), "--every is 0");
+  expect_complaint(run("inspect flight.txt --output out --layout upside-down"), "the layout is \"upside-down\"");
+  expect_complaint(run("inspect nowhere --output out"), "nowhere: no such file");
+  expect_complaint(run("inspect left/0.png --output out"), "give both images");
+  expect_complaint(run("inspect left/0.png right/0.png --resume --output out"), "--resume belongs to a recording");
+  EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing was begun";
+  write("blank.txt", "left/0.png left/0.png\n");
+  expect_complaint(run("inspect blank.txt --output out --quiet"), "none of the 1 frames could be matched");
+  EXPECT_EQ(rows("out/frames.csv").size(), 2U) << "the reason is on record all the same";
+}
+
+}  // namespace
+}  // namespace roadstereo

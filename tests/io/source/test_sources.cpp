@@ -1,0 +1,275 @@
+// Recordings as folders and lists: which images are a pair, in which order, and when they were taken.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "io/source/frame_times.hpp"
+#include "io/source/pairing.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/frame_source.hpp"
+#include "roadstereo/io/image_file.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A small picture that holds one number.
+Frame numbered(std::uint8_t number) {
+  Frame frame;
+  frame.width = frame.height = 32;
+  frame.bytes.assign(32 * 32, number);
+  frame.bytes[0] = static_cast<std::uint8_t>(number + 1);
+  return frame;
+}
+
+class Sources : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ =
+        fs::temp_directory_path() / (std::string("roadstereo_sources_") + test->name() + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void image(const std::string& name, std::uint8_t number) const {
+    const fs::path path = folder_ / name;
+    fs::create_directories(path.parent_path());
+    const std::vector<std::uint8_t> png = encode_png(numbered(number).view());
+    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(png.data()), std::ssize(png));
+  }
+  void text(const std::string& name, const std::string& content) const {
+    fs::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name) << content;
+  }
+
+  std::vector<SourcePair> all(const std::string& name = ".", const SourceOptions& options = {}) const {
+    const auto source = open_source({(folder_ / name).string()}, options);
+    std::vector<SourcePair> pairs;
+    while (auto pair = source->next()) pairs.push_back(std::move(*pair));
+    EXPECT_EQ(source->size(), std::ssize(pairs));
+    return pairs;
+  }
+
+  /// What opening it complains of.
+  std::string complaint(const std::string& name, const SourceOptions& options = {}) const {
+    try {
+      open_source({(folder_ / name).string()}, options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  fs::path folder_;
+};
+using FolderSource = Sources;
+using ListSource = Sources;
+using OpenSource = Sources;
+
+void expect_numbers(const SourcePair& pair, int left, int right) {
+  EXPECT_EQ(pair.refused, "");
+  ASSERT_FALSE(pair.left.bytes.empty());
+  EXPECT_EQ(pair.left.bytes[1], left);
+  EXPECT_EQ(pair.right.bytes[1], right);
+}
+
+struct Layout {
+  const char* left;
+  const char* right;
+};
+
+class FolderLayout : public Sources, public testing::WithParamInterface<Layout> {};
+
+TEST_P(FolderLayout, IsRecognisedAndInOrder) {
+  const auto [left, right] = GetParam();
+  for (const int number : {10, 2, 1}) {
+    const std::string name = std::to_string(number) + ".png";
+    image(left + name, static_cast<std::uint8_t>(number));
+    image(right + name, static_cast<std::uint8_t>(100 + number));
+  }
+  const std::vector<SourcePair> pairs = all();
+  ASSERT_EQ(pairs.size(), 3U);
+  expect_numbers(pairs[0], 1, 101);
+  expect_numbers(pairs[1], 2, 102);
+  expect_numbers(pairs[2], 10, 110);
+  EXPECT_EQ(pairs[2].index, 2);
+  EXPECT_TRUE(std::isnan(pairs[2].time_s)) << "a number is no time";
+}
+
+INSTANTIATE_TEST_SUITE_P(Known, FolderLayout,
+                         testing::Values(Layout{"left/", "right/"}, Layout{"image_2/", "image_3/"},
+                                         Layout{"image_0/", "image_1/"}, Layout{"image_02/data/", "image_03/data/"},
+                                         Layout{"cam0/data/", "cam1/data/"}, Layout{"L", "R"}, Layout{"left", "right"},
+                                         Layout{"left/left_", "right/right_"}));
+
+TEST_F(FolderSource, EurocPairsByTime) {
+  image("cam0/data/1403636579763555584.png", 1);
+  image("cam1/data/1403636579763555584.png", 2);
+  image("cam0/data/1403636579813555456.png", 3);
+  image("cam1/data/1403636579823555456.png", 4);  // 10 ms later
+  image("cam0/data/1403636579863555584.png", 5);
+  image("cam1/data/1403636579864555584.png", 6);  // 1 ms later
+  const std::vector<SourcePair> pairs = all();
+  ASSERT_EQ(pairs.size(), 3U);
+  expect_numbers(pairs[0], 1, 2);
+  EXPECT_NEAR(pairs[0].time_s, 1403636579.763555584, 1e-6);
+  EXPECT_NE(pairs[1].refused.find("10 ms apart"), std::string::npos) << pairs[1].refused;
+  EXPECT_NE(pairs[1].refused.find("5 ms"), std::string::npos) << pairs[1].refused;
+  expect_numbers(pairs[2], 5, 6);
+  SourceOptions patient;
+  patient.max_time_difference_s = 0.02;
+  EXPECT_EQ(all(".", patient)[1].refused, "");
+}
+
+TEST_F(FolderSource, RejectsImageWithoutPartnerOnly) {
+  for (const char* name : {"1.png", "2.png", "3.png"}) image(std::string("left/") + name, 1);
+  for (const char* name : {"1.png", "3.png", "4.png"}) image(std::string("right/") + name, 2);
+  text("times.txt", "0.5\n1.5\n2.5\n");
+  const std::vector<SourcePair> pairs = all();
+  ASSERT_EQ(pairs.size(), 4U);
+  EXPECT_EQ(pairs[0].refused, "");
+  EXPECT_NE(pairs[1].refused.find("no right image"), std::string::npos) << pairs[1].refused;
+  EXPECT_NE(pairs[3].refused.find("no left image"), std::string::npos) << pairs[3].refused;
+  EXPECT_EQ(pairs[1].time_s, 1.5);
+  EXPECT_EQ(pairs[2].time_s, 2.5) << "times count left images";
+  EXPECT_TRUE(std::isnan(pairs[3].time_s));
+}
+
+TEST_F(FolderSource, MissingTimeStampCostsOnePair) {
+  for (int i = 0; i < 6; ++i) {
+    const std::string name = "140363657" + std::to_string(i) + ".000000000.png";
+    image("left/" + name, static_cast<std::uint8_t>(i));
+    if (i != 2) image("right/" + name, static_cast<std::uint8_t>(i));
+  }
+  const std::vector<SourcePair> pairs = all();
+  ASSERT_EQ(pairs.size(), 6U);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(pairs[static_cast<std::size_t>(i)].refused.empty(), i != 2) << i;
+}
+
+TEST_F(FolderSource, RejectsBrokenImageByNameOnly) {
+  image("left/1.png", 1);
+  image("right/1.png", 1);
+  text("left/2.png", "no picture");
+  image("right/2.png", 1);
+  image("left/3.png", 1);
+  image("right/3.png", 1);
+  const std::vector<SourcePair> pairs = all();
+  ASSERT_EQ(pairs.size(), 3U);
+  EXPECT_NE(pairs[1].refused.find("left/2.png"), std::string::npos) << pairs[1].refused;
+  EXPECT_EQ(pairs[2].refused, "");
+}
+
+TEST_F(FolderSource, SkipsExactly) {
+  for (std::uint8_t i = 0; i < 5; ++i) {
+    image("L" + std::to_string(i) + ".png", i);
+    image("R" + std::to_string(i) + ".png", i);
+  }
+  const auto source = open_source({folder_.string()});
+  source->skip(3);
+  const auto pair = source->next();
+  ASSERT_TRUE(pair);
+  EXPECT_EQ(pair->index, 3);
+  expect_numbers(*pair, 3, 3);
+  source->skip(100);
+  EXPECT_FALSE(source->next());
+}
+
+TEST_F(FolderSource, PairsTwoFoldersByNumber) {
+  image("a/front_0007.png", 7);
+  image("b/rear-7.png", 8);
+  const auto source = open_source({(folder_ / "a").string(), (folder_ / "b").string()});
+  const auto pair = source->next();
+  ASSERT_TRUE(pair);
+  expect_numbers(*pair, 7, 8);
+}
+
+TEST_F(ListSource, ReadsRelativePathsAndTimes) {
+  image("x/one.png", 1);
+  image("y/two.png", 2);
+  text("pairs.txt", "# a comment\n\nx/one.png y/two.png 12.25\r\nx/one.png y/none.png\n");
+  text("pairs.csv", "x/one.png, y/two.png ,3\n");
+  const std::vector<SourcePair> pairs = all("pairs.txt");
+  ASSERT_EQ(pairs.size(), 2U);
+  expect_numbers(pairs[0], 1, 2);
+  EXPECT_EQ(pairs[0].time_s, 12.25);
+  EXPECT_NE(pairs[1].refused.find("none.png"), std::string::npos);
+  EXPECT_EQ(all("pairs.csv")[0].time_s, 3);
+}
+
+TEST_F(ListSource, ReadsSpreadsheetExports) {
+  image("my x/one.png", 1);
+  image("y/two.png", 2);
+  text("table.csv", "\xEF\xBB\xBFleft,right,time\r\n\"my x/one.png\",\"y/two.png\",0.5\r\n");
+  text("semicolon.csv", "my x/one.png; y/two.png; 1.5\n");
+  text("quoted.txt", "\"my x/one.png\"  y/two.png\n");
+  for (const char* name : {"table.csv", "semicolon.csv", "quoted.txt"}) {
+    const std::vector<SourcePair> pairs = all(name);
+    ASSERT_EQ(pairs.size(), 1U) << name;
+    expect_numbers(pairs[0], 1, 2);
+  }
+  text("never.csv", "my x/one.png,y/two.png,nan\n");
+  EXPECT_NE(complaint("never.csv").find("\"nan\" is no time"), std::string::npos) << complaint("never.csv");
+}
+
+TEST_F(OpenSource, ErrorNamesFileAndRemedy) {
+  text("pairs.txt", "one.png\n");
+  EXPECT_NE(complaint("pairs.txt").find("line 1"), std::string::npos);
+  text("empty.txt", "# nothing\n");
+  EXPECT_NE(complaint("empty.txt").find("lists no pairs"), std::string::npos);
+  EXPECT_NE(complaint("missing").find("no such file"), std::string::npos);
+  fs::create_directories(folder_ / "hollow");
+  EXPECT_NE(complaint("hollow").find("no stereo pairs"), std::string::npos);
+  image("apart/left/one.png", 1);
+  image("apart/right/two.png", 1);
+  EXPECT_NE(complaint("apart").find("no names in common"), std::string::npos);
+  text("apart/film.svo", "");
+  EXPECT_NE(complaint("apart/film.svo").find("side-by-side video"), std::string::npos);
+  SourceOptions backwards;
+  backwards.rate_hz = -1;
+  EXPECT_NE(complaint("pairs.txt", backwards).find("rate_hz is -1"), std::string::npos);
+}
+
+TEST_F(FolderSource, RejectsOtherNumberOfTimes) {
+  image("left/1.png", 1);
+  image("right/1.png", 1);
+  text("times.txt", "1\n2\n");
+  EXPECT_NE(complaint(".").find("has 2 times, but there are 1"), std::string::npos) << complaint(".");
+  text("times.txt", "soon\n");
+  EXPECT_NE(complaint(".").find("line 1: \"soon\""), std::string::npos) << complaint(".");
+  SourceOptions ten_a_second;
+  ten_a_second.rate_hz = 10;
+  EXPECT_EQ(complaint(".", ten_a_second), "") << "a rate stands in the place of times";
+}
+
+TEST(FrameTimes, ParsesNamesAndDates) {
+  EXPECT_NEAR(time_of_name("1403636579763555584").value(), 1403636579.763555584, 1e-6);
+  EXPECT_NEAR(time_of_name("1403636579763").value(), 1403636579.763, 1e-6);
+  EXPECT_NEAR(time_of_name("1403636579.25").value(), 1403636579.25, 1e-9);
+  EXPECT_FALSE(time_of_name("000012"));
+  EXPECT_FALSE(time_of_name("frame"));
+  const fs::path file = fs::temp_directory_path() / ("roadstereo_times" + std::to_string(getpid()));
+  std::ofstream(file) << "2011-09-26 13:02:25.964389445\n1970-01-02T00:00:00Z\n";
+  const std::vector<double> times = read_times(file, 2);
+  EXPECT_NEAR(times[0], 1317042145.964389445, 1e-6);
+  EXPECT_EQ(times[1], 86400);
+  fs::remove(file);
+}
+
+TEST(Pairing, SortsNumbersNaturally) {
+  EXPECT_TRUE(natural_less("frame2", "frame10"));
+  EXPECT_FALSE(natural_less("frame10", "frame2"));
+  EXPECT_FALSE(natural_less("007", "7"));
+  EXPECT_FALSE(natural_less("7", "007"));
+  EXPECT_TRUE(natural_less("a", "b1"));
+  EXPECT_TRUE(natural_less("a", "a1"));
+}
+
+}  // namespace
+}  // namespace roadstereo::io

@@ -1,0 +1,247 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/point_cloud.hpp"
+
+namespace {
+
+using namespace roadstereo;
+using namespace roadstereo::io;
+namespace fs = std::filesystem;
+
+constexpr float none = std::numeric_limits<float>::quiet_NaN();
+
+class PlyFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    path_ = fs::temp_directory_path() / (std::string("roadstereo_ply_") + test->name() + std::to_string(getpid()));
+  }
+  void TearDown() override { fs::remove(path_); }
+
+  PointCloud read(const std::string& bytes) const {
+    std::ofstream(path_, std::ios::binary) << bytes;
+    return read_ply(path_.string());
+  }
+
+  /// The complaint about a file with these bytes; it must name the file.
+  std::string complaint(const std::string& bytes) const {
+    try {
+      read(bytes);
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(path_.string()), std::string::npos) << error.what();
+      return error.what();
+    }
+    return "";
+  }
+
+  fs::path path_;
+};
+
+/// The bytes of a value, highest first.
+template <class Value>
+std::string big_endian(Value value) {
+  std::string bytes(sizeof(Value), '\0');
+  std::memcpy(bytes.data(), &value, sizeof(Value));
+  if constexpr (std::endian::native == std::endian::little) bytes = {bytes.rbegin(), bytes.rend()};
+  return bytes;
+}
+
+PointCloud example_cloud() {
+  return {{{1.5F, -2.25F, 3e-8F}, {-1e6F, 0.1F, 7.0F}, {0, 0, 0}}, {{1, 2, 3}, {255, 0, 128}, {9, 8, 7}}};
+}
+
+std::string as_string(const std::vector<std::uint8_t>& bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST_F(PlyFile, RoundTripIsExact) {
+  const PointCloud cloud = example_cloud();
+  const PointCloud back = read(as_string(encode_ply(cloud)));
+  EXPECT_EQ(back.points, cloud.points);
+  EXPECT_EQ(back.colours, cloud.colours);
+}
+
+TEST_F(PlyFile, RoundTripWithoutColours) {
+  const PointCloud cloud{example_cloud().points, {}};
+  const PointCloud back = read(as_string(encode_ply(cloud)));
+  EXPECT_EQ(back.points, cloud.points);
+  EXPECT_TRUE(back.colours.empty());
+}
+
+TEST_F(PlyFile, WritesBytesOfFormat) {
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  const std::string data("\x00\x00\x80\x3f\x00\x00\x00\xc0\x00\x00\x00\x3f\x0a\x14\x1e", 15);  // 1, −2, 0.5; 10, 20, 30
+  EXPECT_EQ(as_string(encode_ply({{{1, -2, 0.5F}}, {{10, 20, 30}}})), header + data);
+}
+
+TEST_F(PlyFile, RejectsOtherNumberOfColours) {
+  EXPECT_THROW(encode_ply({{{1, 2, 3}}, {{1, 2, 3}, {4, 5, 6}}}), Error);
+}
+
+TEST_F(PlyFile, ReadsAsciiWithFacesBeforeAndAfter) {
+  const PointCloud cloud = read(
+      "ply\r\nformat ascii 1.0\r\ncomment element vertex 99\r\nelement face 2\r\nproperty list uchar int "
+      "vertex_indices\r\nelement vertex 2\r\nproperty ushort blue\r\nproperty double z\r\nproperty list uchar float "
+      "weights\r\nproperty float red\r\nproperty int x\r\nproperty char y\r\nproperty uchar green\r\nelement edge "
+      "1\r\nproperty int a\r\nend_header\r\n3 0 1 1\r\n0\r\n65535 1.5 2 0.1 0.2 1.0 -7 -3 128\r\n0 +2.5 0 0 8 4 "
+      "7\r\n5");
+  const std::vector<std::array<float, 3>> points{{-7, -3, 1.5F}, {8, 4, 2.5F}};
+  const std::vector<std::array<std::uint8_t, 3>> colours{{255, 128, 255}, {0, 7, 0}};
+  EXPECT_EQ(cloud.points, points);
+  EXPECT_EQ(cloud.colours, colours);
+}
+
+TEST_F(PlyFile, ReadsBigEndian) {
+  const PointCloud cloud = read(
+      "ply\nformat binary_big_endian 1.0\nelement range_grid 1\nproperty list int short i\nelement vertex 1\n"
+      "property double z\nproperty float x\nproperty short y\nend_header\n" +
+      big_endian(std::int32_t{2}) + big_endian(std::int16_t{1}) + big_endian(std::int16_t{2}) + big_endian(3.25) +
+      big_endian(1.5F) + big_endian(std::int16_t{-300}));
+  ASSERT_EQ(cloud.points.size(), 1U);
+  EXPECT_EQ(cloud.points[0], (std::array<float, 3>{1.5F, -300, 3.25F}));
+  EXPECT_TRUE(cloud.colours.empty());
+}
+
+TEST_F(PlyFile, SkipsVerticesThatAreNotFinite) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar "
+      "red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  const PointCloud cloud = read(header + "nan 0 0 1 1 1\n1 2 3 4 5 6\n1e999 0 0 7 7 7\n");
+  ASSERT_EQ(cloud.points.size(), 1U);
+  ASSERT_EQ(cloud.colours.size(), 1U);
+  EXPECT_EQ(cloud.colours[0][0], 4);
+  EXPECT_NE(complaint(header + "nan 0 0 1 1 1\ninf 2 3 4 5 6\n-inf 0 0 7 7 7\n").find("finite"), std::string::npos);
+}
+
+TEST_F(PlyFile, RejectsHeadersThatLie) {
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  const std::string binary = "ply\nformat binary_little_endian 1.0\n";
+  const std::vector<std::array<std::string, 2>> cases{
+      {"plyx\nformat ascii 1.0\n", "begin with"},
+      {std::string(100, 'a'), "not a PLY"},
+      {"ply\nformat ascii 1.0\nelement vertex 1\n" + xyz, "does not end"},
+      {"ply\nelement vertex 1\n" + xyz + "end_header\n0 0 0\n", "format"},
+      {"ply\nformat binary_middle_endian 1.0\nend_header\n", "binary_little_endian"},
+      {binary + "element vertex -5\n" + xyz + "end_header\n", "whole number"},
+      {binary + "element vertex 99999999999999999999999\n" + xyz + "end_header\n", "whole number"},
+      {binary + "element vertex 4611686018427387904\n" + xyz + "end_header\n" + std::string(24, 'a'), "truncated"},
+      {binary + "element vertex 3\n" + xyz + "end_header\n" + std::string(35, 'a'), "truncated"},
+      {binary + "element vertex 1\nproperty float x\nproperty float y\nend_header\n12345678", "\"z\""},
+      {binary + "element vertex 1\nproperty float x\nproperty float x\nend_header\n12345678", "already"},
+      {binary + "element vertex 1\nproperty quad x\nend_header\n", "type"},
+      {binary + "property float x\nend_header\n", "element must come"},
+      {binary + "element vertex 1\nproperty list float int x\nend_header\n", "whole type"},
+      {binary + "element face 1\nproperty list int int i\nelement vertex 1\n" + xyz + "end_header\n\xff\xff\xff\xff" +
+           std::string(20, 'a'),
+       "entries"},
+      {binary + "element face 1\nproperty list int int i\nelement vertex 1\n" + xyz + "end_header\n\xff\xff\xff\x7f" +
+           std::string(20, 'a'),
+       "truncated"},
+      {"ply\nformat ascii 1.0\nelement vertex 1\n" + xyz + "end_header\n0 zero 0\n", "zero"},
+      {"ply\nformat ascii 1.0\nelement vertex 2\n" + xyz + "end_header\n0 1 2\n3 4\n", "truncated"},
+      {binary + "element face 0\nproperty list uchar int i\nend_header\n", "vertex"},
+      {binary + "elephant\nend_header\n", "elephant"}};
+  for (const auto& [bytes, part] : cases) {
+    const std::string said = complaint(bytes);
+    EXPECT_NE(said.find(part), std::string::npos) << "\"" << part << "\" in: " << said;
+  }
+}
+
+TEST_F(PlyFile, ErrorNamesMissingFile) {
+  try {
+    read_ply("/no/such/cloud.ply");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("/no/such/cloud.ply"), std::string::npos);
+  }
+}
+
+TEST_F(PlyFile, RejectsEveryTruncation) {
+  const std::string whole = as_string(encode_ply(example_cloud()));
+  for (std::size_t bytes = 1; bytes < whole.size(); ++bytes) EXPECT_NE(complaint(whole.substr(0, bytes)), "") << bytes;
+}
+
+/// The scans of the pothole data: sizes as their headers say, millimetres.
+TEST(PlyFileRealData, ReadsLaserScan) {
+  const char* data = std::getenv("ROADSTEREO_DATA");
+  const fs::path scan = fs::path(data == nullptr ? "" : data) / "potholes/scan/p1_scan1.ply";
+  if (!fs::exists(scan)) GTEST_SKIP() << "no laser scans: set ROADSTEREO_DATA";
+  const PointCloud cloud = read_ply(scan.string());
+  ASSERT_EQ(cloud.points.size(), 256969U);
+  ASSERT_EQ(cloud.colours.size(), cloud.points.size());
+  for (const auto& point : cloud.points) {
+    for (const float x : point) ASSERT_LT(std::abs(x), 100);
+  }
+}
+
+StereoCalibration example_calibration() {
+  StereoCalibration calibration;
+  calibration.focal_px = 100;
+  calibration.cx_px = 1;
+  calibration.cy_px = 0;
+  calibration.baseline_m = 0.1;
+  calibration.disparity_offset_px = 2;
+  return calibration;
+}
+
+/// f·b = 10: a disparity of 8 + 2 px is 1 m away, 0.02 px below zero of d + doffs is nowhere.
+TEST(CloudFromDisparity, MatchesPointsByHand) {
+  Image<float> disparity(3, 2, none);
+  disparity(0, 0) = 8;      // 1 m
+  disparity(2, 0) = 3;      // 2 m
+  disparity(0, 1) = -2;     // d + doffs = 0
+  disparity(1, 1) = -1.7F;  // 33 m: beyond 250 baselines
+  disparity(2, 1) = std::numeric_limits<float>::infinity();
+  Frame left{std::vector<std::uint8_t>(18), 3, 2, SampleType::u8, ChannelOrder::rgb};
+  for (std::size_t i = 0; i < left.bytes.size(); ++i) left.bytes[i] = static_cast<std::uint8_t>(i);
+  const PointCloud cloud = cloud_from_disparity(disparity, left.view(), 0, example_calibration());
+  ASSERT_EQ(cloud.points.size(), 2U);
+  EXPECT_NEAR(cloud.points[0][0], -0.01, 1e-7);
+  EXPECT_NEAR(cloud.points[0][2], 1, 1e-6);
+  EXPECT_NEAR(cloud.points[1][0], 0.02, 1e-7);
+  EXPECT_NEAR(cloud.points[1][1], 0, 1e-7);
+  EXPECT_NEAR(cloud.points[1][2], 2, 1e-6);
+  EXPECT_EQ(cloud.colours[0], (std::array<std::uint8_t, 3>{0, 1, 2}));
+  EXPECT_EQ(cloud.colours[1], (std::array<std::uint8_t, 3>{6, 7, 8}));
+  EXPECT_THROW(cloud_from_disparity(Image<float>(2, 2, 1.0F), left.view(), 0, example_calibration()), Error);
+}
+
+/// A road seen at a slant: its points lie at z = 0 on the road, and distances stay what they are.
+TEST(ToRoadFrame, RoadIsLevel) {
+  const StereoCalibration calibration = example_calibration();
+  const DisparityPlane model{6, 0.11, 0.02};
+  Image<float> disparity(40, 32);
+  for (int v = 0; v < 32; ++v) {
+    for (int u = 0; u < 40; ++u) disparity(u, v) = static_cast<float>(model.disparity(u, v));
+  }
+  const Frame left{std::vector<std::uint8_t>(40 * 32, 7), 40, 32, SampleType::u8, ChannelOrder::grey};
+  const PointCloud cloud = cloud_from_disparity(disparity, left.view(), 0, calibration);
+  const PointCloud level = to_road_axes(cloud, road_axes(ground_plane(model, calibration)));
+  ASSERT_EQ(level.points.size(), 40U * 32U);
+  EXPECT_EQ(level.colours, cloud.colours);
+  const auto distance = [](const PointCloud& of, std::size_t i, std::size_t j) {
+    const auto &a = of.points[i], &b = of.points[j];
+    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+  };
+  for (std::size_t i = 0; i < level.points.size(); ++i) {
+    EXPECT_NEAR(level.points[i][2], 0, 1e-6);
+    EXPECT_NEAR(distance(level, i, 0), distance(cloud, i, 0), 1e-6);
+  }
+}
+
+}  // namespace

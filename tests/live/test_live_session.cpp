@@ -1,0 +1,127 @@
+// A live run from its source to its end, with all of its threads.
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "live/live_command.hpp"
+#include "live/live_session.hpp"
+#include "roadstereo/error.hpp"
+#include "tests/live/live_test.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using LiveSessionFiles = LiveFiles;
+
+/// A session to its end.
+LiveStatus run_session(const LiveOptions& options, const MemoryPlan& plan) {
+  LiveSession session(options, [&plan] { return source_of(plan); });
+  session.start();
+  while (!session.finished()) std::this_thread::sleep_for(1ms);
+  session.end();
+  return session.board().status();
+}
+
+TEST(LiveSession, CountsEveryPair) {
+  LiveOptions options;
+  options.max_age_s = 1000;
+  const LiveStatus status = run_session(options, {12, 0.01, false, "", 11});
+  const LiveCounts& counts = status.counts;
+  EXPECT_EQ(counts.taken, 12);
+  EXPECT_EQ(counts.taken, counts.shown + counts.dropped + counts.too_old + counts.refused);
+  EXPECT_EQ(counts.refused, 1);
+  EXPECT_GE(counts.shown, 1);
+  ASSERT_TRUE(status.view);
+  EXPECT_EQ(status.view->left.width, 320);
+  EXPECT_EQ(status.view->transformed.width(), 320);
+  EXPECT_EQ(status.view->ids.height(), 180);
+  EXPECT_EQ(status.view->number, counts.shown);
+}
+
+TEST(LiveSession, SkipsOldPairs) {
+  LiveOptions options;
+  options.max_age_s = 1e-9;
+  const LiveCounts counts = run_session(options, {5, 0.001, false, "", -1}).counts;
+  EXPECT_EQ(counts.shown, 0);
+  EXPECT_GE(counts.too_old, 1);
+  EXPECT_EQ(counts.taken, counts.too_old + counts.dropped);
+}
+
+TEST(LiveSession, CountsRejectedPairs) {
+  LiveOptions options;
+  auto frames = std::make_shared<std::vector<PairOfFrames>>(*small_flight().frames);
+  for (PairOfFrames& pair : *frames) pair.second = pair.first;
+  LiveSession session(options, [&frames] {
+    return std::make_unique<MemorySource>(frames, MemoryPlan{2, 0.5, false, "", -1});
+  });
+  session.start();
+  while (!session.finished()) std::this_thread::sleep_for(1ms);
+  EXPECT_NE(session.board().wait_for_news(0, 0.01).message.find("same image"), std::string::npos);
+  session.end();
+  EXPECT_EQ(session.board().status().counts.refused, 2);
+}
+
+TEST_F(LiveSessionFiles, UnstartedSessionLeavesNoRecording) {
+  LiveOptions options;
+  options.record = (folder_ / "rec").string();
+  {
+    const LiveSession session(options, [] { return source_of({1, 0.001, false, "", -1}); });
+  }
+  EXPECT_TRUE(files_in(folder_).empty());
+}
+
+TEST(LiveSession, ThrowsIfFirstOpeningFails) {
+  EXPECT_THROW(LiveSession({}, []() -> std::unique_ptr<io::FrameSource> { throw Error("no such camera"); }), Error);
+}
+
+TEST(LiveSession, EndThrowsFailureOfSource) {
+  LiveSession session({}, [] { return source_of({1, 0.001, false, "the disk is gone", -1}); });
+  session.start();
+  while (!session.finished()) std::this_thread::sleep_for(1ms);
+  EXPECT_THROW(session.end(), Error);
+  EXPECT_EQ(session.board().status().message, "the disk is gone");
+}
+
+/// `live` in this process.
+nlohmann::json live_json(const std::string& arguments, const MemoryPlan& plan) {
+  CLI::App app;
+  add_live_command(app, [&plan](const std::vector<std::string>&, const io::SourceOptions&) { return source_of(plan); });
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  app.parse("live memory --json " + arguments);
+  testing::internal::GetCapturedStderr();
+  return nlohmann::json::parse(testing::internal::GetCapturedStdout());
+}
+
+TEST_F(LiveSessionFiles, JsonSummaryMatchesRecording) {
+  const nlohmann::json summary =
+      live_json("--max-age 60000 --record " + (folder_ / "rec").string(), {6, 0.02, false, "", -1});
+  EXPECT_EQ(summary["taken"], 6);
+  EXPECT_EQ(summary["processed"].get<int>() + summary["dropped"].get<int>(), 6);
+  EXPECT_GT(summary["latency_ms"]["median"], 0);
+  EXPECT_GT(summary["peak_memory_mib"], 1);
+  const int recorded = summary["recorded"].get<int>();
+  ASSERT_GE(recorded, 1);
+  EXPECT_EQ(files_in(folder_ / "rec").size(), 1U + 2 * static_cast<std::size_t>(recorded));
+  const std::string times = read_text(folder_ / "rec/times.txt");
+  EXPECT_EQ(std::count(times.begin(), times.end(), '\n'), recorded);
+  EXPECT_EQ(times.substr(0, 12), "1000.000000\n");
+}
+
+TEST_F(LiveSessionFiles, StopsAfterFramesOrSeconds) {
+  EXPECT_GE(live_json("--frames 1 --max-age 60000", {100000, 0.02, false, "", -1})["processed"], 1);
+  EXPECT_GE(live_json("--seconds 0.1 --loop", {2, 0.02, false, "", -1})["taken"], 3);
+}
+
+}  // namespace
+}  // namespace roadstereo::cli

@@ -1,0 +1,94 @@
+// After the first frame nothing is allocated, and matching needs little memory beyond images and maps.
+
+#include <gtest/gtest.h>
+
+#include "allocation_count.hpp"
+#include "roadstereo/matcher.hpp"
+#include "roadstereo/pipeline.hpp"
+#include "roadstereo/synth.hpp"
+#include "tests/stereo/textured_pair.hpp"
+
+namespace roadstereo {
+namespace {
+
+#define SKIP_WITHOUT_COUNT() \
+  if (!allocations()) GTEST_SKIP() << "malloc cannot be counted in this build"
+
+TEST(AllocationCount, CountsNewBlocks) {
+  SKIP_WITHOUT_COUNT();
+  const Allocations before = *allocations();
+  const auto block = std::make_unique<std::vector<char>>(1 << 20);
+  EXPECT_GE(allocations()->count, before.count + 2);
+  EXPECT_GE(allocations()->live_bytes, before.live_bytes + (1 << 20));
+}
+
+/// TBB keeps its threads. Without it they are started for every loop, which allocates.
+#ifdef ROADSTEREO_WITH_TBB
+constexpr int max_threads = 2;
+#else
+constexpr int max_threads = 1;
+#endif
+
+class PresetAllocations : public testing::TestWithParam<std::string> {};
+
+TEST_P(PresetAllocations, NoneAfterFirstFrames) {
+  SKIP_WITHOUT_COUNT();
+  synth::Scene scene = synth::named_scene("uav");
+  scene.rig.width = 320;
+  scene.rig.height = 240;
+  scene.supersampling = 1;
+  std::vector<synth::SyntheticPair> frames;
+  for (int i = 0; i < 3; ++i) {
+    frames.push_back(synth::render(scene));
+    scene = synth::next_frame(scene, i + 1, 0.05);
+  }
+  for (int threads = 1; threads <= max_threads; ++threads) {
+    PipelineOptions options = preset(GetParam());
+    options.engine = "cpu";  // what CUDA's runtime takes of the host is its own affair
+    options.threads = threads;
+    options.perspective.disparities = 32;
+    Pipeline pipeline(options, frames.front().calibration);
+    const auto process = [&] {
+      for (const synth::SyntheticPair& frame : frames) pipeline.process(frame.left.view(), frame.right.view());
+    };
+    process();
+    process();
+    const std::size_t before = allocations()->count;
+    process();
+    EXPECT_EQ(allocations()->count - before, 0U) << threads << " threads";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Presets, PresetAllocations, testing::ValuesIn(preset_names()),
+                         [](const auto& test) { return test.param; });
+
+/// Most bytes that matching needs beyond the images and maps that exist before.
+std::size_t matching_memory(int width, int height, int disparities, const MatcherOptions& options) {
+  const auto pair = test::textured_pair(width, height, [](double, double) { return 10; });
+  MatchMaps maps;
+  maps.disparity.resize(width, height);
+  maps.variance.resize(width, height);
+  maps.winner.resize(width, height);
+  maps.target_winner.resize(width, height);
+  const auto engine = make_engine("cpu", 2);
+  reset_peak();
+  const std::size_t before = allocations()->live_bytes;
+  engine->match({pair.reference, pair.target, nullptr, disparities}, options, maps);
+  return allocations()->peak_bytes - before;
+}
+
+TEST(MatchingMemory, DoesNotGrowWithHeight) {
+  SKIP_WITHOUT_COUNT();
+  constexpr std::size_t limit = 24U << 20;
+  for (const std::string& name : preset_names()) {
+    const MatcherOptions options = preset(name).matcher;
+    const std::size_t low = matching_memory(2079, 130, 64, options);
+    const std::size_t high = matching_memory(2079, 1040, 64, options);
+    EXPECT_LE(high, limit) << name;
+    EXPECT_LE(high, low + (64U << 10)) << name;  // the column where each row begins
+    RecordProperty(name + "_kib", static_cast<int>(high >> 10));
+  }
+}
+
+}  // namespace
+}  // namespace roadstereo

@@ -1,0 +1,198 @@
+// What a pipeline carries over from frame to frame, against the exact truth and against single frames.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/pipeline.hpp"
+#include "roadstereo/synth.hpp"
+#include "tests/stereo/textured_pair.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr int width = 208;
+constexpr int height = 117;
+
+synth::Scene small_road() {
+  synth::Scene scene = synth::named_scene("flat");
+  scene.supersampling = 1;
+  scene.rig.focal_px *= static_cast<double>(width) / scene.rig.width;
+  scene.rig.width = width;
+  scene.rig.height = height;
+  return scene;
+}
+
+/// Largest difference of two planes over the image: in one of its corners.
+double difference(const DisparityPlane& a, const DisparityPlane& b, const synth::SyntheticPair& pair) {
+  double largest = 0;
+  for (const double v : {0.0, pair.left.height - 1.0}) {
+    for (const double u : {0.0, pair.left.width - 1.0}) {
+      largest = std::max(largest, std::abs(a.disparity(u, v) - b.disparity(u, v)));
+    }
+  }
+  return largest;
+}
+
+struct Errors {
+  std::vector<double> roll, before, after;  ///< ψ and the plane before and after matching
+
+  void add(const FrameResult& result, const synth::SyntheticPair& pair) {
+    ASSERT_TRUE(result.road.reliable);
+    ASSERT_TRUE(result.roll_found);
+    roll.push_back(std::abs(result.geometry.roll_rad - pair.roll_rad));
+    before.push_back(difference(result.road.model, pair.plane, pair));
+    after.push_back(difference(result.geometry.plane, pair.plane, pair));
+  }
+};
+
+double largest(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
+}
+
+TEST(CarryOver, IsAsGoodAsSingleFrames) {
+  const synth::Scene scene = small_road();
+  synth::FlightPath path;
+  path.roll_period = path.pitch_period = path.climb_period = 40;
+  Pipeline carried, fresh;
+  Errors of_carried, of_fresh;
+  for (int frame = 0; frame < 40; ++frame) {
+    SCOPED_TRACE(frame);
+    const synth::SyntheticPair pair = synth::render(synth::flight_frame(scene, path, frame));
+    const FrameResult& result = carried.process(pair.left.view(), pair.right.view());
+    EXPECT_EQ(result.road.tracked, frame > 0);
+    of_carried.add(result, pair);
+    fresh.reset();
+    of_fresh.add(fresh.process(pair.left.view(), pair.right.view()), pair);
+  }
+  RecordProperty("roll_carried_rad", std::to_string(largest(of_carried.roll)));
+  RecordProperty("roll_fresh_rad", std::to_string(largest(of_fresh.roll)));
+  RecordProperty("model_carried_px", std::to_string(largest(of_carried.before)));
+  RecordProperty("model_fresh_px", std::to_string(largest(of_fresh.before)));
+  RecordProperty("plane_carried_px", std::to_string(largest(of_carried.after)));
+  RecordProperty("plane_fresh_px", std::to_string(largest(of_fresh.after)));
+  // The same but for noise: both are measured on the same frame, a little differently.
+  EXPECT_LE(largest(of_carried.roll), 1.5 * largest(of_fresh.roll));
+  EXPECT_LE(largest(of_carried.before), 1.5 * largest(of_fresh.before));
+  EXPECT_LE(largest(of_carried.after), 1.5 * largest(of_fresh.after));
+}
+
+struct Jump {
+  const char* name;
+  void (*change)(synth::Scene&);
+};
+
+class CarryOverJump : public testing::TestWithParam<Jump> {};
+
+TEST_P(CarryOverJump, IsDetectedInSameFrame) {
+  synth::Scene scene = small_road();
+  const synth::SyntheticPair before = synth::render(scene);
+  GetParam().change(scene);
+  const synth::SyntheticPair after = synth::render(scene);
+  Pipeline carried, fresh;
+  carried.process(before.left.view(), before.right.view());
+  const FrameResult& result = carried.process(after.left.view(), after.right.view());
+  EXPECT_FALSE(result.road.tracked);
+  EXPECT_TRUE(result.road.reliable);
+  ASSERT_FALSE(result.warnings.empty());
+  EXPECT_NE(result.warnings.front().find("estimated anew"), std::string::npos);
+  // Nothing of the frame before is left.
+  const FrameResult& expected = fresh.process(after.left.view(), after.right.view());
+  EXPECT_EQ(difference(result.road.model, expected.road.model, after), 0);
+  EXPECT_EQ(difference(result.geometry.plane, expected.geometry.plane, after), 0);
+  EXPECT_EQ(result.geometry.roll_rad, expected.geometry.roll_rad);
+  EXPECT_LT(difference(result.geometry.plane, after.plane, after), 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, CarryOverJump,
+                         testing::Values(Jump{"Bump",
+                                              [](synth::Scene& s) {
+                                                s.rig.pitch_deg += 4;
+                                                s.rig.camera_height_m -= 0.2;
+                                              }},
+                                         Jump{"Turn", [](synth::Scene& s) { s.rig.roll_deg += 10; }},
+                                         Jump{"Drop", [](synth::Scene& s) { s.rig.camera_height_m *= 0.5; }},
+                                         Jump{"Cut",
+                                              [](synth::Scene& s) {
+                                                s.road.seed = 77;
+                                                s.road.lane_marking = true;
+                                                s.rig.pitch_deg = 80;
+                                                s.rig.roll_deg = -12;
+                                                s.rig.camera_height_m = 1.7;
+                                              }}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(CarryOver, CutToSimilarRoadIsAsGoodAsSingleFrame) {
+  synth::Scene scene = small_road();
+  const synth::SyntheticPair before = synth::render(scene);
+  scene.road.seed = 5;
+  scene.rig.y_m = 50;
+  scene.rig.camera_height_m *= 1.02;
+  const synth::SyntheticPair after = synth::render(scene);
+  Pipeline carried, fresh;
+  carried.process(before.left.view(), before.right.view());
+  const FrameResult& result = carried.process(after.left.view(), after.right.view());
+  const FrameResult& expected = fresh.process(after.left.view(), after.right.view());
+  EXPECT_LT(difference(result.road.model, after.plane, after), 0.1);
+  EXPECT_LE(difference(result.geometry.plane, after.plane, after),
+            difference(expected.geometry.plane, after.plane, after) + 0.01);
+}
+
+TEST(WarmUp, LeavesResultsUnchanged) {
+  const synth::SyntheticPair pair = synth::render(small_road());
+  Pipeline warm(preset("default"), pair.calibration), cold(preset("default"), pair.calibration);
+  warm.warm_up(width, height);
+  EXPECT_THROW(warm.find_damage(), Error);
+  EXPECT_THROW(warm.warm_up(width + 1, height), Error);  // the calibration is of another size
+  const FrameResult& result = warm.process(pair.left.view(), pair.right.view());
+  const FrameResult& expected = cold.process(pair.left.view(), pair.right.view());
+  EXPECT_FALSE(result.road.tracked);
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_EQ(difference(result.geometry.plane, expected.geometry.plane, pair), 0);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const float a = result.disparity(u, v), b = expected.disparity(u, v);
+      ASSERT_TRUE(a == b || (std::isnan(a) && std::isnan(b)));
+    }
+  }
+}
+
+TEST(WarmUp, AcceptsEveryWhiteLevelAndSize) {
+  for (const double white_level : {0.0, 200.0, 4095.0}) {
+    PipelineOptions options;
+    options.white_level = white_level;
+    Pipeline pipeline(options);
+    EXPECT_NO_THROW(pipeline.warm_up(32, 32));
+    EXPECT_NO_THROW(pipeline.warm_up(320, 48));
+  }
+}
+
+TEST(CarryOver, RestartsAfterFrameWithoutRoad) {
+  const synth::SyntheticPair road = synth::render(small_road());
+  const auto picture = [](std::uint32_t seed) {
+    const auto pair = test::textured_pair(
+        width, height, [](double, double) { return 0; }, seed);
+    Frame frame{{}, width, height, SampleType::u8, ChannelOrder::grey};
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        frame.bytes.push_back(static_cast<std::uint8_t>(pair.reference(u, v) / grey_scale));
+      }
+    }
+    return frame;
+  };
+  const Frame left = picture(1), right = picture(99);  // two pictures that have nothing to do with each other
+  Pipeline carried, fresh;
+  carried.process(road.left.view(), road.right.view());
+  EXPECT_FALSE(carried.process(left.view(), right.view()).road.reliable);
+  const FrameResult& result = carried.process(road.left.view(), road.right.view());
+  EXPECT_FALSE(result.road.tracked);
+  EXPECT_TRUE(result.road.reliable);
+  const FrameResult& expected = fresh.process(road.left.view(), road.right.view());
+  EXPECT_EQ(difference(result.geometry.plane, expected.geometry.plane, road), 0);
+}
+
+}  // namespace
+}  // namespace roadstereo

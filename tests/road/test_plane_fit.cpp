@@ -1,0 +1,94 @@
+// Planes through points of disparity space: exact recovery, and robustness against what lies on and beside a road.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "road/plane_fit.hpp"
+#include "tests/stereo/textured_pair.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr DisparityPlane truth{-40.5, 0.31, -0.012};
+
+std::vector<DisparityPoint> points_on(const DisparityPlane& plane, int count) {
+  std::vector<DisparityPoint> points;
+  for (int i = 0; i < count; ++i) {
+    const double u = 1200 * test::lattice(i, 0, 5), v = 200 + 170 * test::lattice(i, 1, 5);
+    points.push_back({u, v, plane.disparity(u, v)});
+  }
+  return points;
+}
+
+TEST(PlaneSums, RecoverExactPlane) {
+  PlaneSums sums(600, 250);
+  for (const DisparityPoint& p : points_on(truth, 500)) sums.add(p);
+  const auto plane = sums.plane();
+  ASSERT_TRUE(plane);
+  EXPECT_NEAR(plane->a0, truth.a0, 1e-9);
+  EXPECT_NEAR(plane->a1, truth.a1, 1e-12);
+  EXPECT_NEAR(plane->a2, truth.a2, 1e-12);
+}
+
+TEST(PlaneSums, WithoutRollFitLineOverRows) {
+  // Points on two rows: the line goes through the two means.
+  PlaneSums sums;
+  sums.add({0, 100, 10});
+  sums.add({50, 100, 12});
+  sums.add({0, 200, 20});
+  sums.add({50, 200, 24});
+  const auto plane = sums.plane(false);
+  ASSERT_TRUE(plane);
+  EXPECT_NEAR(plane->a1, (22.0 - 11.0) / 100, 1e-12);
+  EXPECT_NEAR(plane->a0, 0, 1e-9);
+  EXPECT_EQ(plane->a2, 0);
+}
+
+TEST(PlaneSums, CollinearPointsGiveNoPlane) {
+  PlaneSums sums;
+  for (int i = 0; i < 20; ++i) sums.add({static_cast<double>(i), 2.0 * i, 3.0});
+  EXPECT_FALSE(sums.plane());
+  EXPECT_FALSE(PlaneSums().plane());
+}
+
+TEST(IrlsPlaneFit, IgnoresThirdOfOutliers) {
+  auto points = points_on(truth, 3000);
+  for (std::size_t i = 0; i < points.size(); i += 3) points[i].d += 2 + 30 * test::lattice(static_cast<int>(i), 7, 5);
+  const auto fit = fit_plane_irls(points, {truth.a0 + 0.4, truth.a1, truth.a2}, 0.6, true, 100);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->plane.disparity(0, 200), truth.disparity(0, 200), 1e-6);
+  EXPECT_NEAR(fit->plane.disparity(1200, 370), truth.disparity(1200, 370), 1e-6);
+}
+
+TEST(IrlsPlaneFit, ScaleIsSigmaOfNormalNoise) {
+  auto points = points_on(truth, 20000);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double sum = 0;  // twelve uniform numbers: normal to a percent
+    for (int k = 0; k < 12; ++k) sum += test::lattice(static_cast<int>(i), 10 + k, 5);
+    points[i].d += 0.3 * (sum - 6);
+  }
+  const auto fit = fit_plane_irls(points, truth, 0.6, true, 100);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->scale_px, 0.3, 0.01);
+}
+
+TEST(SearchPlane, FindsPlaneOfMajority) {
+  auto points = points_on(truth, 2000);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i % 5 < 2) points[i].d = 100 * test::lattice(static_cast<int>(i), 3, 5);
+  }
+  const auto plane = ransac_plane(points, 0.5);
+  ASSERT_TRUE(plane);
+  EXPECT_NEAR(plane->disparity(600, 300), truth.disparity(600, 300), 0.5);
+}
+
+TEST(MedianMagnitude, IsMedianOfAbsoluteValues) {
+  std::vector<double> values{-9, 1, 4};
+  EXPECT_EQ(median_magnitude(values), 4);
+  values.clear();
+  EXPECT_EQ(median_magnitude(values), 0);
+}
+
+}  // namespace
+}  // namespace roadstereo

@@ -1,0 +1,121 @@
+// The kernels of the search for the road, on every instruction set, against sums written out in double precision.
+
+#include <gtest/gtest.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "road/row_correlation.hpp"
+#include "road/strip_correlation.hpp"
+#include "tests/core/every_target.hpp"
+#include "tests/stereo/textured_pair.hpp"
+
+namespace roadstereo {
+namespace {
+
+using RoadCorrelationTarget = test::EveryTarget;
+
+double mid(std::int16_t grey) {
+  return grey - grey_max / 2.0;
+}
+
+TEST_P(RoadCorrelationTarget, StripsMatchDefinitionAtEveryColumn) {
+  constexpr int u = 20, v = 11, half_width = 7, half_height = 3, first = 5, count = 21;
+  const auto pair = test::textured_pair(70, 30, [](double, double) { return 4; });
+  const CorrelationBlock block(pair.reference, u, v, half_width, half_height);
+  Strip strip{};
+  for (int y = 0; y < block.height; ++y) {
+    for (int x = 0; x < count + block.width - 1; ++x) {
+      strip.row(y)[x] = static_cast<float>(mid(pair.target(first + x, v + y - half_height)));
+    }
+  }
+  StripCorrelations correlations{};
+  correlate_strip(block, strip, count, 1, correlations);
+  for (int i = 0; i < count; ++i) {
+    double l = 0, r = 0, ll = 0, rr = 0, lr = 0;
+    const double n = block.width * block.height;
+    for (int y = 0; y < block.height; ++y) {
+      for (int x = 0; x < block.width; ++x) {
+        const double a = pair.reference(u - half_width + x, v - half_height + y);
+        const double b = pair.target(first + i + x, v - half_height + y);
+        l += a, r += b, ll += a * a, rr += b * b, lr += a * b;
+      }
+    }
+    const double expected = (n * lr - l * r) / std::sqrt((n * ll - l * l) * (n * rr - r * r));
+    EXPECT_NEAR(correlations[static_cast<std::size_t>(i)], expected, 1e-4) << i;
+  }
+  // What has less texture than asked for has no correlation.
+  correlate_strip(block, strip, count, grey_max, correlations);
+  EXPECT_EQ(correlations[3], -1);
+}
+
+TEST_P(RoadCorrelationTarget, StripsAreSampledBetweenPixels) {
+  const auto pair = test::textured_pair(60, 3, [](double, double) { return 2; });
+  const std::int16_t* row = pair.reference.row(1);
+  constexpr int count = 23;
+  for (const double step : {1.0, 0.98, 1.05, 0.7, 1.3}) {
+    for (const double x : {0.0, 3.25, 17.9}) {
+      Strip strip{};
+      sample_strip(row, 60, x, step, count, strip.row(0));
+      for (int i = 0; i < count; ++i) {
+        const double at = x + i * step;
+        const int whole = static_cast<int>(at);
+        const double expected = mid(row[whole]) + (at - whole) * (row[whole + 1] - row[whole]);
+        EXPECT_NEAR(strip.row(0)[i], expected, 0.02) << x << " + " << i << " · " << step;
+      }
+    }
+  }
+}
+
+TEST_P(RoadCorrelationTarget, RowsMatchDefinitionAtEveryDisparity) {
+  constexpr int width = 45, disparities = 9;
+  constexpr std::ptrdiff_t front = 16, pitch = 64;
+  const auto pair = test::textured_pair(width, 1, [](double, double) { return 4; });
+  std::vector<std::int16_t> left(front + pitch), right(front + pitch);
+  std::copy_n(pair.reference.row(0), width, left.data() + front);
+  std::copy_n(pair.target.row(0), width, right.data() + front);
+  std::vector<std::int32_t> sums(2 * row_guard + disparities * pitch);
+  std::vector<float> values(disparities * pitch), left_mean(front + pitch), right_mean(front + pitch);
+  std::vector<float> left_inverse(front + pitch), right_inverse(front + pitch);
+  std::vector<std::vector<float>> best(4, std::vector<float>(front + pitch, -1));
+  for (int u = row_block_half_width; u + row_block_half_width < width; ++u) {
+    const auto i = static_cast<std::size_t>(front + u);
+    left_mean[i] = 100, right_mean[i] = 90, left_inverse[i] = 0.01f, right_inverse[i] = 0.02f;
+  }
+  const RowCorrelations row{values.data(), pitch, width, disparities};
+  add_products(left.data() + front, right.data() + front, row, 1, sums.data() + row_guard);
+  add_products(left.data() + front, right.data() + front, row, 1, sums.data() + row_guard);
+  add_products(left.data() + front, right.data() + front, row, -1, sums.data() + row_guard);
+  correlate_row(sums.data() + row_guard, {left_mean.data() + front, left_inverse.data() + front},
+                {right_mean.data() + front, right_inverse.data() + front}, row,
+                {best[0].data() + front, best[1].data() + front}, {best[2].data() + front, best[3].data() + front});
+  for (int u = 0; u < width; ++u) {
+    double most = -1;
+    for (int d = 0; d < disparities; ++d) {
+      double expected = -1;
+      if (u - d >= row_block_half_width && u + row_block_half_width < width) {
+        double sum = 0;
+        for (int x = u - row_block_half_width; x <= u + row_block_half_width; ++x) {
+          sum += static_cast<double>(pair.reference(x, 0)) * pair.target(x - d, 0);
+        }
+        expected = (sum / row_block_pixels - 100.0 * 90.0) * 0.01 * 0.02;
+      }
+      EXPECT_NEAR(values[static_cast<std::size_t>(d * pitch + u)], expected, 1e-5 * std::abs(expected) + 1e-6);
+      most = std::max(most, expected);
+    }
+    EXPECT_NEAR(best[0][static_cast<std::size_t>(front + u)], most, 1e-5 * std::abs(most) + 1e-6);
+  }
+  std::vector<float> rivals(pitch);
+  std::vector<float> best_disparity(pitch, 3);
+  find_rivals(row, best_disparity.data(), rivals.data());
+  const auto at = [&](int d) { return values[static_cast<std::size_t>(d * pitch + 20)]; };
+  EXPECT_EQ(rivals[20], std::max({at(0), at(6), at(7), at(8)}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Machine, RoadCorrelationTarget, testing::ValuesIn(test::targets_of_this_machine()),
+                         test::name_of_target);
+
+}  // namespace
+}  // namespace roadstereo

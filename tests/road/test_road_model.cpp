@@ -1,0 +1,138 @@
+// The road model from images alone, against exact synthetic planes; and what happens when there is no evidence.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/road_model.hpp"
+#include "roadstereo/synth.hpp"
+#include "tests/stereo/textured_pair.hpp"
+
+namespace roadstereo {
+namespace {
+
+struct Pair {
+  GreyImage left, right;
+  synth::SyntheticPair truth;
+};
+
+synth::Scene scene(const std::string& name) {
+  synth::Scene named = synth::named_scene(name);
+  named.supersampling = 1;
+  return named;
+}
+
+Pair render_pair(const synth::Scene& scene) {
+  Pair pair;
+  pair.truth = synth::render(scene);
+  to_grey(pair.truth.left.view(), 0, pair.left);
+  to_grey(pair.truth.right.view(), 0, pair.right);
+  return pair;
+}
+
+Pair render_scene(const std::string& name) {
+  return render_pair(scene(name));
+}
+
+/// Largest difference of two models over the part of the image where the truth sees the road.
+double worst_difference(const DisparityPlane& model, const synth::SyntheticPair& truth) {
+  double worst = 0;
+  for (int v = 0; v < truth.disparity.height(); ++v) {
+    for (int u = 0; u < truth.disparity.width(); ++u) {
+      if (std::isnan(truth.disparity(u, v))) continue;
+      worst = std::max(worst, std::abs(model.disparity(u, v) - truth.plane.disparity(u, v)));
+    }
+  }
+  return worst;
+}
+
+class RoadModelScene : public testing::TestWithParam<const char*> {};
+
+TEST_P(RoadModelScene, IsWithinHalfPixelOfTruth) {
+  const Pair pair = render_scene(GetParam());
+  for (const bool calibrated : {true, false}) {
+    const auto calibration = calibrated ? std::optional(pair.truth.calibration) : std::nullopt;
+    const RoadModelEstimate road = estimate_road_model(pair.left, pair.right, calibration, RoadModelOptions{});
+    ASSERT_TRUE(road.reliable) << road.reason;
+    EXPECT_LT(worst_difference(road.model, pair.truth), 0.5);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, RoadModelScene,
+                         testing::Values("flat", "uav", "nadir", "demo", "rolled", "noise", "blur", "gain"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST(DisparityPlane, CarriesOverToNextFrame) {
+  const Pair first = render_scene("uav");
+  const RoadModelEstimate start =
+      estimate_road_model(first.left, first.right, first.truth.calibration, RoadModelOptions{});
+  ASSERT_TRUE(start.reliable);
+  const Pair second = render_pair(synth::next_frame(scene("uav"), 1));
+  const RoadModelEstimate next =
+      verify_road_model(second.left, second.right, start.model, second.truth.calibration, RoadModelOptions{});
+  EXPECT_TRUE(next.reliable) << next.reason;
+  EXPECT_TRUE(next.tracked);
+  EXPECT_LT(worst_difference(next.model, second.truth), 0.5);
+}
+
+TEST(DisparityPlane, JumpIsUnreliable) {
+  const DisparityPlane before = render_scene("uav").truth.plane;
+  synth::Scene lower = scene("uav");
+  lower.rig.camera_height_m *= 0.5;
+  const Pair jumped = render_pair(lower);
+  const RoadModelEstimate lost =
+      verify_road_model(jumped.left, jumped.right, before, jumped.truth.calibration, RoadModelOptions{});
+  EXPECT_FALSE(lost.reliable);
+  EXPECT_FALSE(lost.reason.empty());
+}
+
+TEST(DisparityPlane, UnrelatedImagesAreUnreliable) {
+  // Two unrelated pictures.
+  const auto a = test::textured_pair(
+      320, 200, [](double, double) { return 0; }, 1);
+  const auto b = test::textured_pair(
+      320, 200, [](double, double) { return 0; }, 99);
+  const RoadModelEstimate road = estimate_road_model(a.reference, b.reference, std::nullopt, RoadModelOptions{});
+  EXPECT_FALSE(road.reliable);
+  EXPECT_FALSE(road.reason.empty());
+}
+
+TEST(DisparityPlane, WithoutRollDependsOnRowAlone) {
+  const Pair pair = render_scene("flat");
+  RoadModelOptions options;
+  options.with_roll = false;
+  const RoadModelEstimate road = estimate_road_model(pair.left, pair.right, pair.truth.calibration, options);
+  ASSERT_TRUE(road.reliable) << road.reason;
+  EXPECT_EQ(road.model.a2, 0);
+}
+
+TEST(DisparityPlane, RejectsSwappedImages) {
+  const Pair pair = render_scene("uav");
+  try {
+    estimate_road_model(pair.right, pair.left, pair.truth.calibration, RoadModelOptions{});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("left and right look swapped"), std::string::npos);
+  }
+}
+
+TEST(DisparityPlane, AcceptsSmallestImages) {
+  const auto pair = test::textured_pair(32, 32, [](double, double) { return 4; });
+  EXPECT_NO_THROW(estimate_road_model(pair.reference, pair.target, std::nullopt, RoadModelOptions{}));
+}
+
+TEST(RoadModelOptions, RejectsValuesOutOfRange) {
+  RoadModelOptions options;
+  options.max_disparity_share = 0;
+  EXPECT_THROW(options.validate(), Error);
+  options = {};
+  options.max_road_tilt_deg = 90;
+  EXPECT_THROW(options.validate(), Error);
+  options = {};
+  options.min_inlier_share = -1;
+  EXPECT_THROW(options.validate(), Error);
+}
+
+}  // namespace
+}  // namespace roadstereo

@@ -1,0 +1,216 @@
+// Paths along a row against the minimum over every path there is, on every instruction set that this machine has.
+
+#include <gtest/gtest.h>
+#include <hwy/aligned_allocator.h>
+#include <hwy/highway.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "stereo/coarse/scanline.hpp"
+#include "tests/core/every_target.hpp"
+#include "tests/stereo/textured_pair.hpp"
+
+namespace roadstereo {
+namespace {
+
+using ScanlineTarget = test::EveryTarget;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr double no_evidence = 0.75;
+
+/// One row: cost[u][d] without guesses, and what optimise_scanline is told besides.
+struct Row {
+  std::vector<std::vector<float>> cost;
+  std::vector<float> centre, pull;
+  float reach = 3;
+  ScanlinePenalties penalties{0.2F, 0.7F};
+  int first_seen = 0;
+
+  int columns() const { return static_cast<int>(cost.size()); }
+  int disparities() const { return static_cast<int>(cost.front().size()); }
+};
+
+/// Random costs, and guesses of which one in four is missing when there are any.
+Row random_row(int columns, int disparities, bool guessed, std::uint64_t seed) {
+  Row row;
+  for (int u = 0; u < columns; ++u) {
+    auto& cost = row.cost.emplace_back();
+    for (int d = 0; d < disparities; ++d) cost.push_back(static_cast<float>(test::lattice(u, d, seed)));
+    const double guess = test::lattice(u, -1, seed) * disparities;
+    const bool missing = !guessed || test::lattice(u, -2, seed) < 0.25;
+    row.centre.push_back(missing ? nan : static_cast<float>(guess));
+    row.pull.push_back(static_cast<float>(0.4 * test::lattice(u, -3, seed)));
+  }
+  return row;
+}
+
+/// The cost of pixel u at disparity d: evidence where there is a counterpart, and the guess.
+double pixel_cost(const Row& row, int u, int d) {
+  const auto column = static_cast<std::size_t>(u);
+  const double seen = d <= u - row.first_seen ? row.cost[column][static_cast<std::size_t>(d)] : no_evidence;
+  if (std::isnan(row.centre[column])) return seen;
+  const double away = std::abs(d - double{row.centre[column]});
+  return seen + double{row.pull[column]} * std::min(away, double{row.reach});
+}
+
+double change_cost(const Row& row, int from, int to) {
+  if (from == to) return 0;
+  const double jump = row.penalties.jump;
+  return std::abs(from - to) == 1 ? std::min(double{row.penalties.step}, jump) : jump;
+}
+
+using Totals = std::vector<std::vector<double>>;  ///< [u][d]: cost of the cheapest path through disparity d of column u
+
+Totals no_totals(const Row& row) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  return Totals(row.cost.size(), std::vector<double>(row.cost.front().size(), never));
+}
+
+/// By trying all paths.
+Totals of_all_paths(const Row& row) {
+  Totals totals = no_totals(row);
+  std::vector<int> path(row.cost.size(), 0);
+  for (bool more = true; more;) {
+    double sum = 0;
+    for (int u = 0; u < row.columns(); ++u) {
+      const auto column = static_cast<std::size_t>(u);
+      sum += pixel_cost(row, u, path[column]);
+      if (u > 0) sum += change_cost(row, path[column - 1], path[column]);
+    }
+    for (std::size_t u = 0; u < path.size(); ++u) {
+      double& total = totals[u][static_cast<std::size_t>(path[u])];
+      total = std::min(total, sum);
+    }
+    more = false;
+    for (int& d : path) {
+      more = ++d < row.disparities();
+      if (more) break;
+      d = 0;
+    }
+  }
+  return totals;
+}
+
+/// By the shortest way between all pairs of disparities of neighbouring columns, for rows with too many paths to try.
+Totals of_shortest_paths(const Row& row) {
+  const int last = row.columns() - 1;
+  Totals from_left = no_totals(row), from_right = no_totals(row), totals = no_totals(row);
+  for (int step = 0; step <= last; ++step) {
+    for (int d = 0; d < row.disparities(); ++d) {
+      const auto relax = [&](Totals& way, int u, int neighbour) {
+        double& best = way[static_cast<std::size_t>(u)][static_cast<std::size_t>(d)];
+        if (step == 0) best = 0;
+        for (int e = 0; e < row.disparities() && step > 0; ++e) {
+          const double before = way[static_cast<std::size_t>(neighbour)][static_cast<std::size_t>(e)];
+          best = std::min(best, before + change_cost(row, e, d));
+        }
+        best += pixel_cost(row, u, d);
+      };
+      relax(from_left, step, step - 1);
+      relax(from_right, last - step, last - step + 1);
+    }
+  }
+  for (std::size_t u = 0; u < totals.size(); ++u) {
+    for (std::size_t d = 0; d < totals[u].size(); ++d) {
+      totals[u][d] = from_left[u][d] + from_right[u][d] - pixel_cost(row, static_cast<int>(u), static_cast<int>(d));
+    }
+  }
+  return totals;
+}
+
+/// The disparities that optimise_scanline takes. Its scratch memory is full of what must not matter.
+std::vector<float> taken(const Row& row) {
+  constexpr std::ptrdiff_t grid = 16;
+  const std::ptrdiff_t pitch = (row.disparities() + grid - 1) / grid * grid;
+  const std::size_t size = scanline_scratch(row.columns(), pitch);
+  const auto costs = hwy::AllocateAligned<float>(static_cast<std::size_t>(row.columns() * pitch));
+  const auto scratch = hwy::AllocateAligned<float>(size);
+  std::fill_n(scratch.get(), size, -1000.0F);
+  for (int u = 0; u < row.columns(); ++u) {
+    float* column = costs.get() + u * pitch;
+    std::fill_n(column, pitch, -1000.0F);
+    std::copy(row.cost[static_cast<std::size_t>(u)].begin(), row.cost[static_cast<std::size_t>(u)].end(), column);
+  }
+  std::vector<float> disparity(row.cost.size());
+  optimise_scanline({costs.get(), pitch, row.columns(), row.disparities(), row.first_seen},
+                    {row.centre.data(), row.pull.data(), row.reach}, row.penalties, static_cast<float>(no_evidence),
+                    scratch.get(), disparity.data());
+  return disparity;
+}
+
+/// The winner among the disparities with a counterpart, with the vertex of the parabola through its neighbours.
+double winner(const Row& row, const std::vector<double>& totals, int u) {
+  const auto count = static_cast<std::ptrdiff_t>(std::min(row.disparities(), u - row.first_seen + 1));
+  if (count <= 0) return std::numeric_limits<double>::quiet_NaN();
+  const auto best = std::min_element(totals.begin(), totals.begin() + count);
+  const auto d = best - totals.begin();
+  if (d == 0 || d + 1 >= count) return static_cast<double>(d);
+  return static_cast<double>(d) + (best[-1] - best[1]) / (2 * (best[-1] + best[1] - 2 * *best));
+}
+
+void expect_cheapest(const Row& row, const Totals& totals) {
+  const std::vector<float> found = taken(row);
+  for (int u = 0; u < row.columns(); ++u) {
+    const auto column = static_cast<std::size_t>(u);
+    const double expected = winner(row, totals[column], u);
+    if (std::isnan(expected)) {
+      EXPECT_TRUE(std::isnan(found[column])) << u;
+    } else {
+      EXPECT_NEAR(found[column], expected, 1e-3) << u;
+    }
+  }
+}
+
+TEST_P(ScanlineTarget, FindsCheapestOfAllPaths) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    Row row = random_row(6, 5, seed % 2 == 0, seed);
+    row.first_seen = seed > 3 ? 2 : -20;
+    const Totals totals = of_all_paths(row);
+    expect_cheapest(row, totals);
+    const Totals shortest = of_shortest_paths(row);  // holds where there are too many paths to try
+    for (std::size_t u = 0; u < totals.size(); ++u) {
+      for (std::size_t d = 0; d < totals[u].size(); ++d) ASSERT_NEAR(totals[u][d], shortest[u][d], 1e-12);
+    }
+  }
+}
+
+TEST_P(ScanlineTarget, FindsCheapestPathForEveryNumberOfDisparities) {
+  for (const int disparities : {1, 2, 4, 8, 12, 15, 16, 17, 20, 24, 33}) {
+    for (const bool guessed : {false, true}) {
+      for (const int first_seen : {-100, 0, 7, 60}) {
+        SCOPED_TRACE(testing::Message() << disparities << " disparities, guessed " << guessed << ", from "
+                                        << first_seen);
+        Row row = random_row(45, disparities, guessed, static_cast<std::uint64_t>(disparities));
+        row.first_seen = first_seen;
+        expect_cheapest(row, of_shortest_paths(row));
+      }
+    }
+  }
+}
+
+TEST_P(ScanlineTarget, WithoutPenaltiesColumnsAreIndependent) {
+  Row row = random_row(20, 24, false, 5);
+  row.penalties = {0, 0};
+  row.first_seen = -100;
+  Totals alone = no_totals(row);
+  for (std::size_t u = 0; u < alone.size(); ++u) std::copy(row.cost[u].begin(), row.cost[u].end(), alone[u].begin());
+  expect_cheapest(row, alone);
+}
+
+TEST_P(ScanlineTarget, HandlesSingleColumn) {
+  Row row = random_row(1, 9, true, 2);
+  row.first_seen = -100;
+  expect_cheapest(row, of_all_paths(row));
+}
+
+INSTANTIATE_TEST_SUITE_P(Machine, ScanlineTarget, testing::ValuesIn(test::targets_of_this_machine()),
+                         test::name_of_target);
+
+}  // namespace
+}  // namespace roadstereo

@@ -1,0 +1,97 @@
+// Successive frames over one road.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/synth/rendered_scenes.hpp"
+
+namespace roadstereo::synth {
+namespace {
+
+TEST(FlightPath, FramesMoveAlongRoad) {
+  const Scene scene = small_scene("uav");
+  const Scene first = next_frame(scene, 0, 0.1);
+  EXPECT_EQ(first.rig.y_m, scene.rig.y_m);
+  EXPECT_EQ(first.rig.roll_deg, scene.rig.roll_deg);
+  EXPECT_EQ(first.rig.camera_height_m, scene.rig.camera_height_m);
+  for (int frame = 1; frame < 50; ++frame) {
+    const Scene next = next_frame(scene, frame, 0.1);
+    EXPECT_NEAR(next.rig.y_m, 0.1 * frame, 1e-12);
+    EXPECT_LT(std::abs(next.rig.roll_deg), 1);
+    EXPECT_LT(std::abs(next.rig.roll_deg - next_frame(scene, frame - 1, 0.1).rig.roll_deg), 0.1);
+    EXPECT_NO_THROW(next.validate());
+  }
+  // The road stays: what the first frame measured of it, the last one does too.
+  const SyntheticPair a = render(scene);
+  const SyntheticPair b = render(next_frame(scene, 3, 0.1));
+  EXPECT_EQ(a.damages[0].volume_m3, b.damages[0].volume_m3);
+  EXPECT_NEAR(warp_rms(b, 0), 0, 4);
+}
+
+TEST(FlightPath, RollsPitchesAndClimbs) {
+  const Scene scene = small_scene("uav");
+  FlightPath path;
+  path.roll_deg = 6;
+  path.pitch_deg = 4;
+  path.climb_m = 0.5;
+  path.roll_period = path.pitch_period = path.climb_period = 40;
+  path.step_m = 0.2;
+  const Rig start = flight_frame(scene, path, 0).rig;
+  EXPECT_EQ(start.roll_deg, scene.rig.roll_deg);
+  EXPECT_EQ(start.pitch_deg, scene.rig.pitch_deg);
+  EXPECT_EQ(start.camera_height_m, scene.rig.camera_height_m);
+  EXPECT_EQ(start.y_m, scene.rig.y_m);
+  // A quarter of the period: the sines are at their highest, the height is half-way up.
+  const Rig quarter = flight_frame(scene, path, 10).rig;
+  EXPECT_NEAR(quarter.roll_deg, scene.rig.roll_deg + 6, 1e-9);
+  EXPECT_NEAR(quarter.pitch_deg, scene.rig.pitch_deg + 4, 1e-9);
+  EXPECT_NEAR(quarter.camera_height_m, scene.rig.camera_height_m + 0.25, 1e-9);
+  EXPECT_NEAR(quarter.y_m, scene.rig.y_m + 2, 1e-9);
+  const Rig half = flight_frame(scene, path, 20).rig;
+  EXPECT_NEAR(half.roll_deg, scene.rig.roll_deg, 1e-9);
+  EXPECT_NEAR(half.camera_height_m, scene.rig.camera_height_m + 0.5, 1e-9);
+}
+
+TEST(FlightPath, JumpsAndReturns) {
+  const Scene scene = small_scene("uav");
+  FlightPath path;
+  path.roll_deg = path.pitch_deg = path.climb_m = path.step_m = 0;
+  path.jumps = {3, 5};
+  path.jump_roll_deg = -7;
+  path.jump_pitch_deg = 2;
+  path.jump_climb_m = 0.4;
+  path.jump_step_m = 10;
+  for (const int frame : {0, 2, 3, 4, 5, 6}) {
+    const Rig rig = flight_frame(scene, path, frame).rig;
+    const bool away = frame == 3 || frame == 4;
+    EXPECT_NEAR(rig.roll_deg, scene.rig.roll_deg + (away ? -7 : 0), 1e-9) << frame;
+    EXPECT_NEAR(rig.pitch_deg, scene.rig.pitch_deg + (away ? 2 : 0), 1e-9) << frame;
+    EXPECT_NEAR(rig.camera_height_m, scene.rig.camera_height_m + (away ? 0.4 : 0), 1e-9) << frame;
+    EXPECT_NEAR(rig.y_m, scene.rig.y_m + (frame < 3 ? 0 : away ? 10 : 20), 1e-9) << frame;
+  }
+}
+
+TEST(FlightPath, RejectsBadValuesByName) {
+  const auto complaint = [](const auto& spoil, int frame = 1) {
+    FlightPath path;
+    spoil(path);
+    return message_of([&] { flight_frame(named_scene("uav"), path, frame); });
+  };
+  EXPECT_NE(complaint([](FlightPath& p) { p.roll_deg = 46; }).find("roll_deg is 46"), std::string::npos);
+  EXPECT_NE(complaint([](FlightPath& p) { p.climb_period = 1; }).find("climb_period is 1"), std::string::npos);
+  EXPECT_NE(complaint([](FlightPath& p) { p.step_m = NAN; }).find("step_m"), std::string::npos);
+  EXPECT_NE(complaint([](FlightPath& p) { p.jumps = {0}; }).find("frame 0"), std::string::npos);
+  EXPECT_NE(complaint([](FlightPath& p) { p.jumps = {4, 4}; }).find("frame 4 jumps twice"), std::string::npos);
+  EXPECT_NE(complaint([](FlightPath&) {}, -1).find("frame is -1"), std::string::npos);
+  // Into the ground.
+  EXPECT_NE(complaint([](FlightPath& p) {
+              p.jumps = {1};
+              p.jump_climb_m = -5;
+            }).find("camera_height_m"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace roadstereo::synth
