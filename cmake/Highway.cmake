@@ -1,18 +1,37 @@
-# roadstereo_highway(<target>): the kernels' vectors, from Highway or, in a build that has nothing but a compiler, from
-# src/core/one_lane, which has Highway's names for vectors of one lane.
-set(ROADSTEREO_ONE_LANE ${PROJECT_SOURCE_DIR}/src/core/one_lane)
-if(NOT ROADSTEREO_STANDALONE)
-  find_package(PkgConfig REQUIRED)
-  pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
+# roadstereo_highway(<target>): the vectors of the kernels, from Highway: the installed one, or its sources in the folder
+# ROADSTEREO_HIGHWAY_SOURCE, which are then compiled into the library.
+set(ROADSTEREO_HIGHWAY_SOURCE "" CACHE PATH "Folder of Highway's sources, to build it here; empty takes the installed one")
+# Instruction sets that the kernels are not written for: their vectors have no size at compile time.
+set(highway_definitions "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
+if(ROADSTEREO_HIGHWAY_SOURCE)
+  if(NOT EXISTS "${ROADSTEREO_HIGHWAY_SOURCE}/hwy/highway.h")
+    message(FATAL_ERROR "ROADSTEREO_HIGHWAY_SOURCE is ${ROADSTEREO_HIGHWAY_SOURCE}, which has no hwy/highway.h")
+  endif()
+  list(APPEND highway_definitions HWY_STATIC_DEFINE)
+  add_library(roadstereo_highway OBJECT)
+  foreach(name abort aligned_allocator per_target targets)  # not every version has them all
+    if(EXISTS "${ROADSTEREO_HIGHWAY_SOURCE}/hwy/${name}.cc")
+      target_sources(roadstereo_highway PRIVATE "${ROADSTEREO_HIGHWAY_SOURCE}/hwy/${name}.cc")
+    endif()
+  endforeach()
+  target_include_directories(roadstereo_highway PRIVATE "${ROADSTEREO_HIGHWAY_SOURCE}")
+  target_compile_definitions(roadstereo_highway PRIVATE ${highway_definitions})
+else()
+  find_package(PkgConfig QUIET)
+  if(PkgConfig_FOUND)
+    pkg_check_modules(HWY IMPORTED_TARGET libhwy)
+  endif()
+  if(NOT HWY_FOUND)
+    message(FATAL_ERROR "There is no Highway: install libhwy-dev (and pkg-config), or give the folder of Highway's sources, "
+                        "which has hwy/highway.h, as ROADSTEREO_HIGHWAY_SOURCE")
+  endif()
 endif()
 
 function(roadstereo_highway target)
-  if(ROADSTEREO_STANDALONE)
-    target_include_directories(${target} PRIVATE ${ROADSTEREO_ONE_LANE})
+  if(ROADSTEREO_HIGHWAY_SOURCE)
+    target_include_directories(${target} SYSTEM PRIVATE "${ROADSTEREO_HIGHWAY_SOURCE}")
   else()
     target_link_libraries(${target} PRIVATE PkgConfig::HWY)
-    # Instruction sets that the kernels are not written for: their vectors have no size at compile time.
-    target_compile_definitions(${target} PRIVATE
-      "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
   endif()
+  target_compile_definitions(${target} PRIVATE ${highway_definitions})
 endfunction()

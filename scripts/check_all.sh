@@ -43,7 +43,8 @@ part ./scripts/check_install.sh
 part ./scripts/check_sanitizers.sh asan-all -DROADSTEREO_WERROR=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
 part ./scripts/check_sanitizers.sh tsan -DROADSTEREO_WERROR=ON
 part preset emulated
-part preset standalone -DROADSTEREO_GTEST_SOURCE=/usr/src/googletest
+part preset standalone -DROADSTEREO_GTEST_SOURCE=/usr/src/googletest \
+  -DROADSTEREO_HIGHWAY_SOURCE="${ROADSTEREO_HIGHWAY_SOURCE:-}"
 part nvcc
 export ROADSTEREO_WERROR=ON
 part ./scripts/check_aarch64.sh

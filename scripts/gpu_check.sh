@@ -2,9 +2,10 @@
 # Checks the engine `cuda` on a machine that has a GPU and nothing but CUDA, CMake and a compiler: builds the library, its
 # tests and the benchmark, runs the tests, those of the kernels also under compute-sanitizer, and then the benchmark.
 #   scripts/gpu_check.sh
-# GoogleTest is built from its sources, whose folder ROADSTEREO_GTEST_SOURCE names; Debian's package googletest has them
-# in /usr/src/googletest. Where that is not there, a copy in a folder of the project can travel along with it:
-# `cp -r /usr/src/googletest DIR` is enough.
+# GoogleTest and Highway are built from their sources, whose folders ROADSTEREO_GTEST_SOURCE and ROADSTEREO_HIGHWAY_SOURCE
+# name. Debian's package googletest has its own in /usr/src/googletest; `apt-get source highway` fetches Highway's, which
+# an installed libhwy-dev does without. Where they are not there, copies in a folder of the project can travel along with
+# it: `cp -r /usr/src/googletest DIR` is enough, and of Highway its folder hwy in a DIR.
 # SANITIZER_FILTER chooses the tests that run under compute-sanitizer, which is slow: a filter of GoogleTest, '*' is all.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -13,17 +14,20 @@ export PATH=$PATH:/usr/local/cuda/bin
 [ -z "${CXX:-}" ] || export CUDAHOSTCXX=${CUDAHOSTCXX:-$CXX}  # nvcc would take the usual g++, maybe too new
 filter=${SANITIZER_FILTER:-*}
 googletest=${ROADSTEREO_GTEST_SOURCE:-/usr/src/googletest}
+highway=${ROADSTEREO_HIGHWAY_SOURCE:-}
 missing=()
 for tool in cmake ctest make "${CXX:-c++}" nvcc compute-sanitizer; do
   command -v "$tool" >/dev/null || missing+=("$tool")
 done
 [ -f "$googletest/CMakeLists.txt" ] || missing+=("GoogleTest's sources in $googletest (see ROADSTEREO_GTEST_SOURCE)")
+[ -f "$highway/hwy/highway.h" ] || { [ -z "$highway" ] && pkg-config --exists libhwy 2>/dev/null; } ||
+  missing+=("Highway's sources (see ROADSTEREO_HIGHWAY_SOURCE)")
 if [ ${#missing[@]} -gt 0 ]; then
   printf -v list ', %s' "${missing[@]}"
   echo "Missing, also in /usr/local/cuda/bin: ${list#, }" >&2
   exit 2
 fi
-cmake --preset standalone -DROADSTEREO_CUDA=ON -DROADSTEREO_GTEST_SOURCE="$googletest"
+cmake --preset standalone -DROADSTEREO_CUDA=ON -DROADSTEREO_GTEST_SOURCE="$googletest" -DROADSTEREO_HIGHWAY_SOURCE="$highway"
 cmake --build --preset standalone -j "$(nproc)"
 build-standalone/bin/bench_cuda 1 >/dev/null  # says so and stops here where there is no usable GPU
 export ROADSTEREO_NEEDS_GPU=1  # tests of the kernels fail where they would be skipped

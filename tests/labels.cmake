@@ -6,7 +6,7 @@
 #   Ogrinfo   ogrinfo    needs GDAL's own reader
 #   Slow      slow       lasts too long for every change, or under sanitizers
 #   Threads   threads    is about threads: the thread sanitizer runs it
-foreach(program embedded allocations one_lane highway_one_lane cuda io live flight cli evaluate)
+foreach(program embedded allocations cuda io live flight cli evaluate)
   foreach(test IN LISTS test_${program}_TESTS)
     set(labels ${program})
     foreach(name_and_label RealData:real_data TwoGpus:two_gpus GStreamer:gstreamer Ogrinfo:ogrinfo Slow:slow
