@@ -7,7 +7,7 @@
 #include <limits>
 
 #if defined(ROADSTEREO_CUDA_EMULATED)
-#include "core/cuda/emulated/run_kernel.hpp"
+#include "tests/cuda/emulated/run_kernel.hpp"
 #endif
 #include "road/shift_terms_of.hpp"
 #include "roadstereo/perspective.hpp"

@@ -17,7 +17,7 @@
 #include "tests/cuda/device_test.hpp"
 #include "tests/stereo/textured_pair.hpp"
 #if defined(ROADSTEREO_CUDA_EMULATED)
-#include "core/cuda/emulated/run_kernel.hpp"
+#include "tests/cuda/emulated/run_kernel.hpp"
 #endif
 
 namespace roadstereo {

@@ -8,7 +8,7 @@
 
 #include "core/cuda/check.hpp"
 #if defined(ROADSTEREO_CUDA_EMULATED)
-#include "core/cuda/emulated/run_kernel.hpp"
+#include <run_kernel.hpp>  // of tests/cuda/emulated
 #endif
 
 namespace roadstereo::cuda {

@@ -1,4 +1,5 @@
-#include "core/cuda/launch.hpp"
+#include <cuda_runtime.h>
+
 #include "core/cuda/probe.hpp"
 
 namespace roadstereo::cuda {
@@ -9,13 +10,8 @@ __global__ void nothing() {}
 }  // namespace
 
 cudaError_t probe_code() {
-#if defined(ROADSTEREO_CUDA_EMULATED)
-  launch(nothing, {1, 1}, nullptr);
-  return cudaSuccess;
-#else
   cudaFuncAttributes attributes{};
   return cudaFuncGetAttributes(&attributes, nothing);
-#endif
 }
 
 }  // namespace roadstereo::cuda

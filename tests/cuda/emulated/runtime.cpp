@@ -6,8 +6,8 @@
 #include <map>
 #include <mutex>
 
-#include "core/cuda/emulated/cuda_runtime.h"
-#include "core/cuda/emulated/run_kernel.hpp"
+#include "cuda_runtime.h"
+#include "run_kernel.hpp"
 
 struct CUstream_st {};
 struct CUevent_st {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "core/cuda/emulated/cuda_runtime.h"
+#include "types.h"
 
 /// Runs kernels on the host, one thread after the other: a machine without a GPU checks with it what the kernels
 /// compute. Blocks run one after the other; the threads of a block take turns at their barriers, forth and back, so

@@ -8,6 +8,9 @@
 #include <cstdint>
 #include <cstring>
 
+#include "threads.hpp"
+#include "types.h"
+
 #define __global__
 #define __device__
 #define __host__
@@ -15,65 +18,6 @@
 #define __restrict__ __restrict
 #define __launch_bounds__(...)
 #define __align__(n) alignas(n)
-
-struct uint3 {
-  unsigned x, y, z;
-};
-struct dim3 {
-  unsigned x, y, z;
-  constexpr dim3(unsigned across = 1, unsigned down = 1, unsigned deep = 1) : x(across), y(down), z(deep) {}
-};
-struct float2 {
-  float x, y;
-};
-struct alignas(16) float4 {
-  float x, y, z, w;
-};
-struct int2 {
-  int x, y;
-};
-struct alignas(16) int4 {
-  int x, y, z, w;
-};
-inline float2 make_float2(float x, float y) {
-  return {x, y};
-}
-inline float4 make_float4(float x, float y, float z, float w) {
-  return {x, y, z, w};
-}
-inline int4 make_int4(int x, int y, int z, int w) {
-  return {x, y, z, w};
-}
-
-namespace roadstereo::cuda::emulated {
-
-/// Who runs at the moment.
-struct Here {
-  uint3 thread, block;
-  dim3 block_size, grid_size;
-};
-const Here& here();
-void wait_for_block();
-void wait_for_warp();
-/// Leaves `bits` for the other lanes of the warp, waits for all of them, and returns what `lane` left.
-std::uint64_t exchange(std::uint64_t bits, int lane);
-/// Lanes of the warp that have not ended, whose `vote` is true.
-unsigned ballot(bool vote);
-/// The smallest value of the lanes of the warp that have not ended.
-int smallest(int value);
-int lane();
-
-template <class T>
-T exchange_value(T value, int from) {
-  static_assert(sizeof(T) <= sizeof(std::uint64_t));
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &value, sizeof(T));
-  bits = exchange(bits, from);
-  std::memcpy(&value, &bits, sizeof(T));
-  return value;
-}
-
-}  // namespace roadstereo::cuda::emulated
 
 #define threadIdx (::roadstereo::cuda::emulated::here().thread)
 #define blockIdx (::roadstereo::cuda::emulated::here().block)
@@ -196,6 +140,11 @@ using cudaEvent_t = struct CUevent_st*;
 constexpr unsigned cudaStreamNonBlocking = 1;
 constexpr unsigned cudaHostAllocMapped = 2;
 
+/// Every kernel is there.
+template <class Kernel>
+cudaError_t cudaFuncGetAttributes(cudaFuncAttributes*, Kernel*) {
+  return cudaSuccess;
+}
 cudaError_t cudaGetDeviceCount(int* count);
 cudaError_t cudaGetDevice(int* device);
 cudaError_t cudaSetDevice(int device);

@@ -1,4 +1,4 @@
-#include "core/cuda/emulated/run_kernel.hpp"
+#include "run_kernel.hpp"
 
 #include <ucontext.h>
 
@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 #include <vector>
+
+#include "threads.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
 #include <sanitizer/common_interface_defs.h>
