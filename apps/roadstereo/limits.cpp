@@ -129,7 +129,6 @@ Frame limits_figure(const Arguments& arguments, const ResolutionLimits& limits) 
                   "ahead of the camera on the road, m",
                   "depth below the road, mm",
                   {step, error, told},
-                  false,
                   true};
   for (const double depth : astm_depths_m) panel.horizontal_lines.push_back(mm * depth);
   constexpr double min_reach_mm = 70;  // ASTM's depths are always in the picture
@@ -137,7 +136,7 @@ Frame limits_figure(const Arguments& arguments, const ResolutionLimits& limits) 
   for (const double depth : step.y) reach = std::fmax(reach, depth);
   panel.y_highest = reach;
   constexpr int width = 900, height = 560;
-  return io::draw_plot({panel}, width, height);
+  return io::draw_plot(panel, width, height);
 }
 
 void limits(Arguments arguments) {

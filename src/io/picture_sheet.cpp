@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
-#include <utility>
 
 #include "io/drawing.hpp"
 #include "io/frame_mat.hpp"
@@ -53,27 +52,6 @@ Frame picture_sheet(const std::vector<std::vector<SheetCell>>& rows, int cell_wi
     cell.picture.copyTo(sheet(cv::Rect(cell.at + cv::Point(0, title_height), cell.picture.size())));
   }
   return frame_from(sheet, ChannelOrder::bgr);
-}
-
-Frame collage(const std::vector<std::vector<Frame>>& rows) {
-  std::vector<std::pair<const Frame*, cv::Point>> places;
-  cv::Size size(0, 0);
-  for (const auto& row : rows) {
-    int x = 0, tallest = 0;
-    for (const Frame& picture : row) {
-      places.emplace_back(&picture, cv::Point(x, size.height));
-      x += picture.width;
-      tallest = std::max(tallest, picture.height);
-    }
-    size.width = std::max(size.width, x);
-    size.height += tallest;
-  }
-  if (places.empty()) fail("a collage needs at least one picture");
-  cv::Mat canvas(size, CV_8UC3, paper);
-  for (const auto& [picture, at] : places) {
-    to_bgr(picture->view(), white).copyTo(canvas(cv::Rect(at, cv::Size(picture->width, picture->height))));
-  }
-  return frame_from(canvas, ChannelOrder::bgr);
 }
 
 }  // namespace roadstereo::io

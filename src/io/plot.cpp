@@ -12,7 +12,7 @@ namespace roadstereo::io {
 namespace {
 
 PlotAxes make_axes(const Panel& panel) {
-  PlotAxes axes{panel.title, panel.x_label, panel.y_label, {0, 1, panel.log_x}, {0, 1, panel.log_y}, {}};
+  PlotAxes axes{panel.title, panel.x_label, panel.y_label, {}, {0, 1, panel.log_y}, {}};
   std::vector<double> xs, ys;
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
     const Curve& curve = panel.curves[i];
@@ -25,10 +25,9 @@ PlotAxes make_axes(const Panel& panel) {
       xs.push_back(curve.x[j]);
       ys.push_back(curve.y[j]);
     }
-    if (!curve.name.empty()) axes.legend.push_back({curve.name, series_colour(i), curve.dashed});
+    if (!curve.name.empty()) axes.legend.push_back({curve.name, series_colour(i)});
   }
   if (!find_range(xs, axes.x) || !find_range(ys, axes.y)) fail("the plot \"", panel.title, "\" has no point to show");
-  axes.y.lowest = panel.y_lowest.value_or(axes.y.lowest);
   axes.y.highest = panel.y_highest.value_or(axes.y.highest);
   if (!(axes.y.lowest < axes.y.highest)) {
     fail("the plot \"", panel.title, "\" shall reach from ", axes.y.lowest, " up to ", axes.y.highest);
@@ -62,13 +61,8 @@ void draw_curve(Canvas& canvas, const Curve& curve, const cv::Scalar& colour) {
     if (!canvas.can_show(curve.x[i], curve.y[i])) continue;
     const cv::Point2d here = canvas.at(curve.x[i], curve.y[i]);
     if (curve.markers) cv::circle(canvas.area(), here, marker_radius, colour, cv::FILLED, cv::LINE_AA);
-    if (!curve.line || i == 0 || !canvas.can_show(curve.x[i - 1], curve.y[i - 1])) continue;
-    const cv::Point2d before = canvas.at(curve.x[i - 1], curve.y[i - 1]);
-    if (curve.dashed) {
-      draw_dashed(canvas.area(), before, here, colour, thickness);
-    } else {
-      cv::line(canvas.area(), before, here, colour, thickness, cv::LINE_AA);
-    }
+    if (i == 0 || !canvas.can_show(curve.x[i - 1], curve.y[i - 1])) continue;
+    cv::line(canvas.area(), canvas.at(curve.x[i - 1], curve.y[i - 1]), here, colour, thickness, cv::LINE_AA);
   }
 }
 
@@ -78,29 +72,17 @@ void draw_reference_lines(Canvas& canvas, const Panel& panel, const PlotAxes& ax
     if (!axes.y.can_show(y)) continue;
     draw_dashed(canvas.area(), canvas.at(axes.x.lowest, y), canvas.at(axes.x.highest, y), grey, 1);
   }
-  for (const double x : panel.vertical_lines) {
-    if (!axes.x.can_show(x)) continue;
-    draw_dashed(canvas.area(), canvas.at(x, axes.y.lowest), canvas.at(x, axes.y.highest), grey, 1);
-  }
-}
-
-void draw_panel(cv::Mat panel_picture, const Panel& panel) {
-  const PlotAxes axes = make_axes(panel);
-  draw_axes(panel_picture, axes, true);
-  Canvas canvas(panel_picture, axes);
-  draw_reference_lines(canvas, panel, axes);
-  for (std::size_t i = 0; i < panel.curves.size(); ++i) draw_curve(canvas, panel.curves[i], series_colour(i));
 }
 
 }  // namespace
 
-Frame draw_plot(const std::vector<Panel>& panels, int panel_width, int panel_height) {
-  if (panels.empty()) fail("a plot needs at least one panel");
-  const int count = static_cast<int>(panels.size());
-  cv::Mat picture(panel_height, count * panel_width, CV_8UC3, paper);
-  for (int i = 0; i < count; ++i) {
-    draw_panel(picture(cv::Rect(i * panel_width, 0, panel_width, panel_height)), panels[static_cast<std::size_t>(i)]);
-  }
+Frame draw_plot(const Panel& panel, int width, int height) {
+  const PlotAxes axes = make_axes(panel);
+  cv::Mat picture(height, width, CV_8UC3, paper);
+  draw_axes(picture, axes);
+  Canvas canvas(picture, axes);
+  draw_reference_lines(canvas, panel, axes);
+  for (std::size_t i = 0; i < panel.curves.size(); ++i) draw_curve(canvas, panel.curves[i], series_colour(i));
   return frame_from(picture, ChannelOrder::bgr);
 }
 

@@ -40,11 +40,7 @@ void draw_legend(cv::Mat& panel, const PlotAxes& axes, int top) {
     const cv::Point at = places[i] + cv::Point(legend_left, top + plot_text);
     const cv::Point2d middle(at.x, at.y - plot_text / 2.0);
     const cv::Point2d end = middle + cv::Point2d(swatch, 0);
-    if (entry.dashed) {
-      draw_dashed(panel, middle, end, entry.colour, 2);
-    } else {
-      cv::line(panel, middle, end, entry.colour, 3, cv::LINE_AA);
-    }
+    cv::line(panel, middle, end, entry.colour, 3, cv::LINE_AA);
     put_text(panel, entry.name, at + cv::Point(swatch + gap / 2, 0), plot_text, ink);
   }
 }
@@ -144,12 +140,12 @@ cv::Rect plot_area(const PlotAxes& axes, cv::Size panel) {
   return {left, top, std::max(8, panel.width - left - right), std::max(8, panel.height - top - bottom)};
 }
 
-void draw_axes(cv::Mat& panel, const PlotAxes& axes, bool x_ticks) {
+void draw_axes(cv::Mat& panel, const PlotAxes& axes) {
   const cv::Rect area = plot_area(axes, panel.size());
   const cv::Point title(panel.cols / 2, 2 * plot_text);
   put_text(panel, axes.title, title, fitting_height(axes.title, plot_text + 2, panel.cols), ink, Align::centre);
   draw_legend(panel, axes, 3 * plot_text - gap / 2);
-  if (x_ticks) draw_x_ticks(panel, axes.x, area);
+  draw_x_ticks(panel, axes.x, area);
   draw_y_ticks(panel, axes.y, area);
   cv::rectangle(panel, area, ink);
   put_text(panel, axes.x_label, {area.x + area.width / 2, panel.rows - plot_text}, plot_text, ink, Align::centre);

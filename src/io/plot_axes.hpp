@@ -40,7 +40,6 @@ AxisTicks axis_ticks(const AxisRange& range, int most);
 struct LegendEntry {
   std::string name;
   cv::Scalar colour;
-  bool dashed = false;
 };
 
 /// What stands around the curves.
@@ -53,8 +52,8 @@ struct PlotAxes {
 /// Where the curves are drawn, inside a panel of that size.
 cv::Rect plot_area(const PlotAxes& axes, cv::Size panel);
 
-/// Draws title, legend, frame, grid and axes with their numbers. An axis whose `x_ticks` is false has no numbers.
-void draw_axes(cv::Mat& panel, const PlotAxes& axes, bool x_ticks);
+/// Draws title, legend, frame, grid and axes with their numbers.
+void draw_axes(cv::Mat& panel, const PlotAxes& axes);
 
 /// A line of dashes.
 void draw_dashed(cv::Mat& picture, cv::Point2d from, cv::Point2d to, const cv::Scalar& colour, int thickness);

@@ -107,12 +107,13 @@ TEST_F(Evaluate, HelpNamesEveryExperiment) {
 }
 
 TEST_F(SlowEvaluate, SynthComparesEveryMethodInEveryGroup) {
-  const Outcome outcome = run("synth --sizes small --json synth.json --figure synth.png --threads 2");
+  const Outcome outcome = run("synth --sizes small --json synth.json --threads 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto document = json_file("synth.json");
   EXPECT_EQ(document["visible"].size(), 8U * 7U);
   EXPECT_EQ(document["damage"].size(), 8U * 7U);
   EXPECT_EQ(document["sub_pixel_bias"].size(), 7U);
+  EXPECT_EQ(document["sub_pixel_phases"]["SGBM"]["mean_error_px"].size(), 20U);
   EXPECT_EQ(document["best_damage"].size(), 8U);
   EXPECT_NE(outcome.out.find("of 8 groups"), std::string::npos);
   for (const auto& row : document["common"]) {
@@ -126,12 +127,11 @@ TEST_F(SlowEvaluate, SynthComparesEveryMethodInEveryGroup) {
     EXPECT_LE(row["e_p_or_missing_1px_percent"].get<double>(), 1.25 * 0.0297);
     EXPECT_LE(row["e_r_px"].get<double>(), 1.25 * 0.0251);
   }
-  EXPECT_GT(io::read_frame((folder_ / "synth.png").string()).height, 800);
   EXPECT_EQ(run("synth --sizes tiny").exit_code, 2);
 }
 
 TEST_F(SlowEvaluate, SigmaSplitsPixelsIntoTenths) {
-  const Outcome outcome = run("sigma --sizes small --preset fast --json sigma.json --figure sigma.png --threads 2");
+  const Outcome outcome = run("sigma --sizes small --preset fast --json sigma.json --threads 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("goal: 90–97 %"), std::string::npos) << outcome.out;
   const auto document = json_file("sigma.json");
@@ -145,11 +145,10 @@ TEST_F(SlowEvaluate, SigmaSplitsPixelsIntoTenths) {
   for (const auto& bin : document["bins"]) in_bins += bin["pixels"].get<double>();
   EXPECT_EQ(in_groups, in_bins);
   EXPECT_LT(document["bins"][0]["sigma_px"], document["bins"][9]["sigma_px"]);
-  EXPECT_GT(io::read_frame((folder_ / "sigma.png").string()).height, 800);
 }
 
 TEST_F(SlowEvaluate, AblationComparesEveryVariantWithPreset) {
-  const Outcome outcome = run("ablation --sizes small --json ablation.json --figure ablation.png --threads 2");
+  const Outcome outcome = run("ablation --sizes small --json ablation.json --threads 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto variants = json_file("ablation.json")["variants"];
   const auto figure = [&](const std::string& variant, const char* key) {
@@ -164,7 +163,7 @@ TEST_F(SlowEvaluate, AblationComparesEveryVariantWithPreset) {
   EXPECT_LT(figure("paper", "clean_median_error_px"), 0.1);
   EXPECT_GT(figure("whole-pixel shift", "clean_median_error_px"), figure("default", "clean_median_error_px"));
   EXPECT_FALSE(variants[0].contains("kitti_e_r_px"));
-  EXPECT_GT(io::read_frame((folder_ / "ablation.png").string()).height, 500);
+  EXPECT_EQ(variants.back()["preset"], "paper");
   expect_complaint(run("ablation --kitti absent"), "absent");
 }
 
@@ -205,14 +204,13 @@ TEST_F(EvaluateRealData, MiddleburyTakesOneScene) {
 }
 
 TEST_F(SlowEvaluate, LambdaWritesRowPerRate) {
-  const Outcome outcome = run("lambda --count 2 --json lambda.json --figure lambda.png");
+  const Outcome outcome = run("lambda --count 2 --json lambda.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto lambda = json_file("lambda.json");
   ASSERT_EQ(lambda["rows"].size(), 2U);
   EXPECT_NEAR(lambda["rows"][0]["lambda"], 0.01, 1e-12);
   EXPECT_NEAR(lambda["rows"][1]["lambda"], 1e4, 1e-6);
   EXPECT_EQ(lambda["published_optimum"], 10);
-  EXPECT_GT(io::read_frame((folder_ / "lambda.png").string()).width, 300);
 }
 
 // Without damage every solver finds the roll of a plane; the paper's mean error stands beside them.
@@ -231,7 +229,7 @@ TEST_F(SlowEvaluate, RollOfCleanMapsIsExact) {
 }
 
 TEST_F(Evaluate, BlurComparesThreeMethods) {
-  const Outcome outcome = run("blur --steps 2 --max-length 4 --directions 0 --json blur.json --figure blur.png");
+  const Outcome outcome = run("blur --steps 2 --max-length 4 --directions 0 --json blur.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(json_file("blur.json")["trials"].size(), 6U);
 }

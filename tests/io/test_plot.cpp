@@ -6,7 +6,6 @@
 
 #include "io/plot_axes.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/bar_table.hpp"
 #include "roadstereo/io/plot.hpp"
 
 namespace {
@@ -40,16 +39,16 @@ int count_colour(const Frame& frame, const Colour& colour, cv::Rect area) {
 /// The plot area of a panel whose one legend entry takes one row.
 cv::Rect area_with_legend(const std::string& name) {
   PlotAxes axes;
-  axes.legend = {{name, ink, false}};
+  axes.legend = {{name, ink}};
   return plot_area(axes, {width, height});
 }
 
-Panel markers_only(std::vector<double> x, std::vector<double> y) {
-  return {"title", "x, px", "y, px", {{"points", std::move(x), std::move(y), false, true}}, false, false, {}, {}};
+Panel one_curve(std::vector<double> x, std::vector<double> y) {
+  return {"title", "x, px", "y, px", {{"points", std::move(x), std::move(y)}}};
 }
 
 TEST(Plot, MiddleOfRangesIsMiddleOfArea) {
-  const Frame frame = draw_plot({markers_only({0, 5, 10}, {-2, 0, 2})}, width, height);
+  const Frame frame = draw_plot(one_curve({0, 5, 10}, {-2, 0, 2}), width, height);
   EXPECT_EQ(frame.width, width);
   EXPECT_EQ(frame.height, height);
   const cv::Rect area = area_with_legend("points");
@@ -57,69 +56,38 @@ TEST(Plot, MiddleOfRangesIsMiddleOfArea) {
 }
 
 TEST(Plot, MiddleOfLogarithmicAxisIsGeometricMean) {
-  Panel panel = markers_only({1, 10, 100}, {0.01, 1, 100});
-  panel.log_x = panel.log_y = true;
-  const Frame frame = draw_plot({panel}, width, height);
+  Panel panel = one_curve({1, 2, 3}, {0.01, 1, 100});
+  panel.log_y = true;
+  const Frame frame = draw_plot(panel, width, height);
   const cv::Rect area = area_with_legend("points");
   EXPECT_EQ(colour_at(frame, area.x + area.width / 2, area.y + area.height / 2), series(0));
 }
 
-TEST(Plot, GivenLimitsAreEndsOfAxis) {
-  Panel panel = markers_only({0, 5, 10}, {1, 1, 1});
-  panel.y_lowest = 0;
+TEST(Plot, GivenLimitIsEndOfAxis) {
+  Panel panel = one_curve({0, 5, 10}, {1, 1, 1});
   panel.y_highest = 4;
-  const Frame frame = draw_plot({panel}, width, height);
+  const Frame frame = draw_plot(panel, width, height);
   const cv::Rect area = area_with_legend("points");
-  const int quarter_up = area.br().y - 1 - cvRound(0.25 * (area.height - 1));
-  EXPECT_EQ(colour_at(frame, area.x + area.width / 2, quarter_up), series(0));
+  const int up = area.br().y - 1 - cvRound((area.height - 1) / 7.0);  // from 0.5, half a unit below the only value, to 4
+  EXPECT_EQ(colour_at(frame, area.x + area.width / 2, up), series(0));
 }
 
 TEST(Plot, EveryCurveHasOwnColour) {
-  Panel panel{"title", "x", "y", {}, false, false, {}, {}};
+  Panel panel{"title", "x", "y", {}};
   for (int i = 0; i < 4; ++i) panel.curves.push_back({"curve", {0, 1}, {double(i), i + 1.0}});
-  const Frame frame = draw_plot({panel, panel}, width, height);
-  EXPECT_EQ(frame.width, 2 * width);
+  const Frame frame = draw_plot(panel, width, height);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_GT(count_colour(frame, series(i), {0, 0, width, height}), 100) << i;
-    EXPECT_GT(count_colour(frame, series(i), {width, 0, width, height}), 100) << i;
   }
 }
 
 TEST(Plot, NanInterruptsLine) {
   const cv::Rect area = area_with_legend("line");
   const cv::Rect middle(area.x + area.width / 2 - 20, area.y, 40, area.height);
-  Panel panel{"title", "x", "y", {{"line", {0, 1, 2, 3}, {0, 0, 1, 1}}}, false, false, {}, {}};
-  EXPECT_GT(count_colour(draw_plot({panel}, width, height), series(0), middle), 20);
+  Panel panel{"title", "x", "y", {{"line", {0, 1, 2, 3}, {0, 0, 1, 1}}}};
+  EXPECT_GT(count_colour(draw_plot(panel, width, height), series(0), middle), 20);
   panel.curves[0] = {"line", {0, 1, 1.5, 2, 3}, {0, 0, none, 1, 1}};
-  EXPECT_EQ(count_colour(draw_plot({panel}, width, height), series(0), middle), 0);
-}
-
-TEST(Plot, BarHeightIsValue) {
-  const BarGroups bars{"title", "y, px", {"one", "two"}, {"a", "b"}, {{1, 2}, {4, none}}};
-  const Frame frame = draw_bars(bars, width, height);
-  const cv::Rect whole(0, area_with_legend("a").y, width, height - area_with_legend("a").y);
-  const double first = count_colour(frame, series(0), whole);   // 1 + 2 high
-  const double second = count_colour(frame, series(1), whole);  // 4 high
-  EXPECT_NEAR(first / second, 3.0 / 4.0, 0.03);
-}
-
-TEST(Plot, TallBarsAreCutOff) {
-  BarGroups bars{"title", "y, px", {"one"}, {"a", "b"}, {{1}, {100}}};
-  bars.y_highest = 2;
-  const Frame frame = draw_bars(bars, width, height);
-  const cv::Rect whole(0, area_with_legend("a").y, width, height - area_with_legend("a").y);
-  const double low = count_colour(frame, series(0), whole), cut = count_colour(frame, series(1), whole);
-  EXPECT_GT(cut / low, 1.7);  // twice as high, less the letters of its value
-  EXPECT_LT(cut / low, 2.05);
-}
-
-TEST(Plot, HorizontalBarLengthIsValue) {
-  const BarTable table{"title", {"base", "half", "none"}, {0, 0, 0}, {{"x, px", {2, 1, none}, 1}}};
-  const Frame frame = draw_bar_table(table);
-  const cv::Rect whole(0, 0, frame.width, frame.height);
-  const double base = count_colour(frame, {178, 114, 0}, whole), better = count_colour(frame, {115, 158, 0}, whole);
-  EXPECT_NEAR(better / base, 0.5, 0.02);
-  EXPECT_THROW(draw_bar_table({"title", {"row"}, {0}, {{"x", {1, 2}, 1}}}), Error);
+  EXPECT_EQ(count_colour(draw_plot(panel, width, height), series(0), middle), 0);
 }
 
 template <class Call>
@@ -133,11 +101,10 @@ std::string complaint(const Call& call) {
 }
 
 TEST(Plot, RejectsEmptyPlot) {
-  EXPECT_NE(complaint([] { draw_plot({}); }), "");
-  EXPECT_NE(complaint([] { draw_plot({markers_only({}, {})}); }).find("title"), std::string::npos);
-  EXPECT_NE(complaint([] { draw_plot({markers_only({1, 2}, {none, none})}); }).find("title"), std::string::npos);
-  EXPECT_NE(complaint([] { draw_plot({markers_only({1, 2}, {1})}); }).find("points"), std::string::npos);
-  EXPECT_NE(complaint([] { draw_bars({"title", "y", {"one"}, {"a"}, {{none}}}); }).find("title"), std::string::npos);
+  const auto draw = [](const Panel& panel) { return complaint([&] { draw_plot(panel, width, height); }); };
+  EXPECT_NE(draw(one_curve({}, {})).find("title"), std::string::npos);
+  EXPECT_NE(draw(one_curve({1, 2}, {none, none})).find("title"), std::string::npos);
+  EXPECT_NE(draw(one_curve({1, 2}, {1})).find("points"), std::string::npos);
 }
 
 }  // namespace

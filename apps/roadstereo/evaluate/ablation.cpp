@@ -10,14 +10,13 @@
 #include "evaluate/report.hpp"
 #include "evaluate/synth_groups.hpp"
 #include "evaluate/table.hpp"
-#include "roadstereo/io/bar_table.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
 struct Arguments {
   AblationOptions options;
-  ReportFiles report;
+  std::string json;
 };
 
 /// Column of the table.
@@ -72,28 +71,6 @@ Table ablation_table(const std::string& title, bool with_kitti, const MakeCell& 
   return table;
 }
 
-Frame ablation_figure(const std::vector<AblationResult>& figures, bool with_kitti) {
-  io::BarTable table{
-      "What each idea buys. Blue: the preset; green better, orange worse, grey within 3 % of it. Each preset has its "
-      "scale",
-      {},
-      {},
-      {}};
-  for (std::size_t i = 0; i < figures.size(); ++i) {
-    table.rows.push_back(ablation_variants()[i].name);
-    table.bases.push_back(base_of(i));
-  }
-  for (const Measure& measure : measures()) {
-    // More density is better, and is part of e_p+.
-    if ((measure.of_kitti && !with_kitti) || measure.member == &AblationResult::kitti_density) continue;
-    io::BarColumn column{measure.heading, {}, measure.decimals};
-    for (const AblationResult& of_variant : figures)
-      column.values.push_back(measure.factor * of_variant.*measure.member);
-    table.columns.push_back(column);
-  }
-  return io::draw_bar_table(table);
-}
-
 void ablation(const Arguments& arguments) {
   const bool with_kitti = !arguments.options.kitti.empty();
   const std::vector<AblationResult> results = measure_ablation(arguments.options);
@@ -109,13 +86,13 @@ void ablation(const Arguments& arguments) {
       "  errors, too. ms: medians over the {}; each pair is timed when it is matched a second time, with memory\n"
       "  allocated and the road model tracked\n",
       with_kitti ? "KITTI frames" : "clean rendered pairs");
-  if (!arguments.report.json.empty()) {
-    const Table values = ablation_table("", with_kitti, [&](const Measure& measure, std::size_t i) {
-      return Cell(measure.factor * results[i].*measure.member, measure.decimals);
-    });
-    write_report(arguments.report.json, {{"variants", values.json()}});
+  if (!arguments.json.empty()) {
+    nlohmann::ordered_json variants = ablation_table("", with_kitti, [&](const Measure& measure, std::size_t i) {
+                                        return Cell(measure.factor * results[i].*measure.member, measure.decimals);
+                                      }).json();
+    for (std::size_t i = 0; i < variants.size(); ++i) variants[i]["preset"] = ablation_variants()[i].preset;
+    write_report(arguments.json, {{"variants", variants}});
   }
-  if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, ablation_figure(results, with_kitti));
 }
 
 constexpr const char* ablation_footer =
@@ -123,7 +100,7 @@ constexpr const char* ablation_footer =
 the default preset to it. Options given with --set apply to every variant that does not set them itself.
 
 Example:
-  roadstereo evaluate ablation --kitti kitti2015 --figure ablation.png)";
+  roadstereo evaluate ablation --kitti kitti2015 --json ablation.json)";
 
 }  // namespace
 
@@ -135,7 +112,7 @@ void add_ablation(CLI::App& evaluate) {
       ->type_name("DIR");
   add_synth_sizes(*command, arguments->options.sizes);
   add_method_options(*command, arguments->options.methods);
-  add_report_options(*command, arguments->report);
+  add_json_option(*command, arguments->json);
   command->callback([arguments] { ablation(*arguments); });
 }
 

@@ -9,14 +9,13 @@
 #include "evaluate/experiments.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/table.hpp"
-#include "roadstereo/io/plot.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
 struct Arguments {
   BlurOptions trials;
-  ReportFiles files;
+  std::string json;
 };
 
 constexpr const char* note =
@@ -45,24 +44,6 @@ Table make_table(const std::vector<BlurTrial>& trials, const BlurOptions& option
   return table;
 }
 
-Frame draw(const std::vector<BlurTrial>& trials, const BlurOptions& options) {
-  io::Panel density{"Density", "length of the motion blur, px", "density, %", {}};
-  io::Panel error{"Error", "length of the motion blur, px", "e_r, px", {}};
-  for (const std::string& method : blur_methods()) {
-    io::Curve share{method, blur_lengths(options), {}, true, true};
-    io::Curve rms = share;
-    for (const double length : share.x) {
-      const BlurTrial mean = mean_over_directions(trials, method, length);
-      share.y.push_back(percent * mean.density);
-      rms.y.push_back(mean.rms_px);
-    }
-    density.curves.push_back(share);
-    error.curves.push_back(rms);
-  }
-  error.y_lowest = 0;
-  return io::draw_plot({density, error});
-}
-
 nlohmann::ordered_json trials_json(const std::vector<BlurTrial>& trials) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const BlurTrial& trial : trials) {
@@ -79,11 +60,10 @@ nlohmann::ordered_json trials_json(const std::vector<BlurTrial>& trials) {
 void run(const Arguments& arguments) {
   const std::vector<BlurTrial> trials = run_blur_trials(arguments.trials);
   const Table table = make_table(trials, arguments.trials);
-  if (!arguments.files.json.empty()) {
-    write_report(arguments.files.json,
+  if (!arguments.json.empty()) {
+    write_report(arguments.json,
                  {{"experiment", "blur"}, {"rows", table.json()}, {"trials", trials_json(trials)}});
   }
-  if (!arguments.files.figure.empty()) write_figure(arguments.files.figure, draw(trials, arguments.trials));
   fmt::print("{}\n{}", table.text(), note);
 }
 
@@ -106,8 +86,8 @@ void add_blur(CLI::App& evaluate) {
       ->type_name("GREY")
       ->capture_default_str();
   add_method_options(*command, trials.methods);
-  command->footer("Example:\n  roadstereo evaluate blur --scene street --directions 0,90 --figure blur.png");
-  add_report_options(*command, arguments->files);
+  command->footer("Example:\n  roadstereo evaluate blur --scene street --directions 0,90 --json blur.json");
+  add_json_option(*command, arguments->json);
   command->callback([arguments] { run(*arguments); });
 }
 

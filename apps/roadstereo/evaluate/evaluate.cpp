@@ -8,7 +8,7 @@ namespace {
 
 constexpr const char* evaluate_footer =
     R"(Every experiment prints a table, with the published values where the paper has some. --json writes the same values to
-a file, --figure draws them.
+a file, which scripts/plot_evaluate.py draws.
 
 Example:
   roadstereo evaluate score disparity.tiff truth.png --tolerances 1,2,3 --figure error.png)";

@@ -11,7 +11,6 @@
 #include "evaluate/report.hpp"
 #include "evaluate/roll_trials.hpp"
 #include "evaluate/table.hpp"
-#include "roadstereo/io/plot.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -24,7 +23,7 @@ struct Arguments {
   std::string road_masks;
   std::string preset = "default";
   MethodSettings methods;
-  ReportFiles files;
+  std::string json;
 };
 
 constexpr const char* note =
@@ -65,28 +64,6 @@ Table make_table(const std::vector<FlatnessFrame>& frames) {
   return table;
 }
 
-Frame draw(const std::vector<FlatnessFrame>& frames) {
-  constexpr std::size_t robust = 2;
-  io::BarGroups bars{"Spread of the transformed road",
-                     "sigma_d, px",
-                     {},
-                     {"truth, no roll", "truth, roll", "matched, no roll", "matched, roll"},
-                     {{}, {}, {}, {}}};
-  const auto add = [&](const std::string& name, const Flatness& truth, const Flatness& matched) {
-    bars.groups.push_back(name);
-    bars.values[0].push_back(truth.without_roll_px);
-    bars.values[1].push_back(truth.with_roll_px[robust]);
-    bars.values[2].push_back(matched.without_roll_px);
-    bars.values[3].push_back(matched.with_roll_px[robust]);
-  };
-  for (const FlatnessFrame& frame : frames) add(frame.name, frame.truth, frame.matched);
-  add("mean", mean_of(frames, &FlatnessFrame::truth), mean_of(frames, &FlatnessFrame::matched));
-  bars.groups.emplace_back("paper");
-  const double published[] = {published_without_roll_px, published_with_roll_px, NAN, NAN};
-  for (std::size_t i = 0; i < bars.values.size(); ++i) bars.values[i].push_back(published[i]);
-  return io::draw_bars(bars);
-}
-
 void run(const Arguments& arguments) {
   preset(arguments.preset);  // throws now if there is no such preset
   std::vector<FlatnessFrame> frames;
@@ -94,11 +71,10 @@ void run(const Arguments& arguments) {
     frames.push_back(measure_frame(files, arguments.preset, arguments.methods));
   }
   const Table table = make_table(frames);
-  if (!arguments.files.json.empty()) {
-    write_report(arguments.files.json,
+  if (!arguments.json.empty()) {
+    write_report(arguments.json,
                  {{"experiment", "flatness"}, {"preset", arguments.preset}, {"rows", table.json()}});
   }
-  if (!arguments.files.figure.empty()) write_figure(arguments.files.figure, draw(frames));
   fmt::print("{}\n{}", table.text(), note);
 }
 
@@ -115,8 +91,8 @@ void add_flatness(CLI::App& evaluate) {
       ->type_name("DIR");
   command->add_option("--preset", arguments->preset, "Preset for matching")->type_name("NAME")->capture_default_str();
   add_method_options(*command, arguments->methods);
-  command->footer("Example:\n  roadstereo evaluate flatness kitti2015 --figure flatness.png");
-  add_report_options(*command, arguments->files);
+  command->footer("Example:\n  roadstereo evaluate flatness kitti2015 --json flatness.json");
+  add_json_option(*command, arguments->json);
   command->callback([arguments] { run(*arguments); });
 }
 

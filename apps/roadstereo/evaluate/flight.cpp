@@ -9,7 +9,6 @@
 
 #include "benchmark_report.hpp"
 #include "evaluate/experiments.hpp"
-#include "evaluate/flight_figure.hpp"
 #include "evaluate/flight_trials.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/table.hpp"
@@ -22,7 +21,7 @@ namespace {
 
 struct Arguments {
   FlightOptions flight;
-  ReportFiles files;
+  std::string json;
 };
 
 constexpr const char* note =
@@ -150,13 +149,12 @@ void run(const Arguments& arguments) {
   const Frames frames = run_flight_trials(arguments.flight);
   const Table accuracy = error_table(frames, arguments.flight);
   const Table times = time_table(frames, arguments.flight);
-  if (!arguments.files.json.empty()) {
-    write_report(arguments.files.json, {{"experiment", "flight"},
+  if (!arguments.json.empty()) {
+    write_report(arguments.json, {{"experiment", "flight"},
                                         {"rows", accuracy.json()},
                                         {"times", times.json()},
                                         {"frames", frames_json(frames)}});
   }
-  if (!arguments.files.figure.empty()) write_figure(arguments.files.figure, draw_flight(frames));
   fmt::print("{}\n{}\n{}\n{}", accuracy.text(), reestimated_text(frames), times.text(), note);
 }
 
@@ -187,8 +185,8 @@ void add_flight(CLI::App& evaluate) {
   command->add_flag("--cold", flight.cold, "Allocate memory and start threads in the first frame");
   add_method_options(*command, flight.methods);
   command->footer(flight_help() +
-                  "\nExample:\n  roadstereo evaluate flight --flight roll=6,jump=150 --figure flight.png");
-  add_report_options(*command, arguments->files);
+                  "\nExample:\n  roadstereo evaluate flight --flight roll=6,jump=150 --json flight.json");
+  add_json_option(*command, arguments->json);
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -8,7 +8,7 @@
 
 #include "evaluate/common_pixels.hpp"
 #include "evaluate/experiments.hpp"
-#include "evaluate/kitti_figure.hpp"
+#include "evaluate/kitti_sheet.hpp"
 #include "evaluate/methods.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/score_columns.hpp"
@@ -24,7 +24,7 @@ const std::vector<double>& tolerances_px() {
 struct Arguments {
   std::string folder, road_masks;
   MethodSettings methods;
-  ReportFiles report;
+  std::string json, figure;
 };
 
 /// Scores over one set of pixels, by method and frame.
@@ -151,13 +151,10 @@ void kitti(const Arguments& arguments) {
   std::vector<std::vector<io::SheetCell>> sheet;
   constexpr std::size_t max_sheet_rows = 4;
   for (const KittiFiles& files : frames) {
-    const bool shown = !arguments.report.figure.empty() && sheet.size() < max_sheet_rows;
+    const bool shown = !arguments.figure.empty() && sheet.size() < max_sheet_rows;
     score_frame(files, arguments.methods, regions, shown ? &sheet : nullptr);
   }
   nlohmann::ordered_json document;
-  std::vector<std::vector<Frame>> pictures;
-  constexpr int cell_width = 620;
-  if (!sheet.empty()) pictures.push_back({io::picture_sheet(sheet, cell_width)});
   for (const Region* region : {&regions.road, &regions.all}) {
     if (region->frames.empty()) continue;
     Table table = mean_table(*region);
@@ -170,12 +167,12 @@ void kitti(const Arguments& arguments) {
     const Region& common = region == &regions.road ? regions.road_common : regions.all_common;
     document[common.key] = region_json(common);
     fmt::print("{}\n{}\n{}\n", table.text(), mean_table(common).text(), frame_table(*region).text());
-    if (!sheet.empty()) pictures.push_back(kitti_bars(region->title, method_names(), region->means(), tolerances_px()));
   }
   fmt::print("{}  published: Table 1 of the paper, on KITTI frames and road regions selected by hand\n",
              score_legend());
-  if (!arguments.report.json.empty()) write_report(arguments.report.json, document);
-  if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, io::collage(pictures));
+  constexpr int cell_width = 620;
+  if (!arguments.json.empty()) write_report(arguments.json, document);
+  if (!arguments.figure.empty()) write_figure(arguments.figure, io::picture_sheet(sheet, cell_width));
 }
 
 constexpr const char* kitti_footer =
@@ -195,7 +192,8 @@ void add_kitti(CLI::App& evaluate) {
   command->add_option("--road-masks", arguments->road_masks, "Folder of road masks; default: DIR/road if present")
       ->type_name("DIR");
   add_method_options(*command, arguments->methods);
-  add_report_options(*command, arguments->report);
+  add_json_option(*command, arguments->json);
+  add_figure_option(*command, arguments->figure);
   command->callback([arguments] { kitti(*arguments); });
 }
 

@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,7 +10,6 @@
 #include "evaluate/report.hpp"
 #include "evaluate/table.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/plot.hpp"
 #include "roadstereo/roll.hpp"
 
 namespace roadstereo::cli {
@@ -24,7 +22,7 @@ struct Arguments {
   double max_lambda = 1e4;
   int count = 25;
   int threads = 0;
-  ReportFiles files;
+  std::string json;
 
   void validate() const {
     constexpr double limit = 1e6;  // of roll.initial_lambda
@@ -58,29 +56,6 @@ Table make_table(const std::vector<LambdaTrial>& trials, std::size_t maps) {
   return table;
 }
 
-Frame draw(const std::vector<LambdaTrial>& trials, double optimum) {
-  io::Curve mean{"mean of the maps", {}, {}, true, true};
-  io::Curve most{"slowest map", {}, {}, true, false};
-  double highest = 0;
-  for (const LambdaTrial& trial : trials) {
-    mean.x.push_back(trial.lambda);
-    mean.y.push_back(trial.mean());
-    most.x.push_back(trial.lambda);
-    most.y.push_back(trial.max());
-    highest = std::max(highest, trial.max() + 1);
-  }
-  const io::Curve paper{
-      "optimum of the paper: 10", {published_optimum, published_optimum}, {0, highest}, true, false, true};
-  const auto least = std::min_element(mean.y.begin(), mean.y.end());
-  const io::Curve best{fmt::format("optimum here: {:.3g}", optimum), {optimum}, {*least}, false, true};
-  io::Panel panel{
-      "Gradient descent on the roll angle", "initial learning rate", "iterations", {mean, most, paper, best}};
-  panel.log_x = true;
-  panel.y_lowest = 0;
-  panel.y_highest = highest;
-  return io::draw_plot({panel});
-}
-
 void run(const Arguments& arguments) {
   arguments.validate();
   const std::vector<LambdaMap> maps = make_lambda_maps(arguments.threads);
@@ -90,14 +65,13 @@ void run(const Arguments& arguments) {
   }
   const double optimum = best_lambda(trials);
   const Table table = make_table(trials, maps.size());
-  if (!arguments.files.json.empty()) {
-    write_report(arguments.files.json, {{"experiment", "lambda"},
+  if (!arguments.json.empty()) {
+    write_report(arguments.json, {{"experiment", "lambda"},
                                         {"maps", maps.size()},
                                         {"optimum", optimum},
                                         {"published_optimum", published_optimum},
                                         {"rows", table.json()}});
   }
-  if (!arguments.files.figure.empty()) write_figure(arguments.files.figure, draw(trials, optimum));
   fmt::print("{}\nOptimum {:.3g}; the paper's is {}.\n{}", table.text(), optimum, published_optimum, note);
 }
 
@@ -111,8 +85,8 @@ void add_lambda(CLI::App& evaluate) {
   command->add_option("--max-lambda", arguments->max_lambda, "Maximum λ(0)")->capture_default_str();
   command->add_option("--count", arguments->count, "Number of values, with equal ratios")->capture_default_str();
   command->add_option("--threads", arguments->threads, "Worker threads; 0: all cores")->capture_default_str();
-  command->footer("Example:\n  roadstereo evaluate lambda --figure lambda.png");
-  add_report_options(*command, arguments->files);
+  command->footer("Example:\n  roadstereo evaluate lambda --json lambda.json");
+  add_json_option(*command, arguments->json);
   command->callback([arguments] { run(*arguments); });
 }
 

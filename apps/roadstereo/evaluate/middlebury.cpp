@@ -18,7 +18,7 @@ namespace {
 struct Arguments {
   std::string folder;
   MethodSettings methods;
-  ReportFiles report;
+  std::string json, figure;
 };
 
 /// Left image, truth, our disparities, our errors.
@@ -57,12 +57,12 @@ void middlebury(const Arguments& arguments) {
     const Table table = score_scene(scene, arguments.methods, ours);
     fmt::print("{}\n", table.text());
     document[scene.name] = table.json();
-    if (!arguments.report.figure.empty()) sheet.push_back(sheet_row(scene, ours));
+    if (!arguments.figure.empty()) sheet.push_back(sheet_row(scene, ours));
   }
   fmt::print("{}", score_legend());
   constexpr int cell_width = 480;
-  if (!arguments.report.json.empty()) write_report(arguments.report.json, document);
-  if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, io::picture_sheet(sheet, cell_width));
+  if (!arguments.json.empty()) write_report(arguments.json, document);
+  if (!arguments.figure.empty()) write_figure(arguments.figure, io::picture_sheet(sheet, cell_width));
 }
 
 constexpr const char* middlebury_footer =
@@ -80,7 +80,8 @@ void add_middlebury(CLI::App& evaluate) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("DIR", arguments->folder, "Folder of a scene, or of scenes")->required();
   add_method_options(*command, arguments->methods);
-  add_report_options(*command, arguments->report);
+  add_json_option(*command, arguments->json);
+  add_figure_option(*command, arguments->figure);
   command->callback([arguments] { middlebury(*arguments); });
 }
 

@@ -20,9 +20,12 @@ void write_bytes(const std::string& path, const char* bytes, std::size_t size) {
 
 }  // namespace
 
-void add_report_options(CLI::App& command, ReportFiles& files) {
-  command.add_option("--json", files.json, "Also write the results to this file")->type_name("FILE");
-  command.add_option("--figure", files.figure, "Also draw them: a PNG for people")->type_name("FILE");
+void add_json_option(CLI::App& command, std::string& path) {
+  command.add_option("--json", path, "Also write the results to this file")->type_name("FILE");
+}
+
+void add_figure_option(CLI::App& command, std::string& path) {
+  command.add_option("--figure", path, "Also draw the maps: a PNG for people")->type_name("FILE");
 }
 
 void write_report(const std::string& path, const nlohmann::ordered_json& document) {

@@ -11,14 +11,11 @@ class App;
 
 namespace roadstereo::cli {
 
-/// Output files of an experiment; empty: no file.
-struct ReportFiles {
-  std::string json;
-  std::string figure;
-};
+/// Add --json: the file of the results; empty: none.
+void add_json_option(CLI::App& command, std::string& path);
 
-/// Add --json and --figure.
-void add_report_options(CLI::App& command, ReportFiles& files);
+/// Add --figure: the file of a picture; empty: none.
+void add_figure_option(CLI::App& command, std::string& path);
 
 /// Write the document as JSON. Throws Error if the file cannot be opened, SystemError if writing fails.
 void write_report(const std::string& path, const nlohmann::ordered_json& document);

@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -12,18 +11,16 @@
 #include "evaluate/roll_trials.hpp"
 #include "evaluate/table.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/plot.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
 constexpr double published_mean_rad = 0.012;
-constexpr double microradians = 1e6;  ///< per radian
 
 struct Arguments {
   RollTrialOptions trials;
   bool no_pairs = false;
-  ReportFiles files;
+  std::string json;
 
   void validate() const {
     constexpr double limit_deg = 45;
@@ -53,50 +50,6 @@ Table make_table(const std::vector<RollErrors>& all) {
   return table;
 }
 
-/// The largest error of all views against the angle: one curve per solver for the hardest planar maps, one per road for
-/// the matched pairs.
-io::Curve curve_of(const RollErrors& errors, const std::string& name) {
-  io::Curve curve{name, {}, {}, true, true};
-  for (std::size_t i = 0; i < errors.roll_deg.size(); ++i) {
-    const auto known = std::find(curve.x.begin(), curve.x.end(), errors.roll_deg[i]);
-    const double error = std::abs(errors.error_rad[i]) * microradians;
-    if (known == curve.x.end()) {
-      curve.x.push_back(errors.roll_deg[i]);
-      curve.y.push_back(error);
-    } else {
-      double& largest = curve.y[static_cast<std::size_t>(known - curve.x.begin())];
-      largest = std::max(largest, error);
-    }
-  }
-  return curve;
-}
-
-Frame draw(const std::vector<RollErrors>& all) {
-  constexpr const char* hardest = "rolled rig, damage, 5 % outliers";
-  constexpr double min_shown_urad = 0.01, max_shown_urad = 50000;
-  io::Panel exact{"Exact maps, damage, 5 % outliers", "roll, degrees", "largest error, microradians", {}};
-  io::Panel matched{"Matched pairs, damage, noise", "roll, degrees", "largest error, microradians", {}};
-  for (const RollErrors& errors : all) {
-    if (errors.maps == hardest) exact.curves.push_back(curve_of(errors, errors.solver));
-    if (errors.maps.starts_with("matched")) matched.curves.push_back(curve_of(errors, errors.maps));
-  }
-  std::vector<io::Panel> panels{exact};
-  if (!matched.curves.empty()) panels.push_back(matched);
-  for (io::Panel& panel : panels) {
-    const auto& angles = panel.curves.front().x;
-    panel.curves.push_back({"mean error of the paper",
-                            {angles.front(), angles.back()},
-                            {published_mean_rad * microradians, published_mean_rad * microradians},
-                            true,
-                            false,
-                            true});
-    panel.log_y = true;
-    panel.y_highest = max_shown_urad;
-  }
-  panels.front().y_lowest = min_shown_urad;
-  return io::draw_plot(panels);
-}
-
 nlohmann::ordered_json trials_json(const std::vector<RollErrors>& all) {
   nlohmann::ordered_json trials = nlohmann::ordered_json::array();
   for (const RollErrors& errors : all) {
@@ -115,10 +68,9 @@ void run(const Arguments& arguments) {
     for (RollErrors& errors : run_matched_trials(arguments.trials)) all.push_back(std::move(errors));
   }
   const Table table = make_table(all);
-  if (!arguments.files.json.empty()) {
-    write_report(arguments.files.json, {{"experiment", "roll"}, {"rows", table.json()}, {"trials", trials_json(all)}});
+  if (!arguments.json.empty()) {
+    write_report(arguments.json, {{"experiment", "roll"}, {"rows", table.json()}, {"trials", trials_json(all)}});
   }
-  if (!arguments.files.figure.empty()) write_figure(arguments.files.figure, draw(all));
   fmt::print("{}\n{}", table.text(), note);
 }
 
@@ -133,8 +85,8 @@ void add_roll(CLI::App& evaluate) {
   command->add_option("--angles", arguments->trials.angles, "Number of angles per view")->capture_default_str();
   command->add_flag("--no-pairs", arguments->no_pairs, "Exact maps only, without matching");
   add_method_options(*command, arguments->trials.methods);
-  command->footer("Example:\n  roadstereo evaluate roll --figure roll.png --json roll.json");
-  add_report_options(*command, arguments->files);
+  command->footer("Example:\n  roadstereo evaluate roll --json roll.json");
+  add_json_option(*command, arguments->json);
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -10,7 +10,6 @@
 #include "evaluate/report.hpp"
 #include "evaluate/runtime_trials.hpp"
 #include "evaluate/table.hpp"
-#include "roadstereo/io/plot.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -25,7 +24,7 @@ struct Published {
 
 struct Arguments {
   RuntimeOptions runtime;
-  ReportFiles files;
+  std::string json;
 };
 
 Table make_table(const RuntimeReport& report) {
@@ -74,30 +73,11 @@ constexpr const char* note =
     "of\n"
     "paper is gradient descent, as published.\n";
 
-Frame draw(const RuntimeReport& report) {
-  io::BarGroups bars{fmt::format("Time per frame, {}x{}, D {}", report.width, report.height, report.disparities),
-                     "median, ms",
-                     {},
-                     {"total"},
-                     {{}}};
-  for (const PipelineTimes& timed : report.pipelines) {
-    bars.groups.push_back(timed.name);
-    bars.values[0].push_back(timed.total.median());
-  }
-  for (const Timing& peer : report.baselines) {
-    bars.groups.push_back(peer.name);
-    bars.values[0].push_back(peer.median());
-  }
-  bars.groups.emplace_back("Jetson TX2");
-  bars.values[0].push_back(Published{}.total_ms);
-  return io::draw_bars(bars);
-}
-
 void run(const Arguments& arguments) {
   const RuntimeReport report = time_methods(arguments.runtime);
   const Table table = make_table(report);
-  if (!arguments.files.json.empty()) {
-    write_report(arguments.files.json, {{"experiment", "runtime"},
+  if (!arguments.json.empty()) {
+    write_report(arguments.json, {{"experiment", "runtime"},
                                         {"width", report.width},
                                         {"height", report.height},
                                         {"disparities", report.disparities},
@@ -106,7 +86,6 @@ void run(const Arguments& arguments) {
                                         {"runs", arguments.runtime.runs},
                                         {"rows", table.json()}});
   }
-  if (!arguments.files.figure.empty()) write_figure(arguments.files.figure, draw(report));
   fmt::print("{}\n{}", table.text(), note);
 }
 
@@ -129,7 +108,7 @@ void add_runtime(CLI::App& evaluate) {
       ->capture_default_str();
   add_method_options(*command, arguments->runtime.methods);
   command->footer("Example:\n  roadstereo evaluate runtime --size 1242x375 --disparities 64");
-  add_report_options(*command, arguments->files);
+  add_json_option(*command, arguments->json);
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -10,7 +10,7 @@
 #include "evaluate/mask_file.hpp"
 #include "evaluate/methods.hpp"
 #include "evaluate/report.hpp"
-#include "evaluate/scan_figure.hpp"
+#include "evaluate/scan_sheet.hpp"
 #include "evaluate/scan_frames.hpp"
 #include "evaluate/scan_score.hpp"
 #include "evaluate/table.hpp"
@@ -30,7 +30,7 @@ struct Arguments {
   int disparities = 352;
   bool robust = false;
   MethodSettings methods;
-  ReportFiles report;
+  std::string json, figure;
 };
 
 RegistrationOptions registration_options(const Arguments& arguments) {
@@ -119,7 +119,7 @@ void print(const std::vector<Row>& rows, const Arguments& arguments) {
   const std::size_t methods = arguments.inputs.size() == 1 ? arguments.compared.size() : 0;
   for (std::size_t i = 0; i < methods; ++i) table.rows.push_back(mean_cells(rows, arguments.compared[i]));
   fmt::print("{}\n{}", table.text(), legend);
-  if (!arguments.report.json.empty()) write_report(arguments.report.json, table.json());
+  if (!arguments.json.empty()) write_report(arguments.json, table.json());
 }
 
 /// Throws Error if the sizes of cloud and scan differ by more than a factor of 4, for example because of wrong units.
@@ -140,8 +140,8 @@ void scan_cloud(const Arguments& arguments) {
   const std::vector<ScanDistance> distances = closest_distances(cloud, scan, registration.motion);
   const std::size_t labelled = arguments.labelled == 0 ? cloud.size() : arguments.labelled;
   print({{"cloud", "cloud", score_distances(distances, labelled), registration}}, arguments);
-  if (arguments.report.figure.empty()) return;
-  write_figure(arguments.report.figure, distance_plan(cloud, scan, registration.motion));
+  if (arguments.figure.empty()) return;
+  write_figure(arguments.figure, distance_plan(cloud, scan, registration.motion));
 }
 
 /// Run the methods on one pair. Adds their rows and, if `pictures` is not null, their distance maps.
@@ -171,14 +171,14 @@ void scan_pairs(const std::vector<ScanFiles>& frames, const Arguments& arguments
   }
   std::vector<Row> rows;
   std::vector<std::vector<io::SheetCell>> sheet;
-  const bool drawn = !arguments.report.figure.empty();
+  const bool drawn = !arguments.figure.empty();
   for (const ScanFiles& files : frames) {
     if (drawn) sheet.emplace_back();
     scan_pair(files, arguments, rows, drawn ? &sheet.back() : nullptr);
   }
   print(rows, arguments);
   constexpr int cell_width = 480;
-  if (drawn) write_figure(arguments.report.figure, io::picture_sheet(sheet, cell_width));
+  if (drawn) write_figure(arguments.figure, io::picture_sheet(sheet, cell_width));
 }
 
 void scan(const Arguments& arguments) {
@@ -247,7 +247,8 @@ void add_scan(CLI::App& evaluate) {
       ->capture_default_str();
   command->add_flag("--robust", arguments->robust, "Omit the final least-squares step of the registration");
   add_method_options(*command, arguments->methods);
-  add_report_options(*command, arguments->report);
+  add_json_option(*command, arguments->json);
+  add_figure_option(*command, arguments->figure);
   command->callback([arguments] { scan(*arguments); });
 }
 

@@ -5,13 +5,14 @@
 #include <memory>
 #include <optional>
 
-#include "evaluate/error_figure.hpp"
+#include "evaluate/error_map.hpp"
 #include "evaluate/experiments.hpp"
 #include "evaluate/mask_file.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/score_columns.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
+#include "roadstereo/io/pictures.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 struct Arguments {
   std::string map, truth, mask;
   std::vector<double> tolerances_px{1, 2, 3};
-  ReportFiles report;
+  std::string json, figure;
 };
 
 void score(const Arguments& arguments) {
@@ -35,13 +36,16 @@ void score(const Arguments& arguments) {
   if (result.labelled_pixels == 0) {
     fail(arguments.truth, " has no labelled pixel", inside ? " inside the mask" : "", "; it must have at least one");
   }
-  const double reach = *std::max_element(arguments.tolerances_px.begin(), arguments.tolerances_px.end());
   const Table table{fmt::format("{} against {}: {} of {} labelled pixels have a disparity", arguments.map,
                                 arguments.truth, result.valid_pixels, result.labelled_pixels),
                     score_columns(arguments.tolerances_px),
                     {score_cells(result)}};
-  if (!arguments.report.json.empty()) write_report(arguments.report.json, table.json().front());
-  if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, error_figure(map, truth, inside, reach));
+  if (!arguments.json.empty()) write_report(arguments.json, table.json().front());
+  if (!arguments.figure.empty()) {
+    const double highest = *std::max_element(arguments.tolerances_px.begin(), arguments.tolerances_px.end());
+    write_figure(arguments.figure,
+                 io::colour_map(absolute_error(map, truth, inside), {0, highest, false, "absolute error, px"}));
+  }
   fmt::print("{}", table.text());
 }
 
@@ -65,7 +69,8 @@ void add_score(CLI::App& evaluate) {
       ->type_name("PX,PX…")
       ->delimiter(',')
       ->capture_default_str();
-  add_report_options(*command, arguments->report);
+  add_json_option(*command, arguments->json);
+  add_figure_option(*command, arguments->figure);
   command->callback([arguments] { score(*arguments); });
 }
 

@@ -8,9 +8,9 @@
 #include "evaluate/methods.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/score_columns.hpp"
-#include "evaluate/synth_figure.hpp"
 #include "evaluate/synth_groups.hpp"
 #include "evaluate/synth_scores.hpp"
+#include "json_text.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 struct Arguments {
   std::string sizes = "full";
   MethodSettings methods;
-  ReportFiles report;
+  std::string json;
 };
 
 Table group_table(const std::string& title, const ScoresByGroup& groups) {
@@ -47,6 +47,18 @@ Table bias_table(const std::vector<SubPixelBias>& biases) {
   return table;
 }
 
+/// Mean error by the phase of the true disparity, of every method.
+nlohmann::ordered_json phases_json(const std::vector<SubPixelBias>& biases) {
+  nlohmann::ordered_json methods;
+  const std::vector<std::string> names = method_names();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    nlohmann::ordered_json means = nlohmann::ordered_json::array();
+    for (const double mean_px : biases[i].means_px()) means.push_back(json_number(mean_px));
+    methods[names[i]] = {{"phase_px", biases[i].phases()}, {"mean_error_px", means}};
+  }
+  return methods;
+}
+
 void synth_accuracy(const Arguments& arguments) {
   const std::vector<synth::Scene> scenes = synth_scenes(arguments.sizes == "small");
   const SynthScores scores = score_synth(scenes, arguments.methods);
@@ -63,16 +75,16 @@ void synth_accuracy(const Arguments& arguments) {
              bias.text(), score_legend());
   fmt::print("{}\n{}\n{}\n{}\n", on_visible.table.text(), on_damage.table.text(), on_visible.summary,
              on_damage.summary);
-  if (!arguments.report.json.empty()) {
-    write_report(arguments.report.json, {{"visible", visible.json()},
+  if (!arguments.json.empty()) {
+    write_report(arguments.json, {{"visible", visible.json()},
                                          {"damage", damage.json()},
                                          {"common", common.json()},
                                          {"common_damage", common_damage.json()},
                                          {"sub_pixel_bias", bias.json()},
+                                         {"sub_pixel_phases", phases_json(scores.biases)},
                                          {"best_visible", on_visible.table.json()},
                                          {"best_damage", on_damage.table.json()}});
   }
-  if (!arguments.report.figure.empty()) write_figure(arguments.report.figure, synth_figure(scores));
 }
 
 constexpr const char* synth_footer =
@@ -80,7 +92,7 @@ constexpr const char* synth_footer =
 pairs and search as many disparities as the ground truth needs; the left columns without a disparity count as missing.
 
 Example:
-  roadstereo evaluate synth --sizes small --figure synth.png)";
+  roadstereo evaluate synth --sizes small --json synth.json)";
 
 }  // namespace
 
@@ -90,7 +102,7 @@ void add_synth_accuracy(CLI::App& evaluate) {
   const auto arguments = std::make_shared<Arguments>();
   add_synth_sizes(*command, arguments->sizes);
   add_method_options(*command, arguments->methods);
-  add_report_options(*command, arguments->report);
+  add_json_option(*command, arguments->json);
   command->callback([arguments] { synth_accuracy(*arguments); });
 }
 

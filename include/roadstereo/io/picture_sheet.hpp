@@ -17,7 +17,4 @@ struct SheetCell {
 /// picture.
 Frame picture_sheet(const std::vector<std::vector<SheetCell>>& rows, int cell_width);
 
-/// Rows of pictures as they are. Throws Error when there is none.
-Frame collage(const std::vector<std::vector<Frame>>& rows);
-
 }  // namespace roadstereo::io

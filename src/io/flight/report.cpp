@@ -146,8 +146,8 @@ std::string plot_of(const FlightCurves& curves, const std::vector<double>& value
   panel.title = title;
   panel.x_label = curves.in_seconds ? "time since the first frame, s" : "frame";
   panel.y_label = label;
-  panel.curves.push_back({"", curves.time, values, true, values.size() == 1, false});
-  const std::vector<std::uint8_t> png = encode_png(draw_plot({panel}, width, height).view());
+  panel.curves.push_back({"", curves.time, values, values.size() == 1});
+  const std::vector<std::uint8_t> png = encode_png(draw_plot(panel, width, height).view());
   return "<figure class=\"plot\"><img src=\"data:image/png;base64," + base64(png) + "\" alt=\"" +
          escaped(title + ", " + label) + "\"></figure>\n";
 }

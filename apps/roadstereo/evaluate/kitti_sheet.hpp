@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "evaluate/kitti_frames.hpp"
-#include "roadstereo/disparity_score.hpp"
 #include "roadstereo/io/picture_sheet.hpp"
 
 namespace roadstereo::cli {
@@ -14,9 +13,5 @@ namespace roadstereo::cli {
 std::vector<io::SheetCell> kitti_sheet_row(const std::string& name, const KittiFrame& frame,
                                            ImageView<const float> ours, ImageView<const float> peer,
                                            const std::string& peer_name);
-
-/// Bars of e_p+ and e_r of every method, means over the frames.
-std::vector<Frame> kitti_bars(const std::string& region, const std::vector<std::string>& methods,
-                              const std::vector<DisparityScore>& means, const std::vector<double>& tolerances_px);
 
 }  // namespace roadstereo::cli

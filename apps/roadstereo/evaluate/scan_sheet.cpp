@@ -1,4 +1,4 @@
-#include "evaluate/scan_figure.hpp"
+#include "evaluate/scan_sheet.hpp"
 
 #include <fmt/core.h>
 
