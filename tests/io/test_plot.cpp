@@ -68,7 +68,8 @@ TEST(Plot, GivenLimitIsEndOfAxis) {
   panel.y_highest = 4;
   const Frame frame = draw_plot(panel, width, height);
   const cv::Rect area = area_with_legend("points");
-  const int up = area.br().y - 1 - cvRound((area.height - 1) / 7.0);  // from 0.5, half a unit below the only value, to 4
+  const int up =
+      area.br().y - 1 - cvRound((area.height - 1) / 7.0);  // from 0.5, half a unit below the only value, to 4
   EXPECT_EQ(colour_at(frame, area.x + area.width / 2, up), series(0));
 }
 

@@ -61,8 +61,7 @@ void run(const Arguments& arguments) {
   const std::vector<BlurTrial> trials = run_blur_trials(arguments.trials);
   const Table table = make_table(trials, arguments.trials);
   if (!arguments.json.empty()) {
-    write_report(arguments.json,
-                 {{"experiment", "blur"}, {"rows", table.json()}, {"trials", trials_json(trials)}});
+    write_report(arguments.json, {{"experiment", "blur"}, {"rows", table.json()}, {"trials", trials_json(trials)}});
   }
   fmt::print("{}\n{}", table.text(), note);
 }

@@ -72,8 +72,7 @@ void run(const Arguments& arguments) {
   }
   const Table table = make_table(frames);
   if (!arguments.json.empty()) {
-    write_report(arguments.json,
-                 {{"experiment", "flatness"}, {"preset", arguments.preset}, {"rows", table.json()}});
+    write_report(arguments.json, {{"experiment", "flatness"}, {"preset", arguments.preset}, {"rows", table.json()}});
   }
   fmt::print("{}\n{}", table.text(), note);
 }

@@ -151,9 +151,9 @@ void run(const Arguments& arguments) {
   const Table times = time_table(frames, arguments.flight);
   if (!arguments.json.empty()) {
     write_report(arguments.json, {{"experiment", "flight"},
-                                        {"rows", accuracy.json()},
-                                        {"times", times.json()},
-                                        {"frames", frames_json(frames)}});
+                                  {"rows", accuracy.json()},
+                                  {"times", times.json()},
+                                  {"frames", frames_json(frames)}});
   }
   fmt::print("{}\n{}\n{}\n{}", accuracy.text(), reestimated_text(frames), times.text(), note);
 }

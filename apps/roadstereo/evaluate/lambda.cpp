@@ -67,10 +67,10 @@ void run(const Arguments& arguments) {
   const Table table = make_table(trials, maps.size());
   if (!arguments.json.empty()) {
     write_report(arguments.json, {{"experiment", "lambda"},
-                                        {"maps", maps.size()},
-                                        {"optimum", optimum},
-                                        {"published_optimum", published_optimum},
-                                        {"rows", table.json()}});
+                                  {"maps", maps.size()},
+                                  {"optimum", optimum},
+                                  {"published_optimum", published_optimum},
+                                  {"rows", table.json()}});
   }
   fmt::print("{}\nOptimum {:.3g}; the paper's is {}.\n{}", table.text(), optimum, published_optimum, note);
 }

@@ -78,13 +78,13 @@ void run(const Arguments& arguments) {
   const Table table = make_table(report);
   if (!arguments.json.empty()) {
     write_report(arguments.json, {{"experiment", "runtime"},
-                                        {"width", report.width},
-                                        {"height", report.height},
-                                        {"disparities", report.disparities},
-                                        {"threads", report.threads},
-                                        {"cpu", cpu_name()},
-                                        {"runs", arguments.runtime.runs},
-                                        {"rows", table.json()}});
+                                  {"width", report.width},
+                                  {"height", report.height},
+                                  {"disparities", report.disparities},
+                                  {"threads", report.threads},
+                                  {"cpu", cpu_name()},
+                                  {"runs", arguments.runtime.runs},
+                                  {"rows", table.json()}});
   }
   fmt::print("{}\n{}", table.text(), note);
 }

@@ -77,13 +77,13 @@ void synth_accuracy(const Arguments& arguments) {
              on_damage.summary);
   if (!arguments.json.empty()) {
     write_report(arguments.json, {{"visible", visible.json()},
-                                         {"damage", damage.json()},
-                                         {"common", common.json()},
-                                         {"common_damage", common_damage.json()},
-                                         {"sub_pixel_bias", bias.json()},
-                                         {"sub_pixel_phases", phases_json(scores.biases)},
-                                         {"best_visible", on_visible.table.json()},
-                                         {"best_damage", on_damage.table.json()}});
+                                  {"damage", damage.json()},
+                                  {"common", common.json()},
+                                  {"common_damage", common_damage.json()},
+                                  {"sub_pixel_bias", bias.json()},
+                                  {"sub_pixel_phases", phases_json(scores.biases)},
+                                  {"best_visible", on_visible.table.json()},
+                                  {"best_damage", on_damage.table.json()}});
   }
 }
 
