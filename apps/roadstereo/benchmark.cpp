@@ -16,7 +16,7 @@
 #include "commands.hpp"
 #include "image_size.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/peer_matchers.hpp"
+#include "evaluation/peer_matchers.hpp"
 #include "stopwatch.hpp"
 
 namespace roadstereo::cli {

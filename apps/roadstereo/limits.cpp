@@ -14,7 +14,7 @@
 #include "json_text.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/calibration_file.hpp"
-#include "roadstereo/io/plot.hpp"
+#include "io/plot.hpp"
 #include "roadstereo/resolution_limits.hpp"
 
 namespace roadstereo::cli {

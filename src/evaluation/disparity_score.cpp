@@ -1,4 +1,4 @@
-#include "roadstereo/disparity_score.hpp"
+#include "evaluation/disparity_score.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "roadstereo/sub_pixel_bias.hpp"
+#include "evaluation/sub_pixel_bias.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "roadstereo/io/lossless_png.hpp"
+#include "io/lossless_png.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>

@@ -1,4 +1,4 @@
-#include "roadstereo/io/plot.hpp"
+#include "io/plot.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "roadstereo/io/image_file.hpp"
+#include "evaluation/ply_read.hpp"
 #include "roadstereo/io/point_cloud.hpp"
 #include "tests/cli/command_test.hpp"
 #include "tests/damage/damage_scene.hpp"

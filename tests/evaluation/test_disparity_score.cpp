@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "roadstereo/disparity_score.hpp"
+#include "evaluation/disparity_score.hpp"
 #include "roadstereo/error.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "roadstereo/error.hpp"
-#include "roadstereo/sub_pixel_bias.hpp"
+#include "evaluation/sub_pixel_bias.hpp"
 
 namespace {
 

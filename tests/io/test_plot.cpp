@@ -6,7 +6,7 @@
 
 #include "io/plot_axes.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/plot.hpp"
+#include "io/plot.hpp"
 
 namespace {
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "roadstereo/error.hpp"
+#include "evaluation/ply_read.hpp"
 #include "roadstereo/io/point_cloud.hpp"
 
 namespace {

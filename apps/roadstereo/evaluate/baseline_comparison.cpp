@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "evaluate/score_columns.hpp"
-#include "roadstereo/io/peer_matchers.hpp"
+#include "evaluation/peer_matchers.hpp"
 
 namespace roadstereo::cli {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "benchmark_frames.hpp"
 #include "evaluate/roll_maps.hpp"
-#include "roadstereo/disparity_score.hpp"
+#include "evaluation/disparity_score.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/peer_matchers.hpp"
+#include "evaluation/peer_matchers.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "settings.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "evaluate/error_map.hpp"
 #include "roadstereo/io/pictures.hpp"
-#include "roadstereo/io/tint.hpp"
+#include "evaluation/tint.hpp"
 
 namespace roadstereo::cli {
 

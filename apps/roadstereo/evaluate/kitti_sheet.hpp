@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "evaluate/kitti_frames.hpp"
-#include "roadstereo/io/picture_sheet.hpp"
+#include "evaluation/picture_sheet.hpp"
 
 namespace roadstereo::cli {
 

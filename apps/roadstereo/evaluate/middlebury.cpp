@@ -9,7 +9,7 @@
 #include "evaluate/middlebury_scenes.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/score_columns.hpp"
-#include "roadstereo/io/picture_sheet.hpp"
+#include "evaluation/picture_sheet.hpp"
 #include "roadstereo/io/pictures.hpp"
 
 namespace roadstereo::cli {

@@ -6,7 +6,7 @@
 #include "benchmark_frames.hpp"
 #include "image_size.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/peer_matchers.hpp"
+#include "evaluation/peer_matchers.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "settings.hpp"
 #include "stopwatch.hpp"

@@ -15,7 +15,7 @@
 #include "evaluate/scan_sheet.hpp"
 #include "evaluate/table.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/picture_sheet.hpp"
+#include "evaluation/picture_sheet.hpp"
 
 namespace roadstereo::cli {
 namespace {

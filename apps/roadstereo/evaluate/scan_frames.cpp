@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "roadstereo/error.hpp"
+#include "evaluation/ply_read.hpp"
 #include "roadstereo/io/point_cloud.hpp"
 
 namespace roadstereo::cli {

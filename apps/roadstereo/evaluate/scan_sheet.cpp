@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "roadstereo/io/pictures.hpp"
-#include "roadstereo/io/tint.hpp"
+#include "evaluation/tint.hpp"
 
 namespace roadstereo::cli {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "evaluate/scan_frames.hpp"
 #include "evaluate/scan_score.hpp"
-#include "roadstereo/io/picture_sheet.hpp"
+#include "evaluation/picture_sheet.hpp"
 
 namespace roadstereo::cli {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "evaluate/table.hpp"
-#include "roadstereo/disparity_score.hpp"
+#include "evaluation/disparity_score.hpp"
 
 namespace roadstereo::cli {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "roadstereo/io/jpeg_loss.hpp"
+#include "evaluation/jpeg_loss.hpp"
 
 namespace roadstereo::cli {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "evaluate/methods.hpp"
 #include "evaluate/synth_groups.hpp"
-#include "roadstereo/disparity_score.hpp"
-#include "roadstereo/sub_pixel_bias.hpp"
+#include "evaluation/disparity_score.hpp"
+#include "evaluation/sub_pixel_bias.hpp"
 
 namespace roadstereo::cli {
 

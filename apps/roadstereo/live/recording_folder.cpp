@@ -12,7 +12,7 @@
 
 #include "live/whole_file.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/lossless_png.hpp"
+#include "io/lossless_png.hpp"
 
 namespace roadstereo::cli {
 namespace fs = std::filesystem;

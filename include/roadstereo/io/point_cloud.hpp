@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "roadstereo/calibration.hpp"
@@ -29,12 +28,6 @@ PointCloud cloud_from_disparity(ImageView<const float> disparity, const FrameVie
 
 /// The same points in the axes of the road, metres: the road is z = 0, damage lies below.
 PointCloud to_road_axes(const PointCloud& cloud, const RoadAxes& road);
-
-/// Reads the vertices of a PLY file: ascii or binary of either byte order, properties in any order and of any type;
-/// colours when it has red, green and blue (whole numbers up to the type's largest, floats from 0 to 1). Faces and
-/// other elements are passed over, and so are vertices that are not finite. Throws Error naming the file: missing, not
-/// PLY, without x, y and z, shorter than its header says, without a finite vertex.
-PointCloud read_ply(const std::string& path);
 
 /// Encodes a cloud as binary little-endian PLY: float x y z and, with colours, uchar red green blue. Throws Error when
 /// there are colours, but not one per point.

@@ -11,7 +11,7 @@
 #include "io/report/templates.hpp"
 #include "roadstereo/io/flight_report.hpp"
 #include "roadstereo/io/image_file.hpp"
-#include "roadstereo/io/plot.hpp"
+#include "io/plot.hpp"
 #include "roadstereo/version.hpp"
 
 namespace roadstereo::io {

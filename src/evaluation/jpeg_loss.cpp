@@ -1,4 +1,4 @@
-#include "roadstereo/io/jpeg_loss.hpp"
+#include "evaluation/jpeg_loss.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/peer_matchers.hpp"
+#include "evaluation/peer_matchers.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
 

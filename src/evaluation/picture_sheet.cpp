@@ -1,4 +1,4 @@
-#include "roadstereo/io/picture_sheet.hpp"
+#include "evaluation/picture_sheet.hpp"
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>

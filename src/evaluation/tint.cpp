@@ -1,4 +1,4 @@
-#include "roadstereo/io/tint.hpp"
+#include "evaluation/tint.hpp"
 
 #include "io/frame_mat.hpp"
 #include "roadstereo/error.hpp"

@@ -1,4 +1,4 @@
-#include "io/ply_header.hpp"
+#include "evaluation/ply_header.hpp"
 
 #include <algorithm>
 #include <array>

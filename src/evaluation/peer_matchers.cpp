@@ -1,4 +1,4 @@
-#include "roadstereo/io/peer_matchers.hpp"
+#include "evaluation/peer_matchers.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,3 +1,5 @@
+#include "evaluation/ply_read.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -8,9 +10,8 @@
 #include <optional>
 
 #include "io/file_bytes.hpp"
-#include "io/ply_header.hpp"
+#include "evaluation/ply_header.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/point_cloud.hpp"
 
 namespace roadstereo::io {
 namespace {
