@@ -2,7 +2,7 @@
 # those that its full name says:
 #   RealData  real_data  needs the folder ROADSTEREO_DATA
 #   TwoGpus   two_gpus   needs a second GPU
-#   GStreamer gstreamer  needs GStreamer's base plugins
+#   GStreamer gstreamer  needs GStreamer and its base plugins
 #   Ogrinfo   ogrinfo    needs GDAL's own reader
 #   Slow      slow       lasts too long for every change, or under sanitizers
 #   Threads   threads    is about threads: the thread sanitizer runs it
