@@ -6,7 +6,7 @@
 #
 # Architectures: CMAKE_CUDA_ARCHITECTURES, or the environment variable CUDAARCHS, if given. Else those of the GPUs of this
 # machine; without one, real code for every Jetson, and every desktop or server part from Turing on, that the toolkit knows
-# (62 TX2, 72 Xavier, 87 Orin, 101 or 110 Thor; 75, 80, 86, 89, 90, 100, 120), and code of the newest that later ones can translate.
+# (72 Xavier, 87 Orin, 101 or 110 Thor; 75, 80, 86, 89, 90, 100, 120), and code of the newest that later ones can translate.
 set(ROADSTEREO_CUDA AUTO CACHE STRING "The engine cuda: AUTO, ON, OFF, or EMULATED on the host for tests")
 set_property(CACHE ROADSTEREO_CUDA PROPERTY STRINGS AUTO ON OFF EMULATED)
 
@@ -54,7 +54,7 @@ function(roadstereo_cuda_architectures result)
   endif()
   execute_process(COMMAND ${compiler} --list-gpu-code OUTPUT_VARIABLE known ERROR_QUIET)
   set(architectures "")
-  foreach(wanted 62 72 75 80 86 87 89 90 100 101 110 120)
+  foreach(wanted 72 75 80 86 87 89 90 100 101 110 120)
     if(known MATCHES "sm_${wanted}[\r\n]")
       list(APPEND architectures ${wanted}-real)
       set(newest ${wanted})
