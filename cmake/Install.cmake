@@ -18,7 +18,7 @@ if(NOT ROADSTEREO_EMBEDDED_ONLY)
   install(TARGETS roadstereo_io EXPORT roadstereoIoTargets)
   install(EXPORT roadstereoIoTargets NAMESPACE roadstereo:: DESTINATION ${package_folder})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/roadstereo/io DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/roadstereo)
-  install(TARGETS roadstereo_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS roadstereo_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/roadstereoConfig.cmake.in
