@@ -62,7 +62,7 @@ def group_bars(axes, title, label, groups, series, cut_all_but=None):
 
 def curves_over(axes, title, x_label, y_label, **scales):
     axes.set(title=title, xlabel=x_label, ylabel=y_label, **scales)
-    axes.grid(alpha=0.3)
+    axes.grid(alpha=0.3, which="both")
     axes.legend(fontsize=8)
 
 
