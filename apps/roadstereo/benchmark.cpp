@@ -14,9 +14,9 @@
 #include "benchmark_frames.hpp"
 #include "benchmark_report.hpp"
 #include "commands.hpp"
+#include "evaluation/peer_matchers.hpp"
 #include "image_size.hpp"
 #include "roadstereo/error.hpp"
-#include "evaluation/peer_matchers.hpp"
 #include "stopwatch.hpp"
 
 namespace roadstereo::cli {

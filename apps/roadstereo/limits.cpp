@@ -11,10 +11,10 @@
 #include "evaluate/report.hpp"
 #include "evaluate/table.hpp"
 #include "image_size.hpp"
+#include "io/plot.hpp"
 #include "json_text.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/calibration_file.hpp"
-#include "io/plot.hpp"
 #include "roadstereo/resolution_limits.hpp"
 
 namespace roadstereo::cli {

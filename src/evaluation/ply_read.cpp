@@ -9,8 +9,8 @@
 #include <limits>
 #include <optional>
 
-#include "io/file_bytes.hpp"
 #include "evaluation/ply_header.hpp"
+#include "io/file_bytes.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {

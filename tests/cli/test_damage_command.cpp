@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "roadstereo/io/image_file.hpp"
 #include "evaluation/ply_read.hpp"
+#include "roadstereo/io/image_file.hpp"
 #include "roadstereo/io/point_cloud.hpp"
 #include "tests/cli/command_test.hpp"
 #include "tests/damage/damage_scene.hpp"

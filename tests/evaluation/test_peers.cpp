@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "roadstereo/error.hpp"
 #include "evaluation/peer_matchers.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "roadstereo/error.hpp"
 #include "evaluation/sub_pixel_bias.hpp"
+#include "roadstereo/error.hpp"
 
 namespace {
 

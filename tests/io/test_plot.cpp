@@ -4,9 +4,9 @@
 #include <limits>
 #include <string>
 
+#include "io/plot.hpp"
 #include "io/plot_axes.hpp"
 #include "roadstereo/error.hpp"
-#include "io/plot.hpp"
 
 namespace {
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "roadstereo/error.hpp"
 #include "evaluation/ply_read.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/io/point_cloud.hpp"
 
 namespace {

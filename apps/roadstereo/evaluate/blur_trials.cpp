@@ -6,8 +6,8 @@
 #include "benchmark_frames.hpp"
 #include "evaluate/roll_maps.hpp"
 #include "evaluation/disparity_score.hpp"
-#include "roadstereo/error.hpp"
 #include "evaluation/peer_matchers.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "settings.hpp"
 

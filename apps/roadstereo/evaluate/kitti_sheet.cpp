@@ -1,8 +1,8 @@
 #include "evaluate/kitti_sheet.hpp"
 
 #include "evaluate/error_map.hpp"
-#include "roadstereo/io/pictures.hpp"
 #include "evaluation/tint.hpp"
+#include "roadstereo/io/pictures.hpp"
 
 namespace roadstereo::cli {
 

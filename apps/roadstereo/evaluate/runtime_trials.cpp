@@ -4,9 +4,9 @@
 #include <thread>
 
 #include "benchmark_frames.hpp"
+#include "evaluation/peer_matchers.hpp"
 #include "image_size.hpp"
 #include "roadstereo/error.hpp"
-#include "evaluation/peer_matchers.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "settings.hpp"
 #include "stopwatch.hpp"

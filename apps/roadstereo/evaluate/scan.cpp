@@ -14,8 +14,8 @@
 #include "evaluate/scan_score.hpp"
 #include "evaluate/scan_sheet.hpp"
 #include "evaluate/table.hpp"
-#include "roadstereo/error.hpp"
 #include "evaluation/picture_sheet.hpp"
+#include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "roadstereo/error.hpp"
 #include "evaluation/ply_read.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/io/point_cloud.hpp"
 
 namespace roadstereo::cli {

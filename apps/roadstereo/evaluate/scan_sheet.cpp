@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "roadstereo/io/pictures.hpp"
 #include "evaluation/tint.hpp"
+#include "roadstereo/io/pictures.hpp"
 
 namespace roadstereo::cli {
 namespace {

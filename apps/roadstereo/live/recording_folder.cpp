@@ -10,9 +10,9 @@
 #include <system_error>
 #include <utility>
 
+#include "io/lossless_png.hpp"
 #include "live/whole_file.hpp"
 #include "roadstereo/error.hpp"
-#include "io/lossless_png.hpp"
 
 namespace roadstereo::cli {
 namespace fs = std::filesystem;

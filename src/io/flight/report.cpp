@@ -4,6 +4,7 @@
 #include "io/damage_colours.hpp"
 #include "io/drawing.hpp"
 #include "io/flight/templates.hpp"
+#include "io/plot.hpp"
 #include "io/report/cells.hpp"
 #include "io/report/figures.hpp"
 #include "io/report/markup.hpp"
@@ -11,7 +12,6 @@
 #include "io/report/templates.hpp"
 #include "roadstereo/io/flight_report.hpp"
 #include "roadstereo/io/image_file.hpp"
-#include "io/plot.hpp"
 #include "roadstereo/version.hpp"
 
 namespace roadstereo::io {
