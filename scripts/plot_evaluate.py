@@ -128,7 +128,7 @@ def plot_ablation(document):
         one.set_xticks([])
         one.spines[["top", "right", "bottom"]].set_visible(False)
     axes[0].set_yticks(range(len(rows)), [row["variant"] for row in rows])
-    axes[0].invert_yaxis()
+    axes[0].set_ylim(len(rows) - 0.5, -0.5)
     figure.suptitle("Blue: the preset; green better, orange worse, grey within 3 % of it; bars end at 3 times it", fontsize=9)
     return figure
 
