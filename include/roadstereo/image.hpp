@@ -2,38 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 #include <vector>
 
+#include "roadstereo/image_view.hpp"
+
 namespace roadstereo {
-
-/// A rectangle of pixels that somebody else owns: row-major, `(u, v)` = (column, row), origin top left.
-/// `stride` counts elements from one row to the next, and may be larger than the width.
-template <class T>
-class ImageView {
- public:
-  ImageView() = default;
-  ImageView(T* data, int width, int height, std::ptrdiff_t stride)
-      : data_(data), width_(width), height_(height), stride_(stride) {}
-  ImageView(T* data, int width, int height) : ImageView(data, width, height, width) {}
-  /// A view for writing is also a view for reading.
-  operator ImageView<const T>() const requires(!std::is_const_v<T>) { return {data_, width_, height_, stride_}; }
-
-  int width() const { return width_; }
-  int height() const { return height_; }
-  std::ptrdiff_t stride() const { return stride_; }
-  std::size_t pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
-  bool empty() const { return width_ == 0 || height_ == 0; }
-
-  T* row(int v) const { return data_ + v * stride_; }
-  T& operator()(int u, int v) const { return row(v)[u]; }
-
- private:
-  T* data_ = nullptr;
-  int width_ = 0;
-  int height_ = 0;
-  std::ptrdiff_t stride_ = 0;
-};
 
 /// An image that owns its pixels, without padding between rows.
 template <class T>

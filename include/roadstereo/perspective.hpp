@@ -5,6 +5,7 @@
 
 #include "roadstereo/calibration.hpp"
 #include "roadstereo/image.hpp"
+#include "roadstereo/perspective_shift.hpp"
 #include "roadstereo/road_model.hpp"
 
 namespace roadstereo {
@@ -23,19 +24,6 @@ struct PerspectiveOptions {
   void validate() const;
 };
 
-/// The shift of the perspective transformation: the target pixel at column x of the transformed image comes from
-/// column x − shift(x, v) of the target image, shift = max(0, road disparity − δp).
-struct PerspectiveShift {
-  DisparityPlane road;  ///< Δu
-  double delta_p = 0;   ///< δp, pixels
-  int disparities = 1;  ///< D: residual disparities 0 … D−1 are searched
-  bool whole_pixel = false;
-  bool enabled = true;
-  double row_offset = 0;  ///< the target's rows lie this much lower than the reference's, pixels; undone by the shift
-
-  double at(double x, double v) const;
-};
-
 /// Chooses δp and D. With a calibration from the deepest damage and the highest bump at the road's distance, without
 /// one from the spread of the correspondences; with an unreliable model no shift, and the whole range is searched.
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
@@ -47,6 +35,7 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
                       GreyImage& transformed, std::vector<int>& first_column);
 
 /// Adds the shift back: residual disparities (pixels, NaN invalid) become disparities between the original images.
-void add_shift(ImageView<const float> residual, const PerspectiveShift& shift, int threads, Image<float>& disparity);
+void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, int threads,
+                       Image<float>& disparity);
 
 }  // namespace roadstereo

@@ -4,19 +4,10 @@
 #include <string>
 
 #include "roadstereo/calibration.hpp"
+#include "roadstereo/disparity_plane.hpp"
 #include "roadstereo/image.hpp"
 
 namespace roadstereo {
-
-/// The road in disparity space: d(u, v) = a0 + a1·v + a2·u, pixels. Exact for a plane. With a2 = 0 it is
-/// Δu(v) of eq. relation_vd.
-struct DisparityPlane {
-  double a0 = 0;
-  double a1 = 0;
-  double a2 = 0;
-
-  double disparity(double u, double v) const { return a0 + a1 * v + a2 * u; }
-};
 
 struct RoadModelOptions {
   bool with_roll = true;              ///< estimate a2; false is the paper's model (disparity depends on v alone)

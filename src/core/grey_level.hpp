@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/uncontracted.hpp"
+#include "roadstereo/uncontracted.hpp"
 
 namespace roadstereo {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
 // Where and how blocks are looked for around a supposed road: on the host and on the device.
 namespace roadstereo {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
 // The formulas of the robust plane fit, which runs on the host and on the device.
 namespace roadstereo {

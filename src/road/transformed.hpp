@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "core/cuda/host_device.hpp"
-#include "core/uncontracted.hpp"
 #include "road/robust_weights.hpp"
+#include "roadstereo/host_device.hpp"
+#include "roadstereo/uncontracted.hpp"
 
 // The formulas of the transformed disparity and its spread, which are measured on the host and on the device.
 namespace roadstereo {

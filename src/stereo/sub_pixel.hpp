@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
 // What the costs around a winner say: formulas that engines of single precision share. C++17, for kernels.
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "roadstereo/matcher.hpp"
+#include "stereo/finish_disparity.hpp"
 #include "stereo/sub_pixel.hpp"
 
 namespace roadstereo {
@@ -32,6 +33,9 @@ void block_first_columns(const MatchInput& input, int block_radius, std::vector<
 
 /// Row v of the target's winners from those of the reference: the nearest of several hides the others.
 void project_winners(const Image<std::int16_t>& winner, int v, Image<std::int16_t>& target_winner);
+
+/// Settings of finish_disparity.
+FinishSettings finish_settings(const MatcherOptions& options);
 
 /// Throws Error when the images of `input` differ in size or D is out of range.
 void validate(const MatchInput& input);

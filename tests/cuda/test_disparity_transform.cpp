@@ -41,7 +41,7 @@ class CudaDisparityTransform : public test::OnDevice {
     const double delta_t = transform_disparity(map, geometry, least, options, 1, expected);
     const RoadResiduals spread = measure_residuals(expected, delta_t, 1);
     const test::DevicePlane<float> disparity(map.view()), transformed(map.width(), map.height());
-    const auto in_memory = test::to_device(std::vector{PlaneTerms{plane.a0, plane.a1, plane.a2}});
+    const auto in_memory = test::to_device(std::vector{DisparityPlane{plane.a0, plane.a1, plane.a2}});
     transform_->run(disparity.view(), {in_memory.data(), {}}, {given, least}, transformed.plane(), nullptr);
     ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
     const Image<float> found = transformed.on_host();

@@ -53,10 +53,10 @@ class CudaRoadFit : public test::OnDevice {
     const test::DevicePlane<float> disparity(map.view());
     std::optional<test::DevicePlane<std::uint8_t>> device_mask;
     if (mask) device_mask.emplace(mask->view());
-    const MaskedMap masked{disparity.view(), mask ? device_mask->view() : Plane<const std::uint8_t>{}};
+    const MaskedMap masked{disparity.view(), mask ? device_mask->view() : ImageView<const std::uint8_t>{}};
     const auto wait = [] { ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr)); };
     if (options.solver == RollSolver::robust) {
-      const auto start = test::to_device(std::vector{PlaneTerms{prior->a0, prior->a1, prior->a2}});
+      const auto start = test::to_device(std::vector{DisparityPlane{prior->a0, prior->a1, prior->a2}});
       fit_->run(masked, {start.data(), {}}, options.max_iterations, nullptr);
       wait();
       return finish_road_fit(fit_->figures(), width, height, options);
@@ -89,7 +89,7 @@ class CudaRoadFit : public test::OnDevice {
         EXPECT_NEAR(device.plane.disparity(u, v), host.plane.disparity(u, v), 1e-5);
       }
     }
-    const PlaneTerms left = test::to_host(fit_->plane(), 1).front();
+    const DisparityPlane left = test::to_host(fit_->plane(), 1).front();
     EXPECT_EQ(left.a0, device.plane.a0);
     EXPECT_EQ(left.a2, device.plane.a2);
   }

@@ -53,11 +53,11 @@ struct Fitted {
 Fitted fit_on_device(const Points& points, const DisparityPlane& start, const RobustFit& how,
                      bool start_in_memory = false) {
   const auto u = test::to_device(points.u), v = test::to_device(points.v), d = test::to_device(points.d);
-  const PlaneTerms plane{start.a0, start.a1, start.a2};
+  const DisparityPlane plane{start.a0, start.a1, start.a2};
   const auto memory = test::to_device(std::vector{plane});
   RobustPlaneFit fit;
   fit.run({u.data(), v.data(), d.data(), static_cast<int>(points.u.size())},
-          {start_in_memory ? memory.data() : nullptr, start_in_memory ? PlaneTerms{} : plane}, how, nullptr);
+          {start_in_memory ? memory.data() : nullptr, start_in_memory ? DisparityPlane{} : plane}, how, nullptr);
   ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
   EXPECT_EQ(test::to_host(fit.plane(), 1).front().plane.a0, fit.result().plane.a0);
   return {fit.result(), test::to_host(fit.weights(), points.u.size())};

@@ -135,7 +135,7 @@ struct Repeating {
     options.prior_truncation_px = reach;
     const DisparityPrior of_all{Image<float>(width / 2, height / 2, prior), 2};
     MatchMaps maps;
-    make_engine("reference", 1)->match({reference, target, nullptr, 16, nullptr, &of_all}, options, maps);
+    make_engine("reference", 1)->match({reference, target, nullptr, 16, {}, of_all.view()}, options, maps);
     const int first = maps.winner(30, 5);
     for (int v = 5; v < 25; ++v) {
       for (int u = 30; u < 90; ++u) EXPECT_EQ(maps.winner(u, v), first);
@@ -165,7 +165,7 @@ TEST(ReferenceEngine, PriorIsTruncated) {
   const auto winner = [&](double slope, double reach) {
     options.prior_weight = slope;
     options.prior_truncation_px = reach;
-    make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 16, nullptr, &prior}, options, maps);
+    make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 16, {}, prior.view()}, options, maps);
     return maps.winner;
   };
   const auto strong = winner(10, 100), weak = winner(0.02, 4);

@@ -35,15 +35,16 @@ struct Place {
 
 /// Tells `use(v, height)` how far the pixels of a thread lie above the road; they are read together.
 template <class Use>
-__device__ void for_each_height(const Plane<const float>& disparity, const PlaneTerms& road, const Place& at, Use use) {
-  if (at.u >= disparity.width) return;
+__device__ void for_each_height(const ImageView<const float>& disparity, const DisparityPlane& road, const Place& at,
+                                Use use) {
+  if (at.u >= disparity.width()) return;
   float rows[block_rows];
   ROADSTEREO_UNROLL
-  for (int k = 0; k < block_rows; ++k) rows[k] = __ldg(disparity.row(min(at.v + k, disparity.height - 1)) + at.u);
+  for (int k = 0; k < block_rows; ++k) rows[k] = __ldg(disparity.row(min(at.v + k, disparity.height() - 1)) + at.u);
   ROADSTEREO_UNROLL
   for (int k = 0; k < block_rows; ++k) {
     const int v = at.v + k;
-    if (v < disparity.height) use(v, above_road(rows[k], road_at_row(road.a0, road.a1, v), road.a2, at.u));
+    if (v < disparity.height()) use(v, above_road(rows[k], road_at_row(road.a0, road.a1, v), road.a2, at.u));
   }
 }
 
@@ -71,12 +72,12 @@ __device__ double median_near(const Sample& sample, double delta_t, SelectScratc
 }
 
 /// Lowest height and number of valid disparities; the last block derives δt and the limit of the spread.
-__global__ void measure_heights(Plane<const float> disparity, PlaneSource source, TransformOffset offset, Sample sample,
-                                DisparityTransform::State* state) {
+__global__ void measure_heights(ImageView<const float> disparity, PlaneSource source, TransformOffset offset,
+                                Sample sample, DisparityTransform::State* state) {
   Shared& shared = *shared_memory<Shared>();
-  const PlaneTerms road = source.get();
+  const DisparityPlane road = source.get();
   const Place at;
-  const bool of_sample = at.u < disparity.width && sample.has(at.u);
+  const bool of_sample = at.u < disparity.width() && sample.has(at.u);
   float lowest = INFINITY;
   int valid = 0;
   for_each_height(disparity, road, at, [&](int v, float height) {
@@ -116,10 +117,10 @@ __device__ void finish(const double* sums, int blocks, Shared& shared, Disparity
 }
 
 /// Writes the transformed map and adds up its spread.
-__global__ void shift_heights(Plane<const float> disparity, PlaneSource source, Plane<float> transformed,
+__global__ void shift_heights(ImageView<const float> disparity, PlaneSource source, ImageView<float> transformed,
                               DisparityTransform::State* state, double* sums, TransformFigures* figures) {
   Shared& shared = *shared_memory<Shared>();
-  const PlaneTerms plane = source.get();
+  const DisparityPlane plane = source.get();
   const double delta_t = state->delta_t, limit = state->limit;
   const Place at;
   Spread all{0, 0, 0}, road{0, 0, 0};
@@ -147,17 +148,18 @@ int sampled(int size, int step) {
 
 }  // namespace
 
-void DisparityTransform::run(Plane<const float> disparity, const PlaneSource& road, const TransformOffset& offset,
-                             Plane<float> transformed, cudaStream_t stream) {
+void DisparityTransform::run(ImageView<const float> disparity, const PlaneSource& road, const TransformOffset& offset,
+                             ImageView<float> transformed, cudaStream_t stream) {
   if (state_.capacity() == 0) {
     state_.reserve(1);
     ROADSTEREO_CUDA(cudaMemsetAsync(state_.data(), 0, sizeof(State), stream));
   }
-  const int step = spread_step(static_cast<double>(disparity.width) * disparity.height);
-  const int columns = sampled(disparity.width, step), rows = sampled(disparity.height, step);
+  const int step = spread_step(static_cast<double>(disparity.width()) * disparity.height());
+  const int columns = sampled(disparity.width(), step), rows = sampled(disparity.height(), step);
   sample_.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  const LaunchShape shape{dim3(blocks_for(disparity.width, block_columns), blocks_for(disparity.height, block_rows)),
-                          block_columns, sizeof(Shared)};
+  const LaunchShape shape{
+      dim3(blocks_for(disparity.width(), block_columns), blocks_for(disparity.height(), block_rows)), block_columns,
+      sizeof(Shared)};
   sums_.reserve(static_cast<std::size_t>(shape.grid.x) * shape.grid.y * spread_sums);
   launch(measure_heights, shape, stream, disparity, road, offset, Sample{sample_.data(), step, columns, rows},
          state_.data());

@@ -3,8 +3,8 @@
 #include <cuda_runtime_api.h>
 
 #include "core/cuda/memory.hpp"
-#include "core/cuda/plane.hpp"
 #include "road/cuda/fitted_plane.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo::cuda {
 
@@ -26,8 +26,8 @@ struct TransformOffset {
 class DisparityTransform {
  public:
   /// Enqueues it. `transformed` has the size of `disparity`.
-  void run(Plane<const float> disparity, const PlaneSource& road, const TransformOffset& offset,
-           Plane<float> transformed, cudaStream_t stream);
+  void run(ImageView<const float> disparity, const PlaneSource& road, const TransformOffset& offset,
+           ImageView<float> transformed, cudaStream_t stream);
 
   /// Once the stream was synchronised.
   const TransformFigures& figures() const { return *result_.data(); }

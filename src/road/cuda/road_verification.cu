@@ -38,7 +38,7 @@ __device__ void count_inliers(const SearchMemory& search, FitState& state, Searc
 }
 
 /// The fit to what a search found; all threads get the figures.
-__device__ SearchStatistics fit_search(const SearchMemory& search, const PlaneTerms& start, const RobustFit& fit) {
+__device__ SearchStatistics fit_search(const SearchMemory& search, const DisparityPlane& start, const RobustFit& fit) {
   FitState& state = *shared_memory<FitState>();
   SearchStatistics figures{{start, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
   count_places(search, state, figures);
@@ -57,7 +57,7 @@ __global__ void __launch_bounds__(1024)
 }
 
 /// Where the correspondences of the first search lie that are near the road.
-__device__ void measure_range(const SearchMemory& around, const PlaneTerms& road, VerificationFigures& figures) {
+__device__ void measure_range(const SearchMemory& around, const DisparityPlane& road, VerificationFigures& figures) {
   FitState& state = *shared_memory<FitState>();
   const auto residual = [&](int i, std::uint32_t& key) {
     const double expected = road.disparity(around.slots.u[i], around.slots.v[i]);
@@ -96,24 +96,24 @@ SearchMemory RoadVerification::Search::memory(int places) {
   return {{u.data(), v.data(), d.data(), tried.data()}, places, first.data(), weights.data()};
 }
 
-GuidedPair RoadVerification::shrunk(Plane<const std::int16_t> left, Plane<const std::int16_t> right,
+GuidedPair RoadVerification::shrunk(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                     cudaStream_t stream) {
-  const int factor = fine_factor(left.width);
+  const int factor = fine_factor(left.width());
   if (factor == 1) return {left, right, 1};
-  const int width = left.width / factor, height = left.height / factor;
+  const int width = left.width() / factor, height = left.height() / factor;
   const std::size_t size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   pixels_.reserve(2 * size);
-  const auto small_left = packed_plane(pixels_.data(), width, height);
-  const auto small_right = packed_plane(pixels_.data() + size, width, height);
+  const auto small_left = ImageView(pixels_.data(), width, height);
+  const auto small_right = ImageView(pixels_.data() + size, width, height);
   downsample(left, right, factor, small_left, small_right, stream);
   return {small_left, small_right, factor};
 }
 
-void RoadVerification::run(Plane<const std::int16_t> left, Plane<const std::int16_t> right, const PlaneSource& previous,
-                           bool with_roll, cudaStream_t stream) {
+void RoadVerification::run(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                           const PlaneSource& previous, bool with_roll, cudaStream_t stream) {
   const GuidedPair pair = shrunk(left, right, stream);
   const auto grid = [&](const FineSearch& search) {
-    return sample_grid(pair.left.width, pair.left.height, search.range_px, search.places);
+    return sample_grid(pair.left.width(), pair.left.height(), search.range_px, search.places);
   };
   const SampleGrid first = grid(first_search_again), second = grid(close_search_again);
   const SearchMemory around = around_.memory(first.places()), close = close_.memory(second.places());

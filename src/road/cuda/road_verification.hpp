@@ -5,10 +5,10 @@
 #include <cstdint>
 
 #include "core/cuda/memory.hpp"
-#include "core/cuda/plane.hpp"
 #include "road/cuda/plane_match.hpp"
 #include "road/cuda/robust_plane.hpp"
 #include "road/cuda/verification_statistics.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo::cuda {
 
@@ -25,8 +25,8 @@ struct SearchMemory {
 class RoadVerification {
  public:
   /// Enqueues it. The images must stay until then.
-  void run(Plane<const std::int16_t> left, Plane<const std::int16_t> right, const PlaneSource& previous, bool with_roll,
-           cudaStream_t stream);
+  void run(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, const PlaneSource& previous,
+           bool with_roll, cudaStream_t stream);
 
   /// Once the stream was synchronised.
   const VerificationFigures& figures() const { return *result_.data(); }
@@ -40,7 +40,7 @@ class RoadVerification {
     SearchMemory memory(int count);
   };
 
-  GuidedPair shrunk(Plane<const std::int16_t> left, Plane<const std::int16_t> right, cudaStream_t stream);
+  GuidedPair shrunk(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, cudaStream_t stream);
 
   Search around_, close_;
   DeviceArray<std::int16_t> pixels_;

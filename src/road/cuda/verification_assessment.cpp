@@ -11,7 +11,7 @@ PlaneFitStatistics evidence_of(const SearchStatistics& figures, int height) {
   evidence.points = figures.points;
   evidence.tried = figures.tried;
   if (figures.fit.found == 0) return evidence;
-  const PlaneTerms& plane = figures.fit.plane;
+  const DisparityPlane& plane = figures.fit.plane;
   evidence.plane = {plane.a0, plane.a1, plane.a2};
   evidence.scale_px = figures.fit.scale_px;
   evidence.inliers = figures.inliers;

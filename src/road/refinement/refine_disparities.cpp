@@ -6,7 +6,7 @@
 #include "core/scratch.hpp"
 #include "road/refinement/settings.hpp"
 #include "road/refinement/weighted_mean.hpp"
-#include "road/shift_terms_of.hpp"
+#include "road/row_shift.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/refinement.hpp"
 
@@ -53,7 +53,7 @@ class BandRows {
   void fill_row(int v) {
     const float *disparity = maps_.disparity.row(v), *variance = maps_.variance.row(v);
     const VarianceBounds bounds = variance_bounds(maps_.options);
-    const RowLine road = row_line(plane_terms(maps_.road), v, 0);
+    const RowLine road = row_line(maps_.road, v, 0);
     float* height = numbers_ + 3 * pitch_ * (v - first_);
     float *precision = height + pitch_, *spread = precision + pitch_;
     std::fill_n(height, 2 * pitch_, 0.0F);
@@ -83,7 +83,7 @@ void refine_row(const Maps& maps, const BandRows& rows, const MeanSettings& sett
   }
   const int width = maps.disparity.width();
   weighted_mean(rows.row(v), {lines.data(), count}, settings, width, mean, precision);
-  const RowLine road = row_line(plane_terms(maps.road), v, 0);
+  const RowLine road = row_line(maps.road, v, 0);
   const float* disparity = maps.disparity.row(v);
   const auto worst = static_cast<float>(maps.options.max_sigma_px);
   for (int u = 0; u < width; ++u) {

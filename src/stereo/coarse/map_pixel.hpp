@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
 namespace roadstereo {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
 namespace roadstereo {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/full_resolution.hpp"
-#include "road/shift_terms.hpp"
+#include "road/row_shift.hpp"
 
 namespace roadstereo {
 
@@ -36,14 +36,14 @@ ROADSTEREO_HD inline float cost_plausibility(float at_road, float least) {
 /// Coarse disparity that the road has after the shift at a pixel of the shrunk pair; `nothing` beyond the horizon and
 /// The disparity that the road has after the shift, full-size pixels; `nothing` where there is none: above the horizon,
 /// or without a road.
-ROADSTEREO_HD inline double shifted_road(const ShiftTerms& shift, double u, double v, double nothing) {
+ROADSTEREO_HD inline double shifted_road(const PerspectiveShift& shift, double u, double v, double nothing) {
   const double disparity = shift.enabled ? shift.road.disparity(u, v) : -1;
   if (disparity < 0) return nothing;
   return disparity < shift.delta_p ? disparity : shift.delta_p;
 }
 
 /// without a shift.
-ROADSTEREO_HD inline float coarse_road(const ShiftTerms& shift, int u, int v, int factor, float nothing) {
+ROADSTEREO_HD inline float coarse_road(const PerspectiveShift& shift, int u, int v, int factor, float nothing) {
   const double road =
       shifted_road(shift, to_full_resolution(u, factor), to_full_resolution(v, factor), static_cast<double>(nothing));
   return static_cast<float>(road) / static_cast<float>(factor);

@@ -19,8 +19,7 @@ class TileRanges {
 
  private:
   void count(const Image<float>& coarse, int factor);
-  void choose(const std::vector<std::uint32_t>& counts, Image<SearchRanges::Range>& ranges, int factor,
-              int disparities) const;
+  void choose(const std::vector<std::uint32_t>& counts, Image<SearchRange>& ranges, int factor, int disparities) const;
 
   std::size_t bins_ = 0;                                 ///< of one tile, one per disparity
   std::vector<std::uint32_t> in_reference_, in_target_;  ///< how often each disparity was seen in each tile

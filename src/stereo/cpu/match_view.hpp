@@ -23,8 +23,8 @@ class MatchView {
   int width() const { return input_->reference.width(); }
   int height() const { return input_->reference.height(); }
 
-  /// What winner-take-all leans on in this view; null: nothing.
-  const DisparityPrior* prior() const { return side_ == reference ? input_->prior : nullptr; }
+  /// Prior of winner-take-all in this view; empty: none.
+  DisparityPriorView prior() const { return side_ == reference ? input_->prior : DisparityPriorView{}; }
 
   /// Own pixel i of row v sees the other view from disparity 0 to i − first_other(v).
   int first_other(int v) const { return side_ == reference ? first_column(v) : 0; }

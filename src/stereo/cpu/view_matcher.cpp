@@ -51,7 +51,7 @@ void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& op
   window_.reserve(static_cast<std::size_t>(ring_));
 }
 
-void ViewMatcher::match(const MatchView& view, const Tile& tile, MatchMaps& maps) {
+void ViewMatcher::match(const MatchView& view, const Tile& tile, MatchMaps& maps, Image<float>& offset) {
   int next = std::max(0, tile.first_row - rows_);
   const int columns = tile.end - tile.first;
   tile_costs_.start(view, next, tile.first - radius_, columns + 2 * radius_, tile.range);
@@ -60,11 +60,11 @@ void ViewMatcher::match(const MatchView& view, const Tile& tile, MatchMaps& maps
     for (; next <= std::min(view.height() - 1, v + rows_); ++next) {
       tile_costs_.compute(next, cost_row(next) - radius_ * tile_costs_.pitch());
     }
-    match_row(view, v, tile, maps);
+    match_row(view, v, tile, maps, offset);
   }
 }
 
-void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps) {
+void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps, Image<float>& offset) {
   const auto window_row = [&](int q) {
     return WindowRow{.costs = cost_row(q),
                      .half = half_width(q - v),
@@ -94,7 +94,7 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
                        {winner_.data(), reference ? offset_.data() : nullptr, variance_.data()});
   if (reference) {
     std::transform(winner_.data(), winner_.data() + row.end, maps.winner.row(v) + tile.first, original);
-    std::copy_n(offset_.data(), row.end, maps.disparity.row(v) + tile.first);
+    std::copy_n(offset_.data(), row.end, offset.row(v) + tile.first);
     std::copy_n(variance_.data(), row.end, maps.variance.row(v) + tile.first);
   } else {
     std::transform(winner_.rend() - row.end, winner_.rend(), maps.target_winner.row(v) + view.width() - tile.end,
@@ -104,14 +104,14 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
 
 /// The prior of row v, relative to the tile's first disparity.
 PriorRow ViewMatcher::prior_row(const MatchView& view, int v, const Tile& tile) {
-  const DisparityPrior* prior = view.prior();
-  if (prior == nullptr || prior_weight_ == 0) return {};
-  const Image<float>& map = prior->disparity;
-  const float* row = map.row(std::min(v / prior->factor, map.height() - 1));
+  const DisparityPriorView prior = view.prior();
+  if (prior.disparity.empty() || prior_weight_ == 0) return {};
+  const ImageView<const float>& map = prior.disparity;
+  const float* row = map.row(std::min(v / prior.factor, map.height() - 1));
   const auto first = static_cast<float>(tile.range.first);
   for (int i = tile.first; i < tile.end;) {
-    const int x = i / prior->factor;
-    const int end = x + 1 < map.width() ? std::min(tile.end, (x + 1) * prior->factor) : tile.end;
+    const int x = i / prior.factor;
+    const int end = x + 1 < map.width() ? std::min(tile.end, (x + 1) * prior.factor) : tile.end;
     std::fill(prior_.data() + (i - tile.first), prior_.data() + (end - tile.first),
               row[std::min(x, map.width() - 1)] - first);
     i = end;

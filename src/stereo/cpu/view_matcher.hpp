@@ -30,13 +30,13 @@ class ViewMatcher {
   /// Memory for tiles of up to `columns` columns.
   void prepare(int columns, int disparities, const MatcherOptions& options, std::span<const Tap> taps);
 
-  /// Winners of the view's own pixels, and for the reference view their sub-pixel offsets, which wait in the disparity
-  /// map until both views are known.
-  void match(const MatchView& view, const Tile& tile, MatchMaps& maps);
+  /// Writes the winners of a tile of the view into `maps`, for the reference view also their variances and sub-pixel
+  /// offsets.
+  void match(const MatchView& view, const Tile& tile, MatchMaps& maps, Image<float>& offset);
 
  private:
   PriorRow prior_row(const MatchView& view, int v, const Tile& tile);
-  void match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps);
+  void match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps, Image<float>& offset);
   int& half_width(int dv) {
     const int row = dv + rows_;
     return half_widths_[static_cast<std::size_t>(row)];

@@ -54,25 +54,25 @@ struct Tile {
   int halo_i, halo_v;  ///< with the window's reach
   int halo_columns, halo_rows;
   int product_columns;  ///< with the blocks' reach, on both sides
-  TileRange range;
+  SearchRange range;
 };
 
 __device__ int image_column(const ViewToMatch& view, int i) {
-  return view.mirrored ? view.own.width - 1 - i : i;
+  return view.mirrored ? view.own.width() - 1 - i : i;
 }
 /// Own pixel i of row v sees the other view from disparity 0 to i − first_other(v).
 __device__ int first_other(const ViewToMatch& view, int v) {
   return view.mirrored ? 0 : __ldg(view.first_column + v);
 }
 __device__ int last_own(const ViewToMatch& view, int v) {
-  return view.mirrored ? view.own.width - 1 - __ldg(view.first_column + v) : view.own.width - 1;
+  return view.mirrored ? view.own.width() - 1 - __ldg(view.first_column + v) : view.own.width() - 1;
 }
 
 __device__ Tile place_tile(const ViewToMatch& view, const ViewSettings& settings, int index) {
-  const int across = (view.own.width + tile_columns - 1) / tile_columns;
-  const int first_u = index % across * tile_columns, end_u = min(first_u + tile_columns, view.own.width);
+  const int across = (view.own.width() + tile_columns - 1) / tile_columns;
+  const int first_u = index % across * tile_columns, end_u = min(first_u + tile_columns, view.own.width());
   Tile tile;
-  tile.first_i = view.mirrored ? view.own.width - end_u : first_u;
+  tile.first_i = view.mirrored ? view.own.width() - end_u : first_u;
   tile.columns = end_u - first_u;
   tile.first_v = index / across * tile_rows;
   tile.halo_i = tile.first_i - settings.reach_across;
@@ -81,9 +81,7 @@ __device__ Tile place_tile(const ViewToMatch& view, const ViewSettings& settings
   tile.halo_rows = tile_rows + 2 * settings.reach_down;
   tile.product_columns = tile.halo_columns + 2 * settings.block_radius;
   tile.range = {0, static_cast<std::int16_t>(view.disparities)};
-  if (view.ranges != nullptr) {
-    tile.range = view.ranges[tile.first_v / view.range_rows * view.ranges_across + first_u / view.range_columns];
-  }
+  if (!view.ranges.empty()) tile.range = view.ranges(first_u / view.range_columns, tile.first_v / view.range_rows);
   return tile;
 }
 
@@ -91,7 +89,7 @@ __device__ Tile place_tile(const ViewToMatch& view, const ViewSettings& settings
 class ColumnProducts {
  public:
   __device__ ColumnProducts(const ViewToMatch& view, int i, int d) : view_(view) {
-    const int width = view.own.width;
+    const int width = view.own.width();
     own_column_ = i >= 0 && i < width ? image_column(view, i) : -1;
     for (int k = 0; k < chunk; ++k) {
       const int j = i - d - k;
@@ -100,7 +98,7 @@ class ColumnProducts {
   }
 
   __device__ void add(int v, int sign, int4& sums) const {
-    if (v < 0 || v >= view_.own.height || own_column_ < 0) return;
+    if (v < 0 || v >= view_.own.height() || own_column_ < 0) return;
     const int own = sign * (__ldg(view_.own.row(v) + own_column_) - mid_grey);
     const std::int16_t* row = view_.other.row(v);
     sums.x += own * other(row, 0);
@@ -135,8 +133,8 @@ __device__ Strip strip_of_thread(const Tile& tile) {
 /// Whether the blocks of the tile's surroundings, and what they are compared with, lie inside both images.
 __device__ bool products_inside(const ViewToMatch& view, const Tile& tile, int radius, int d) {
   const int first_i = tile.halo_i - radius;
-  return tile.halo_v >= radius && tile.halo_v + tile.halo_rows + radius <= view.own.height &&
-         first_i - d - (chunk - 1) >= 0 && first_i + tile.product_columns <= view.own.width;
+  return tile.halo_v >= radius && tile.halo_v + tile.halo_rows + radius <= view.own.height() &&
+         first_i - d - (chunk - 1) >= 0 && first_i + tile.product_columns <= view.own.width();
 }
 
 /// One pixel of the own view and four neighbours of the other, and how to get to the next row.
@@ -163,8 +161,8 @@ __device__ void sum_products_inside(const ViewToMatch& view, const Tile& tile, i
   const int i = tile.halo_i - radius + strip.column, v = tile.halo_v + strip.first - radius;
   // In memory the disparities grow with the columns of a mirrored view, and against those of the other.
   const int others = view.mirrored ? image_column(view, i - d) : i - d - (chunk - 1);
-  RowOfPixels coming{view.own.row(v) + image_column(view, i), view.other.row(v) + others, view.own.stride,
-                     view.other.stride};
+  RowOfPixels coming{view.own.row(v) + image_column(view, i), view.other.row(v) + others, view.own.stride(),
+                     view.other.stride()};
   RowOfPixels going = coming;
   int4 sums = make_int4(0, 0, 0, 0);
   for (int k = 0; k < 2 * radius; ++k) coming.add_and_go_on<1>(sums);
@@ -285,7 +283,7 @@ __device__ void make_costs(const ViewToMatch& view, const ViewSettings& settings
                            int4* products) {
   const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
   for (int y = warp; y < tile.halo_rows; y += warps) {
-    const int v = tile.halo_v + y, height = view.own.height;
+    const int v = tile.halo_v + y, height = view.own.height();
     const bool inside = v >= 0 && v < height;
     int4* row = products + y * tile.product_columns;
     CostRow cost_row{v, settings.block_radius, 0, 0, 0, -1, nullptr, nullptr, row};
@@ -315,7 +313,7 @@ __device__ void make_costs(const ViewToMatch& view, const ViewSettings& settings
 /// ω of a tap of the pixel (i, v): eqs. omega0, omega1.
 __device__ float tap_weight(const ViewToMatch& view, const ViewSettings& settings, const WindowTap& tap, int i, int v,
                             int grey) {
-  const int q = min(max(i + tap.du, 0), view.own.width - 1), row = min(max(v + tap.dv, 0), view.own.height - 1);
+  const int q = min(max(i + tap.du, 0), view.own.width() - 1), row = min(max(v + tap.dv, 0), view.own.height() - 1);
   const auto difference = static_cast<float>(__ldg(view.own.row(row) + image_column(view, q)) - grey);
   return exp2f(tap.log2_space + settings.log2_colour * difference * difference);
 }
@@ -406,7 +404,7 @@ __device__ float4 clipped_energies(const int4& own, const Aggregate& sums) {
 /// The energies of one thread's pixel, one for every disparity of its range.
 class PixelEnergies {
  public:
-  __device__ PixelEnergies(float* of_block, const TileRange& range)
+  __device__ PixelEnergies(float* of_block, const SearchRange& range)
       : values_(of_block + threadIdx.x), first_(range.first), end_(range.end) {}
 
   __device__ int first() const { return first_; }
@@ -433,9 +431,9 @@ __device__ int take_winner(const ViewToMatch& view, const ViewSettings& settings
       winner = d;
     }
   }
-  if (view.prior.data == nullptr || winner < 0) return winner;
-  const float centre =
-      view.prior(min(u / view.prior_factor, view.prior.width - 1), min(v / view.prior_factor, view.prior.height - 1));
+  if (view.prior.empty() || winner < 0) return winner;
+  const float centre = view.prior(min(u / view.prior_factor, view.prior.width() - 1),
+                                  min(v / view.prior_factor, view.prior.height() - 1));
   if (!(centre == centre)) return winner;
   const float slope = settings.prior_weight * prior_share(smallest);
   float best = INFINITY;
@@ -453,7 +451,7 @@ __device__ void choose(const ViewToMatch& view, const ViewSettings& settings, co
                        int v, const ViewWinners& winners) {
   const int winner = take_winner(view, settings, energies, u, v);
   winners.winner(u, v) = static_cast<std::int16_t>(winner);
-  if (winners.offset.data == nullptr) return;
+  if (winners.offset.empty()) return;
   SubPixel sub_pixel{NAN, INFINITY};
   const bool bracketed = winner > energies.first() && winner + 1 < energies.end() && energies(winner + 1) < INFINITY;
   if (bracketed) {
@@ -469,7 +467,7 @@ __device__ int latest_first_column(const ViewToMatch& view, const Tile& tile, in
   if (lane < 32) {
     int latest = 0;
     for (int y = lane; y < tile.halo_rows; y += 32) {
-      const int v = min(max(tile.halo_v + y, 0), view.own.height - 1);
+      const int v = min(max(tile.halo_v + y, 0), view.own.height() - 1);
       latest = max(latest, __ldg(view.first_column + v));
     }
     latest = warp_max(latest);
@@ -481,10 +479,10 @@ __device__ int latest_first_column(const ViewToMatch& view, const Tile& tile, in
 
 /// Whether every pixel of the tile's surroundings has a whole set of four costs.
 __device__ bool surroundings_whole(const ViewToMatch& view, const Tile& tile, int latest_first, int d) {
-  const int width = view.own.width;
+  const int width = view.own.width();
   const int first_other = view.mirrored ? 0 : latest_first;
   const int last_own = view.mirrored ? width - 1 - latest_first : width - 1;
-  return tile.halo_v >= 0 && tile.halo_v + tile.halo_rows <= view.own.height && tile.halo_i >= 0 &&
+  return tile.halo_v >= 0 && tile.halo_v + tile.halo_rows <= view.own.height() && tile.halo_i >= 0 &&
          tile.halo_i + tile.halo_columns - 1 <= last_own && tile.halo_i - d - (chunk - 1) >= first_other;
 }
 
@@ -496,7 +494,7 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
       latest_first_column(view, tile, reinterpret_cast<int*>(products + tile.halo_rows * tile.product_columns));
   const int x = static_cast<int>(threadIdx.x) % tile_columns, y = static_cast<int>(threadIdx.x) / tile_columns;
   const int i = tile.first_i + x, v = tile.first_v + y;
-  const bool wanted = x < tile.columns && v < view.own.height;
+  const bool wanted = x < tile.columns && v < view.own.height();
   PixelEnergies energies(energies_of_block, tile.range);
   PixelWeights<most> weights{};
   const int grey = wanted ? __ldg(view.own.row(v) + image_column(view, i)) : 0;
@@ -535,8 +533,8 @@ template <int most>
 __global__ void __launch_bounds__(threads, most <= taps_of_default ? 2 : 1)
     match_tiles(ViewToMatch view, ViewSettings settings, TapOffsets<most> offsets, float* energies,
                 std::size_t energies_per_block, ViewWinners winners) {
-  const int across = (view.own.width + tile_columns - 1) / tile_columns;
-  const int tiles = across * ((view.own.height + tile_rows - 1) / tile_rows);
+  const int across = (view.own.width() + tile_columns - 1) / tile_columns;
+  const int tiles = across * ((view.own.height() + tile_rows - 1) / tile_rows);
   for (int index = static_cast<int>(blockIdx.x); index < tiles; index += static_cast<int>(gridDim.x)) {
     const Tile tile = place_tile(view, settings, index);
     match_tile<most>(view, settings, offsets, tile, energies + blockIdx.x * energies_per_block, winners);

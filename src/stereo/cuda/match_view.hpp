@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/cuda/plane.hpp"
-#include "stereo/coarse/tile_range.hpp"
+#include "roadstereo/image_view.hpp"
+#include "roadstereo/search_range.hpp"
 #include "stereo/cuda/block_sums.hpp"
 
 namespace roadstereo::cuda {
@@ -22,18 +22,17 @@ struct WindowTap {
 /// match pixel i − d of the other. For the target view both images are therefore read mirrored, from their last
 /// columns on; the planes themselves are not.
 struct ViewToMatch {
-  Plane<const std::int16_t> own, other;
-  Plane<const ColumnSums> own_columns, other_columns;
-  Plane<const BlockPart> own_blocks, other_blocks;
+  ImageView<const std::int16_t> own, other;
+  ImageView<const ColumnSums> own_columns, other_columns;
+  ImageView<const BlockPart> own_blocks, other_blocks;
   const int* first_column;  ///< per row: first column of the target that its whole blocks see
   bool mirrored;            ///< the own view is the target
   int disparities;
-  const TileRange* ranges;  ///< one per tile of the own view, row by row; null: all search everything
-  int range_columns;        ///< pixels of such a tile
+  ImageView<const SearchRange> ranges;  ///< one per tile of the own view; empty: all search all disparities
+  int range_columns;                    ///< pixels of such a tile
   int range_rows;
-  int ranges_across;         ///< tiles in a row
-  Plane<const float> prior;  ///< what the winners lean on; no data: nothing
-  int prior_factor;          ///< pixels that one of the prior stands for, across and down
+  ImageView<const float> prior;  ///< what the winners lean on; no data: nothing
+  int prior_factor;              ///< pixels that one of the prior stands for, across and down
 };
 
 struct ViewSettings {
@@ -52,9 +51,9 @@ struct ViewSettings {
 /// What a view leaves: winners (−1 where nothing can match), and of each its distance to the minimum, NaN where it has
 /// no neighbour on one side, and its variance.
 struct ViewWinners {
-  Plane<std::int16_t> winner;
-  Plane<float> offset;  ///< no data: not wanted, nor the variance
-  Plane<float> variance;
+  ImageView<std::int16_t> winner;
+  ImageView<float> offset;  ///< no data: not wanted, nor the variance
+  ImageView<float> variance;
 };
 
 /// How the kernel is run on a device: so many blocks as find room at a time, each with memory for its energies.

@@ -144,31 +144,28 @@ CostVolume aggregate(const Scene& scene, const CostVolume& cost, ImageView<const
   return aggregated;
 }
 
-using Range = SearchRanges::Range;
-
-const Range& range_at(const Image<Range>& ranges, int u, int v) {
+const SearchRange& range_at(ImageView<const SearchRange> ranges, int u, int v) {
   return ranges(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
 }
 
 /// What a disparity pays for its distance from the prior: slope · min(|d − prior|, prior_truncation_px), slope =
 /// prior_weight but where the smallest cost `best` is small (stereo/window.hpp).
-double lean(const Scene& scene, const DisparityPrior* prior, double best, int u, int v, int d) {
-  if (prior == nullptr) return 0;
-  const Image<float>& map = prior->disparity;
-  const double centre =
-      map(std::min(u / prior->factor, map.width() - 1), std::min(v / prior->factor, map.height() - 1));
+double lean(const Scene& scene, const DisparityPriorView& prior, double best, int u, int v, int d) {
+  if (prior.disparity.empty()) return 0;
+  const ImageView<const float>& map = prior.disparity;
+  const double centre = map(std::min(u / prior.factor, map.width() - 1), std::min(v / prior.factor, map.height() - 1));
   if (std::isnan(centre)) return 0;
   const double weight = std::min(1.0, (best + double{prior_cost_offset}) / double{prior_full_cost});
   return weight * scene.options.prior_weight * std::min(std::abs(d - centre), scene.options.prior_truncation_px);
 }
 
 /// Winner-take-all: the disparity of the smallest cost, −1 where there is none; the smaller disparity wins a tie.
-Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, const Image<Range>& ranges,
-                                 const DisparityPrior* prior) {
+Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, ImageView<const SearchRange> ranges,
+                                 const DisparityPriorView& prior) {
   Image<std::int16_t> winners(scene.width(), scene.height(), -1);
   for (int v = 0; v < scene.height(); ++v) {
     for (int u = 0; u < scene.width(); ++u) {
-      const Range searched = range_at(ranges, u, v);
+      const SearchRange searched = range_at(ranges, u, v);
       double smallest = std::numeric_limits<double>::infinity();
       for (int d = searched.first; d < searched.end; ++d) {
         if (energy(u, v, d) < smallest) smallest = energy(u, v, d);
@@ -188,10 +185,9 @@ Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, c
 
 /// Eq. lrc. The shift of the perspective transformation depends on the target pixel alone, so it cancels here and the
 /// check on residual disparities is the check on the original ones.
-bool consistent(const MatchMaps& maps, int u, int v, double threshold) {
+bool consistent(const MatchMaps& maps, int u, int v, double max_diff_px) {
   const int d = maps.winner(u, v);
-  const double difference = d - maps.target_winner(u - d, v);
-  return difference * difference <= threshold;
+  return std::abs(d - maps.target_winner(u - d, v)) <= max_diff_px;
 }
 
 /// A sub-pixel disparity and its variance.
@@ -202,7 +198,7 @@ struct Refined {
 
 /// Eq. subpixel, on the aggregated costs, and the variance that they tell of (stereo/window.hpp). A winner at the end
 /// of its range has no neighbour on one side; one that leans on the prior need not be a minimum of the costs.
-Refined refine(const Scene& scene, const CostVolume& energy, const Range& searched, int u, int v, int d) {
+Refined refine(const Scene& scene, const CostVolume& energy, const SearchRange& searched, int u, int v, int d) {
   Refined refined;
   const bool first = d == searched.first;
   const bool last = d + 1 == searched.end || std::isnan(energy(u, v, d + 1));
@@ -233,13 +229,12 @@ class ReferenceEngine final : public StereoEngine {
     const Scene scene{input, options};
     const CostVolume cost = compute_costs(scene, threads_);
     const CostVolume energy_ref = aggregate(scene, cost, input.reference, 0, threads_);
-    SearchRanges ranges;
-    ranges.assign(scene.width(), scene.height(), input.disparities);
-    if (input.ranges != nullptr) ranges = *input.ranges;
+    SearchRanges all;
+    all.assign(scene.width(), scene.height(), input.disparities);
+    const SearchRangeViews ranges = input.ranges.empty() ? all.views() : input.ranges;
     maps.winner = take_winners(scene, energy_ref, ranges.reference, input.prior);
     if (options.match_both_views) {
-      maps.target_winner =
-          take_winners(scene, aggregate(scene, cost, input.target, 1, threads_), ranges.target, nullptr);
+      maps.target_winner = take_winners(scene, aggregate(scene, cost, input.target, 1, threads_), ranges.target, {});
     } else {
       maps.target_winner.assign(scene.width(), scene.height(), -1);
       for (int v = 0; v < scene.height(); ++v) project_winners(maps.winner, v, maps.target_winner);

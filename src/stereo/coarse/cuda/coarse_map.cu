@@ -34,13 +34,13 @@ struct MapRow {
   }
 };
 
-__device__ float median_at(const Plane<const float>& map, int u, int v) {
-  const auto at = [&](int row) { return __ldg(&map(u, row < 0 ? 0 : row < map.height ? row : map.height - 1)); };
+__device__ float median_at(const ImageView<const float>& map, int u, int v) {
+  const auto at = [&](int row) { return __ldg(&map(u, row < 0 ? 0 : row < map.height() ? row : map.height() - 1)); };
   return median_of_rows(at(v - 2), at(v - 1), at(v), at(v + 1), at(v + 2));
 }
 
-__global__ void correct_row(Plane<const float> along_rows, float factor, Plane<float> prior) {
-  const int v = static_cast<int>(blockIdx.x), columns = along_rows.width;
+__global__ void correct_row(ImageView<const float> along_rows, float factor, ImageView<float> prior) {
+  const int v = static_cast<int>(blockIdx.x), columns = along_rows.width();
   auto* disparity = shared_memory<float>();
   const MapRow row{disparity, reinterpret_cast<int*>(disparity + columns), columns};
   const auto thread = static_cast<int>(threadIdx.x);
@@ -57,9 +57,9 @@ __global__ void correct_row(Plane<const float> along_rows, float factor, Plane<f
 
 }  // namespace
 
-void correct_rows(Plane<const float> along_rows, int factor, Plane<float> prior, cudaStream_t stream) {
-  const std::size_t bytes = static_cast<std::size_t>(along_rows.width) * (sizeof(float) + sizeof(int));
-  launch(correct_row, {static_cast<unsigned>(along_rows.height), threads, bytes}, stream, along_rows,
+void correct_rows(ImageView<const float> along_rows, int factor, ImageView<float> prior, cudaStream_t stream) {
+  const std::size_t bytes = static_cast<std::size_t>(along_rows.width()) * (sizeof(float) + sizeof(int));
+  launch(correct_row, {static_cast<unsigned>(along_rows.height()), threads, bytes}, stream, along_rows,
          static_cast<float>(factor), prior);
 }
 

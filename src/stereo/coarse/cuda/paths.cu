@@ -115,7 +115,7 @@ __device__ float take_winner(const float* forth, const float* back, int count) {
   return winner_with_fraction(winner, count, total(winner - 1), smallest, total(winner + 1));
 }
 
-__global__ void take_winners(CoarseVolume forth, CoarseVolume back, const int* first_seen, Plane<float> disparity) {
+__global__ void take_winners(CoarseVolume forth, CoarseVolume back, const int* first_seen, ImageView<float> disparity) {
   const int v = forth.first_row + static_cast<int>(blockIdx.y);
   const int u = static_cast<int>(blockIdx.x) * winner_warps + static_cast<int>(threadIdx.x) / warp_lanes;
   if (u >= forth.columns) return;
@@ -148,7 +148,7 @@ int path_pitch(int disparities) {
 }
 
 void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
-                         const CoarseVolume& forth, const CoarseVolume& back, Plane<float> disparity,
+                         const CoarseVolume& forth, const CoarseVolume& back, ImageView<float> disparity,
                          cudaStream_t stream) {
   const auto rows = static_cast<unsigned>(costs.rows);
   launch(row_kernel(costs.disparities).kernel, {dim3(rows, 2), warp_lanes}, stream, costs, penalties, forth, back);

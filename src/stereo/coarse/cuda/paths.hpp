@@ -2,7 +2,7 @@
 
 #include <cuda_runtime_api.h>
 
-#include "core/cuda/plane.hpp"
+#include "roadstereo/image_view.hpp"
 #include "stereo/coarse/cuda/coarse_volume.hpp"
 
 namespace roadstereo::cuda {
@@ -20,7 +20,7 @@ int path_pitch(int disparities);
 /// (stereo/coarse/scanline.hpp), coarse pixels, NaN where a column has no counterpart. `forth` and `back` are scratch
 /// memory of the size of `costs`.
 void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
-                         const CoarseVolume& forth, const CoarseVolume& back, Plane<float> disparity,
+                         const CoarseVolume& forth, const CoarseVolume& back, ImageView<float> disparity,
                          cudaStream_t stream);
 
 }  // namespace roadstereo::cuda

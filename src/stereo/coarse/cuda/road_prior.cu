@@ -23,15 +23,15 @@ struct PixelGuess {
 };
 
 /// Pixels at the border have no gradient.
-__device__ GradientSums column_gradients(const Plane<const std::int16_t>& image, int u, int v, int radius) {
+__device__ GradientSums column_gradients(const ImageView<const std::int16_t>& image, int u, int v, int radius) {
   GradientSums sums{0, 0};
-  if (u < 1 || u + 1 >= image.width) return sums;
+  if (u < 1 || u + 1 >= image.width()) return sums;
   const int first = v - radius < 1 ? 1 : v - radius;
-  const int last = v + radius > image.height - 2 ? image.height - 2 : v + radius;
+  const int last = v + radius > image.height() - 2 ? image.height() - 2 : v + radius;
   for (int row = first; row <= last; ++row) {
     const std::int16_t* at = image.row(row) + u;
     const CoarseGradient gradient =
-        coarse_gradient(__ldg(at - 1), __ldg(at + 1), __ldg(at - image.stride), __ldg(at + image.stride));
+        coarse_gradient(__ldg(at - 1), __ldg(at + 1), __ldg(at - image.stride()), __ldg(at + image.stride()));
     sums.squares += gradient.across * gradient.across;
     sums.products += gradient.across * gradient.down;
   }

@@ -2,7 +2,7 @@
 
 #include <cuda_runtime_api.h>
 
-#include "road/shift_terms.hpp"
+#include "road/row_shift.hpp"
 #include "stereo/coarse/block_uncertainty.hpp"
 #include "stereo/coarse/cuda/coarse_volume.hpp"
 
@@ -10,9 +10,9 @@ namespace roadstereo::cuda {
 
 /// How the road is guessed where the picture says nothing.
 struct RoadPrior {
-  ShiftTerms shift;  ///< its road, δp
-  float pull;        ///< cost of each coarse pixel away from the road where nothing is known
-  float reach;       ///< coarse pixels away at which it stops growing
+  PerspectiveShift shift;  ///< its road, δp
+  float pull;              ///< cost of each coarse pixel away from the road where nothing is known
+  float reach;             ///< coarse pixels away at which it stops growing
   UncertaintyParams texture_uncertainty;
   int block_radius;
 };
