@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "roadstereo/grey_scale.hpp"
 #include "roadstereo/image_view.hpp"
 
 namespace roadstereo {
@@ -84,8 +85,6 @@ struct Frame {
 /// Grey levels in sixteenths, 0 … 4080, whatever the depth of the camera: what matching works on. Fixed point,
 /// so that sums over windows are exact and every engine sees the same input.
 using GreyImage = Image<std::int16_t>;
-inline constexpr int grey_scale = 16;              ///< steps per 8-bit grey level
-inline constexpr int grey_max = 255 * grey_scale;  ///< value of white
 
 /// Converts a camera frame to grey (Rec. 601 luma for colour).
 /// `white_level` is the sample value of white; 0 takes the largest value of the sample type (255 or 65535).

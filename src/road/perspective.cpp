@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "core/require_range.hpp"
 #include "core/scratch.hpp"
 #include "road/cubic.hpp"
 #include "road/row_shift.hpp"
-#include "roadstereo/error.hpp"
 #include "roadstereo/ground_plane.hpp"
 
 namespace roadstereo {
@@ -100,16 +100,10 @@ void transform_row(const float* row, const PerspectiveShift& shift, int v, int f
 }  // namespace
 
 void PerspectiveOptions::validate() const {
-  const auto require = [](bool good, const char* name, double value, const char* rule) {
-    if (!good) fail("perspective.", name, " is ", value, "; it must be ", rule);
-  };
-  require(max_damage_depth_m > 0 && max_damage_depth_m <= 2, "max_damage_depth_m", max_damage_depth_m,
-          "above 0 and at most 2 metres");
-  require(max_bump_height_m > 0 && max_bump_height_m <= 2, "max_bump_height_m", max_bump_height_m,
-          "above 0 and at most 2 metres");
-  require(disparities >= 0 && disparities <= max_disparities, "disparities", disparities,
-          "between 1 and 1024, or 0 to derive it");
-  require(delta_p_px <= max_disparities, "delta_p_px", delta_p_px, "at most 1024, or negative to derive it");
+  require_range("perspective", "max_damage_depth_m", max_damage_depth_m, Above{0.0}, 2.0);
+  require_range("perspective", "max_bump_height_m", max_bump_height_m, Above{0.0}, 2.0);
+  require_range("perspective", "disparities", disparities, 0, max_disparities);
+  require_range("perspective", "delta_p_px", delta_p_px, -unlimited, double{max_disparities});
 }
 
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,

@@ -77,7 +77,4 @@ std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> point
 /// The plane through three points; nothing when they lie on one line of the image.
 std::optional<DisparityPlane> plane_through(const DisparityPoint& a, const DisparityPoint& b, const DisparityPoint& c);
 
-/// Median of |values|; reorders them. 0 when empty.
-double median_magnitude(std::span<double> values);
-
 }  // namespace roadstereo

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "roadstereo/host_device.hpp"
+#include "core/parabola.hpp"
 
 // What the costs around a winner say: formulas that engines of single precision share. C++17, for kernels.
 
@@ -39,9 +39,9 @@ struct SubPixel {
 
 /// Eq. subpixel on the costs of the disparities around the winner; no offset where they do not tell.
 ROADSTEREO_HD inline SubPixel fit_parabola(float before, float best, float after, float support) {
-  const float curvature = before + after - 2 * best;
+  const float curvature = second_difference(before, best, after);
   if (!(curvature > min_curvature)) return {0.0F, INFINITY};
-  const float vertex = (before - after) / (2 * curvature);
+  const float vertex = parabola_vertex(before, best, after);
   const float noise = 2 * fmaxf(best, 0.0F) / (support * curvature);
   const float reach = noise < low_noise_variance ? low_noise_truncation_px : 0.5F;
   const float offset = fminf(fmaxf(vertex, -reach), reach);

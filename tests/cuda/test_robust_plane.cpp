@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/order_statistics.hpp"
 #include "road/cuda/robust_plane.hpp"
 #include "road/plane_fit.hpp"
 #include "roadstereo/error.hpp"
@@ -123,7 +124,7 @@ TEST_F(CudaRobustPlane, StartsFromMedianOfResiduals) {
     const DisparityPlane start{road.a0 + by, road.a1, road.a2};
     auto residuals = scratch_vector<double>();
     for (const auto& p : points.present()) residuals.push_back(p.d - start.disparity(p.u, p.v));
-    const double scale = std::clamp(1.4826 * median_magnitude(residuals), 0.2, 0.6);
+    const double scale = std::clamp(1.4826 * upper_median_magnitude(residuals), 0.2, 0.6);
     const auto host = fit_plane_irls(points.present(), start, scale, true, 200);
     ASSERT_TRUE(host);
     expect_agreement(fit_on_device(points, start, {0, true, 200}), *host, points);

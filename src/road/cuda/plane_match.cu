@@ -5,6 +5,7 @@
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
 #include "core/full_resolution.hpp"
+#include "core/mid_grey.hpp"
 #include "road/cuda/plane_match.hpp"
 
 namespace roadstereo::cuda {
@@ -13,7 +14,6 @@ namespace {
 constexpr int places_per_block = 4;
 constexpr int max_range = 7;
 constexpr int max_offsets = 2 * max_range + 1;
-constexpr float mid_grey = 255 * plane_match_grey_scale / 2.0F;
 
 /// Sums over a row of a block, for one of the offsets.
 struct RowSums {
@@ -135,7 +135,7 @@ class PlaceSearch {
     for (int y = 0; y < plane_block_height; ++y) {
       const float part = parts[y];
       memory_.strip[y][lane_] =
-          (1 - part) * static_cast<float>(left[y]) + part * static_cast<float>(right[y]) - mid_grey;
+          (1 - part) * static_cast<float>(left[y]) + part * static_cast<float>(right[y]) - static_cast<float>(mid_grey);
     }
   }
 

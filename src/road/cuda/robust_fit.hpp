@@ -125,7 +125,7 @@ class BlockFit {
 
   /// The scale's clamp makes any median beyond it the same.
   __device__ double start_scale() {
-    const auto reach = static_cast<float>(1.01 * max_start_scale_px / normal_from_median);
+    const auto reach = static_cast<float>(1.01 * max_start_scale_px / gaussian_mad);
     return start_scale_of(magnitude_of(select_magnitude(reach, true), reach));
   }
 

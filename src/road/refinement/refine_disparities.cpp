@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/parallel.hpp"
+#include "core/require_range.hpp"
 #include "core/scratch.hpp"
 #include "road/refinement/settings.hpp"
 #include "road/refinement/weighted_mean.hpp"
@@ -98,17 +99,12 @@ void refine_row(const Maps& maps, const BandRows& rows, const MeanSettings& sett
 }  // namespace
 
 void RefinementOptions::validate() const {
-  const auto require = [](bool good, const char* name, double value, const char* rule) {
-    if (!good) fail("refinement.", name, " is ", value, "; it must be ", rule);
-  };
-  require(radius >= 0 && radius <= 32, "radius", radius, "between 0 and 32 pixels");
-  require(step >= 1 && step <= 16, "step", step, "between 1 and 16 pixels");
-  require(truncation_sigmas >= 0.5 && truncation_sigmas <= 100, "truncation_sigmas", truncation_sigmas,
-          "between 0.5 and 100");
-  require(min_sigma_px >= 0.001 && min_sigma_px <= 1, "min_sigma_px", min_sigma_px, "between 0.001 and 1 pixels");
-  require(max_sigma_px > 0, "max_sigma_px", max_sigma_px, "above 0 pixels");
-  require(max_agreement_sigma_px >= min_sigma_px && max_agreement_sigma_px <= 10, "max_agreement_sigma_px",
-          max_agreement_sigma_px, "between min_sigma_px and 10 pixels");
+  require_range("refinement", "radius", radius, 0, 32);
+  require_range("refinement", "step", step, 1, 16);
+  require_range("refinement", "truncation_sigmas", truncation_sigmas, 0.5, 100.0);
+  require_range("refinement", "min_sigma_px", min_sigma_px, 0.001, 1.0);
+  require_range("refinement", "max_sigma_px", max_sigma_px, Above{0.0}, unlimited);
+  require_range("refinement", "max_agreement_sigma_px", max_agreement_sigma_px, min_sigma_px, 10.0);
 }
 
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
+#include "core/mid_grey.hpp"
 #include "roadstereo/matcher.hpp"
-#include "stereo/mid_grey.hpp"
 
 namespace roadstereo::cpu {
 

@@ -1,7 +1,7 @@
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
+#include "core/mid_grey.hpp"
 #include "stereo/cuda/block_sums.hpp"
-#include "stereo/mid_grey.hpp"
 
 // Floor per pixel and view: 2 bytes read and 24 written, 4 (2r + 1) additions when columns and rows are summed apart.
 // At 640×360 both views write 11 MB: 2.3 µs of an H200's 4.8 TB/s.

@@ -1,8 +1,8 @@
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
 #include "core/cuda/warp.hpp"
+#include "core/mid_grey.hpp"
 #include "stereo/cuda/match_view.hpp"
-#include "stereo/mid_grey.hpp"
 #include "stereo/sub_pixel.hpp"
 
 // A block of threads matches one tile of 32×12 pixels, four disparities at a time: column sums of products slide down

@@ -6,11 +6,11 @@
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
 #include "core/cuda/warp.hpp"
+#include "core/mid_grey.hpp"
 #include "stereo/block_correlation.hpp"
 #include "stereo/coarse/coarse_column.hpp"
 #include "stereo/coarse/cuda/block_costs.hpp"
 #include "stereo/coarse/road_plausibility.hpp"
-#include "stereo/mid_grey.hpp"
 
 namespace roadstereo::cuda {
 namespace {
