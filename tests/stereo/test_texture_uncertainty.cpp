@@ -27,9 +27,9 @@ GreyImage paint(const std::function<double(int, int)>& grey) {
 
 /// The ignorance of all blocks of row v.
 std::vector<float> texture_uncertainty(const GreyImage& image, int v) {
-  TextureUncertainty evidence;
-  evidence.start(image, v, options);
-  return evidence.next();
+  TextureUncertainty texture;
+  texture.start(image, v, options);
+  return texture.next();
 }
 
 /// s² / (s² + half_at²) for a block with the sums Σ gu² and Σ gu gv.
@@ -78,10 +78,9 @@ TEST(TextureUncertainty, SlantedEdgeAmplifiesRowError) {
 TEST(TextureUncertainty, IsIndependentOfFirstRow) {
   const GreyImage image = test::textured_pair(width, height, [](double, double) { return 0; }).reference;
   for (const int first : {0, 1, 13, 36}) {
-    TextureUncertainty evidence;
-    evidence.start(image, first, options);
-    for (int v = first; v < height; ++v)
-      ASSERT_EQ(evidence.next(), texture_uncertainty(image, v)) << first << ", " << v;
+    TextureUncertainty texture;
+    texture.start(image, first, options);
+    for (int v = first; v < height; ++v) ASSERT_EQ(texture.next(), texture_uncertainty(image, v)) << first << ", " << v;
   }
 }
 

@@ -12,7 +12,7 @@ namespace roadstereo {
 /// belongs to the road, and cannot be missed.
 class TileRanges {
  public:
-  /// Counts the disparities of the coarse map (full-size pixels, NaN unknown) of a pair shrunk by `factor`.
+  /// Counts the disparities of the coarse map (full-size pixels, NaN unknown) of a pair downsampled by `factor`.
   void find(const Image<float>& coarse, int factor, int width, int height, int disparities);
 
   const SearchRanges& ranges() const { return ranges_; }

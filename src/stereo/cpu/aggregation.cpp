@@ -63,8 +63,8 @@ HWY_INLINE void gather_weights(const AggregationRow& row, int strip, const StepL
   const hn::RebindToSigned<decltype(d)> dd;
   const int lanes = static_cast<int>(hn::Lanes(d));
   for (int i = 0; i < strip_columns; i += lanes) {
-    const auto places = hn::And(count_up(dd, i), hn::Set(dd, row.step));
-    const auto right = hn::RebindMask(d, hn::Eq(places, hn::Set(dd, row.step)));
+    const auto columns_of_step = hn::And(count_up(dd, i), hn::Set(dd, row.step));
+    const auto right = hn::RebindMask(d, hn::Eq(columns_of_step, hn::Set(dd, row.step)));
     const float* const* weights = row.weights.data();
     float* out = steps.of_block(i / block_columns) + i % block_columns;
     auto sum = hn::Zero(d);
@@ -83,7 +83,7 @@ HWY_INLINE void gather_weights(const AggregationRow& row, int strip, const StepL
   }
 }
 
-/// energies[p, d] = Σ_taps ω·c / Σ ω (eq. fbs) for the pixels p of a block and `vectors` vectors of disparities from
+/// energies[p, d] = Σ_taps ω·c / Σ ω (eq. (11)) for the pixels p of a block and `vectors` vectors of disparities from
 /// first_d on, whose window lies in the common view.
 template <int vectors, int step_columns>
 HWY_INLINE void aggregate_block(const AggregationRow& row, const StepList& steps, int column, int first_d,
@@ -131,7 +131,7 @@ HWY_INLINE void copy_block(const AggregationRow& row, int column, int first_d, f
 
 /// The last disparity at which column i of a window row has a counterpart; negative where there is none.
 HWY_INLINE int last_seen(const WindowRow& window, int i) {
-  return i > window.last_own ? -1 : i - window.first_other;
+  return i > window.last_valid ? -1 : i - window.first_visible;
 }
 
 /// The same for one vector of disparities of one pixel near the border, over the taps that have a counterpart; infinite
@@ -140,10 +140,10 @@ HWY_INLINE void aggregate_border(const AggregationRow& row, int column, int d, f
   const Floats df;
   const Ints di;
   const int lanes = static_cast<int>(hn::Lanes(df));
-  const Float never = hn::Set(df, infinity);
+  const Float infinite_energy = hn::Set(df, infinity);
   float* out = energies + (column - row.first) % strip_columns * row.pitch + d;
   if (d > last_seen(row.centre, column)) {
-    hn::Store(never, df, out);
+    hn::Store(infinite_energy, df, out);
     return;
   }
   const Int disparity = count_from(d);
@@ -163,7 +163,7 @@ HWY_INLINE void aggregate_border(const AggregationRow& row, int column, int d, f
     }
   }
   const auto seen = hn::RebindMask(df, hn::Lt(disparity, hn::Set(di, last_seen(row.centre, column) + 1)));
-  hn::Store(hn::IfThenElse(seen, hn::Div(energy, sum), never), df, out);
+  hn::Store(hn::IfThenElse(seen, hn::Div(energy, sum), infinite_energy), df, out);
 }
 
 /// Columns whose whole window has a counterpart at every disparity below `end_d`.
@@ -173,8 +173,8 @@ struct ColumnRange {
 HWY_INLINE ColumnRange whole_windows(const AggregationRow& row, int end_d) {
   ColumnRange range{row.first, row.end};
   for (const WindowRow& window : row.rows) {
-    range.first = std::max(range.first, window.first_other + end_d - 1 + row.radius);
-    range.end = std::min(range.end, window.last_own + 1 - row.radius);
+    range.first = std::max(range.first, window.first_visible + end_d - 1 + row.radius);
+    range.end = std::min(range.end, window.last_valid + 1 - row.radius);
   }
   return range;
 }
@@ -259,25 +259,25 @@ HWY_INLINE void min_energies(const Energies& energies, int disparities, float* s
 /// The energies of four pixels with what they pay for their distance from the prior.
 struct RegularisedCosts {
   PlainEnergies plain;
-  float centre[4], slope[4];
-  float reach;
+  float centre[4], weight[4];
+  float truncation;
 
   HWY_INLINE RegularisedCosts(const AggregationRow& row, const PlainEnergies& energies, int column)
-      : plain(energies), reach(row.lean.reach) {
+      : plain(energies), truncation(row.prior.truncation) {
     float smallest[4];
     min_energies(plain, row.disparities, smallest);
     for (int p = 0; p < 4; ++p) {
-      const float at = column + p < row.end ? row.lean.centre[column + p] : 0.0f;
+      const float at = column + p < row.end ? row.prior.centre[column + p] : 0.0f;
       const bool known = at == at;
       centre[p] = known ? at : 0.0f;
-      slope[p] = known ? row.lean.slope * std::min(1.0f, (smallest[p] + prior_cost_offset) / prior_full_cost) : 0.0f;
+      weight[p] = known ? row.prior.weight * std::min(1.0f, (smallest[p] + prior_cost_offset) / prior_full_cost) : 0.0f;
     }
   }
 
   HWY_INLINE Float at(int p, int d) const {
     const Floats df;
     const Float away = hn::Abs(hn::Sub(hn::ConvertTo(df, count_from(d)), hn::Set(df, centre[p])));
-    return hn::MulAdd(hn::Min(away, hn::Set(df, reach)), hn::Set(df, slope[p]), plain.at(p, d));
+    return hn::MulAdd(hn::Min(away, hn::Set(df, truncation)), hn::Set(df, weight[p]), plain.at(p, d));
   }
 };
 
@@ -313,7 +313,7 @@ HWY_INLINE void find_winners(const AggregationRow& row, int strip, float* energi
       std::fill(of_four + p * row.pitch + row.disparities, of_four + (p + 1) * row.pitch, infinity);
     }
     const PlainEnergies plain{of_four, row.pitch};
-    if (row.lean.centre == nullptr) {
+    if (row.prior.centre == nullptr) {
       take_winners(plain, row.disparities, found.winner + column);
     } else {
       take_winners(RegularisedCosts(row, plain, strip + column), row.disparities, found.winner + column);
@@ -330,7 +330,7 @@ HWY_INLINE void find_winners(const AggregationRow& row, int strip, float* energi
 }
 
 /// Writes winners, offsets and variances of a strip: for every column −1 and NaN where nothing can match, else the
-/// winner and eq. subpixel, NaN where the winner has no neighbour on one side. The variance is derived in
+/// winner and eq. (13), NaN where the winner has no neighbour on one side. The variance is derived in
 /// stereo/window.hpp.
 HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns, const StripWinners& found,
                               const WinnerRow& out) {
@@ -341,8 +341,8 @@ HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns,
   const Float nan = hn::Set(df, std::numeric_limits<float>::quiet_NaN());
   for (int i = 0; i < columns; i += lanes) {
     const Int column = count_from(strip + i);
-    const Int seen = hn::Min(hn::Sub(column, hn::Set(di, row.centre.first_other)), hn::Set(di, row.disparities - 1));
-    const Int last = hn::IfThenElse(hn::Gt(column, hn::Set(di, row.centre.last_own)), hn::Set(di, -1), seen);
+    const Int seen = hn::Min(hn::Sub(column, hn::Set(di, row.centre.first_visible)), hn::Set(di, row.disparities - 1));
+    const Int last = hn::IfThenElse(hn::Gt(column, hn::Set(di, row.centre.last_valid)), hn::Set(di, -1), seen);
     const Int winner = hn::LoadU(di, found.winner + i);
     const Int chosen = hn::IfThenElse(hn::Lt(last, hn::Zero(di)), hn::Set(di, -1), winner);
     const int at = strip - row.first + i;
@@ -354,11 +354,12 @@ HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns,
     const auto curved = hn::Gt(curvature, hn::Set(df, min_curvature));
     const Float half = hn::Set(df, 0.5f);
     const Float vertex = hn::IfThenElseZero(curved, hn::Div(hn::Mul(half, hn::Sub(before, after)), curvature));
-    const Float noise = hn::Div(hn::Mul(hn::Set(df, 2 / row.support), hn::Max(best, hn::Zero(df))), curvature);
-    // A winner that leans on the prior need not be a minimum of the costs.
+    const Float noise =
+        hn::Div(hn::Mul(hn::Set(df, 2 / row.effective_samples), hn::Max(best, hn::Zero(df))), curvature);
+    // With a prior the winner need not be a minimum of the costs.
     const auto sure = hn::Lt(noise, hn::Set(df, low_noise_variance));
-    const Float reach = hn::IfThenElse(sure, hn::Set(df, low_noise_truncation_px), half);
-    const Float offset = hn::Clamp(vertex, hn::Neg(reach), reach);
+    const Float max_offset = hn::IfThenElse(sure, hn::Set(df, low_noise_truncation_px), half);
+    const Float offset = hn::Clamp(vertex, hn::Neg(max_offset), max_offset);
     const Float outside = hn::Sub(vertex, offset);
     const Float variance = hn::IfThenElse(curved, hn::MulAdd(outside, outside, noise), hn::Set(df, infinity));
     const auto bracketed = hn::And(hn::Gt(winner, hn::Zero(di)), hn::Lt(winner, last));

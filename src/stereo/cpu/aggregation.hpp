@@ -17,15 +17,15 @@ inline constexpr int strip_columns = 32;
 struct WindowRow {
   const float* costs;  ///< c(p, d) of the row: column i, disparity d at i·pitch + d
   int half;
-  int first_other;  ///< column i sees the other view from disparity 0 to i − first_other
-  int last_own;     ///< last column of the own view
+  int first_visible;  ///< column i sees the other view from disparity 0 to i − first_visible
+  int last_valid;     ///< last column of the own view
 };
 
 /// What winner-take-all leans on: energies at disparity d grow by slope · min(|d − centre|, reach).
 struct PriorRow {
   const float* centre = nullptr;  ///< per column of the tile; NaN: nothing to lean on there; null: nowhere
-  float slope = 0;
-  float reach = 0;
+  float weight = 0;
+  float truncation = 0;
 };
 
 /// One row of one view, ready to be aggregated at the columns [first, end).
@@ -39,8 +39,8 @@ struct AggregationRow {
   WindowRow centre;                       ///< the window row of the pixels themselves
   std::span<const WindowRow> rows;        ///< those that lie in the image
   std::span<const float* const> weights;  ///< ω of every tap, row by row: weights[tap][column]
-  PriorRow lean;
-  float support = 1;  ///< pixels that an energy rests on
+  PriorRow prior;
+  float effective_samples = 1;  ///< pixels that an energy rests on
 };
 
 /// What winner-take-all leaves of the columns [first, end), from index 0 on; whole strips are written.

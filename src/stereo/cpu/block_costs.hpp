@@ -54,8 +54,8 @@ void block_statistics(const ColumnSums& sums, int block_radius, int pixels, floa
 /// block_radius columns more.
 struct CostRow {
   int first, end;
-  int first_other;  ///< column i sees the other view from disparity 0 to i − first_other
-  int last_own;     ///< last column of the own view
+  int first_visible;  ///< column i sees the other view from disparity 0 to i − first_visible
+  int last_valid;     ///< last column of the own view
   int block_radius;
   int block_rows;  ///< rows of the block that lie in the image
   int disparities;

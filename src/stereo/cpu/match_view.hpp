@@ -26,12 +26,12 @@ class MatchView {
   /// Prior of winner-take-all in this view; empty: none.
   DisparityPriorView prior() const { return side_ == reference ? input_->prior : DisparityPriorView{}; }
 
-  /// Own pixel i of row v sees the other view from disparity 0 to i − first_other(v).
-  int first_other(int v) const { return side_ == reference ? first_column(v) : 0; }
+  /// Own pixel i of row v sees the other view from disparity 0 to i − first_visible(v).
+  int first_visible(int v) const { return side_ == reference ? first_column(v) : 0; }
   /// Last own pixel of row v that lies inside the view.
-  int last_own(int v) const { return side_ == reference ? width() - 1 : width() - 1 - first_column(v); }
+  int last_valid(int v) const { return side_ == reference ? width() - 1 : width() - 1 - first_column(v); }
   /// One past the last column of the other view's backward row v that lies inside it.
-  int end_other(int v) const { return width() - first_other(v); }
+  int end_visible(int v) const { return width() - first_visible(v); }
 
   /// Writes the columns first … first + count − 1 of row v, grey values minus mid-grey; 0 outside the image.
   void copy_own(int v, int first, int count, std::int16_t* out) const;

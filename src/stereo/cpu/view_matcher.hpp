@@ -54,7 +54,7 @@ class ViewMatcher {
   std::vector<WindowRow> window_;
   PaddedRows<float> scratch_;
   std::vector<const float*> steps_;
-  float support_ = 1;
+  float effective_samples_ = 1;
   float prior_weight_ = 0, prior_truncation_px_ = 0;
   std::vector<float> prior_;
   std::vector<std::int16_t> winner_;

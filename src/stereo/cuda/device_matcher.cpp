@@ -24,8 +24,8 @@ void DeviceMatcher::use(const MatcherOptions& options, cudaStream_t stream) {
     const double log2_space = -distance2 / (options.sigma_space * options.sigma_space) * std::numbers::log2e;
     taps_.data()[i] = {static_cast<std::int16_t>(taps[i].du), static_cast<std::int16_t>(taps[i].dv),
                        static_cast<float>(log2_space)};
-    settings_.reach_across = std::max(settings_.reach_across, taps[i].du);
-    settings_.reach_down = std::max(settings_.reach_down, taps[i].dv);
+    settings_.window_half_width = std::max(settings_.window_half_width, taps[i].du);
+    settings_.window_half_height = std::max(settings_.window_half_height, taps[i].dv);
   }
   const double sigma_colour = options.sigma_colour * grey_scale, noise = options.ncc_noise_sigma * grey_scale;
   settings_.block_radius = options.block_radius;
@@ -33,7 +33,7 @@ void DeviceMatcher::use(const MatcherOptions& options, cudaStream_t stream) {
   settings_.taps = taps_on_device_.data();
   settings_.tap_count = static_cast<int>(taps.size());
   settings_.log2_colour = static_cast<float>(-std::numbers::log2e / (sigma_colour * sigma_colour));
-  settings_.support = static_cast<float>(effective_samples(options));
+  settings_.effective_samples = static_cast<float>(effective_samples(options));
   settings_.prior_weight = static_cast<float>(options.prior_weight);
   settings_.prior_truncation_px = static_cast<float>(options.prior_truncation_px);
   ROADSTEREO_CUDA(cudaMemcpyAsync(taps_on_device_.data(), taps_.data(), taps.size() * sizeof(WindowTap),

@@ -25,9 +25,9 @@ constexpr int tile_columns = 32;
 constexpr int tile_rows = 12;
 constexpr int threads = tile_columns * tile_rows;
 constexpr int warps = threads / 32;
-constexpr int chunk = 4;          // disparities at a time
-constexpr float no_cost = -8.0F;  // no counterpart; costs are never below 0 by more than rounding
-constexpr float some_cost = -4.0F;
+constexpr int chunk = 4;               // disparities at a time
+constexpr float missing_cost = -8.0F;  // no counterpart; costs are never below 0 by more than rounding
+constexpr float min_known_cost = -4.0F;
 
 /// Windows of up to so many taps have their weights in registers.
 constexpr int taps_of_default = 28, taps_of_paper = 60;
@@ -60,25 +60,25 @@ struct Tile {
 __device__ int image_column(const ViewToMatch& view, int i) {
   return view.mirrored ? view.own.width() - 1 - i : i;
 }
-/// Own pixel i of row v sees the other view from disparity 0 to i − first_other(v).
-__device__ int first_other(const ViewToMatch& view, int v) {
+/// Own pixel i of row v sees the other view from disparity 0 to i − first_visible(v).
+__device__ int first_visible(const ViewToMatch& view, int v) {
   return view.mirrored ? 0 : __ldg(view.first_column + v);
 }
-__device__ int last_own(const ViewToMatch& view, int v) {
+__device__ int last_valid(const ViewToMatch& view, int v) {
   return view.mirrored ? view.own.width() - 1 - __ldg(view.first_column + v) : view.own.width() - 1;
 }
 
-__device__ Tile place_tile(const ViewToMatch& view, const ViewSettings& settings, int index) {
+__device__ Tile locate_tile(const ViewToMatch& view, const ViewSettings& settings, int index) {
   const int across = (view.own.width() + tile_columns - 1) / tile_columns;
   const int first_u = index % across * tile_columns, end_u = min(first_u + tile_columns, view.own.width());
   Tile tile;
   tile.first_i = view.mirrored ? view.own.width() - end_u : first_u;
   tile.columns = end_u - first_u;
   tile.first_v = index / across * tile_rows;
-  tile.halo_i = tile.first_i - settings.reach_across;
-  tile.halo_v = tile.first_v - settings.reach_down;
-  tile.halo_columns = tile_columns + 2 * settings.reach_across;
-  tile.halo_rows = tile_rows + 2 * settings.reach_down;
+  tile.halo_i = tile.first_i - settings.window_half_width;
+  tile.halo_v = tile.first_v - settings.window_half_height;
+  tile.halo_columns = tile_columns + 2 * settings.window_half_width;
+  tile.halo_rows = tile_rows + 2 * settings.window_half_height;
   tile.product_columns = tile.halo_columns + 2 * settings.block_radius;
   tile.range = {0, static_cast<std::int16_t>(view.disparities)};
   if (!view.ranges.empty()) tile.range = view.ranges(first_u / view.range_columns, tile.first_v / view.range_rows);
@@ -143,7 +143,7 @@ struct RowOfPixels {
   std::ptrdiff_t own_stride, other_stride;
 
   template <int sign>
-  __device__ void add_and_go_on(int4& sums) {
+  __device__ void add_and_advance(int4& sums) {
     const int grey = sign * (__ldg(own) - mid_grey);
     sums.x += grey * (__ldg(others) - mid_grey);
     sums.y += grey * (__ldg(others + 1) - mid_grey);
@@ -161,16 +161,16 @@ __device__ void sum_products_inside(const ViewToMatch& view, const Tile& tile, i
   const int i = tile.halo_i - radius + strip.column, v = tile.halo_v + strip.first - radius;
   // In memory the disparities grow with the columns of a mirrored view, and against those of the other.
   const int others = view.mirrored ? image_column(view, i - d) : i - d - (chunk - 1);
-  RowOfPixels coming{view.own.row(v) + image_column(view, i), view.other.row(v) + others, view.own.stride(),
-                     view.other.stride()};
-  RowOfPixels going = coming;
+  RowOfPixels entering{view.own.row(v) + image_column(view, i), view.other.row(v) + others, view.own.stride(),
+                       view.other.stride()};
+  RowOfPixels leaving = entering;
   int4 sums = make_int4(0, 0, 0, 0);
-  for (int k = 0; k < 2 * radius; ++k) coming.add_and_go_on<1>(sums);
+  for (int k = 0; k < 2 * radius; ++k) entering.add_and_advance<1>(sums);
   for (int y = strip.first; y < strip.end; ++y) {
-    coming.add_and_go_on<1>(sums);
+    entering.add_and_advance<1>(sums);
     products[y * tile.product_columns + strip.column] =
         view.mirrored ? sums : make_int4(sums.w, sums.z, sums.y, sums.x);
-    going.add_and_go_on<-1>(sums);
+    leaving.add_and_advance<-1>(sums);
   }
 }
 
@@ -200,7 +200,7 @@ __device__ void sum_products(const ViewToMatch& view, const Tile& tile, int radi
 struct CostRow {
   int v, radius, pixel_rows;
   float inverse_whole;  ///< 1 / n of whole blocks
-  int first_other, last_own;
+  int first_visible, last_valid;
   const BlockPart *own_blocks, *other_blocks;  ///< of this row
   const int4* products;                        ///< of the column halo_i − radius on
 };
@@ -208,8 +208,8 @@ struct CostRow {
 /// The cost of own pixel i at disparity d = first of the chunk + k, over the part of the block that both views see.
 __device__ float clipped_cost(const ViewToMatch& view, const CostRow& row, float noise_variance, int halo_i, int i,
                               int d, int k) {
-  if (i - d < row.first_other) return no_cost;
-  const int first = max(max(i - row.radius, 0), d + row.first_other), last = min(i + row.radius, row.last_own);
+  if (i - d < row.first_visible) return missing_cost;
+  const int first = max(max(i - row.radius, 0), d + row.first_visible), last = min(i + row.radius, row.last_valid);
   int products = 0, own_sum = 0, own_squares = 0, other_sum = 0, other_squares = 0;
   for (int q = first; q <= last; ++q) {
     const int4& of_column = row.products[q - halo_i + row.radius];
@@ -230,7 +230,7 @@ __device__ float clipped_cost(const ViewToMatch& view, const CostRow& row, float
 /// The same at four disparities. Not unrolled: few tiles need it, and its registers would be taken from the weights.
 __device__ float4 clipped_costs(const ViewToMatch& view, const CostRow& row, float noise_variance, int halo_i, int i,
                                 int d) {
-  float4 costs = make_float4(no_cost, no_cost, no_cost, no_cost);
+  float4 costs = make_float4(missing_cost, missing_cost, missing_cost, missing_cost);
   ROADSTEREO_DO_NOT_UNROLL
   for (int k = 0; k < chunk; ++k) {
     const float cost = clipped_cost(view, row, noise_variance, halo_i, i, d + k, k);
@@ -255,10 +255,10 @@ __device__ BlockPart read_part(const BlockPart* at) {
 /// The costs of own pixel i at four disparities.
 __device__ float4 four_costs(const ViewToMatch& view, const CostRow& row, float noise_variance, int halo_i, int i,
                              int d) {
-  float4 costs = make_float4(no_cost, no_cost, no_cost, no_cost);
-  if (i < 0 || i > row.last_own || i - d < row.first_other) return costs;
+  float4 costs = make_float4(missing_cost, missing_cost, missing_cost, missing_cost);
+  if (i < 0 || i > row.last_valid || i - d < row.first_visible) return costs;
   const bool whole =
-      i >= row.radius && i + row.radius <= row.last_own && i - d - (chunk - 1) - row.radius >= row.first_other;
+      i >= row.radius && i + row.radius <= row.last_valid && i - d - (chunk - 1) - row.radius >= row.first_visible;
   if (!whole) return clipped_costs(view, row, noise_variance, halo_i, i, d);
   int4 sums = make_int4(0, 0, 0, 0);
   const int4* products = row.products + (i - halo_i);
@@ -292,13 +292,13 @@ __device__ void make_costs(const ViewToMatch& view, const ViewSettings& settings
       cost_row.inverse_whole = 1.0F / static_cast<float>(cost_row.pixel_rows * (2 * settings.block_radius + 1));
       cost_row.own_blocks = view.own_blocks.row(v);
       cost_row.other_blocks = view.other_blocks.row(v);
-      cost_row.first_other = first_other(view, v);
-      cost_row.last_own = last_own(view, v);
+      cost_row.first_visible = first_visible(view, v);
+      cost_row.last_valid = last_valid(view, v);
     }
     const int i = tile.halo_i + lane;
     const bool second = lane + 32 < tile.halo_columns;
     const float4 near = four_costs(view, cost_row, settings.noise_variance, tile.halo_i, i, d);
-    float4 far = make_float4(no_cost, no_cost, no_cost, no_cost);
+    float4 far = make_float4(missing_cost, missing_cost, missing_cost, missing_cost);
     if (second) far = four_costs(view, cost_row, settings.noise_variance, tile.halo_i, i + 32, d);
     __syncwarp();
     row[lane] =
@@ -339,17 +339,17 @@ __device__ void add_whole(const int4& costs, float weight, Aggregate& sums) {
   sums.weighted.w += weight * __int_as_float(costs.w);
 }
 
-__device__ void add_if_there(float cost, float weight, float& weighted, float& weights) {
-  if (!(cost > some_cost)) return;
+__device__ void add_known(float cost, float weight, float& weighted, float& weights) {
+  if (!(cost > min_known_cost)) return;
   weighted += weight * cost;
   weights += weight;
 }
 
 __device__ void add_clipped(const int4& costs, float weight, Aggregate& sums) {
-  add_if_there(__int_as_float(costs.x), weight, sums.weighted.x, sums.weights.x);
-  add_if_there(__int_as_float(costs.y), weight, sums.weighted.y, sums.weights.y);
-  add_if_there(__int_as_float(costs.z), weight, sums.weighted.z, sums.weights.z);
-  add_if_there(__int_as_float(costs.w), weight, sums.weighted.w, sums.weights.w);
+  add_known(__int_as_float(costs.x), weight, sums.weighted.x, sums.weights.x);
+  add_known(__int_as_float(costs.y), weight, sums.weighted.y, sums.weights.y);
+  add_known(__int_as_float(costs.z), weight, sums.weighted.z, sums.weights.z);
+  add_known(__int_as_float(costs.w), weight, sums.weighted.w, sums.weights.w);
 }
 
 /// Σ ω c and Σ ω where a cost may be missing: the weights are those of the others.
@@ -392,7 +392,7 @@ __device__ float4 whole_energies(int tap_count, const TapOffsets<most>& offsets,
 
 /// The mean of what there is; infinite where the pixel itself has no counterpart.
 __device__ float clipped_energy(int own_cost, float weighted, float weights) {
-  return __int_as_float(own_cost) > some_cost ? weighted / weights : INFINITY;
+  return __int_as_float(own_cost) > min_known_cost ? weighted / weights : INFINITY;
 }
 
 __device__ float4 clipped_energies(const int4& own, const Aggregate& sums) {
@@ -435,12 +435,13 @@ __device__ int take_winner(const ViewToMatch& view, const ViewSettings& settings
   const float centre = view.prior(min(u / view.prior_factor, view.prior.width() - 1),
                                   min(v / view.prior_factor, view.prior.height() - 1));
   if (!(centre == centre)) return winner;
-  const float slope = settings.prior_weight * prior_share(smallest);
+  const float weight = settings.prior_weight * prior_share(smallest);
   float best = INFINITY;
   for (int d = energies.first(); d < energies.end(); ++d) {
-    const float leaning = energies(d) + prior_cost(slope, settings.prior_truncation_px, centre, static_cast<float>(d));
-    if (leaning < best) {
-      best = leaning;
+    const float regularised =
+        energies(d) + prior_cost(weight, settings.prior_truncation_px, centre, static_cast<float>(d));
+    if (regularised < best) {
+      best = regularised;
       winner = d;
     }
   }
@@ -455,7 +456,7 @@ __device__ void choose(const ViewToMatch& view, const ViewSettings& settings, co
   SubPixel sub_pixel{NAN, INFINITY};
   const bool bracketed = winner > energies.first() && winner + 1 < energies.end() && energies(winner + 1) < INFINITY;
   if (bracketed) {
-    sub_pixel = fit_parabola(energies(winner - 1), energies(winner), energies(winner + 1), settings.support);
+    sub_pixel = fit_parabola(energies(winner - 1), energies(winner), energies(winner + 1), settings.effective_samples);
   }
   winners.offset(u, v) = sub_pixel.offset;
   winners.variance(u, v) = sub_pixel.variance;
@@ -480,10 +481,10 @@ __device__ int latest_first_column(const ViewToMatch& view, const Tile& tile, in
 /// Whether every pixel of the tile's surroundings has a whole set of four costs.
 __device__ bool surroundings_whole(const ViewToMatch& view, const Tile& tile, int latest_first, int d) {
   const int width = view.own.width();
-  const int first_other = view.mirrored ? 0 : latest_first;
-  const int last_own = view.mirrored ? width - 1 - latest_first : width - 1;
+  const int first_visible = view.mirrored ? 0 : latest_first;
+  const int last_valid = view.mirrored ? width - 1 - latest_first : width - 1;
   return tile.halo_v >= 0 && tile.halo_v + tile.halo_rows <= view.own.height() && tile.halo_i >= 0 &&
-         tile.halo_i + tile.halo_columns - 1 <= last_own && tile.halo_i - d - (chunk - 1) >= first_other;
+         tile.halo_i + tile.halo_columns - 1 <= last_valid && tile.halo_i - d - (chunk - 1) >= first_visible;
 }
 
 template <int most>
@@ -507,7 +508,8 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
     }
     weights.inverse_sum = 1 / sum;
   }
-  const int4* centre = products + (y + settings.reach_down) * tile.product_columns + x + settings.reach_across;
+  const int4* centre =
+      products + (y + settings.window_half_height) * tile.product_columns + x + settings.window_half_width;
   for (int d = tile.range.first; d < tile.range.end; d += chunk) {
     sum_products(view, tile, settings.block_radius, d, products);
     __syncthreads();
@@ -536,7 +538,7 @@ __global__ void __launch_bounds__(threads, most <= taps_of_default ? 2 : 1)
   const int across = (view.own.width() + tile_columns - 1) / tile_columns;
   const int tiles = across * ((view.own.height() + tile_rows - 1) / tile_rows);
   for (int index = static_cast<int>(blockIdx.x); index < tiles; index += static_cast<int>(gridDim.x)) {
-    const Tile tile = place_tile(view, settings, index);
+    const Tile tile = locate_tile(view, settings, index);
     match_tile<most>(view, settings, offsets, tile, energies + blockIdx.x * energies_per_block, winners);
     __syncthreads();
   }
@@ -545,7 +547,7 @@ __global__ void __launch_bounds__(threads, most <= taps_of_default ? 2 : 1)
 template <int most>
 void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
                   const ViewLaunch& plan, float* energies, const ViewWinners& winners, cudaStream_t stream) {
-  const int columns = tile_columns + 2 * (settings.reach_across + settings.block_radius);
+  const int columns = tile_columns + 2 * (settings.window_half_width + settings.block_radius);
   TapOffsets<most> offsets{};
   for (int t = 0; most > 0 && t < settings.tap_count; ++t) {
     offsets.bytes[t] = (taps_on_host[t].dv * columns + taps_on_host[t].du) * static_cast<int>(sizeof(int4));
@@ -569,8 +571,8 @@ ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height,
   const int resident = blocks_per_multiprocessor * multiprocessors;
   plan.blocks = tiles < resident ? tiles : resident;
   plan.blocks = plan.blocks < room ? plan.blocks : room;
-  const int rows = tile_rows + 2 * settings.reach_down;
-  const int columns = tile_columns + 2 * (settings.reach_across + settings.block_radius);
+  const int rows = tile_rows + 2 * settings.window_half_height;
+  const int columns = tile_columns + 2 * (settings.window_half_width + settings.block_radius);
   plan.shared_bytes = sizeof(int4) * static_cast<std::size_t>(rows * columns + 1);
   return plan;
 }

@@ -40,10 +40,10 @@ struct ViewSettings {
   float noise_variance;
   const WindowTap* taps;  ///< in device memory
   int tap_count;
-  int reach_across;  ///< of the taps, pixels
-  int reach_down;
-  float log2_colour;  ///< −log2 e / σ1², per squared step of grey
-  float support;      ///< pixels that an energy rests on
+  int window_half_width;  ///< of the taps, pixels
+  int window_half_height;
+  float log2_colour;        ///< −log2 e / σ1², per squared step of grey
+  float effective_samples;  ///< pixels that an energy rests on
   float prior_weight;
   float prior_truncation_px;
 };

@@ -148,9 +148,9 @@ const SearchRange& range_at(ImageView<const SearchRange> ranges, int u, int v) {
   return ranges(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
 }
 
-/// What a disparity pays for its distance from the prior: slope · min(|d − prior|, prior_truncation_px), slope =
+/// Cost of the distance of a disparity from the prior: weight · min(|d − prior|, prior_truncation_px), weight =
 /// prior_weight but where the smallest cost `best` is small (stereo/window.hpp).
-double lean(const Scene& scene, const DisparityPriorView& prior, double best, int u, int v, int d) {
+double prior_term(const Scene& scene, const DisparityPriorView& prior, double best, int u, int v, int d) {
   if (prior.disparity.empty()) return 0;
   const ImageView<const float>& map = prior.disparity;
   const double centre = map(std::min(u / prior.factor, map.width() - 1), std::min(v / prior.factor, map.height() - 1));
@@ -172,9 +172,9 @@ Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, I
       }
       double best = std::numeric_limits<double>::infinity();
       for (int d = searched.first; d < searched.end; ++d) {
-        const double leaning = energy(u, v, d) + lean(scene, prior, smallest, u, v, d);
-        if (leaning < best) {
-          best = leaning;
+        const double regularised = energy(u, v, d) + prior_term(scene, prior, smallest, u, v, d);
+        if (regularised < best) {
+          best = regularised;
           winners(u, v) = static_cast<std::int16_t>(d);
         }
       }
@@ -212,8 +212,8 @@ Refined refine(const Scene& scene, const CostVolume& energy, const SearchRange& 
   if (curvature <= double{min_curvature}) return refined;
   const double vertex = (before - after) / (2 * curvature);
   const double noise = 2 * std::max(best, 0.0) / (scene.support * curvature);
-  const double reach = noise < double{low_noise_variance} ? double{low_noise_truncation_px} : 0.5;
-  const double offset = std::clamp(vertex, -reach, reach);
+  const double max_offset = noise < double{low_noise_variance} ? double{low_noise_truncation_px} : 0.5;
+  const double offset = std::clamp(vertex, -max_offset, max_offset);
   if (scene.options.sub_pixel) refined.disparity = d + offset;
   refined.variance = noise + (vertex - offset) * (vertex - offset);
   return refined;
@@ -244,12 +244,12 @@ class ReferenceEngine final : public StereoEngine {
     for (int v = 0; v < scene.height(); ++v) {
       for (int u = 0; u < scene.width(); ++u) {
         if (maps.winner(u, v) < 0) continue;
-        const bool hidden = options.left_right_check && !consistent(maps, u, v, options.lr_max_diff_px);
-        if (hidden && options.occlusion_sigma_px == 0) continue;
+        const bool occluded = options.left_right_check && !consistent(maps, u, v, options.lr_max_diff_px);
+        if (occluded && options.occlusion_sigma_px == 0) continue;
         const Refined refined = refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v));
         maps.disparity(u, v) = static_cast<float>(refined.disparity);
-        const double doubt = hidden ? options.occlusion_sigma_px * options.occlusion_sigma_px : 0;
-        maps.variance(u, v) = static_cast<float>(refined.variance + doubt);
+        const double added_variance = occluded ? options.occlusion_sigma_px * options.occlusion_sigma_px : 0;
+        maps.variance(u, v) = static_cast<float>(refined.variance + added_variance);
       }
     }
   }

@@ -39,8 +39,8 @@ struct ViewColumns {
 /// A segment of a row as its block of threads sees it.
 struct Segment {
   ViewColumns own, other;
-  int width, first_other;  ///< columns of the image; the first one of the target that counts
-  int radius, rows;        ///< of the block; rows of it that lie in the image
+  int width, first_visible;  ///< columns of the image; the first one of the target that counts
+  int radius, rows;          ///< of the block; rows of it that lie in the image
   float noise_variance;
   float inverse_whole;  ///< 1 / pixels of a whole block
 };
@@ -97,8 +97,8 @@ __device__ int column_product(const Segment& of, int column, int d) {
 
 /// The cost of column u at disparity d, over the part of the block that both views see.
 __device__ float cost_of(const Segment& of, int u, int d, int product) {
-  if (u - d < of.first_other) return no_evidence;
-  const int left = u - of.radius, right = u + of.radius, seen = d + of.first_other;
+  if (u - d < of.first_visible) return uncorrelated_cost;
+  const int left = u - of.radius, right = u + of.radius, seen = d + of.first_visible;
   const int first = left > seen ? left : seen, last = right < of.width ? right : of.width - 1;
   if (first == left && last == right) {
     return correlation_cost(of.own.part(u), of.other.part(u - d), product, of.inverse_whole);
@@ -175,14 +175,14 @@ __global__ void block_costs_of_segments(CoarsePair pair, int radius, float noise
                      (first_row > 0 ? first_row : 0) + 1;
   Segment of = make_segment(first, radius, costs);
   of.width = costs.columns;
-  of.first_other = first_seen_by_block(pair, v, radius);
+  of.first_visible = first_seen_by_block(pair, v, radius);
   of.radius = radius;
   of.rows = inside;
   of.noise_variance = noise_variance;
   of.inverse_whole = 1.0F / static_cast<float>((2 * radius + 1) * inside);
-  if (blockIdx.x == 0 && threadIdx.x == 0) first_seen[v] = of.first_other;
+  if (blockIdx.x == 0 && threadIdx.x == 0) first_seen[v] = of.first_visible;
   load_columns<known_block>(of.own, pair.reference, 0, first_row, radius);
-  load_columns<known_block>(of.other, pair.target, of.first_other, first_row, radius);
+  load_columns<known_block>(of.other, pair.target, of.first_visible, first_row, radius);
   __syncthreads();
   fill_parts(of.own, of);
   fill_parts(of.other, of);

@@ -63,7 +63,7 @@ CoarseVolume CudaCoarseSearch::reserve(const MatchInput& input) {
   CoarseVolume shape{nullptr, width_, disparities, path_pitch(disparities), 0, 0};
   const std::ptrdiff_t of_row = std::ptrdiff_t{shape.columns} * shape.pitch;
   shape.rows = static_cast<int>(std::clamp<std::ptrdiff_t>(max_numbers_ / of_row, 1, height_));
-  for (DeviceArray<float>* volume : {&costs_, &forth_, &back_}) {
+  for (DeviceArray<float>* volume : {&costs_, &forward_, &backward_}) {
     volume->reserve(static_cast<std::size_t>(of_row * shape.rows));
   }
   return shape;
@@ -76,22 +76,22 @@ CoarsePair CudaCoarseSearch::downsample_pair(const MatchInput& input, cudaStream
   return {reference, target, input.first_column, factor_};
 }
 
-/// The winners of a band of rows along their smoothest paths, with the road as the guess where the picture says
+/// The winners of a band of rows along their smoothest paths, with the road as the prior where the picture says
 /// nothing.
 void CudaCoarseSearch::match_band(const CoarsePair& pair, const PerspectiveShift& shift, const CoarseVolume& shape,
                                   int first_row, cudaStream_t stream) {
   CoarseVolume costs = shape;
   costs.first_row = first_row;
   costs.rows = std::min(shape.rows, height_ - first_row);
-  CoarseVolume forth = costs, back = costs;
+  CoarseVolume forward = costs, backward = costs;
   costs.numbers = costs_.data();
-  forth.numbers = forth_.data();
-  back.numbers = back_.data();
+  forward.numbers = forward_.data();
+  backward.numbers = backward_.data();
   const double noise = options_.ncc_noise_sigma * grey_scale;
   block_costs(pair, options_.block_radius, static_cast<float>(noise * noise), costs, first_seen_.data(), stream);
   add_road_prior(pair, road_prior(options_, shift), first_seen_.data(), costs, stream);
   aggregate_scanlines(costs, {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)},
-                      first_seen_.data(), forth, back, ImageView(along_rows_.data(), width_, height_), stream);
+                      first_seen_.data(), forward, backward, ImageView(along_rows_.data(), width_, height_), stream);
 }
 
 void CudaCoarseSearch::find_ranges(const MatchInput& input, cudaStream_t stream) {

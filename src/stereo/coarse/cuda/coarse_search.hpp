@@ -44,7 +44,7 @@ class CudaCoarseSearch {
   int width_ = 0, height_ = 0, factor_ = 1;  ///< of the coarse map
   DeviceArray<std::int16_t> reference_, target_;
   DeviceArray<int> first_seen_;
-  DeviceArray<float> costs_, forth_, back_;
+  DeviceArray<float> costs_, forward_, backward_;
   DeviceArray<float> along_rows_, prior_;
   DeviceArray<SearchRange> reference_ranges_, target_ranges_;
   SearchRangeViews ranges_;

@@ -11,14 +11,14 @@ namespace roadstereo::cuda {
 /// How the road is guessed where the picture says nothing.
 struct RoadPrior {
   PerspectiveShift shift;  ///< its road, δp
-  float pull;              ///< cost of each coarse pixel away from the road where nothing is known
-  float reach;             ///< coarse pixels away at which it stops growing
+  float weight;            ///< cost of each coarse pixel away from the road where nothing is known
+  float truncation;        ///< coarse pixels away at which it stops growing
   UncertaintyParams texture_uncertainty;
   int block_radius;
 };
 
-/// Completes the band's costs: the guess, and infinity behind the last disparity.
-void add_road_prior(const CoarsePair& pair, const RoadPrior& guess, const int* first_seen, const CoarseVolume& costs,
+/// Completes the band's costs: the prior, and infinity behind the last disparity.
+void add_road_prior(const CoarsePair& pair, const RoadPrior& prior, const int* first_seen, const CoarseVolume& costs,
                     cudaStream_t stream);
 
 }  // namespace roadstereo::cuda

@@ -81,8 +81,8 @@ __device__ void count_tile(const ImageView<const float>& coarse, const CoarseTil
             end_row = end_of(tile.row, tiles.rows, tiles.down, coarse.height());
   const int first = begin_of(tile.column, tiles.columns);
   // What lies in a tile of the target lies up to the largest disparity further right in the reference.
-  const int reach = tile.of_target ? (bins + factor - 1) / factor + 1 : 0;
-  int end = end_of(tile.column, tiles.columns, tiles.across, coarse.width()) + reach;
+  const int max_shift = tile.of_target ? (bins + factor - 1) / factor + 1 : 0;
+  int end = end_of(tile.column, tiles.columns, tiles.across, coarse.width()) + max_shift;
   end = end < coarse.width() ? end : coarse.width();
   const int columns = end - first, runs = (end_row - first_row + rows_a_run - 1) / rows_a_run;
   for (int i = static_cast<int>(threadIdx.x); i < columns * runs; i += threads) {
