@@ -91,7 +91,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("matcher.prior_weight", o.matcher.prior_weight, "cost of a pixel away from the coarse map; 0 ignores it");
   visit("matcher.prior_truncation_px", o.matcher.prior_truncation_px, "pixels away at which that cost stops growing");
   visit("matcher.lr_max_diff_px", o.matcher.lr_max_diff_px,
-        "largest difference of the left-right check, pixels (delta r of eq. lrc is its square)");
+        "largest difference of the left-right check, pixels (delta r of eq. 12 is its square)");
   visit("matcher.occlusion_sigma_px", o.matcher.occlusion_sigma_px,
         "standard error added to what fails the left-right check, pixels; 0 makes it invalid");
   visit("matcher.sub_pixel", o.matcher.sub_pixel, "refine the winner by a parabola");

@@ -9,7 +9,7 @@ namespace {
 PipelineOptions paper_preset() {
   PipelineOptions options;
   options.correct_rows = false;
-  options.road_model.with_roll = false;  // eq. relation_vd: Δu depends on v alone
+  options.road_model.with_roll = false;  // eq. (4): Δu depends on v alone
   options.perspective.shift = ShiftPrecision::whole_pixel;
   options.coarse_search.road_prior_weight = 0;
   options.matcher.prior_weight = 0;  // the costs alone decide
@@ -21,7 +21,7 @@ PipelineOptions paper_preset() {
   options.matcher.aggregation_shape = WindowShape::square;
   options.matcher.sigma_space = 1.5;    // σ0
   options.matcher.sigma_colour = 5.5;   // σ1
-  options.matcher.ncc_noise_sigma = 0;  // eq. c as written
+  options.matcher.ncc_noise_sigma = 0;  // eq. (8) as written
   options.matcher.lr_max_diff_px = 1;   // δr
   options.matcher.occlusion_sigma_px = 0;
   options.matcher.reject_range_boundary = false;

@@ -18,7 +18,7 @@ struct DisparityPoint {
   double d = 0;
 };
 
-/// The ten sums over a disparity map that eqs. alpha3 and E_min2 are made of. Coordinates are taken relative to an
+/// The ten sums over a disparity map that eqs. (21) and (23) are made of. Coordinates are taken relative to an
 /// origin near the data, so that differences of large sums do not cancel.
 class PlaneSums {
  public:

@@ -28,7 +28,7 @@ ROADSTEREO_HD inline BlockPart block_part(int sum, int square, int pixels, float
   return {sum, mean, e, variance >= min_variance ? 1.0F / sqrtf(variance + noise_variance) : 0.0F};
 }
 
-/// The matching cost c(p, d) of eq. c: 1 − n·cov / (n σ_own σ_other), from Σ own·other and 1 / n.
+/// The matching cost c(p, d) of eq. (8): 1 − n·cov / (n σ_own σ_other), from Σ own·other and 1 / n.
 /// n·cov = (Σ own·other − S_own·mean_other) − S_own / n·residue_other, the bracket in whole numbers.
 ROADSTEREO_HD inline float correlation_cost(const BlockPart& own, const BlockPart& other, int product,
                                             float inverse_n) {

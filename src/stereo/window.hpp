@@ -24,7 +24,7 @@ std::vector<Tap> window_taps(const MatcherOptions& options);
 /// The variance of a disparity follows from its aggregated costs E. A block of n pixels with signal variance S and
 /// noise variance N per view has E = N / (S + N) at the right disparity, and its curvature along d is K = Σ(∂i/∂u)² /
 /// (n (S + N)). The disparity of least squares has the variance 2 N / Σ(∂i/∂u)² = 2 E / (n K). A winner that is no
-/// minimum of the costs adds the distance from the vertex of the parabola to the reach of eq. subpixel.
+/// minimum of the costs adds the distance from the vertex of the parabola to the reach of eq. (13).
 double effective_samples(const MatcherOptions& options);
 
 /// For every row v the first target column that all rows of the block around v see: blocks are rectangles, so the

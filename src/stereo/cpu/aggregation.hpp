@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-// Vector kernel for aggregation (eq. fbs) and winner-take-all: a vector holds the disparities of one pixel, so that
+// Vector kernel for aggregation (eq. (11)) and winner-take-all: a vector holds the disparities of one pixel, so that
 // every load is aligned and a tap's weight is one number for all of them.
 
 namespace roadstereo::cpu {
@@ -46,7 +46,7 @@ struct AggregationRow {
 /// What winner-take-all leaves of the columns [first, end), from index 0 on; whole strips are written.
 struct WinnerRow {
   std::int16_t* winner;  ///< −1 where nothing can match
-  float* offset;         ///< eq. subpixel; NaN when the winner has no neighbour on one side; null: not wanted
+  float* offset;         ///< eq. (13); NaN when the winner has no neighbour on one side; null: not wanted
   float* variance;       ///< of the disparity, pixels²; infinite where the costs do not tell; wanted with `offset`
 };
 
@@ -61,7 +61,7 @@ struct AggregationScratchSize {
 };
 AggregationScratchSize aggregation_scratch(int window_rows, int taps, std::ptrdiff_t pitch);
 
-/// Aggregates the costs (eq. fbs) and takes the winner at every column, with its sub-pixel offset. `row.first` must be
+/// Aggregates the costs (eq. (11)) and takes the winner at every column, with its sub-pixel offset. `row.first` must be
 /// a multiple of strip_columns.
 void aggregate_and_choose(const AggregationRow& row, const AggregationScratch& scratch, const WinnerRow& out);
 

@@ -310,7 +310,7 @@ __device__ void make_costs(const ViewToMatch& view, const ViewSettings& settings
   }
 }
 
-/// ω of a tap of the pixel (i, v): eqs. omega0, omega1.
+/// ω of a tap of the pixel (i, v): eqs. (31), (32).
 __device__ float tap_weight(const ViewToMatch& view, const ViewSettings& settings, const WindowTap& tap, int i, int v,
                             int grey) {
   const int q = min(max(i + tap.du, 0), view.own.width() - 1), row = min(max(v + tap.dv, 0), view.own.height() - 1);
@@ -372,7 +372,7 @@ __device__ Aggregate aggregate_clipped(const ViewToMatch& view, const ViewSettin
   return sums;
 }
 
-/// Energies E_d of one pixel at four disparities (eq. fbs) where no cost is missing.
+/// Energies E_d of one pixel at four disparities (eq. (11)) where no cost is missing.
 template <int most>
 __device__ float4 whole_energies(int tap_count, const TapOffsets<most>& offsets, const PixelWeights<most>& weights,
                                  const int4* centre) {

@@ -11,7 +11,7 @@
 
 namespace roadstereo::cuda {
 
-/// One tap of the aggregation window: its offset from the pixel, and log2 of its weight by distance (eq. omega0).
+/// One tap of the aggregation window: its offset from the pixel, and log2 of its weight by distance (eq. (31)).
 struct WindowTap {
   std::int16_t du;
   std::int16_t dv;
@@ -66,7 +66,7 @@ struct ViewLaunch {
 /// For a device with so many multiprocessors.
 ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height, int disparities, int multiprocessors);
 
-/// Matching costs (eq. c), bilateral aggregation (eqs. fbs, omega) and winner-take-all of one view, in one kernel:
+/// Matching costs (eq. (8)), bilateral aggregation (eqs. (11), (30)) and winner-take-all of one view, in one kernel:
 /// costs live in shared memory, energies in a slice of `energies` that stays in the cache. `taps_on_host` are the
 /// settings' taps where the host can read them.
 void match_view(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,

@@ -61,7 +61,7 @@ struct Scene {
   }
 };
 
-/// c(p, d) of eq. c: one minus the normalised cross-correlation of the blocks around p and p − [d, 0], over the part
+/// c(p, d) of eq. (8): one minus the normalised cross-correlation of the blocks around p and p − [d, 0], over the part
 /// N⁺ of the block that both views see.
 double matching_cost(const Scene& scene, int u, int v, int d) {
   const int radius = scene.options.block_radius;
@@ -105,7 +105,7 @@ CostVolume compute_costs(const Scene& scene, int threads) {
   return cost;
 }
 
-/// ω(p, q) of eq. omega: the product of eqs. omega0 and omega1.
+/// ω(p, q) of eq. (30): the product of eqs. (31) and (32).
 double bilateral_weight(ImageView<const std::int16_t> image, int u, int v, const Tap& tap,
                         const MatcherOptions& options) {
   const double difference = static_cast<double>(image(u, v) - image(u + tap.du, v + tap.dv)) / grey_scale;
@@ -115,7 +115,7 @@ double bilateral_weight(ImageView<const std::int16_t> image, int u, int v, const
   return omega0 * omega1;
 }
 
-/// E_d(p, d) of eq. fbs for every pixel of one view. `shift` is 0 for the reference view and 1 for the target view,
+/// E_d(p, d) of eq. (11) for every pixel of one view. `shift` is 0 for the reference view and 1 for the target view,
 /// whose pixel x has the cost of reference pixel x + d: c_tar(p, d) = c_ref(p + [d, 0], d).
 CostVolume aggregate(const Scene& scene, const CostVolume& cost, ImageView<const std::int16_t> image, int shift,
                      int threads) {
@@ -183,7 +183,7 @@ Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, I
   return winners;
 }
 
-/// Eq. lrc. The shift of the perspective transformation depends on the target pixel alone, so it cancels here and the
+/// Eq. (12). The shift of the perspective transformation depends on the target pixel alone, so it cancels here and the
 /// check on residual disparities is the check on the original ones.
 bool consistent(const MatchMaps& maps, int u, int v, double max_diff_px) {
   const int d = maps.winner(u, v);
@@ -196,7 +196,7 @@ struct Refined {
   double variance = std::numeric_limits<double>::infinity();
 };
 
-/// Eq. subpixel, on the aggregated costs, and the variance that they tell of (stereo/window.hpp). A winner at the end
+/// Eq. (13), on the aggregated costs, and the variance that they tell of (stereo/window.hpp). A winner at the end
 /// of its range has no neighbour on one side; one that leans on the prior need not be a minimum of the costs.
 Refined refine(const Scene& scene, const CostVolume& energy, const SearchRange& searched, int u, int v, int d) {
   Refined refined;
