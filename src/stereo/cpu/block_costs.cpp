@@ -8,22 +8,14 @@
 //
 #include <hwy/highway.h>
 
+#include "stereo/cpu/vector-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace roadstereo::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::ScalableTag<float>;
-using Ints = hn::ScalableTag<std::int32_t>;
 using Shorts = hn::Rebind<std::int16_t, Ints>;
 using ShortPairs = hn::Repartition<std::int16_t, Ints>;
-using Float = hn::Vec<Floats>;
-using Int = hn::Vec<Ints>;
-
-/// first, first + 1, … (hn::Iota of a variable goes through memory.)
-HWY_INLINE Int count_from(int first) {
-  const Ints d;
-  return hn::Add(hn::Iota(d, 0), hn::Set(d, first));
-}
 
 /// sums + a.first·b.first + a.second·b.second.
 HWY_INLINE Int add_pair_products(Int a, Int b, Int sums) {

@@ -5,9 +5,9 @@
 
 #include "stereo/block_correlation.hpp"
 
-// Vector kernels for the matching cost c(p, d) of eq. (8). They work on one row of a view, whose pixels are called "own";
-// the other view's row is stored in the opposite direction, so that the candidates d = 0, 1, … of an own pixel lie one
-// behind the other: a vector holds the disparities of one pixel.
+// Vector kernels for the matching cost c(p, d) of eq. (8). They work on one row of a view, whose pixels are called
+// "own"; the other view's row is stored in the opposite direction, so that the candidates d = 0, 1, … of an own pixel
+// lie one behind the other: a vector holds the disparities of one pixel.
 //
 // Own column i and disparity d meet the other column `origin` − i + d. Where a row of numbers has one for every column
 // and disparity, those of column i begin at i·pitch.
