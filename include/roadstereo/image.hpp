@@ -9,14 +9,14 @@
 
 namespace roadstereo {
 
-/// An image that owns its pixels, without padding between rows.
+/// Image that owns its pixels, without padding between rows.
 template <class T>
 class Image {
  public:
   Image() = default;
   Image(int width, int height, T value = T{}) { assign(width, height, value); }
 
-  /// Changes the size; keeps the memory when it suffices, so that equal sizes never allocate. Pixels are unspecified.
+  /// Changes the size; equal sizes never allocate. Pixels are unspecified.
   void resize(int width, int height) {
     pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     width_ = width;
@@ -58,10 +58,10 @@ enum class SampleType { u8, u16 };
 /// Order of the samples of one pixel of a camera frame.
 enum class ChannelOrder { grey, bgr, rgb, bgra, rgba };
 
-/// Samples per pixel: 1, 3 or 4.
+/// Returns the samples per pixel: 1, 3 or 4.
 int channel_count(ChannelOrder order);
 
-/// A camera frame as cameras and files deliver it: 8 or 16 bit, grey or colour, with any stride. Owns nothing.
+/// View of a camera frame that it does not own: 8 or 16 bit, grey or colour, any stride.
 struct FrameView {
   const void* data = nullptr;
   int width = 0;                    ///< pixels
@@ -71,7 +71,7 @@ struct FrameView {
   ChannelOrder order = ChannelOrder::grey;
 };
 
-/// A camera frame that owns its samples, without padding between rows.
+/// Camera frame that owns its samples, without padding between rows.
 struct Frame {
   std::vector<std::uint8_t> bytes;
   int width = 0;   ///< pixels

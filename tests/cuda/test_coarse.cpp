@@ -9,7 +9,6 @@
 #if defined(ROADSTEREO_CUDA_EMULATED)
 #include "core/cuda/emulated/run_kernel.hpp"
 #endif
-#include "road/row_shift.hpp"
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/synth.hpp"
 #include "stereo/coarse/coarse_search.hpp"

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "road/cuda/perspective.hpp"
-#include "road/row_shift.hpp"
+#include "roadstereo/perspective.hpp"
 #include "tests/cuda/device_copy.hpp"
 #include "tests/cuda/device_test.hpp"
 #include "tests/stereo/textured_pair.hpp"

@@ -5,7 +5,7 @@
 
 #include "road/refinement/cuda/refinement.hpp"
 #include "road/refinement/cuda/refinement_settings.hpp"
-#include "road/row_shift.hpp"
+#include "roadstereo/perspective.hpp"
 #include "tests/cuda/device_copy.hpp"
 #include "tests/cuda/device_test.hpp"
 #include "tests/stereo/textured_pair.hpp"

@@ -58,8 +58,8 @@ TEST(ReferenceEngine, WinnerAndParabolaFollowCosts) {
       }
       ASSERT_EQ(maps.winner(u, v), best);
       if (best == 0 || best == 11) continue;
-      const double offset = (cost[best - 1] - cost[best + 1]) /
-                            (2 * cost[best - 1] + 2 * cost[best + 1] - 4 * cost[best]);  // eq. (13)
+      const double offset =
+          (cost[best - 1] - cost[best + 1]) / (2 * cost[best - 1] + 2 * cost[best + 1] - 4 * cost[best]);  // eq. (13)
       ASSERT_NEAR(maps.disparity(u, v), best + offset, 1e-5);
       // 2 E / (n K) with n = 4π s², s² = (7² − 1) / 12 of a block of 7×7.
       const double curvature = cost[best - 1] + cost[best + 1] - 2 * cost[best];

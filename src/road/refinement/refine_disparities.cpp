@@ -108,7 +108,7 @@ void RefinementOptions::validate() const {
 }
 
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
-                        double support, const RefinementOptions& options, int threads, Image<float>& refined,
+                        double effective_samples, const RefinementOptions& options, int threads, Image<float>& refined,
                         Image<float>& sigma) {
   options.validate();
   const int width = disparity.width(), height = disparity.height();
@@ -120,7 +120,7 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
   sigma.resize(width, height);
   const Maps maps{disparity, variance, road, options};
   const int radius = window_radius(options);
-  const MeanSettings settings = mean_settings(options, support);
+  const MeanSettings settings = mean_settings(options, effective_samples);
   const std::size_t band_numbers = BandRows::numbers(width, radius);
   const int row_numbers = width + lanes;
   const std::size_t numbers = band_numbers + 2 * static_cast<std::size_t>(row_numbers);

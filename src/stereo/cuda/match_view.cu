@@ -55,7 +55,7 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
       const float4 four = max_taps > 0 && whole
                               ? whole_energies<max_taps>(settings.tap_count, offsets, weights, centre)
                               : clipped_energies(*centre, aggregate_clipped<max_taps>(view, settings, tile, offsets,
-                                                                                  weights, i, v, grey, centre));
+                                                                                      weights, i, v, grey, centre));
       energies.set(d, four.x);
       energies.set(d + 1, four.y);
       energies.set(d + 2, four.z);
@@ -87,8 +87,8 @@ void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const W
   for (int t = 0; max_taps > 0 && t < settings.tap_count; ++t) {
     offsets.bytes[t] = (taps_on_host[t].dv * columns + taps_on_host[t].du) * static_cast<int>(sizeof(int4));
   }
-  launch(match_tiles<max_taps>, {static_cast<unsigned>(plan.blocks), threads, plan.shared_bytes}, stream, view, settings,
-         offsets, energies, plan.energies_per_block, winners);
+  launch(match_tiles<max_taps>, {static_cast<unsigned>(plan.blocks), threads, plan.shared_bytes}, stream, view,
+         settings, offsets, energies, plan.energies_per_block, winners);
 }
 
 }  // namespace

@@ -69,8 +69,8 @@ __device__ inline void add_clipped(const int4& costs, float weight, Aggregate& s
 /// Σ ω c and Σ ω where a cost may be missing: the weights are those of the others.
 template <int max_taps>
 __device__ Aggregate aggregate_clipped(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile,
-                                       const TapOffsets<max_taps>& offsets, const PixelWeights<max_taps>& weights, int i, int v,
-                                       int grey, const int4* centre) {
+                                       const TapOffsets<max_taps>& offsets, const PixelWeights<max_taps>& weights,
+                                       int i, int v, int grey, const int4* centre) {
   Aggregate sums{make_float4(0, 0, 0, 0), make_float4(0, 0, 0, 0)};
   if (max_taps > 0) {
     ROADSTEREO_UNROLL
@@ -88,8 +88,8 @@ __device__ Aggregate aggregate_clipped(const ViewToMatch& view, const ViewSettin
 
 /// Energies E_d of one pixel at four disparities (eq. (11)) where no cost is missing.
 template <int max_taps>
-__device__ float4 whole_energies(int tap_count, const TapOffsets<max_taps>& offsets, const PixelWeights<max_taps>& weights,
-                                 const int4* centre) {
+__device__ float4 whole_energies(int tap_count, const TapOffsets<max_taps>& offsets,
+                                 const PixelWeights<max_taps>& weights, const int4* centre) {
   Aggregate sums{make_float4(0, 0, 0, 0), make_float4(0, 0, 0, 0)};
   ROADSTEREO_UNROLL
   for (int first = 0; first < max_taps; first += taps_at_once) {
