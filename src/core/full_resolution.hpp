@@ -4,7 +4,7 @@
 
 namespace roadstereo {
 
-/// Full-size coordinate of a coordinate of the shrunk image.
+/// Converts a coordinate of the downsampled image to full resolution.
 ROADSTEREO_HD inline double to_full_resolution(double x, int factor) {
   return (x + 0.5) * factor - 0.5;
 }

@@ -5,7 +5,7 @@
 namespace roadstereo {
 namespace {
 
-/// Every constant of the paper.
+/// The constants of the paper.
 PipelineOptions paper_preset() {
   PipelineOptions options;
   options.correct_rows = false;
@@ -32,8 +32,8 @@ PipelineOptions paper_preset() {
   return options;
 }
 
-/// The most speed at an accuracy that still beats semi-global matching on roads: plain correlation of blocks that leans
-/// on a very coarse look.
+/// Highest speed that is still more accurate than semi-global matching on roads: block matching by correlation with the
+/// prior of a very coarse search.
 PipelineOptions fast_preset() {
   PipelineOptions options;
   options.coarse_search.factor = 4;

@@ -9,6 +9,8 @@
 #include "road/robust_weights.hpp"
 #include "roadstereo/road_model.hpp"
 
+// Plane fits in disparity space: preemptive RANSAC for a start, and IRLS with Tukey's biweight.
+
 namespace roadstereo {
 
 /// A point of disparity space: pixel (u, v) of the left image with disparity d.

@@ -59,14 +59,14 @@ class CudaRoadFit : public test::OnDevice {
       const auto start = test::to_device(std::vector{DisparityPlane{prior->a0, prior->a1, prior->a2}});
       fit_->run(masked, {start.data(), {}}, options.max_iterations, nullptr);
       wait();
-      return finish_road_fit(fit_->figures(), width, height, options);
+      return finish_road_fit(fit_->statistics(), width, height, options);
     }
     sums_->run(masked, nullptr);
     wait();
     RollEstimate geometry = solve_map(sums_->sums(), width, height, 0, options);
     fit_->measure(masked, {geometry.plane.a0, geometry.plane.a1, geometry.plane.a2}, nullptr);
     wait();
-    finish_measured(fit_->figures(), width, height, options, geometry);
+    finish_measured(fit_->statistics(), width, height, options, geometry);
     return geometry;
   }
 
@@ -134,7 +134,7 @@ TEST_F(CudaRoadFit, RecoversRollOfExactRoad) {
 
 TEST_F(CudaRoadFit, BadStartFallsBackToLeastSquares) {
   expect_agreement(road_map(129, 47, 0.02, 0.4), {}, DisparityPlane{400, 0, 0}, RollSolver::robust);
-  EXPECT_EQ(fit_->figures().fit.found, 0);
+  EXPECT_EQ(fit_->statistics().fit.found, 0);
 }
 
 TEST_F(CudaRoadFit, RejectsLineLikeHost) {

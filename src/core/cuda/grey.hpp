@@ -20,7 +20,7 @@ struct DeviceFrame {
   GreyWeights weights{};
 };
 
-/// What the grey levels of a pair say about it.
+/// Findings of the conversion about a pair.
 struct PairFindings {
   int left_varies;   ///< 0: every pixel has the level `left_level`
   int right_varies;  ///< likewise

@@ -60,7 +60,7 @@ class DeviceStages final : public FrameStages {
   RoadModelEstimate verify_road_model(const GreyPair& pair, const DisparityPlane& previous) override {
     verification_.run(pair.left, pair.right, {nullptr, previous}, options_.road_model.with_roll, stream());
     wait_for_pair();
-    return assess_road_verification(verification_.figures(), previous, width_, height_, calibration_,
+    return assess_road_verification(verification_.statistics(), previous, width_, height_, calibration_,
                                     options_.road_model);
   }
 
@@ -208,17 +208,18 @@ RollFit DeviceStages::estimate_roll(ImageView<const float> disparity, const std:
     if (!robust) sums_.run(map, stream());
   }
   wait();
-  RollFit fit{static_cast<double>(transform_.figures().valid) / (static_cast<double>(width_) * height_), std::nullopt};
+  RollFit fit{static_cast<double>(transform_.statistics().valid) / (static_cast<double>(width_) * height_),
+              std::nullopt};
   if (fit.valid_share < min_share) return fit;
   if (transformed_) {
-    fit.geometry = finish_road_fit(fit_.figures(), width_, height_, options);
+    fit.geometry = finish_road_fit(fit_.statistics(), width_, height_, options);
   } else if (robust) {
     fit.geometry = fit_on_host(disparity);
   } else {
     fit.geometry = solve_map(sums_.sums(), width_, height_, initial_roll_rad, options);
     fit_.measure(map, fit.geometry->plane, stream());
     wait();
-    finish_measured(fit_.figures(), width_, height_, options, *fit.geometry);
+    finish_measured(fit_.statistics(), width_, height_, options, *fit.geometry);
   }
   return fit;
 }
@@ -236,7 +237,7 @@ TransformedRoad DeviceStages::transform_disparity(ImageView<const float> dispari
     enqueue_transform(disparity, {nullptr, geometry.plane}, shift);
     wait();
   }
-  const TransformFigures& found = transform_.figures();
+  const TransformStatistics& found = transform_.statistics();
   return {found.delta_t, {found.sigma_road_px, found.sigma_all_px, found.road_share}};
 }
 

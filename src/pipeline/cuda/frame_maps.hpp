@@ -8,8 +8,7 @@
 
 namespace roadstereo::cuda {
 
-/// What a frame leaves, in one piece of device memory, so that one copy takes it to the host: ℓ, σ, ℓ' and the left
-/// image.
+/// The results of a frame in one piece of device memory, so that one copy downloads them: ℓ, σ, ℓ' and the left image.
 class FrameMaps {
  public:
   void resize(int width, int height);

@@ -27,15 +27,15 @@ struct Sample {
 };
 
 /// The first of the rows of a block, and the column of a thread.
-struct Place {
-  __device__ Place()
+struct Pixel {
+  __device__ Pixel()
       : u(static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x)), v(static_cast<int>(blockIdx.y) * block_rows) {}
   int u, v;
 };
 
 /// Tells `use(v, height)` how far the pixels of a thread lie above the road; they are read together.
 template <class Use>
-__device__ void for_each_height(const ImageView<const float>& disparity, const DisparityPlane& road, const Place& at,
+__device__ void for_each_height(const ImageView<const float>& disparity, const DisparityPlane& road, const Pixel& at,
                                 Use use) {
   if (at.u >= disparity.width()) return;
   float rows[block_rows];
@@ -76,7 +76,7 @@ __global__ void measure_heights(ImageView<const float> disparity, PlaneSource so
                                 Sample sample, DisparityTransform::State* state) {
   Shared& shared = *shared_memory<Shared>();
   const DisparityPlane road = source.get();
-  const Place at;
+  const Pixel at;
   const bool of_sample = at.u < disparity.width() && sample.has(at.u);
   float lowest = INFINITY;
   int valid = 0;
@@ -101,9 +101,9 @@ __global__ void measure_heights(ImageView<const float> disparity, PlaneSource so
   state->limit = spread_limit(median);
 }
 
-/// The figures, from the sums of all blocks.
+/// The statistics, from the sums of all blocks.
 __device__ void finish(const double* sums, int blocks, Shared& shared, DisparityTransform::State& state,
-                       TransformFigures& figures) {
+                       TransformStatistics& statistics) {
   double own[spread_sums] = {};
   for (int block = static_cast<int>(threadIdx.x); block < blocks; block += static_cast<int>(blockDim.x)) {
     for (int i = 0; i < spread_sums; ++i) own[i] += sums[block * spread_sums + i];
@@ -111,18 +111,18 @@ __device__ void finish(const double* sums, int blocks, Shared& shared, Disparity
   const double* total = block_sums(own, shared.sums);
   if (threadIdx.x != 0) return;
   const Spread all{total[0], total[1], total[2]}, road{total[3], total[4], total[5]};
-  figures = {state.delta_t, road.deviation(), all.deviation(), all.n > 0 ? road.n / all.n : 0, state.valid};
+  statistics = {state.delta_t, road.deviation(), all.deviation(), all.n > 0 ? road.n / all.n : 0, state.valid};
   state.lowest = 0;
   state.valid = 0;
 }
 
 /// Writes the transformed map and adds up its spread.
 __global__ void shift_heights(ImageView<const float> disparity, PlaneSource source, ImageView<float> transformed,
-                              DisparityTransform::State* state, double* sums, TransformFigures* figures) {
+                              DisparityTransform::State* state, double* sums, TransformStatistics* statistics) {
   Shared& shared = *shared_memory<Shared>();
   const DisparityPlane plane = source.get();
   const double delta_t = state->delta_t, limit = state->limit;
-  const Place at;
+  const Pixel at;
   Spread all{0, 0, 0}, road{0, 0, 0};
   for_each_height(disparity, plane, at, [&](int v, float height) {
     const float value = height + static_cast<float>(delta_t);
@@ -138,7 +138,7 @@ __global__ void shift_heights(ImageView<const float> disparity, PlaneSource sour
   const int i = static_cast<int>(threadIdx.x);
   if (i < spread_sums) sums[block * spread_sums + i] = total[i];
   if (!comes_last(&state->arrived, gridDim.x * gridDim.y, &shared.last)) return;
-  finish(sums, static_cast<int>(gridDim.x * gridDim.y), shared, *state, *figures);
+  finish(sums, static_cast<int>(gridDim.x * gridDim.y), shared, *state, *statistics);
 }
 
 /// How many of 0 … size − 1 the sample takes.

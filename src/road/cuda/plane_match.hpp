@@ -8,6 +8,8 @@
 #include "road/plane_search.hpp"
 #include "roadstereo/image_view.hpp"
 
+// Block matching along a known plane by normalised cross-correlation, on the device.
+
 namespace roadstereo::cuda {
 
 /// The pair as the search sees it, at 1 / factor of its size.

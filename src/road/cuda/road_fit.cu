@@ -148,7 +148,7 @@ __device__ FitMoments fit_moments(const SampledMap& sampled, const DisparityPlan
 
 /// `max_iterations` 0 measures the plane as it is.
 __global__ void __launch_bounds__(1024)
-    fit_map(MaskedMap map, SampledMap sampled, PlaneSource source, int max_iterations, RoadFitStatistics* figures,
+    fit_map(MaskedMap map, SampledMap sampled, PlaneSource source, int max_iterations, RoadFitStatistics* statistics,
             RoadFitStatistics* result) {
   FitState& state = *shared_memory<FitState>();
   const DisparityPlane start = source.get();
@@ -168,7 +168,7 @@ __global__ void __launch_bounds__(1024)
   }
   if (own.has_plane != 0) own.moments = fit_moments(sampled, own.plane, state);
   if (thread() != 0) return;
-  *figures = own;
+  *statistics = own;
   *result = own;  // not read back: it lies in the host's memory
 }
 
@@ -191,7 +191,7 @@ void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_it
   }
   const SampledMap sampled{sample, width, height, u_.data(), v_.data(), d_.data(), first_.data(), weights_.data()};
   launch(fit_map, {1, fit_threads(sample.count()), fit_shared_bytes(sample.count())}, stream, map, sampled, plane,
-         max_iterations, figures_.data(), result_.data());
+         max_iterations, statistics_.data(), result_.data());
 }
 
 }  // namespace roadstereo::cuda

@@ -27,14 +27,14 @@ class RoadFit {
   /// Enqueues only what tells how well the map fits a plane that is known.
   void measure(const MaskedMap& map, const DisparityPlane& plane, cudaStream_t stream);
 
-  const DisparityPlane* plane() const { return &figures_.data()->plane; }  ///< in device memory
-  const RoadFitStatistics& figures() const { return *result_.data(); }     ///< once the stream was synchronised
+  const DisparityPlane* plane() const { return &statistics_.data()->plane; }  ///< in device memory
+  const RoadFitStatistics& statistics() const { return *result_.data(); }     ///< once the stream was synchronised
 
  private:
   void enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, cudaStream_t stream);
 
   DeviceArray<float> u_, v_, d_, first_, weights_;
-  DeviceArray<RoadFitStatistics> figures_{1};
+  DeviceArray<RoadFitStatistics> statistics_{1};
   PinnedArray<RoadFitStatistics> result_{1};
 };
 

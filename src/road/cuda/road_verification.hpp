@@ -21,7 +21,7 @@ struct SearchMemory {
 };
 
 /// The device's part of verify_road_model(): two searches around the last frame's plane, each with a robust fit. What
-/// the figures say of the road is assess_road_verification()'s to tell. Four launches, six for large images.
+/// the statistics say of the road is assess_road_verification()'s to tell. Four launches, six for large images.
 class RoadVerification {
  public:
   /// Enqueues it. The images must stay until then.
@@ -29,7 +29,7 @@ class RoadVerification {
            bool with_roll, cudaStream_t stream);
 
   /// Once the stream was synchronised.
-  const VerificationFigures& figures() const { return *result_.data(); }
+  const VerificationStatistics& statistics() const { return *result_.data(); }
 
  private:
   /// The places of one search.
@@ -45,7 +45,7 @@ class RoadVerification {
   Search around_, close_;
   DeviceArray<std::int16_t> pixels_;
   DeviceArray<SearchStatistics> found_around_{1};
-  PinnedArray<VerificationFigures> result_{1};
+  PinnedArray<VerificationStatistics> result_{1};
 };
 
 }  // namespace roadstereo::cuda

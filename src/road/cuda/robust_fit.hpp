@@ -8,6 +8,8 @@
 #include "road/cuda/robust_plane.hpp"
 #include "road/robust_weights.hpp"
 
+// IRLS plane fit with Tukey's biweight in one block of threads.
+
 // Counted floor of an iteration, n points: 30·n single-precision operations and 5·16·n bytes of shared memory and
 // first-level cache for weights, sums and residuals, then 4 passes of the median over n keys. One block: what counts is
 // the way through its barriers, 14 an iteration.
@@ -84,7 +86,7 @@ class BlockFit {
   /// First residuals, and the points that the host calls front and back. Returns how many points there are.
   __device__ int begin(const DisparityPlane& start) {
     int first = points_.count, last = -1, found = 0;
-    constexpr int at_once = 4;  // whose reads are on their way together
+    constexpr int at_once = 4;  // points whose loads are issued together
     for (int base = thread(); base < points_.count; base += at_once * threads()) {
       float u[at_once], v[at_once], d[at_once];
       ROADSTEREO_UNROLL
@@ -125,26 +127,26 @@ class BlockFit {
 
   /// The scale's clamp makes any median beyond it the same.
   __device__ double start_scale() {
-    const auto reach = static_cast<float>(1.01 * max_start_scale_px / gaussian_mad);
-    return start_scale_of(magnitude_of(select_magnitude(reach, true), reach));
+    const auto limit = static_cast<float>(1.01 * max_start_scale_px / gaussian_mad);
+    return start_scale_of(magnitude_of(select_magnitude(limit, true), limit));
   }
 
-  /// Magnitudes as keys, in steps of reach / magnitude_keys: the largest float below 2³².
+  /// Magnitudes as keys, in steps of limit / magnitude_keys: the largest float below 2³².
   static constexpr float magnitude_keys = 4294967040.0F;
 
-  /// Median of the magnitudes below `reach`. With `all`, larger ones count as `reach`.
-  __device__ SelectedKey select_magnitude(float reach, bool all) {
-    const float per_key = magnitude_keys / reach;
+  /// Median of the magnitudes below `limit`. With `all`, larger ones count as `limit`.
+  __device__ SelectedKey select_magnitude(float limit, bool all) {
+    const float per_key = magnitude_keys / limit;
     const auto key = [&](int i, std::uint32_t& out) {
       const float magnitude = fabsf(residuals_[i]);
-      out = magnitude < reach ? static_cast<std::uint32_t>(magnitude * per_key) : 0xFFFFFFFFU;
-      return all ? magnitude == magnitude : magnitude < reach;
+      out = magnitude < limit ? static_cast<std::uint32_t>(magnitude * per_key) : 0xFFFFFFFFU;
+      return all ? magnitude == magnitude : magnitude < limit;
     };
     return block_select(points_.count, key, MiddleRank{}, state_.select);
   }
   /// 0 of none.
-  __device__ static double magnitude_of(const SelectedKey& median, float reach) {
-    return median.of > 0 ? static_cast<double>(median.key) / magnitude_keys * reach : 0;
+  __device__ static double magnitude_of(const SelectedKey& median, float limit) {
+    return median.of > 0 ? static_cast<double>(median.key) / magnitude_keys * limit : 0;
   }
 
   // One thread does what needs double precision, of which small GPUs have little, and leaves it to the others.

@@ -12,8 +12,8 @@
 
 namespace roadstereo::cpu {
 
-/// A part of a view: the rows [first_row, last_row) at the columns [first, end) as the matcher counts them, and the
-/// disparities to search there.
+/// Tile of a view: rows [first_row, last_row), columns [first, end) in the order of the matcher, and the disparities to
+/// search.
 struct Tile {
   int first_row, last_row;
   int first, end;
@@ -21,13 +21,13 @@ struct Tile {
 };
 
 /// Matches one view tile by tile. Owns the scratch memory of one thread: a ring of cost rows as high as the aggregation
-/// window and as wide as a tile, never a volume.
+/// window and as wide as a tile (drawing in match_view.hpp), no volume.
 class ViewMatcher {
  public:
-  /// Columns of a tile, a multiple of strip_columns: as many as keep the ring of costs in the cache of a core.
+  /// Returns the columns of a tile, a multiple of strip_columns: the ring of costs stays in the cache of a core.
   static int tile_columns(int disparities, const MatcherOptions& options);
 
-  /// Memory for tiles of up to `columns` columns.
+  /// Allocates memory for tiles of up to `columns` columns.
   void prepare(int columns, int disparities, const MatcherOptions& options, std::span<const Tap> taps);
 
   /// Writes the winners of a tile of the view into `maps`, for the reference view also their variances and sub-pixel
@@ -43,8 +43,8 @@ class ViewMatcher {
   }
   float* cost_row(int v) { return costs_.row(static_cast<std::size_t>(v % ring_)); }
 
-  int radius_ = 0;  ///< columns that the window reaches
-  int rows_ = 0;    ///< rows that it reaches
+  int radius_ = 0;  ///< of the window, columns
+  int rows_ = 0;    ///< of the window, rows to either side
   int ring_ = 1;
   int step_ = 1;
   std::vector<int> half_widths_;  ///< of the window's rows, in steps

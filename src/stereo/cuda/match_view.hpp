@@ -11,7 +11,7 @@
 
 namespace roadstereo::cuda {
 
-/// One tap of the aggregation window: its offset from the pixel, and log2 of its weight by distance (eq. (31)).
+/// Tap of the aggregation window: its offset from the pixel, and log2 of its weight by distance, eq. (31).
 struct WindowTap {
   std::int16_t du;
   std::int16_t dv;
@@ -31,8 +31,8 @@ struct ViewToMatch {
   ImageView<const SearchRange> ranges;  ///< one per tile of the own view; empty: all search all disparities
   int range_columns;                    ///< pixels of such a tile
   int range_rows;
-  ImageView<const float> prior;  ///< what the winners lean on; no data: nothing
-  int prior_factor;              ///< pixels that one of the prior stands for, across and down
+  ImageView<const float> prior;  ///< of winner-take-all; empty: none
+  int prior_factor;              ///< pixels of a pixel of the prior, across and down
 };
 
 struct ViewSettings {
@@ -43,20 +43,20 @@ struct ViewSettings {
   int window_half_width;  ///< of the taps, pixels
   int window_half_height;
   float log2_colour;        ///< −log2 e / σ1², per squared step of grey
-  float effective_samples;  ///< pixels that an energy rests on
+  float effective_samples;  ///< of an energy (stereo/window.hpp)
   float prior_weight;
   float prior_truncation_px;
 };
 
-/// What a view leaves: winners (−1 where nothing can match), and of each its distance to the minimum, NaN where it has
-/// no neighbour on one side, and its variance.
+/// Output for a view: winners (−1 where nothing can match), their offsets to the minimum, NaN without two neighbours,
+/// and their variances.
 struct ViewWinners {
   ImageView<std::int16_t> winner;
-  ImageView<float> offset;  ///< no data: not wanted, nor the variance
+  ImageView<float> offset;  ///< empty: not written, nor the variance
   ImageView<float> variance;
 };
 
-/// How the kernel is run on a device: so many blocks as find room at a time, each with memory for its energies.
+/// Launch of the kernel: as many blocks as are resident at a time, each with memory for its energies.
 struct ViewLaunch {
   int blocks;
   std::size_t energies_per_block;  ///< floats
@@ -66,9 +66,9 @@ struct ViewLaunch {
 /// For a device with so many multiprocessors.
 ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height, int disparities, int multiprocessors);
 
-/// Matching costs (eq. (8)), bilateral aggregation (eqs. (11), (30)) and winner-take-all of one view, in one kernel:
-/// costs live in shared memory, energies in a slice of `energies` that stays in the cache. `taps_on_host` are the
-/// settings' taps where the host can read them.
+/// Matches one view in one kernel: matching costs, eq. (8), bilateral aggregation, eqs. (11) and (30), and
+/// winner-take-all. Costs lie in shared memory, energies in a slice of `energies` that stays in the cache.
+/// `taps_on_host`: the settings' taps in host memory.
 void match_view(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
                 const ViewLaunch& plan, float* energies, const ViewWinners& winners, cudaStream_t stream);
 

@@ -5,6 +5,8 @@
 #include "roadstereo/image_view.hpp"
 #include "stereo/coarse/cuda/coarse_volume.hpp"
 
+// Scanline optimisation (1-D semi-global matching) on the device.
+
 namespace roadstereo::cuda {
 
 /// Penalties of a change of the disparity from one pixel to the next.
