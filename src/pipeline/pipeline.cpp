@@ -72,7 +72,7 @@ struct Pipeline::State {
   void end_frame();
 };
 
-/// Checks the sizes. Images of a new size start from nothing.
+/// Checks the sizes. Images of a new size reset the state.
 void Pipeline::State::begin_frame(const FrameView& left, const FrameView& right) {
   has_frame = has_maps = false;
   result.warnings.clear();

@@ -1,4 +1,4 @@
-// The coarse look on the device against CoarseSearch of the host: the same ranges, and a prior that differs by
+// The coarse search on the device against CoarseSearch of the host: the same ranges, and a prior that differs by
 // rounding.
 
 #include <gtest/gtest.h>

@@ -4,17 +4,17 @@
 namespace roadstereo::cuda {
 namespace {
 
-__global__ void nothing() {}
+__global__ void empty_kernel() {}
 
 }  // namespace
 
 cudaError_t probe_code() {
 #if defined(ROADSTEREO_CUDA_EMULATED)
-  launch(nothing, {1, 1}, nullptr);
+  launch(empty_kernel, {1, 1}, nullptr);
   return cudaSuccess;
 #else
   cudaFuncAttributes attributes{};
-  return cudaFuncGetAttributes(&attributes, nothing);
+  return cudaFuncGetAttributes(&attributes, empty_kernel);
 #endif
 }
 

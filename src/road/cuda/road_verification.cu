@@ -98,8 +98,8 @@ SearchMemory RoadVerification::Search::memory(int places) {
   return {{u.data(), v.data(), d.data(), tried.data()}, places, first.data(), weights.data()};
 }
 
-GuidedPair RoadVerification::shrunk(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                    cudaStream_t stream) {
+GuidedPair RoadVerification::downsampled(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                         cudaStream_t stream) {
   const int factor = fine_factor(left.width());
   if (factor == 1) return {left, right, 1};
   const int width = left.width() / factor, height = left.height() / factor;
@@ -113,7 +113,7 @@ GuidedPair RoadVerification::shrunk(ImageView<const std::int16_t> left, ImageVie
 
 void RoadVerification::run(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                            const PlaneSource& previous, bool with_roll, cudaStream_t stream) {
-  const GuidedPair pair = shrunk(left, right, stream);
+  const GuidedPair pair = downsampled(left, right, stream);
   const auto grid = [&](const FineSearch& search) {
     return sample_grid(pair.left.width(), pair.left.height(), search.range_px, search.places);
   };

@@ -40,7 +40,7 @@ class RoadVerification {
     SearchMemory memory(int count);
   };
 
-  GuidedPair shrunk(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, cudaStream_t stream);
+  GuidedPair downsampled(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, cudaStream_t stream);
 
   Search around_, close_;
   DeviceArray<std::int16_t> pixels_;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int min_rows = 24;  // of a band
 
-/// How far the costs of a pixel leave the road possible.
+/// Plausibility of the road from the costs of a pixel.
 float road_plausibility(const float* costs, int count, float road) {
   const NearRoad near = near_road(road, count);
   float at_road = uncorrelated_cost, smallest = uncorrelated_cost;
@@ -113,7 +113,7 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, Fun
   }
 }
 
-/// Takes the winners of row v along its smoothest paths, with the road as prior where texture is weak.
+/// Optimises the scanline of row v, with the road as prior where texture is weak.
 void CoarseSearch::finish_row(const MatchInput& coarse, int v, FunctionRef<double(double, double)> road,
                               Worker& worker) {
   const int width = reference_.width();

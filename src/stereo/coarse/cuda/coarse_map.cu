@@ -17,17 +17,17 @@ struct MapRow {
   int* nearest;  ///< disparities as bits: those of positive floats are in their order
   int columns;
 
-  __device__ bool hidden(int u) const {
+  __device__ bool occluded(int u) const {
     const float own = disparity[u];
     return own == own && is_occluded(own, __int_as_float(nearest[target_column(u, own)]));
   }
 
-  /// What pixel u becomes: itself, or where it is hidden the farther of the neighbours of its run.
+  /// Disparity of pixel u; where it is occluded, that of the farther neighbour of its run.
   __device__ float corrected(int u) const {
-    if (!hidden(u)) return disparity[u];
+    if (!occluded(u)) return disparity[u];
     int first = u, end = u + 1;
-    while (first > 0 && hidden(first - 1)) --first;
-    while (end < columns && hidden(end)) ++end;
+    while (first > 0 && occluded(first - 1)) --first;
+    while (end < columns && occluded(end)) ++end;
     const float before = first > 0 ? disparity[first - 1] : disparity[end < columns ? end : columns - 1];
     const float after = end < columns ? disparity[end] : before;
     return fminf(before, after);  // the one that is known, when one is not

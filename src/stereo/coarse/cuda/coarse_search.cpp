@@ -76,8 +76,7 @@ CoarsePair CudaCoarseSearch::downsample_pair(const MatchInput& input, cudaStream
   return {reference, target, input.first_column, factor_};
 }
 
-/// The winners of a band of rows along their smoothest paths, with the road as the prior where the picture says
-/// nothing.
+/// Optimises the scanlines of a band of rows, with the road as prior where texture is weak.
 void CudaCoarseSearch::match_band(const CoarsePair& pair, const PerspectiveShift& shift, const CoarseVolume& shape,
                                   int first_row, cudaStream_t stream) {
   CoarseVolume costs = shape;

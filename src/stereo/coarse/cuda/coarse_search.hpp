@@ -13,8 +13,8 @@
 
 namespace roadstereo::cuda {
 
-/// CoarseSearch on the device: fills the prior and, where narrowing pays, the ranges. Holds its memory from frame to
-/// frame; what it leaves lies in device memory and is valid until the next call.
+/// CoarseSearch on the device: NCC block matching on the downsampled pair, scanline optimisation, road plane as prior.
+/// Keeps its memory from frame to frame; the results lie in device memory and are valid until the next call.
 class CudaCoarseSearch {
  public:
   /// Numbers of one of the three volumes of costs: larger pairs are matched band by band, so that they fit small
@@ -25,7 +25,8 @@ class CudaCoarseSearch {
   explicit CudaCoarseSearch(const CoarseSearchOptions& options, std::ptrdiff_t max_numbers = usual_numbers)
       : options_(options), max_numbers_(max_numbers) {}
 
-  /// Only enqueues. False, with neither prior nor ranges, when the image is too small.
+  /// Enqueues the search of `input`, which lies in device memory. Returns false, without prior and ranges, when the
+  /// image is too small.
   bool find(const MatchInput& input, const PerspectiveShift& shift, cudaStream_t stream);
 
   DisparityPriorView prior() const { return {ImageView<const float>(prior_.data(), width_, height_), factor_}; }

@@ -8,11 +8,11 @@
 
 namespace roadstereo::cuda {
 
-/// How the road is guessed where the picture says nothing.
+/// Road prior of pixels with weak texture.
 struct RoadPrior {
   PerspectiveShift shift;  ///< its road, δp
-  float weight;            ///< cost of each coarse pixel away from the road where nothing is known
-  float truncation;        ///< coarse pixels away at which it stops growing
+  float weight;            ///< cost per coarse pixel of distance from the road, without texture
+  float truncation;        ///< of that distance, coarse pixels
   UncertaintyParams texture_uncertainty;
   int block_radius;
 };

@@ -76,7 +76,7 @@ struct RowOfPixels {
   }
 };
 
-/// sum_products() where products_inside(): nothing is asked of a pixel.
+/// sum_products() where products_inside(): without checks of the borders.
 __device__ inline void sum_products_inside(const ViewToMatch& view, const Tile& tile, int radius, int d,
                                            int4* products) {
   const Strip strip = strip_of_thread(tile);
