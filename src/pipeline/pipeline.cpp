@@ -17,17 +17,23 @@
 namespace roadstereo {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
 /// Adds the milliseconds of its lifetime to the time of a stage.
 class StageTimer {
  public:
   explicit StageTimer(double& ms) : ms_(ms) {}
-  ~StageTimer() { ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin_).count(); }
+  ~StageTimer() { ms_ += ms_since(begin_); }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
  private:
   double& ms_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  Clock::time_point begin_ = Clock::now();
 };
 
 std::unique_ptr<FrameStages> make_stages(const std::string& engine, const PipelineOptions& options,
@@ -49,6 +55,7 @@ struct Pipeline::State {
   std::unique_ptr<FrameStages> stages;
 
   PipelineState carried;
+  Clock::time_point begin;    ///< of the frame
   int width = 0, height = 0;  ///< of the frame, pixels
   bool has_frame = false;     ///< whether `result` belongs to one frame, whole
   bool has_maps = false;      ///< whether the maps that a device keeps do
@@ -68,12 +75,12 @@ struct Pipeline::State {
   void estimate_roll(ImageView<const float> disparity);
   void transform_disparity(ImageView<const float> disparity);
   void download();
-  void run_stages(const FrameView& left, const FrameView& right);
   void end_frame();
 };
 
 /// Checks the sizes. Images of a new size reset the state.
 void Pipeline::State::begin_frame(const FrameView& left, const FrameView& right) {
+  begin = Clock::now();
   has_frame = has_maps = false;
   result.warnings.clear();
   result.ms = {};
@@ -207,23 +214,9 @@ void Pipeline::State::download() {
   stages->download(result);
 }
 
-/// Section 3 of the paper.
-void Pipeline::State::run_stages(const FrameView& left, const FrameView& right) {
-  const StageTimer timer(result.ms.total);
-  const GreyPair pair = convert_to_grey(left, right);
-  estimate_road_model(pair);
-  const MatchInput transformed = transform_perspective(pair);
-  const MatchInput input = search_coarsely(transformed);
-  const ResidualMaps residual = match(input);
-  const DisparityMaps restored = restore_disparity(residual);
-  const ImageView<const float> disparity = refine(restored);
-  estimate_roll(disparity);
-  transform_disparity(disparity);
-  download();
-}
-
-/// Sets the state that the next frame starts from.
+/// Sets the total time and the state that the next frame starts from.
 void Pipeline::State::end_frame() {
+  result.ms.total = ms_since(begin);
   carried.width = width;
   carried.height = height;
   carried.road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
@@ -250,7 +243,16 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
   State& s = *state_;
   const ScratchScope scratch(s.memory);
   s.begin_frame(left, right);
-  s.run_stages(left, right);
+  const GreyPair pair = s.convert_to_grey(left, right);
+  s.estimate_road_model(pair);
+  const MatchInput transformed = s.transform_perspective(pair);
+  const MatchInput input = s.search_coarsely(transformed);
+  const ResidualMaps residual = s.match(input);
+  const DisparityMaps restored = s.restore_disparity(residual);
+  const ImageView<const float> disparity = s.refine(restored);
+  s.estimate_roll(disparity);
+  s.transform_disparity(disparity);
+  s.download();
   s.end_frame();
   return s.result;
 }
