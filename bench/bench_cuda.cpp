@@ -14,6 +14,7 @@
 
 #include "core/cuda/device.hpp"
 #include "core/cuda/memory.hpp"
+#include "core/order_statistics.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
@@ -30,8 +31,7 @@ double ms_since(Clock::time_point start) {
 }
 
 double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? 0 : values[values.size() / 2];
+  return values.empty() ? 0 : upper_median(values);
 }
 
 struct Size {

@@ -43,7 +43,7 @@ struct Frame {
     shift = plan_perspective(road, pair.calibration, width, height, options);
     transform_target(right, shift, 0, target, first_column);
     make_engine("cpu", 0)->match(input(), MatcherOptions{}, maps);
-    add_shift(maps.disparity, shift, 0, disparity);
+    restore_disparity(maps.disparity, shift, 0, disparity);
     geometry = estimate_roll(disparity, std::nullopt, road.model, 0, {});
     transform_disparity(disparity, geometry, 0, {}, 0, transformed);
   }
@@ -89,7 +89,7 @@ void register_all() {
   add_stage("estimate_road", [](Frame& f) { estimate_road_model(f.left, f.right, f.pair.calibration, {}); });
   add_stage("verify_road", [](Frame& f) { verify_road_model(f.left, f.right, f.road.model, f.pair.calibration, {}); });
   add_stage("transform_target", [](Frame& f) { transform_target(f.right, f.shift, 0, f.target, f.first_column); });
-  add_stage("add_shift", [](Frame& f) { add_shift(f.maps.disparity, f.shift, 0, f.disparity); });
+  add_stage("restore_disparity", [](Frame& f) { restore_disparity(f.maps.disparity, f.shift, 0, f.disparity); });
   add_stage("roll", [](Frame& f) { estimate_roll(f.disparity, std::nullopt, f.road.model, 0, {}); });
   add_stage("transform_disparity",
             [](Frame& f) { transform_disparity(f.disparity, f.geometry, 0, {}, 0, f.transformed); });

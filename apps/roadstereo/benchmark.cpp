@@ -48,7 +48,7 @@ void add_stages(const StageTimes& ms, std::vector<Timing>& stages) {
   const std::pair<const char*, double> values[] = {
       {"prepare", ms.prepare},    {"road model", ms.road_model}, {"perspective", ms.perspective},
       {"coarse", ms.coarse},      {"match", ms.match},           {"refinement", ms.refinement},
-      {"road geometry", ms.roll}, {"transform", ms.transform},   {"deliver", ms.deliver}};
+      {"road geometry", ms.roll}, {"transform", ms.transform},   {"download", ms.download}};
   if (stages.empty()) {
     for (const auto& [name, value] : values) stages.push_back({name, {}});
   }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/order_statistics.hpp"
 #include "json_text.hpp"
 #include "roadstereo/version.hpp"
 
@@ -30,9 +31,7 @@ std::string timing_line(const Timing& timing) {
 }  // namespace
 
 double Timing::median() const {
-  std::vector<double> sorted = ms;
-  std::sort(sorted.begin(), sorted.end());
-  return sorted.empty() ? 0 : sorted[sorted.size() / 2];
+  return ms.empty() ? 0 : upper_median(std::vector(ms));
 }
 double Timing::fastest() const {
   return ms.empty() ? 0 : *std::min_element(ms.begin(), ms.end());

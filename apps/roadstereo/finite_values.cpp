@@ -5,6 +5,8 @@
 #include <iterator>
 #include <limits>
 
+#include "core/order_statistics.hpp"
+
 namespace roadstereo::cli {
 
 std::vector<double> finite_values(ImageView<const float> map) {
@@ -19,17 +21,12 @@ std::vector<double> finite_values(ImageView<const float> map) {
 
 double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return (*std::max_element(values.begin(), middle) + *middle) / 2;
+  return central_median(values);
 }
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto rank = std::lround(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
+  return nearest_quantile(values, share);
 }
 
 }  // namespace roadstereo::cli

@@ -67,7 +67,7 @@ Json times_json(const StageTimes& ms) {
           {"refinement", json_number(ms.refinement)},
           {"roll", json_number(ms.roll)},
           {"transform", json_number(ms.transform)},
-          {"deliver", json_number(ms.deliver)},
+          {"download", json_number(ms.download)},
           {"total", json_number(ms.total)}};
 }
 

@@ -2,47 +2,21 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 #include <vector>
+
+#include "roadstereo/grey_scale.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo {
 
-/// A rectangle of pixels that somebody else owns: row-major, `(u, v)` = (column, row), origin top left.
-/// `stride` counts elements from one row to the next, and may be larger than the width.
-template <class T>
-class ImageView {
- public:
-  ImageView() = default;
-  ImageView(T* data, int width, int height, std::ptrdiff_t stride)
-      : data_(data), width_(width), height_(height), stride_(stride) {}
-  ImageView(T* data, int width, int height) : ImageView(data, width, height, width) {}
-  /// A view for writing is also a view for reading.
-  operator ImageView<const T>() const requires(!std::is_const_v<T>) { return {data_, width_, height_, stride_}; }
-
-  int width() const { return width_; }
-  int height() const { return height_; }
-  std::ptrdiff_t stride() const { return stride_; }
-  std::size_t pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
-  bool empty() const { return width_ == 0 || height_ == 0; }
-
-  T* row(int v) const { return data_ + v * stride_; }
-  T& operator()(int u, int v) const { return row(v)[u]; }
-
- private:
-  T* data_ = nullptr;
-  int width_ = 0;
-  int height_ = 0;
-  std::ptrdiff_t stride_ = 0;
-};
-
-/// An image that owns its pixels, without padding between rows.
+/// Image that owns its pixels, without padding between rows.
 template <class T>
 class Image {
  public:
   Image() = default;
   Image(int width, int height, T value = T{}) { assign(width, height, value); }
 
-  /// Changes the size; keeps the memory when it suffices, so that equal sizes never allocate. Pixels are unspecified.
+  /// Changes the size; equal sizes never allocate. Pixels are unspecified.
   void resize(int width, int height) {
     pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     width_ = width;
@@ -84,10 +58,10 @@ enum class SampleType { u8, u16 };
 /// Order of the samples of one pixel of a camera frame.
 enum class ChannelOrder { grey, bgr, rgb, bgra, rgba };
 
-/// Samples per pixel: 1, 3 or 4.
+/// Returns the samples per pixel: 1, 3 or 4.
 int channel_count(ChannelOrder order);
 
-/// A camera frame as cameras and files deliver it: 8 or 16 bit, grey or colour, with any stride. Owns nothing.
+/// View of a camera frame that it does not own: 8 or 16 bit, grey or colour, any stride.
 struct FrameView {
   const void* data = nullptr;
   int width = 0;                    ///< pixels
@@ -97,7 +71,7 @@ struct FrameView {
   ChannelOrder order = ChannelOrder::grey;
 };
 
-/// A camera frame that owns its samples, without padding between rows.
+/// Camera frame that owns its samples, without padding between rows.
 struct Frame {
   std::vector<std::uint8_t> bytes;
   int width = 0;   ///< pixels
@@ -111,8 +85,6 @@ struct Frame {
 /// Grey levels in sixteenths, 0 … 4080, whatever the depth of the camera: what matching works on. Fixed point,
 /// so that sums over windows are exact and every engine sees the same input.
 using GreyImage = Image<std::int16_t>;
-inline constexpr int grey_scale = 16;              ///< steps per 8-bit grey level
-inline constexpr int grey_max = 255 * grey_scale;  ///< value of white
 
 /// Converts a camera frame to grey (Rec. 601 luma for colour).
 /// `white_level` is the sample value of white; 0 takes the largest value of the sample type (255 or 65535).

@@ -6,120 +6,138 @@
 #include <vector>
 
 #include "roadstereo/image.hpp"
+#include "roadstereo/search_range.hpp"
 
 namespace roadstereo {
 
 /// Shape of the aggregation window.
 enum class WindowShape { square, disc };
 
+/// Options of section 3.2: matching cost, aggregation, winner-take-all, left–right check, sub-pixel disparity.
 struct MatcherOptions {
-  int block_radius = 2;        ///< N⁺ is (2r+1)² pixels; the paper's 120-connected system is 5; 1 … 10
-  int aggregation_radius = 8;  ///< radius of the bilateral window, pixels; 0 switches aggregation off; 0 … 10
-  /// Height of the window over its width: a road is foreshortened along the columns, and its damage with it; 0.1 … 1.
+  int block_radius = 2;        ///< N⁺ is (2r+1)² pixels, 1 … 10; the paper's 120-connected system is 5
+  int aggregation_radius = 8;  ///< radius of the bilateral window, pixels, 0 … 10; 0 switches aggregation off
+  /// Height of the window over its width, 0.1 … 1: a road is foreshortened along the columns, and its damage with it.
   double aggregation_aspect = 0.5;
   int aggregation_step = 2;  ///< distance between its taps, pixels, 1 or 2: neighbours share most of their block
   WindowShape aggregation_shape = WindowShape::disc;  ///< `disc` keeps the taps within the ellipse
-  double sigma_space = 6.0;                           ///< σ0 of eq. omega0, pixels
-  double sigma_colour = 20.0;                         ///< σ1 of eq. omega1, 8-bit grey levels
-  double ncc_noise_sigma = 1.0;  ///< grey-level noise below which texture is no evidence; 0 is plain NCC, 0 … 50
-  bool left_right_check = true;  ///< eq. lrc
-  /// Match the target view too, with costs aggregated by its own weights, as the paper does. False projects the
-  /// reference's winners into the target view instead, where the nearest of several hides the others: half the work.
+  double sigma_space = 6.0;                           ///< σ0 of eq. (31), pixels, 0.1 … 1000
+  double sigma_colour = 20.0;                         ///< σ1 of eq. (32), 8-bit grey levels, 0.1 … 100000
+  /// Standard deviation of the grey-level noise, 8-bit grey levels, 0 … 50: texture below it lowers the correlation. 0
+  /// is plain NCC.
+  double ncc_noise_sigma = 1.0;
+  bool left_right_check = true;  ///< eq. (12)
+  /// Match the target view too, with costs aggregated by its own weights, as the paper does. False projects the winners
+  /// of the reference view into the target view instead, where the largest disparity wins: half the work.
   bool match_both_views = false;
-  /// Cost that a disparity pays for each pixel away from the prior, in units of the correlation; 0 ignores the prior.
+  /// Cost of one pixel of distance from the prior, in units of the correlation, 0 … 100; 0 ignores the prior.
   double prior_weight = 0.08;
-  double prior_truncation_px = 8.0;  ///< pixels away at which it stops growing, so that damage can leave the prior
-  double lr_max_diff_px = 1.0;       ///< δr of eq. lrc, pixels²
-  /// Standard error added to what fails the check: refinement keeps it where better-known neighbours agree. 0 makes it
-  /// invalid, as the paper does.
+  /// Truncation of that distance, pixels, 0 … 1000: damage may lie far from the prior.
+  double prior_truncation_px = 8.0;
+  double lr_max_diff_px =
+      1.0;  ///< largest difference of the left–right check, pixels, 0 … 1024; δr of eq. (12) is its square
+  /// Standard error added to disparities that fail the check, pixels, 0 … 10: refinement keeps them where neighbours
+  /// with smaller errors agree. 0 makes them invalid, as the paper does.
   double occlusion_sigma_px = 1.0;
-  bool sub_pixel = true;               ///< eq. subpixel
-  bool reject_range_boundary = false;  ///< a winner at the end of its range, which may be no minimum, is invalid
+  bool sub_pixel = true;               ///< eq. (13)
+  bool reject_range_boundary = false;  ///< make winners at an end of their search range invalid
 
+  /// Throws Error naming the first option that is out of range.
   void validate() const;
   bool operator==(const MatcherOptions&) const = default;
 };
 
-/// The disparities that are searched, tile by tile. Knowing the road leaves few of them: after the perspective
-/// transformation the road lies near δp, and a coarse look at the pair tells where something else is.
+/// Views of SearchRanges; empty: every pixel searches all disparities.
+struct SearchRangeViews {
+  ImageView<const SearchRange> reference, target;
+
+  bool empty() const { return reference.empty(); }
+};
+
+/// Search range of each tile of either view. After the perspective transformation the road lies near δp, so that few
+/// tiles need all disparities.
 struct SearchRanges {
   static constexpr int tile_columns = 192;  ///< pixels
   static constexpr int tile_rows = 96;      ///< pixels
 
-  /// Disparities first ≤ d < end.
-  struct Range {
-    std::int16_t first = 0;
-    std::int16_t end = 0;
-    bool operator==(const Range&) const = default;
-  };
-  Image<Range> reference;  ///< one per tile of the reference image, row by row
-  Image<Range> target;     ///< one per tile of the target image
+  Image<SearchRange> reference;  ///< one per tile of the reference image, row by row
+  Image<SearchRange> target;     ///< one per tile of the target image
 
-  /// Whole ranges for every tile of an image.
+  /// Sets the range of every tile of a width × height image to 0 … disparities − 1.
   void assign(int width, int height, int disparities);
+  SearchRangeViews views() const { return {reference, target}; }
 };
 
-/// A coarse disparity map that winner-take-all leans on where the costs leave a choice.
+/// View of a DisparityPrior; empty: no prior.
+struct DisparityPriorView {
+  ImageView<const float> disparity;
+  int factor = 1;
+};
+
+/// Coarse disparity map: the prior of winner-take-all.
 struct DisparityPrior {
-  Image<float> disparity;  ///< of the reference view, pixels of the full size; NaN: nothing is known
-  int factor = 1;          ///< its pixel (x, y) stands for the factor × factor pixels from (x·factor, y·factor) on
+  Image<float> disparity;  ///< of the reference view, pixels of the full size; NaN: unknown
+  int factor = 1;  ///< its pixel (x, y) covers factor × factor pixels from (x·factor, y·factor) on; at least 1
+
+  DisparityPriorView view() const { return {disparity, factor}; }
 };
 
-/// One pair as matching sees it: grey, same size, the target already transformed.
+/// One grey pair of equal size, the target already transformed. All views lie in the memory of the engine that takes
+/// them: the host's, or a device's.
 struct MatchInput {
   ImageView<const std::int16_t> reference;
   ImageView<const std::int16_t> target;
-  /// Per row: first valid column of the target, 0 … width; null: all valid. A block is a rectangle: it begins at the
-  /// first column that all its rows see.
+  /// First valid column of the target per row, 0 … width; null: all valid. The window of a block begins at the first
+  /// column that is valid in all its rows.
   const int* first_column = nullptr;
-  int disparities = 1;                   ///< D, 1 … 1024: reference (u, v) may match target (u − d, v), 0 ≤ d < D
-  const SearchRanges* ranges = nullptr;  ///< null: every pixel searches all D disparities
-  const DisparityPrior* prior = nullptr;  ///< null: the costs alone decide
+  int disparities = 1;  ///< D, 1 … 1024: reference (u, v) may match target (u − d, v), 0 ≤ d < D
+  SearchRangeViews ranges = {};
+  DisparityPriorView prior = {};
 };
 
-/// What matching leaves. Sizes are those of the reference image.
+/// Output of `StereoEngine::match`, W×H of the reference image.
 struct MatchMaps {
   Image<float> disparity;  ///< sub-pixel; NaN invalid, as what fails the left–right check with occlusion_sigma_px 0
   Image<std::int16_t> winner;  ///< winner-take-all on the reference volume; −1 where nothing can match
   /// Winner-take-all on the target volume, or the reference's winners projected, in target coordinates; −1 likewise.
   Image<std::int16_t> target_winner;
-  Image<float> variance;  ///< of `disparity` from the costs alone, pixels²; infinite where they do not tell
+  Image<float> variance;  ///< variance of `disparity` from the costs alone, pixels²; infinite where undetermined
 };
 
-/// One implementation of section 3.2 of the paper. Holds scratch memory, so that matching frames of one size
-/// allocates only once. One engine must not be used by two threads at a time; two engines know nothing of each other.
+/// Implementation of section 3.2 of the paper. Keeps scratch memory between frames of one size. Not thread-safe;
+/// distinct instances are independent.
 class StereoEngine {
  public:
   virtual ~StereoEngine() = default;
-  /// Fills `maps`. Throws Error when sizes differ or a figure is out of range.
+  /// Fills `maps`. Throws Error when sizes differ or an option is out of range.
   virtual void match(const MatchInput& input, const MatcherOptions& options, MatchMaps& maps) = 0;
 };
 
-/// An engine as the registry lists it.
+/// Entry of the registry of engines.
 struct EngineInfo {
   std::string name;         ///< what `--engine` takes
   std::string description;  ///< one line
   bool exact = false;       ///< the double-precision oracle
-  std::unique_ptr<StereoEngine> (*make)(int threads);
+  std::unique_ptr<StereoEngine> (*make)(int threads) = nullptr;
 };
 
-/// Every engine of this build that this machine can run, best first.
+/// Engines of this build that this machine can run, fastest first.
 const std::vector<EngineInfo>& engines();
 
-/// An engine that is known, but not in `engines()`.
+/// Known engine that is not in `engines()`.
 struct UnavailableEngine {
   std::string name;
-  std::string reason;  ///< why this build or this machine has it not, as a sentence
+  std::string reason;  ///< why this build or this machine lacks it, as a sentence
 };
 
-/// Every known engine that cannot be used, for example `cuda` without a GPU.
+/// Known engines that cannot be used, for example `cuda` without a GPU.
 const std::vector<UnavailableEngine>& unavailable_engines();
 
 /// Makes the engine called `name`; "auto" takes the first of the registry. `threads` 0 takes all cores.
-/// Throws Error naming the engines that exist, or why the one that was asked for cannot be used.
+/// Throws Error naming the engines that exist, or why the requested one cannot be used.
 std::unique_ptr<StereoEngine> make_engine(const std::string& name, int threads);
 
-/// The name that "auto" stands for, or `name` itself; throws like make_engine.
+/// Returns the name that "auto" stands for, or `name` itself; throws like make_engine.
 std::string resolve_engine_name(const std::string& name);
 
 }  // namespace roadstereo

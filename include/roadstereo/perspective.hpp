@@ -5,39 +5,30 @@
 
 #include "roadstereo/calibration.hpp"
 #include "roadstereo/image.hpp"
+#include "roadstereo/perspective_shift.hpp"
 #include "roadstereo/road_model.hpp"
 
 namespace roadstereo {
 
-/// How the target image is sampled when its rows are shifted.
+/// Sampling of the target image when its rows are shifted.
 enum class ShiftPrecision { whole_pixel, sub_pixel };
 
+/// Options of the perspective transformation, section 3.1.
 struct PerspectiveOptions {
   bool enabled = true;  ///< false: no shift, plain stereo over the full range
   ShiftPrecision shift = ShiftPrecision::sub_pixel;
-  double max_damage_depth_m = 0.10;  ///< deepest damage below the road to be measured, metres; needs a calibration
-  double max_bump_height_m = 0.05;   ///< highest bump above the road to be measured, metres; needs a calibration
-  int disparities = 0;               ///< number of disparities D searched after the shift; 0 derives it, 1 … 1024
-  double delta_p_px = -1;            ///< δp: the road's disparity after the shift, pixels; negative derives it
+  double max_damage_depth_m = 0.10;  ///< deepest measurable damage, metres, above 0, at most 2; needs a calibration
+  double max_bump_height_m = 0.05;   ///< highest measurable bump, metres, above 0, at most 2; needs a calibration
+  int disparities = 0;               ///< number of disparities D searched after the shift, 1 … 1024; 0 derives it
+  double delta_p_px = -1;  ///< δp: the road's disparity after the shift, pixels, at most 1024; negative derives it
 
+  /// Throws Error naming the first option that is out of range.
   void validate() const;
 };
 
-/// The shift of the perspective transformation: the target pixel at column x of the transformed image comes from
-/// column x − shift(x, v) of the target image, shift = max(0, road disparity − δp).
-struct PerspectiveShift {
-  DisparityPlane road;  ///< Δu
-  double delta_p = 0;   ///< δp, pixels
-  int disparities = 1;  ///< D: residual disparities 0 … D−1 are searched
-  bool whole_pixel = false;
-  bool enabled = true;
-  double row_offset = 0;  ///< the target's rows lie this much lower than the reference's, pixels; undone by the shift
-
-  double at(double x, double v) const;
-};
-
-/// Chooses δp and D. With a calibration from the deepest damage and the highest bump at the road's distance, without
-/// one from the spread of the correspondences; with an unreliable model no shift, and the whole range is searched.
+/// Chooses δp and D: with a calibration from the deepest damage and the highest bump at the road's distance, without
+/// one from the residuals of the correspondences. Without a reliable model there is no shift and the full range is
+/// searched.
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
                                   int width, int height, const PerspectiveOptions& options);
 
@@ -46,7 +37,8 @@ PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::opti
 void transform_target(ImageView<const std::int16_t> target, const PerspectiveShift& shift, int threads,
                       GreyImage& transformed, std::vector<int>& first_column);
 
-/// Adds the shift back: residual disparities (pixels, NaN invalid) become disparities between the original images.
-void add_shift(ImageView<const float> residual, const PerspectiveShift& shift, int threads, Image<float>& disparity);
+/// Adds the shift Δu − δp back: residual disparities (W×H, pixels, NaN invalid) become those of the original images.
+void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, int threads,
+                       Image<float>& disparity);
 
 }  // namespace roadstereo

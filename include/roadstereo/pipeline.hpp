@@ -25,10 +25,10 @@ struct DeviceMaps;
 struct PipelineOptions {
   std::string engine = "auto";  ///< a name from engines(), or "auto"
   int threads = 0;              ///< worker threads; 0 takes all cores
-  double white_level = 0;       ///< sample value of white; 0 takes 255 or 65535 by the sample type
+  double white_level = 0;       ///< sample value of white, 0 … 65535; 0 takes 255 or 65535 by the sample type
   bool check_rows = true;       ///< measure whether the rows agree whenever the road model is estimated anew
   bool correct_rows = true;     ///< undo a constant offset of the rows, up to 2 px, that `check_rows` has measured
-  bool narrow_search = true;    ///< search in each tile only near the disparities that a coarse look finds there
+  bool narrow_search = true;    ///< search each tile only near the disparities that the coarse search finds there
   RoadModelOptions road_model;
   PerspectiveOptions perspective;
   CoarseSearchOptions coarse_search;
@@ -41,28 +41,28 @@ struct PipelineOptions {
   void validate() const;
 };
 
-/// The presets: "default", "fast" (the most speed) and "paper" (every constant of the paper). Throws Error naming those
-/// that exist.
+/// Returns a preset: "default", "fast" (highest speed) or "paper" (every constant of the paper). Throws Error for other
+/// names.
 PipelineOptions preset(const std::string& name);
 const std::vector<std::string>& preset_names();
 
-/// Milliseconds that each stage of one frame took.
+/// Times of the stages of one frame, milliseconds.
 struct StageTimes {
   double prepare = 0;  ///< conversion to grey, checks of the pair
   double road_model = 0;
   double perspective = 0;
-  double coarse = 0;      ///< coarse look: disparities of each tile, prior
+  double coarse = 0;      ///< coarse search: disparity range of each tile, prior
   double match = 0;       ///< cost, aggregation, winner-take-all, left–right check, sub-pixel
-  double refinement = 0;  ///< smoothing by the standard errors
+  double refinement = 0;  ///< adding the shift back, smoothing by the standard errors
   double roll = 0;        ///< roll and projection model
   double transform = 0;   ///< disparity transformation
-  double deliver = 0;     ///< maps from a device to the host; nothing with the engines of the host
-  double total = 0;       ///< on the host's clock: with the engine cuda more than the stages, which the device times
+  double download = 0;    ///< maps from a device to the host; about 0 with the engines of the host
+  double total = 0;       ///< on the host's clock; with the engine cuda the device times the other stages
 };
 
-/// The paper's result for one pair.
+/// Result for one pair. All maps have the size of the images.
 struct FrameResult {
-  GreyImage grey;            ///< the left image as matching saw it
+  GreyImage grey;            ///< the left image
   Image<float> disparity;    ///< ℓ: left-image disparities, pixels, NaN invalid
   Image<float> sigma;        ///< standard error of `disparity`, pixels, NaN where that is invalid
   Image<float> transformed;  ///< ℓ': the intact road lies at `delta_t`, damage below, bumps above; NaN invalid
@@ -71,7 +71,7 @@ struct FrameResult {
   RollEstimate geometry;    ///< after matching; valid only when `roll_found`
   bool roll_found = false;  ///< false when too few disparities were valid; `transformed` is then all NaN
   double delta_t = 0;       ///< δt, pixels
-  RoadResiduals spread;     ///< σ_d
+  RoadResiduals spread;     ///< σ_d, eq. (37)
   double valid_share = 0;   ///< share of the pixels that have a disparity
   RowAlignment rows;        ///< measured when the road model was estimated anew
   StageTimes ms;
@@ -79,17 +79,17 @@ struct FrameResult {
   std::vector<std::string> warnings;
 };
 
-/// What one frame hands to the next: all that is needed to go on where an earlier run ended, to the same bits.
+/// State that one frame hands to the next; a run restored from it gives the same bits. Frames of another size reset it.
 struct PipelineState {
   int width = 0;                       ///< size of the frames, pixels; 0 before the first one
   int height = 0;                      ///< pixels
   std::optional<DisparityPlane> road;  ///< the last frame's road model; absent when it was not reliable
-  double roll_rad = 0;                 ///< ψ(t), where the descent of ψ(t+1) starts; 0 when it could not be observed
+  double roll_rad = 0;                 ///< ψ(t), start of the descent of ψ(t+1), eq. (24); 0 when not observable
   double row_offset_px = 0;            ///< of the target's rows; measured whenever the road model is estimated anew
 };
 
-/// The way through, section 3 of the paper in order. Holds what carries over between frames (road model, ψ, scratch
-/// memory) and nothing else. One pipeline must not be used by two threads at a time; two know nothing of each other.
+/// Runs section 3 of the paper on successive stereo pairs. Keeps the state and the scratch memory between frames. Not
+/// thread-safe; distinct instances are independent.
 class Pipeline {
  public:
   /// Throws Error when an option is out of range or the engine does not exist.
@@ -99,38 +99,39 @@ class Pipeline {
   Pipeline(Pipeline&&) noexcept;
   Pipeline& operator=(Pipeline&&) noexcept;
 
-  /// Processes one rectified pair. The result belongs to the pipeline and lives until the next call.
-  /// Throws Error when the pair cannot be one: sizes differ or are outside 32×32 … 8192×8192, an image has one
-  /// colour, both images are the same, left and right look swapped, the calibration belongs to another size.
+  /// Processes one rectified pair. The result belongs to the pipeline and is valid until the next call.
+  /// Throws Error for an invalid pair: sizes differ or are outside 32×32 … 8192×8192, an image has one colour, both
+  /// images are the same, left and right seem to be swapped, or the calibration belongs to another size.
   const FrameResult& process(const FrameView& left, const FrameView& right);
 
-  /// The same, but hands the result out, and takes the memory of the one that was in `result` before: with two or more
-  /// results in turn, a frame can be looked at while the next one is processed.
+  /// The same, but swaps the result with `result` and reuses its memory: with two or more results in turn, one frame
+  /// can be read while the next one is processed.
   void process(const FrameView& left, const FrameView& right, FrameResult& result);
 
-  /// Finds and measures damage in the last frame. Without a road there is none. Throws Error when there is no
-  /// last frame (none yet, refused, handed out, forgotten), or when hardly any disparity of it lies on a road.
+  /// Finds and measures damage in the last frame; none without a road. Throws Error when there is no last frame (none
+  /// yet, rejected, swapped out, reset), or when hardly any of its disparities lies on a road.
   DamageMap find_damage() const;
   /// The same into an earlier result, whose maps keep their memory when the sizes are equal.
   void find_damage(DamageMap& result) const;
 
-  /// What the next frame will start from.
+  /// Returns the state that the next frame starts from.
   const PipelineState& carried() const;
 
-  /// Goes on from there: the next frame starts from `carried`.
+  /// Makes the next frame start from `carried`.
   void restore(const PipelineState& carried);
 
-  /// Makes the memory and starts the threads that frames of this size need, so that the first takes no longer than any
-  /// other whose road model is found anew. Forgets the last frame. Throws Error for a size that `process` refuses.
+  /// Allocates memory and starts threads for frames of this size, so that the first frame takes no longer than later
+  /// ones. Resets the pipeline. Throws Error for a size that `process` rejects.
   void warm_up(int width, int height);
 
-  /// Forgets the last frame: the next one starts afresh.
+  /// Makes the next frame start without state.
   void reset();
 
-  /// Engine cuda: shares a device with the caller (roadstereo/device.hpp), from the next frame on. Such a pipeline also
-  /// takes frames whose data lie in device memory. Throws Error for any other engine.
+  /// Engine cuda: shares a device with the caller (roadstereo/device.hpp), from the next frame on. Frames may also lie
+  /// in device memory. Throws Error for any other engine.
   void set_device_options(const DeviceOptions& use);
-  /// Engine cuda: the last frame's maps in device memory. Throws Error for any other engine, or without a frame.
+  /// Engine cuda: returns the last frame's maps in device memory. Throws Error for any other engine, or without a
+  /// frame.
   DeviceMaps device_maps() const;
 
   const PipelineOptions& options() const;
@@ -141,7 +142,7 @@ class Pipeline {
   std::unique_ptr<State> state_;
 };
 
-/// Damage of a result that was handed out, as `Pipeline::find_damage` finds it.
+/// Finds damage in a result that was swapped out, as `Pipeline::find_damage` does.
 DamageMap find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
                       const DamageOptions& options = {}, int threads = 0);
 /// The same into an earlier result, whose maps keep their memory when the sizes are equal.

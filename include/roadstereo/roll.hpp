@@ -8,26 +8,28 @@
 
 namespace roadstereo {
 
-/// How the energy E_t min(ψ) (eq. E_min2) is minimised.
+/// Minimiser of the energy E_t min(ψ), eq. (23).
 enum class RollSolver {
-  gradient_descent,  ///< the paper's, with adaptive learning rate (eqs. e_min_gd, adaptive_lambda)
+  gradient_descent,  ///< the paper's, with adaptive learning rate (eqs. (25) and (28))
   closed_form,       ///< the least-squares plane, which is the same minimum
-  robust             ///< potholes, kerbs and vehicles do not pull it
+  robust             ///< IRLS with Tukey's biweight: potholes, kerbs and vehicles are outliers
 };
 
+/// Options of section 3.3.
 struct RollOptions {
   RollSolver solver = RollSolver::robust;
-  double initial_lambda = 10.0;                       ///< λ(0) of the normalised energy, see docs/method.md
-  double roll_threshold_rad = 1.7453292519943296e-6;  ///< δψ = π / 1.8e6
-  int max_iterations = 200;                           ///< of the descent or of the robust reweighting
-  double delta_t_px = -1;                             ///< δt of eq. disparity_transformation; negative derives it
-  double max_roll_stderr_rad = 0.05;                  ///< ψ is observable below this standard error
-  double min_gradient_px = 1.0;                       ///< ... and when the road's disparity changes by more than this
+  double initial_lambda = 10.0;  ///< λ(0) of the normalised energy, above 0, at most 1e6; see docs/method.md
+  double roll_threshold_rad = 1.7453292519943296e-6;  ///< δψ = π / 1.8e6, 1e-12 … 0.1
+  int max_iterations = 200;                           ///< of the descent or of the robust reweighting, 1 … 100000
+  double delta_t_px = -1;                             ///< δt of eq. (29), pixels, at most 10000; negative derives it
+  double max_roll_stderr_rad = 0.05;                  ///< largest standard error of an observable ψ, above 0
+  double min_gradient_px = 1.0;  ///< smallest change of the road's disparity over the image for it, at least 0
 
+  /// Throws Error naming the first option that is out of range.
   void validate() const;
 };
 
-/// Roll angle and projection model of the road: d = α0 + α1·y(ψ), y(ψ) = v cos ψ − u sin ψ (eqs. y, E2).
+/// Roll angle and projection model of the road: d = α0 + α1·y(ψ), y(ψ) = v cos ψ − u sin ψ (eqs. (19) and (20)).
 struct RollEstimate {
   double roll_rad = 0;           ///< ψ in (−π/2, π/2]
   double roll_stderr_rad = 0;    ///< its standard error, from the residuals of image cells (neighbours are correlated)
@@ -40,25 +42,25 @@ struct RollEstimate {
   double residual_px = 0;  ///< standard deviation of the disparities around the model, pixels (robust: of inliers)
 };
 
-/// Minimises eq. E_min2 over the valid disparities. `mask` (0 = leave out), when given, has the map's size.
-/// `initial` is the previous frame's result: its ψ starts the descent, its plane starts the robust solver.
-/// `prior`, when given, is the road model known before matching: the robust solver starts from it.
+/// Minimises eq. (23) over the valid disparities. `mask` (W×H, 0 = leave out) is optional. `initial_roll_rad`, the last
+/// frame's ψ, starts the descent; `prior`, the road model from before matching, starts the robust solver.
 /// Throws Error when fewer than 16 disparities are valid or all lie on one line of the image.
 RollEstimate estimate_roll(ImageView<const float> disparity, const std::optional<ImageView<const std::uint8_t>>& mask,
                            const std::optional<DisparityPlane>& prior, double initial_roll_rad,
                            const RollOptions& options, int threads = 0);
 
-/// The transformed map ℓ' of eq. disparity_transformation: the intact road lies at δt.
-/// Returns δt: `options.delta_t_px`, or the smallest whole number that makes every value positive, at least `least`.
+/// Transforms ℓ to ℓ', eq. (29): the intact road lies at δt; NaN invalid. Returns δt, pixels: `options.delta_t_px`, or
+/// the smallest whole number, at least `min_delta_t`, that makes every value positive.
 double transform_disparity(ImageView<const float> disparity, const RollEstimate& geometry, double min_delta_t,
                            const RollOptions& options, int threads, Image<float>& transformed);
 
-/// Spread of the transformed disparities (eq. sigma_d).
+/// Standard deviations of the transformed disparities, eq. (37).
 struct RoadResiduals {
   double sigma_road_px = 0;  ///< σ_d over the road: |ℓ' − δt| ≤ max(3·robust σ, 1 px)
   double sigma_all_px = 0;   ///< σ_d over every valid pixel
   double road_share = 0;     ///< share of the valid pixels that count as road
 };
+/// Measures the residuals of ℓ' around δt.
 RoadResiduals measure_residuals(ImageView<const float> transformed, double delta_t, int threads = 0);
 
 }  // namespace roadstereo

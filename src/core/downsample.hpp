@@ -5,8 +5,8 @@
 
 namespace roadstereo {
 
-/// The image at 1 / factor of its size; each pixel is the mean of factor × factor. The rest at the right and bottom is
-/// dropped. Pixel (x, y) of it has its centre at ((x + ½)·factor − ½, …) of the image.
+/// Downsamples by the mean of factor × factor pixels. The rest at the right and bottom is dropped. Pixel (x, y) of it
+/// has its centre at ((x + ½)·factor − ½, …) of the image.
 GreyImage downsample(ImageView<const std::int16_t> image, int factor);
 
 /// The same into an image of the right size.

@@ -5,7 +5,7 @@
 
 namespace roadstereo {
 
-/// Number of letters to insert, drop or change to get from one word to the other: finds the word that was meant.
+/// Levenshtein distance of two words, to suggest the word that was meant.
 std::size_t edit_distance(const std::string& a, const std::string& b);
 
 }  // namespace roadstereo

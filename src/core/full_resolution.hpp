@@ -1,10 +1,10 @@
 #pragma once
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
 namespace roadstereo {
 
-/// Full-size coordinate of a coordinate of the shrunk image.
+/// Converts a coordinate of the downsampled image to full resolution.
 ROADSTEREO_HD inline double to_full_resolution(double x, int factor) {
   return (x + 0.5) * factor - 0.5;
 }

@@ -8,7 +8,7 @@ namespace roadstereo {
 template <class Signature>
 class FunctionRef;
 
-/// A callable that somebody else owns; unlike std::function it never allocates. For parameters only.
+/// Non-owning reference to a callable; never allocates. For parameters only.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
  public:

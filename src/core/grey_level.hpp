@@ -2,17 +2,17 @@
 
 #include <cstdint>
 
-#include "core/uncontracted.hpp"
+#include "roadstereo/uncontracted.hpp"
 
 namespace roadstereo {
 
-/// What the samples of one pixel count for in its grey level, and the level of white.
+/// Weights of the samples of a pixel in its grey level, and the level of white.
 struct GreyWeights {
   float first, second, third;
   float white;
 };
 
-/// The level, rounded; what is brighter than white is white.
+/// Rounds a level and clips it at white.
 ROADSTEREO_HD inline std::int16_t rounded_level(float level, float white) {
   const float rounded = level + 0.5F;
   return static_cast<std::int16_t>(rounded < white ? rounded : white);

@@ -5,7 +5,7 @@
 
 namespace roadstereo {
 
-/// The weights that turn the frame's samples into grey levels. Throws Error for what to_grey refuses.
+/// Returns the weights of the samples of a frame. Throws Error as to_grey does.
 GreyWeights grey_weights(const FrameView& frame, double white_level);
 
 }  // namespace roadstereo

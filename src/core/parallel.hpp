@@ -4,8 +4,7 @@
 
 namespace roadstereo {
 
-/// Number of worker threads that an option stands for: itself, or all cores for 0. Throws Error when negative or
-/// above 1024.
+/// Returns the number of worker threads: `threads`, or all cores for 0. Throws Error when negative or above 1024.
 int resolve_threads(int threads);
 
 /// Calls `body(i, worker)` for every i in [0, count), on up to `threads` threads (0: all cores). `worker` numbers the

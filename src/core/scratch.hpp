@@ -5,8 +5,8 @@
 
 namespace roadstereo {
 
-/// Memory that a pipeline keeps from frame to frame, so that the short-lived vectors of its stages allocate nothing
-/// once every size has been seen. In force on the thread that made it, until it goes out of scope.
+/// Sets the memory resource of the scratch vectors of this thread until it goes out of scope: a pool that a pipeline
+/// keeps from frame to frame, so that they allocate nothing once every size has occurred.
 class ScratchScope {
  public:
   explicit ScratchScope(std::pmr::memory_resource& memory);
@@ -14,14 +14,14 @@ class ScratchScope {
   ScratchScope(const ScratchScope&) = delete;
   ScratchScope& operator=(const ScratchScope&) = delete;
 
-  /// The memory in force on this thread; the heap outside every scope.
+  /// Returns the resource of this thread; the heap outside every scope.
   static std::pmr::memory_resource* memory();
 
  private:
   std::pmr::memory_resource* previous_;
 };
 
-/// A vector that must not outlive the frame: `ScratchVector<T> v = scratch_vector<T>();`
+/// Vector of scratch memory, which must not outlive the frame: `ScratchVector<T> v = scratch_vector<T>();`
 template <class T>
 using ScratchVector = std::pmr::vector<T>;
 

@@ -5,7 +5,7 @@
 
 namespace roadstereo {
 
-/// The parts written one after the other, numbers with three digits: for reasons and warnings.
+/// Concatenates the parts, numbers with three digits: for reasons and warnings.
 template <class... Parts>
 std::string sentence(const Parts&... parts) {
   std::ostringstream text;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/median.hpp"
+#include "core/order_statistics.hpp"
 
 namespace roadstereo {
 namespace {
@@ -23,7 +23,7 @@ double estimate_delta_t(const DamageInput& input) {
       if (std::isfinite(delta)) deltas.push_back(delta);
     }
   }
-  return deltas.empty() ? 0 : take_median(deltas);
+  return deltas.empty() ? 0 : upper_median(deltas);
 }
 
 }  // namespace

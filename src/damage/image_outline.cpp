@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/median.hpp"
+#include "core/order_statistics.hpp"
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
@@ -37,9 +37,9 @@ Tone tone_of(const BoxMap& grey, const BoxMask& included, const BoxMask* exclude
     }
   }
   if (values.empty()) return {};
-  const float median = take_median(values);
+  const float median = upper_median(values);
   for (float& value : values) value = std::abs(value - median);
-  return {median, gaussian_mad * take_median(values), values.size()};
+  return {median, gaussian_mad * upper_median(values), values.size()};
 }
 
 /// Decision threshold between two tones: the grey level at equal distance from both in standard deviations.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/median.hpp"
+#include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
 #include "damage/morphology.hpp"
 #include "damage/oriented_box.hpp"
@@ -149,9 +149,9 @@ SurfaceOffset estimate_surface_offset(const Segmentation& segmentation, const Ca
   }
   constexpr std::size_t min_cells = 20;
   if (values.size() < min_cells) return {0, depth_cells.noise};
-  const double median = take_median(values);
+  const double median = upper_median(values);
   for (double& value : values) value = std::abs(value - median);
-  return {median, gaussian_mad * take_median(values) / std::sqrt(effective_samples)};
+  return {median, gaussian_mad * upper_median(values) / std::sqrt(effective_samples)};
 }
 
 void measure_in_metres(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,

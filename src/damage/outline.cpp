@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/median.hpp"
+#include "core/order_statistics.hpp"
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
@@ -35,7 +35,7 @@ float median_around(const DepthField& field, const BoxMask& region, int near, in
       if (outer(i, j) && !inner(i, j) && field.allowed(i, j) != 0) depths.push_back(field.depth(i, j));
     }
   }
-  return depths.empty() ? 0 : take_median(depths);
+  return depths.empty() ? 0 : upper_median(depths);
 }
 
 /// Add the allowed neighbours that are deeper than `min_depth`, `steps` times.
@@ -67,9 +67,7 @@ float floor_depth(const DepthField& field, const ConnectedComponent& seeds) {
     const float* const row = field.depth.row(run.row);
     depths.insert(depths.end(), row + run.first, row + run.last + 1);
   }
-  const auto rank = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() * 3 / 4);
-  std::nth_element(depths.begin(), rank, depths.end());
-  return *rank;
+  return select_rank(depths, static_cast<std::ptrdiff_t>(depths.size() * 3 / 4));
 }
 
 BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, float level) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/cholesky.hpp"
-#include "core/median.hpp"
+#include "core/order_statistics.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -83,7 +83,7 @@ double robust_sigma(const Values& residuals, double max_residual) {
   for (const double residual : residuals) {
     if (std::abs(residual) <= max_residual) magnitudes.push_back(static_cast<float>(std::abs(residual)));
   }
-  return magnitudes.empty() ? 0 : gaussian_mad * static_cast<double>(take_median(magnitudes));
+  return magnitudes.empty() ? 0 : gaussian_mad * static_cast<double>(upper_median(magnitudes));
 }
 
 /// Normal equations of a weighted fit.

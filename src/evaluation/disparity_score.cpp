@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/order_statistics.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -33,13 +34,10 @@ std::vector<double> signed_errors(ImageView<const float> disparity, ImageView<co
   return errors;
 }
 
-/// Median of the magnitudes; the mean of the middle two if their number is even.
+/// Central median of the magnitudes.
 double median_magnitude(std::vector<double> errors) {
   for (double& error : errors) error = std::abs(error);
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  if (errors.size() % 2 == 1) return *middle;
-  return (*std::max_element(errors.begin(), middle) + *middle) / 2;
+  return central_median(errors);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "core/order_statistics.hpp"
 #include "io/drawing.hpp"
 #include "io/frame_mat.hpp"
 #include "io/panels.hpp"
@@ -79,7 +80,7 @@ double road_scatter(ImageView<const float> transformed, double delta_t) {
     });
   }
   const std::vector<double> middle = percentiles(below, {50});
-  return middle.empty() ? 0.0 : 1.4826 * middle.front();
+  return middle.empty() ? 0.0 : gaussian_mad * middle.front();
 }
 
 struct BarLayout {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/order_statistics.hpp"
 #include "io/panels.hpp"
 
 namespace roadstereo::io {
@@ -15,9 +16,7 @@ std::vector<double> percentiles(ImageView<const float> map, std::initializer_lis
   std::vector<double> found;
   if (values.empty()) return found;
   for (const double share : shares) {
-    const auto rank = static_cast<std::ptrdiff_t>(std::lround(share / 100 * static_cast<double>(values.size() - 1)));
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    found.push_back(values[static_cast<std::size_t>(rank)]);
+    found.push_back(nearest_quantile(values, share / 100));
   }
   return found;
 }

@@ -10,43 +10,69 @@ namespace roadstereo {
 struct DeviceOptions;
 struct DeviceMaps;
 
-/// Two grey images on the host.
+// Values that stages hand on. Their views lie in the memory of the stages, the host's or a device's, and are valid
+// until the next frame.
+
 struct GreyPair {
   ImageView<const std::int16_t> left, right;
 };
 
-/// The work on a frame, stage by stage in the order of the paper's section 3. `Pipeline` decides, the stages compute:
-/// on the host, or all of them in a device's memory. `result` is the frame's; a stage reads what earlier ones put
-/// there, and what it says it fills may be filled as late as in `deliver`.
+/// Residual disparities: of the left image and the transformed right one. NaN invalid.
+struct ResidualMaps {
+  ImageView<float> disparity, variance;
+};
+
+/// Disparities of the original images, with their variances from matching (pixels²). NaN invalid.
+struct DisparityMaps {
+  ImageView<const float> disparity, variance;
+};
+
+/// Section 3.3.1 on one disparity map.
+struct RollFit {
+  double valid_share = 0;                ///< share of the pixels that have a disparity
+  std::optional<RollEstimate> geometry;  ///< empty when that is too small
+};
+
+/// What the disparity transformation tells of the map.
+struct TransformedRoad {
+  double delta_t = 0;    ///< δt, pixels
+  RoadResiduals spread;  ///< σ_d
+};
+
+/// The work on a frame, stage by stage as in section 3 of the paper: `Pipeline` decides, the stages compute, all of
+/// them on the host or all of them on a device. The maps of FrameResult stay with the stages until `download`.
 class FrameStages {
  public:
   virtual ~FrameStages() = default;
 
-  /// Converts both images to grey, fills result.grey. Refuses images without a picture and a pair of equal ones.
-  virtual void prepare(const FrameView& left, const FrameView& right, FrameResult& result) = 0;
-  /// Both grey images on the host, for what is done once in a while.
-  virtual GreyPair grey(FrameResult& result) = 0;
+  /// Converts both images to grey. Throws Error for images of one grey level and for two equal images; a device throws
+  /// it when the host next waits.
+  virtual GreyPair convert_to_grey(const FrameView& left, const FrameView& right) = 0;
+  /// The pair in host memory.
+  virtual GreyPair on_host(const GreyPair& pair) = 0;
   /// verify_road_model.
-  virtual RoadModelEstimate verify_road(const DisparityPlane& previous, const FrameResult& result) = 0;
-  /// transform_target by result.shift, π_tar → π_tar'.
-  virtual void transform_perspective(const FrameResult& result) = 0;
-  /// Which disparities each tile can have, and a coarse map that matching leans on where the costs leave a choice.
-  virtual void search_coarsely(const FrameResult& result) = 0;
-  /// Section 3.2.
-  virtual void match(const MatcherOptions& options, const FrameResult& result) = 0;
-  /// Adds the shift back, and smooths where the standard errors allow it: fills disparity and sigma.
-  virtual void refine(FrameResult& result) = 0;
-  /// Fills valid_share, the share of the pixels that have a disparity, and, where that is at least `min_share`,
-  /// geometry (estimate_roll). False where it is not.
-  virtual bool fit_geometry(const std::optional<DisparityPlane>& prior, double initial_roll_rad, double min_share,
-                            FrameResult& result) = 0;
-  /// ℓ → ℓ' by result.geometry: fills transformed, delta_t and spread.
-  virtual void transform(FrameResult& result) = 0;
-  /// Fills transformed with NaN: no road was found.
-  virtual void invalidate_transformed(FrameResult& result) = 0;
-  /// Fills whatever is still on its way, and the times of the stages where it knows them better than a clock on the
-  /// host.
-  virtual void deliver(FrameResult& result) = 0;
+  virtual RoadModelEstimate verify_road_model(const GreyPair& pair, const DisparityPlane& previous) = 0;
+  /// transform_target, π_tar → π_tar': returns the pair to match, without search ranges and prior.
+  virtual MatchInput transform_perspective(const GreyPair& pair, const PerspectiveShift& shift) = 0;
+  /// CoarseSearch: returns `pair` with search ranges and prior.
+  virtual MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift) = 0;
+  /// Section 3.2: cost, aggregation, winner-take-all, left-right check, sub-pixel disparity.
+  virtual ResidualMaps match(const MatchInput& input, const MatcherOptions& options) = 0;
+  /// restore_disparity: adds Δu − δp back.
+  virtual DisparityMaps restore_disparity(const ResidualMaps& residual, const PerspectiveShift& shift) = 0;
+  /// refine_disparities: returns the disparity map ℓ.
+  virtual ImageView<const float> refine(const DisparityMaps& maps, const DisparityPlane& road) = 0;
+  /// estimate_roll, when at least `min_share` of the pixels have a disparity. A device that need not return to the host
+  /// goes on with the transformation, for which it takes `shift`.
+  virtual RollFit estimate_roll(ImageView<const float> disparity, const std::optional<DisparityPlane>& prior,
+                                double initial_roll_rad, double min_share, const PerspectiveShift& shift) = 0;
+  /// transform_disparity, ℓ → ℓ', and measure_residuals.
+  virtual TransformedRoad transform_disparity(ImageView<const float> disparity, const RollEstimate& geometry,
+                                              const PerspectiveShift& shift) = 0;
+  /// Fills ℓ' with NaN: no road was found.
+  virtual void invalidate_transformed() = 0;
+  /// Hands over grey, disparity, sigma and transformed, and the times of the stages that a device has measured.
+  virtual void download(FrameResult& result) = 0;
 
   /// Where a device's maps go, and where they are (roadstereo/device.hpp). Throw Error where there is no device.
   virtual void set_device_options(const DeviceOptions& use) = 0;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/parallel.hpp"
 #include "pipeline/pair_checks.hpp"
-#include "road/shift_terms_of.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/coarse_search.hpp"
@@ -16,7 +16,7 @@
 namespace roadstereo {
 namespace {
 
-bool shows_something(const GreyImage& image) {
+bool has_contrast(const GreyImage& image) {
   const std::int16_t first = image(0, 0);
   for (int v = 0; v < image.height(); ++v) {
     const std::int16_t* row = image.row(v);
@@ -25,7 +25,7 @@ bool shows_something(const GreyImage& image) {
   return false;
 }
 
-double valid_share(const Image<float>& map) {
+double valid_share(ImageView<const float> map) {
   std::size_t valid = 0;
   for (int v = 0; v < map.height(); ++v) {
     const float* row = map.row(v);
@@ -47,66 +47,80 @@ class HostStages final : public FrameStages {
     }
   }
 
-  void prepare(const FrameView& left, const FrameView& right, FrameResult& result) override {
-    to_grey(left, options_.white_level, result.grey);
+  GreyPair convert_to_grey(const FrameView& left, const FrameView& right) override {
+    to_grey(left, options_.white_level, left_);
     to_grey(right, options_.white_level, right_);
     PairContents contents;
-    contents.left = {shows_something(result.grey), result.grey(0, 0)};
-    contents.right = {shows_something(right_), right_(0, 0)};
-    contents.equal = result.grey == right_;
+    contents.left = {has_contrast(left_), left_(0, 0)};
+    contents.right = {has_contrast(right_), right_(0, 0)};
+    contents.equal = left_ == right_;
     require_pair(contents);
+    return {left_, right_};
   }
 
-  GreyPair grey(FrameResult& result) override { return {result.grey, right_}; }
+  GreyPair on_host(const GreyPair& pair) override { return pair; }
 
-  RoadModelEstimate verify_road(const DisparityPlane& previous, const FrameResult& result) override {
-    return verify_road_model(result.grey, right_, previous, calibration_, options_.road_model, threads_);
+  RoadModelEstimate verify_road_model(const GreyPair& pair, const DisparityPlane& previous) override {
+    return roadstereo::verify_road_model(pair.left, pair.right, previous, calibration_, options_.road_model, threads_);
   }
 
-  void transform_perspective(const FrameResult& result) override {
-    transform_target(right_, result.shift, threads_, transformed_target_, first_column_);
+  MatchInput transform_perspective(const GreyPair& pair, const PerspectiveShift& shift) override {
+    transform_target(pair.right, shift, threads_, transformed_target_, first_column_);
+    return {pair.left, transformed_target_, first_column_.data(), shift.disparities, {}, {}};
   }
 
-  void search_coarsely(const FrameResult& result) override {
-    match_input_ = {result.grey, transformed_target_, first_column_.data(), result.shift.disparities};
-    if (!coarse_search_) return;
-    const auto road = [shift = shift_terms(result.shift)](double u, double v) {
+  MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift) override {
+    MatchInput input = pair;
+    const auto road = [&shift](double u, double v) {
       return shifted_road(shift, u, v, std::numeric_limits<double>::quiet_NaN());
     };
-    if (!coarse_search_->find(match_input_, road)) return;
-    if (options_.narrow_search) match_input_.ranges = coarse_search_->ranges();
-    match_input_.prior = &coarse_search_->prior();
+    if (!coarse_search_ || !coarse_search_->find(pair, road)) return input;
+    if (options_.narrow_search && coarse_search_->ranges() != nullptr) input.ranges = coarse_search_->ranges()->views();
+    input.prior = coarse_search_->prior().view();
+    return input;
   }
 
-  void match(const MatcherOptions& options, const FrameResult&) override {
-    engine_->match(match_input_, options, maps_);
+  ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
+    engine_->match(input, options, matched_);
+    return {matched_.disparity, matched_.variance};
   }
 
-  void refine(FrameResult& result) override {
-    add_shift(maps_.disparity, result.shift, threads_, shifted_);
-    refine_disparities(shifted_, maps_.variance, result.shift.road, support_, options_.refinement, threads_,
-                       result.disparity, result.sigma);
+  DisparityMaps restore_disparity(const ResidualMaps& residual, const PerspectiveShift& shift) override {
+    roadstereo::restore_disparity(residual.disparity, shift, threads_, restored_);
+    return {restored_, residual.variance};
   }
 
-  bool fit_geometry(const std::optional<DisparityPlane>& prior, double initial_roll_rad, double min_share,
-                    FrameResult& result) override {
-    result.valid_share = valid_share(result.disparity);
-    if (result.valid_share < min_share) return false;
-    result.geometry = estimate_roll(result.disparity, std::nullopt, prior, initial_roll_rad, options_.roll, threads_);
-    return true;
+  ImageView<const float> refine(const DisparityMaps& maps, const DisparityPlane& road) override {
+    refine_disparities(maps.disparity, maps.variance, road, support_, options_.refinement, threads_, disparity_,
+                       sigma_);
+    return disparity_;
   }
 
-  void transform(FrameResult& result) override {
-    result.delta_t = transform_disparity(result.disparity, result.geometry, result.shift.delta_p, options_.roll,
-                                         threads_, result.transformed);
-    result.spread = measure_residuals(result.transformed, result.delta_t, threads_);
+  RollFit estimate_roll(ImageView<const float> disparity, const std::optional<DisparityPlane>& prior,
+                        double initial_roll_rad, double min_share, const PerspectiveShift&) override {
+    RollFit fit{valid_share(disparity), std::nullopt};
+    if (fit.valid_share < min_share) return fit;
+    fit.geometry = roadstereo::estimate_roll(disparity, std::nullopt, prior, initial_roll_rad, options_.roll, threads_);
+    return fit;
   }
 
-  void invalidate_transformed(FrameResult& result) override {
-    result.transformed.assign(result.grey.width(), result.grey.height(), std::numeric_limits<float>::quiet_NaN());
+  TransformedRoad transform_disparity(ImageView<const float> disparity, const RollEstimate& geometry,
+                                      const PerspectiveShift& shift) override {
+    const double delta_t =
+        roadstereo::transform_disparity(disparity, geometry, shift.delta_p, options_.roll, threads_, transformed_);
+    return {delta_t, measure_residuals(transformed_, delta_t, threads_)};
   }
 
-  void deliver(FrameResult&) override {}
+  void invalidate_transformed() override {
+    transformed_.assign(left_.width(), left_.height(), std::numeric_limits<float>::quiet_NaN());
+  }
+
+  void download(FrameResult& result) override {
+    std::swap(result.grey, left_);
+    std::swap(result.disparity, disparity_);
+    std::swap(result.sigma, sigma_);
+    std::swap(result.transformed, transformed_);
+  }
 
   void set_device_options(const DeviceOptions&) override { fail_without_device(); }
   DeviceMaps device_maps() const override { fail_without_device(); }
@@ -119,16 +133,15 @@ class HostStages final : public FrameStages {
   PipelineOptions options_;
   std::optional<StereoCalibration> calibration_;
   int threads_;
-  double support_;  ///< pixels that one disparity rests on
+  double support_;  ///< effective samples of one disparity
   std::unique_ptr<StereoEngine> engine_;
   std::optional<CoarseSearch> coarse_search_;
 
-  // Scratch memory.
-  GreyImage right_, transformed_target_;
-  std::vector<int> first_column_;
-  MatchInput match_input_;
-  MatchMaps maps_;
-  Image<float> shifted_;  ///< disparities before they are refined
+  GreyImage left_, right_, transformed_target_;
+  std::vector<int> first_column_;  ///< of the transformed target
+  MatchMaps matched_;
+  Image<float> restored_;
+  Image<float> disparity_, sigma_, transformed_;  ///< results of the frame; earlier ones after `download`
 };
 
 }  // namespace

@@ -40,16 +40,16 @@ void visit_options(Options& o, Visitor visit) {
   visit("white_level", o.white_level, "sample value of white; 0 takes 255 or 65535 by the sample type");
   visit("check_rows", o.check_rows, "measure whether the rows of the pair agree");
   visit("correct_rows", o.correct_rows, "undo the constant offset of the rows that check_rows measures");
-  visit("narrow_search", o.narrow_search, "search in each tile only near what a coarse look finds there");
+  visit("narrow_search", o.narrow_search, "search each tile only near what the coarse search finds there");
 
   visit("road_model.with_roll", o.road_model.with_roll, "the model depends on the column too (a2)");
   visit("road_model.max_disparity_share", o.road_model.max_disparity_share,
         "largest disparity searched, share of the image width");
   visit("road_model.max_road_tilt_deg", o.road_model.max_road_tilt_deg, "steepest sideways tilt of a road, degrees");
   visit("road_model.min_inlier_share", o.road_model.min_inlier_share,
-        "share of the textured places that a trusted model explains");
+        "share of the textured samples that are inliers of a reliable model");
   visit("road_model.verify_tolerance_px", o.road_model.verify_tolerance_px,
-        "largest spread that a carried-over model may leave, pixels");
+        "largest spread of a carried-over model, pixels");
 
   visit("perspective.enabled", o.perspective.enabled, "shift the rows of the target image by the road model");
   visit("perspective.shift", o.perspective.shift, "whole_pixel or sub_pixel");
@@ -61,20 +61,21 @@ void visit_options(Options& o, Visitor visit) {
   visit("perspective.delta_p_px", o.perspective.delta_p_px,
         "the road's disparity after the shift, pixels; negative derives it");
 
-  visit("coarse_search.factor", o.coarse_search.factor, "shrinks the pair by 2, 4 or 8; 0 derives it");
+  visit("coarse_search.factor", o.coarse_search.factor, "downsampling of the pair, 2, 4 or 8; 0 derives it");
   visit("coarse_search.block_radius", o.coarse_search.block_radius, "radius of its correlation block, coarse pixels");
   visit("coarse_search.ncc_noise_sigma", o.coarse_search.ncc_noise_sigma,
-        "noise below which its texture is no evidence, 8-bit grey levels");
+        "standard deviation of the noise in its correlation, 8-bit grey levels");
   visit("coarse_search.step_penalty", o.coarse_search.step_penalty,
         "cost of a change by one coarse pixel along the row");
   visit("coarse_search.jump_penalty", o.coarse_search.jump_penalty, "cost of a larger change along the row");
   visit("coarse_search.road_prior_weight", o.coarse_search.road_prior_weight,
-        "cost of a coarse pixel away from the road where nothing is known");
+        "cost per coarse pixel of distance from the road, without texture");
   visit("coarse_search.road_prior_truncation_px", o.coarse_search.road_prior_truncation_px,
-        "coarse pixels away at which that cost stops growing");
-  visit("coarse_search.row_offset_sigma_px", o.coarse_search.row_offset_sigma_px, "error of the rows, coarse pixels");
+        "truncation of that distance, coarse pixels");
+  visit("coarse_search.row_offset_sigma_px", o.coarse_search.row_offset_sigma_px,
+        "standard error of the rows' offset, coarse pixels");
   visit("coarse_search.half_weight_sigma_px", o.coarse_search.half_weight_sigma_px,
-        "standard error at which the road pulls half as strongly, coarse pixels");
+        "standard error at which the road has half its weight, coarse pixels");
 
   visit("matcher.block_radius", o.matcher.block_radius, "radius of the correlation block, pixels");
   visit("matcher.aggregation_radius", o.matcher.aggregation_radius, "radius of the bilateral window, pixels; 0 is off");
@@ -84,35 +85,36 @@ void visit_options(Options& o, Visitor visit) {
   visit("matcher.sigma_space", o.matcher.sigma_space, "sigma 0 of the bilateral weights, pixels");
   visit("matcher.sigma_colour", o.matcher.sigma_colour, "sigma 1 of the bilateral weights, 8-bit grey levels");
   visit("matcher.ncc_noise_sigma", o.matcher.ncc_noise_sigma,
-        "noise below which texture is no evidence, 8-bit grey levels");
-  visit("matcher.left_right_check", o.matcher.left_right_check, "remove pixels that the two views see differently");
+        "standard deviation of the noise in the correlation, 8-bit grey levels");
+  visit("matcher.left_right_check", o.matcher.left_right_check,
+        "check the disparities of the two views against each other");
   visit("matcher.match_both_views", o.matcher.match_both_views,
-        "match the target view too, not only project the winners");
-  visit("matcher.prior_weight", o.matcher.prior_weight, "cost of a pixel away from the coarse map; 0 ignores it");
-  visit("matcher.prior_truncation_px", o.matcher.prior_truncation_px, "pixels away at which that cost stops growing");
+        "match the target view too, instead of projecting the winners");
+  visit("matcher.prior_weight", o.matcher.prior_weight, "cost per pixel of distance from the prior; 0 ignores it");
+  visit("matcher.prior_truncation_px", o.matcher.prior_truncation_px, "truncation of that distance, pixels");
   visit("matcher.lr_max_diff_px", o.matcher.lr_max_diff_px,
-        "largest difference of the left-right check, pixels (delta r of eq. lrc is its square)");
+        "largest difference of the left-right check, pixels (delta r of eq. 12 is its square)");
   visit("matcher.occlusion_sigma_px", o.matcher.occlusion_sigma_px,
         "standard error added to what fails the left-right check, pixels; 0 makes it invalid");
   visit("matcher.sub_pixel", o.matcher.sub_pixel, "refine the winner by a parabola");
   visit("matcher.reject_range_boundary", o.matcher.reject_range_boundary,
         "a winner at the end of its range is invalid");
 
-  visit("refinement.radius", o.refinement.radius,
-        "of the neighbours that a disparity is averaged with, pixels; 0 is off");
+  visit("refinement.radius", o.refinement.radius, "radius of the averaged neighbours, pixels; 0 is off");
   visit("refinement.step", o.refinement.step, "distance between those neighbours, pixels");
   visit("refinement.truncation_sigmas", o.refinement.truncation_sigmas,
-        "joint standard errors at which a neighbour loses its weight");
+        "difference at which a neighbour has no weight, joint standard errors");
   visit("refinement.max_agreement_sigma_px", o.refinement.max_agreement_sigma_px,
-        "a disparity known less well agrees with its neighbours no more easily than this, pixels");
+        "upper bound on the standard error in that test, pixels");
   visit("refinement.max_sigma_px", o.refinement.max_sigma_px,
-        "a disparity known less well than that is invalid, pixels");
-  visit("refinement.min_sigma_px", o.refinement.min_sigma_px, "standard error that no disparity falls below, pixels");
+        "disparities with a larger standard error are invalid, pixels");
+  visit("refinement.min_sigma_px", o.refinement.min_sigma_px,
+        "standard error of interpolation and calibration, pixels");
 
   visit("roll.solver", o.roll.solver, "gradient_descent, closed_form or robust");
   visit("roll.initial_lambda", o.roll.initial_lambda, "first learning rate of the descent");
   visit("roll.roll_threshold_rad", o.roll.roll_threshold_rad, "step below which the descent has converged, radians");
-  visit("roll.max_iterations", o.roll.max_iterations, "most steps of a solver");
+  visit("roll.max_iterations", o.roll.max_iterations, "largest number of steps of a solver");
   visit("roll.delta_t_px", o.roll.delta_t_px, "the road's value in the transformed map, pixels; negative derives it");
   visit("roll.max_roll_stderr_rad", o.roll.max_roll_stderr_rad,
         "the roll is observable below this standard error, radians");

@@ -7,7 +7,7 @@ namespace roadstereo {
 namespace {
 
 void require_picture(const ImageContents& image, const char* name) {
-  if (image.something) return;
+  if (image.has_contrast) return;
   fail("the ", name, " image shows nothing: every pixel has the grey level ",
        static_cast<double>(image.first) / grey_scale, " of 255");
 }

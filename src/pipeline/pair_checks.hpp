@@ -4,10 +4,10 @@
 
 namespace roadstereo {
 
-/// What an image shows, as far as a pair must be refused for it.
+/// Contents of an image, as far as they make a pair invalid.
 struct ImageContents {
-  bool something = true;   ///< false: every pixel has one grey level
-  std::int16_t first = 0;  ///< that of the first pixel, in sixteenths
+  bool has_contrast = true;  ///< false: every pixel has one grey level
+  std::int16_t first = 0;    ///< level of the first pixel, in sixteenths
 };
 
 struct PairContents {
@@ -15,7 +15,7 @@ struct PairContents {
   bool equal = false;  ///< the images are the same
 };
 
-/// Throws Error for a pair that cannot be one.
+/// Throws Error for an invalid pair.
 void require_pair(const PairContents& contents);
 
 }  // namespace roadstereo

@@ -17,18 +17,23 @@
 namespace roadstereo {
 namespace {
 
-/// Milliseconds since it was made or last read.
-class Stopwatch {
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+/// Adds the milliseconds of its lifetime to the time of a stage.
+class StageTimer {
  public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return ms;
-  }
+  explicit StageTimer(double& ms) : ms_(ms) {}
+  ~StageTimer() { ms_ += ms_since(begin_); }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
 
  private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  double& ms_;
+  Clock::time_point begin_ = Clock::now();
 };
 
 std::unique_ptr<FrameStages> make_stages(const std::string& engine, const PipelineOptions& options,
@@ -50,6 +55,7 @@ struct Pipeline::State {
   std::unique_ptr<FrameStages> stages;
 
   PipelineState carried;
+  Clock::time_point begin;    ///< of the frame
   int width = 0, height = 0;  ///< of the frame, pixels
   bool has_frame = false;     ///< whether `result` belongs to one frame, whole
   bool has_maps = false;      ///< whether the maps that a device keeps do
@@ -57,39 +63,53 @@ struct Pipeline::State {
   std::pmr::unsynchronized_pool_resource memory{{.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
   FrameResult result;
 
-  void prepare(const FrameView& left_frame, const FrameView& right_frame);
-  void find_road();
+  void begin_frame(const FrameView& left, const FrameView& right);
+  GreyPair convert_to_grey(const FrameView& left, const FrameView& right);
+  void estimate_road_model(const GreyPair& pair);
   void measure_rows(const GreyPair& grey);
-  void transform_perspective();
-  void match();
-  void find_geometry();
-  void transform();
-  void summarise();
+  MatchInput transform_perspective(const GreyPair& pair);
+  MatchInput search_coarsely(const MatchInput& pair);
+  ResidualMaps match(const MatchInput& input);
+  DisparityMaps restore_disparity(const ResidualMaps& residual);
+  ImageView<const float> refine(const DisparityMaps& maps);
+  void estimate_roll(ImageView<const float> disparity);
+  void transform_disparity(ImageView<const float> disparity);
+  void download();
+  void end_frame();
 };
 
-/// Converts both images to grey and refuses what cannot be a pair.
-void Pipeline::State::prepare(const FrameView& left_frame, const FrameView& right_frame) {
-  if (left_frame.width != right_frame.width || left_frame.height != right_frame.height) {
-    fail("the left image has ", left_frame.width, "×", left_frame.height, " pixels and the right image ",
-         right_frame.width, "×", right_frame.height, "; a pair must have one size");
+/// Checks the sizes. Images of a new size reset the state.
+void Pipeline::State::begin_frame(const FrameView& left, const FrameView& right) {
+  begin = Clock::now();
+  has_frame = has_maps = false;
+  result.warnings.clear();
+  result.ms = {};
+  if (left.width != right.width || left.height != right.height) {
+    fail("the left image has ", left.width, "×", left.height, " pixels and the right image ", right.width, "×",
+         right.height, "; a pair must have one size");
   }
-  width = left_frame.width;
-  height = left_frame.height;
-  if (calibration) calibration->validate(left_frame.width, left_frame.height, "calibration");
-  if (carried.width != left_frame.width || carried.height != left_frame.height) carried.road.reset();
-  stages->prepare(left_frame, right_frame, result);
+  width = left.width;
+  height = left.height;
+  if (calibration) calibration->validate(width, height, "calibration");
+  if (carried.width != width || carried.height != height) carried = {};
 }
 
-/// The road model Δu (eq. relation_vd): the last frame's when it still fits, else from the images.
-void Pipeline::State::find_road() {
+GreyPair Pipeline::State::convert_to_grey(const FrameView& left, const FrameView& right) {
+  const StageTimer timer(result.ms.prepare);
+  return stages->convert_to_grey(left, right);
+}
+
+/// Road model Δu, eq. (4): the last frame's when it still fits, else from the images.
+void Pipeline::State::estimate_road_model(const GreyPair& pair) {
+  const StageTimer timer(result.ms.road_model);
   result.rows = {};
   if (carried.road) {
-    result.road = stages->verify_road(*carried.road, result);
+    result.road = stages->verify_road_model(pair, *carried.road);
     if (result.road.reliable) return;
     result.warnings.push_back(sentence("the road model was estimated anew: ", result.road.reason));
   }
-  const GreyPair grey = stages->grey(result);
-  result.road = estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads);
+  const GreyPair grey = stages->on_host(pair);
+  result.road = roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads);
   if (!result.road.reliable) {
     result.warnings.push_back(sentence("no reliable road model (", result.road.reason,
                                        "): matched without perspective transformation over the full range"));
@@ -97,6 +117,7 @@ void Pipeline::State::find_road() {
   if (options.check_rows) measure_rows(grey);
 }
 
+/// Measures the vertical offset of the pair, and keeps it where it is to be corrected.
 void Pipeline::State::measure_rows(const GreyPair& grey) {
   constexpr double max_offset_px = 0.5;
   constexpr double max_spread_px = 1.0;
@@ -117,42 +138,68 @@ void Pipeline::State::measure_rows(const GreyPair& grey) {
   }
 }
 
-/// π_tar → π_tar', section 3.1.
-void Pipeline::State::transform_perspective() {
+/// Perspective transformation π_tar → π_tar', section 3.1.
+MatchInput Pipeline::State::transform_perspective(const GreyPair& pair) {
+  const StageTimer timer(result.ms.perspective);
   result.shift = plan_perspective(result.road, calibration, width, height, options.perspective);
   result.shift.row_offset = carried.row_offset_px;
-  stages->transform_perspective(result);
+  return stages->transform_perspective(pair, result.shift);
 }
 
-/// Section 3.2. Without a road the coarse map has only its rows to go by, and matching leans on it less far.
-void Pipeline::State::match() {
-  constexpr double reach_without_road_px = 2;
+MatchInput Pipeline::State::search_coarsely(const MatchInput& pair) {
+  const StageTimer timer(result.ms.coarse);
+  return stages->search_coarsely(pair, result.shift);
+}
+
+/// Section 3.2. Without a road model the prior rests on its rows alone, and its truncation is smaller.
+ResidualMaps Pipeline::State::match(const MatchInput& input) {
+  constexpr double truncation_without_road_px = 2;
+  const StageTimer timer(result.ms.match);
   MatcherOptions matcher = options.matcher;
-  if (!result.shift.enabled) matcher.prior_truncation_px = std::min(matcher.prior_truncation_px, reach_without_road_px);
-  stages->match(matcher, result);
+  if (!result.shift.enabled) {
+    matcher.prior_truncation_px = std::min(matcher.prior_truncation_px, truncation_without_road_px);
+  }
+  return stages->match(input, matcher);
+}
+
+/// Adds Δu − δp back. The left-right check of `match` needs no shift: it cancels there.
+DisparityMaps Pipeline::State::restore_disparity(const ResidualMaps& residual) {
+  const StageTimer timer(result.ms.refinement);
+  return stages->restore_disparity(residual, result.shift);
+}
+
+ImageView<const float> Pipeline::State::refine(const DisparityMaps& maps) {
+  const StageTimer timer(result.ms.refinement);
+  return stages->refine(maps, result.shift.road);
 }
 
 /// Roll angle and projection model, section 3.3.
-void Pipeline::State::find_geometry() {
+void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
   constexpr double min_valid_share = 0.01;
-  result.geometry = {};
+  const StageTimer timer(result.ms.roll);
   const auto prior = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
-  result.roll_found = stages->fit_geometry(prior, carried.roll_rad, min_valid_share, result);
+  const RollFit fit = stages->estimate_roll(disparity, prior, carried.roll_rad, min_valid_share, result.shift);
+  result.valid_share = fit.valid_share;
+  result.roll_found = fit.geometry.has_value();
+  result.geometry = fit.geometry.value_or(RollEstimate{});
   if (!result.roll_found) {
     result.warnings.push_back(sentence("only ", 100 * result.valid_share, " % of the pixels have a disparity"));
   }
 }
 
-/// ℓ → ℓ' (eq. disparity_transformation). δt is at least δp, so that it stays the same from frame to frame of a flight.
-void Pipeline::State::transform() {
+/// Disparity transformation ℓ → ℓ', eq. (29). δt is at least δp, so that it stays the same from frame to frame.
+void Pipeline::State::transform_disparity(ImageView<const float> disparity) {
+  const StageTimer timer(result.ms.transform);
   result.delta_t = 0;
   result.spread = {};
   if (!result.roll_found) {
-    stages->invalidate_transformed(result);
+    stages->invalidate_transformed();
     return;
   }
-  stages->transform(result);
-  // Nothing vouches for a plane that the images did not show before matching and that few disparities lie on.
+  const TransformedRoad road = stages->transform_disparity(disparity, result.geometry, result.shift);
+  result.delta_t = road.delta_t;
+  result.spread = road.spread;
+  // Without a road model, a plane that few disparities lie on need not be a road.
   constexpr double min_road_share = 0.3;
   if (!result.road.reliable && result.spread.road_share < min_road_share) {
     result.geometry.roll_observable = false;
@@ -162,13 +209,20 @@ void Pipeline::State::transform() {
   }
 }
 
-/// What the next frame starts from, and the figures of this one.
-void Pipeline::State::summarise() {
+void Pipeline::State::download() {
+  const StageTimer timer(result.ms.download);
+  stages->download(result);
+}
+
+/// Sets the total time and the state that the next frame starts from.
+void Pipeline::State::end_frame() {
+  result.ms.total = ms_since(begin);
   carried.width = width;
   carried.height = height;
   carried.road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
   carried.roll_rad = result.roll_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   result.mde_per_s = static_cast<double>(width) * height * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
+  has_frame = has_maps = true;
 }
 
 Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
@@ -188,30 +242,18 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 const FrameResult& Pipeline::process(const FrameView& left, const FrameView& right) {
   State& s = *state_;
   const ScratchScope scratch(s.memory);
-  s.has_frame = s.has_maps = false;
-  s.result.warnings.clear();
-  Stopwatch frame, watch;
-  s.prepare(left, right);
-  s.result.ms.prepare = watch.lap();
-  s.find_road();
-  s.result.ms.road_model = watch.lap();
-  s.transform_perspective();
-  s.result.ms.perspective = watch.lap();
-  s.stages->search_coarsely(s.result);
-  s.result.ms.coarse = watch.lap();
-  s.match();
-  s.result.ms.match = watch.lap();
-  s.stages->refine(s.result);
-  s.result.ms.refinement = watch.lap();
-  s.find_geometry();
-  s.result.ms.roll = watch.lap();
-  s.transform();
-  s.result.ms.transform = watch.lap();
-  s.stages->deliver(s.result);
-  s.result.ms.deliver = watch.lap();
-  s.result.ms.total = frame.lap();
-  s.summarise();
-  s.has_frame = s.has_maps = true;
+  s.begin_frame(left, right);
+  const GreyPair pair = s.convert_to_grey(left, right);
+  s.estimate_road_model(pair);
+  const MatchInput transformed = s.transform_perspective(pair);
+  const MatchInput input = s.search_coarsely(transformed);
+  const ResidualMaps residual = s.match(input);
+  const DisparityMaps restored = s.restore_disparity(residual);
+  const ImageView<const float> disparity = s.refine(restored);
+  s.estimate_roll(disparity);
+  s.transform_disparity(disparity);
+  s.download();
+  s.end_frame();
   return s.result;
 }
 

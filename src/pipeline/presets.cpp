@@ -5,11 +5,11 @@
 namespace roadstereo {
 namespace {
 
-/// Every constant of the paper.
+/// The constants of the paper.
 PipelineOptions paper_preset() {
   PipelineOptions options;
   options.correct_rows = false;
-  options.road_model.with_roll = false;  // eq. relation_vd: Δu depends on v alone
+  options.road_model.with_roll = false;  // eq. (4): Δu depends on v alone
   options.perspective.shift = ShiftPrecision::whole_pixel;
   options.coarse_search.road_prior_weight = 0;
   options.matcher.prior_weight = 0;  // the costs alone decide
@@ -21,7 +21,7 @@ PipelineOptions paper_preset() {
   options.matcher.aggregation_shape = WindowShape::square;
   options.matcher.sigma_space = 1.5;    // σ0
   options.matcher.sigma_colour = 5.5;   // σ1
-  options.matcher.ncc_noise_sigma = 0;  // eq. c as written
+  options.matcher.ncc_noise_sigma = 0;  // eq. (8) as written
   options.matcher.lr_max_diff_px = 1;   // δr
   options.matcher.occlusion_sigma_px = 0;
   options.matcher.reject_range_boundary = false;
@@ -32,8 +32,8 @@ PipelineOptions paper_preset() {
   return options;
 }
 
-/// The most speed at an accuracy that still beats semi-global matching on roads: plain correlation of blocks that leans
-/// on a very coarse look.
+/// Highest speed that is still more accurate than semi-global matching on roads: block matching by correlation with the
+/// prior of a very coarse search.
 PipelineOptions fast_preset() {
   PipelineOptions options;
   options.coarse_search.factor = 4;

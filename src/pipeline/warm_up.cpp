@@ -6,7 +6,7 @@
 namespace roadstereo {
 namespace {
 
-/// A frame of a road seen from above that never was: texture, and in the right one the same shifted row by row.
+/// Synthetic textured frame to warm up memory and threads; the right one is shifted row by row.
 class SyntheticTexture {
  public:
   SyntheticTexture(int width, int height, double white_level, bool right)

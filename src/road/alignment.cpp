@@ -7,15 +7,17 @@
 #include <vector>
 
 #include "core/downsample.hpp"
+#include "core/mid_grey.hpp"
+#include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
 #include "road/block_alignment.hpp"
 #include "road/plane_fit.hpp"
+#include "road/road_search.hpp"
 #include "road/strip_correlation.hpp"
 
 namespace roadstereo {
 namespace {
 
-constexpr int coarse_width = 120;
 constexpr int half_block = 4;
 constexpr int refined_radius = 8;
 constexpr float min_correlation = 0.7f;
@@ -107,7 +109,7 @@ std::optional<Place> best_place(ImageView<const std::int16_t> image, int u0, int
 
 /// Cuts a row of a strip out of an image.
 void copy_strip(const std::int16_t* from, int columns, float* strip_row) {
-  for (int x = 0; x < columns; ++x) strip_row[x] = static_cast<float>(from[x]) - grey_max / 2.0f;
+  for (int x = 0; x < columns; ++x) strip_row[x] = static_cast<float>(from[x]) - static_cast<float>(mid_grey);
 }
 
 /// The best of all whole offsets between two; the block around `place` must lie inside the left image.
@@ -178,8 +180,7 @@ std::vector<double> measure_cells(const Pyramid& pair, int cell_v) {
 
 RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                    int threads) {
-  int factor = 1;
-  while (left.width() / (2 * factor) >= coarse_width) factor *= 2;
+  const int factor = coarse_factor(left.width());
   const Pyramid pair{left, right, factor, downsample(left, factor), downsample(right, factor)};
   std::vector<std::vector<double>> by_row(cells_down);
   parallel_for(cells_down, threads,
@@ -189,10 +190,9 @@ RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView
   RowAlignment alignment;
   alignment.points = static_cast<int>(offsets.size());
   if (offsets.empty()) return alignment;
-  std::sort(offsets.begin(), offsets.end());
-  alignment.median_px = offsets[offsets.size() / 2];
+  alignment.median_px = upper_median(offsets);
   for (double& offset : offsets) offset -= alignment.median_px;
-  alignment.sigma_px = normal_from_median * median_magnitude(offsets);
+  alignment.sigma_px = gaussian_mad * upper_median_magnitude(offsets);
   return alignment;
 }
 

@@ -5,6 +5,8 @@
 
 #include "roadstereo/image.hpp"
 
+// Affine Lucas-Kanade alignment of a block, with gain and offset.
+
 namespace roadstereo {
 
 /// Where a block of the left image lies in the right one: x' = x + du + shear·y + stretch·x, y' = y + dv around its

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "core/downsample.hpp"
+#include "core/parabola.hpp"
 #include "core/parallel.hpp"
 #include "road/row_correlation.hpp"
 
@@ -124,8 +125,7 @@ double refine(const RowCorrelations& row, int u, int d) {
   const float* at = row.values + d * row.pitch + u;
   const float before = at[-row.pitch], after = at[row.pitch];
   if (before <= -1 || after <= -1) return d;
-  const float curvature = 2 * before + 2 * after - 4 * *at;
-  return curvature < 0 ? d + static_cast<double>((before - after) / curvature) : d;
+  return second_difference(before, *at, after) < 0 ? d + static_cast<double>(parabola_vertex(before, *at, after)) : d;
 }
 
 /// The reliable matches of one row of the shrunk pair: distinct, and found from both sides. Returns how many.

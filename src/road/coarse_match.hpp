@@ -3,6 +3,8 @@
 #include "road/plane_fit.hpp"
 #include "roadstereo/image.hpp"
 
+// Block matching by normalised cross-correlation on the downsampled pair, with left-right and distinctness checks.
+
 namespace roadstereo {
 
 /// Correspondences over the whole image and the whole range of disparities, from a dense search along the rows of the

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
 namespace roadstereo {
 

@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
 #include "road/plane_fit.hpp"
@@ -56,7 +57,7 @@ RoadResiduals measure_residuals(ImageView<const float> transformed, double delta
     }
   }
   std::erase_if(residuals, [](double r) { return std::abs(r) > spread_nearest_px; });
-  const double limit = spread_limit(median_magnitude(residuals));
+  const double limit = spread_limit(upper_median_magnitude(residuals));
 
   struct Row {
     Spread all{}, road{};

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "core/require_range.hpp"
 #include "core/scratch.hpp"
 #include "road/cubic.hpp"
-#include "road/shift_terms_of.hpp"
-#include "roadstereo/error.hpp"
+#include "road/row_shift.hpp"
 #include "roadstereo/ground_plane.hpp"
 
 namespace roadstereo {
@@ -22,15 +22,15 @@ constexpr int rows_per_band = 32;
 constexpr double margin_px = 2.0;
 
 /// How far below and above the road's disparity must be searched, pixels.
-struct SearchRange {
+struct ResidualRange {
   double below = 0;
   double above = 0;
 };
 
 /// Residual disparities of the deepest damage and the highest bump where the road is nearest to the camera. A point
 /// at distance e beyond the road plane has the road's disparity times h / (h + e), h = distance of camera and plane.
-SearchRange physical_range(const DisparityPlane& road, const StereoCalibration& calibration, int width, int height,
-                           const PerspectiveOptions& options) {
+ResidualRange physical_range(const DisparityPlane& road, const StereoCalibration& calibration, int width, int height,
+                             const PerspectiveOptions& options) {
   const double h = ground_plane(road, calibration).height_m;
   const std::array<double, 4> corners{road.disparity(0, 0), road.disparity(width - 1, 0), road.disparity(0, height - 1),
                                       road.disparity(width - 1, height - 1)};
@@ -100,20 +100,10 @@ void transform_row(const float* row, const PerspectiveShift& shift, int v, int f
 }  // namespace
 
 void PerspectiveOptions::validate() const {
-  const auto require = [](bool good, const char* name, double value, const char* rule) {
-    if (!good) fail("perspective.", name, " is ", value, "; it must be ", rule);
-  };
-  require(max_damage_depth_m > 0 && max_damage_depth_m <= 2, "max_damage_depth_m", max_damage_depth_m,
-          "above 0 and at most 2 metres");
-  require(max_bump_height_m > 0 && max_bump_height_m <= 2, "max_bump_height_m", max_bump_height_m,
-          "above 0 and at most 2 metres");
-  require(disparities >= 0 && disparities <= max_disparities, "disparities", disparities,
-          "between 1 and 1024, or 0 to derive it");
-  require(delta_p_px <= max_disparities, "delta_p_px", delta_p_px, "at most 1024, or negative to derive it");
-}
-
-double PerspectiveShift::at(double x, double v) const {
-  return shift_at(shift_terms(*this), x, v);
+  require_range("perspective", "max_damage_depth_m", max_damage_depth_m, Above{0.0}, 2.0);
+  require_range("perspective", "max_bump_height_m", max_bump_height_m, Above{0.0}, 2.0);
+  require_range("perspective", "disparities", disparities, 0, max_disparities);
+  require_range("perspective", "delta_p_px", delta_p_px, -unlimited, double{max_disparities});
 }
 
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
@@ -127,9 +117,9 @@ PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::opti
   }
   shift.road = road.model;
   // What the correspondences show of the road's unevenness, and what is to be measured where a scale is known.
-  SearchRange range{std::max(0.0, -road.residual_p01_px), std::max(0.0, road.residual_p99_px)};
+  ResidualRange range{std::max(0.0, -road.residual_p01_px), std::max(0.0, road.residual_p99_px)};
   if (calibration) {
-    const SearchRange physical = physical_range(road.model, *calibration, width, height, options);
+    const ResidualRange physical = physical_range(road.model, *calibration, width, height, options);
     range = {std::max(range.below, physical.below), std::max(range.above, physical.above)};
   }
   range.below += margin_px;
@@ -154,13 +144,12 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
   const int height = target.height();
   transformed.resize(width, height);
   first_column.resize(static_cast<std::size_t>(height));
-  const ShiftTerms terms = shift_terms(shift);
   const std::size_t padded = static_cast<std::size_t>(width + 2 * border);
   auto rows = scratch_vector<float>(padded * static_cast<std::size_t>(resolve_threads(threads)));
   parallel_rows(height, rows_per_band, threads, [&](int first_row, int last_row, int worker) {
     float* in = rows.data() + padded * static_cast<std::size_t>(worker);
     for (int v = first_row; v < last_row; ++v) {
-      const int first = find_first_column(terms, v, width);
+      const int first = find_first_column(shift, v, width);
       first_column[static_cast<std::size_t>(v)] = first;
       copy_with_border(target, v + shift.row_offset, in);
       std::fill_n(transformed.row(v), first, std::int16_t{0});
@@ -169,9 +158,9 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
   });
 }
 
-void add_shift(ImageView<const float> residual, const PerspectiveShift& shift, int threads, Image<float>& disparity) {
+void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, int threads,
+                       Image<float>& disparity) {
   disparity.resize(residual.width(), residual.height());
-  const ShiftTerms terms = shift_terms(shift);
   parallel_rows(residual.height(), rows_per_band, threads, [&](int first_row, int last_row, int) {
     for (int v = first_row; v < last_row; ++v) {
       const float* in = residual.row(v);
@@ -181,10 +170,10 @@ void add_shift(ImageView<const float> residual, const PerspectiveShift& shift, i
         continue;
       }
       if (shift.whole_pixel) {
-        for (int u = 0; u < residual.width(); ++u) out[u] = with_whole_shift(in[u], terms, u, v);
+        for (int u = 0; u < residual.width(); ++u) out[u] = with_whole_shift(in[u], shift, u, v);
         continue;
       }
-      const RowLine road = row_line(terms.road, v, shift.delta_p);
+      const RowLine road = row_line(shift.road, v, shift.delta_p);
       for (int u = 0; u < residual.width(); ++u) out[u] = with_shift(in[u], road, u);
     }
   });

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/order_statistics.hpp"
 #include "road/sampler.hpp"
 
 namespace roadstereo {
@@ -44,13 +45,6 @@ std::optional<DisparityPlane> PlaneSums::plane(bool with_roll) const {
   return model;
 }
 
-double median_magnitude(std::span<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  return std::abs(*middle);
-}
-
 std::optional<IrlsPlaneFit> fit_plane_irls(std::span<const DisparityPoint> points, const DisparityPlane& start,
                                            double start_scale_px, bool with_roll, int max_iterations) {
   if (points.size() < 3) return std::nullopt;
@@ -72,7 +66,7 @@ std::optional<IrlsPlaneFit> fit_plane_irls(std::span<const DisparityPoint> point
       const double residual = p.d - plane->disparity(p.u, p.v);
       if (std::abs(residual) < tukey * fit.scale_px) near.push_back(residual);
     }
-    const double scale = narrowed_scale(median_magnitude(near), fit.scale_px);
+    const double scale = narrowed_scale(upper_median_magnitude(near), fit.scale_px);
     const DisparityPoint& far = points.back();
     const bool settled = robust_fit_settled(plane->disparity(far.u, far.v) - fit.plane.disparity(far.u, far.v),
                                             plane->a2 - fit.plane.a2, scale, fit.scale_px);

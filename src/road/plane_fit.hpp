@@ -9,6 +9,8 @@
 #include "road/robust_weights.hpp"
 #include "roadstereo/road_model.hpp"
 
+// Plane fits in disparity space: preemptive RANSAC for a start, and IRLS with Tukey's biweight.
+
 namespace roadstereo {
 
 /// A point of disparity space: pixel (u, v) of the left image with disparity d.
@@ -18,7 +20,7 @@ struct DisparityPoint {
   double d = 0;
 };
 
-/// The ten sums over a disparity map that eqs. alpha3 and E_min2 are made of. Coordinates are taken relative to an
+/// The ten sums over a disparity map that eqs. (21) and (23) are made of. Coordinates are taken relative to an
 /// origin near the data, so that differences of large sums do not cancel.
 class PlaneSums {
  public:
@@ -76,8 +78,5 @@ std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> point
 
 /// The plane through three points; nothing when they lie on one line of the image.
 std::optional<DisparityPlane> plane_through(const DisparityPoint& a, const DisparityPoint& b, const DisparityPoint& c);
-
-/// Median of |values|; reorders them. 0 when empty.
-double median_magnitude(std::span<double> values);
 
 }  // namespace roadstereo

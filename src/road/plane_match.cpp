@@ -11,8 +11,6 @@
 namespace roadstereo {
 namespace {
 
-static_assert(plane_match_grey_scale == grey_scale);
-
 /// What one row of the grid found.
 struct RowCount {
   int tried = 0;

@@ -2,20 +2,18 @@
 
 #include <cmath>
 
-#include "core/cuda/host_device.hpp"
+#include "core/parabola.hpp"
+#include "roadstereo/grey_scale.hpp"
 
 // Where and how blocks are looked for around a supposed road: on the host and on the device.
 namespace roadstereo {
-
-/// Grey levels of the images: a sixteenth of an 8-bit level.
-inline constexpr int plane_match_grey_scale = 16;
 
 /// Size of a block, (2·half + 1) pixels each way, and what a match must have.
 inline constexpr int plane_block_half_width = 7;
 inline constexpr int plane_block_half_height = 3;
 inline constexpr int plane_block_width = 2 * plane_block_half_width + 1;
 inline constexpr int plane_block_height = 2 * plane_block_half_height + 1;
-inline constexpr float plane_match_min_deviation = 1.5f * plane_match_grey_scale;
+inline constexpr float plane_match_min_deviation = 1.5f * grey_scale;
 inline constexpr float plane_match_min_correlation = 0.75f;
 inline constexpr double plane_match_max_slant = 0.5;  ///< no road's disparity changes by that much per column
 
@@ -60,8 +58,7 @@ ROADSTEREO_HD inline double block_deviation(unsigned squares, double mean, doubl
 
 /// Where between its neighbours a peak lies, by the parabola through the three: −½ … ½.
 ROADSTEREO_HD inline double parabola_offset(double before, double at, double after) {
-  const double curvature = 2 * before + 2 * after - 4 * at;
-  return curvature < 0 ? (before - after) / curvature : 0;
+  return second_difference(before, at, after) < 0 ? parabola_vertex(before, at, after) : 0;
 }
 
 }  // namespace roadstereo

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/downsample.hpp"
+#include "core/require_range.hpp"
 #include "core/sentence.hpp"
 #include "road/coarse_match.hpp"
 #include "road/plane_fit.hpp"
@@ -49,12 +50,6 @@ ScratchVector<DisparityPoint> points_to_full_resolution(ScratchVector<DisparityP
   return points;
 }
 
-double percentile(std::span<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 /// Where the correspondences near the road lie.
 void measure_range(std::span<const DisparityPoint> matches, RoadModelEstimate& estimate) {
   auto residuals = scratch_vector<double>();
@@ -64,8 +59,8 @@ void measure_range(std::span<const DisparityPoint> matches, RoadModelEstimate& e
     if (near_road(residual, expected)) residuals.push_back(residual);
   }
   if (residuals.size() < static_cast<std::size_t>(min_matches)) return;
-  estimate.residual_p01_px = percentile(residuals, residual_p01);
-  estimate.residual_p99_px = percentile(residuals, residual_p99);
+  estimate.residual_p01_px = lower_quantile(residuals, residual_p01);
+  estimate.residual_p99_px = lower_quantile(residuals, residual_p99);
 }
 
 /// What the fine search around a plane and a robust fit leave.
@@ -134,7 +129,7 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, Origin
   evidence.inliers = static_cast<int>(rows.size());
   evidence.found = evidence.inliers >= min_matches;
   if (evidence.found) {
-    evidence.rows_covered = (percentile(rows, row_p95) - percentile(rows, row_p05)) / height;
+    evidence.rows_covered = (lower_quantile(rows, row_p95) - lower_quantile(rows, row_p05)) / height;
   }
   return result;
 }
@@ -153,16 +148,10 @@ bool look_swapped(ImageView<const std::int16_t> left, ImageView<const std::int16
 }  // namespace
 
 void RoadModelOptions::validate() const {
-  const auto require = [](bool good, const char* name, double value, const char* rule) {
-    if (!good) fail("road_model.", name, " is ", value, "; it must be ", rule);
-  };
-  require(max_disparity_share >= 0.05 && max_disparity_share <= 0.9, "max_disparity_share", max_disparity_share,
-          "between 0.05 and 0.9");
-  require(max_road_tilt_deg >= 5 && max_road_tilt_deg <= 80, "max_road_tilt_deg", max_road_tilt_deg,
-          "between 5 and 80 degrees");
-  require(min_inlier_share >= 0 && min_inlier_share <= 1, "min_inlier_share", min_inlier_share, "between 0 and 1");
-  require(verify_tolerance_px > 0 && verify_tolerance_px <= 100, "verify_tolerance_px", verify_tolerance_px,
-          "above 0 and at most 100 pixels");
+  require_range("road_model", "max_disparity_share", max_disparity_share, 0.05, 0.9);
+  require_range("road_model", "max_road_tilt_deg", max_road_tilt_deg, 5.0, 80.0);
+  require_range("road_model", "min_inlier_share", min_inlier_share, 0.0, 1.0);
+  require_range("road_model", "verify_tolerance_px", verify_tolerance_px, Above{0.0}, 100.0);
 }
 
 RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
@@ -183,7 +172,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   auto disparities = scratch_vector<double>();
   disparities.reserve(matches.size());
   for (const DisparityPoint& p : matches) disparities.push_back(p.d);
-  estimate.max_disparity_px = percentile(disparities, 0.99);
+  estimate.max_disparity_px = lower_quantile(disparities, 0.99);
 
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   const auto coarse = search_road(matches, 0.8 * factor, left.height(), limit);

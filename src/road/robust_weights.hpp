@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "core/cuda/host_device.hpp"
+#include "core/order_statistics.hpp"
+#include "roadstereo/host_device.hpp"
 
 // The formulas of the robust plane fit, which runs on the host and on the device.
 namespace roadstereo {
@@ -13,9 +14,6 @@ inline constexpr double tukey = 4.685;
 /// Residuals below this are rounding, not noise.
 inline constexpr double min_scale_px = 1e-3;
 
-/// Turns a median of magnitudes into the standard deviation of a normal distribution.
-inline constexpr double normal_from_median = 1.4826;
-
 /// Tukey's biweight, 0 … 1; `x` is the residual in windows of tukey · scale.
 template <class Real>
 ROADSTEREO_HD Real tukey_weight(Real x) {
@@ -25,7 +23,7 @@ ROADSTEREO_HD Real tukey_weight(Real x) {
 
 /// The scale after a step: that of the residuals in the window that is left, so that it narrows onto the road.
 ROADSTEREO_HD inline double narrowed_scale(double median_magnitude, double scale) {
-  const double wished = normal_from_median * median_magnitude;
+  const double wished = gaussian_mad * median_magnitude;
   if (wished < min_scale_px) return min_scale_px;
   return wished > scale ? scale : wished;
 }
@@ -41,7 +39,7 @@ inline constexpr double min_start_scale_px = 0.2;
 inline constexpr double max_start_scale_px = 0.6;
 
 ROADSTEREO_HD inline double start_scale_of(double median_magnitude) {
-  const double scale = normal_from_median * median_magnitude;
+  const double scale = gaussian_mad * median_magnitude;
   if (scale < min_start_scale_px) return min_start_scale_px;
   return scale > max_start_scale_px ? max_start_scale_px : scale;
 }

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
+#include "core/require_range.hpp"
 #include "road/plane_fit.hpp"
 #include "road/roll_assessment.hpp"
 #include "road/roll_energy.hpp"
@@ -112,7 +114,7 @@ double start_scale(std::span<const DisparityPoint> points, const DisparityPlane&
   auto residuals = scratch_vector<double>();
   residuals.reserve(points.size());
   for (const DisparityPoint& p : points) residuals.push_back(p.d - start.disparity(p.u, p.v));
-  return start_scale_of(median_magnitude(residuals));
+  return start_scale_of(upper_median_magnitude(residuals));
 }
 
 /// Plane, roll angle and iterations; without a fit the least-squares plane, and no weights.
@@ -136,16 +138,12 @@ RollEstimate fit_robustly(std::span<const DisparityPoint> points, const std::opt
 }  // namespace
 
 void RollOptions::validate() const {
-  const auto require = [](bool good, const char* name, double value, const char* rule) {
-    if (!good) fail("roll.", name, " is ", value, "; it must be ", rule);
-  };
-  require(initial_lambda > 0 && initial_lambda <= 1e6, "initial_lambda", initial_lambda, "above 0 and at most 1e6");
-  require(roll_threshold_rad >= 1e-12 && roll_threshold_rad <= 0.1, "roll_threshold_rad", roll_threshold_rad,
-          "between 1e-12 and 0.1");
-  require(max_iterations >= 1 && max_iterations <= 100000, "max_iterations", max_iterations, "between 1 and 100000");
-  require(delta_t_px <= 10000, "delta_t_px", delta_t_px, "at most 10000, or negative to derive it");
-  require(max_roll_stderr_rad > 0, "max_roll_stderr_rad", max_roll_stderr_rad, "above 0");
-  require(min_gradient_px >= 0, "min_gradient_px", min_gradient_px, "at least 0");
+  require_range("roll", "initial_lambda", initial_lambda, Above{0.0}, 1e6);
+  require_range("roll", "roll_threshold_rad", roll_threshold_rad, 1e-12, 0.1);
+  require_range("roll", "max_iterations", max_iterations, 1, 100000);
+  require_range("roll", "delta_t_px", delta_t_px, -unlimited, 10000.0);
+  require_range("roll", "max_roll_stderr_rad", max_roll_stderr_rad, Above{0.0}, unlimited);
+  require_range("roll", "min_gradient_px", min_gradient_px, 0.0, unlimited);
 }
 
 RollEstimate estimate_roll(ImageView<const float> disparity, const Mask& mask,

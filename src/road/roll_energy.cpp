@@ -74,7 +74,7 @@ RollSolution descend_roll(const RollEnergy& energy, double initial_roll, const R
     }
     const double next_gradient = slope(solution.roll + step);
     solution.roll += step;
-    // Eq. adaptive_lambda. The rate of the step as taken, which the bounds above may have changed, enters it; where the
+    // Eq. (28). The rate of the step as taken, which the bounds above may have changed, enters it; where the
     // energy is concave the quotient is no rate at all and the initial one serves again.
     const double taken = gradient != 0 ? -step / gradient : lambda;
     const double quotient = taken * gradient / (gradient - next_gradient);

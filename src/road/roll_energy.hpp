@@ -5,15 +5,15 @@
 
 namespace roadstereo {
 
-/// The energy E_t min(ψ) of eq. E_min2 as a function of the roll angle alone, in closed form from ten sums over the
-/// map: E(ψ) = S_dd − S_yd² / S_yy with y(ψ) = v cos ψ − u sin ψ (eq. y).
+/// The energy E_t min(ψ) of eq. (23) as a function of the roll angle alone, in closed form from ten sums over the
+/// map: E(ψ) = S_dd − S_yd² / S_yy with y(ψ) = v cos ψ − u sin ψ (eq. (19)).
 class RollEnergy {
  public:
   explicit RollEnergy(const PlaneSums& sums) : sums_(sums) {}
 
   double value(double roll) const;
-  double gradient(double roll) const;  ///< eq. d_e_min
-  double alpha1(double roll) const;    ///< eq. alpha3
+  double gradient(double roll) const;  ///< eq. (26)
+  double alpha1(double roll) const;    ///< eq. (21)
   double alpha0(double roll) const;
 
   /// What the energy is divided by for the descent, so that λ(0) means the same for any map: the curvature at ψ = 0 of
@@ -33,7 +33,7 @@ struct RollSolution {
   int iterations = 0;
 };
 
-/// Eq. e_min_gd with the learning rate of eq. adaptive_lambda.
+/// Eq. (25) with the learning rate of eq. (28).
 RollSolution descend_roll(const RollEnergy& energy, double initial_roll, const RollOptions& options);
 
 /// The same minimum from the least-squares plane: ψ = atan(−a2 / a1).

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mid_grey.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "road/strip_correlation.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for every instruction set
@@ -15,8 +17,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, 8>;
 using Float = hn::Vec<Floats>;
-
-constexpr float mid_grey = grey_max / 2.0f;
 
 /// Sums of the strip's columns and of their squares.
 struct ColumnSums {
@@ -101,7 +101,7 @@ void sample_strip(const std::int16_t* image_row, int image_width, double x, doub
   for (int i = 0; i < count; i += lanes) {
     const Float at = hn::Add(hn::Iota(df, 0), hn::Set(df, static_cast<float>(i)));
     const Float place = hn::MulAdd(at, slope, hn::Set(df, start));
-    Float value = hn::Set(df, -mid_grey);
+    Float value = hn::Set(df, -static_cast<float>(mid_grey));
     for (int k = 0; k < taps; ++k) {
       const Float away = hn::Abs(hn::Sub(place, hn::Set(df, static_cast<float>(k))));
       const Float weight = hn::Max(hn::Sub(one, away), hn::Zero(df));

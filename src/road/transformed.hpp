@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "core/cuda/host_device.hpp"
-#include "core/uncontracted.hpp"
 #include "road/robust_weights.hpp"
+#include "roadstereo/host_device.hpp"
+#include "roadstereo/uncontracted.hpp"
 
 // The formulas of the transformed disparity and its spread, which are measured on the host and on the device.
 namespace roadstereo {
@@ -39,7 +39,7 @@ inline constexpr double spread_nearest_px = 3.0;
 /// Residuals up to this are the road's; `median` is that of the near ones' magnitudes.
 ROADSTEREO_HD inline double spread_limit(double median) {
   constexpr double min_limit_px = 1.0;
-  const double limit = 3 * normal_from_median * median;
+  const double limit = 3 * gaussian_mad * median;
   return limit < min_limit_px ? min_limit_px : limit;
 }
 

@@ -2,11 +2,13 @@
 
 #include <cmath>
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
 namespace roadstereo {
 
-/// A block whose variance (fixed-point grey²) is below this has no texture: its cost is 1.
+// Matching cost, eq. (8): one minus the normalised cross-correlation of two blocks. C++17, for kernels.
+
+/// Variance of a block (fixed-point grey²) below which its cost is 1.
 constexpr float min_variance = 0.25F;
 
 /// One view's part of a block of n pixels, of grey levels less mid-grey: S = n·mean + residue, mean whole. Aligned, so
@@ -28,7 +30,7 @@ ROADSTEREO_HD inline BlockPart block_part(int sum, int square, int pixels, float
   return {sum, mean, e, variance >= min_variance ? 1.0F / sqrtf(variance + noise_variance) : 0.0F};
 }
 
-/// The matching cost c(p, d) of eq. c: 1 − n·cov / (n σ_own σ_other), from Σ own·other and 1 / n.
+/// The matching cost c(p, d) of eq. (8): 1 − n·cov / (n σ_own σ_other), from Σ own·other and 1 / n.
 /// n·cov = (Σ own·other − S_own·mean_other) − S_own / n·residue_other, the bracket in whole numbers.
 ROADSTEREO_HD inline float correlation_cost(const BlockPart& own, const BlockPart& other, int product,
                                             float inverse_n) {

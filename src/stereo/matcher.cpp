@@ -11,7 +11,7 @@
 namespace roadstereo {
 namespace {
 
-void validate(const Image<SearchRanges::Range>& ranges, const MatchInput& input, const char* view) {
+void validate(ImageView<const SearchRange> ranges, const MatchInput& input, const char* view) {
   const int across = (input.reference.width() + SearchRanges::tile_columns - 1) / SearchRanges::tile_columns;
   const int down = (input.reference.height() + SearchRanges::tile_rows - 1) / SearchRanges::tile_rows;
   if (ranges.width() != across || ranges.height() != down) {
@@ -20,7 +20,7 @@ void validate(const Image<SearchRanges::Range>& ranges, const MatchInput& input,
   }
   for (int row = 0; row < down; ++row) {
     for (int column = 0; column < across; ++column) {
-      const SearchRanges::Range& range = ranges(column, row);
+      const SearchRange& range = ranges(column, row);
       if (range.first < 0 || range.end <= range.first || range.end > input.disparities) {
         fail("the search range ", range.first, " … ", range.end, " of a tile of the ", view,
              " image is not within the disparities 0 … ", input.disparities);
@@ -29,8 +29,7 @@ void validate(const Image<SearchRanges::Range>& ranges, const MatchInput& input,
   }
 }
 
-void validate(const DisparityPrior& prior) {
-  if (prior.disparity.empty()) fail("matching is to lean on a prior, but the prior is empty");
+void validate(const DisparityPriorView& prior) {
   if (prior.factor < 1) fail("the prior's factor is ", prior.factor, "; it must be at least 1");
 }
 
@@ -53,7 +52,7 @@ void MatcherOptions::validate() const {
 void SearchRanges::assign(int width, int height, int disparities) {
   const int across = (width + tile_columns - 1) / tile_columns;
   const int down = (height + tile_rows - 1) / tile_rows;
-  const Range all{0, static_cast<std::int16_t>(disparities)};
+  const SearchRange all{0, static_cast<std::int16_t>(disparities)};
   reference.assign(across, down, all);
   target.assign(across, down, all);
 }
@@ -88,6 +87,14 @@ double effective_samples(const MatcherOptions& options) {
   return std::max(side * side, 4 * std::numbers::pi * variance);
 }
 
+FinishSettings finish_settings(const MatcherOptions& options) {
+  return {.left_right_check = options.left_right_check,
+          .lr_max_diff_px = static_cast<float>(options.lr_max_diff_px),
+          .occlusion_variance = static_cast<float>(options.occlusion_sigma_px * options.occlusion_sigma_px),
+          .sub_pixel = options.sub_pixel,
+          .reject_range_boundary = options.reject_range_boundary};
+}
+
 void block_first_columns(const MatchInput& input, int block_radius, std::vector<int>& first) {
   const int height = input.reference.height();
   first.assign(static_cast<std::size_t>(height), 0);
@@ -117,11 +124,11 @@ void validate(const MatchInput& input) {
   if (input.disparities < 1 || input.disparities > 1024) {
     fail("the number of disparities is ", input.disparities, "; it must be between 1 and 1024");
   }
-  if (input.ranges != nullptr) {
-    validate(input.ranges->reference, input, "reference");
-    validate(input.ranges->target, input, "target");
+  if (!input.ranges.empty()) {
+    validate(input.ranges.reference, input, "reference");
+    validate(input.ranges.target, input, "target");
   }
-  if (input.prior != nullptr) validate(*input.prior);
+  validate(input.prior);
 }
 
 }  // namespace roadstereo

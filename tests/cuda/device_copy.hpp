@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/cuda/memory.hpp"
-#include "core/cuda/plane.hpp"
 #include "roadstereo/image.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo::test {
 
@@ -17,15 +17,15 @@ class DevicePlane {
       : memory_(static_cast<std::size_t>(width + padding) * static_cast<std::size_t>(height)),
         plane_{memory_.data(), width, height, width + padding} {}
   explicit DevicePlane(ImageView<const T> image) : DevicePlane(image.width(), image.height()) {
-    copy(plane_.data, plane_.stride, image.row(0), image.stride(), cudaMemcpyHostToDevice);
+    copy(plane_.data(), plane_.stride(), image.row(0), image.stride(), cudaMemcpyHostToDevice);
   }
 
-  cuda::Plane<T> plane() const { return plane_; }
-  cuda::Plane<const T> view() const { return plane_; }
+  ImageView<T> plane() const { return plane_; }
+  ImageView<const T> view() const { return plane_; }
 
   Image<T> on_host() const {
-    Image<T> image(plane_.width, plane_.height);
-    copy(image.row(0), image.width(), plane_.data, plane_.stride, cudaMemcpyDeviceToHost);
+    Image<T> image(plane_.width(), plane_.height());
+    copy(image.row(0), image.width(), plane_.data(), plane_.stride(), cudaMemcpyDeviceToHost);
     return image;
   }
 
@@ -34,13 +34,13 @@ class DevicePlane {
 
   void copy(T* to, std::ptrdiff_t to_stride, const T* from, std::ptrdiff_t from_stride, cudaMemcpyKind kind) const {
     const auto bytes = [](std::ptrdiff_t count) { return static_cast<std::size_t>(count) * sizeof(T); };
-    ROADSTEREO_CUDA(cudaMemcpy2DAsync(to, bytes(to_stride), from, bytes(from_stride), bytes(plane_.width),
-                                      static_cast<std::size_t>(plane_.height), kind, nullptr));
+    ROADSTEREO_CUDA(cudaMemcpy2DAsync(to, bytes(to_stride), from, bytes(from_stride), bytes(plane_.width()),
+                                      static_cast<std::size_t>(plane_.height()), kind, nullptr));
     ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
   }
 
   cuda::DeviceArray<T> memory_;
-  cuda::Plane<T> plane_;
+  ImageView<T> plane_;
 };
 
 /// Numbers of the host in device memory.

@@ -1,4 +1,4 @@
-// The coarse look on the device against CoarseSearch of the host: the same ranges, and a prior that differs by
+// The coarse search on the device against CoarseSearch of the host: the same ranges, and a prior that differs by
 // rounding.
 
 #include <gtest/gtest.h>
@@ -9,7 +9,6 @@
 #if defined(ROADSTEREO_CUDA_EMULATED)
 #include "tests/cuda/emulated/run_kernel.hpp"
 #endif
-#include "road/shift_terms_of.hpp"
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/synth.hpp"
 #include "stereo/coarse/coarse_search.hpp"
@@ -38,8 +37,9 @@ double guess(const PerspectiveShift& shift, double u, double v) {
   return disparity < 0 ? std::numeric_limits<double>::quiet_NaN() : std::min(disparity, shift.delta_p);
 }
 
-void expect_ranges(const TileRange* found, const Image<SearchRanges::Range>& expected) {
-  const auto ranges = test::to_host(found, expected.pixels());
+void expect_ranges(ImageView<const SearchRange> found, const Image<SearchRange>& expected) {
+  ASSERT_EQ(found.pixels(), expected.pixels());
+  const auto ranges = test::to_host(found.data(), expected.pixels());
   for (std::size_t tile = 0; tile < expected.pixels(); ++tile) {
     const auto& range = expected.row(0)[tile];
     EXPECT_EQ(ranges[tile].first, range.first) << "tile " << tile;
@@ -67,19 +67,19 @@ void expect_as_on_host(cuda::CudaCoarseSearch& look, const Case& of) {
                           [&](double u, double v) { return guess(of.shift, u, v); }));
   const test::DevicePlane<std::int16_t> reference(of.pair.reference), target(of.pair.target);
   const auto device_columns = test::to_device(of.first_column);
-  ASSERT_TRUE(look.find({reference.view(), target.view(), columns != nullptr ? device_columns.data() : nullptr,
-                         of.disparities, shift_terms(of.shift)},
-                        nullptr));
-  ASSERT_EQ(look.factor(), search.prior().factor);
-  const auto prior = look.prior();
-  Image<float> found(prior.width, prior.height);
-  const auto numbers = test::to_host(prior.data, found.pixels());
+  ASSERT_TRUE(look.find(
+      {reference.view(), target.view(), columns != nullptr ? device_columns.data() : nullptr, of.disparities, {}, {}},
+      of.shift, nullptr));
+  ASSERT_EQ(look.prior().factor, search.prior().factor);
+  const auto prior = look.prior().disparity;
+  Image<float> found(prior.width(), prior.height());
+  const auto numbers = test::to_host(prior.data(), found.pixels());
   std::copy(numbers.begin(), numbers.end(), found.row(0));
   expect_prior(found, search.prior().disparity);
-  ASSERT_EQ(look.reference_ranges() != nullptr, search.ranges() != nullptr);
+  ASSERT_EQ(look.ranges().empty(), search.ranges() == nullptr);
   if (search.ranges() == nullptr) return;
-  expect_ranges(look.reference_ranges(), search.ranges()->reference);
-  expect_ranges(look.target_ranges(), search.ranges()->target);
+  expect_ranges(look.ranges().reference, search.ranges()->reference);
+  expect_ranges(look.ranges().target, search.ranges()->target);
 }
 
 PerspectiveShift no_shift() {
@@ -165,7 +165,7 @@ TEST_F(CudaCoarse, FewDisparitiesGiveNoRanges) {
   cuda::CudaCoarseSearch look({});
   const Case of{test::textured_pair(65, 64, [](double, double) { return 4; }), 8, no_shift()};
   expect_as_on_host(look, of);
-  EXPECT_EQ(look.target_ranges(), nullptr);
+  EXPECT_TRUE(look.ranges().empty());
 }
 
 #if defined(ROADSTEREO_CUDA_EMULATED)
@@ -175,7 +175,7 @@ TEST_F(CudaCoarse, SecondFrameAllocatesNothing) {
   cuda::CudaCoarseSearch look({});
   std::size_t allocations[2] = {};
   for (std::size_t& count : allocations) {
-    ASSERT_TRUE(look.find({reference.view(), target.view(), nullptr, 16, {}}, nullptr));
+    ASSERT_TRUE(look.find({reference.view(), target.view(), nullptr, 16}, {}, nullptr));
     count = cuda::emulated::allocations();
   }
   EXPECT_EQ(allocations[0], allocations[1]);
@@ -186,8 +186,8 @@ TEST_F(CudaCoarse, SkipsSmallImages) {
   const GreyImage small(100, 60, 1600);
   const test::DevicePlane<std::int16_t> image(small);
   cuda::CudaCoarseSearch look({});
-  EXPECT_FALSE(look.find({image.view(), image.view(), nullptr, 32, {}}, nullptr));
-  EXPECT_EQ(look.reference_ranges(), nullptr);
+  EXPECT_FALSE(look.find({image.view(), image.view(), nullptr, 32}, {}, nullptr));
+  EXPECT_TRUE(look.ranges().empty());
 }
 
 }  // namespace

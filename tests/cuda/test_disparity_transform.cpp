@@ -41,7 +41,7 @@ class CudaDisparityTransform : public test::OnDevice {
     const double delta_t = transform_disparity(map, geometry, least, options, 1, expected);
     const RoadResiduals spread = measure_residuals(expected, delta_t, 1);
     const test::DevicePlane<float> disparity(map.view()), transformed(map.width(), map.height());
-    const auto in_memory = test::to_device(std::vector{PlaneTerms{plane.a0, plane.a1, plane.a2}});
+    const auto in_memory = test::to_device(std::vector{DisparityPlane{plane.a0, plane.a1, plane.a2}});
     transform_->run(disparity.view(), {in_memory.data(), {}}, {given, least}, transformed.plane(), nullptr);
     ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
     const Image<float> found = transformed.on_host();
@@ -54,12 +54,12 @@ class CudaDisparityTransform : public test::OnDevice {
       }
     }
     EXPECT_EQ(differ, 0);
-    const TransformFigures& figures = transform_->figures();
-    EXPECT_EQ(figures.delta_t, delta_t);
-    EXPECT_EQ(figures.valid, valid);
-    EXPECT_NEAR(figures.sigma_road_px, spread.sigma_road_px, 1e-6 * spread.sigma_road_px);
-    EXPECT_NEAR(figures.sigma_all_px, spread.sigma_all_px, 1e-6 * spread.sigma_all_px);
-    EXPECT_NEAR(figures.road_share, spread.road_share, 1e-9);
+    const TransformStatistics& statistics = transform_->statistics();
+    EXPECT_EQ(statistics.delta_t, delta_t);
+    EXPECT_EQ(statistics.valid, valid);
+    EXPECT_NEAR(statistics.sigma_road_px, spread.sigma_road_px, 1e-6 * spread.sigma_road_px);
+    EXPECT_NEAR(statistics.sigma_all_px, spread.sigma_all_px, 1e-6 * spread.sigma_all_px);
+    EXPECT_NEAR(statistics.road_share, spread.road_share, 1e-9);
   }
 
   test::MadeOnUse<DisparityTransform> transform_;  ///< used again for maps of every size
@@ -85,14 +85,14 @@ TEST_F(CudaDisparityTransform, LimitGrowsWithNoise) {
     for (int u = 0; u < 129; ++u) map(u, v) += static_cast<float>(4 * test::lattice(u, v, 9) - 2);
   }
   expect_agreement(map, road, -1, 2);
-  EXPECT_GT(transform_->figures().sigma_road_px, 1);
+  EXPECT_GT(transform_->statistics().sigma_road_px, 1);
 }
 
 TEST_F(CudaDisparityTransform, EmptyMapStaysEmpty) {
   const Image<float> none(40, 30, std::numeric_limits<float>::quiet_NaN());
   expect_agreement(none, road, -1, 3);
-  EXPECT_EQ(transform_->figures().delta_t, 3);
-  EXPECT_EQ(transform_->figures().valid, 0);
+  EXPECT_EQ(transform_->statistics().delta_t, 3);
+  EXPECT_EQ(transform_->statistics().valid, 0);
   expect_agreement(damaged_road(33, 35), road, -1, 2);  // and leaves nothing behind
 }
 
@@ -106,12 +106,12 @@ TEST_F(CudaDisparityTransform, ExactRoadIsFlat) {
   transform_->run(disparity.view(), {nullptr, {10, 0.25, -0.125}}, {-1, 1}, transformed.plane(), nullptr);
   ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
   const Image<float> found = transformed.on_host();
-  EXPECT_EQ(transform_->figures().delta_t, 3);
+  EXPECT_EQ(transform_->statistics().delta_t, 3);
   EXPECT_EQ(found(30, 20), 1);
   EXPECT_EQ(found(31, 20), 3);
   EXPECT_EQ(found(0, 0), 3);
-  EXPECT_EQ(transform_->figures().sigma_road_px, 0);
-  EXPECT_NEAR(transform_->figures().road_share, 1 - 1.0 / (64 * 48), 1e-12);
+  EXPECT_EQ(transform_->statistics().sigma_road_px, 0);
+  EXPECT_NEAR(transform_->statistics().road_share, 1 - 1.0 / (64 * 48), 1e-12);
 }
 
 }  // namespace

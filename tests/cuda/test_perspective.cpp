@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "road/cuda/perspective.hpp"
-#include "road/shift_terms_of.hpp"
+#include "roadstereo/perspective.hpp"
 #include "tests/cuda/device_copy.hpp"
 #include "tests/cuda/device_test.hpp"
 #include "tests/stereo/textured_pair.hpp"
@@ -41,7 +41,7 @@ TEST_F(CudaPerspective, TransformedTargetMatchesHost) {
       std::vector<int> first_column;
       transform_target(pair.target, shift, 1, expected, first_column);
       cuda::DeviceArray<int> columns(first_column.size());
-      cuda::transform_target(target.view(), shift_terms(shift), grey_max, transformed.plane(), columns.data(), nullptr);
+      cuda::transform_target(target.view(), shift, grey_max, transformed.plane(), columns.data(), nullptr);
       const GreyImage found = transformed.on_host();
       EXPECT_EQ(test::to_host(columns.data(), first_column.size()), first_column);
       for (int v = 0; v < size.height; ++v) {
@@ -67,8 +67,8 @@ TEST_F(CudaPerspective, AddedShiftMatchesHost) {
   const test::DevicePlane<float> in(residual), out(width, height);
   for (const PerspectiveShift& shift : shifts()) {
     Image<float> expected;
-    add_shift(residual, shift, 1, expected);
-    cuda::add_shift(in.view(), shift_terms(shift), out.plane(), nullptr);
+    restore_disparity(residual, shift, 1, expected);
+    cuda::restore_disparity(in.view(), shift, out.plane(), nullptr);
     const Image<float> found = out.on_host();
     for (int v = 0; v < height; ++v) {
       for (int u = 0; u < width; ++u) {

@@ -1,11 +1,11 @@
-// Refinement on the device, with the shift added back, against add_shift and refine_disparities of the host.
+// Refinement on the device against refine_disparities of the host.
 
 #include <cmath>
 #include <limits>
 
 #include "road/refinement/cuda/refinement.hpp"
 #include "road/refinement/cuda/refinement_settings.hpp"
-#include "road/shift_terms_of.hpp"
+#include "roadstereo/perspective.hpp"
 #include "tests/cuda/device_copy.hpp"
 #include "tests/cuda/device_test.hpp"
 #include "tests/stereo/textured_pair.hpp"
@@ -53,13 +53,12 @@ void expect_equal(const Image<float>& found, const Image<float>& expected) {
 void expect_as_on_host(int width, int height, const PerspectiveShift& shift, const RefinementOptions& options) {
   const Maps maps(width, height);
   Image<float> full, refined, sigma;
-  add_shift(maps.residual, shift, 1, full);
+  restore_disparity(maps.residual, shift, 1, full);
   refine_disparities(full, maps.variance, shift.road, support, options, 1, refined, sigma);
-  const test::DevicePlane<float> residual(maps.residual), variance(maps.variance);
+  const test::DevicePlane<float> disparity(full), variance(maps.variance);
   const test::DevicePlane<float> device_refined(width, height), device_sigma(width, height);
-  cuda::refine_disparities(residual.view(), variance.view(), shift_terms(shift),
-                           cuda::refinement_settings(options, support), device_refined.plane(), device_sigma.plane(),
-                           nullptr);
+  cuda::refine_disparities(disparity.view(), variance.view(), shift.road, cuda::refinement_settings(options, support),
+                           device_refined.plane(), device_sigma.plane(), nullptr);
   expect_equal(device_refined.on_host(), refined);
   expect_equal(device_sigma.on_host(), sigma);
 }

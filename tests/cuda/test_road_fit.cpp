@@ -53,20 +53,20 @@ class CudaRoadFit : public test::OnDevice {
     const test::DevicePlane<float> disparity(map.view());
     std::optional<test::DevicePlane<std::uint8_t>> device_mask;
     if (mask) device_mask.emplace(mask->view());
-    const MaskedMap masked{disparity.view(), mask ? device_mask->view() : Plane<const std::uint8_t>{}};
+    const MaskedMap masked{disparity.view(), mask ? device_mask->view() : ImageView<const std::uint8_t>{}};
     const auto wait = [] { ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr)); };
     if (options.solver == RollSolver::robust) {
-      const auto start = test::to_device(std::vector{PlaneTerms{prior->a0, prior->a1, prior->a2}});
+      const auto start = test::to_device(std::vector{DisparityPlane{prior->a0, prior->a1, prior->a2}});
       fit_->run(masked, {start.data(), {}}, options.max_iterations, nullptr);
       wait();
-      return finish_road_fit(fit_->figures(), width, height, options);
+      return finish_road_fit(fit_->statistics(), width, height, options);
     }
     sums_->run(masked, nullptr);
     wait();
     RollEstimate geometry = solve_map(sums_->sums(), width, height, 0, options);
     fit_->measure(masked, {geometry.plane.a0, geometry.plane.a1, geometry.plane.a2}, nullptr);
     wait();
-    finish_measured(fit_->figures(), width, height, options, geometry);
+    finish_measured(fit_->statistics(), width, height, options, geometry);
     return geometry;
   }
 
@@ -89,7 +89,7 @@ class CudaRoadFit : public test::OnDevice {
         EXPECT_NEAR(device.plane.disparity(u, v), host.plane.disparity(u, v), 1e-5);
       }
     }
-    const PlaneTerms left = test::to_host(fit_->plane(), 1).front();
+    const DisparityPlane left = test::to_host(fit_->plane(), 1).front();
     EXPECT_EQ(left.a0, device.plane.a0);
     EXPECT_EQ(left.a2, device.plane.a2);
   }
@@ -134,7 +134,7 @@ TEST_F(CudaRoadFit, RecoversRollOfExactRoad) {
 
 TEST_F(CudaRoadFit, BadStartFallsBackToLeastSquares) {
   expect_agreement(road_map(129, 47, 0.02, 0.4), {}, DisparityPlane{400, 0, 0}, RollSolver::robust);
-  EXPECT_EQ(fit_->figures().fit.found, 0);
+  EXPECT_EQ(fit_->statistics().fit.found, 0);
 }
 
 TEST_F(CudaRoadFit, RejectsLineLikeHost) {

@@ -45,7 +45,7 @@ RoadModelEstimate verify_on_device(RoadVerification& verification, const Pair& p
   verification.run(left.view(), right.view(), {nullptr, {previous.a0, previous.a1, previous.a2}}, options.with_roll,
                    nullptr);
   ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
-  return assess_road_verification(verification.figures(), previous, pair.left.width(), pair.left.height(),
+  return assess_road_verification(verification.statistics(), previous, pair.left.width(), pair.left.height(),
                                   pair.calibration, options);
 }
 
@@ -112,14 +112,14 @@ TEST_F(CudaRoadVerification, UnrelatedImagesAreUnreliable) {
                    .target;
   expect_agreement(pair, road);
   EXPECT_NE(host_.reason.find("only 0 correspondences"), std::string::npos) << host_.reason;
-  EXPECT_EQ(verification_->figures().close.tried, 0);
+  EXPECT_EQ(verification_->statistics().close.tried, 0);
 }
 
 TEST_F(CudaRoadVerification, RepetitionIsIdenticalWithoutAllocation) {
   const DisparityPlane plane{6, 0.06, -0.03};
   const auto images = test::textured_pair(161, 93, [&](double u, double v) { return plane.disparity(u, v); });
   const test::DevicePlane<std::int16_t> left(images.reference.view()), right(images.target.view());
-  VerificationFigures first{};
+  VerificationStatistics first{};
   for (const int again : {0, 1}) {
 #if defined(ROADSTEREO_CUDA_EMULATED)
     const std::size_t before = emulated::allocations();
@@ -129,15 +129,15 @@ TEST_F(CudaRoadVerification, RepetitionIsIdenticalWithoutAllocation) {
 #if defined(ROADSTEREO_CUDA_EMULATED)
     EXPECT_EQ(emulated::allocations() > before, again == 0);
 #endif
-    const VerificationFigures& figures = verification_->figures();
-    if (again == 0) first = figures;
-    EXPECT_EQ(figures.close.found, 1);
-    EXPECT_EQ(figures.close.fit.plane.a0, first.close.fit.plane.a0);
-    EXPECT_EQ(figures.close.fit.plane.a1, first.close.fit.plane.a1);
-    EXPECT_EQ(figures.close.fit.plane.a2, first.close.fit.plane.a2);
-    EXPECT_EQ(figures.close.fit.scale_px, first.close.fit.scale_px);
-    EXPECT_EQ(figures.close.inliers, first.close.inliers);
-    EXPECT_EQ(figures.residual_p01_px, first.residual_p01_px);
+    const VerificationStatistics& statistics = verification_->statistics();
+    if (again == 0) first = statistics;
+    EXPECT_EQ(statistics.close.found, 1);
+    EXPECT_EQ(statistics.close.fit.plane.a0, first.close.fit.plane.a0);
+    EXPECT_EQ(statistics.close.fit.plane.a1, first.close.fit.plane.a1);
+    EXPECT_EQ(statistics.close.fit.plane.a2, first.close.fit.plane.a2);
+    EXPECT_EQ(statistics.close.fit.scale_px, first.close.fit.scale_px);
+    EXPECT_EQ(statistics.close.inliers, first.close.inliers);
+    EXPECT_EQ(statistics.residual_p01_px, first.residual_p01_px);
   }
 }
 

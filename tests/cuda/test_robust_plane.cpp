@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/order_statistics.hpp"
 #include "road/cuda/robust_plane.hpp"
 #include "road/plane_fit.hpp"
 #include "roadstereo/error.hpp"
@@ -53,11 +54,11 @@ struct Fitted {
 Fitted fit_on_device(const Points& points, const DisparityPlane& start, const RobustFit& how,
                      bool start_in_memory = false) {
   const auto u = test::to_device(points.u), v = test::to_device(points.v), d = test::to_device(points.d);
-  const PlaneTerms plane{start.a0, start.a1, start.a2};
+  const DisparityPlane plane{start.a0, start.a1, start.a2};
   const auto memory = test::to_device(std::vector{plane});
   RobustPlaneFit fit;
   fit.run({u.data(), v.data(), d.data(), static_cast<int>(points.u.size())},
-          {start_in_memory ? memory.data() : nullptr, start_in_memory ? PlaneTerms{} : plane}, how, nullptr);
+          {start_in_memory ? memory.data() : nullptr, start_in_memory ? DisparityPlane{} : plane}, how, nullptr);
   ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
   EXPECT_EQ(test::to_host(fit.plane(), 1).front().plane.a0, fit.result().plane.a0);
   return {fit.result(), test::to_host(fit.weights(), points.u.size())};
@@ -123,7 +124,7 @@ TEST_F(CudaRobustPlane, StartsFromMedianOfResiduals) {
     const DisparityPlane start{road.a0 + by, road.a1, road.a2};
     auto residuals = scratch_vector<double>();
     for (const auto& p : points.present()) residuals.push_back(p.d - start.disparity(p.u, p.v));
-    const double scale = std::clamp(1.4826 * median_magnitude(residuals), 0.2, 0.6);
+    const double scale = std::clamp(1.4826 * upper_median_magnitude(residuals), 0.2, 0.6);
     const auto host = fit_plane_irls(points.present(), start, scale, true, 200);
     ASSERT_TRUE(host);
     expect_agreement(fit_on_device(points, start, {0, true, 200}), *host, points);

@@ -194,5 +194,19 @@ TEST(CarryOver, RestartsAfterFrameWithoutRoad) {
   EXPECT_EQ(difference(result.geometry.plane, expected.geometry.plane, road), 0);
 }
 
+TEST(CarryOver, FramesOfAnotherSizeResetTheState) {
+  const synth::SyntheticPair pair = synth::render(small_road());
+  PipelineOptions options;
+  options.check_rows = false;
+  Pipeline pipeline(options);
+  PipelineState of_another_size;
+  of_another_size.width = 2 * width;
+  of_another_size.height = 2 * height;
+  of_another_size.row_offset_px = 1;
+  pipeline.restore(of_another_size);
+  EXPECT_EQ(pipeline.process(pair.left.view(), pair.right.view()).shift.row_offset, 0);
+  EXPECT_EQ(pipeline.carried().row_offset_px, 0);
+}
+
 }  // namespace
 }  // namespace roadstereo

@@ -95,7 +95,7 @@ KittiFrame read_kitti(const std::filesystem::path& folder, const std::string& na
 struct RoadScore {
   double missing = 0;
   double rms_px = 0;                      ///< e_r
-  double wrong_by_2 = 0, wrong_by_3 = 0;  ///< e_p, shares of the disparities that there are (eq. e_pep)
+  double wrong_by_2 = 0, wrong_by_3 = 0;  ///< e_p, shares of the disparities that there are (eq. (33))
 };
 
 RoadScore score(const Image<float>& disparity, const std::vector<DisparityPoint>& road) {

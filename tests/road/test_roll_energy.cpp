@@ -27,7 +27,7 @@ SmallMap small_map(const DisparityPlane& plane, double noise) {
   return map;
 }
 
-/// E_t min(ψ) = dᵀd − dᵀY(YᵀY)⁻¹Yᵀd (eq. E_min2) with Y = [1 y(ψ)] written out.
+/// E_t min(ψ) = dᵀd − dᵀY(YᵀY)⁻¹Yᵀd (eq. (23)) with Y = [1 y(ψ)] written out.
 double energy_by_matrices(const SmallMap& map, double psi) {
   double n = 0, y1 = 0, y2 = 0, dd = 0, d1 = 0, dy = 0;
   for (const DisparityPoint& p : map.points) {
@@ -43,7 +43,7 @@ double energy_by_matrices(const SmallMap& map, double psi) {
   return dd - (d1 * (y2 * d1 - y1 * dy) + dy * (n * dy - y1 * d1)) / det;
 }
 
-/// −2 dᵀW(ψ)d (eqs. d_e_min, M) with W = (I − YJ)∇YJ: ∇Y = [0 −x(ψ)], J d = α.
+/// −2 dᵀW(ψ)d (eqs. (26), (27)) with W = (I − YJ)∇YJ: ∇Y = [0 −x(ψ)], J d = α.
 double gradient_by_matrices(const SmallMap& map, double psi) {
   double n = 0, y1 = 0, y2 = 0, d1 = 0, dy = 0;
   const auto y_of = [psi](const DisparityPoint& p) { return p.v * std::cos(psi) - p.u * std::sin(psi); };

@@ -50,7 +50,7 @@ TEST_P(SlowCoarseSearchScene, RangesHoldTrueDisparities) {
   double searched = 0;
   for (int v = 0; v < left.height(); ++v) {
     for (int u = 0; u < left.width(); ++u) {
-      const SearchRanges::Range& range = ranges->reference(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
+      const SearchRange& range = ranges->reference(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
       searched += range.end - range.first;
       if (!pair.visible(u, v)) continue;
       const double full = pair.disparity(u, v);

@@ -146,8 +146,8 @@ TEST_P(EngineAgreement, WinnerAndSubPixelMatchReference) {
                          pair.target,
                          first.data(),
                          setting.disparities,
-                         setting.with_ranges ? &ranges : nullptr,
-                         setting.prior_factor > 0 ? &prior : nullptr};
+                         setting.with_ranges ? ranges.views() : SearchRangeViews{},
+                         setting.prior_factor > 0 ? prior.view() : DisparityPriorView{}};
   MatchMaps expected, actual;
   make_engine("reference", 0)->match(input, setting.options, expected);
   make_engine(std::get<0>(GetParam()), 2)->match(input, setting.options, actual);
@@ -293,7 +293,7 @@ TEST_P(EveryEngine, RangesThatHoldDisparityHaveNoEffect) {
   MatchMaps all, narrow;
   const auto engine = make_engine(GetParam(), 2);
   engine->match({pair.reference, pair.target, nullptr, 32}, MatcherOptions{}, all);
-  engine->match({pair.reference, pair.target, nullptr, 32, &ranges}, MatcherOptions{}, narrow);
+  engine->match({pair.reference, pair.target, nullptr, 32, ranges.views(), {}}, MatcherOptions{}, narrow);
   for (int v = 0; v < height; ++v) {
     for (int u = 40; u < width; ++u) ASSERT_NEAR(all.disparity(u, v), narrow.disparity(u, v), 1e-5);
   }
@@ -307,7 +307,7 @@ TEST_P(EveryEngine, PriorDecidesWithoutTexture) {
   DisparityPrior prior{Image<float>(32, 24, 7.0F), 2};
   for (int y = 12; y < 24; ++y) std::fill_n(prior.disparity.row(y), 32, std::numeric_limits<float>::quiet_NaN());
   MatchMaps maps;
-  make_engine(GetParam(), 2)->match({flat, flat, nullptr, 16, nullptr, &prior}, options, maps);
+  make_engine(GetParam(), 2)->match({flat, flat, nullptr, 16, {}, prior.view()}, options, maps);
   for (int v = 0; v < 48; ++v) {
     for (int u = 0; u < 64; ++u) {
       ASSERT_EQ(maps.winner(u, v), v < 24 && u > 7 - reach ? std::min(u, 7) : 0) << u << ", " << v;
@@ -328,13 +328,11 @@ TEST_P(EveryEngine, RejectsBadInput) {
   EXPECT_THROW(engine->match({a, a, nullptr, 16}, options, maps), Error);
   SearchRanges ranges;
   ranges.assign(300, 48, 16);
-  EXPECT_THROW(engine->match({a, a, nullptr, 16, &ranges}, MatcherOptions{}, maps), Error);
-  DisparityPrior prior;
-  EXPECT_THROW(engine->match({a, a, nullptr, 16, nullptr, &prior}, MatcherOptions{}, maps), Error);
-  prior = {Image<float>(32, 24, 3.0F), 0};
-  EXPECT_THROW(engine->match({a, a, nullptr, 16, nullptr, &prior}, MatcherOptions{}, maps), Error);
+  EXPECT_THROW(engine->match({a, a, nullptr, 16, ranges.views(), {}}, MatcherOptions{}, maps), Error);
+  const DisparityPrior prior{Image<float>(32, 24, 3.0F), 0};
+  EXPECT_THROW(engine->match({a, a, nullptr, 16, {}, prior.view()}, MatcherOptions{}, maps), Error);
   ranges.assign(64, 48, 17);
-  EXPECT_THROW(engine->match({a, a, nullptr, 16, &ranges}, MatcherOptions{}, maps), Error);
+  EXPECT_THROW(engine->match({a, a, nullptr, 16, ranges.views(), {}}, MatcherOptions{}, maps), Error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, EveryEngine, testing::ValuesIn(all_engine_names()),

@@ -15,7 +15,7 @@
 namespace roadstereo {
 namespace {
 
-/// c(p, d) of eq. c from its definition as one minus Pearson's correlation, over whole blocks only.
+/// c(p, d) of eq. (8) from its definition as one minus Pearson's correlation, over whole blocks only.
 double pearson_cost(const GreyImage& ref, const GreyImage& tar, int u, int v, int d, int radius) {
   double n = 0, mean_r = 0, mean_t = 0;
   for (int y = -radius; y <= radius; ++y) {
@@ -58,8 +58,8 @@ TEST(ReferenceEngine, WinnerAndParabolaFollowCosts) {
       }
       ASSERT_EQ(maps.winner(u, v), best);
       if (best == 0 || best == 11) continue;
-      const double offset = (cost[best - 1] - cost[best + 1]) /
-                            (2 * cost[best - 1] + 2 * cost[best + 1] - 4 * cost[best]);  // eq. subpixel
+      const double offset =
+          (cost[best - 1] - cost[best + 1]) / (2 * cost[best - 1] + 2 * cost[best + 1] - 4 * cost[best]);  // eq. (13)
       ASSERT_NEAR(maps.disparity(u, v), best + offset, 1e-5);
       // 2 E / (n K) with n = 4π s², s² = (7² − 1) / 12 of a block of 7×7.
       const double curvature = cost[best - 1] + cost[best + 1] - 2 * cost[best];
@@ -94,7 +94,7 @@ TEST(ReferenceEngine, AggregationIsBilateralMeanOfCosts) {
         for (const auto& n : neighbours) {
           const double difference = (pair.reference(u, v) - pair.reference(u + n[0], v + n[1])) / 16.0;
           const double distance2 = n[0] * n[0] + n[1] * n[1];
-          // eqs. omega0 and omega1
+          // eqs. (31) and (32)
           const double omega = std::exp(-distance2 / (1.5 * 1.5)) * std::exp(-difference * difference / (5.5 * 5.5));
           sum += omega * pearson_cost(pair.reference, pair.target, u + n[0], v + n[1], d, 2);
           weights += omega;
@@ -135,7 +135,7 @@ struct Repeating {
     options.prior_truncation_px = reach;
     const DisparityPrior of_all{Image<float>(width / 2, height / 2, prior), 2};
     MatchMaps maps;
-    make_engine("reference", 1)->match({reference, target, nullptr, 16, nullptr, &of_all}, options, maps);
+    make_engine("reference", 1)->match({reference, target, nullptr, 16, {}, of_all.view()}, options, maps);
     const int first = maps.winner(30, 5);
     for (int v = 5; v < 25; ++v) {
       for (int u = 30; u < 90; ++u) EXPECT_EQ(maps.winner(u, v), first);
@@ -165,7 +165,7 @@ TEST(ReferenceEngine, PriorIsTruncated) {
   const auto winner = [&](double slope, double reach) {
     options.prior_weight = slope;
     options.prior_truncation_px = reach;
-    make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 16, nullptr, &prior}, options, maps);
+    make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 16, {}, prior.view()}, options, maps);
     return maps.winner;
   };
   const auto strong = winner(10, 100), weak = winner(0.02, 4);
@@ -246,7 +246,7 @@ TEST(ReferenceEngine, LeftRightCheckRemovesInconsistentPixels) {
     for (int u = 20; u < 118; ++u) {
       const int d = checked.winner(u, v);
       const double difference = d - checked.target_winner(u - d, v);
-      if (difference * difference > 1) {  // eq. lrc, δr = 1
+      if (difference * difference > 1) {  // eq. (12), δr = 1
         EXPECT_TRUE(std::isnan(checked.disparity(u, v)));
         EXPECT_EQ(doubted.disparity(u, v), unchecked.disparity(u, v));
         if (!std::isinf(unchecked.variance(u, v))) {

@@ -21,13 +21,13 @@ namespace {
 using ScanlineTarget = test::EveryTarget;
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr double no_evidence = 0.75;
+constexpr double uncorrelated_cost = 0.75;
 
-/// One row: cost[u][d] without guesses, and what optimise_scanline is told besides.
+/// One row: cost[u][d] without priors, and what optimise_scanline is told besides.
 struct Row {
   std::vector<std::vector<float>> cost;
-  std::vector<float> centre, pull;
-  float reach = 3;
+  std::vector<float> centre, weight;
+  float truncation = 3;
   ScanlinePenalties penalties{0.2F, 0.7F};
   int first_seen = 0;
 
@@ -35,27 +35,27 @@ struct Row {
   int disparities() const { return static_cast<int>(cost.front().size()); }
 };
 
-/// Random costs, and guesses of which one in four is missing when there are any.
+/// Random costs, and priors of which one in four is missing when there are any.
 Row random_row(int columns, int disparities, bool guessed, std::uint64_t seed) {
   Row row;
   for (int u = 0; u < columns; ++u) {
     auto& cost = row.cost.emplace_back();
     for (int d = 0; d < disparities; ++d) cost.push_back(static_cast<float>(test::lattice(u, d, seed)));
-    const double guess = test::lattice(u, -1, seed) * disparities;
+    const double prior = test::lattice(u, -1, seed) * disparities;
     const bool missing = !guessed || test::lattice(u, -2, seed) < 0.25;
-    row.centre.push_back(missing ? nan : static_cast<float>(guess));
-    row.pull.push_back(static_cast<float>(0.4 * test::lattice(u, -3, seed)));
+    row.centre.push_back(missing ? nan : static_cast<float>(prior));
+    row.weight.push_back(static_cast<float>(0.4 * test::lattice(u, -3, seed)));
   }
   return row;
 }
 
-/// The cost of pixel u at disparity d: evidence where there is a counterpart, and the guess.
+/// The cost of pixel u at disparity d: texture where there is a counterpart, and the prior.
 double pixel_cost(const Row& row, int u, int d) {
   const auto column = static_cast<std::size_t>(u);
-  const double seen = d <= u - row.first_seen ? row.cost[column][static_cast<std::size_t>(d)] : no_evidence;
+  const double seen = d <= u - row.first_seen ? row.cost[column][static_cast<std::size_t>(d)] : uncorrelated_cost;
   if (std::isnan(row.centre[column])) return seen;
   const double away = std::abs(d - double{row.centre[column]});
-  return seen + double{row.pull[column]} * std::min(away, double{row.reach});
+  return seen + double{row.weight[column]} * std::min(away, double{row.truncation});
 }
 
 double change_cost(const Row& row, int from, int to) {
@@ -67,8 +67,8 @@ double change_cost(const Row& row, int from, int to) {
 using Totals = std::vector<std::vector<double>>;  ///< [u][d]: cost of the cheapest path through disparity d of column u
 
 Totals no_totals(const Row& row) {
-  constexpr double never = std::numeric_limits<double>::infinity();
-  return Totals(row.cost.size(), std::vector<double>(row.cost.front().size(), never));
+  constexpr double infinite_cost = std::numeric_limits<double>::infinity();
+  return Totals(row.cost.size(), std::vector<double>(row.cost.front().size(), infinite_cost));
 }
 
 /// By trying all paths.
@@ -102,11 +102,11 @@ Totals of_shortest_paths(const Row& row) {
   Totals from_left = no_totals(row), from_right = no_totals(row), totals = no_totals(row);
   for (int step = 0; step <= last; ++step) {
     for (int d = 0; d < row.disparities(); ++d) {
-      const auto relax = [&](Totals& way, int u, int neighbour) {
-        double& best = way[static_cast<std::size_t>(u)][static_cast<std::size_t>(d)];
+      const auto relax = [&](Totals& path_cost, int u, int neighbour) {
+        double& best = path_cost[static_cast<std::size_t>(u)][static_cast<std::size_t>(d)];
         if (step == 0) best = 0;
         for (int e = 0; e < row.disparities() && step > 0; ++e) {
-          const double before = way[static_cast<std::size_t>(neighbour)][static_cast<std::size_t>(e)];
+          const double before = path_cost[static_cast<std::size_t>(neighbour)][static_cast<std::size_t>(e)];
           best = std::min(best, before + change_cost(row, e, d));
         }
         best += pixel_cost(row, u, d);
@@ -138,8 +138,8 @@ std::vector<float> taken(const Row& row) {
   }
   std::vector<float> disparity(row.cost.size());
   optimise_scanline({costs.get(), pitch, row.columns(), row.disparities(), row.first_seen},
-                    {row.centre.data(), row.pull.data(), row.reach}, row.penalties, static_cast<float>(no_evidence),
-                    scratch.get(), disparity.data());
+                    {row.centre.data(), row.weight.data(), row.truncation}, row.penalties,
+                    static_cast<float>(uncorrelated_cost), scratch.get(), disparity.data());
   return disparity;
 }
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "core/mid_grey.hpp"
 #include "road/map_sample.hpp"
 #include "stereo/block_correlation.hpp"
-#include "stereo/mid_grey.hpp"
 #include "stereo/sub_pixel.hpp"
 #include "tests/stereo/textured_pair.hpp"
 

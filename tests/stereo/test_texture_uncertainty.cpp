@@ -12,7 +12,8 @@
 namespace roadstereo {
 namespace {
 
-constexpr TextureUncertaintyOptions options{.block_radius = 3, .noise = 2.0, .row_error = 0.4, .half_at = 0.25};
+constexpr TextureUncertaintyOptions options{
+    .block_radius = 3, .noise = 2.0, .row_error = 0.4, .half_weight_sigma = 0.25};
 constexpr int width = 60, height = 40;
 constexpr int block_pixels = 49;
 
@@ -27,16 +28,16 @@ GreyImage paint(const std::function<double(int, int)>& grey) {
 
 /// The ignorance of all blocks of row v.
 std::vector<float> texture_uncertainty(const GreyImage& image, int v) {
-  TextureUncertainty evidence;
-  evidence.start(image, v, options);
-  return evidence.next();
+  TextureUncertainty texture;
+  texture.start(image, v, options);
+  return texture.next();
 }
 
 /// s² / (s² + half_at²) for a block with the sums Σ gu² and Σ gu gv.
 double closed_form(double squares, double products) {
   const double tilt = products / squares;
   const double s2 = options.noise * options.noise / squares + options.row_error * options.row_error * tilt * tilt;
-  return s2 / (s2 + options.half_at * options.half_at);
+  return s2 / (s2 + options.half_weight_sigma * options.half_weight_sigma);
 }
 
 TEST(TextureUncertainty, FlatImageHasNone) {
@@ -70,7 +71,7 @@ TEST(TextureUncertainty, SlantedEdgeAmplifiesRowError) {
   const GreyImage slanted = paint([](int u, int v) { return 0.5 * u + 5.0 * v; });
   const auto uncertainty = texture_uncertainty(slanted, 20);
   const double error = 10 * options.row_error;
-  const double of_rows = error * error / (error * error + options.half_at * options.half_at);
+  const double of_rows = error * error / (error * error + options.half_weight_sigma * options.half_weight_sigma);
   EXPECT_NEAR(uncertainty[30], closed_form(block_pixels * 0.25, block_pixels * 2.5), 1e-5);
   EXPECT_NEAR(uncertainty[30], of_rows, 0.001);
 }
@@ -78,10 +79,9 @@ TEST(TextureUncertainty, SlantedEdgeAmplifiesRowError) {
 TEST(TextureUncertainty, IsIndependentOfFirstRow) {
   const GreyImage image = test::textured_pair(width, height, [](double, double) { return 0; }).reference;
   for (const int first : {0, 1, 13, 36}) {
-    TextureUncertainty evidence;
-    evidence.start(image, first, options);
-    for (int v = first; v < height; ++v)
-      ASSERT_EQ(evidence.next(), texture_uncertainty(image, v)) << first << ", " << v;
+    TextureUncertainty texture;
+    texture.start(image, first, options);
+    for (int v = first; v < height; ++v) ASSERT_EQ(texture.next(), texture_uncertainty(image, v)) << first << ", " << v;
   }
 }
 

@@ -3,18 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/order_statistics.hpp"
+
 namespace roadstereo::cli {
-namespace {
-
-/// The smallest value that at least that share of the values do not exceed.
-double quantile(std::vector<double>& values, double share) {
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
-}  // namespace
 
 void LatencyLog::add(double ms) {
   if (recent_.size() < most_recent) {
@@ -32,7 +23,8 @@ void LatencyLog::add(double ms) {
 LatencyFigures LatencyLog::recent() const {
   if (recent_.empty()) return {};
   std::vector<double> values = recent_;
-  return {quantile(values, 0.5), quantile(values, 0.95), *std::max_element(values.begin(), values.end())};
+  return {covering_quantile(values, 0.5), covering_quantile(values, 0.95),
+          *std::max_element(values.begin(), values.end())};
 }
 
 double LatencyLog::quantile_of_all(double share) const {

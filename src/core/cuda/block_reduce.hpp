@@ -2,7 +2,7 @@
 
 #include "core/cuda/warp.hpp"
 
-// For kernels whose blocks have whole warps in one dimension: every thread of the block calls these.
+// Block reductions in a fixed tree. Every thread of the block calls these; blocks have whole warps in one dimension.
 namespace roadstereo::cuda {
 
 /// Values of shared memory that block_sums() of `count` values works in.
@@ -35,7 +35,7 @@ __device__ T fold_lanes(const T (&values)[count], int& first, int& end) {
   }
 }
 
-/// The sums of `count` values over the threads of the block, in a fixed tree; for every thread to read in `scratch`,
+/// Sums `count` values over the threads of the block, in a fixed tree; every thread may read the sums in `scratch`,
 /// shared memory, until the next call.
 template <class T, int count>
 __device__ const T* block_sums(const T (&values)[count], T* scratch) {
@@ -56,7 +56,7 @@ __device__ const T* block_sums(const T (&values)[count], T* scratch) {
   return totals;
 }
 
-/// The one of all threads' values that `better(a, b)` puts before the others; `scratch` has room for warp_lanes + 1.
+/// Returns the value of all threads that `better(a, b)` prefers; `scratch` has room for warp_lanes + 1.
 template <class T, class Better>
 __device__ T block_best(T value, Better better, T* scratch) {
   const int lane = static_cast<int>(threadIdx.x) % warp_lanes, own = static_cast<int>(threadIdx.x) / warp_lanes;

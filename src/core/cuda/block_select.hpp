@@ -7,7 +7,8 @@
 #include "core/cuda/block_reduce.hpp"
 #include "core/cuda/unroll.hpp"
 
-// For kernels whose blocks have whole warps in one dimension: every thread of the block calls these.
+// Radix select: order statistics of the keys of a block of threads. Every thread of the block calls these; blocks have
+// whole warps in one dimension.
 namespace roadstereo::cuda {
 
 /// Shared memory of block_select().
@@ -20,7 +21,7 @@ struct SelectScratch {
   int of;
 };
 
-/// The key asked for, and how many keys there were: none when 0.
+/// The selected key, and the number of keys; none when 0.
 struct SelectedKey {
   std::uint32_t key;
   int of;
@@ -79,9 +80,9 @@ __device__ void choose_bin(int digit, RankOf rank_of, SelectScratch& scratch) {
   scratch.rank = rank - below;
 }
 
-/// The key of the rank `rank_of(number of keys)`, by radix: digit by digit from the highest, with two barriers each.
-/// `key_of_item(i, key)` says whether item i of `count` has a key, and which; an item is always asked for by the same
-/// thread, which asks for `at_once` before it counts one, since memory takes long.
+/// Returns the key of the rank `rank_of(number of keys)`: digit by digit from the highest, with two barriers each.
+/// `key_of_item(i, key)` returns whether item i of `count` has a key, and writes it; an item is always asked for by the
+/// same thread, which asks for `at_once` before it counts one, since memory takes long.
 template <int at_once = 4, class KeyOfItem, class RankOf>
 __device__ SelectedKey block_select(int count, KeyOfItem key_of_item, RankOf rank_of, SelectScratch& scratch) {
   const int thread = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);

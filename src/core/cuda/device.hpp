@@ -4,7 +4,7 @@
 
 namespace roadstereo::cuda {
 
-/// The GPU that this process would use, or why it cannot use one.
+/// The GPU of this process, or why it cannot use one.
 struct Device {
   bool usable = false;
   std::string name;    ///< e.g. "NVIDIA H200 (compute capability 9.0)"; empty when not usable

@@ -9,8 +9,8 @@ namespace {
 constexpr int block_columns = 64, block_rows = 4;
 
 struct Shrinking {
-  Plane<const std::int16_t> image;
-  Plane<std::int16_t> small;
+  ImageView<const std::int16_t> image;
+  ImageView<std::int16_t> small;
 };
 
 /// A factor known to the compiler makes the loops straight; 0 is any other.
@@ -19,7 +19,7 @@ __global__ void downsample_images(Shrinking first, Shrinking second, int factor)
   const Shrinking of = blockIdx.z == 0 ? first : second;
   const int x = static_cast<int>(blockIdx.x * block_columns + threadIdx.x);
   const int y = static_cast<int>(blockIdx.y * block_rows + threadIdx.y);
-  if (x >= of.small.width || y >= of.small.height) return;
+  if (x >= of.small.width() || y >= of.small.height()) return;
   const int n = known_factor > 0 ? known_factor : factor;
   int sum = 0;
   for (int r = 0; r < n; ++r) {
@@ -31,7 +31,7 @@ __global__ void downsample_images(Shrinking first, Shrinking second, int factor)
 
 void downsample_all(const Shrinking& first, const Shrinking& second, unsigned images, int factor, cudaStream_t stream) {
   const LaunchShape shape{
-      dim3(blocks_for(first.small.width, block_columns), blocks_for(first.small.height, block_rows), images),
+      dim3(blocks_for(first.small.width(), block_columns), blocks_for(first.small.height(), block_rows), images),
       dim3(block_columns, block_rows)};
   switch (factor) {
     case 2:
@@ -47,12 +47,12 @@ void downsample_all(const Shrinking& first, const Shrinking& second, unsigned im
 
 }  // namespace
 
-void downsample(Plane<const std::int16_t> image, int factor, Plane<std::int16_t> small, cudaStream_t stream) {
+void downsample(ImageView<const std::int16_t> image, int factor, ImageView<std::int16_t> small, cudaStream_t stream) {
   downsample_all({image, small}, {image, small}, 1, factor, stream);
 }
 
-void downsample(Plane<const std::int16_t> first, Plane<const std::int16_t> second, int factor,
-                Plane<std::int16_t> first_small, Plane<std::int16_t> second_small, cudaStream_t stream) {
+void downsample(ImageView<const std::int16_t> first, ImageView<const std::int16_t> second, int factor,
+                ImageView<std::int16_t> first_small, ImageView<std::int16_t> second_small, cudaStream_t stream) {
   downsample_all({first, first_small}, {second, second_small}, 2, factor, stream);
 }
 

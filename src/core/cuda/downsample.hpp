@@ -4,15 +4,15 @@
 
 #include <cstdint>
 
-#include "core/cuda/plane.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo::cuda {
 
 /// core/downsample.hpp on the device: each pixel of `small` is the mean of factor × factor of the image.
-void downsample(Plane<const std::int16_t> image, int factor, Plane<std::int16_t> small, cudaStream_t stream);
+void downsample(ImageView<const std::int16_t> image, int factor, ImageView<std::int16_t> small, cudaStream_t stream);
 
 /// The same of two images of one size, in one launch.
-void downsample(Plane<const std::int16_t> first, Plane<const std::int16_t> second, int factor,
-                Plane<std::int16_t> first_small, Plane<std::int16_t> second_small, cudaStream_t stream);
+void downsample(ImageView<const std::int16_t> first, ImageView<const std::int16_t> second, int factor,
+                ImageView<std::int16_t> first_small, ImageView<std::int16_t> second_small, cudaStream_t stream);
 
 }  // namespace roadstereo::cuda

@@ -18,7 +18,7 @@ enum Vote : int { found, ended, vote_count };
 
 struct GreyPair {
   DeviceFrame left_frame, right_frame;
-  Plane<std::int16_t> left, right;
+  ImageView<std::int16_t> left, right;
 };
 
 /// The samples of a pixel, as they are read: what is made of them waits until others are on their way too.
@@ -57,12 +57,12 @@ __device__ PixelPair read_pair(const GreyPair& pair, int u, int v) {
 __device__ int convert_pixels(const GreyPair& pair, const PixelPair& first) {
   const int v = static_cast<int>(blockIdx.y * block_rows + threadIdx.y);
   const int begin = static_cast<int>(blockIdx.x) * columns_each * block_columns + static_cast<int>(threadIdx.x);
-  if (v >= pair.left.height || begin >= pair.left.width) return 0;
+  if (v >= pair.left.height() || begin >= pair.left.width()) return 0;
   PixelPair pixels[columns_each];
   ROADSTEREO_UNROLL
   for (int k = 0; k < columns_each; ++k) {
     const int u = begin + k * block_columns;
-    pixels[k] = read_pair(pair, u < pair.left.width ? u : begin, v);
+    pixels[k] = read_pair(pair, u < pair.left.width() ? u : begin, v);
   }
   const std::int16_t first_left = level_of(pair.left_frame, first.left);
   const std::int16_t first_right = level_of(pair.right_frame, first.right);
@@ -70,7 +70,7 @@ __device__ int convert_pixels(const GreyPair& pair, const PixelPair& first) {
   ROADSTEREO_UNROLL
   for (int k = 0; k < columns_each; ++k) {
     const int u = begin + k * block_columns;
-    if (u >= pair.left.width) break;
+    if (u >= pair.left.width()) break;
     const std::int16_t left = level_of(pair.left_frame, pixels[k].left);
     const std::int16_t right = level_of(pair.right_frame, pixels[k].right);
     pair.left(u, v) = left;
@@ -115,15 +115,15 @@ __global__ void pair_to_grey(GreyPair pair, int* votes, PairFindings* findings) 
 
 }  // namespace
 
-void PairToGrey::convert(const DeviceFrame& left_frame, const DeviceFrame& right_frame, Plane<std::int16_t> left,
-                         Plane<std::int16_t> right, cudaStream_t stream) {
+void PairToGrey::convert(const DeviceFrame& left_frame, const DeviceFrame& right_frame, ImageView<std::int16_t> left,
+                         ImageView<std::int16_t> right, cudaStream_t stream) {
   findings_.reserve(1);
   if (votes_.capacity() == 0) {
     DeviceArray<int> votes(vote_count);
     ROADSTEREO_CUDA(cudaMemsetAsync(votes.data(), 0, vote_count * sizeof(int), stream));
     votes_ = std::move(votes);  // none, unless they are cleared
   }
-  const dim3 grid(blocks_for(left.width, block_columns * columns_each), blocks_for(left.height, block_rows));
+  const dim3 grid(blocks_for(left.width(), block_columns * columns_each), blocks_for(left.height(), block_rows));
   launch(pair_to_grey, {grid, dim3(block_columns, block_rows), sizeof(int)}, stream,
          GreyPair{left_frame, right_frame, left, right}, votes_.data(), findings_.data());
 }

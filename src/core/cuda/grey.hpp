@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "core/cuda/memory.hpp"
-#include "core/cuda/plane.hpp"
 #include "core/grey_level.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo::cuda {
 
@@ -20,7 +20,7 @@ struct DeviceFrame {
   GreyWeights weights{};
 };
 
-/// What the grey levels of a pair say about it.
+/// Findings of the conversion about a pair.
 struct PairFindings {
   int left_varies;   ///< 0: every pixel has the level `left_level`
   int right_varies;  ///< likewise
@@ -32,8 +32,8 @@ struct PairFindings {
 class PairToGrey {
  public:
   /// `left` and `right` have the same size and receive the levels.
-  void convert(const DeviceFrame& left_frame, const DeviceFrame& right_frame, Plane<std::int16_t> left,
-               Plane<std::int16_t> right, cudaStream_t stream);
+  void convert(const DeviceFrame& left_frame, const DeviceFrame& right_frame, ImageView<std::int16_t> left,
+               ImageView<std::int16_t> right, cudaStream_t stream);
 
   /// Of the last pair, on the host once the stream was waited for.
   const PairFindings& findings() const { return *findings_.data(); }

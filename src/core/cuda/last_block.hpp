@@ -4,8 +4,9 @@
 
 namespace roadstereo::cuda {
 
-/// True in all threads of the one block of `blocks` that comes here last: it sees what the others wrote before, and
-/// leaves `arrived`, which begins as 0, as it was. `shared` is one number of the block's shared memory.
+/// Last-block-done pattern (CUDA sample threadFenceReduction): returns true in every thread of the last of `blocks`
+/// blocks to call it, which sees what the others wrote before. `arrived` begins and ends as 0. `shared` is one number
+/// of the block's shared memory.
 __device__ inline bool comes_last(unsigned* arrived, unsigned blocks, unsigned* shared) {
   __threadfence();
   __syncthreads();

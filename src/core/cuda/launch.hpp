@@ -26,8 +26,8 @@ inline unsigned blocks_for(int count, int size) {
 }
 
 #if !defined(ROADSTEREO_CUDA_EMULATED)
-/// Lets blocks of the kernel have more shared memory than usual. The kernel is everybody's: it gets as much as the
-/// device has, which is the same number in every thread, and not what this launch needs.
+/// Allows the kernel more than 48 KB of shared memory per block. The setting belongs to the kernel, which pipelines
+/// share: it is the device's maximum, not the need of this launch.
 inline void ask_for_shared_memory(const void* kernel, std::size_t bytes) {
   constexpr std::size_t without_asking = 48U << 10;
   if (bytes <= without_asking) return;
@@ -39,7 +39,7 @@ inline void ask_for_shared_memory(const void* kernel, std::size_t bytes) {
 }
 #endif
 
-/// Runs `kernel` in the stream; what keeps it from starting is thrown.
+/// Launches `kernel` in the stream; throws SystemError when that fails.
 template <class... Parameters, class... Arguments>
 void launch(void (*kernel)(Parameters...), const LaunchShape& shape, cudaStream_t stream, Arguments&&... arguments) {
   static_assert((sizeof(Parameters) + ... + 0) <= 3500, "a kernel takes at most 4 KB of parameters");

@@ -77,7 +77,7 @@ struct PinnedMemory {
 template <class T>
 using DeviceArray = GrowingArray<T, DeviceMemory>;
 
-/// Memory of the host that the device reaches by itself: copies to and from it run beside kernels.
+/// Pinned host memory: copies to and from it run concurrently with kernels.
 template <class T>
 using PinnedArray = GrowingArray<T, PinnedMemory>;
 

@@ -5,13 +5,14 @@
 namespace roadstereo::cuda {
 namespace {
 
-__global__ void nothing() {}
+__global__ void empty_kernel() {}
 
 }  // namespace
 
 cudaError_t probe_code() {
   cudaFuncAttributes attributes{};
-  return cudaFuncGetAttributes(&attributes, nothing);
+  return cudaFuncGetAttributes(&attributes, empty_kernel);
+#endif
 }
 
 }  // namespace roadstereo::cuda

@@ -4,7 +4,7 @@
 
 namespace roadstereo::cuda {
 
-/// What the runtime says of a kernel of this binary: whether there is code for the current device.
+/// Returns the status of a kernel of this binary: an error without code for the current device.
 cudaError_t probe_code();
 
 }  // namespace roadstereo::cuda

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/median.hpp"
+#include "core/order_statistics.hpp"
 #include "io/damage_colours.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 
@@ -75,7 +75,7 @@ void FlightInventory::remember(const std::vector<Sighting>& sightings) {
     along_u.push_back((now.damage.centroid_px[0] - before->damage.centroid_px[0]) / frames);
     along_v.push_back((now.damage.centroid_px[1] - before->damage.centroid_px[1]) / frames);
   }
-  if (!along_u.empty()) motion_px_ = {take_median(along_u), take_median(along_v)};
+  if (!along_u.empty()) motion_px_ = {upper_median(along_u), upper_median(along_v)};
   const auto outdated = [&](const Sighting& old) {
     return place_ - old.place > max_gap ||
            std::any_of(sightings.begin(), sightings.end(), [&](const Sighting& now) { return now.id == old.id; });

@@ -14,7 +14,6 @@
 #include "road/cuda/roll_assessment.hpp"
 #include "road/cuda/verification_assessment.hpp"
 #include "road/refinement/cuda/refinement_settings.hpp"
-#include "road/shift_terms_of.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/cuda/coarse_search.hpp"
@@ -30,7 +29,7 @@ Device require_device() {
   return device;
 }
 
-/// The host waits for the device twice a frame: for the road, which it judges, and for the end.
+/// The host waits for the device twice a frame: for the road, which it assesses, and for the end.
 class DeviceStages final : public FrameStages {
  public:
   /// The device must be usable: members already take memory of it.
@@ -40,76 +39,74 @@ class DeviceStages final : public FrameStages {
     if (options.narrow_search || options.matcher.prior_weight > 0) coarse_search_.emplace(options.coarse_search);
   }
 
-  void prepare(const FrameView& left, const FrameView& right, FrameResult&) override {
+  GreyPair convert_to_grey(const FrameView& left, const FrameView& right) override {
     require_current_device(device_);  // before memory is taken of another
     clock_.mark(StageClock::begin, stream());
     const FrameUpload::Pair frames = upload_.upload(left, right, options_.white_level, stream());
-    width_ = left.width;
-    height_ = left.height;
-    maps_.resize(width_, height_);
-    const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    right_.reserve(pixels);
-    target_.reserve(pixels);
-    first_column_.reserve(static_cast<std::size_t>(height_));
-    to_grey_.convert(frames.left, frames.right, maps_.grey(), plane(right_), stream());
-    clock_.mark(StageClock::prepared, stream());
+    resize(left.width, left.height);
+    to_grey_.convert(frames.left, frames.right, maps_.grey(), view(right_), stream());
+    clock_.mark(StageClock::converted, stream());
+    return {maps_.grey(), view(right_)};
   }
 
-  GreyPair grey(FrameResult&) override {
-    download(maps_.grey(), left_on_host_);
-    download(plane(right_), right_on_host_);
+  GreyPair on_host(const GreyPair& pair) override {
+    copy_to_host(pair.left, left_on_host_);
+    copy_to_host(pair.right, right_on_host_);
     wait_for_pair();
-    clock_.mark(StageClock::prepared, stream());
+    clock_.mark(StageClock::converted, stream());
     return {left_on_host_, right_on_host_};
   }
 
-  RoadModelEstimate verify_road(const DisparityPlane& previous, const FrameResult&) override {
-    verification_.run(maps_.grey(), plane(right_), {nullptr, plane_terms(previous)}, options_.road_model.with_roll,
-                      stream());
+  RoadModelEstimate verify_road_model(const GreyPair& pair, const DisparityPlane& previous) override {
+    verification_.run(pair.left, pair.right, {nullptr, previous}, options_.road_model.with_roll, stream());
     wait_for_pair();
-    return assess_road_verification(verification_.figures(), previous, width_, height_, calibration_,
+    return assess_road_verification(verification_.statistics(), previous, width_, height_, calibration_,
                                     options_.road_model);
   }
 
-  void transform_perspective(const FrameResult& result) override {
+  MatchInput transform_perspective(const GreyPair& pair, const PerspectiveShift& shift) override {
     clock_.mark(StageClock::road_known, stream());
-    transform_target(plane(right_), shift_terms(result.shift), static_cast<float>(grey_max), plane(target_),
-                     first_column_.data(), stream());
+    transform_target(pair.right, shift, static_cast<float>(grey_max), view(target_), first_column_.data(), stream());
     clock_.mark(StageClock::transformed_target, stream());
+    return {pair.left, view(target_), first_column_.data(), shift.disparities, {}, {}};
   }
 
-  void search_coarsely(const FrameResult& result) override {
-    input_ = {maps_.grey(), plane(target_), first_column_.data(), result.shift.disparities};
-    if (coarse_search_ && coarse_search_->find({input_.reference, input_.target, input_.first_column,
-                                                input_.disparities, shift_terms(result.shift)},
-                                               stream())) {
-      if (options_.narrow_search) {
-        input_.reference_ranges = coarse_search_->reference_ranges();
-        input_.target_ranges = coarse_search_->target_ranges();
-      }
-      input_.prior = coarse_search_->prior();
-      input_.prior_factor = coarse_search_->factor();
+  MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift) override {
+    MatchInput input = pair;
+    if (coarse_search_ && coarse_search_->find(pair, shift, stream())) {
+      if (options_.narrow_search) input.ranges = coarse_search_->ranges();
+      input.prior = coarse_search_->prior();
     }
-    clock_.mark(StageClock::looked, stream());
+    clock_.mark(StageClock::searched, stream());
+    return input;
   }
 
-  void match(const MatcherOptions& options, const FrameResult&) override {
-    matched_ = matcher_.match(input_, options, stream());
+  ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
+    const DeviceMatchMaps& matched = matcher_.match(input, options, stream());
     clock_.mark(StageClock::matched, stream());
+    return {matched.disparity, matched.variance};
   }
 
-  void refine(FrameResult& result) override {
-    cuda::refine_disparities(matched_.disparity, matched_.variance, shift_terms(result.shift),
+  /// In place.
+  DisparityMaps restore_disparity(const ResidualMaps& residual, const PerspectiveShift& shift) override {
+    cuda::restore_disparity(residual.disparity, shift, residual.disparity, stream());
+    return {residual.disparity, residual.variance};
+  }
+
+  ImageView<const float> refine(const DisparityMaps& maps, const DisparityPlane& road) override {
+    cuda::refine_disparities(maps.disparity, maps.variance, road,
                              refinement_settings(options_.refinement, effective_samples(options_.matcher)),
                              maps_.disparity(), maps_.sigma(), stream());
     clock_.mark(StageClock::refined, stream());
+    return maps_.disparity();
   }
 
-  bool fit_geometry(const std::optional<DisparityPlane>& prior, double initial_roll_rad, double min_share,
-                    FrameResult& result) override;
-  void transform(FrameResult& result) override;
-  void invalidate_transformed(FrameResult&) override;
-  void deliver(FrameResult& result) override;
+  RollFit estimate_roll(ImageView<const float> disparity, const std::optional<DisparityPlane>& prior,
+                        double initial_roll_rad, double min_share, const PerspectiveShift& shift) override;
+  TransformedRoad transform_disparity(ImageView<const float> disparity, const RollEstimate& geometry,
+                                      const PerspectiveShift& shift) override;
+  void invalidate_transformed() override;
+  void download(FrameResult& result) override;
 
   void set_device_options(const DeviceOptions& use) override {
     wait();
@@ -118,18 +115,33 @@ class DeviceStages final : public FrameStages {
   }
 
   DeviceMaps device_maps() const override {
-    return {width_, height_, maps_.grey().data, maps_.disparity().data, maps_.sigma().data, maps_.transformed().data,
+    return {width_,
+            height_,
+            maps_.grey().data(),
+            maps_.disparity().data(),
+            maps_.sigma().data(),
+            maps_.transformed().data(),
             stream_};
   }
 
  private:
   cudaStream_t stream() const { return stream_; }
   void wait() const { ROADSTEREO_CUDA(cudaStreamSynchronize(stream_)); }
-  Plane<std::int16_t> plane(DeviceArray<std::int16_t>& pixels) const {
-    return packed_plane(pixels.data(), width_, height_);
+  ImageView<std::int16_t> view(DeviceArray<std::int16_t>& pixels) const {
+    return ImageView(pixels.data(), width_, height_);
   }
 
-  /// Waits for the device, and refuses what the grey levels show to be no pair.
+  void resize(int width, int height) {
+    width_ = width;
+    height_ = height;
+    maps_.resize(width, height);
+    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    right_.reserve(pixels);
+    target_.reserve(pixels);
+    first_column_.reserve(static_cast<std::size_t>(height));
+  }
+
+  /// Waits for the device. Throws Error where the grey levels cannot be those of a pair.
   void wait_for_pair() {
     wait();
     const PairFindings& found = to_grey_.findings();
@@ -139,20 +151,19 @@ class DeviceStages final : public FrameStages {
   }
 
   template <class T>
-  void download(const Plane<T>& from, Image<T>& to) {
+  void copy_to_host(const ImageView<const T>& from, Image<T>& to) {
     to.resize(width_, height_);
-    ROADSTEREO_CUDA(cudaMemcpyAsync(to.row(0), from.data, to.pixels() * sizeof(T), cudaMemcpyDeviceToHost, stream()));
+    ROADSTEREO_CUDA(cudaMemcpyAsync(to.row(0), from.data(), to.pixels() * sizeof(T), cudaMemcpyDeviceToHost, stream()));
   }
 
   /// The end of the frame, around a plane that may still lie in device memory.
-  void enqueue_transform(const PlaneSource& road, const FrameResult& result) {
-    transform_.run(maps_.disparity(), road, {options_.roll.delta_t_px, result.shift.delta_p}, maps_.transformed(),
-                   stream());
+  void enqueue_transform(ImageView<const float> disparity, const PlaneSource& road, const PerspectiveShift& shift) {
+    transform_.run(disparity, road, {options_.roll.delta_t_px, shift.delta_p}, maps_.transformed(), stream());
     clock_.mark(StageClock::transformed, stream());
     if (download_) maps_.download(stream());
   }
 
-  RollEstimate fit_on_host();
+  RollEstimate fit_on_host(ImageView<const float> disparity);
 
   PipelineOptions options_;
   std::optional<StereoCalibration> calibration_;
@@ -171,76 +182,75 @@ class DeviceStages final : public FrameStages {
   Image<float> disparity_on_host_;
   RoadVerification verification_;
   std::optional<CudaCoarseSearch> coarse_search_;
-  DeviceMatchInput input_;
   DeviceMatcher matcher_;
-  DeviceMatchMaps matched_;
   RoadFit fit_;
   MapSums sums_;
   DisparityTransform transform_;
-  bool transformed_ = false;  ///< the transformation is enqueued already
+  bool transformed_ = false;  ///< estimate_roll has enqueued the transformation
   StageClock clock_;
 };
 
 /// The robust fit around a known road goes on into the transformation without the host. Other solvers come back to it
 /// for their plane; without a road before matching, the host searches for one.
-bool DeviceStages::fit_geometry(const std::optional<DisparityPlane>& prior, double initial_roll_rad, double min_share,
-                                FrameResult& result) {
+RollFit DeviceStages::estimate_roll(ImageView<const float> disparity, const std::optional<DisparityPlane>& prior,
+                                    double initial_roll_rad, double min_share, const PerspectiveShift& shift) {
   const RollOptions& options = options_.roll;
-  const MaskedMap map{maps_.disparity(), {}};
+  const MaskedMap map{disparity, {}};
   const bool robust = options.solver == RollSolver::robust;
   transformed_ = robust && prior.has_value();
   if (transformed_) {
-    fit_.run(map, {nullptr, plane_terms(*prior)}, options.max_iterations, stream());
+    fit_.run(map, {nullptr, *prior}, options.max_iterations, stream());
     clock_.mark(StageClock::fitted, stream());
-    enqueue_transform({fit_.plane(), {}}, result);
+    enqueue_transform(disparity, {fit_.plane(), {}}, shift);
   } else {
     // The transformation by no plane at all counts what is valid.
-    transform_.run(maps_.disparity(), {nullptr, {}}, {0, 0}, maps_.transformed(), stream());
+    transform_.run(disparity, {nullptr, {}}, {0, 0}, maps_.transformed(), stream());
     if (!robust) sums_.run(map, stream());
   }
   wait();
-  result.valid_share = static_cast<double>(transform_.figures().valid) / (static_cast<double>(width_) * height_);
-  if (result.valid_share < min_share) return false;
+  RollFit fit{static_cast<double>(transform_.statistics().valid) / (static_cast<double>(width_) * height_),
+              std::nullopt};
+  if (fit.valid_share < min_share) return fit;
   if (transformed_) {
-    result.geometry = finish_road_fit(fit_.figures(), width_, height_, options);
+    fit.geometry = finish_road_fit(fit_.statistics(), width_, height_, options);
   } else if (robust) {
-    result.geometry = fit_on_host();
+    fit.geometry = fit_on_host(disparity);
   } else {
-    result.geometry = solve_map(sums_.sums(), width_, height_, initial_roll_rad, options);
-    fit_.measure(map, plane_terms(result.geometry.plane), stream());
+    fit.geometry = solve_map(sums_.sums(), width_, height_, initial_roll_rad, options);
+    fit_.measure(map, fit.geometry->plane, stream());
     wait();
-    finish_measured(fit_.figures(), width_, height_, options, result.geometry);
+    finish_measured(fit_.statistics(), width_, height_, options, *fit.geometry);
   }
-  return true;
+  return fit;
 }
 
-RollEstimate DeviceStages::fit_on_host() {
-  download(maps_.disparity(), disparity_on_host_);
+RollEstimate DeviceStages::fit_on_host(ImageView<const float> disparity) {
+  copy_to_host(disparity, disparity_on_host_);
   wait();
-  return estimate_roll(disparity_on_host_, std::nullopt, std::nullopt, 0, options_.roll, options_.threads);
+  return roadstereo::estimate_roll(disparity_on_host_, std::nullopt, std::nullopt, 0, options_.roll, options_.threads);
 }
 
-void DeviceStages::transform(FrameResult& result) {
+TransformedRoad DeviceStages::transform_disparity(ImageView<const float> disparity, const RollEstimate& geometry,
+                                                  const PerspectiveShift& shift) {
   if (!transformed_) {
     clock_.mark(StageClock::fitted, stream());
-    enqueue_transform({nullptr, plane_terms(result.geometry.plane)}, result);
+    enqueue_transform(disparity, {nullptr, geometry.plane}, shift);
     wait();
   }
-  const TransformFigures& found = transform_.figures();
-  result.delta_t = found.delta_t;
-  result.spread = {found.sigma_road_px, found.sigma_all_px, found.road_share};
+  const TransformStatistics& found = transform_.statistics();
+  return {found.delta_t, {found.sigma_road_px, found.sigma_all_px, found.road_share}};
 }
 
-void DeviceStages::invalidate_transformed(FrameResult&) {
+void DeviceStages::invalidate_transformed() {
   clock_.mark(StageClock::fitted, stream());
   constexpr int every_bit = 0xFF;  // a NaN
   const std::size_t bytes = sizeof(float) * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-  ROADSTEREO_CUDA(cudaMemsetAsync(maps_.transformed().data, every_bit, bytes, stream()));
+  ROADSTEREO_CUDA(cudaMemsetAsync(maps_.transformed().data(), every_bit, bytes, stream()));
   clock_.mark(StageClock::transformed, stream());
   if (download_) maps_.download(stream());
 }
 
-void DeviceStages::deliver(FrameResult& result) {
+void DeviceStages::download(FrameResult& result) {
   wait();
   clock_.read(result.ms);
   if (download_) {

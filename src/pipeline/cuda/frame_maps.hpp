@@ -3,21 +3,20 @@
 #include <cstdint>
 
 #include "core/cuda/memory.hpp"
-#include "core/cuda/plane.hpp"
+#include "roadstereo/image_view.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cuda {
 
-/// What a frame leaves, in one piece of device memory, so that one copy takes it to the host: ℓ, σ, ℓ' and the left
-/// image.
+/// The results of a frame in one piece of device memory, so that one copy downloads them: ℓ, σ, ℓ' and the left image.
 class FrameMaps {
  public:
   void resize(int width, int height);
 
-  Plane<float> disparity() const { return {floats_.data(), width_, height_, width_}; }
-  Plane<float> sigma() const { return {floats_.data() + pixels_, width_, height_, width_}; }
-  Plane<float> transformed() const { return {floats_.data() + 2 * pixels_, width_, height_, width_}; }
-  Plane<std::int16_t> grey() const {
+  ImageView<float> disparity() const { return {floats_.data(), width_, height_, width_}; }
+  ImageView<float> sigma() const { return {floats_.data() + pixels_, width_, height_, width_}; }
+  ImageView<float> transformed() const { return {floats_.data() + 2 * pixels_, width_, height_, width_}; }
+  ImageView<std::int16_t> grey() const {
     return {reinterpret_cast<std::int16_t*>(floats_.data() + 3 * pixels_), width_, height_, width_};
   }
 

@@ -6,7 +6,7 @@
 
 namespace roadstereo::cuda {
 
-/// Brings the frames of a pair into device memory: in one copy when they are on the host, in none when they are there.
+/// Uploads the frames of a pair in one copy; frames in device memory are used where they are.
 class FrameUpload {
  public:
   struct Pair {

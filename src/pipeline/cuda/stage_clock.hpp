@@ -8,21 +8,31 @@
 
 namespace roadstereo::cuda {
 
-/// When the device has ended each stage of a frame: a clock on the host sees only when they were enqueued.
+/// Device events at the end of each stage of a frame: a clock on the host sees only when stages were enqueued.
 class StageClock {
  public:
-  enum Mark { begin, prepared, road_known, transformed_target, looked, matched, refined, fitted, transformed, marks };
+  enum Mark {
+    begin,
+    converted,
+    road_known,
+    transformed_target,
+    searched,
+    matched,
+    refined,
+    fitted,
+    transformed,
+    marks
+  };
 
   void mark(Mark at, cudaStream_t stream) { ROADSTEREO_CUDA(cudaEventRecord(events_[at].get(), stream)); }
 
-  /// Every mark must have been passed. Leaves `total` alone: it is for a clock on the host, which sees what lies
-  /// between.
+  /// Fills all times but `total`, which the host measures. The device must have passed every mark.
   void read(StageTimes& ms) const {
-    ms.prepare = between(begin, prepared);
-    ms.road_model = between(prepared, road_known);
+    ms.prepare = between(begin, converted);
+    ms.road_model = between(converted, road_known);
     ms.perspective = between(road_known, transformed_target);
-    ms.coarse = between(transformed_target, looked);
-    ms.match = between(looked, matched);
+    ms.coarse = between(transformed_target, searched);
+    ms.match = between(searched, matched);
     ms.refinement = between(matched, refined);
     ms.roll = between(refined, fitted);
     ms.transform = between(fitted, transformed);

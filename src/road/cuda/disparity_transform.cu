@@ -27,23 +27,24 @@ struct Sample {
 };
 
 /// The first of the rows of a block, and the column of a thread.
-struct Place {
-  __device__ Place()
+struct Pixel {
+  __device__ Pixel()
       : u(static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x)), v(static_cast<int>(blockIdx.y) * block_rows) {}
   int u, v;
 };
 
 /// Tells `use(v, height)` how far the pixels of a thread lie above the road; they are read together.
 template <class Use>
-__device__ void for_each_height(const Plane<const float>& disparity, const PlaneTerms& road, const Place& at, Use use) {
-  if (at.u >= disparity.width) return;
+__device__ void for_each_height(const ImageView<const float>& disparity, const DisparityPlane& road, const Pixel& at,
+                                Use use) {
+  if (at.u >= disparity.width()) return;
   float rows[block_rows];
   ROADSTEREO_UNROLL
-  for (int k = 0; k < block_rows; ++k) rows[k] = __ldg(disparity.row(min(at.v + k, disparity.height - 1)) + at.u);
+  for (int k = 0; k < block_rows; ++k) rows[k] = __ldg(disparity.row(min(at.v + k, disparity.height() - 1)) + at.u);
   ROADSTEREO_UNROLL
   for (int k = 0; k < block_rows; ++k) {
     const int v = at.v + k;
-    if (v < disparity.height) use(v, above_road(rows[k], road_at_row(road.a0, road.a1, v), road.a2, at.u));
+    if (v < disparity.height()) use(v, above_road(rows[k], road_at_row(road.a0, road.a1, v), road.a2, at.u));
   }
 }
 
@@ -71,12 +72,12 @@ __device__ double median_near(const Sample& sample, double delta_t, SelectScratc
 }
 
 /// Lowest height and number of valid disparities; the last block derives δt and the limit of the spread.
-__global__ void measure_heights(Plane<const float> disparity, PlaneSource source, TransformOffset offset, Sample sample,
-                                DisparityTransform::State* state) {
+__global__ void measure_heights(ImageView<const float> disparity, PlaneSource source, TransformOffset offset,
+                                Sample sample, DisparityTransform::State* state) {
   Shared& shared = *shared_memory<Shared>();
-  const PlaneTerms road = source.get();
-  const Place at;
-  const bool of_sample = at.u < disparity.width && sample.has(at.u);
+  const DisparityPlane road = source.get();
+  const Pixel at;
+  const bool of_sample = at.u < disparity.width() && sample.has(at.u);
   float lowest = INFINITY;
   int valid = 0;
   for_each_height(disparity, road, at, [&](int v, float height) {
@@ -100,9 +101,9 @@ __global__ void measure_heights(Plane<const float> disparity, PlaneSource source
   state->limit = spread_limit(median);
 }
 
-/// The figures, from the sums of all blocks.
+/// The statistics, from the sums of all blocks.
 __device__ void finish(const double* sums, int blocks, Shared& shared, DisparityTransform::State& state,
-                       TransformFigures& figures) {
+                       TransformStatistics& statistics) {
   double own[spread_sums] = {};
   for (int block = static_cast<int>(threadIdx.x); block < blocks; block += static_cast<int>(blockDim.x)) {
     for (int i = 0; i < spread_sums; ++i) own[i] += sums[block * spread_sums + i];
@@ -110,18 +111,18 @@ __device__ void finish(const double* sums, int blocks, Shared& shared, Disparity
   const double* total = block_sums(own, shared.sums);
   if (threadIdx.x != 0) return;
   const Spread all{total[0], total[1], total[2]}, road{total[3], total[4], total[5]};
-  figures = {state.delta_t, road.deviation(), all.deviation(), all.n > 0 ? road.n / all.n : 0, state.valid};
+  statistics = {state.delta_t, road.deviation(), all.deviation(), all.n > 0 ? road.n / all.n : 0, state.valid};
   state.lowest = 0;
   state.valid = 0;
 }
 
 /// Writes the transformed map and adds up its spread.
-__global__ void shift_heights(Plane<const float> disparity, PlaneSource source, Plane<float> transformed,
-                              DisparityTransform::State* state, double* sums, TransformFigures* figures) {
+__global__ void shift_heights(ImageView<const float> disparity, PlaneSource source, ImageView<float> transformed,
+                              DisparityTransform::State* state, double* sums, TransformStatistics* statistics) {
   Shared& shared = *shared_memory<Shared>();
-  const PlaneTerms plane = source.get();
+  const DisparityPlane plane = source.get();
   const double delta_t = state->delta_t, limit = state->limit;
-  const Place at;
+  const Pixel at;
   Spread all{0, 0, 0}, road{0, 0, 0};
   for_each_height(disparity, plane, at, [&](int v, float height) {
     const float value = height + static_cast<float>(delta_t);
@@ -137,7 +138,7 @@ __global__ void shift_heights(Plane<const float> disparity, PlaneSource source, 
   const int i = static_cast<int>(threadIdx.x);
   if (i < spread_sums) sums[block * spread_sums + i] = total[i];
   if (!comes_last(&state->arrived, gridDim.x * gridDim.y, &shared.last)) return;
-  finish(sums, static_cast<int>(gridDim.x * gridDim.y), shared, *state, *figures);
+  finish(sums, static_cast<int>(gridDim.x * gridDim.y), shared, *state, *statistics);
 }
 
 /// How many of 0 … size − 1 the sample takes.
@@ -147,17 +148,18 @@ int sampled(int size, int step) {
 
 }  // namespace
 
-void DisparityTransform::run(Plane<const float> disparity, const PlaneSource& road, const TransformOffset& offset,
-                             Plane<float> transformed, cudaStream_t stream) {
+void DisparityTransform::run(ImageView<const float> disparity, const PlaneSource& road, const TransformOffset& offset,
+                             ImageView<float> transformed, cudaStream_t stream) {
   if (state_.capacity() == 0) {
     state_.reserve(1);
     ROADSTEREO_CUDA(cudaMemsetAsync(state_.data(), 0, sizeof(State), stream));
   }
-  const int step = spread_step(static_cast<double>(disparity.width) * disparity.height);
-  const int columns = sampled(disparity.width, step), rows = sampled(disparity.height, step);
+  const int step = spread_step(static_cast<double>(disparity.width()) * disparity.height());
+  const int columns = sampled(disparity.width(), step), rows = sampled(disparity.height(), step);
   sample_.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  const LaunchShape shape{dim3(blocks_for(disparity.width, block_columns), blocks_for(disparity.height, block_rows)),
-                          block_columns, sizeof(Shared)};
+  const LaunchShape shape{
+      dim3(blocks_for(disparity.width(), block_columns), blocks_for(disparity.height(), block_rows)), block_columns,
+      sizeof(Shared)};
   sums_.reserve(static_cast<std::size_t>(shape.grid.x) * shape.grid.y * spread_sums);
   launch(measure_heights, shape, stream, disparity, road, offset, Sample{sample_.data(), step, columns, rows},
          state_.data());

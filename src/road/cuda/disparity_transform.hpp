@@ -3,13 +3,13 @@
 #include <cuda_runtime_api.h>
 
 #include "core/cuda/memory.hpp"
-#include "core/cuda/plane.hpp"
 #include "road/cuda/fitted_plane.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo::cuda {
 
 /// What DisparityTransform leaves for the host.
-struct TransformFigures {
+struct TransformStatistics {
   double delta_t;
   double sigma_road_px, sigma_all_px, road_share;  ///< RoadResiduals
   int valid;                                       ///< disparities of the map that are not NaN
@@ -26,11 +26,11 @@ struct TransformOffset {
 class DisparityTransform {
  public:
   /// Enqueues it. `transformed` has the size of `disparity`.
-  void run(Plane<const float> disparity, const PlaneSource& road, const TransformOffset& offset,
-           Plane<float> transformed, cudaStream_t stream);
+  void run(ImageView<const float> disparity, const PlaneSource& road, const TransformOffset& offset,
+           ImageView<float> transformed, cudaStream_t stream);
 
   /// Once the stream was synchronised.
-  const TransformFigures& figures() const { return *result_.data(); }
+  const TransformStatistics& statistics() const { return *result_.data(); }
 
   /// What the blocks of the first launch leave for those of the second; begins and ends as zeros but for the last two.
   struct State {
@@ -44,7 +44,7 @@ class DisparityTransform {
   DeviceArray<State> state_;
   DeviceArray<float> sample_;
   DeviceArray<double> sums_;
-  PinnedArray<TransformFigures> result_{1};
+  PinnedArray<TransformStatistics> result_{1};
 };
 
 }  // namespace roadstereo::cuda

@@ -1,21 +1,21 @@
 #pragma once
 
-#include "road/shift_terms.hpp"
+#include "road/row_shift.hpp"
 
 namespace roadstereo::cuda {
 
 /// A plane in device memory, which an earlier kernel leaves there, or one that the host knows.
 struct PlaneSource {
-  const PlaneTerms* in_memory;  ///< null: `value` counts
-  PlaneTerms value;
+  const DisparityPlane* in_memory;  ///< null: `value` counts
+  DisparityPlane value;
 
-  ROADSTEREO_HD PlaneTerms get() const { return in_memory != nullptr ? *in_memory : value; }
+  ROADSTEREO_HD DisparityPlane get() const { return in_memory != nullptr ? *in_memory : value; }
 };
 
 /// What a robust fit leaves. The plane comes first, so that its address serves as a PlaneSource.
 struct FittedPlane {
-  PlaneTerms plane;  ///< the start, when not found
-  double scale_px;   ///< robust standard deviation of the inliers
+  DisparityPlane plane;  ///< the start, when not found
+  double scale_px;       ///< robust standard deviation of the inliers
   int iterations;
   int found;   ///< 0: too few points stayed, or all on one line of the image
   int points;  ///< that there were

@@ -21,12 +21,12 @@ struct Shared {
 
 /// n, u, d, uu, ud, dd of a row: a warp adds them up, and its first lane makes the rest of them.
 __device__ RawSums sum_row(const MaskedMap& map, int v, double* shared) {
-  const double centre_u = (map.disparity.width - 1) / 2.0, at_v = v - (map.disparity.height - 1) / 2.0;
+  const double centre_u = (map.disparity.width() - 1) / 2.0, at_v = v - (map.disparity.height() - 1) / 2.0;
   const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
   double own[row_sums] = {};
-  for (int u = lane; u < map.disparity.width; u += warp_lanes) {
+  for (int u = lane; u < map.disparity.width(); u += warp_lanes) {
     const float value = __ldg(map.disparity.row(v) + u);
-    if (!(value == value) || (map.mask.data != nullptr && map.mask(u, v) == 0)) continue;
+    if (!(value == value) || (map.mask.data() != nullptr && map.mask(u, v) == 0)) continue;
     const double d = value, at_u = u - centre_u;
     own[0] += 1;
     own[1] += at_u;
@@ -80,12 +80,12 @@ __global__ void sum_map(MaskedMap map, RawSums* rows, unsigned* arrived, RawSums
   Shared& shared = *shared_memory<Shared>();
   const int own = static_cast<int>(threadIdx.x) / warp_lanes;
   const int v = static_cast<int>(blockIdx.x) * rows_per_block + own;
-  if (v < map.disparity.height) {
+  if (v < map.disparity.height()) {
     const RawSums sums = sum_row(map, v, shared.rows[own]);
     if (threadIdx.x % warp_lanes == 0) rows[v] = sums;
   }
   if (!comes_last(arrived, gridDim.x, &shared.last)) return;
-  const RawSums all = add_rows(rows, map.disparity.height, shared);
+  const RawSums all = add_rows(rows, map.disparity.height(), shared);
   if (threadIdx.x == 0) *result = all;
 }
 
@@ -96,8 +96,8 @@ void MapSums::run(const MaskedMap& map, cudaStream_t stream) {
     arrived_.reserve(1);
     ROADSTEREO_CUDA(cudaMemsetAsync(arrived_.data(), 0, sizeof(unsigned), stream));
   }
-  rows_.reserve(static_cast<std::size_t>(map.disparity.height));
-  launch(sum_map, {blocks_for(map.disparity.height, rows_per_block), rows_per_block * warp_lanes, sizeof(Shared)},
+  rows_.reserve(static_cast<std::size_t>(map.disparity.height()));
+  launch(sum_map, {blocks_for(map.disparity.height(), rows_per_block), rows_per_block * warp_lanes, sizeof(Shared)},
          stream, map, rows_.data(), arrived_.data(), result_.data());
 }
 

@@ -1,6 +1,6 @@
 // Floor of transform_target: 4 bytes and about 20 operations a pixel, of which six in double precision: 0.9 MB for
 // 640×360. The four samples of a pixel are its neighbours' too, and come from the first cache.
-// Floor of add_shift: 8 bytes and 4 operations a pixel.
+// Floor of restore_disparity: 8 bytes and 4 operations a pixel.
 
 #include "core/cuda/launch.hpp"
 #include "road/cubic.hpp"
@@ -26,42 +26,42 @@ struct SampledRow {
   }
 };
 
-__device__ SampledRow sampled_row(const Plane<const std::int16_t>& image, double v) {
+__device__ SampledRow sampled_row(const ImageView<const std::int16_t>& image, double v) {
   const double whole = floor(v);
   const auto row = [&](int below) {
     const int wanted = static_cast<int>(whole) + below;
-    return image.row(wanted < 0 ? 0 : wanted >= image.height ? image.height - 1 : wanted);
+    return image.row(wanted < 0 ? 0 : wanted >= image.height() ? image.height() - 1 : wanted);
   };
-  return {row(-1), row(0), row(1), row(2), cubic_weights(v - whole), v != whole, image.width - 1};
+  return {row(-1), row(0), row(1), row(2), cubic_weights(v - whole), v != whole, image.width() - 1};
 }
 
-__device__ std::int16_t shifted_grey(const SampledRow& row, const ShiftTerms& shift, int x, int v, float white) {
-  const double by = shift_at(shift, x, v);
+__device__ std::int16_t shifted_grey(const SampledRow& row, const PerspectiveShift& shift, int x, int v, float white) {
+  const double by = shift.at(x, v);
   const int whole = static_cast<int>(ceil(by));
   const auto f = static_cast<float>(whole - by);
   const int source = x - whole;
   return grey_between(row(source - 1), row(source), row(source + 1), row(source + 2), f, white);
 }
 
-__global__ void transform_rows(Plane<const std::int16_t> target, ShiftTerms shift, float white,
-                               Plane<std::int16_t> transformed, int* first_column) {
+__global__ void transform_rows(ImageView<const std::int16_t> target, PerspectiveShift shift, float white,
+                               ImageView<std::int16_t> transformed, int* first_column) {
   int* first = shared_memory<int>();
   const int v = static_cast<int>(blockIdx.y);
   if (threadIdx.x == 0) {
-    *first = find_first_column(shift, v, target.width);
+    *first = find_first_column(shift, v, target.width());
     if (blockIdx.x == 0) first_column[v] = *first;
   }
   __syncthreads();
   const int x = static_cast<int>(blockIdx.x) * row_threads + static_cast<int>(threadIdx.x);
-  if (x >= target.width) return;
+  if (x >= target.width()) return;
   const SampledRow row = sampled_row(target, v + shift.row_offset);
   transformed(x, v) = x < *first ? std::int16_t{0} : shifted_grey(row, shift, x, v, white);
 }
 
-__global__ void add_shift_to_rows(Plane<const float> residual, ShiftTerms shift, Plane<float> disparity) {
+__global__ void restore_rows(ImageView<const float> residual, PerspectiveShift shift, ImageView<float> disparity) {
   const int u = static_cast<int>(blockIdx.x) * row_threads + static_cast<int>(threadIdx.x);
   const int v = static_cast<int>(blockIdx.y);
-  if (u >= residual.width) return;
+  if (u >= residual.width()) return;
   const float own = residual(u, v);
   disparity(u, v) = !shift.enabled      ? own
                     : shift.whole_pixel ? with_whole_shift(own, shift, u, v)
@@ -74,14 +74,15 @@ dim3 row_blocks(int width, int height) {
 
 }  // namespace
 
-void transform_target(Plane<const std::int16_t> target, const ShiftTerms& shift, float white,
-                      Plane<std::int16_t> transformed, int* first_column, cudaStream_t stream) {
-  launch(transform_rows, {row_blocks(target.width, target.height), row_threads, sizeof(int)}, stream, target, shift,
+void transform_target(ImageView<const std::int16_t> target, const PerspectiveShift& shift, float white,
+                      ImageView<std::int16_t> transformed, int* first_column, cudaStream_t stream) {
+  launch(transform_rows, {row_blocks(target.width(), target.height()), row_threads, sizeof(int)}, stream, target, shift,
          white, transformed, first_column);
 }
 
-void add_shift(Plane<const float> residual, const ShiftTerms& shift, Plane<float> disparity, cudaStream_t stream) {
-  launch(add_shift_to_rows, {row_blocks(residual.width, residual.height), row_threads}, stream, residual, shift,
+void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, ImageView<float> disparity,
+                       cudaStream_t stream) {
+  launch(restore_rows, {row_blocks(residual.width(), residual.height()), row_threads}, stream, residual, shift,
          disparity);
 }
 

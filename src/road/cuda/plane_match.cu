@@ -5,6 +5,7 @@
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
 #include "core/full_resolution.hpp"
+#include "core/mid_grey.hpp"
 #include "road/cuda/plane_match.hpp"
 
 namespace roadstereo::cuda {
@@ -13,7 +14,6 @@ namespace {
 constexpr int places_per_block = 4;
 constexpr int max_range = 7;
 constexpr int max_offsets = 2 * max_range + 1;
-constexpr float mid_grey = 255 * plane_match_grey_scale / 2.0F;
 
 /// Sums over a row of a block, for one of the offsets.
 struct RowSums {
@@ -30,7 +30,7 @@ struct PlaceMemory {
 };
 
 /// The pair's planes at the size of the search.
-__device__ PlaneTerms shrunk_plane(const PlaneTerms& plane, int factor) {
+__device__ DisparityPlane shrunk_plane(const DisparityPlane& plane, int factor) {
   const double centre = to_full_resolution(0, factor);
   return {plane.disparity(centre, centre) / factor, plane.a1, plane.a2};
 }
@@ -38,7 +38,8 @@ __device__ PlaneTerms shrunk_plane(const PlaneTerms& plane, int factor) {
 /// A search by one warp.
 class PlaceSearch {
  public:
-  __device__ PlaceSearch(const GuidedPair& pair, const PlaneTerms& plane, int range, int u, int v, PlaceMemory& memory)
+  __device__ PlaceSearch(const GuidedPair& pair, const DisparityPlane& plane, int range, int u, int v,
+                         PlaceMemory& memory)
       : pair_(pair),
         plane_(plane),
         range_(range),
@@ -124,7 +125,7 @@ class PlaceSearch {
     ROADSTEREO_UNROLL
     for (int y = 0; y < plane_block_height; ++y) {
       const float place = starts[y].place + static_cast<float>(lane_) * slope, whole = floorf(place);
-      const int column = starts[y].column + lane_ + static_cast<int>(whole), last = pair_.right.width - 1;
+      const int column = starts[y].column + lane_ + static_cast<int>(whole), last = pair_.right.width() - 1;
       const std::int16_t* greys = pair_.right.row(v_ + y - plane_block_half_height);
       parts[y] = place - whole;
       left[y] = __ldg(greys + (column < last ? column : last));
@@ -134,7 +135,7 @@ class PlaceSearch {
     for (int y = 0; y < plane_block_height; ++y) {
       const float part = parts[y];
       memory_.strip[y][lane_] =
-          (1 - part) * static_cast<float>(left[y]) + part * static_cast<float>(right[y]) - mid_grey;
+          (1 - part) * static_cast<float>(left[y]) + part * static_cast<float>(right[y]) - static_cast<float>(mid_grey);
     }
   }
 
@@ -170,7 +171,7 @@ class PlaceSearch {
   }
 
   const GuidedPair& pair_;
-  const PlaneTerms& plane_;
+  const DisparityPlane& plane_;
   int range_, offsets_, u_, v_, lane_;
   PlaceMemory& memory_;
   float mean_ = 0, deviation_ = 0;
@@ -181,11 +182,11 @@ __global__ void match_places(GuidedPair pair, SampleGrid grid, PlaneSource sourc
   const int own = static_cast<int>(threadIdx.x) / warp_lanes;
   const int place = static_cast<int>(blockIdx.x) * places_per_block + own;
   if (place >= grid.places()) return;
-  const PlaneTerms plane = shrunk_plane(source.get(), pair.factor);
+  const DisparityPlane plane = shrunk_plane(source.get(), pair.factor);
   const int u = grid.column(place % grid.columns), v = grid.row(place / grid.columns);
-  bool tried =
-      (needed == nullptr || *needed != 0) && fabs(plane.a2) < plane_match_max_slant &&
-      search_in_view(u, plane.disparity(u, v), plane_search_extent(plane.a1, plane.a2, grid.range_px), pair.left.width);
+  bool tried = (needed == nullptr || *needed != 0) && fabs(plane.a2) < plane_match_max_slant &&
+               search_in_view(u, plane.disparity(u, v), plane_search_extent(plane.a1, plane.a2, grid.range_px),
+                              pair.left.width());
   float residual = nanf("");
   if (tried) {
     PlaceSearch search(pair, plane, grid.range_px, u, v, shared_memory<PlaceMemory>()[own]);

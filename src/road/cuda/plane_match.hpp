@@ -4,15 +4,17 @@
 
 #include <cstdint>
 
-#include "core/cuda/plane.hpp"
 #include "road/cuda/fitted_plane.hpp"
 #include "road/plane_search.hpp"
+#include "roadstereo/image_view.hpp"
+
+// Block matching along a known plane by normalised cross-correlation, on the device.
 
 namespace roadstereo::cuda {
 
 /// The pair as the search sees it, at 1 / factor of its size.
 struct GuidedPair {
-  Plane<const std::int16_t> left, right;
+  ImageView<const std::int16_t> left, right;
   int factor;
 };
 

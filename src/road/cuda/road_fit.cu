@@ -40,7 +40,7 @@ __device__ void take_sample(const MaskedMap& map, const SampledMap& sampled) {
       u[k] = sampled.sample.at(i % sampled.sample.columns);
       v[k] = sampled.sample.at(i / sampled.sample.columns);
       d[k] = map.disparity(u[k], v[k]);  // __ldg would be put off until it is needed
-      counts[k] = map.mask.data == nullptr || __ldg(map.mask.row(v[k]) + u[k]) != 0;
+      counts[k] = map.mask.data() == nullptr || __ldg(map.mask.row(v[k]) + u[k]) != 0;
     }
     ROADSTEREO_UNROLL
     for (int k = 0; k < at_once; ++k) {
@@ -64,7 +64,7 @@ __device__ int count_all(const SampledMap& sampled, FitState& state) {
 }
 
 /// The least-squares plane of all points; false when they lie on one line.
-__device__ bool fit_least_squares(const SampledMap& sampled, FitState& state, PlaneTerms& plane) {
+__device__ bool fit_least_squares(const SampledMap& sampled, FitState& state, DisparityPlane& plane) {
   const double centre_u = sampled.width / 2.0, centre_v = sampled.height / 2.0;
   double own[9] = {};
   for (int i = thread(); i < sampled.sample.count(); i += threads()) {
@@ -100,7 +100,7 @@ struct Means {
 };
 
 /// Adds up the scores of a cell before they are squared; a thread for each cell, its points in the host's order.
-__device__ void sum_scores(const SampledMap& sampled, const PlaneTerms& plane, const Means& mean, FitState& state,
+__device__ void sum_scores(const SampledMap& sampled, const DisparityPlane& plane, const Means& mean, FitState& state,
                            FitMoments& moments) {
   double own[3] = {};
   for (int cell = thread(); cell < cells_per_side * cells_per_side; cell += threads()) {
@@ -127,7 +127,7 @@ __device__ void sum_scores(const SampledMap& sampled, const PlaneTerms& plane, c
   moments.score_vv = sums[2];
 }
 
-__device__ FitMoments fit_moments(const SampledMap& sampled, const PlaneTerms& plane, FitState& state) {
+__device__ FitMoments fit_moments(const SampledMap& sampled, const DisparityPlane& plane, FitState& state) {
   const double centre_u = sampled.width / 2.0, centre_v = sampled.height / 2.0;
   double own[8] = {};
   for (int i = thread(); i < sampled.sample.count(); i += threads()) {
@@ -148,10 +148,10 @@ __device__ FitMoments fit_moments(const SampledMap& sampled, const PlaneTerms& p
 
 /// `max_iterations` 0 measures the plane as it is.
 __global__ void __launch_bounds__(1024)
-    fit_map(MaskedMap map, SampledMap sampled, PlaneSource source, int max_iterations, RoadFitStatistics* figures,
+    fit_map(MaskedMap map, SampledMap sampled, PlaneSource source, int max_iterations, RoadFitStatistics* statistics,
             RoadFitStatistics* result) {
   FitState& state = *shared_memory<FitState>();
-  const PlaneTerms start = source.get();
+  const DisparityPlane start = source.get();
   RoadFitStatistics own{start, {start, 0, 0, 0, 0}, 0, 1, {}};
   take_sample(map, sampled);
   if (max_iterations > 0) {
@@ -168,7 +168,7 @@ __global__ void __launch_bounds__(1024)
   }
   if (own.has_plane != 0) own.moments = fit_moments(sampled, own.plane, state);
   if (thread() != 0) return;
-  *figures = own;
+  *statistics = own;
   *result = own;  // not read back: it lies in the host's memory
 }
 
@@ -178,12 +178,12 @@ void RoadFit::run(const MaskedMap& map, const PlaneSource& prior, int max_iterat
   enqueue(map, prior, max_iterations, stream);
 }
 
-void RoadFit::measure(const MaskedMap& map, const PlaneTerms& plane, cudaStream_t stream) {
+void RoadFit::measure(const MaskedMap& map, const DisparityPlane& plane, cudaStream_t stream) {
   enqueue(map, {nullptr, plane}, 0, stream);
 }
 
 void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, cudaStream_t stream) {
-  const int width = map.disparity.width, height = map.disparity.height;
+  const int width = map.disparity.width(), height = map.disparity.height();
   const MapSample sample = map_sample(width, height);
   require_fit_points(sample.count());
   for (DeviceArray<float>* of : {&u_, &v_, &d_, &first_, &weights_}) {
@@ -191,7 +191,7 @@ void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_it
   }
   const SampledMap sampled{sample, width, height, u_.data(), v_.data(), d_.data(), first_.data(), weights_.data()};
   launch(fit_map, {1, fit_threads(sample.count()), fit_shared_bytes(sample.count())}, stream, map, sampled, plane,
-         max_iterations, figures_.data(), result_.data());
+         max_iterations, statistics_.data(), result_.data());
 }
 
 }  // namespace roadstereo::cuda

@@ -11,43 +11,43 @@ namespace roadstereo::cuda {
 namespace {
 
 /// Points and tried places of a search.
-__device__ void count_places(const SearchMemory& search, FitState& state, SearchStatistics& figures) {
+__device__ void count_places(const SearchMemory& search, FitState& state, SearchStatistics& statistics) {
   int own[2] = {0, 0};
   for (int i = static_cast<int>(threadIdx.x); i < search.count; i += static_cast<int>(blockDim.x)) {
     own[0] += search.slots.d[i] == search.slots.d[i] ? 1 : 0;
     own[1] += search.slots.tried[i];
   }
   const int* sums = block_sums(own, reinterpret_cast<int*>(state.scratch));
-  figures.points = sums[0];
-  figures.tried = sums[1];
+  statistics.points = sums[0];
+  statistics.tried = sums[1];
 }
 
 /// Inliers and the rows that they cover; a thread's own weights are visible to it.
-__device__ void count_inliers(const SearchMemory& search, FitState& state, SearchStatistics& figures) {
+__device__ void count_inliers(const SearchMemory& search, FitState& state, SearchStatistics& statistics) {
   const auto row = [&](int i, std::uint32_t& key) {
     key = key_of(search.slots.v[i]);
     return search.weights[i] > 0;
   };
   const SelectedKey lowest = block_select(search.count, row, ShareRank{row_p05}, state.select);
-  figures.inliers = lowest.of;
-  figures.found = lowest.of >= min_matches ? 1 : 0;
-  if (figures.found == 0) return;
+  statistics.inliers = lowest.of;
+  statistics.found = lowest.of >= min_matches ? 1 : 0;
+  if (statistics.found == 0) return;
   const SelectedKey highest = block_select(search.count, row, ShareRank{row_p95}, state.select);
-  figures.lowest_row = value_of(lowest.key);
-  figures.highest_row = value_of(highest.key);
+  statistics.lowest_row = value_of(lowest.key);
+  statistics.highest_row = value_of(highest.key);
 }
 
-/// The fit to what a search found; all threads get the figures.
-__device__ SearchStatistics fit_search(const SearchMemory& search, const PlaneTerms& start, const RobustFit& fit) {
+/// The fit to what a search found; all threads get the statistics.
+__device__ SearchStatistics fit_search(const SearchMemory& search, const DisparityPlane& start, const RobustFit& fit) {
   FitState& state = *shared_memory<FitState>();
-  SearchStatistics figures{{start, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
-  count_places(search, state, figures);
-  if (figures.points < min_matches) return figures;
+  SearchStatistics statistics{{start, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
+  count_places(search, state, statistics);
+  if (statistics.points < min_matches) return statistics;
   const DevicePoints points{search.slots.u, search.slots.v, search.slots.d, search.count};
   auto* residuals = reinterpret_cast<float*>(&state + 1);
-  figures.fit = BlockFit(points, fit, state, residuals, search.first, search.weights).run(start);
-  if (figures.fit.found != 0) count_inliers(search, state, figures);
-  return figures;
+  statistics.fit = BlockFit(points, fit, state, residuals, search.first, search.weights).run(start);
+  if (statistics.fit.found != 0) count_inliers(search, state, statistics);
+  return statistics;
 }
 
 __global__ void __launch_bounds__(1024)
@@ -57,7 +57,8 @@ __global__ void __launch_bounds__(1024)
 }
 
 /// Where the correspondences of the first search lie that are near the road.
-__device__ void measure_range(const SearchMemory& around, const PlaneTerms& road, VerificationFigures& figures) {
+__device__ void measure_range(const SearchMemory& around, const DisparityPlane& road,
+                              VerificationStatistics& statistics) {
   FitState& state = *shared_memory<FitState>();
   const auto residual = [&](int i, std::uint32_t& key) {
     const double expected = road.disparity(around.slots.u[i], around.slots.v[i]);
@@ -66,16 +67,17 @@ __device__ void measure_range(const SearchMemory& around, const PlaneTerms& road
     return near_road(value, expected);
   };
   const SelectedKey lowest = block_select(around.count, residual, ShareRank{residual_p01}, state.select);
-  figures.near = lowest.of;
+  statistics.near = lowest.of;
   if (lowest.of < min_matches) return;
   const SelectedKey highest = block_select(around.count, residual, ShareRank{residual_p99}, state.select);
-  figures.residual_p01_px = value_of(lowest.key);
-  figures.residual_p99_px = value_of(highest.key);
+  statistics.residual_p01_px = value_of(lowest.key);
+  statistics.residual_p99_px = value_of(highest.key);
 }
 
-__global__ void __launch_bounds__(1024) fit_close(SearchMemory search, SearchMemory around, RobustFit fit,
-                                                  const SearchStatistics* found_around, VerificationFigures* result) {
-  VerificationFigures own{*found_around, {}, 0, 0, 0};
+__global__ void __launch_bounds__(1024)
+    fit_close(SearchMemory search, SearchMemory around, RobustFit fit, const SearchStatistics* found_around,
+              VerificationStatistics* result) {
+  VerificationStatistics own{*found_around, {}, 0, 0, 0};
   const bool needed = own.around.found != 0;
   if (needed) own.close = fit_search(search, own.around.fit.plane, fit);
   if (own.close.fit.found != 0) measure_range(around, own.close.fit.plane, own);
@@ -96,24 +98,24 @@ SearchMemory RoadVerification::Search::memory(int places) {
   return {{u.data(), v.data(), d.data(), tried.data()}, places, first.data(), weights.data()};
 }
 
-GuidedPair RoadVerification::shrunk(Plane<const std::int16_t> left, Plane<const std::int16_t> right,
-                                    cudaStream_t stream) {
-  const int factor = fine_factor(left.width);
+GuidedPair RoadVerification::downsampled(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                         cudaStream_t stream) {
+  const int factor = fine_factor(left.width());
   if (factor == 1) return {left, right, 1};
-  const int width = left.width / factor, height = left.height / factor;
+  const int width = left.width() / factor, height = left.height() / factor;
   const std::size_t size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   pixels_.reserve(2 * size);
-  const auto small_left = packed_plane(pixels_.data(), width, height);
-  const auto small_right = packed_plane(pixels_.data() + size, width, height);
+  const auto small_left = ImageView(pixels_.data(), width, height);
+  const auto small_right = ImageView(pixels_.data() + size, width, height);
   downsample(left, right, factor, small_left, small_right, stream);
   return {small_left, small_right, factor};
 }
 
-void RoadVerification::run(Plane<const std::int16_t> left, Plane<const std::int16_t> right, const PlaneSource& previous,
-                           bool with_roll, cudaStream_t stream) {
-  const GuidedPair pair = shrunk(left, right, stream);
+void RoadVerification::run(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                           const PlaneSource& previous, bool with_roll, cudaStream_t stream) {
+  const GuidedPair pair = downsampled(left, right, stream);
   const auto grid = [&](const FineSearch& search) {
-    return sample_grid(pair.left.width, pair.left.height, search.range_px, search.places);
+    return sample_grid(pair.left.width(), pair.left.height(), search.range_px, search.places);
   };
   const SampleGrid first = grid(first_search_again), second = grid(close_search_again);
   const SearchMemory around = around_.memory(first.places()), close = close_.memory(second.places());

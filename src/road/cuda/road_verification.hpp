@@ -5,10 +5,10 @@
 #include <cstdint>
 
 #include "core/cuda/memory.hpp"
-#include "core/cuda/plane.hpp"
 #include "road/cuda/plane_match.hpp"
 #include "road/cuda/robust_plane.hpp"
 #include "road/cuda/verification_statistics.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo::cuda {
 
@@ -21,15 +21,15 @@ struct SearchMemory {
 };
 
 /// The device's part of verify_road_model(): two searches around the last frame's plane, each with a robust fit. What
-/// the figures say of the road is assess_road_verification()'s to tell. Four launches, six for large images.
+/// the statistics say of the road is assess_road_verification()'s to tell. Four launches, six for large images.
 class RoadVerification {
  public:
   /// Enqueues it. The images must stay until then.
-  void run(Plane<const std::int16_t> left, Plane<const std::int16_t> right, const PlaneSource& previous, bool with_roll,
-           cudaStream_t stream);
+  void run(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, const PlaneSource& previous,
+           bool with_roll, cudaStream_t stream);
 
   /// Once the stream was synchronised.
-  const VerificationFigures& figures() const { return *result_.data(); }
+  const VerificationStatistics& statistics() const { return *result_.data(); }
 
  private:
   /// The places of one search.
@@ -40,12 +40,12 @@ class RoadVerification {
     SearchMemory memory(int count);
   };
 
-  GuidedPair shrunk(Plane<const std::int16_t> left, Plane<const std::int16_t> right, cudaStream_t stream);
+  GuidedPair downsampled(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, cudaStream_t stream);
 
   Search around_, close_;
   DeviceArray<std::int16_t> pixels_;
   DeviceArray<SearchStatistics> found_around_{1};
-  PinnedArray<VerificationFigures> result_{1};
+  PinnedArray<VerificationStatistics> result_{1};
 };
 
 }  // namespace roadstereo::cuda

@@ -8,6 +8,8 @@
 #include "road/cuda/robust_plane.hpp"
 #include "road/robust_weights.hpp"
 
+// IRLS plane fit with Tukey's biweight in one block of threads.
+
 // Counted floor of an iteration, n points: 30·n single-precision operations and 5·16·n bytes of shared memory and
 // first-level cache for weights, sums and residuals, then 4 passes of the median over n keys. One block: what counts is
 // the way through its barriers, 14 an iteration.
@@ -20,8 +22,8 @@ namespace roadstereo::cuda {
 struct FitState {
   double scratch[sums_scratch(9)];
   SelectScratch select;
-  PlaneTerms start, plane;  ///< of the first step, of this one
-  float step[3];            ///< the plane's disparity minus the start's: at the origin, along v, along u
+  DisparityPlane start, plane;  ///< of the first step, of this one
+  float step[3];                ///< the plane's disparity minus the start's: at the origin, along v, along u
   double scale;
   double far_u, far_v;
   float origin_u, origin_v;
@@ -52,14 +54,14 @@ class BlockFit {
       : points_(points), fit_(fit), state_(state), residuals_(residuals), first_(first), weights_(weights) {}
 
   /// All threads get the result; barriers on the way make the weights visible to the block.
-  __device__ FittedPlane run(const PlaneTerms& start) {
+  __device__ FittedPlane run(const DisparityPlane& start) {
     FittedPlane fitted{start, 0, 0, 0, begin(start)};
     if (fitted.points < 3) return fitted;
     const double first_scale = fit_.start_scale_px > 0 ? fit_.start_scale_px : start_scale();
     if (leader()) take_scale(first_scale);
     __syncthreads();
     for (fitted.iterations = 1; fitted.iterations <= fit_.max_iterations; ++fitted.iterations) {
-      const PlaneTerms last = state_.plane;
+      const DisparityPlane last = state_.plane;
       const double last_scale = state_.scale;
       step();
       if (state_.good == 0) return fitted;
@@ -82,9 +84,9 @@ class BlockFit {
   __device__ static int threads() { return static_cast<int>(blockDim.x); }
 
   /// First residuals, and the points that the host calls front and back. Returns how many points there are.
-  __device__ int begin(const PlaneTerms& start) {
+  __device__ int begin(const DisparityPlane& start) {
     int first = points_.count, last = -1, found = 0;
-    constexpr int at_once = 4;  // whose reads are on their way together
+    constexpr int at_once = 4;  // points whose loads are issued together
     for (int base = thread(); base < points_.count; base += at_once * threads()) {
       float u[at_once], v[at_once], d[at_once];
       ROADSTEREO_UNROLL
@@ -125,26 +127,26 @@ class BlockFit {
 
   /// The scale's clamp makes any median beyond it the same.
   __device__ double start_scale() {
-    const auto reach = static_cast<float>(1.01 * max_start_scale_px / normal_from_median);
-    return start_scale_of(magnitude_of(select_magnitude(reach, true), reach));
+    const auto limit = static_cast<float>(1.01 * max_start_scale_px / gaussian_mad);
+    return start_scale_of(magnitude_of(select_magnitude(limit, true), limit));
   }
 
-  /// Magnitudes as keys, in steps of reach / magnitude_keys: the largest float below 2³².
+  /// Magnitudes as keys, in steps of limit / magnitude_keys: the largest float below 2³².
   static constexpr float magnitude_keys = 4294967040.0F;
 
-  /// Median of the magnitudes below `reach`. With `all`, larger ones count as `reach`.
-  __device__ SelectedKey select_magnitude(float reach, bool all) {
-    const float per_key = magnitude_keys / reach;
+  /// Median of the magnitudes below `limit`. With `all`, larger ones count as `limit`.
+  __device__ SelectedKey select_magnitude(float limit, bool all) {
+    const float per_key = magnitude_keys / limit;
     const auto key = [&](int i, std::uint32_t& out) {
       const float magnitude = fabsf(residuals_[i]);
-      out = magnitude < reach ? static_cast<std::uint32_t>(magnitude * per_key) : 0xFFFFFFFFU;
-      return all ? magnitude == magnitude : magnitude < reach;
+      out = magnitude < limit ? static_cast<std::uint32_t>(magnitude * per_key) : 0xFFFFFFFFU;
+      return all ? magnitude == magnitude : magnitude < limit;
     };
     return block_select(points_.count, key, MiddleRank{}, state_.select);
   }
   /// 0 of none.
-  __device__ static double magnitude_of(const SelectedKey& median, float reach) {
-    return median.of > 0 ? static_cast<double>(median.key) / magnitude_keys * reach : 0;
+  __device__ static double magnitude_of(const SelectedKey& median, float limit) {
+    return median.of > 0 ? static_cast<double>(median.key) / magnitude_keys * limit : 0;
   }
 
   // One thread does what needs double precision, of which small GPUs have little, and leaves it to the others.
@@ -155,9 +157,9 @@ class BlockFit {
   }
 
   /// The scale after a step, and whether that was the last one; from the plane and the scale before it.
-  __device__ void narrow(const PlaneTerms& last, double last_scale, double median) {
+  __device__ void narrow(const DisparityPlane& last, double last_scale, double median) {
     const double scale = narrowed_scale(median, last_scale);
-    const PlaneTerms& now = state_.plane;
+    const DisparityPlane& now = state_.plane;
     const double by = now.disparity(state_.far_u, state_.far_v) - last.disparity(state_.far_u, state_.far_v);
     state_.settled = robust_fit_settled(by, now.a2 - last.a2, scale, last_scale) ? 1 : 0;
     take_scale(scale);
@@ -200,7 +202,7 @@ class BlockFit {
                    s[6] - mean_v * s[2],
                    s[7] - mean_u * s[3],
                    s[8] - mean_v * s[3]};
-    PlaneTerms& plane = state_.plane;
+    DisparityPlane& plane = state_.plane;
     if (!fit_.with_roll) m.vd += plane.a2 * m.uv;  // what a2 explained is left to a1
     double by_a1 = 0, by_a2 = 0;
     state_.good = solve_slopes(m, fit_.with_roll, by_a1, by_a2) ? 1 : 0;

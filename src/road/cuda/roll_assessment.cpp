@@ -5,15 +5,15 @@
 
 namespace roadstereo::cuda {
 
-RollEstimate finish_road_fit(const RoadFitStatistics& figures, int width, int height, const RollOptions& options) {
-  require_enough(figures.points);
-  if (figures.has_plane == 0) fail_on_one_line();
+RollEstimate finish_road_fit(const RoadFitStatistics& statistics, int width, int height, const RollOptions& options) {
+  require_enough(statistics.points);
+  if (statistics.has_plane == 0) fail_on_one_line();
   RollEstimate geometry;
-  geometry.pixels = static_cast<std::size_t>(figures.points);
-  geometry.plane = {figures.plane.a0, figures.plane.a1, figures.plane.a2};
-  geometry.iterations = figures.fit.found != 0 ? figures.fit.iterations : 0;
+  geometry.pixels = static_cast<std::size_t>(statistics.points);
+  geometry.plane = statistics.plane;
+  geometry.iterations = statistics.fit.found != 0 ? statistics.fit.iterations : 0;
   geometry.roll_rad = roll_of_plane(geometry.plane);
-  assess_roll(figures.moments, width, height, options, geometry);
+  assess_roll(statistics.moments, width, height, options, geometry);
   return geometry;
 }
 
@@ -22,9 +22,9 @@ RollEstimate solve_map(const RawSums& sums, int width, int height, double initia
   return solve_from_sums(PlaneSums((width - 1) / 2.0, (height - 1) / 2.0, sums), initial_roll_rad, options);
 }
 
-void finish_measured(const RoadFitStatistics& figures, int width, int height, const RollOptions& options,
+void finish_measured(const RoadFitStatistics& statistics, int width, int height, const RollOptions& options,
                      RollEstimate& geometry) {
-  assess_roll(figures.moments, width, height, options, geometry);
+  assess_roll(statistics.moments, width, height, options, geometry);
 }
 
 }  // namespace roadstereo::cuda

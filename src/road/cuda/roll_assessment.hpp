@@ -6,16 +6,16 @@
 
 namespace roadstereo::cuda {
 
-/// The rest of estimate_roll() with the robust solver, on the host: what the figures of RoadFit::run say of a map
+/// The rest of estimate_roll() with the robust solver, on the host: what the statistics of RoadFit::run say of a map
 /// of width × height pixels. Throws the same errors.
-RollEstimate finish_road_fit(const RoadFitStatistics& figures, int width, int height, const RollOptions& options);
+RollEstimate finish_road_fit(const RoadFitStatistics& statistics, int width, int height, const RollOptions& options);
 
 /// The other solvers, from the sums of MapSums: plane, roll angle and iterations. Throws the same errors. The rest
 /// follows from RoadFit::measure of that plane.
 RollEstimate solve_map(const RawSums& sums, int width, int height, double initial_roll_rad, const RollOptions& options);
 
-/// Fills in the rest, from the figures of RoadFit::measure.
-void finish_measured(const RoadFitStatistics& figures, int width, int height, const RollOptions& options,
+/// Fills in the rest, from the statistics of RoadFit::measure.
+void finish_measured(const RoadFitStatistics& statistics, int width, int height, const RollOptions& options,
                      RollEstimate& geometry);
 
 }  // namespace roadstereo::cuda

@@ -6,33 +6,33 @@
 namespace roadstereo::cuda {
 namespace {
 
-PlaneFitStatistics evidence_of(const SearchStatistics& figures, int height) {
+PlaneFitStatistics statistics_of(const SearchStatistics& statistics, int height) {
   PlaneFitStatistics evidence;
-  evidence.points = figures.points;
-  evidence.tried = figures.tried;
-  if (figures.fit.found == 0) return evidence;
-  const PlaneTerms& plane = figures.fit.plane;
-  evidence.plane = {plane.a0, plane.a1, plane.a2};
-  evidence.scale_px = figures.fit.scale_px;
-  evidence.inliers = figures.inliers;
-  evidence.found = figures.found != 0;
-  const double rows = figures.highest_row - figures.lowest_row;
+  evidence.points = statistics.points;
+  evidence.tried = statistics.tried;
+  if (statistics.fit.found == 0) return evidence;
+  evidence.plane = statistics.fit.plane;
+  evidence.scale_px = statistics.fit.scale_px;
+  evidence.inliers = statistics.inliers;
+  evidence.found = statistics.found != 0;
+  const double rows = statistics.highest_row - statistics.lowest_row;
   if (evidence.found) evidence.rows_covered = rows / height;
   return evidence;
 }
 
 }  // namespace
 
-RoadModelEstimate assess_road_verification(const VerificationFigures& figures, const DisparityPlane& previous,
+RoadModelEstimate assess_road_verification(const VerificationStatistics& statistics, const DisparityPlane& previous,
                                            int width, int height, const std::optional<StereoCalibration>& calibration,
                                            const RoadModelOptions& options) {
   const int factor = fine_factor(width);
   const int rows = height / factor * factor;
-  RoadModelEstimate estimate = assess_tracked_road(evidence_of(figures.around, rows), evidence_of(figures.close, rows),
-                                                   previous, width, height, calibration, options);
-  if (figures.near >= min_matches) {
-    estimate.residual_p01_px = figures.residual_p01_px;
-    estimate.residual_p99_px = figures.residual_p99_px;
+  RoadModelEstimate estimate =
+      assess_tracked_road(statistics_of(statistics.around, rows), statistics_of(statistics.close, rows), previous,
+                          width, height, calibration, options);
+  if (statistics.near >= min_matches) {
+    estimate.residual_p01_px = statistics.residual_p01_px;
+    estimate.residual_p99_px = statistics.residual_p99_px;
   }
   return estimate;
 }

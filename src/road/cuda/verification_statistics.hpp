@@ -15,7 +15,7 @@ struct SearchStatistics {
 };
 
 /// What RoadVerification leaves for the host.
-struct VerificationFigures {
+struct VerificationStatistics {
   SearchStatistics around, close;
   float residual_p01_px, residual_p99_px;  ///< 1st and 99th percentile of the residuals near the road
   int near;                                ///< correspondences near the road

@@ -2,15 +2,15 @@
 
 #include <cmath>
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
 namespace roadstereo {
 
-/// A disparity above the road as it enters a weighted mean.
+/// Height of a disparity above the road, for the weighted mean.
 struct MeasuredHeight {
-  float value;      ///< any finite number where there is none
-  float precision;  ///< 1 / variance; 0 where there is none
-  float variance;   ///< as its neighbours see it: large, but finite, where there is none
+  float value;      ///< any finite number where unknown
+  float precision;  ///< 1 / variance; 0 where unknown
+  float variance;   ///< bounded variance of the agreement test; large, but finite, where unknown
 };
 
 /// A pixel without a disparity.
@@ -19,23 +19,23 @@ ROADSTEREO_HD inline MeasuredHeight not_measured() {
   return {0.0F, 0.0F, unknown};
 }
 
-/// Variances between which a disparity can lie, pixels².
+/// Bounds of the variance of a disparity, pixels².
 struct VarianceBounds {
-  float least;  ///< added to every variance
-  float most;   ///< agreement with the neighbours counts no larger one
+  float min;  ///< added to every variance
+  float max;  ///< upper bound in the agreement test
 };
 
-/// A disparity (NaN unknown) of the variance given, above the road.
+/// Height above the road of a disparity (NaN unknown) with the given variance.
 ROADSTEREO_HD inline MeasuredHeight measured(float disparity, float variance, float road,
                                              const VarianceBounds& bounds) {
-  constexpr float max_sigma = 10;  // pixels; nothing is known less well than by the search range
+  constexpr float max_sigma = 10;  // pixels
   constexpr float widest = max_sigma * max_sigma;
-  const MeasuredHeight nothing = not_measured();
+  const MeasuredHeight unknown = not_measured();
   const bool known = disparity == disparity;
-  const float bounded = (widest < variance ? widest : variance) + bounds.least;
-  const float spread = bounds.most < bounded ? bounds.most : bounded;
-  return {known ? disparity - road : nothing.value, known ? 1 / bounded : nothing.precision,
-          known ? spread : nothing.variance};
+  const float bounded = (widest < variance ? widest : variance) + bounds.min;
+  const float spread = bounds.max < bounded ? bounds.max : bounded;
+  return {known ? disparity - road : unknown.value, known ? 1 / bounded : unknown.precision,
+          known ? spread : unknown.variance};
 }
 
 /// A refined disparity and its standard error; NaN where it is no measurement.
@@ -44,13 +44,13 @@ struct RefinedPixel {
   float sigma;
 };
 
-/// What the mean above the road and its precision make of a pixel.
+/// Refined disparity from the mean height above the road and its precision.
 ROADSTEREO_HD inline RefinedPixel refined_pixel(float disparity, float mean, float precision, float road, float worst,
                                                 float nan) {
-  /// Variances of the theory are too small by this: the colour weights leave fewer pixels to a cost than its support,
-  /// and neither sampling nor the slant of a surface is noise. MeasuredHeight on synthetic roads (docs/accuracy.md).
-  constexpr float optimism = 1.7F;
-  const float error = sqrtf(optimism / precision);
+  // Theoretical variances are too small by this factor: the colour weights leave fewer effective samples, and sampling
+  // and the slant of a surface are no noise. Measured on synthetic roads (docs/accuracy.md).
+  constexpr float variance_scale = 1.7F;
+  const float error = sqrtf(variance_scale / precision);
   const bool known = disparity == disparity && error <= worst;
   return {known ? mean + road : nan, known ? error : nan};
 }

@@ -3,10 +3,11 @@
 #include <limits>
 
 #include "core/parallel.hpp"
+#include "core/require_range.hpp"
 #include "core/scratch.hpp"
 #include "road/refinement/settings.hpp"
 #include "road/refinement/weighted_mean.hpp"
-#include "road/shift_terms_of.hpp"
+#include "road/row_shift.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/refinement.hpp"
 
@@ -53,7 +54,7 @@ class BandRows {
   void fill_row(int v) {
     const float *disparity = maps_.disparity.row(v), *variance = maps_.variance.row(v);
     const VarianceBounds bounds = variance_bounds(maps_.options);
-    const RowLine road = row_line(plane_terms(maps_.road), v, 0);
+    const RowLine road = row_line(maps_.road, v, 0);
     float* height = numbers_ + 3 * pitch_ * (v - first_);
     float *precision = height + pitch_, *spread = precision + pitch_;
     std::fill_n(height, 2 * pitch_, 0.0F);
@@ -83,7 +84,7 @@ void refine_row(const Maps& maps, const BandRows& rows, const MeanSettings& sett
   }
   const int width = maps.disparity.width();
   weighted_mean(rows.row(v), {lines.data(), count}, settings, width, mean, precision);
-  const RowLine road = row_line(plane_terms(maps.road), v, 0);
+  const RowLine road = row_line(maps.road, v, 0);
   const float* disparity = maps.disparity.row(v);
   const auto worst = static_cast<float>(maps.options.max_sigma_px);
   for (int u = 0; u < width; ++u) {
@@ -98,21 +99,16 @@ void refine_row(const Maps& maps, const BandRows& rows, const MeanSettings& sett
 }  // namespace
 
 void RefinementOptions::validate() const {
-  const auto require = [](bool good, const char* name, double value, const char* rule) {
-    if (!good) fail("refinement.", name, " is ", value, "; it must be ", rule);
-  };
-  require(radius >= 0 && radius <= 32, "radius", radius, "between 0 and 32 pixels");
-  require(step >= 1 && step <= 16, "step", step, "between 1 and 16 pixels");
-  require(truncation_sigmas >= 0.5 && truncation_sigmas <= 100, "truncation_sigmas", truncation_sigmas,
-          "between 0.5 and 100");
-  require(min_sigma_px >= 0.001 && min_sigma_px <= 1, "min_sigma_px", min_sigma_px, "between 0.001 and 1 pixels");
-  require(max_sigma_px > 0, "max_sigma_px", max_sigma_px, "above 0 pixels");
-  require(max_agreement_sigma_px >= min_sigma_px && max_agreement_sigma_px <= 10, "max_agreement_sigma_px",
-          max_agreement_sigma_px, "between min_sigma_px and 10 pixels");
+  require_range("refinement", "radius", radius, 0, 32);
+  require_range("refinement", "step", step, 1, 16);
+  require_range("refinement", "truncation_sigmas", truncation_sigmas, 0.5, 100.0);
+  require_range("refinement", "min_sigma_px", min_sigma_px, 0.001, 1.0);
+  require_range("refinement", "max_sigma_px", max_sigma_px, Above{0.0}, unlimited);
+  require_range("refinement", "max_agreement_sigma_px", max_agreement_sigma_px, min_sigma_px, 10.0);
 }
 
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
-                        double support, const RefinementOptions& options, int threads, Image<float>& refined,
+                        double effective_samples, const RefinementOptions& options, int threads, Image<float>& refined,
                         Image<float>& sigma) {
   options.validate();
   const int width = disparity.width(), height = disparity.height();
@@ -124,7 +120,7 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
   sigma.resize(width, height);
   const Maps maps{disparity, variance, road, options};
   const int radius = window_radius(options);
-  const MeanSettings settings = mean_settings(options, support);
+  const MeanSettings settings = mean_settings(options, effective_samples);
   const std::size_t band_numbers = BandRows::numbers(width, radius);
   const int row_numbers = width + lanes;
   const std::size_t numbers = band_numbers + 2 * static_cast<std::size_t>(row_numbers);

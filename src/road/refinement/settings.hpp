@@ -6,7 +6,7 @@
 #include "road/refinement/measured.hpp"
 #include "roadstereo/refinement.hpp"
 
-// What the options come to, for whoever refines.
+// Converts RefinementOptions to the parameters of the kernels.
 
 namespace roadstereo {
 
@@ -15,10 +15,10 @@ inline int window_radius(const RefinementOptions& options) {
   return options.radius / options.step * options.step;
 }
 
-/// `support` is the number of pixels that one disparity rests on.
-inline MeanSettings mean_settings(const RefinementOptions& options, double support) {
+/// `effective_samples`: number of pixels that one disparity rests on.
+inline MeanSettings mean_settings(const RefinementOptions& options, double effective_samples) {
   return {static_cast<float>(options.truncation_sigmas * options.truncation_sigmas),
-          static_cast<float>(std::min(1.0, options.step * options.step / support))};
+          static_cast<float>(std::min(1.0, options.step * options.step / effective_samples))};
 }
 
 inline VarianceBounds variance_bounds(const RefinementOptions& options) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
 namespace roadstereo {
 
@@ -14,14 +14,14 @@ ROADSTEREO_HD inline CoarseGradient coarse_gradient(int left, int right, int abo
   return {(right - left) >> CoarseGradient::shift, (below - above) >> CoarseGradient::shift};
 }
 
-/// What the standard error of a block is made of: squares, in units of the gradient and of pixels.
+/// Squared standard errors, in units of the gradient and of pixels.
 struct UncertaintyParams {
   float noise2;      ///< of a pixel
   float row_error2;  ///< of the rows' offset
-  float half2;       ///< of the disparity, that leaves half the ignorance
+  float half2;       ///< of the disparity at uncertainty ½
 };
 
-/// How little a block says about its disparity, 0 … 1, from Σ gu² and Σ gu gv over it
+/// Texture uncertainty of a block, 0 … 1, from Σ gu² and Σ gu gv over it
 /// (stereo/coarse/texture_uncertainty.hpp).
 ROADSTEREO_HD inline float texture_uncertainty(int squares, int products, const UncertaintyParams& terms) {
   const float sum = static_cast<float>(squares), known = sum > 1.0F ? sum : 1.0F;

@@ -17,15 +17,17 @@ void median_of_rows(const Image<float>& map, int first, int last, Image<float>& 
 
 void fill_occlusions(float* disparity, int columns, std::vector<float>& nearest) {
   const auto target = [&](int u) { return static_cast<std::size_t>(target_column(u, disparity[u])); };
-  const auto hidden = [&](int u) { return !std::isnan(disparity[u]) && is_occluded(disparity[u], nearest[target(u)]); };
+  const auto occluded = [&](int u) {
+    return !std::isnan(disparity[u]) && is_occluded(disparity[u], nearest[target(u)]);
+  };
   nearest.assign(static_cast<std::size_t>(columns), 0);
   for (int u = 0; u < columns; ++u) {
     if (!std::isnan(disparity[u])) nearest[target(u)] = std::max(nearest[target(u)], disparity[u]);
   }
   for (int u = 0; u < columns; ++u) {
-    if (!hidden(u)) continue;
+    if (!occluded(u)) continue;
     int end = u;
-    while (end < columns && hidden(end)) ++end;
+    while (end < columns && occluded(end)) ++end;
     const float before = u > 0 ? disparity[u - 1] : disparity[std::min(end, columns - 1)];
     const float after = end < columns ? disparity[end] : before;
     std::fill(disparity + u, disparity + end, std::fmin(before, after));  // the one that is known, when one is not

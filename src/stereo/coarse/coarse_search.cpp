@@ -19,13 +19,13 @@ namespace {
 
 constexpr int min_rows = 24;  // of a band
 
-/// How far the costs of a pixel leave the road possible.
+/// Plausibility of the road from the costs of a pixel.
 float road_plausibility(const float* costs, int count, float road) {
   const NearRoad near = near_road(road, count);
-  float at_road = no_evidence, least = no_evidence;
+  float at_road = uncorrelated_cost, smallest = uncorrelated_cost;
   for (int d = near.first; d < near.end; ++d) at_road = std::min(at_road, costs[d]);
-  for (int d = 0; d < count; ++d) least = std::min(least, costs[d]);
-  return cost_plausibility(at_road, least);
+  for (int d = 0; d < count; ++d) smallest = std::min(smallest, costs[d]);
+  return cost_plausibility(at_road, smallest);
 }
 
 }  // namespace
@@ -80,11 +80,11 @@ bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, doub
   block.ncc_noise_sigma = options_.ncc_noise_sigma;
   for (Worker& worker : workers_) {
     worker.costs.prepare(reference_.width(), coarse.disparities, block);
-    worker.evidence.prepare(reference_.width());
+    worker.texture.prepare(reference_.width());
     const std::ptrdiff_t pitch = cpu::padded_disparities(coarse.disparities);
     worker.row.resize(1, 0, reference_.width() * pitch);
     worker.centre.resize(static_cast<std::size_t>(reference_.width()));
-    worker.pull.resize(static_cast<std::size_t>(reference_.width()));
+    worker.weight.resize(static_cast<std::size_t>(reference_.width()));
     worker.nearest.reserve(static_cast<std::size_t>(reference_.width()));
     worker.scratch.resize(1, 0, static_cast<std::ptrdiff_t>(scanline_scratch(reference_.width(), pitch)));
   }
@@ -106,34 +106,34 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, Fun
                               Worker& worker) {
   const cpu::MatchView view(coarse, cpu::MatchView::reference, block_first_column_);
   worker.costs.start(view, first, 0, view.width(), {0, coarse.disparities});
-  worker.evidence.start(coarse.reference, first, texture_uncertainty_options(options_));
+  worker.texture.start(coarse.reference, first, texture_uncertainty_options(options_));
   for (int v = first; v < last; ++v) {
     worker.costs.compute(v, worker.row.row(0));
     finish_row(coarse, v, road, worker);
   }
 }
 
-/// Takes the winners of row v along its smoothest paths, with the road as the guess where the picture says nothing.
+/// Optimises the scanline of row v, with the road as prior where texture is weak.
 void CoarseSearch::finish_row(const MatchInput& coarse, int v, FunctionRef<double(double, double)> road,
                               Worker& worker) {
   const int width = reference_.width();
   const auto factor = static_cast<float>(prior_.factor);
-  const std::vector<float>& texture_uncertainty = worker.evidence.next();
+  const std::vector<float>& texture_uncertainty = worker.texture.next();
   const int first_seen = block_first_column_[static_cast<std::size_t>(v)];
   for (int u = 0; u < width; ++u) {
     const auto column = static_cast<std::size_t>(u);
     worker.centre[column] =
         static_cast<float>(road(to_full_resolution(u, prior_.factor), to_full_resolution(v, prior_.factor))) / factor;
-    worker.pull[column] = static_cast<float>(options_.road_prior_weight) * texture_uncertainty[column];
+    worker.weight[column] = static_cast<float>(options_.road_prior_weight) * texture_uncertainty[column];
     const int count = std::min(coarse.disparities, u - first_seen + 1);
-    if (std::isnan(worker.centre[column]) || count <= 0 || texture_uncertainty[column] < knows_enough) continue;
-    worker.pull[column] *=
+    if (std::isnan(worker.centre[column]) || count <= 0 || texture_uncertainty[column] < min_uncertainty) continue;
+    worker.weight[column] *=
         road_plausibility(worker.row.row(0) + u * worker.costs.pitch(), count, worker.centre[column]);
   }
   optimise_scanline({worker.row.row(0), worker.costs.pitch(), width, coarse.disparities, first_seen},
-                    {worker.centre.data(), worker.pull.data(), static_cast<float>(options_.road_prior_truncation_px)},
-                    {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)}, no_evidence,
-                    worker.scratch.row(0), along_rows_.row(v));
+                    {worker.centre.data(), worker.weight.data(), static_cast<float>(options_.road_prior_truncation_px)},
+                    {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)},
+                    uncorrelated_cost, worker.scratch.row(0), along_rows_.row(v));
 }
 
 /// The prior from what the rows found, each on its own.

@@ -12,14 +12,14 @@
 
 namespace roadstereo {
 
-/// Looks at the shrunk pair before matching: which disparities each tile can have, and a coarse map to lean on. Holds
-/// its memory from frame to frame.
+/// Coarse-to-fine prior: NCC block matching on the downsampled pair, scanline optimisation, road plane as prior where
+/// texture is weak. Yields disparity ranges per tile and a disparity prior. Keeps its memory from frame to frame.
 class CoarseSearch {
  public:
   CoarseSearch(const CoarseSearchOptions& options, int threads);
 
-  /// Fills the prior and, where narrowing pays, the ranges; both are valid until the next call. `road(u, v)` is the
-  /// disparity that the road has at a pixel of the pair, NaN where it is not known. False when the image is too small.
+  /// Computes the prior and, where that saves work, the ranges; both are valid until the next call. `road(u, v)` is the
+  /// road's disparity at a pixel of the pair, NaN where unknown. Returns false when the image is too small.
   bool find(const MatchInput& input, FunctionRef<double(double, double)> road);
 
   const DisparityPrior& prior() const { return prior_; }
@@ -27,13 +27,13 @@ class CoarseSearch {
   const SearchRanges* ranges() const { return ranges_found_ ? &tile_ranges_.ranges() : nullptr; }
 
  private:
-  /// What one thread needs.
+  /// Memory of one thread.
   struct Worker {
     cpu::TileCosts costs;
-    TextureUncertainty evidence;
+    TextureUncertainty texture;
     cpu::PaddedRows<float> row, scratch;
-    std::vector<float> centre, pull;  ///< of the road, per column
-    std::vector<float> nearest;       ///< disparity that the target view sees, per column
+    std::vector<float> centre, weight;  ///< of the road, per column
+    std::vector<float> nearest;         ///< disparity that the target view sees, per column
   };
   void downsample_pair(const MatchInput& input, int factor);
   void match_rows(const MatchInput& coarse, int first, int last, FunctionRef<double(double, double)> road,
@@ -46,7 +46,7 @@ class CoarseSearch {
   GreyImage reference_, target_;
   std::vector<int> first_column_, block_first_column_;
   std::vector<Worker> workers_;
-  Image<float> along_rows_;  ///< what the paths along the rows found, coarse pixels
+  Image<float> along_rows_;  ///< result of the scanline optimisation, coarse pixels
   DisparityPrior prior_;
   TileRanges tile_ranges_;
   bool ranges_found_ = false;

@@ -4,18 +4,19 @@
 
 #include "roadstereo/coarse_search.hpp"
 
-// How a pair is looked at coarsely, for whoever does.
+// Sizes of the coarse search, on the host and on the device.
 
 namespace roadstereo {
 
-inline constexpr int min_ranged_disparities = 12;  ///< below this narrowing saves nothing
+inline constexpr int min_ranged_disparities = 12;  ///< fewer disparities have no tile ranges
 
-/// Whether a pair is large enough to gain anything.
+/// Whether a pair is large enough for the coarse search.
 inline bool coarse_search_pays(int width, int height) {
   constexpr int min_side = 64;
   return std::min(width, height) >= min_side;
 }
 
+/// Returns the downsampling factor.
 inline int coarse_factor(const CoarseSearchOptions& options, int width) {
   constexpr int max_columns = 800;
   if (options.factor != 0) return options.factor;
@@ -24,6 +25,7 @@ inline int coarse_factor(const CoarseSearchOptions& options, int width) {
   return factor;
 }
 
+/// Returns the disparities searched in the downsampled pair.
 inline int coarse_disparities(int disparities, int factor) {
   return std::max(2, (disparities - 1) / factor + 1);
 }

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
 namespace roadstereo {
 
@@ -24,22 +24,22 @@ ROADSTEREO_HD inline float median_of_five(float a, float b, float c, float d, fl
   return median_of_three(lower, upper, e);
 }
 
-/// A pixel of the map, `own`, between two rows above and two below: their median, or itself where one is not known.
+/// Median of a pixel `own`, two above and two below; `own` where one of them is NaN.
 ROADSTEREO_HD inline float median_of_rows(float a, float b, float own, float c, float d) {
   const float sum = a + b + own + c + d;
   return sum == sum ? median_of_five(a, b, c, d, own) : own;
 }
 
-/// Target column that column u of a row shows with the disparity.
+/// Target column that column u with this disparity projects onto.
 ROADSTEREO_HD inline int target_column(int u, float disparity) {
   const int column = u - static_cast<int>(lroundf(disparity));
   return column > 0 ? column : 0;
 }
 
-/// Whether the largest disparity on a pixel's target column hides the pixel.
+/// Whether the largest disparity on the pixel's target column occludes the pixel.
 ROADSTEREO_HD inline bool is_occluded(float disparity, float nearest) {
-  constexpr float more = 1;
-  return nearest > disparity + more;  // never where it is NaN
+  constexpr float margin = 1;
+  return nearest > disparity + margin;  // false for NaN
 }
 
 }  // namespace roadstereo

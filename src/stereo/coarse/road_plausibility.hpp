@@ -3,14 +3,16 @@
 #include <cmath>
 
 #include "core/full_resolution.hpp"
-#include "road/shift_terms.hpp"
+#include "roadstereo/perspective_shift.hpp"
 
 namespace roadstereo {
 
+// Whether the costs of a pixel allow the road that the model predicts. C++17, for kernels.
+
 /// Cost of a disparity without a counterpart: that of uncorrelated blocks.
-constexpr float no_evidence = 1;
-/// Ignorance below which the road hardly pulls.
-constexpr float knows_enough = 0.1F;
+constexpr float uncorrelated_cost = 1;
+/// Texture uncertainty below which the plausibility of the road is not computed: its weight is small.
+constexpr float min_uncertainty = 0.1F;
 
 /// Disparities within two coarse pixels of the road's, of `count`: first ≤ d < end.
 struct NearRoad {
@@ -25,27 +27,25 @@ ROADSTEREO_HD inline NearRoad near_road(float road, int count) {
   return {first, wanted < first ? first : wanted > count ? count : wanted};
 }
 
-/// How far the costs of a pixel leave the road possible: 1 where they are as low near it as anywhere, 0 where they are
-/// so much lower elsewhere that the pixel shows something else.
-ROADSTEREO_HD inline float cost_plausibility(float at_road, float least) {
-  constexpr float doubtful = 0.2F, impossible = 0.4F;  // in units of the correlation
-  const float chance = (impossible - (at_road - least)) / (impossible - doubtful);
-  return chance < 0.0F ? 0.0F : chance > 1.0F ? 1.0F : chance;
+/// Plausibility of the road, 0 … 1: 1 where the costs near it are as small as the smallest of the pixel, 0 where those
+/// elsewhere are smaller by 0.4.
+ROADSTEREO_HD inline float cost_plausibility(float at_road, float smallest) {
+  constexpr float plausible_below = 0.2F, rejected_above = 0.4F;  // in units of the correlation
+  const float plausibility = (rejected_above - (at_road - smallest)) / (rejected_above - plausible_below);
+  return plausibility < 0.0F ? 0.0F : plausibility > 1.0F ? 1.0F : plausibility;
 }
 
-/// Coarse disparity that the road has after the shift at a pixel of the shrunk pair; `nothing` beyond the horizon and
-/// The disparity that the road has after the shift, full-size pixels; `nothing` where there is none: above the horizon,
-/// or without a road.
-ROADSTEREO_HD inline double shifted_road(const ShiftTerms& shift, double u, double v, double nothing) {
+/// Disparity of the road after the shift, full-size pixels; `invalid` above the horizon and without a road.
+ROADSTEREO_HD inline double shifted_road(const PerspectiveShift& shift, double u, double v, double invalid) {
   const double disparity = shift.enabled ? shift.road.disparity(u, v) : -1;
-  if (disparity < 0) return nothing;
+  if (disparity < 0) return invalid;
   return disparity < shift.delta_p ? disparity : shift.delta_p;
 }
 
-/// without a shift.
-ROADSTEREO_HD inline float coarse_road(const ShiftTerms& shift, int u, int v, int factor, float nothing) {
+/// The same at a pixel of the downsampled pair, coarse pixels.
+ROADSTEREO_HD inline float coarse_road(const PerspectiveShift& shift, int u, int v, int factor, float invalid) {
   const double road =
-      shifted_road(shift, to_full_resolution(u, factor), to_full_resolution(v, factor), static_cast<double>(nothing));
+      shifted_road(shift, to_full_resolution(u, factor), to_full_resolution(v, factor), static_cast<double>(invalid));
   return static_cast<float>(road) / static_cast<float>(factor);
 }
 

@@ -19,25 +19,25 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, 16>;
 using Float = hn::Vec<Floats>;
 
-constexpr float never = std::numeric_limits<float>::infinity();
+constexpr float infinite_cost = std::numeric_limits<float>::infinity();
 
-/// Completes the costs: guesses, disparities without a counterpart, and those behind the last.
-HWY_INLINE void complete_costs(const ScanlineCosts& row, const ScanlineGuess& guess, float no_evidence) {
+/// Completes the costs: priors, disparities without a counterpart, and those behind the last.
+HWY_INLINE void complete_costs(const ScanlineCosts& row, const ScanlinePrior& prior, float uncorrelated_cost) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
-  const Float reach = hn::Set(df, guess.reach);
+  const Float truncation = hn::Set(df, prior.truncation);
   for (int u = 0; u < row.columns; ++u) {
     float* cost = row.costs + u * row.pitch;
-    for (int d = std::max(0, u - row.first_seen + 1); d < row.disparities; ++d) cost[d] = no_evidence;
-    if (!std::isnan(guess.centre[u])) {
-      const Float centre = hn::Set(df, guess.centre[u]), pull = hn::Set(df, guess.pull[u]);
+    for (int d = std::max(0, u - row.first_seen + 1); d < row.disparities; ++d) cost[d] = uncorrelated_cost;
+    if (!std::isnan(prior.centre[u])) {
+      const Float centre = hn::Set(df, prior.centre[u]), weight = hn::Set(df, prior.weight[u]);
       for (int d = 0; d < row.disparities; d += lanes) {
         const Float here = hn::Add(hn::Iota(df, 0), hn::Set(df, static_cast<float>(d)));
-        const Float away = hn::Min(hn::Abs(hn::Sub(here, centre)), reach);
-        hn::Store(hn::MulAdd(pull, away, hn::Load(df, cost + d)), df, cost + d);
+        const Float away = hn::Min(hn::Abs(hn::Sub(here, centre)), truncation);
+        hn::Store(hn::MulAdd(weight, away, hn::Load(df, cost + d)), df, cost + d);
       }
     }
-    std::fill(cost + row.disparities, cost + row.pitch, never);
+    std::fill(cost + row.disparities, cost + row.pitch, infinite_cost);
   }
 }
 
@@ -47,7 +47,7 @@ struct PathEnd {
   Float cheapest;
 };
 
-/// Cheapest way from a path's end to the disparities from d on of the next column: stay, step by one, or jump.
+/// Cheapest transition from a path's end to the disparities from d on of the next column: stay, step by one, or jump.
 HWY_INLINE Float transition_cost(const PathEnd& end, int d, Float step, Float jump) {
   const Floats df;
   const float* at = end.totals + d;
@@ -58,25 +58,25 @@ HWY_INLINE Float transition_cost(const PathEnd& end, int d, Float step, Float ju
 
 /// Where the totals of the paths are kept.
 struct PathMemory {
-  float* forth;          ///< totals of the paths from the left, `pitch` elements a column
-  float* back;           ///< ways of the paths from the right, without the column's own cost
-  float* turns[2];       ///< totals of the paths from the right, of the last two columns in turn
-  std::ptrdiff_t pitch;  ///< disparities and guards
+  float* forward;         ///< totals of the paths from the left, `pitch` elements a column
+  float* backward;        ///< costs of the paths from the right, without the column's own
+  float* last_totals[2];  ///< totals of the paths from the right, of the last two columns alternately
+  std::ptrdiff_t pitch;   ///< disparities and guards
 };
 
-HWY_INLINE PathMemory share_out(const ScanlineCosts& row, float* scratch) {
+HWY_INLINE PathMemory layout_scratch(const ScanlineCosts& row, float* scratch) {
   PathMemory memory{};
   memory.pitch = row.pitch + scanline_guard;
-  memory.turns[0] = scratch + scanline_guard;
-  memory.turns[1] = memory.turns[0] + memory.pitch;
-  memory.forth = memory.turns[1] + memory.pitch;
-  memory.back = memory.forth + row.columns * memory.pitch;
-  for (float* column = memory.turns[0]; column < memory.back; column += memory.pitch) {
-    std::fill(column - scanline_guard, column, never);
+  memory.last_totals[0] = scratch + scanline_guard;
+  memory.last_totals[1] = memory.last_totals[0] + memory.pitch;
+  memory.forward = memory.last_totals[1] + memory.pitch;
+  memory.backward = memory.forward + row.columns * memory.pitch;
+  for (float* column = memory.last_totals[0]; column < memory.backward; column += memory.pitch) {
+    std::fill(column - scanline_guard, column, infinite_cost);
     // The paths' totals are written by whole vectors, which may end with the last disparity.
-    std::fill(column + row.disparities, column + row.pitch, never);
+    std::fill(column + row.disparities, column + row.pitch, infinite_cost);
   }
-  std::fill_n(memory.back - scanline_guard, scanline_guard, never);
+  std::fill_n(memory.backward - scanline_guard, scanline_guard, infinite_cost);
   return memory;
 }
 
@@ -87,43 +87,43 @@ HWY_INLINE void aggregate_scanlines(const ScanlineCosts& row, const ScanlinePena
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float step = hn::Set(df, penalties.step), jump = hn::Set(df, penalties.jump);
   const int last = row.columns - 1;
-  PathEnd forth{memory.forth, hn::Zero(df)}, back{memory.turns[0], hn::Zero(df)};
-  std::copy_n(row.costs, row.pitch, memory.forth);
-  std::copy_n(row.costs + last * row.pitch, row.pitch, memory.turns[0]);
-  std::fill_n(memory.back + last * memory.pitch, row.pitch, 0.0f);
-  forth.cheapest = hn::Set(df, *std::min_element(memory.forth, memory.forth + row.disparities));
-  back.cheapest = hn::Set(df, *std::min_element(memory.turns[0], memory.turns[0] + row.disparities));
+  PathEnd forward{memory.forward, hn::Zero(df)}, backward{memory.last_totals[0], hn::Zero(df)};
+  std::copy_n(row.costs, row.pitch, memory.forward);
+  std::copy_n(row.costs + last * row.pitch, row.pitch, memory.last_totals[0]);
+  std::fill_n(memory.backward + last * memory.pitch, row.pitch, 0.0f);
+  forward.cheapest = hn::Set(df, *std::min_element(memory.forward, memory.forward + row.disparities));
+  backward.cheapest = hn::Set(df, *std::min_element(memory.last_totals[0], memory.last_totals[0] + row.disparities));
   for (int u = 1; u < row.columns; ++u) {
     const int w = last - u;
-    const float *cost_forth = row.costs + u * row.pitch, *cost_back = row.costs + w * row.pitch;
-    float *to_forth = memory.forth + u * memory.pitch, *to_back = memory.turns[u % 2];
-    float* way_back = memory.back + w * memory.pitch;
-    Float min_forth = hn::Set(df, never), min_back = min_forth;
+    const float *cost_forward = row.costs + u * row.pitch, *cost_backward = row.costs + w * row.pitch;
+    float *to_forward = memory.forward + u * memory.pitch, *to_backward = memory.last_totals[u % 2];
+    float* path_backward = memory.backward + w * memory.pitch;
+    Float min_forward = hn::Set(df, infinite_cost), min_backward = min_forward;
     for (int d = 0; d < row.disparities; d += lanes) {
-      const Float total = hn::Add(hn::Load(df, cost_forth + d), transition_cost(forth, d, step, jump));
-      const Float way = transition_cost(back, d, step, jump);
-      const Float total_back = hn::Add(hn::Load(df, cost_back + d), way);
-      hn::Store(total, df, to_forth + d);
-      hn::Store(way, df, way_back + d);
-      hn::Store(total_back, df, to_back + d);
-      min_forth = hn::Min(min_forth, total);
-      min_back = hn::Min(min_back, total_back);
+      const Float total = hn::Add(hn::Load(df, cost_forward + d), transition_cost(forward, d, step, jump));
+      const Float path_cost = transition_cost(backward, d, step, jump);
+      const Float total_backward = hn::Add(hn::Load(df, cost_backward + d), path_cost);
+      hn::Store(total, df, to_forward + d);
+      hn::Store(path_cost, df, path_backward + d);
+      hn::Store(total_backward, df, to_backward + d);
+      min_forward = hn::Min(min_forward, total);
+      min_backward = hn::Min(min_backward, total_backward);
     }
-    forth = {to_forth, hn::MinOfLanes(df, min_forth)};
-    back = {to_back, hn::MinOfLanes(df, min_back)};
+    forward = {to_forward, hn::MinOfLanes(df, min_forward)};
+    backward = {to_backward, hn::MinOfLanes(df, min_backward)};
   }
 }
 
-/// The smallest of the first `count` totals of a column, with its fraction. `totals` is scratch memory.
-HWY_INLINE float take_winner(const float* forth, const float* back, int count, float* totals) {
+/// Returns the smallest of the first `count` totals of a column, with its fraction. `totals` is scratch memory.
+HWY_INLINE float take_winner(const float* forward, const float* backward, int count, float* totals) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float end = hn::Set(df, static_cast<float>(count));
-  Float smallest = hn::Set(df, never);
+  Float smallest = hn::Set(df, infinite_cost);
   for (int d = 0; d < count; d += lanes) {
     const Float here = hn::Add(hn::Iota(df, 0), hn::Set(df, static_cast<float>(d)));
-    const Float sum = hn::Add(hn::Load(df, forth + d), hn::Load(df, back + d));
-    const Float total = hn::IfThenElse(hn::Lt(here, end), sum, hn::Set(df, never));
+    const Float sum = hn::Add(hn::Load(df, forward + d), hn::Load(df, backward + d));
+    const Float total = hn::IfThenElse(hn::Lt(here, end), sum, hn::Set(df, infinite_cost));
     hn::Store(total, df, totals + d);
     smallest = hn::Min(smallest, total);
   }
@@ -136,20 +136,20 @@ HWY_INLINE float take_winner(const float* forth, const float* back, int count, f
     break;
   }
   const bool inside = winner > 0 && winner + 1 < count;
-  const float before = inside ? totals[winner - 1] : never, after = inside ? totals[winner + 1] : never;
+  const float before = inside ? totals[winner - 1] : infinite_cost, after = inside ? totals[winner + 1] : infinite_cost;
   return winner_with_fraction(winner, count, before, totals[winner], after);
 }
 
-void optimise_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,
-                       float no_evidence, float* scratch, float* disparity) {
-  complete_costs(row, guess, no_evidence);
-  const PathMemory memory = share_out(row, scratch);
+void optimise_scanline(const ScanlineCosts& row, const ScanlinePrior& prior, const ScanlinePenalties& penalties,
+                       float uncorrelated_cost, float* scratch, float* disparity) {
+  complete_costs(row, prior, uncorrelated_cost);
+  const PathMemory memory = layout_scratch(row, scratch);
   aggregate_scanlines(row, penalties, memory);
   for (int u = 0; u < row.columns; ++u) {
     const int count = std::min(row.disparities, u - row.first_seen + 1);
-    disparity[u] =
-        count > 0 ? take_winner(memory.forth + u * memory.pitch, memory.back + u * memory.pitch, count, memory.turns[0])
-                  : std::numeric_limits<float>::quiet_NaN();
+    disparity[u] = count > 0 ? take_winner(memory.forward + u * memory.pitch, memory.backward + u * memory.pitch, count,
+                                           memory.last_totals[0])
+                             : std::numeric_limits<float>::quiet_NaN();
   }
 }
 
@@ -165,9 +165,9 @@ std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch) {
   return static_cast<std::size_t>((2 * columns + 2) * (pitch + scanline_guard) + scanline_guard);
 }
 
-void optimise_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,
-                       float no_evidence, float* scratch, float* disparity) {
-  HWY_DYNAMIC_DISPATCH(optimise_scanline)(row, guess, penalties, no_evidence, scratch, disparity);
+void optimise_scanline(const ScanlineCosts& row, const ScanlinePrior& prior, const ScanlinePenalties& penalties,
+                       float uncorrelated_cost, float* scratch, float* disparity) {
+  HWY_DYNAMIC_DISPATCH(optimise_scanline)(row, prior, penalties, uncorrelated_cost, scratch, disparity);
 }
 
 }  // namespace roadstereo

@@ -2,10 +2,13 @@
 
 #include <cstddef>
 
+// Scanline optimisation (1-D semi-global matching): the exact minimum over the disparities of a row of costs and
+// truncated penalties of changes, by dynamic programming forward and backward.
+
 namespace roadstereo {
 
-/// The costs of one row of pixels: disparity d of column u at costs[u·pitch + d], aligned for vectors. `pitch` is a
-/// multiple of 16; what lies behind the last disparity is overwritten.
+/// Costs of one row of pixels: disparity d of column u at costs[u·pitch + d], aligned for vectors. `pitch` is a
+/// multiple of 16; elements behind the last disparity are overwritten.
 struct ScanlineCosts {
   float* costs;
   std::ptrdiff_t pitch;
@@ -14,12 +17,11 @@ struct ScanlineCosts {
   int first_seen;  ///< column u has a counterpart up to disparity u − first_seen
 };
 
-/// What the pixels of a row are guessed to be: disparity d of column u costs pull[u] · min(|d − centre[u]|, reach)
-/// more.
-struct ScanlineGuess {
-  const float* centre;  ///< NaN: no guess
-  const float* pull;
-  float reach;
+/// Prior of a row: disparity d of column u costs weight[u] · min(|d − centre[u]|, truncation) more.
+struct ScanlinePrior {
+  const float* centre;  ///< NaN: no prior
+  const float* weight;
+  float truncation;
 };
 
 /// Penalties of a change of the disparity from one pixel to the next.
@@ -28,17 +30,16 @@ struct ScanlinePenalties {
   float jump;  ///< by more
 };
 
-/// Elements that never win before and behind the disparities of a column of paths.
+/// Guard elements of infinite cost before and behind the disparities of a column.
 inline constexpr std::ptrdiff_t scanline_guard = 16;
 
-/// Elements of scratch memory, aligned for vectors, that optimise_scanline needs.
+/// Returns the elements of scratch memory, aligned for vectors, that optimise_scanline needs.
 std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch);
 
-/// Takes for every column the disparity of the smallest total cost among all paths along the row that pass through it:
-/// costs of the pixels, guesses and penalties of the changes, by dynamic programming forth and back. Its fraction is
-/// that of eq. subpixel on the total costs; NaN where a column has no counterpart at all. A disparity without a
-/// counterpart costs `no_evidence`, and is never taken.
-void optimise_scanline(const ScanlineCosts& row, const ScanlineGuess& guess, const ScanlinePenalties& penalties,
-                       float no_evidence, float* scratch, float* disparity);
+/// Writes for every column the disparity with the smallest total cost of all paths along the row through it, with the
+/// fraction of eq. (13) on the total costs; NaN where the column has no counterpart. Disparities without a counterpart
+/// cost `uncorrelated_cost` and never win.
+void optimise_scanline(const ScanlineCosts& row, const ScanlinePrior& prior, const ScanlinePenalties& penalties,
+                       float uncorrelated_cost, float* scratch, float* disparity);
 
 }  // namespace roadstereo

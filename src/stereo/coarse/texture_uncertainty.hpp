@@ -11,38 +11,38 @@ namespace roadstereo {
 
 struct TextureUncertaintyOptions {
   int block_radius = 3;
-  double noise = 1.0;      ///< standard deviation of a pixel, grey levels
-  double row_error = 0.3;  ///< standard deviation of the rows' offset, pixels
-  double half_at = 0.3;    ///< standard error of the disparity that leaves half the ignorance, pixels
+  double noise = 1.0;              ///< standard deviation of a pixel, grey levels
+  double row_error = 0.3;          ///< standard deviation of the rows' offset, pixels
+  double half_weight_sigma = 0.3;  ///< standard error of the disparity at uncertainty ½, pixels
 };
 
-/// Those of a coarse look.
+/// Options of the coarse search.
 inline TextureUncertaintyOptions texture_uncertainty_options(const CoarseSearchOptions& options) {
   return {.block_radius = options.block_radius,
           .noise = options.ncc_noise_sigma,
           .row_error = options.row_offset_sigma_px,
-          .half_at = options.half_weight_sigma_px};
+          .half_weight_sigma = options.half_weight_sigma_px};
 }
 
-/// What the options come to in the formula.
+/// Converts the options to parameters of the formula.
 inline UncertaintyParams uncertainty_params(const TextureUncertaintyOptions& options) {
   constexpr double gradient_unit = 2.0 * grey_scale / (1 << CoarseGradient::shift);
   return {static_cast<float>(options.noise * options.noise * gradient_unit * gradient_unit),
           static_cast<float>(options.row_error * options.row_error),
-          static_cast<float>(options.half_at * options.half_at)};
+          static_cast<float>(options.half_weight_sigma * options.half_weight_sigma)};
 }
 
-/// How little a block of an image can say about its disparity: 0 all, 1 nothing. From gradients alone, the standard
-/// error s of the block's disparity is s² = noise² / Σ gu² + row_error² · (Σ gu gv / Σ gu²)²: texture-free blocks know
-/// nothing, and along an edge that runs nearly with the rows a small offset of the rows looks like a large disparity.
-/// The ignorance is s² / (s² + half_at²).
+/// Texture uncertainty of the blocks of an image, from the structure tensor, in [0, 1]: 0 well constrained, 1
+/// unconstrained. The standard error s of the disparity of a block is s² = noise² / Σ gu² + row_error² · (Σ gu gv /
+/// Σ gu²)²: blocks without texture are unconstrained, and along an edge nearly parallel to the rows a small offset of
+/// the rows looks like a large disparity. The uncertainty is s² / (s² + half_weight_sigma²).
 class TextureUncertainty {
  public:
-  /// Makes room for images so wide, so that `start` allocates nothing.
+  /// Allocates memory for images of this width.
   void prepare(int columns);
   /// Begins at row `first_row` of the image; `next` is then called for that row and those below it.
   void start(ImageView<const std::int16_t> image, int first_row, const TextureUncertaintyOptions& options);
-  /// Ignorance of the blocks of the next row; valid until the next call.
+  /// Returns the uncertainty of the blocks of the next row; valid until the next call.
   const std::vector<float>& next();
 
  private:

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
+#include "roadstereo/search_range.hpp"
 
 namespace roadstereo {
 
@@ -55,13 +56,8 @@ ROADSTEREO_HD inline bool is_supported(const std::uint32_t* counts, int bins, in
   return sum >= needed;
 }
 
-/// Disparities first ≤ d < end that a tile searches.
-struct TileRange {
-  std::int16_t first, end;
-};
-
 /// The range around the lowest and the highest disparity seen.
-ROADSTEREO_HD inline TileRange range_around(int lowest, int highest, int disparities) {
+ROADSTEREO_HD inline SearchRange range_around(int lowest, int highest, int disparities) {
   constexpr int margin = 3;      // disparities beyond those seen
   constexpr int range_grid = 8;  // ranges grow to multiples of this: vectors hold so many anyway
   int first = lowest - margin, end = highest + margin + 1;

@@ -6,6 +6,7 @@
 #include "stereo/coarse/tile_range.hpp"
 
 namespace roadstereo {
+
 void TileRanges::count(const Image<float>& coarse, int factor) {
   const int across = ranges_.reference.width(), down = ranges_.reference.height();
   const std::size_t tiles = ranges_.reference.pixels();
@@ -35,7 +36,7 @@ void TileRanges::count(const Image<float>& coarse, int factor) {
 }
 
 /// From the first to the last disparity that enough pixels of the tile agree on; all where too few pixels matched.
-void TileRanges::choose(const std::vector<std::uint32_t>& counts, Image<SearchRanges::Range>& ranges, int factor,
+void TileRanges::choose(const std::vector<std::uint32_t>& counts, Image<SearchRange>& ranges, int factor,
                         int disparities) const {
   const int tile_pixels = (SearchRanges::tile_columns / factor) * (SearchRanges::tile_rows / factor);
   const auto last = static_cast<int>(bins_) - 1;
@@ -43,7 +44,7 @@ void TileRanges::choose(const std::vector<std::uint32_t>& counts, Image<SearchRa
     const std::uint32_t* of_tile = counts.data() + static_cast<std::size_t>(tile) * bins_;
     std::uint32_t seen = 0;
     for (std::size_t d = 0; d < bins_; ++d) seen += of_tile[d];
-    SearchRanges::Range& range = ranges(tile % ranges.width(), tile / ranges.width());
+    SearchRange& range = ranges(tile % ranges.width(), tile / ranges.width());
     if (seen < min_tile_pixels(tile_pixels)) continue;
     const std::uint32_t needed = needed_support(seen);
     const auto supported = [&](int d) { return is_supported(of_tile, last + 1, d, factor, needed); };
@@ -52,8 +53,7 @@ void TileRanges::choose(const std::vector<std::uint32_t>& counts, Image<SearchRa
     while (highest > lowest && !supported(std::max(0, highest - factor + 1))) --highest;
     while (lowest < highest && of_tile[lowest] == 0) ++lowest;
     while (highest > lowest && of_tile[highest] == 0) --highest;
-    const TileRange narrow = range_around(lowest, highest, disparities);
-    range = {narrow.first, narrow.end};
+    range = range_around(lowest, highest, disparities);
   }
 }
 

@@ -7,23 +7,21 @@
 
 namespace roadstereo {
 
-/// Counts which disparities a coarse match found in each tile and leaves those to search there, with a margin. Damage
-/// is far wider than its disparity is deep: a thing whose disparity leaves the margin is tens of pixels wide when it
-/// belongs to the road, and cannot be missed.
+/// Disparity range of each tile from the histogram of the coarse map, with a margin. Damage is much wider than its
+/// disparity is deep: a part of the road that leaves the margin is tens of pixels wide, and not missed.
 class TileRanges {
  public:
-  /// Counts the disparities of the coarse map (full-size pixels, NaN unknown) of a pair shrunk by `factor`.
+  /// Counts the disparities of the coarse map (full-size pixels, NaN unknown) of a pair downsampled by `factor`.
   void find(const Image<float>& coarse, int factor, int width, int height, int disparities);
 
   const SearchRanges& ranges() const { return ranges_; }
 
  private:
   void count(const Image<float>& coarse, int factor);
-  void choose(const std::vector<std::uint32_t>& counts, Image<SearchRanges::Range>& ranges, int factor,
-              int disparities) const;
+  void choose(const std::vector<std::uint32_t>& counts, Image<SearchRange>& ranges, int factor, int disparities) const;
 
-  std::size_t bins_ = 0;                                 ///< of one tile, one per disparity
-  std::vector<std::uint32_t> in_reference_, in_target_;  ///< how often each disparity was seen in each tile
+  std::size_t bins_ = 0;                                 ///< of the histogram of a tile
+  std::vector<std::uint32_t> in_reference_, in_target_;  ///< histograms of the tiles
   SearchRanges ranges_;
 };
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-// Vector kernel for aggregation (eq. fbs) and winner-take-all: a vector holds the disparities of one pixel, so that
-// every load is aligned and a tap's weight is one number for all of them.
+// Bilateral aggregation, eq. (11), and winner-take-all by vector kernels: a vector holds the disparities of one pixel,
+// so that every load is aligned and a tap's weight is one number for all of them.
 
 namespace roadstereo::cpu {
 
@@ -17,15 +17,15 @@ inline constexpr int strip_columns = 32;
 struct WindowRow {
   const float* costs;  ///< c(p, d) of the row: column i, disparity d at i·pitch + d
   int half;
-  int first_other;  ///< column i sees the other view from disparity 0 to i − first_other
-  int last_own;     ///< last column of the own view
+  int first_visible;  ///< column i sees the other view from disparity 0 to i − first_visible
+  int last_valid;     ///< last column of the own view
 };
 
-/// What winner-take-all leans on: energies at disparity d grow by slope · min(|d − centre|, reach).
+/// Prior of winner-take-all: energies at disparity d grow by weight · min(|d − centre|, truncation).
 struct PriorRow {
-  const float* centre = nullptr;  ///< per column of the tile; NaN: nothing to lean on there; null: nowhere
-  float slope = 0;
-  float reach = 0;
+  const float* centre = nullptr;  ///< per column of the tile; NaN: unknown; null: no prior
+  float weight = 0;
+  float truncation = 0;
 };
 
 /// One row of one view, ready to be aggregated at the columns [first, end).
@@ -35,19 +35,19 @@ struct AggregationRow {
   int disparities;
   std::ptrdiff_t pitch;
   int step;                               ///< columns from one tap to the next, 1 or 2
-  int radius;                             ///< columns that the window reaches
+  int radius;                             ///< of the window, columns
   WindowRow centre;                       ///< the window row of the pixels themselves
-  std::span<const WindowRow> rows;        ///< those that lie in the image
+  std::span<const WindowRow> rows;        ///< window rows inside the image
   std::span<const float* const> weights;  ///< ω of every tap, row by row: weights[tap][column]
-  PriorRow lean;
-  float support = 1;  ///< pixels that an energy rests on
+  PriorRow prior;
+  float effective_samples = 1;  ///< of an energy (stereo/window.hpp)
 };
 
-/// What winner-take-all leaves of the columns [first, end), from index 0 on; whole strips are written.
+/// Output of winner-take-all for the columns [first, end), from index 0 on; whole strips are written.
 struct WinnerRow {
   std::int16_t* winner;  ///< −1 where nothing can match
-  float* offset;         ///< eq. subpixel; NaN when the winner has no neighbour on one side; null: not wanted
-  float* variance;       ///< of the disparity, pixels²; infinite where the costs do not tell; wanted with `offset`
+  float* offset;         ///< eq. (13); NaN when the winner has no neighbour on one side; null: not written
+  float* variance;       ///< of the disparity, pixels²; infinite where undetermined; written with `offset`
 };
 
 /// Scratch memory of aggregate_and_choose; `numbers` is aligned for vectors.
@@ -61,7 +61,7 @@ struct AggregationScratchSize {
 };
 AggregationScratchSize aggregation_scratch(int window_rows, int taps, std::ptrdiff_t pitch);
 
-/// Aggregates the costs (eq. fbs) and takes the winner at every column, with its sub-pixel offset. `row.first` must be
+/// Aggregates the costs, eq. (11), and takes the winner at every column, with its sub-pixel offset. `row.first` must be
 /// a multiple of strip_columns.
 void aggregate_and_choose(const AggregationRow& row, const AggregationScratch& scratch, const WinnerRow& out);
 

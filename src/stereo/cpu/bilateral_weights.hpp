@@ -1,6 +1,6 @@
 #pragma once
 
-// Vector kernel for the weights ω(p, q) of eq. omega.
+// Vector kernel for the weights ω(p, q) of eq. (30).
 
 namespace roadstereo::cpu {
 

@@ -8,22 +8,14 @@
 //
 #include <hwy/highway.h>
 
+#include "stereo/cpu/vector-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace roadstereo::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::ScalableTag<float>;
-using Ints = hn::ScalableTag<std::int32_t>;
 using Shorts = hn::Rebind<std::int16_t, Ints>;
 using ShortPairs = hn::Repartition<std::int16_t, Ints>;
-using Float = hn::Vec<Floats>;
-using Int = hn::Vec<Ints>;
-
-/// first, first + 1, … (hn::Iota of a variable goes through memory.)
-HWY_INLINE Int count_from(int first) {
-  const Ints d;
-  return hn::Add(hn::Iota(d, 0), hn::Set(d, first));
-}
 
 /// sums + a.first·b.first + a.second·b.second.
 HWY_INLINE Int add_pair_products(Int a, Int b, Int sums) {
@@ -146,12 +138,12 @@ HWY_INLINE void full_block_costs_of(const CostRow& row, int first_d, int first, 
 
 /// The first column at which no disparity below `end_d` clips the block.
 HWY_INLINE int first_whole_column(const CostRow& row, int end_d) {
-  return std::max(row.first, row.first_other + end_d - 1 + row.block_radius);
+  return std::max(row.first, row.first_visible + end_d - 1 + row.block_radius);
 }
 
 void full_block_costs(const CostRow& row, float* cost) {
   const int lanes = static_cast<int>(hn::Lanes(Ints()));
-  const int end = std::min(row.end, row.last_own + 1 - row.block_radius);
+  const int end = std::min(row.end, row.last_valid + 1 - row.block_radius);
   const int first = std::min(end, first_whole_column(row, row.disparities));
   // Near the border every vector of disparities begins where it can.
   for (int d = 0; d < row.disparities; d += lanes) {
@@ -168,23 +160,23 @@ void full_block_costs(const CostRow& row, float* cost) {
   if (d < row.disparities) full_block_costs_of<1>(row, d, first, end, cost);
 }
 
-// For every disparity d whose block is not whole: the block's own columns are max(i − radius, d + first_other) …
-// min(i + radius, last_own), and the sums over them are differences of running sums.
+// For every disparity d whose block is not whole: the block's own columns are max(i − radius, d + first_visible) …
+// min(i + radius, last_valid), and the sums over them are differences of running sums.
 HWY_INLINE void clipped_block_costs_of(const CostRow& row, const RunningSums& running, int column, float* cost) {
   const Ints di;
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(di));
   const int radius = row.block_radius;
-  const int last = std::min(column + radius, row.last_own);
+  const int last = std::min(column + radius, row.last_valid);
   const Float one = hn::Set(df, 1.0f);
   const Float noise = hn::Set(df, row.noise_variance);
   for (int d = 0; d < row.disparities; d += lanes) {
     if (last == column + radius && column >= first_whole_column(row, std::min(d + lanes, row.disparities))) continue;
-    if (d > column - row.first_other) {
+    if (d > column - row.first_visible) {
       hn::Store(hn::Zero(df), df, cost + column * row.pitch + d);
       continue;
     }
-    const Int first_seen = count_from(d + row.first_other);  // the own column whose counterpart is the first
+    const Int first_seen = count_from(d + row.first_visible);  // the own column whose counterpart is the first
     const auto clipped = hn::Gt(first_seen, hn::Set(di, column - radius));
     const Int first = hn::IfThenElse(clipped, first_seen, hn::Set(di, column - radius));
     const auto seen = hn::Gt(hn::Set(di, column + 1), first_seen);
@@ -194,7 +186,7 @@ HWY_INLINE void clipped_block_costs_of(const CostRow& row, const RunningSums& ru
 
     const auto own_total = [&](const std::int32_t* sums) {
       // Far from the border no lane is clipped, and what is loaded has no meaning.
-      const int clipped_from = std::max(d + row.first_other, -lanes);
+      const int clipped_from = std::max(d + row.first_visible, -lanes);
       const Int before =
           hn::IfThenElse(clipped, hn::LoadU(di, sums + clipped_from), hn::Set(di, sums[column - radius]));
       return hn::Sub(hn::Set(di, sums[last + 1]), before);
@@ -230,10 +222,10 @@ HWY_INLINE void clipped_block_costs_of(const CostRow& row, const RunningSums& ru
 
 void clipped_block_costs(const CostRow& row, const RunningSums& running, float* cost) {
   const int whole = first_whole_column(row, row.disparities);
-  const int right = std::max(whole, row.last_own + 1 - row.block_radius);
+  const int right = std::max(whole, row.last_valid + 1 - row.block_radius);
   for (int i = row.first; i < row.end; ++i) {
     if (i >= whole && i < right) continue;
-    if (i <= row.last_own) {
+    if (i <= row.last_valid) {
       clipped_block_costs_of(row, running, i, cost);
     } else {
       std::fill_n(cost + i * row.pitch, row.pitch, 0.0f);

@@ -5,9 +5,9 @@
 
 #include "stereo/block_correlation.hpp"
 
-// Vector kernels for the matching cost c(p, d) of eq. c. They work on one row of a view, whose pixels are called "own";
-// the other view's row is stored in the opposite direction, so that the candidates d = 0, 1, … of an own pixel lie one
-// behind the other: a vector holds the disparities of one pixel.
+// Vector kernels for the matching cost c(p, d) of eq. (8). They work on one row of a view, whose pixels are called
+// "own"; the other view's row is stored in the opposite direction, so that the candidates d = 0, 1, … of an own pixel
+// lie one behind the other: a vector holds the disparities of one pixel.
 //
 // Own column i and disparity d meet the other column `origin` − i + d. Where a row of numbers has one for every column
 // and disparity, those of column i begin at i·pitch.
@@ -54,8 +54,8 @@ void block_statistics(const ColumnSums& sums, int block_radius, int pixels, floa
 /// block_radius columns more.
 struct CostRow {
   int first, end;
-  int first_other;  ///< column i sees the other view from disparity 0 to i − first_other
-  int last_own;     ///< last column of the own view
+  int first_visible;  ///< column i sees the other view from disparity 0 to i − first_visible
+  int last_valid;     ///< last column of the own view
   int block_radius;
   int block_rows;  ///< rows of the block that lie in the image
   int disparities;

@@ -1,8 +1,6 @@
 #include "stereo/cpu/cpu_engine.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -18,27 +16,14 @@ using cpu::MatchView;
 using cpu::Tile;
 using cpu::ViewMatcher;
 
-/// Left–right consistency (eq. lrc) and the sub-pixel disparity of one row. The shift of the perspective transformation
-/// depends on the target pixel alone, so it cancels in the check.
-void finish_row(int v, const MatcherOptions& options, MatchMaps& maps) {
-  const std::int16_t* winner = maps.winner.row(v);
-  const std::int16_t* target_winner = maps.target_winner.row(v);
+/// Left–right check, eq. (12), and sub-pixel disparity of row v.
+void finish_row(int v, const FinishSettings& settings, const Image<float>& offset, MatchMaps& maps) {
+  const std::int16_t *winner = maps.winner.row(v), *target_winner = maps.target_winner.row(v);
+  const float* offsets = offset.row(v);
   float *disparity = maps.disparity.row(v), *variance = maps.variance.row(v);
-  const auto hidden = static_cast<float>(options.occlusion_sigma_px * options.occlusion_sigma_px);
   for (int u = 0; u < maps.winner.width(); ++u) {
-    const float offset = disparity[u];
-    disparity[u] = std::numeric_limits<float>::quiet_NaN();
-    if (winner[u] < 0) continue;
-    if (options.left_right_check) {
-      const double difference = winner[u] - target_winner[u - winner[u]];
-      if (difference * difference > options.lr_max_diff_px) {
-        if (options.occlusion_sigma_px == 0) continue;
-        variance[u] += hidden;
-      }
-    }
-    const bool bracketed = !std::isnan(offset);
-    if (!bracketed && options.reject_range_boundary) continue;
-    disparity[u] = static_cast<float>(winner[u]) + (bracketed && options.sub_pixel ? offset : 0.0f);
+    const int met = winner[u] < 0 ? -1 : target_winner[u - winner[u]];
+    disparity[u] = finish_disparity(winner[u], met, offsets[u], settings, variance[u]);
   }
 }
 
@@ -69,13 +54,13 @@ void cut_evenly(const MatchView& view, int columns, int disparities, const Match
 }
 
 /// Cuts a view into the tiles of its search ranges.
-void cut_by_ranges(const MatchView& view, const Image<SearchRanges::Range>& ranges, std::vector<Job>& jobs) {
+void cut_by_ranges(const MatchView& view, ImageView<const SearchRange> ranges, std::vector<Job>& jobs) {
   constexpr int columns = SearchRanges::tile_columns, rows = SearchRanges::tile_rows;
   const bool mirrored = view.side() == MatchView::target;
   for (int row = 0; row < ranges.height(); ++row) {
     for (int column = 0; column < ranges.width(); ++column) {
       const int first = column * columns, end = std::min(first + columns, view.width());
-      const SearchRanges::Range& range = ranges(column, row);
+      const SearchRange& range = ranges(column, row);
       jobs.push_back({&view,
                       {.first_row = row * rows,
                        .last_row = std::min((row + 1) * rows, view.height()),
@@ -100,6 +85,7 @@ class CpuEngine final : public StereoEngine {
     maps.target_winner.resize(width, height);
     maps.disparity.resize(width, height);
     maps.variance.resize(width, height);
+    offset_.resize(width, height);
     block_first_columns(input, options.block_radius, first_columns_);
     const MatchView reference(input, MatchView::reference, first_columns_);
     const MatchView target(input, MatchView::target, first_columns_);
@@ -107,10 +93,10 @@ class CpuEngine final : public StereoEngine {
     jobs_.clear();
     for (const MatchView* view : {&reference, &target}) {
       if (view == &target && !options.match_both_views) continue;
-      if (input.ranges == nullptr) {
+      if (input.ranges.empty()) {
         cut_evenly(*view, whole_columns, input.disparities, options, threads_, jobs_);
       } else {
-        cut_by_ranges(*view, view == &reference ? input.ranges->reference : input.ranges->target, jobs_);
+        cut_by_ranges(*view, view == &reference ? input.ranges.reference : input.ranges.target, jobs_);
       }
     }
     int columns = 0, disparities = 0;
@@ -121,12 +107,13 @@ class CpuEngine final : public StereoEngine {
     prepare(columns, disparities);
     parallel_for(static_cast<int>(jobs_.size()), threads_, [&](int i, int worker) {
       const Job& job = jobs_[static_cast<std::size_t>(i)];
-      matchers_[static_cast<std::size_t>(worker)].match(*job.view, job.tile, maps);
+      matchers_[static_cast<std::size_t>(worker)].match(*job.view, job.tile, maps, offset_);
     });
+    const FinishSettings finish = finish_settings(options);
     parallel_rows(height, 32, threads_, [&](int first, int last, int) {
       for (int v = first; v < last; ++v) {
         if (!options.match_both_views) project_winners(maps.winner, v, maps.target_winner);
-        finish_row(v, options, maps);
+        finish_row(v, finish, offset_, maps);
       }
     });
   }
@@ -154,6 +141,7 @@ class CpuEngine final : public StereoEngine {
   int prepared_disparities_ = 0;
   std::vector<ViewMatcher> matchers_;
   std::vector<int> first_columns_;
+  Image<float> offset_;  ///< eq. (13), pixels from the winner; NaN without two neighbours
   std::vector<Job> jobs_;
 };
 

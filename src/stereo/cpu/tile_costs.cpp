@@ -93,7 +93,7 @@ void TileCosts::sum_running(int v) {
   for (const View view : {own, other}) {
     const ColumnSums columns = sums(view);
     const int count = view == own ? columns_ : other_columns_;
-    const int end = view == own ? count : view_->end_other(v) - other_first_;
+    const int end = view == own ? count : view_->end_visible(v) - other_first_;
     run(columns.sum, count, end, views_[view].integers.row(running_sum));
     run(columns.square, count, end, views_[view].integers.row(running_square));
   }
@@ -113,8 +113,8 @@ void TileCosts::compute(int v, float* costs) {
   block_statistics(sums(other), radius_, pixels, noise_variance_, radius_, other_columns_ - radius_, statistics(other));
   const CostRow row{.first = std::max(radius_, -first_),
                     .end = std::min(columns_ - radius_, view_->width() - first_),
-                    .first_other = view_->first_other(v) + range_.first - first_,
-                    .last_own = view_->last_own(v) - first_,
+                    .first_visible = view_->first_visible(v) + range_.first - first_,
+                    .last_valid = view_->last_valid(v) - first_,
                     .block_radius = radius_,
                     .block_rows = block_rows,
                     .disparities = range_.count,
@@ -126,8 +126,8 @@ void TileCosts::compute(int v, float* costs) {
                     .other = statistics(other)};
   float* cost = costs - radius_ * pitch_;  // the kernels' columns begin a block's radius before the tile
   full_block_costs(row, cost);
-  const bool clipped_left = row.first < row.first_other + range_.count - 1 + radius_;
-  const bool clipped_right = row.end + radius_ > row.last_own + 1;
+  const bool clipped_left = row.first < row.first_visible + range_.count - 1 + radius_;
+  const bool clipped_right = row.end + radius_ > row.last_valid + 1;
   if (!clipped_left && !clipped_right) return;
   sum_running(v);
   clipped_block_costs(row,

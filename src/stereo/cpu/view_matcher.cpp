@@ -13,11 +13,11 @@ constexpr int no_taps = -1;  // a row that the window leaves out
 
 int ViewMatcher::tile_columns(int disparities, const MatcherOptions& options) {
   constexpr int cache_bytes = 512 * 1024;
-  constexpr int fewest = 64;
+  constexpr int min_columns = 64;
   const int ring = 2 * options.aggregation_radius + 1;
   const int bytes_per_column = (ring + 1) * disparities * static_cast<int>(sizeof(float));
   const int columns = cache_bytes / bytes_per_column - 2 * (options.aggregation_radius + options.block_radius);
-  return std::max(fewest, columns / fewest * fewest);
+  return std::max(min_columns, columns / min_columns * min_columns);
 }
 
 void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& options, std::span<const Tap> taps) {
@@ -40,7 +40,7 @@ void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& op
   costs_.resize(static_cast<std::size_t>(ring_), radius_ * pitch, (padded + radius_) * pitch);
   const AggregationScratchSize scratch = aggregation_scratch(ring_, static_cast<int>(taps.size()), pitch);
   scratch_.resize(1, 0, scratch.numbers);
-  support_ = static_cast<float>(effective_samples(options));
+  effective_samples_ = static_cast<float>(effective_samples(options));
   prior_weight_ = static_cast<float>(options.prior_weight);
   prior_truncation_px_ = static_cast<float>(options.prior_truncation_px);
   prior_.resize(static_cast<std::size_t>(padded));
@@ -51,7 +51,7 @@ void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& op
   window_.reserve(static_cast<std::size_t>(ring_));
 }
 
-void ViewMatcher::match(const MatchView& view, const Tile& tile, MatchMaps& maps) {
+void ViewMatcher::match(const MatchView& view, const Tile& tile, MatchMaps& maps, Image<float>& offset) {
   int next = std::max(0, tile.first_row - rows_);
   const int columns = tile.end - tile.first;
   tile_costs_.start(view, next, tile.first - radius_, columns + 2 * radius_, tile.range);
@@ -60,16 +60,16 @@ void ViewMatcher::match(const MatchView& view, const Tile& tile, MatchMaps& maps
     for (; next <= std::min(view.height() - 1, v + rows_); ++next) {
       tile_costs_.compute(next, cost_row(next) - radius_ * tile_costs_.pitch());
     }
-    match_row(view, v, tile, maps);
+    match_row(view, v, tile, maps, offset);
   }
 }
 
-void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps) {
+void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps, Image<float>& offset) {
   const auto window_row = [&](int q) {
     return WindowRow{.costs = cost_row(q),
                      .half = half_width(q - v),
-                     .first_other = view.first_other(q) + tile.range.first - tile.first,
-                     .last_own = view.last_own(q) - tile.first};
+                     .first_visible = view.first_visible(q) + tile.range.first - tile.first,
+                     .last_valid = view.last_valid(q) - tile.first};
   };
   window_.clear();
   for (int q = std::max(0, v - rows_); q <= std::min(view.height() - 1, v + rows_); ++q) {
@@ -84,8 +84,8 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
                            .centre = window_row(v),
                            .rows = window_,
                            .weights = tile_weights_.compute(v),
-                           .lean = prior_row(view, v, tile),
-                           .support = support_};
+                           .prior = prior_row(view, v, tile),
+                           .effective_samples = effective_samples_};
   const bool reference = view.side() == MatchView::reference;
   const auto original = [&](std::int16_t winner) {
     return static_cast<std::int16_t>(winner < 0 ? winner : winner + tile.range.first);
@@ -94,7 +94,7 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
                        {winner_.data(), reference ? offset_.data() : nullptr, variance_.data()});
   if (reference) {
     std::transform(winner_.data(), winner_.data() + row.end, maps.winner.row(v) + tile.first, original);
-    std::copy_n(offset_.data(), row.end, maps.disparity.row(v) + tile.first);
+    std::copy_n(offset_.data(), row.end, offset.row(v) + tile.first);
     std::copy_n(variance_.data(), row.end, maps.variance.row(v) + tile.first);
   } else {
     std::transform(winner_.rend() - row.end, winner_.rend(), maps.target_winner.row(v) + view.width() - tile.end,
@@ -104,19 +104,19 @@ void ViewMatcher::match_row(const MatchView& view, int v, const Tile& tile, Matc
 
 /// The prior of row v, relative to the tile's first disparity.
 PriorRow ViewMatcher::prior_row(const MatchView& view, int v, const Tile& tile) {
-  const DisparityPrior* prior = view.prior();
-  if (prior == nullptr || prior_weight_ == 0) return {};
-  const Image<float>& map = prior->disparity;
-  const float* row = map.row(std::min(v / prior->factor, map.height() - 1));
+  const DisparityPriorView prior = view.prior();
+  if (prior.disparity.empty() || prior_weight_ == 0) return {};
+  const ImageView<const float>& map = prior.disparity;
+  const float* row = map.row(std::min(v / prior.factor, map.height() - 1));
   const auto first = static_cast<float>(tile.range.first);
   for (int i = tile.first; i < tile.end;) {
-    const int x = i / prior->factor;
-    const int end = x + 1 < map.width() ? std::min(tile.end, (x + 1) * prior->factor) : tile.end;
+    const int x = i / prior.factor;
+    const int end = x + 1 < map.width() ? std::min(tile.end, (x + 1) * prior.factor) : tile.end;
     std::fill(prior_.data() + (i - tile.first), prior_.data() + (end - tile.first),
               row[std::min(x, map.width() - 1)] - first);
     i = end;
   }
-  return {.centre = prior_.data(), .slope = prior_weight_, .reach = prior_truncation_px_};
+  return {.centre = prior_.data(), .weight = prior_weight_, .truncation = prior_truncation_px_};
 }
 
 }  // namespace roadstereo::cpu

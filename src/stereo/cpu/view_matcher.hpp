@@ -12,8 +12,8 @@
 
 namespace roadstereo::cpu {
 
-/// A part of a view: the rows [first_row, last_row) at the columns [first, end) as the matcher counts them, and the
-/// disparities to search there.
+/// Tile of a view: rows [first_row, last_row), columns [first, end) in the order of the matcher, and the disparities to
+/// search.
 struct Tile {
   int first_row, last_row;
   int first, end;
@@ -21,30 +21,30 @@ struct Tile {
 };
 
 /// Matches one view tile by tile. Owns the scratch memory of one thread: a ring of cost rows as high as the aggregation
-/// window and as wide as a tile, never a volume.
+/// window and as wide as a tile (drawing in match_view.hpp), no volume.
 class ViewMatcher {
  public:
-  /// Columns of a tile, a multiple of strip_columns: as many as keep the ring of costs in the cache of a core.
+  /// Returns the columns of a tile, a multiple of strip_columns: the ring of costs stays in the cache of a core.
   static int tile_columns(int disparities, const MatcherOptions& options);
 
-  /// Memory for tiles of up to `columns` columns.
+  /// Allocates memory for tiles of up to `columns` columns.
   void prepare(int columns, int disparities, const MatcherOptions& options, std::span<const Tap> taps);
 
-  /// Winners of the view's own pixels, and for the reference view their sub-pixel offsets, which wait in the disparity
-  /// map until both views are known.
-  void match(const MatchView& view, const Tile& tile, MatchMaps& maps);
+  /// Writes the winners of a tile of the view into `maps`, for the reference view also their variances and sub-pixel
+  /// offsets.
+  void match(const MatchView& view, const Tile& tile, MatchMaps& maps, Image<float>& offset);
 
  private:
   PriorRow prior_row(const MatchView& view, int v, const Tile& tile);
-  void match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps);
+  void match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps, Image<float>& offset);
   int& half_width(int dv) {
     const int row = dv + rows_;
     return half_widths_[static_cast<std::size_t>(row)];
   }
   float* cost_row(int v) { return costs_.row(static_cast<std::size_t>(v % ring_)); }
 
-  int radius_ = 0;  ///< columns that the window reaches
-  int rows_ = 0;    ///< rows that it reaches
+  int radius_ = 0;  ///< of the window, columns
+  int rows_ = 0;    ///< of the window, rows to either side
   int ring_ = 1;
   int step_ = 1;
   std::vector<int> half_widths_;  ///< of the window's rows, in steps
@@ -54,7 +54,7 @@ class ViewMatcher {
   std::vector<WindowRow> window_;
   PaddedRows<float> scratch_;
   std::vector<const float*> steps_;
-  float support_ = 1;
+  float effective_samples_ = 1;
   float prior_weight_ = 0, prior_truncation_px_ = 0;
   std::vector<float> prior_;
   std::vector<std::int16_t> winner_;

@@ -1,7 +1,7 @@
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
+#include "core/mid_grey.hpp"
 #include "stereo/cuda/block_sums.hpp"
-#include "stereo/mid_grey.hpp"
 
 // Floor per pixel and view: 2 bytes read and 24 written, 4 (2r + 1) additions when columns and rows are summed apart.
 // At 640×360 both views write 11 MB: 2.3 µs of an H200's 4.8 TB/s.
@@ -15,10 +15,10 @@ constexpr int rows_at_once = 6;  // five of them make a block of `default`, elev
 
 /// Sums of a column over the rows of the block around row v; pixels outside the image count as mid-grey. Reads depend
 /// on nothing, so that several are on their way together.
-__device__ ColumnSums sum_column(const Plane<const std::int16_t>& image, int u, int v, int radius) {
-  const int first = max(v - radius, 0), last = min(v + radius, image.height - 1);
+__device__ ColumnSums sum_column(const ImageView<const std::int16_t>& image, int u, int v, int radius) {
+  const int first = max(v - radius, 0), last = min(v + radius, image.height() - 1);
   ColumnSums column{0, 0};
-  if (u < 0 || u >= image.width) return column;
+  if (u < 0 || u >= image.width()) return column;
   for (int y = first; y <= last; y += rows_at_once) {
     int greys[rows_at_once];
     ROADSTEREO_UNROLL
@@ -34,13 +34,13 @@ __device__ ColumnSums sum_column(const Plane<const std::int16_t>& image, int u, 
 }
 
 /// The sums over the columns of a tile and a radius around it, then those over its blocks.
-__global__ void sum_tile(Plane<const std::int16_t> left, Plane<const std::int16_t> right, int radius,
+__global__ void sum_tile(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int radius,
                          float noise_variance, BlockSums sums) {
   const int view = static_cast<int>(blockIdx.z);
-  const Plane<const std::int16_t> image = view == 0 ? left : right;
+  const ImageView<const std::int16_t> image = view == 0 ? left : right;
   // Parameters that are indexed would be copied to memory.
-  const Plane<ColumnSums> sums_of_columns = view == 0 ? sums.columns[0] : sums.columns[1];
-  const Plane<BlockPart> sums_of_blocks = view == 0 ? sums.blocks[0] : sums.blocks[1];
+  const ImageView<ColumnSums> sums_of_columns = view == 0 ? sums.columns[0] : sums.columns[1];
+  const ImageView<BlockPart> sums_of_blocks = view == 0 ? sums.blocks[0] : sums.blocks[1];
   const int first_u = static_cast<int>(blockIdx.x) * tile_columns - radius;
   const int first_v = static_cast<int>(blockIdx.y) * tile_rows;
   const int wide = tile_columns + 2 * radius;
@@ -50,19 +50,19 @@ __global__ void sum_tile(Plane<const std::int16_t> left, Plane<const std::int16_
     const ColumnSums column = sum_column(image, u, v, radius);
     columns[i] = column;
     const bool in_tile = u >= first_u + radius && u < first_u + radius + tile_columns;
-    if (in_tile && u < image.width && v < image.height) sums_of_columns(u, v) = column;
+    if (in_tile && u < image.width() && v < image.height()) sums_of_columns(u, v) = column;
   }
   __syncthreads();
   const int x = static_cast<int>(threadIdx.x) % tile_columns, y = static_cast<int>(threadIdx.x) / tile_columns;
   const int u = first_u + radius + x, v = first_v + y;
-  if (u >= image.width || v >= image.height) return;
+  if (u >= image.width() || v >= image.height()) return;
   int sum = 0, squares = 0;
   for (int k = 0; k <= 2 * radius; ++k) {
     const ColumnSums& column = columns[y * wide + x + k];
     sum += column.sum;
     squares += column.squares;
   }
-  const int rows = min(v + radius, image.height - 1) - max(v - radius, 0) + 1;
+  const int rows = min(v + radius, image.height() - 1) - max(v - radius, 0) + 1;
   sums_of_blocks(u, v) = block_part(sum, squares, rows * (2 * radius + 1), noise_variance);
 }
 
@@ -78,11 +78,11 @@ __global__ void take_first_columns(const int* first, int rows, int radius, int* 
 
 }  // namespace
 
-void sum_blocks(const Plane<const std::int16_t> (&images)[2], int block_radius, float noise_variance,
+void sum_blocks(const ImageView<const std::int16_t> (&images)[2], int block_radius, float noise_variance,
                 const BlockSums& sums, cudaStream_t stream) {
   const std::size_t shared =
       sizeof(ColumnSums) * static_cast<std::size_t>((tile_columns + 2 * block_radius) * tile_rows);
-  const dim3 grid(blocks_for(images[0].width, tile_columns), blocks_for(images[0].height, tile_rows), 2);
+  const dim3 grid(blocks_for(images[0].width(), tile_columns), blocks_for(images[0].height(), tile_rows), 2);
   launch(sum_tile, {grid, tile_columns * tile_rows, shared}, stream, images[0], images[1], block_radius, noise_variance,
          sums);
 }

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/cuda/plane.hpp"
+#include "roadstereo/image_view.hpp"
 #include "stereo/block_correlation.hpp"
 
 namespace roadstereo::cuda {
@@ -18,12 +18,12 @@ struct alignas(8) ColumnSums {
 
 /// The blocks of both views, "means and deviations once": what a cost needs besides the products.
 struct BlockSums {
-  Plane<ColumnSums> columns[2];  ///< over the rows of a block, per column of each view
-  Plane<BlockPart> blocks[2];    ///< of the whole blocks; of no meaning where one leaves the image's columns
+  ImageView<ColumnSums> columns[2];  ///< over the rows of a block, per column of each view
+  ImageView<BlockPart> blocks[2];    ///< of the whole blocks; of no meaning where one leaves the image's columns
 };
 
 /// Fills `sums` for the two images of a pair.
-void sum_blocks(const Plane<const std::int16_t> (&images)[2], int block_radius, float noise_variance,
+void sum_blocks(const ImageView<const std::int16_t> (&images)[2], int block_radius, float noise_variance,
                 const BlockSums& sums, cudaStream_t stream);
 
 /// For every row v the first target column that all rows of the block around v see, as block_first_columns does.

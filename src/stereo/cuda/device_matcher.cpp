@@ -24,8 +24,8 @@ void DeviceMatcher::use(const MatcherOptions& options, cudaStream_t stream) {
     const double log2_space = -distance2 / (options.sigma_space * options.sigma_space) * std::numbers::log2e;
     taps_.data()[i] = {static_cast<std::int16_t>(taps[i].du), static_cast<std::int16_t>(taps[i].dv),
                        static_cast<float>(log2_space)};
-    settings_.reach_across = std::max(settings_.reach_across, taps[i].du);
-    settings_.reach_down = std::max(settings_.reach_down, taps[i].dv);
+    settings_.window_half_width = std::max(settings_.window_half_width, taps[i].du);
+    settings_.window_half_height = std::max(settings_.window_half_height, taps[i].dv);
   }
   const double sigma_colour = options.sigma_colour * grey_scale, noise = options.ncc_noise_sigma * grey_scale;
   settings_.block_radius = options.block_radius;
@@ -33,7 +33,7 @@ void DeviceMatcher::use(const MatcherOptions& options, cudaStream_t stream) {
   settings_.taps = taps_on_device_.data();
   settings_.tap_count = static_cast<int>(taps.size());
   settings_.log2_colour = static_cast<float>(-std::numbers::log2e / (sigma_colour * sigma_colour));
-  settings_.support = static_cast<float>(effective_samples(options));
+  settings_.effective_samples = static_cast<float>(effective_samples(options));
   settings_.prior_weight = static_cast<float>(options.prior_weight);
   settings_.prior_truncation_px = static_cast<float>(options.prior_truncation_px);
   ROADSTEREO_CUDA(cudaMemcpyAsync(taps_on_device_.data(), taps_.data(), taps.size() * sizeof(WindowTap),
@@ -46,19 +46,20 @@ void DeviceMatcher::reserve(int width, int height) {
   for (std::size_t side = 0; side < 2; ++side) {
     column_sums_[side].reserve(pixels);
     blocks_[side].reserve(pixels);
-    sums_.columns[side] = packed_plane(column_sums_[side].data(), width, height);
-    sums_.blocks[side] = packed_plane(blocks_[side].data(), width, height);
+    sums_.columns[side] = ImageView(column_sums_[side].data(), width, height);
+    sums_.blocks[side] = ImageView(blocks_[side].data(), width, height);
   }
   first_columns_.reserve(static_cast<std::size_t>(height));
+  offset_.reserve(pixels);
   disparity_.reserve(pixels);
   variance_.reserve(pixels);
   winner_.reserve(pixels);
   target_winner_.reserve(pixels);
-  maps_ = {packed_plane(disparity_.data(), width, height), packed_plane(variance_.data(), width, height),
-           packed_plane(winner_.data(), width, height), packed_plane(target_winner_.data(), width, height)};
+  maps_ = {ImageView(disparity_.data(), width, height), ImageView(variance_.data(), width, height),
+           ImageView(winner_.data(), width, height), ImageView(target_winner_.data(), width, height)};
 }
 
-ViewToMatch DeviceMatcher::view_of(const DeviceMatchInput& input, bool mirrored) const {
+ViewToMatch DeviceMatcher::view_of(const MatchInput& input, bool mirrored) const {
   const std::size_t own = mirrored ? 1 : 0, other = 1 - own;
   ViewToMatch view{};
   view.own = mirrored ? input.target : input.reference;
@@ -70,37 +71,34 @@ ViewToMatch DeviceMatcher::view_of(const DeviceMatchInput& input, bool mirrored)
   view.first_column = first_columns_.data();
   view.mirrored = mirrored;
   view.disparities = input.disparities;
-  view.ranges = mirrored ? input.target_ranges : input.reference_ranges;
+  view.ranges = mirrored ? input.ranges.target : input.ranges.reference;
   view.range_columns = SearchRanges::tile_columns;
   view.range_rows = SearchRanges::tile_rows;
-  view.ranges_across = (view.own.width + SearchRanges::tile_columns - 1) / SearchRanges::tile_columns;
-  if (!mirrored) view.prior = input.prior;
-  view.prior_factor = input.prior_factor;
+  if (!mirrored) view.prior = input.prior.disparity;
+  view.prior_factor = input.prior.factor;
   return view;
 }
 
-const DeviceMatchMaps& DeviceMatcher::match(const DeviceMatchInput& input, const MatcherOptions& options,
+const DeviceMatchMaps& DeviceMatcher::match(const MatchInput& input, const MatcherOptions& options,
                                             cudaStream_t stream) {
-  const int width = input.reference.width, height = input.reference.height;
+  const int width = input.reference.width(), height = input.reference.height();
   use(options, stream);
   reserve(width, height);
   const ViewLaunch plan = plan_view_launch(settings_, width, height, input.disparities, multiprocessors_);
   energies_.reserve(static_cast<std::size_t>(plan.blocks) * plan.energies_per_block);
 
-  const Plane<const std::int16_t> images[2]{input.reference, input.target};
+  const ImageView<const std::int16_t> images[2]{input.reference, input.target};
+  const ImageView offset(offset_.data(), width, height);
   sum_blocks(images, options.block_radius, settings_.noise_variance, sums_, stream);
   first_columns_of_blocks(input.first_column, height, options.block_radius, first_columns_.data(), stream);
   match_view(view_of(input, false), settings_, taps_.data(), plan, energies_.data(),
-             {maps_.winner, maps_.disparity, maps_.variance}, stream);
+             {maps_.winner, offset, maps_.variance}, stream);
   if (options.match_both_views) {
     match_view(view_of(input, true), settings_, taps_.data(), plan, energies_.data(), {maps_.target_winner, {}, {}},
                stream);
   }
-  const auto occlusion_variance = static_cast<float>(options.occlusion_sigma_px * options.occlusion_sigma_px);
-  const FinishSettings finish{
-      !options.match_both_views, options.left_right_check, static_cast<float>(options.lr_max_diff_px),
-      occlusion_variance,        options.sub_pixel,        options.reject_range_boundary};
-  finish_rows(maps_.winner, maps_.target_winner, maps_.disparity, maps_.variance, finish, stream);
+  finish_rows(maps_.winner, maps_.target_winner, offset, finish_settings(options), !options.match_both_views,
+              maps_.disparity, maps_.variance, stream);
   return maps_;
 }
 

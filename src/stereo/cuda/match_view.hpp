@@ -5,13 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/cuda/plane.hpp"
-#include "stereo/coarse/tile_range.hpp"
+#include "roadstereo/image_view.hpp"
+#include "roadstereo/search_range.hpp"
 #include "stereo/cuda/block_sums.hpp"
 
 namespace roadstereo::cuda {
 
-/// One tap of the aggregation window: its offset from the pixel, and log2 of its weight by distance (eq. omega0).
+/// Tap of the aggregation window: its offset from the pixel, and log2 of its weight by distance, eq. (31).
 struct WindowTap {
   std::int16_t du;
   std::int16_t dv;
@@ -22,18 +22,17 @@ struct WindowTap {
 /// match pixel i − d of the other. For the target view both images are therefore read mirrored, from their last
 /// columns on; the planes themselves are not.
 struct ViewToMatch {
-  Plane<const std::int16_t> own, other;
-  Plane<const ColumnSums> own_columns, other_columns;
-  Plane<const BlockPart> own_blocks, other_blocks;
+  ImageView<const std::int16_t> own, other;
+  ImageView<const ColumnSums> own_columns, other_columns;
+  ImageView<const BlockPart> own_blocks, other_blocks;
   const int* first_column;  ///< per row: first column of the target that its whole blocks see
   bool mirrored;            ///< the own view is the target
   int disparities;
-  const TileRange* ranges;  ///< one per tile of the own view, row by row; null: all search everything
-  int range_columns;        ///< pixels of such a tile
+  ImageView<const SearchRange> ranges;  ///< one per tile of the own view; empty: all search all disparities
+  int range_columns;                    ///< pixels of such a tile
   int range_rows;
-  int ranges_across;         ///< tiles in a row
-  Plane<const float> prior;  ///< what the winners lean on; no data: nothing
-  int prior_factor;          ///< pixels that one of the prior stands for, across and down
+  ImageView<const float> prior;  ///< of winner-take-all; empty: none
+  int prior_factor;              ///< pixels of a pixel of the prior, across and down
 };
 
 struct ViewSettings {
@@ -41,23 +40,23 @@ struct ViewSettings {
   float noise_variance;
   const WindowTap* taps;  ///< in device memory
   int tap_count;
-  int reach_across;  ///< of the taps, pixels
-  int reach_down;
-  float log2_colour;  ///< −log2 e / σ1², per squared step of grey
-  float support;      ///< pixels that an energy rests on
+  int window_half_width;  ///< of the taps, pixels
+  int window_half_height;
+  float log2_colour;        ///< −log2 e / σ1², per squared step of grey
+  float effective_samples;  ///< of an energy (stereo/window.hpp)
   float prior_weight;
   float prior_truncation_px;
 };
 
-/// What a view leaves: winners (−1 where nothing can match), and of each its distance to the minimum, NaN where it has
-/// no neighbour on one side, and its variance.
+/// Output for a view: winners (−1 where nothing can match), their offsets to the minimum, NaN without two neighbours,
+/// and their variances.
 struct ViewWinners {
-  Plane<std::int16_t> winner;
-  Plane<float> offset;  ///< no data: not wanted, nor the variance
-  Plane<float> variance;
+  ImageView<std::int16_t> winner;
+  ImageView<float> offset;  ///< empty: not written, nor the variance
+  ImageView<float> variance;
 };
 
-/// How the kernel is run on a device: so many blocks as find room at a time, each with memory for its energies.
+/// Launch of the kernel: as many blocks as are resident at a time, each with memory for its energies.
 struct ViewLaunch {
   int blocks;
   std::size_t energies_per_block;  ///< floats
@@ -67,9 +66,9 @@ struct ViewLaunch {
 /// For a device with so many multiprocessors.
 ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height, int disparities, int multiprocessors);
 
-/// Matching costs (eq. c), bilateral aggregation (eqs. fbs, omega) and winner-take-all of one view, in one kernel:
-/// costs live in shared memory, energies in a slice of `energies` that stays in the cache. `taps_on_host` are the
-/// settings' taps where the host can read them.
+/// Matches one view in one kernel: matching costs, eq. (8), bilateral aggregation, eqs. (11) and (30), and
+/// winner-take-all. Costs lie in shared memory, energies in a slice of `energies` that stays in the cache.
+/// `taps_on_host`: the settings' taps in host memory.
 void match_view(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
                 const ViewLaunch& plan, float* energies, const ViewWinners& winners, cudaStream_t stream);
 

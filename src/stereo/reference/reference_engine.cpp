@@ -61,7 +61,7 @@ struct Scene {
   }
 };
 
-/// c(p, d) of eq. c: one minus the normalised cross-correlation of the blocks around p and p − [d, 0], over the part
+/// c(p, d) of eq. (8): one minus the normalised cross-correlation of the blocks around p and p − [d, 0], over the part
 /// N⁺ of the block that both views see.
 double matching_cost(const Scene& scene, int u, int v, int d) {
   const int radius = scene.options.block_radius;
@@ -105,7 +105,7 @@ CostVolume compute_costs(const Scene& scene, int threads) {
   return cost;
 }
 
-/// ω(p, q) of eq. omega: the product of eqs. omega0 and omega1.
+/// ω(p, q) of eq. (30): the product of eqs. (31) and (32).
 double bilateral_weight(ImageView<const std::int16_t> image, int u, int v, const Tap& tap,
                         const MatcherOptions& options) {
   const double difference = static_cast<double>(image(u, v) - image(u + tap.du, v + tap.dv)) / grey_scale;
@@ -115,7 +115,7 @@ double bilateral_weight(ImageView<const std::int16_t> image, int u, int v, const
   return omega0 * omega1;
 }
 
-/// E_d(p, d) of eq. fbs for every pixel of one view. `shift` is 0 for the reference view and 1 for the target view,
+/// E_d(p, d) of eq. (11) for every pixel of one view. `shift` is 0 for the reference view and 1 for the target view,
 /// whose pixel x has the cost of reference pixel x + d: c_tar(p, d) = c_ref(p + [d, 0], d).
 CostVolume aggregate(const Scene& scene, const CostVolume& cost, ImageView<const std::int16_t> image, int shift,
                      int threads) {
@@ -144,40 +144,37 @@ CostVolume aggregate(const Scene& scene, const CostVolume& cost, ImageView<const
   return aggregated;
 }
 
-using Range = SearchRanges::Range;
-
-const Range& range_at(const Image<Range>& ranges, int u, int v) {
+const SearchRange& range_at(ImageView<const SearchRange> ranges, int u, int v) {
   return ranges(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
 }
 
-/// What a disparity pays for its distance from the prior: slope · min(|d − prior|, prior_truncation_px), slope =
+/// Cost of the distance of a disparity from the prior: weight · min(|d − prior|, prior_truncation_px), weight =
 /// prior_weight but where the smallest cost `best` is small (stereo/window.hpp).
-double lean(const Scene& scene, const DisparityPrior* prior, double best, int u, int v, int d) {
-  if (prior == nullptr) return 0;
-  const Image<float>& map = prior->disparity;
-  const double centre =
-      map(std::min(u / prior->factor, map.width() - 1), std::min(v / prior->factor, map.height() - 1));
+double prior_term(const Scene& scene, const DisparityPriorView& prior, double best, int u, int v, int d) {
+  if (prior.disparity.empty()) return 0;
+  const ImageView<const float>& map = prior.disparity;
+  const double centre = map(std::min(u / prior.factor, map.width() - 1), std::min(v / prior.factor, map.height() - 1));
   if (std::isnan(centre)) return 0;
   const double weight = std::min(1.0, (best + double{prior_cost_offset}) / double{prior_full_cost});
   return weight * scene.options.prior_weight * std::min(std::abs(d - centre), scene.options.prior_truncation_px);
 }
 
 /// Winner-take-all: the disparity of the smallest cost, −1 where there is none; the smaller disparity wins a tie.
-Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, const Image<Range>& ranges,
-                                 const DisparityPrior* prior) {
+Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, ImageView<const SearchRange> ranges,
+                                 const DisparityPriorView& prior) {
   Image<std::int16_t> winners(scene.width(), scene.height(), -1);
   for (int v = 0; v < scene.height(); ++v) {
     for (int u = 0; u < scene.width(); ++u) {
-      const Range searched = range_at(ranges, u, v);
+      const SearchRange searched = range_at(ranges, u, v);
       double smallest = std::numeric_limits<double>::infinity();
       for (int d = searched.first; d < searched.end; ++d) {
         if (energy(u, v, d) < smallest) smallest = energy(u, v, d);
       }
       double best = std::numeric_limits<double>::infinity();
       for (int d = searched.first; d < searched.end; ++d) {
-        const double leaning = energy(u, v, d) + lean(scene, prior, smallest, u, v, d);
-        if (leaning < best) {
-          best = leaning;
+        const double regularised = energy(u, v, d) + prior_term(scene, prior, smallest, u, v, d);
+        if (regularised < best) {
+          best = regularised;
           winners(u, v) = static_cast<std::int16_t>(d);
         }
       }
@@ -186,12 +183,11 @@ Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, c
   return winners;
 }
 
-/// Eq. lrc. The shift of the perspective transformation depends on the target pixel alone, so it cancels here and the
+/// Eq. (12). The shift of the perspective transformation depends on the target pixel alone, so it cancels here and the
 /// check on residual disparities is the check on the original ones.
-bool consistent(const MatchMaps& maps, int u, int v, double threshold) {
+bool consistent(const MatchMaps& maps, int u, int v, double max_diff_px) {
   const int d = maps.winner(u, v);
-  const double difference = d - maps.target_winner(u - d, v);
-  return difference * difference <= threshold;
+  return std::abs(d - maps.target_winner(u - d, v)) <= max_diff_px;
 }
 
 /// A sub-pixel disparity and its variance.
@@ -200,9 +196,9 @@ struct Refined {
   double variance = std::numeric_limits<double>::infinity();
 };
 
-/// Eq. subpixel, on the aggregated costs, and the variance that they tell of (stereo/window.hpp). A winner at the end
+/// Eq. (13), on the aggregated costs, and the variance that they tell of (stereo/window.hpp). A winner at the end
 /// of its range has no neighbour on one side; one that leans on the prior need not be a minimum of the costs.
-Refined refine(const Scene& scene, const CostVolume& energy, const Range& searched, int u, int v, int d) {
+Refined refine(const Scene& scene, const CostVolume& energy, const SearchRange& searched, int u, int v, int d) {
   Refined refined;
   const bool first = d == searched.first;
   const bool last = d + 1 == searched.end || std::isnan(energy(u, v, d + 1));
@@ -216,8 +212,8 @@ Refined refine(const Scene& scene, const CostVolume& energy, const Range& search
   if (curvature <= double{min_curvature}) return refined;
   const double vertex = (before - after) / (2 * curvature);
   const double noise = 2 * std::max(best, 0.0) / (scene.support * curvature);
-  const double reach = noise < double{low_noise_variance} ? double{low_noise_truncation_px} : 0.5;
-  const double offset = std::clamp(vertex, -reach, reach);
+  const double max_offset = noise < double{low_noise_variance} ? double{low_noise_truncation_px} : 0.5;
+  const double offset = std::clamp(vertex, -max_offset, max_offset);
   if (scene.options.sub_pixel) refined.disparity = d + offset;
   refined.variance = noise + (vertex - offset) * (vertex - offset);
   return refined;
@@ -233,13 +229,12 @@ class ReferenceEngine final : public StereoEngine {
     const Scene scene{input, options};
     const CostVolume cost = compute_costs(scene, threads_);
     const CostVolume energy_ref = aggregate(scene, cost, input.reference, 0, threads_);
-    SearchRanges ranges;
-    ranges.assign(scene.width(), scene.height(), input.disparities);
-    if (input.ranges != nullptr) ranges = *input.ranges;
+    SearchRanges all;
+    all.assign(scene.width(), scene.height(), input.disparities);
+    const SearchRangeViews ranges = input.ranges.empty() ? all.views() : input.ranges;
     maps.winner = take_winners(scene, energy_ref, ranges.reference, input.prior);
     if (options.match_both_views) {
-      maps.target_winner =
-          take_winners(scene, aggregate(scene, cost, input.target, 1, threads_), ranges.target, nullptr);
+      maps.target_winner = take_winners(scene, aggregate(scene, cost, input.target, 1, threads_), ranges.target, {});
     } else {
       maps.target_winner.assign(scene.width(), scene.height(), -1);
       for (int v = 0; v < scene.height(); ++v) project_winners(maps.winner, v, maps.target_winner);
@@ -249,12 +244,12 @@ class ReferenceEngine final : public StereoEngine {
     for (int v = 0; v < scene.height(); ++v) {
       for (int u = 0; u < scene.width(); ++u) {
         if (maps.winner(u, v) < 0) continue;
-        const bool hidden = options.left_right_check && !consistent(maps, u, v, options.lr_max_diff_px);
-        if (hidden && options.occlusion_sigma_px == 0) continue;
+        const bool occluded = options.left_right_check && !consistent(maps, u, v, options.lr_max_diff_px);
+        if (occluded && options.occlusion_sigma_px == 0) continue;
         const Refined refined = refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v));
         maps.disparity(u, v) = static_cast<float>(refined.disparity);
-        const double doubt = hidden ? options.occlusion_sigma_px * options.occlusion_sigma_px : 0;
-        maps.variance(u, v) = static_cast<float>(refined.variance + doubt);
+        const double added_variance = occluded ? options.occlusion_sigma_px * options.occlusion_sigma_px : 0;
+        maps.variance(u, v) = static_cast<float>(refined.variance + added_variance);
       }
     }
   }

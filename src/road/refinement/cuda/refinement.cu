@@ -16,59 +16,46 @@ constexpr int rows_at_once = 4;  // of a thread, when a tile is read
 constexpr int max_shared_bytes = 48 << 10;
 
 struct Maps {
-  Plane<const float> residual, variance;
-  ShiftTerms shift;
+  ImageView<const float> disparity, variance;
+  DisparityPlane road;
+
+  /// The road in row v. Double precision is slow on small GPUs: once a row suffices.
+  __device__ RowLine road_line(int v) const { return row_line(road, v, 0); }
 };
-
-/// The lines that road and shift are in one row. Double precision is slow on small GPUs: once a row suffices.
-struct RowLines {
-  RowLine road, shift;
-};
-
-__device__ RowLines row_lines(const Maps& maps, int v) {
-  return {row_line(maps.shift.road, v, 0), row_line(maps.shift.road, v, maps.shift.delta_p)};
-}
-
-/// Disparity between the original images.
-__device__ float full_disparity(const Maps& maps, const RowLine& line, float residual, int u, int v) {
-  if (!maps.shift.enabled) return residual;
-  return maps.shift.whole_pixel ? with_whole_shift(residual, maps.shift, u, v) : with_shift(residual, line, u);
-}
 
 /// What the maps hold of a pixel.
 struct MapPixel {
-  float residual, variance;
+  float disparity, variance;
 };
 
-/// Of the nearest pixel, where there is none at the place: reads that depend on nothing are on their way together.
+/// Reads a pixel of the map, outside the nearest one: loads without a condition are issued together.
 __device__ MapPixel read_pixel(const Maps& maps, int u, int v) {
-  const int column = min(max(u, 0), maps.residual.width - 1), row = min(max(v, 0), maps.residual.height - 1);
-  return {__ldg(&maps.residual(column, row)), __ldg(&maps.variance(column, row))};
+  const int column = min(max(u, 0), maps.disparity.width() - 1), row = min(max(v, 0), maps.disparity.height() - 1);
+  return {__ldg(&maps.disparity(column, row)), __ldg(&maps.variance(column, row))};
 }
 
-__device__ MeasuredHeight measured_at(const Maps& maps, const MapPixel& pixel, const RowLines& lines,
+__device__ MeasuredHeight measured_at(const Maps& maps, const MapPixel& pixel, const RowLine& road,
                                       const VarianceBounds& bounds, int u, int v) {
-  if (u < 0 || u >= maps.residual.width || v < 0 || v >= maps.residual.height) return not_measured();
-  const float disparity = full_disparity(maps, lines.shift, pixel.residual, u, v);
-  return measured(disparity, pixel.variance, lines.road.at(static_cast<float>(u)), bounds);
+  if (u < 0 || u >= maps.disparity.width() || v < 0 || v >= maps.disparity.height()) return not_measured();
+  return measured(pixel.disparity, pixel.variance, road.at(static_cast<float>(u)), bounds);
 }
 
-/// The pixels of a tile and a border around it in shared memory: lines of the rows, and three planes of numbers.
+/// The pixels of a tile and a border around it in shared memory: the road's line of each row, three planes of numbers.
 struct Tile {
-  RowLines* lines;
+  RowLine* lines;
   float* numbers;
   int left, top;  ///< of the border, pixels of the map
   int columns, rows;
 
   __device__ int size() const { return columns * rows; }
-  __device__ RowLine road(int v) const { return lines[v - top].road; }
+  __device__ RowLine road(int v) const { return lines[v - top]; }
   __device__ MeasuredHeight operator()(int u, int v) const {
     const float* at = numbers + (v - top) * columns + (u - left);
     return {at[0], at[size()], at[2 * size()]};
   }
   __device__ void fill(const Maps& maps, const VarianceBounds& bounds) const {
     const int thread = static_cast<int>(threadIdx.y) * tile_columns + static_cast<int>(threadIdx.x);
-    for (int y = thread; y < rows; y += tile_columns * thread_rows) lines[y] = row_lines(maps, top + y);
+    for (int y = thread; y < rows; y += tile_columns * thread_rows) lines[y] = maps.road_line(top + y);
     __syncthreads();
     for (int x = static_cast<int>(threadIdx.x); x < columns; x += tile_columns) {
       for (int y = static_cast<int>(threadIdx.y); y < rows; y += rows_at_once * thread_rows) {
@@ -102,9 +89,9 @@ struct Untiled {
   const Maps& maps;
   const VarianceBounds& bounds;
 
-  __device__ RowLine road(int v) const { return row_lines(maps, v).road; }
+  __device__ RowLine road(int v) const { return maps.road_line(v); }
   __device__ MeasuredHeight operator()(int u, int v) const {
-    return measured_at(maps, read_pixel(maps, u, v), row_lines(maps, v), bounds, u, v);
+    return measured_at(maps, read_pixel(maps, u, v), maps.road_line(v), bounds, u, v);
   }
 };
 
@@ -120,7 +107,7 @@ __device__ float quotient(float a, float b) {
 template <class Pixels>
 __device__ RefinedPixel refine_pixel(const Maps& maps, const Pixels& pixels, const RefinementSettings& settings, int u,
                                      int v) {
-  const float residual = __ldg(&maps.residual(u, v));  // on its way while the window is added up
+  const float disparity = __ldg(&maps.disparity(u, v));  // loaded while the window is summed
   const MeasuredHeight centre = pixels(u, v);
   float weights = 0, away = 0;
   for (int dv = -settings.radius; dv <= settings.radius; dv += settings.step) {
@@ -137,33 +124,34 @@ __device__ RefinedPixel refine_pixel(const Maps& maps, const Pixels& pixels, con
   const float mean = centre.value + (weights > 0 ? away / weights : 0);
   const float precision = fmaxf(centre.precision, weights * settings.mean.share);
   const float road = pixels.road(v).at(static_cast<float>(u));
-  return refined_pixel(residual, mean, precision, road, settings.worst_sigma, nanf(""));
+  return refined_pixel(disparity, mean, precision, road, settings.worst_sigma, nanf(""));
 }
 
 template <int rows_each>
-__global__ void refine_tiles(Maps maps, RefinementSettings settings, Plane<float> refined, Plane<float> sigma) {
+__global__ void refine_tiles(Maps maps, RefinementSettings settings, ImageView<float> refined, ImageView<float> sigma) {
   const int left = static_cast<int>(blockIdx.x) * tile_columns;
   const int top = static_cast<int>(blockIdx.y) * thread_rows * rows_each;
   const int border = settings.radius;
   const int rows = thread_rows * rows_each + 2 * border;
-  auto* lines = shared_memory<RowLines>();
+  auto* lines = shared_memory<RowLine>();
   const Tile tile{lines, reinterpret_cast<float*>(lines + rows), left - border, top - border, tile_columns + 2 * border,
                   rows};
   tile.fill(maps, settings.bounds);
   const int u = left + static_cast<int>(threadIdx.x);
   for (int k = 0; k < rows_each; ++k) {
     const int v = top + k * thread_rows + static_cast<int>(threadIdx.y);
-    if (u >= refined.width || v >= refined.height) continue;
+    if (u >= refined.width() || v >= refined.height()) continue;
     const RefinedPixel pixel = refine_pixel(maps, tile, settings, u, v);
     refined(u, v) = pixel.disparity;
     sigma(u, v) = pixel.sigma;
   }
 }
 
-__global__ void refine_untiled(Maps maps, RefinementSettings settings, Plane<float> refined, Plane<float> sigma) {
+__global__ void refine_untiled(Maps maps, RefinementSettings settings, ImageView<float> refined,
+                               ImageView<float> sigma) {
   const int u = static_cast<int>(blockIdx.x * tile_columns + threadIdx.x);
   const int v = static_cast<int>(blockIdx.y * thread_rows + threadIdx.y);
-  if (u >= refined.width || v >= refined.height) return;
+  if (u >= refined.width() || v >= refined.height()) return;
   const RefinedPixel pixel = refine_pixel(maps, Untiled{maps, settings.bounds}, settings, u, v);
   refined(u, v) = pixel.disparity;
   sigma(u, v) = pixel.sigma;
@@ -171,19 +159,19 @@ __global__ void refine_untiled(Maps maps, RefinementSettings settings, Plane<flo
 
 std::size_t tile_bytes(int rows, int border) {
   const auto all_rows = static_cast<std::size_t>(rows + 2 * border);
-  return all_rows * (sizeof(RowLines) + 3 * static_cast<std::size_t>(tile_columns + 2 * border) * sizeof(float));
+  return all_rows * (sizeof(RowLine) + 3 * static_cast<std::size_t>(tile_columns + 2 * border) * sizeof(float));
 }
 
 }  // namespace
 
-void refine_disparities(Plane<const float> residual, Plane<const float> variance, const ShiftTerms& shift,
-                        const RefinementSettings& settings, Plane<float> refined, Plane<float> sigma,
+void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
+                        const RefinementSettings& settings, ImageView<float> refined, ImageView<float> sigma,
                         cudaStream_t stream) {
   constexpr int rows_each = 2;
-  const Maps maps{residual, variance, shift};
+  const Maps maps{disparity, variance, road};
   const dim3 block(tile_columns, thread_rows);
   const auto grid = [&](int rows) {
-    return dim3(blocks_for(refined.width, tile_columns), blocks_for(refined.height, rows));
+    return dim3(blocks_for(refined.width(), tile_columns), blocks_for(refined.height(), rows));
   };
   const std::size_t bytes = tile_bytes(rows_each * thread_rows, settings.radius);
   if (bytes <= max_shared_bytes) {

@@ -2,10 +2,10 @@
 
 #include <cuda_runtime_api.h>
 
-#include "core/cuda/plane.hpp"
 #include "road/refinement/mean_settings.hpp"
 #include "road/refinement/measured.hpp"
-#include "road/shift_terms.hpp"
+#include "road/row_shift.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo::cuda {
 
@@ -18,10 +18,9 @@ struct RefinementSettings {
   float worst_sigma = 1.4F;  ///< pixels
 };
 
-/// add_shift and refine_disparities in one pass on the device. `residual` (pixels, NaN invalid) and `variance`
-/// (pixels²) are those of matching; the disparities are flat against `shift.road`, also where the shift is not enabled.
-void refine_disparities(Plane<const float> residual, Plane<const float> variance, const ShiftTerms& shift,
-                        const RefinementSettings& settings, Plane<float> refined, Plane<float> sigma,
+/// Enqueues refine_disparities on the device (roadstereo/refinement.hpp).
+void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
+                        const RefinementSettings& settings, ImageView<float> refined, ImageView<float> sigma,
                         cudaStream_t stream);
 
 }  // namespace roadstereo::cuda

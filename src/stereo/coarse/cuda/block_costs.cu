@@ -6,11 +6,11 @@
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
 #include "core/cuda/warp.hpp"
+#include "core/mid_grey.hpp"
 #include "stereo/block_correlation.hpp"
 #include "stereo/coarse/coarse_column.hpp"
 #include "stereo/coarse/cuda/block_costs.hpp"
 #include "stereo/coarse/road_plausibility.hpp"
-#include "stereo/mid_grey.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -39,16 +39,16 @@ struct ViewColumns {
 /// A segment of a row as its block of threads sees it.
 struct Segment {
   ViewColumns own, other;
-  int width, first_other;  ///< columns of the image; the first one of the target that counts
-  int radius, rows;        ///< of the block; rows of it that lie in the image
+  int width, first_visible;  ///< columns of the image; the first one of the target that counts
+  int radius, rows;          ///< of the block; rows of it that lie in the image
   float noise_variance;
   float inverse_whole;  ///< 1 / pixels of a whole block
 };
 
 /// Loads a view's columns from `begin` on and sums them: where the rows are known, all of a column at once.
 template <int known_rows>
-__device__ void load_columns(const ViewColumns& view, const Plane<const std::int16_t>& image, int begin, int first_row,
-                             int radius) {
+__device__ void load_columns(const ViewColumns& view, const ImageView<const std::int16_t>& image, int begin,
+                             int first_row, int radius) {
   const int rows = known_rows > 0 ? known_rows : 2 * radius + 1;
   for (int i = static_cast<int>(threadIdx.x); i < view.count; i += warps * warp_lanes) {
     const int column = view.first + i;
@@ -56,7 +56,7 @@ __device__ void load_columns(const ViewColumns& view, const Plane<const std::int
     ROADSTEREO_UNROLL
     for (int r = 0; r < rows; ++r) {
       const int v = first_row + r;
-      const bool inside = column >= begin && column < image.width && v >= 0 && v < image.height;
+      const bool inside = column >= begin && column < image.width() && v >= 0 && v < image.height();
       const int grey = inside ? __ldg(&image(column, v)) - mid_grey : 0;
       view.grey[r * view.count + i] = static_cast<short>(grey);
       sums.sum += grey;
@@ -97,8 +97,8 @@ __device__ int column_product(const Segment& of, int column, int d) {
 
 /// The cost of column u at disparity d, over the part of the block that both views see.
 __device__ float cost_of(const Segment& of, int u, int d, int product) {
-  if (u - d < of.first_other) return no_evidence;
-  const int left = u - of.radius, right = u + of.radius, seen = d + of.first_other;
+  if (u - d < of.first_visible) return uncorrelated_cost;
+  const int left = u - of.radius, right = u + of.radius, seen = d + of.first_visible;
   const int first = left > seen ? left : seen, last = right < of.width ? right : of.width - 1;
   if (first == left && last == right) {
     return correlation_cost(of.own.part(u), of.other.part(u - d), product, of.inverse_whole);
@@ -140,14 +140,14 @@ __device__ void slide_block<0>(const Segment& of, int begin, int end, int d, flo
 /// First target column that the block around row v sees, found by a whole warp.
 __device__ int first_seen_by_block(const CoarsePair& pair, int v, int radius) {
   if (pair.first_column == nullptr) return 0;
-  const int last_row = v + radius < pair.reference.height ? v + radius : pair.reference.height - 1;
+  const int last_row = v + radius < pair.reference.height() ? v + radius : pair.reference.height() - 1;
   const int begin = pair.factor * (v > radius ? v - radius : 0), end = pair.factor * (last_row + 1);
   int largest = 0;
   for (int row = begin + static_cast<int>(threadIdx.x % warp_lanes); row < end; row += warp_lanes) {
     const int column = __ldg(pair.first_column + row);
     largest = column > largest ? column : largest;
   }
-  return coarse_column(warp_max(largest), pair.factor, pair.reference.width);
+  return coarse_column(warp_max(largest), pair.factor, pair.reference.width());
 }
 
 /// Shares out the memory of the block.
@@ -171,18 +171,18 @@ __global__ void block_costs_of_segments(CoarsePair pair, int radius, float noise
                                         int* first_seen) {
   const int v = costs.first_row + static_cast<int>(blockIdx.y), first = static_cast<int>(blockIdx.x) * segment;
   const int first_row = v - radius, last_row = v + radius;
-  const int inside =
-      (last_row < pair.reference.height ? last_row : pair.reference.height - 1) - (first_row > 0 ? first_row : 0) + 1;
+  const int inside = (last_row < pair.reference.height() ? last_row : pair.reference.height() - 1) -
+                     (first_row > 0 ? first_row : 0) + 1;
   Segment of = make_segment(first, radius, costs);
   of.width = costs.columns;
-  of.first_other = first_seen_by_block(pair, v, radius);
+  of.first_visible = first_seen_by_block(pair, v, radius);
   of.radius = radius;
   of.rows = inside;
   of.noise_variance = noise_variance;
   of.inverse_whole = 1.0F / static_cast<float>((2 * radius + 1) * inside);
-  if (blockIdx.x == 0 && threadIdx.x == 0) first_seen[v] = of.first_other;
+  if (blockIdx.x == 0 && threadIdx.x == 0) first_seen[v] = of.first_visible;
   load_columns<known_block>(of.own, pair.reference, 0, first_row, radius);
-  load_columns<known_block>(of.other, pair.target, of.first_other, first_row, radius);
+  load_columns<known_block>(of.other, pair.target, of.first_visible, first_row, radius);
   __syncthreads();
   fill_parts(of.own, of);
   fill_parts(of.other, of);

@@ -2,13 +2,12 @@
 
 #include <cuda_runtime_api.h>
 
-#include "core/cuda/plane.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo::cuda {
 
-/// The prior from what the rows found, each on its own: the median of five rows, then what the target does not see
-/// gets the disparity of its farther neighbour (stereo/coarse/coarse_map.hpp). `along_rows` is in coarse pixels,
-/// `prior` in pixels of the full size.
-void correct_rows(Plane<const float> along_rows, int factor, Plane<float> prior, cudaStream_t stream);
+/// Vertical median of five rows, then occlusion filling (stereo/coarse/coarse_map.hpp). `along_rows` is in coarse
+/// pixels, `prior` in pixels of the full size.
+void correct_rows(ImageView<const float> along_rows, int factor, ImageView<float> prior, cudaStream_t stream);
 
 }  // namespace roadstereo::cuda

@@ -25,79 +25,80 @@ CoarseTiles tiles_of_pair(int width, int height, int factor) {
           SearchRanges::tile_columns / factor, SearchRanges::tile_rows / factor};
 }
 
-RoadPrior road_prior(const CoarseSearchOptions& options, const ShiftTerms& shift) {
+RoadPrior road_prior(const CoarseSearchOptions& options, const PerspectiveShift& shift) {
   return {shift, static_cast<float>(options.road_prior_weight), static_cast<float>(options.road_prior_truncation_px),
           uncertainty_params(texture_uncertainty_options(options)), options.block_radius};
 }
 
 }  // namespace
 
-bool CudaCoarseSearch::find(const CoarseInput& input, cudaStream_t stream) {
-  ranges_found_ = false;
+bool CudaCoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift, cudaStream_t stream) {
+  ranges_ = {};
   width_ = height_ = 0;
-  const int width = input.reference.width, height = input.reference.height;
+  const int width = input.reference.width(), height = input.reference.height();
   if (!coarse_search_pays(width, height)) return false;
   factor_ = coarse_factor(options_, width);
   width_ = width / factor_;
   height_ = height / factor_;
   const CoarseVolume shape = reserve(input);
   const CoarsePair pair = downsample_pair(input, stream);
-  for (int row = 0; row < height_; row += shape.rows) match_band(pair, input, shape, row, stream);
-  correct_rows(packed_plane<const float>(along_rows_.data(), width_, height_), factor_,
-               packed_plane(prior_.data(), width_, height_), stream);
+  for (int row = 0; row < height_; row += shape.rows) match_band(pair, shift, shape, row, stream);
+  correct_rows(ImageView<const float>(along_rows_.data(), width_, height_), factor_,
+               ImageView(prior_.data(), width_, height_), stream);
   if (input.disparities >= min_ranged_disparities) find_ranges(input, stream);
   return true;
 }
 
 /// Makes room for everything, and says how many rows are matched at a time.
-CoarseVolume CudaCoarseSearch::reserve(const CoarseInput& input) {
+CoarseVolume CudaCoarseSearch::reserve(const MatchInput& input) {
   const std::size_t pixels = area(width_, height_);
   for (DeviceArray<std::int16_t>* image : {&reference_, &target_}) image->reserve(pixels);
   for (DeviceArray<float>* map : {&along_rows_, &prior_}) map->reserve(pixels);
   first_seen_.reserve(static_cast<std::size_t>(height_));
-  const CoarseTiles tiles = tiles_of_pair(input.reference.width, input.reference.height, factor_);
-  for (DeviceArray<TileRange>* ranges : {&reference_ranges_, &target_ranges_}) {
+  const CoarseTiles tiles = tiles_of_pair(input.reference.width(), input.reference.height(), factor_);
+  for (DeviceArray<SearchRange>* ranges : {&reference_ranges_, &target_ranges_}) {
     ranges->reserve(area(tiles.across, tiles.down));
   }
   const int disparities = coarse_disparities(input.disparities, factor_);
   CoarseVolume shape{nullptr, width_, disparities, path_pitch(disparities), 0, 0};
   const std::ptrdiff_t of_row = std::ptrdiff_t{shape.columns} * shape.pitch;
   shape.rows = static_cast<int>(std::clamp<std::ptrdiff_t>(max_numbers_ / of_row, 1, height_));
-  for (DeviceArray<float>* volume : {&costs_, &forth_, &back_}) {
+  for (DeviceArray<float>* volume : {&costs_, &forward_, &backward_}) {
     volume->reserve(static_cast<std::size_t>(of_row * shape.rows));
   }
   return shape;
 }
 
-CoarsePair CudaCoarseSearch::downsample_pair(const CoarseInput& input, cudaStream_t stream) {
-  const auto reference = packed_plane(reference_.data(), width_, height_);
-  const auto target = packed_plane(target_.data(), width_, height_);
+CoarsePair CudaCoarseSearch::downsample_pair(const MatchInput& input, cudaStream_t stream) {
+  const auto reference = ImageView(reference_.data(), width_, height_);
+  const auto target = ImageView(target_.data(), width_, height_);
   downsample(input.reference, input.target, factor_, reference, target, stream);
   return {reference, target, input.first_column, factor_};
 }
 
-/// The winners of a band of rows along their smoothest paths, with the road as the guess where the picture says
-/// nothing.
-void CudaCoarseSearch::match_band(const CoarsePair& pair, const CoarseInput& input, const CoarseVolume& shape,
+/// Optimises the scanlines of a band of rows, with the road as prior where texture is weak.
+void CudaCoarseSearch::match_band(const CoarsePair& pair, const PerspectiveShift& shift, const CoarseVolume& shape,
                                   int first_row, cudaStream_t stream) {
   CoarseVolume costs = shape;
   costs.first_row = first_row;
   costs.rows = std::min(shape.rows, height_ - first_row);
-  CoarseVolume forth = costs, back = costs;
+  CoarseVolume forward = costs, backward = costs;
   costs.numbers = costs_.data();
-  forth.numbers = forth_.data();
-  back.numbers = back_.data();
+  forward.numbers = forward_.data();
+  backward.numbers = backward_.data();
   const double noise = options_.ncc_noise_sigma * grey_scale;
   block_costs(pair, options_.block_radius, static_cast<float>(noise * noise), costs, first_seen_.data(), stream);
-  add_road_prior(pair, road_prior(options_, input.shift), first_seen_.data(), costs, stream);
+  add_road_prior(pair, road_prior(options_, shift), first_seen_.data(), costs, stream);
   aggregate_scanlines(costs, {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)},
-                      first_seen_.data(), forth, back, packed_plane(along_rows_.data(), width_, height_), stream);
+                      first_seen_.data(), forward, backward, ImageView(along_rows_.data(), width_, height_), stream);
 }
 
-void CudaCoarseSearch::find_ranges(const CoarseInput& input, cudaStream_t stream) {
-  const CoarseTiles tiles = tiles_of_pair(input.reference.width, input.reference.height, factor_);
-  find_tile_ranges(prior(), factor_, input.disparities, tiles, reference_ranges_.data(), target_ranges_.data(), stream);
-  ranges_found_ = true;
+void CudaCoarseSearch::find_ranges(const MatchInput& input, cudaStream_t stream) {
+  const CoarseTiles tiles = tiles_of_pair(input.reference.width(), input.reference.height(), factor_);
+  find_tile_ranges(prior().disparity, factor_, input.disparities, tiles, reference_ranges_.data(),
+                   target_ranges_.data(), stream);
+  ranges_ = {ImageView<const SearchRange>(reference_ranges_.data(), tiles.across, tiles.down),
+             ImageView<const SearchRange>(target_ranges_.data(), tiles.across, tiles.down)};
 }
 
 }  // namespace roadstereo::cuda

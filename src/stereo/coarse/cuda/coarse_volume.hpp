@@ -3,15 +3,15 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/cuda/plane.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo::cuda {
 
-/// The shrunk pair.
+/// The downsampled pair.
 struct CoarsePair {
-  Plane<const std::int16_t> reference, target;
+  ImageView<const std::int16_t> reference, target;
   const int* first_column;  ///< of the target in its full size; null: all valid
-  int factor;               ///< that it was shrunk by
+  int factor;               ///< that it was downsampled by
 };
 
 /// Numbers of the pixels and disparities of a band of rows: disparity d of column u of row first_row + r at

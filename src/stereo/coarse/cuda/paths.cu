@@ -1,7 +1,7 @@
-// Floor: 8 bytes and 7 operations a cost each way, and 8 bytes for the winners: 320×180 pixels of 24 disparities, 33 MB
-// in the second cache. What counts is the chain: a column needs the smallest total of the column before it, so that a
-// row takes columns × (exchange with the neighbours, smallest of a warp, three operations), about 70 cycles each with
-// the hardware's minimum (compute capability 8), 170 without. Both ways of all rows run beside each other.
+// Floor: 8 bytes and 7 operations a cost each direction, and 8 bytes for the winners: 320×180 pixels of 24 disparities,
+// 33 MB in the second cache. What counts is the chain: a column needs the smallest total of the column before it, so
+// that a row takes columns × (exchange with the neighbours, smallest of a warp, three operations), about 70 cycles each
+// with the hardware's minimum (compute capability 8), 170 without. Both directions of all rows run side by side.
 
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
@@ -34,13 +34,13 @@ struct Path {
 
 template <int count>
 __device__ float cheapest_of(const LaneCosts<count>& totals) {
-  float least = totals.at[0];
+  float smallest = totals.at[0];
   ROADSTEREO_UNROLL
-  for (int i = 1; i < count; ++i) least = fminf(least, totals.at[i]);
-  return warp_min(least);
+  for (int i = 1; i < count; ++i) smallest = fminf(smallest, totals.at[i]);
+  return warp_min(smallest);
 }
 
-/// Cheapest way from the totals of a column to each disparity of the next: stay, step by one, or jump.
+/// Cheapest transition from the totals of a column to each disparity of the next: stay, step by one, or jump.
 template <int count>
 __device__ LaneCosts<count> transition_cost(const LaneCosts<count>& totals, float cheapest,
                                             const PathPenalties& penalties) {
@@ -48,79 +48,82 @@ __device__ LaneCosts<count> transition_cost(const LaneCosts<count>& totals, floa
   const float from_left = __shfl_up_sync(whole_warp, totals.at[count - 1], 1U);
   const float from_right = __shfl_down_sync(whole_warp, totals.at[0], 1U);
   const float left_end = lane == 0 ? INFINITY : from_left, right_end = lane == warp_lanes - 1 ? INFINITY : from_right;
-  LaneCosts<count> way;
+  LaneCosts<count> path_cost;
   ROADSTEREO_UNROLL
   for (int i = 0; i < count; ++i) {
     const float left = i > 0 ? totals.at[i > 0 ? i - 1 : 0] : left_end;
     const float right = i + 1 < count ? totals.at[i + 1 < count ? i + 1 : i] : right_end;
     const float stay = totals.at[i] - cheapest, change = fminf(left, right) - cheapest;
-    way.at[i] = fminf(fminf(stay, change + penalties.step), penalties.jump);
+    path_cost.at[i] = fminf(fminf(stay, change + penalties.step), penalties.jump);
   }
-  return way;
+  return path_cost;
 }
 
-/// Follows the path to its end. It leaves totals on the way forth, and back the ways without the column's own cost.
-template <int count, bool forth>
-__device__ void follow(const Path<count>& path, int columns, const PathPenalties& penalties) {
-  constexpr int ahead = count <= 2 ? 8 : 4;  // columns whose costs are on their way: memory takes as long as several
-  LaneCosts<count> totals = path.cost(0), way{}, coming[ahead];
-  path.store(0, forth ? totals : way);
+/// Aggregates along the path. Forward it writes totals, backward path costs without the column's own cost.
+template <int count, bool forward>
+__device__ void aggregate_path(const Path<count>& path, int columns, const PathPenalties& penalties) {
+  constexpr int ahead = count <= 2 ? 8 : 4;  // columns loaded ahead, to hide the latency of memory
+  LaneCosts<count> totals = path.cost(0), path_cost{}, entering[ahead];
+  path.store(0, forward ? totals : path_cost);
   ROADSTEREO_UNROLL
-  for (int k = 0; k < ahead; ++k) coming[k] = path.cost(1 + k < columns ? 1 + k : columns - 1);
+  for (int k = 0; k < ahead; ++k) entering[k] = path.cost(1 + k < columns ? 1 + k : columns - 1);
   for (int first = 1; first < columns; first += ahead) {
     ROADSTEREO_UNROLL
     for (int k = 0; k < ahead; ++k) {
       if (first + k >= columns) break;
-      way = transition_cost(totals, cheapest_of(totals), penalties);
+      path_cost = transition_cost(totals, cheapest_of(totals), penalties);
       ROADSTEREO_UNROLL
-      for (int i = 0; i < count; ++i) totals.at[i] = coming[k].at[i] + way.at[i];
+      for (int i = 0; i < count; ++i) totals.at[i] = entering[k].at[i] + path_cost.at[i];
       const int wanted = first + k + ahead;
-      coming[k] = path.cost(wanted < columns ? wanted : columns - 1);
-      path.store(first + k, forth ? totals : way);
+      entering[k] = path.cost(wanted < columns ? wanted : columns - 1);
+      path.store(first + k, forward ? totals : path_cost);
     }
   }
 }
 
-/// A warp follows one row, one way.
+/// A warp aggregates one row in one direction.
 template <int count>
-__global__ void follow_rows(CoarseVolume costs, PathPenalties penalties, CoarseVolume forth, CoarseVolume back) {
+__global__ void aggregate_rows(CoarseVolume costs, PathPenalties penalties, CoarseVolume forward,
+                               CoarseVolume backward) {
   const int v = costs.first_row + static_cast<int>(blockIdx.x);
   const int d = static_cast<int>(threadIdx.x) * count, last = costs.columns - 1;
   if (blockIdx.y == 0) {
-    follow<count, true>({costs.pixel(0, v) + d, forth.pixel(0, v) + d, costs.pitch}, costs.columns, penalties);
+    aggregate_path<count, true>({costs.pixel(0, v) + d, forward.pixel(0, v) + d, costs.pitch}, costs.columns,
+                                penalties);
   } else {
-    follow<count, false>({costs.pixel(last, v) + d, back.pixel(last, v) + d, -std::ptrdiff_t{costs.pitch}},
-                         costs.columns, penalties);
+    aggregate_path<count, false>({costs.pixel(last, v) + d, backward.pixel(last, v) + d, -std::ptrdiff_t{costs.pitch}},
+                                 costs.columns, penalties);
   }
 }
 
 constexpr int winner_warps = 8;
 
-/// The smallest of the sums of both ways, with its fraction: a warp for each pixel.
-__device__ float take_winner(const float* forth, const float* back, int count) {
+/// The smallest of the sums of both directions, with its fraction: a warp for each pixel.
+__device__ float take_winner(const float* forward, const float* backward, int count) {
   const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
-  float least = INFINITY;
+  float smallest = INFINITY;
   int winner = 0;
   for (int d = lane; d < count; d += warp_lanes) {
-    const float total = forth[d] + back[d];
-    if (total < least) {
-      least = total;
+    const float total = forward[d] + backward[d];
+    if (total < smallest) {
+      smallest = total;
       winner = d;
     }
   }
-  const float smallest = warp_min(least);
+  const float lowest = warp_min(smallest);
   // Of equal totals the first disparity wins.
-  winner = -warp_max(least == smallest ? -winner : -count);
-  const auto total = [&](int d) { return d >= 0 && d < count ? forth[d] + back[d] : INFINITY; };
-  return winner_with_fraction(winner, count, total(winner - 1), smallest, total(winner + 1));
+  winner = -warp_max(smallest == lowest ? -winner : -count);
+  const auto total = [&](int d) { return d >= 0 && d < count ? forward[d] + backward[d] : INFINITY; };
+  return winner_with_fraction(winner, count, total(winner - 1), lowest, total(winner + 1));
 }
 
-__global__ void take_winners(CoarseVolume forth, CoarseVolume back, const int* first_seen, Plane<float> disparity) {
-  const int v = forth.first_row + static_cast<int>(blockIdx.y);
+__global__ void take_winners(CoarseVolume forward, CoarseVolume backward, const int* first_seen,
+                             ImageView<float> disparity) {
+  const int v = forward.first_row + static_cast<int>(blockIdx.y);
   const int u = static_cast<int>(blockIdx.x) * winner_warps + static_cast<int>(threadIdx.x) / warp_lanes;
-  if (u >= forth.columns) return;
-  const int seen = u - first_seen[v] + 1, count = seen < forth.disparities ? seen : forth.disparities;
-  const float winner = count > 0 ? take_winner(forth.pixel(u, v), back.pixel(u, v), count) : nanf("");
+  if (u >= forward.columns) return;
+  const int seen = u - first_seen[v] + 1, count = seen < forward.disparities ? seen : forward.disparities;
+  const float winner = count > 0 ? take_winner(forward.pixel(u, v), backward.pixel(u, v), count) : nanf("");
   if (threadIdx.x % warp_lanes == 0) disparity(u, v) = winner;
 }
 
@@ -131,8 +134,11 @@ struct RowKernelOf {
   RowKernel kernel;
 };
 
-constexpr RowKernelOf row_kernels[] = {
-    {1, follow_rows<1>}, {2, follow_rows<2>}, {4, follow_rows<4>}, {8, follow_rows<8>}, {16, follow_rows<16>}};
+constexpr RowKernelOf row_kernels[] = {{1, aggregate_rows<1>},
+                                       {2, aggregate_rows<2>},
+                                       {4, aggregate_rows<4>},
+                                       {8, aggregate_rows<8>},
+                                       {16, aggregate_rows<16>}};
 
 const RowKernelOf& row_kernel(int disparities) {
   for (const RowKernelOf& of : row_kernels) {
@@ -148,12 +154,13 @@ int path_pitch(int disparities) {
 }
 
 void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
-                         const CoarseVolume& forth, const CoarseVolume& back, Plane<float> disparity,
+                         const CoarseVolume& forward, const CoarseVolume& backward, ImageView<float> disparity,
                          cudaStream_t stream) {
   const auto rows = static_cast<unsigned>(costs.rows);
-  launch(row_kernel(costs.disparities).kernel, {dim3(rows, 2), warp_lanes}, stream, costs, penalties, forth, back);
-  launch(take_winners, {dim3(blocks_for(costs.columns, winner_warps), rows), winner_warps * warp_lanes}, stream, forth,
-         back, first_seen, disparity);
+  launch(row_kernel(costs.disparities).kernel, {dim3(rows, 2), warp_lanes}, stream, costs, penalties, forward,
+         backward);
+  launch(take_winners, {dim3(blocks_for(costs.columns, winner_warps), rows), winner_warps * warp_lanes}, stream,
+         forward, backward, first_seen, disparity);
 }
 
 }  // namespace roadstereo::cuda

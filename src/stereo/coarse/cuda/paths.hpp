@@ -2,8 +2,10 @@
 
 #include <cuda_runtime_api.h>
 
-#include "core/cuda/plane.hpp"
+#include "roadstereo/image_view.hpp"
 #include "stereo/coarse/cuda/coarse_volume.hpp"
+
+// Scanline optimisation (1-D semi-global matching) on the device.
 
 namespace roadstereo::cuda {
 
@@ -17,10 +19,10 @@ struct PathPenalties {
 int path_pitch(int disparities);
 
 /// Takes for every column of the band's rows the disparity of the cheapest path along the row that passes through it
-/// (stereo/coarse/scanline.hpp), coarse pixels, NaN where a column has no counterpart. `forth` and `back` are scratch
-/// memory of the size of `costs`.
+/// (stereo/coarse/scanline.hpp), coarse pixels, NaN where a column has no counterpart. `forward` and `backward` are
+/// scratch memory of the size of `costs`.
 void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
-                         const CoarseVolume& forth, const CoarseVolume& back, Plane<float> disparity,
+                         const CoarseVolume& forward, const CoarseVolume& backward, ImageView<float> disparity,
                          cudaStream_t stream);
 
 }  // namespace roadstereo::cuda

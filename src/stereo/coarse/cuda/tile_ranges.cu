@@ -6,6 +6,7 @@
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
 #include "stereo/coarse/cuda/tile_ranges.hpp"
+#include "stereo/coarse/tile_range.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -37,7 +38,7 @@ struct TileColumns {
 };
 
 /// Counts the pixels of one column of the map, from `first` to `end`, that lie in the tile.
-__device__ void count_run(const Plane<const float>& coarse, const CoarseTiles& tiles, const Tile& tile, int factor,
+__device__ void count_run(const ImageView<const float>& coarse, const CoarseTiles& tiles, const Tile& tile, int factor,
                           int u, int first, int end, std::uint32_t* counts, int bins) {
   const float inverse_factor = 1.0F / static_cast<float>(factor);
   const TileColumns columns(tiles, tile.column);
@@ -74,15 +75,15 @@ __device__ int end_of(int tile, int size, int tiles, int count) {
   return tile + 1 == tiles || end > count ? count : end;
 }
 
-__device__ void count_tile(const Plane<const float>& coarse, const CoarseTiles& tiles, const Tile& tile, int factor,
+__device__ void count_tile(const ImageView<const float>& coarse, const CoarseTiles& tiles, const Tile& tile, int factor,
                            std::uint32_t* counts, int bins) {
   const int first_row = begin_of(tile.row, tiles.rows),
-            end_row = end_of(tile.row, tiles.rows, tiles.down, coarse.height);
+            end_row = end_of(tile.row, tiles.rows, tiles.down, coarse.height());
   const int first = begin_of(tile.column, tiles.columns);
   // What lies in a tile of the target lies up to the largest disparity further right in the reference.
-  const int reach = tile.of_target ? (bins + factor - 1) / factor + 1 : 0;
-  int end = end_of(tile.column, tiles.columns, tiles.across, coarse.width) + reach;
-  end = end < coarse.width ? end : coarse.width;
+  const int max_shift = tile.of_target ? (bins + factor - 1) / factor + 1 : 0;
+  int end = end_of(tile.column, tiles.columns, tiles.across, coarse.width()) + max_shift;
+  end = end < coarse.width() ? end : coarse.width();
   const int columns = end - first, runs = (end_row - first_row + rows_a_run - 1) / rows_a_run;
   for (int i = static_cast<int>(threadIdx.x); i < columns * runs; i += threads) {
     const int from = first_row + i / columns * rows_a_run;
@@ -92,7 +93,7 @@ __device__ void count_tile(const Plane<const float>& coarse, const CoarseTiles& 
 }
 
 /// The range that the counts of a tile leave, as TileRanges::choose finds it, with all threads of the block.
-__device__ TileRange choose_range(const std::uint32_t* counts, int bins, int factor, int disparities, Found& found) {
+__device__ SearchRange choose_range(const std::uint32_t* counts, int bins, int factor, int disparities, Found& found) {
   const int last = bins - 1;
   const std::uint32_t needed = needed_support(found.seen);
   for (int d = static_cast<int>(threadIdx.x); d < last; d += threads) {
@@ -116,8 +117,8 @@ __device__ TileRange choose_range(const std::uint32_t* counts, int bins, int fac
   return range_around(first, found.highest_seen > first ? found.highest_seen : first, disparities);
 }
 
-__global__ void range_of_tile(Plane<const float> coarse, int factor, int disparities, CoarseTiles tiles,
-                              TileRange* reference, TileRange* target) {
+__global__ void range_of_tile(ImageView<const float> coarse, int factor, int disparities, CoarseTiles tiles,
+                              SearchRange* reference, SearchRange* target) {
   const int bins = disparities + factor;
   auto& found = *shared_memory<Found>();
   auto* counts = reinterpret_cast<std::uint32_t*>(&found + 1);
@@ -131,7 +132,7 @@ __global__ void range_of_tile(Plane<const float> coarse, int factor, int dispari
     if (counts[d] > 0) atomicAdd(&found.seen, counts[d]);
   }
   __syncthreads();
-  TileRange range{0, static_cast<std::int16_t>(disparities)};
+  SearchRange range{0, static_cast<std::int16_t>(disparities)};
   if (found.seen >= min_tile_pixels(tiles.columns * tiles.rows)) {
     range = choose_range(counts, bins, factor, disparities, found);
   }
@@ -140,8 +141,8 @@ __global__ void range_of_tile(Plane<const float> coarse, int factor, int dispari
 
 }  // namespace
 
-void find_tile_ranges(Plane<const float> coarse, int factor, int disparities, const CoarseTiles& tiles,
-                      TileRange* reference, TileRange* target, cudaStream_t stream) {
+void find_tile_ranges(ImageView<const float> coarse, int factor, int disparities, const CoarseTiles& tiles,
+                      SearchRange* reference, SearchRange* target, cudaStream_t stream) {
   const std::size_t bytes = sizeof(Found) + static_cast<std::size_t>(disparities + factor) * sizeof(std::uint32_t);
   const dim3 grid(static_cast<unsigned>(tiles.across), static_cast<unsigned>(tiles.down), 2);
   launch(range_of_tile, {grid, threads, bytes}, stream, coarse, factor, disparities, tiles, reference, target);

@@ -2,8 +2,8 @@
 
 #include <cuda_runtime_api.h>
 
-#include "core/cuda/plane.hpp"
-#include "stereo/coarse/tile_range.hpp"
+#include "roadstereo/image_view.hpp"
+#include "roadstereo/search_range.hpp"
 
 namespace roadstereo::cuda {
 
@@ -13,9 +13,9 @@ struct CoarseTiles {
   int columns, rows;
 };
 
-/// Leaves in `reference` and `target`, one element a tile and row by row, the disparities that the coarse map
-/// (full-size pixels, NaN unknown) shows in each tile of either view, with a margin; all where too few pixels matched.
-void find_tile_ranges(Plane<const float> coarse, int factor, int disparities, const CoarseTiles& tiles,
-                      TileRange* reference, TileRange* target, cudaStream_t stream);
+/// Writes to `reference` and `target`, one element a tile and row by row, the range of the disparities of the coarse
+/// map (full-size pixels, NaN unknown) in each tile of either view, with a margin; all where too few pixels matched.
+void find_tile_ranges(ImageView<const float> coarse, int factor, int disparities, const CoarseTiles& tiles,
+                      SearchRange* reference, SearchRange* target, cudaStream_t stream);
 
 }  // namespace roadstereo::cuda

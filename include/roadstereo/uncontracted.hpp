@@ -1,13 +1,12 @@
 #pragma once
 
-#include "core/cuda/host_device.hpp"
+#include "roadstereo/host_device.hpp"
 
-// Compilers join a product with the sum it goes into where the hardware has an operation for both: for GPUs, for ARM,
-// for x86 with FMA. That rounds once where other machines round twice. Where all must agree to the bit, the product is
-// one of these.
+// Products that compilers must not contract with a sum into a fused multiply-add (FMA), which rounds once instead of
+// twice: for results that are equal to the bit on GPUs, ARM and x86.
 namespace roadstereo {
 
-// Where the host's compiler may join: the product passes through a register that it does not look into.
+// Prevents FMA contraction on the host: the empty asm makes the product opaque to the optimiser.
 #if defined(__CUDA_ARCH__)
 #define ROADSTEREO_KEEP_PRODUCT(product)
 #elif defined(__FMA__)
@@ -18,7 +17,7 @@ namespace roadstereo {
 #define ROADSTEREO_KEEP_PRODUCT(product)
 #endif
 
-/// a·b, rounded by itself.
+/// Returns a·b rounded, never contracted into an FMA.
 ROADSTEREO_HD inline float uncontracted_product(float a, float b) {
 #if defined(__CUDA_ARCH__)
   return __fmul_rn(a, b);

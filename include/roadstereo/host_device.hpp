@@ -1,6 +1,6 @@
 #pragma once
 
-// Formulas that kernels and the host share. Headers that use this are C++17, the most that CUDA 11 takes.
+// Marks functions that CUDA kernels call too. Headers that use it are C++17, the latest standard of CUDA 11.
 #if defined(__CUDACC__)
 #define ROADSTEREO_HD __host__ __device__
 #else

@@ -1,0 +1,191 @@
+// Winner-take-all with the prior, and sub-pixel offset, eq. (13), of one strip.
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+
+#include "stereo/cpu/aggregation.hpp"
+#include "stereo/sub_pixel.hpp"
+
+#if defined(ROADSTEREO_STEREO_CPU_WINNER_TAKE_ALL_INL) == defined(HWY_TARGET_TOGGLE)  // once for every instruction set
+#ifdef ROADSTEREO_STEREO_CPU_WINNER_TAKE_ALL_INL
+#undef ROADSTEREO_STEREO_CPU_WINNER_TAKE_ALL_INL
+#else
+#define ROADSTEREO_STEREO_CPU_WINNER_TAKE_ALL_INL
+#endif
+#include "stereo/cpu/vector-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace roadstereo::cpu::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+/// The smallest lane of each of four vectors.
+template <class D>
+HWY_INLINE void min_lanes(D /*d*/, const hn::Vec<D>* of, hn::TFromD<D>* smallest) {
+  for (int p = 0; p < 4; ++p) smallest[p] = hn::GetLane(of[p]);
+}
+#else
+/// smallest[0 … 3] = the smallest of those lanes of v that lie at the same place of a 128-bit block.
+template <class D>
+HWY_INLINE void fold_blocks(D d, hn::Vec<D> v, hn::TFromD<D>* smallest) {
+  if constexpr (hn::MaxLanes(D()) > 4) {
+    const hn::Half<D> half;
+    fold_blocks(half, hn::Min(hn::LowerHalf(half, v), hn::UpperHalf(half, v)), smallest);
+  } else {
+    hn::StoreU(v, d, smallest);
+  }
+}
+
+/// The smallest lane of each of four vectors. They are halved side by side: the lanes of a 128-bit block become a b a b
+/// and c d c d, then a b c d.
+template <class D>
+HWY_INLINE void min_lanes(D d, const hn::Vec<D>* of, hn::TFromD<D>* smallest) {
+  const hn::Repartition<std::uint64_t, D> pairs;
+  const auto ab = hn::Min(hn::InterleaveLower(d, of[0], of[1]), hn::InterleaveUpper(d, of[0], of[1]));
+  const auto cd = hn::Min(hn::InterleaveLower(d, of[2], of[3]), hn::InterleaveUpper(d, of[2], of[3]));
+  const auto wide_ab = hn::BitCast(pairs, ab), wide_cd = hn::BitCast(pairs, cd);
+  const auto abcd = hn::Min(hn::BitCast(d, hn::InterleaveLower(pairs, wide_ab, wide_cd)),
+                            hn::BitCast(d, hn::InterleaveUpper(pairs, wide_ab, wide_cd)));
+  fold_blocks(d, abcd, smallest);
+}
+#endif
+
+/// The energies of four pixels, as they are.
+struct PlainEnergies {
+  const float* energies;
+  std::ptrdiff_t pitch;
+
+  HWY_INLINE Float at(int p, int d) const { return hn::Load(Floats(), energies + p * pitch + d); }
+};
+
+/// The smallest energy of each of four pixels. Behind the last disparity the energies are infinite up to a whole
+/// vector.
+template <class Energies>
+HWY_INLINE void min_energies(const Energies& energies, int disparities, float* smallest) {
+  const Floats df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  Float vectors[4];
+  for (int p = 0; p < 4; ++p) vectors[p] = energies.at(p, 0);
+  for (int d = lanes; d < disparities; d += lanes) {
+    for (int p = 0; p < 4; ++p) vectors[p] = hn::Min(vectors[p], energies.at(p, d));
+  }
+  min_lanes(df, vectors, smallest);
+}
+
+/// The energies of four pixels with what they pay for their distance from the prior.
+struct RegularisedCosts {
+  PlainEnergies plain;
+  float centre[4], weight[4];
+  float truncation;
+
+  HWY_INLINE RegularisedCosts(const AggregationRow& row, const PlainEnergies& energies, int column)
+      : plain(energies), truncation(row.prior.truncation) {
+    float smallest[4];
+    min_energies(plain, row.disparities, smallest);
+    for (int p = 0; p < 4; ++p) {
+      const float at = column + p < row.end ? row.prior.centre[column + p] : 0.0f;
+      const bool known = at == at;
+      centre[p] = known ? at : 0.0f;
+      weight[p] = known ? row.prior.weight * std::min(1.0f, (smallest[p] + prior_cost_offset) / prior_full_cost) : 0.0f;
+    }
+  }
+
+  HWY_INLINE Float at(int p, int d) const {
+    const Floats df;
+    const Float away = hn::Abs(hn::Sub(hn::ConvertTo(df, count_from(d)), hn::Set(df, centre[p])));
+    return hn::MulAdd(hn::Min(away, hn::Set(df, truncation)), hn::Set(df, weight[p]), plain.at(p, d));
+  }
+};
+
+/// Winner-take-all of four pixels: winners[p] = the first d at which the energy is smallest.
+template <class Energies>
+HWY_INLINE void take_winners(const Energies& energies, int disparities, std::int32_t* winners) {
+  const Floats df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  float smallest[4];
+  min_energies(energies, disparities, smallest);
+  for (int p = 0; p < 4; ++p) {
+    const Float lowest = hn::Set(df, smallest[p]);
+    winners[p] = 0;
+    for (int d = 0; d < disparities; d += lanes) {
+      const auto first = hn::FindFirstTrue(df, hn::Eq(energies.at(p, d), lowest));
+      if (first < 0) continue;
+      winners[p] = d + static_cast<std::int32_t>(first);
+      break;
+    }
+  }
+}
+
+/// Winners of a strip, with the energies on either side that the parabola needs.
+struct StripWinners {
+  std::int32_t winner[strip_columns];
+  float before[strip_columns], best[strip_columns], after[strip_columns];
+};
+
+HWY_INLINE void find_winners(const AggregationRow& row, int strip, float* energies, int columns, StripWinners& found) {
+  for (int column = 0; column < columns; column += 4) {
+    float* of_four = energies + column * row.pitch;
+    for (int p = 0; p < 4; ++p) {
+      std::fill(of_four + p * row.pitch + row.disparities, of_four + (p + 1) * row.pitch, infinity);
+    }
+    const PlainEnergies plain{of_four, row.pitch};
+    if (row.prior.centre == nullptr) {
+      take_winners(plain, row.disparities, found.winner + column);
+    } else {
+      take_winners(RegularisedCosts(row, plain, strip + column), row.disparities, found.winner + column);
+    }
+    for (int p = 0; p < 4; ++p) {
+      // A winner at an end has no neighbour there: what is read instead is not used.
+      const int winner = std::clamp(found.winner[column + p], 1, std::max(1, row.disparities - 2));
+      const float* at = of_four + p * row.pitch + winner;
+      found.before[column + p] = at[-1];
+      found.best[column + p] = at[0];
+      found.after[column + p] = at[1];
+    }
+  }
+}
+
+/// Writes winners, offsets and variances of a strip: for every column −1 and NaN where nothing can match, else the
+/// winner and eq. (13), NaN where the winner has no neighbour on one side. The variance is derived in
+/// stereo/window.hpp.
+HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns, const StripWinners& found,
+                              const WinnerRow& out) {
+  const Floats df;
+  const Ints di;
+  const hn::Rebind<std::int16_t, Ints> ds;
+  const int lanes = static_cast<int>(hn::Lanes(di));
+  const Float nan = hn::Set(df, std::numeric_limits<float>::quiet_NaN());
+  for (int i = 0; i < columns; i += lanes) {
+    const Int column = count_from(strip + i);
+    const Int seen = hn::Min(hn::Sub(column, hn::Set(di, row.centre.first_visible)), hn::Set(di, row.disparities - 1));
+    const Int last = hn::IfThenElse(hn::Gt(column, hn::Set(di, row.centre.last_valid)), hn::Set(di, -1), seen);
+    const Int winner = hn::LoadU(di, found.winner + i);
+    const Int chosen = hn::IfThenElse(hn::Lt(last, hn::Zero(di)), hn::Set(di, -1), winner);
+    const int at = strip - row.first + i;
+    hn::StoreU(hn::DemoteTo(ds, chosen), ds, out.winner + at);
+    if (out.offset == nullptr) continue;
+    const Float before = hn::LoadU(df, found.before + i), after = hn::LoadU(df, found.after + i);
+    const Float best = hn::LoadU(df, found.best + i);
+    const Float curvature = hn::Sub(hn::Add(before, after), hn::Add(best, best));
+    const auto curved = hn::Gt(curvature, hn::Set(df, min_curvature));
+    const Float half = hn::Set(df, 0.5f);
+    const Float vertex = hn::IfThenElseZero(curved, hn::Div(hn::Mul(half, hn::Sub(before, after)), curvature));
+    const Float noise =
+        hn::Div(hn::Mul(hn::Set(df, 2 / row.effective_samples), hn::Max(best, hn::Zero(df))), curvature);
+    // With a prior the winner need not be a minimum of the costs.
+    const auto sure = hn::Lt(noise, hn::Set(df, low_noise_variance));
+    const Float max_offset = hn::IfThenElse(sure, hn::Set(df, low_noise_truncation_px), half);
+    const Float offset = hn::Clamp(vertex, hn::Neg(max_offset), max_offset);
+    const Float outside = hn::Sub(vertex, offset);
+    const Float variance = hn::IfThenElse(curved, hn::MulAdd(outside, outside, noise), hn::Set(df, infinity));
+    const auto bracketed = hn::And(hn::Gt(winner, hn::Zero(di)), hn::Lt(winner, last));
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(df, bracketed), offset, nan), df, out.offset + at);
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(df, bracketed), variance, hn::Set(df, infinity)), df, out.variance + at);
+  }
+}
+
+}  // namespace roadstereo::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "core/cuda/warp.hpp"
+#include "stereo/cuda/match_view.hpp"
+
+// Tile of a block of threads with the halo of window and blocks. The drawing is in stereo/cpu/match_view.hpp.
+
+namespace roadstereo::cuda {
+
+inline constexpr int tile_columns = 32;
+inline constexpr int tile_rows = 12;
+inline constexpr int threads = tile_columns * tile_rows;
+inline constexpr int warps = threads / 32;
+inline constexpr int chunk = 4;  // disparities at a time
+
+/// Where the tile and its halo lie, in the view's own coordinates.
+struct Tile {
+  int first_i, columns;  ///< the tile itself
+  int first_v;
+  int halo_i, halo_v;  ///< with the window's taps
+  int halo_columns, halo_rows;
+  int product_columns;  ///< with the blocks' radius on both sides
+  SearchRange range;
+};
+
+__device__ inline int image_column(const ViewToMatch& view, int i) {
+  return view.mirrored ? view.own.width() - 1 - i : i;
+}
+/// Own pixel i of row v sees the other view from disparity 0 to i − first_visible(v).
+__device__ inline int first_visible(const ViewToMatch& view, int v) {
+  return view.mirrored ? 0 : __ldg(view.first_column + v);
+}
+__device__ inline int last_valid(const ViewToMatch& view, int v) {
+  return view.mirrored ? view.own.width() - 1 - __ldg(view.first_column + v) : view.own.width() - 1;
+}
+
+__device__ inline Tile locate_tile(const ViewToMatch& view, const ViewSettings& settings, int index) {
+  const int across = (view.own.width() + tile_columns - 1) / tile_columns;
+  const int first_u = index % across * tile_columns, end_u = min(first_u + tile_columns, view.own.width());
+  Tile tile;
+  tile.first_i = view.mirrored ? view.own.width() - end_u : first_u;
+  tile.columns = end_u - first_u;
+  tile.first_v = index / across * tile_rows;
+  tile.halo_i = tile.first_i - settings.window_half_width;
+  tile.halo_v = tile.first_v - settings.window_half_height;
+  tile.halo_columns = tile_columns + 2 * settings.window_half_width;
+  tile.halo_rows = tile_rows + 2 * settings.window_half_height;
+  tile.product_columns = tile.halo_columns + 2 * settings.block_radius;
+  tile.range = {0, static_cast<std::int16_t>(view.disparities)};
+  if (!view.ranges.empty()) tile.range = view.ranges(first_u / view.range_columns, tile.first_v / view.range_rows);
+  return tile;
+}
+
+/// The last first column of the rows in the tile's halo: what is whole right of it is whole in every row.
+__device__ inline int latest_first_column(const ViewToMatch& view, const Tile& tile, int* of_block) {
+  const int lane = static_cast<int>(threadIdx.x);
+  if (lane < 32) {
+    int latest = 0;
+    for (int y = lane; y < tile.halo_rows; y += 32) {
+      const int v = min(max(tile.halo_v + y, 0), view.own.height() - 1);
+      latest = max(latest, __ldg(view.first_column + v));
+    }
+    latest = warp_max(latest);
+    if (lane == 0) *of_block = latest;
+  }
+  __syncthreads();
+  return *of_block;
+}
+
+/// Whether every pixel of the tile's halo has a whole set of four costs.
+__device__ inline bool halo_whole(const ViewToMatch& view, const Tile& tile, int latest_first, int d) {
+  const int width = view.own.width();
+  const int first_visible = view.mirrored ? 0 : latest_first;
+  const int last_valid = view.mirrored ? width - 1 - latest_first : width - 1;
+  return tile.halo_v >= 0 && tile.halo_v + tile.halo_rows <= view.own.height() && tile.halo_i >= 0 &&
+         tile.halo_i + tile.halo_columns - 1 <= last_valid && tile.halo_i - d - (chunk - 1) >= first_visible;
+}
+
+}  // namespace roadstereo::cuda
