@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "flight/bounded_queue.hpp"
-#include "flight/in_turn.hpp"
+#include "flight/sequencer.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -83,7 +83,7 @@ TEST(Sequencer, BreakOffWakesWaiters) {
   Sequencer turn(0);
   bool called = false;
   std::thread waiting([&] { turn.run_in_order(7, [&] { called = true; }); });
-  turn.break_off();
+  turn.cancel();
   waiting.join();
   turn.run_in_order(0, [&] { called = true; });
   EXPECT_FALSE(called);

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "io/report/figures.hpp"
 #include "io/report/markup.hpp"
+#include "io/report/number_text.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/damage_files.hpp"
 #include "roadstereo/io/damage_overlay.hpp"
@@ -253,7 +253,7 @@ TEST(DamageReport, EscapesText) {
   const TrueDamage truth = damage_from_truth(road());
   DamageReportInput input = report_input(truth);
   input.title = "<script>alert('x')</script> & \"more\" {{&damages}}";
-  input.facts = {{"<b>name</b>", "a < b & c"}};
+  input.properties = {{"<b>name</b>", "a < b & c"}};
   const std::string html = damage_report(input);
   EXPECT_EQ(html.find("<script>alert"), std::string::npos);
   EXPECT_EQ(html.find("<b>name"), std::string::npos);

@@ -8,7 +8,7 @@
 
 namespace roadstereo::cli {
 
-/// What becomes of a matched frame: its damage is found and measured, and the files that are asked for are encoded.
+/// Finds the damage of a matched frame and encodes the requested files.
 void finish_frame(const std::optional<StereoCalibration>& calibration, const PipelineOptions& options,
                   const std::vector<FrameFile>& write, FlightJob& job);
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "flight/flight_folder.hpp"
-#include "flight/flight_places.hpp"
+#include "flight/flight_positions.hpp"
 #include "flight/flight_settings.hpp"
 #include "flight/flight_summary.hpp"
 #include "flight/rectified_source.hpp"
@@ -12,22 +12,23 @@
 
 namespace roadstereo::cli {
 
-/// How a run of the program over a flight went.
+/// One run over a flight.
 struct FlightRun {
   bool complete = false;           ///< the end of the source was reached
-  std::string source;              ///< what it is, for people
+  std::string source;              ///< description of the source
   std::string calibration_format;  ///< empty without a calibration
-  std::string engine;              ///< the one that ran
+  std::string engine;              ///< name of the engine used
   int threads = 0;                 ///< of matching
   PipelineOptions options;
   double seconds = 0;            ///< of this run
   double frames_per_second = 0;  ///< of this run, from the first frame to the last
-  std::int64_t resumed_at = 0;   ///< frames that earlier runs had done
+  std::int64_t resumed_at = 0;   ///< number of frames done by earlier runs
 };
 
-/// Writes frames.csv, damages.csv, summary.json and report.html from the journal, and the maps when there is a track
-/// (`places`, which takes the frames). Returns the text of summary.json.
+/// Writes frames.csv, damages.csv, summary.json and report.html from the journal, and the GIS files if `positions` is
+/// set. Fills `positions` and `summary`. Returns the text of summary.json.
 std::string write_flight_results(const FlightSettings& settings, const FlightRun& run, const io::FlightJournal& journal,
-                                 std::optional<FlightPlaces>& places, FlightFolder& folder, FlightSummary& summary);
+                                 std::optional<FlightPositions>& positions, FlightFolder& folder,
+                                 FlightSummary& summary);
 
 }  // namespace roadstereo::cli

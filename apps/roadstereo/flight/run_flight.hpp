@@ -13,20 +13,20 @@
 
 namespace roadstereo::cli {
 
-/// A flight on its way through the program.
+/// Inputs and outputs of `run_flight`.
 struct Flight {
   RectifiedSource& source;
   FlightFolder& folder;
   io::FlightJournal& journal;
-  io::FlightInventory& inventory;  ///< of the frames that the journal has
+  io::FlightInventory& inventory;  ///< of the frames in the journal
   PipelineOptions options;
   Progress& progress;
   const StopSignals& stop;
 };
 
-/// Processes the frames that the journal does not have yet: one thread reads, one matches (with the threads of the
-/// options), others find damage and encode, and all is written in order. No frame is dropped. Returns whether the end
-/// was reached; false after Ctrl-C, when the frames in flight have been finished.
+/// Processes the frames that are not in the journal: one thread reads, one matches (with the threads of the options),
+/// others find damage and encode; results are written in order. No frame is dropped. Returns true at the end of the
+/// source; false after Ctrl-C, when all frames already read are finished.
 bool run_flight(const FlightSettings& settings, Flight& flight);
 
 }  // namespace roadstereo::cli

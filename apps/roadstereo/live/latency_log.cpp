@@ -6,22 +6,22 @@
 namespace roadstereo::cli {
 namespace {
 
-/// The smallest value that at least that share of the values do not exceed.
-double quantile(std::vector<double>& values, double share) {
+/// Nearest-rank quantile: the smallest value that at least that share of the values do not exceed.
+double nearest_rank(std::vector<double>& values, double share) {
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
+  const auto rank_at = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(values.begin(), rank_at, values.end());
+  return *rank_at;
 }
 
 }  // namespace
 
 void LatencyLog::add(double ms) {
-  if (recent_.size() < most_recent) {
+  if (recent_.size() < max_recent) {
     recent_.push_back(ms);
   } else {
     recent_[oldest_] = ms;
-    oldest_ = (oldest_ + 1) % most_recent;
+    oldest_ = (oldest_ + 1) % max_recent;
   }
   const double bin = std::ceil(std::max(ms, 0.0) / bin_ms);
   ++counts_[bin > static_cast<double>(bins) ? bins : static_cast<std::size_t>(bin)];
@@ -29,13 +29,13 @@ void LatencyLog::add(double ms) {
   max_ms_ = std::max(max_ms_, ms);
 }
 
-LatencyFigures LatencyLog::recent() const {
+LatencyStatistics LatencyLog::recent() const {
   if (recent_.empty()) return {};
   std::vector<double> values = recent_;
-  return {quantile(values, 0.5), quantile(values, 0.95), *std::max_element(values.begin(), values.end())};
+  return {nearest_rank(values, 0.5), nearest_rank(values, 0.95), *std::max_element(values.begin(), values.end())};
 }
 
-double LatencyLog::quantile_of_all(double share) const {
+double LatencyLog::nearest_rank_of_all(double share) const {
   const double rank = std::ceil(share * static_cast<double>(total_));
   double seen = 0;
   for (std::size_t bin = 0; bin < bins; ++bin) {
@@ -45,9 +45,9 @@ double LatencyLog::quantile_of_all(double share) const {
   return max_ms_;
 }
 
-LatencyFigures LatencyLog::all() const {
+LatencyStatistics LatencyLog::all() const {
   if (total_ == 0) return {};
-  return {quantile_of_all(0.5), quantile_of_all(0.95), max_ms_};
+  return {nearest_rank_of_all(0.5), nearest_rank_of_all(0.95), max_ms_};
 }
 
 }  // namespace roadstereo::cli

@@ -10,8 +10,7 @@
 namespace roadstereo::cli {
 namespace {
 
-/// Stands for every source of a run where only its calibration matters: sources come and go with the camera, what is
-/// known of the rig stays.
+/// A source without pairs that keeps the calibration while the real source is reopened.
 class CalibrationOnly final : public io::FrameSource {
  public:
   explicit CalibrationOnly(const io::FrameSource& source)
@@ -69,7 +68,7 @@ void LiveSession::guarded(const std::function<void()>& work) {
   }
 }
 
-/// Every thread ends when the one before it has: what is on its way still arrives.
+/// Stops the threads in the order of the data flow, so that pairs already read are finished.
 void LiveSession::join() {
   if (!capturing_.joinable()) return;
   capturing_.request_stop();

@@ -12,7 +12,7 @@ Processing::Processing(const ProcessingOptions& options, std::unique_ptr<Rectifi
   options_.pipeline.validate();
 }
 
-/// Made when the first pair has told what white is.
+/// Creates the pipeline on first use, when the white level is known.
 Pipeline& Processing::pipeline() {
   if (!pipeline_) {
     if (options_.find_white_level) options_.pipeline.white_level = rectifier_->white_level();
@@ -27,8 +27,8 @@ std::optional<Processing::Matched> Processing::match(CapturedPair captured) {
     return std::nullopt;
   }
   rectifier_->rectify(captured.pair);
-  if (!captured.pair.refused.empty()) {
-    board_.refuse(captured.pair.refused);
+  if (!captured.pair.error.empty()) {
+    board_.count_rejected(captured.pair.error);
     return std::nullopt;
   }
   Matched matched;
@@ -37,7 +37,7 @@ std::optional<Processing::Matched> Processing::match(CapturedPair captured) {
   } catch (const SystemError&) {
     throw;
   } catch (const Error& error) {
-    board_.refuse(error.what());
+    board_.count_rejected(error.what());
     return std::nullopt;
   }
   matched.calibration = rectifier_->calibration();

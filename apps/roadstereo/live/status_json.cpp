@@ -62,17 +62,17 @@ ordered_json view_json(const LiveView& view) {
 
 ordered_json recording_json(const RecordingState& recording) {
   if (!recording.on) return nullptr;
-  return {{"recorded", recording.recorded}, {"left_out", recording.left_out}, {"message", recording.message}};
+  return {{"recorded", recording.recorded}, {"skipped", recording.skipped}, {"message", recording.message}};
 }
 
 }  // namespace
 
 ordered_json counts_json(const LiveCounts& counts) {
-  return {{"taken", counts.taken},     {"processed", counts.shown}, {"dropped", counts.dropped},
-          {"too_old", counts.too_old}, {"refused", counts.refused}, {"reconnects", counts.reconnects}};
+  return {{"taken", counts.taken},     {"processed", counts.shown},   {"dropped", counts.dropped},
+          {"too_old", counts.too_old}, {"rejected", counts.rejected}, {"reconnects", counts.reconnects}};
 }
 
-ordered_json latency_json(const LatencyFigures& latency) {
+ordered_json latency_json(const LatencyStatistics& latency) {
   return {{"median", json_number(latency.median_ms)},
           {"p95", json_number(latency.p95_ms)},
           {"max", json_number(latency.max_ms)}};

@@ -147,8 +147,9 @@ __device__ FitMoments fit_moments(const SampledMap& sampled, const PlaneTerms& p
 }
 
 /// `max_iterations` 0 measures the plane as it is.
-__global__ void __launch_bounds__(1024) fit_map(MaskedMap map, SampledMap sampled, PlaneSource source,
-                                                int max_iterations, RoadFitStatistics* figures, RoadFitStatistics* result) {
+__global__ void __launch_bounds__(1024)
+    fit_map(MaskedMap map, SampledMap sampled, PlaneSource source, int max_iterations, RoadFitStatistics* figures,
+            RoadFitStatistics* result) {
   FitState& state = *shared_memory<FitState>();
   const PlaneTerms start = source.get();
   RoadFitStatistics own{start, {start, 0, 0, 0, 0}, 0, 1, {}};

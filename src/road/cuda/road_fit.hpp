@@ -27,8 +27,8 @@ class RoadFit {
   /// Enqueues only what tells how well the map fits a plane that is known.
   void measure(const MaskedMap& map, const PlaneTerms& plane, cudaStream_t stream);
 
-  const PlaneTerms* plane() const { return &figures_.data()->plane; }  ///< in device memory
-  const RoadFitStatistics& figures() const { return *result_.data(); }    ///< once the stream was synchronised
+  const PlaneTerms* plane() const { return &figures_.data()->plane; }   ///< in device memory
+  const RoadFitStatistics& figures() const { return *result_.data(); }  ///< once the stream was synchronised
 
  private:
   void enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, cudaStream_t stream);

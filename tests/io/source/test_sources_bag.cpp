@@ -89,7 +89,7 @@ TEST_F(BagSource, PairsByStamp) {
   for (int i = 1; i < 5; ++i) {
     const std::optional<SourcePair> pair = source->next();
     ASSERT_TRUE(pair);
-    EXPECT_EQ(pair->refused, "");
+    EXPECT_EQ(pair->error, "");
     EXPECT_EQ(pair->index, i);
     EXPECT_NEAR(pair->time_s, start_s + 0.1 * i, 1e-6);
     ASSERT_EQ(pair->left.bytes.size(), std::size_t{40} * 32);  // without the padding
@@ -132,8 +132,8 @@ TEST_F(BagSource, RejectsImageWithoutPartner) {
     const std::optional<SourcePair> pair = source->next();
     ASSERT_TRUE(pair);
     EXPECT_NEAR(pair->time_s, start_s + e.time_s, 1e-6);
-    EXPECT_EQ(pair->refused, e.refused);
-    if (pair->refused.empty()) {
+    EXPECT_EQ(pair->error, e.error);
+    if (pair->error.empty()) {
       EXPECT_EQ(first_sample(pair->left), e.left);
       EXPECT_EQ(first_sample(pair->right), e.right);
     }
@@ -143,7 +143,7 @@ TEST_F(BagSource, RejectsImageWithoutPartner) {
   generous.max_time_difference_s = 0.03;
   const auto again = open_bag(file, generous);
   again->skip(2);
-  EXPECT_EQ(again->next().value().refused, "") << "20 ms are within 30";
+  EXPECT_EQ(again->next().value().error, "") << "20 ms are within 30";
 }
 
 TEST_F(BagSource, ContinuesAfterOneCameraStops) {
@@ -158,7 +158,7 @@ TEST_F(BagSource, ContinuesAfterOneCameraStops) {
   for (int i = 0; i < 100; ++i) {
     const std::optional<SourcePair> pair = source->next();
     ASSERT_TRUE(pair);
-    EXPECT_EQ(pair->refused.empty(), i < 10 || i >= 90) << i << ": " << pair->refused;
+    EXPECT_EQ(pair->error.empty(), i < 10 || i >= 90) << i << ": " << pair->error;
   }
   EXPECT_FALSE(source->next());
 }
@@ -170,7 +170,7 @@ TEST_F(BagSource, MissingStampIsTimeOfReception) {
   writer.write_image(right_topic, 0, start_s + 0.001, grey(2));
   writer.close();
   const SourcePair pair = open_bag(file, {})->next().value();
-  EXPECT_EQ(pair.refused, "");
+  EXPECT_EQ(pair.error, "");
   EXPECT_NEAR(pair.time_s, start_s, 1e-6);
 }
 
@@ -183,7 +183,7 @@ TEST_F(BagSource, ReadsEveryEncoding) {
   const auto expect_pixel = [&](const BagWriter::Picture& picture, ChannelOrder order,
                                 std::vector<std::uint8_t> pixel) {
     const SourcePair pair = pair_with(picture);
-    ASSERT_EQ(pair.refused, "") << picture.encoding;
+    ASSERT_EQ(pair.error, "") << picture.encoding;
     EXPECT_EQ(pair.left.order, order) << picture.encoding;
     const auto at = pair.left.bytes.begin() + static_cast<long>(pixel.size() * (32 * 7 + 9));
     EXPECT_EQ(std::vector<std::uint8_t>(at, at + static_cast<long>(pixel.size())), pixel) << picture.encoding;
@@ -212,10 +212,10 @@ TEST_F(BagSource, ReadsEveryEncoding) {
 }
 
 TEST_F(BagSource, DamagedImageCostsOnePair) {
-  EXPECT_EQ(pair_with({"yuv9", 32, 32, 32, false, std::vector<std::uint8_t>(1024)}).refused.rfind(left_topic, 0), 0U);
+  EXPECT_EQ(pair_with({"yuv9", 32, 32, 32, false, std::vector<std::uint8_t>(1024)}).error.rfind(left_topic, 0), 0U);
   BagWriter::Picture cut = grey(3);
   cut.data.resize(1000);
-  EXPECT_NE(pair_with(cut).refused.find("1000 bytes in rows of 48 are no picture of 40×32"), std::string::npos);
+  EXPECT_NE(pair_with(cut).error.find("1000 bytes in rows of 48 are no picture of 40×32"), std::string::npos);
 }
 
 TEST_F(BagSource, ReadsCompressedImages) {
@@ -233,12 +233,12 @@ TEST_F(BagSource, ReadsCompressedImages) {
   writer.close();
   const auto source = open_bag(file, {});
   const SourcePair pair = source->next().value();
-  EXPECT_EQ(pair.refused, "");
+  EXPECT_EQ(pair.error, "");
   EXPECT_EQ(pair.left.bytes, std::vector<std::uint8_t>(std::size_t{32} * 48, 77));
   ASSERT_EQ(pair.right.order, ChannelOrder::bgr);
   EXPECT_NEAR(pair.right.bytes[0], 30, 3);
   EXPECT_NEAR(pair.right.bytes[2], 90, 3);
-  EXPECT_NE(source->next().value().refused, "");
+  EXPECT_NE(source->next().value().error, "");
 }
 
 BagWriter::Camera camera(double right_shift_px) {
