@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "find_damage_or_warn.hpp"
 #include "inspect_flight.hpp"
 #include "inspection.hpp"
 #include "result_files.hpp"
@@ -38,7 +39,7 @@ bool is_input(const std::string& word, const std::vector<std::string>& source) {
 
 /// Assigns further words to their options. An option takes one value only, so that it does not consume the names of the
 /// input: `b=2` after `--set a=1` and `right.yaml` after `--calibration left.yaml` are parsed as names.
-void place_names(Arguments& arguments) {
+void assign_names(Arguments& arguments) {
   FlightSettings& settings = arguments.settings;
   settings.source.clear();
   for (const std::string& word : arguments.names) {
@@ -60,30 +61,20 @@ bool is_one_pair(const FlightSettings& settings) {
   return settings.source.size() == 2 && !io::is_recording(settings.source[0]);
 }
 
-/// A pair that shows no road still has a disparity map: damage that cannot be looked for is a warning.
-void find_damage(const Pipeline& pipeline, Inspection& inspection) {
-  try {
-    inspection.damage = pipeline.find_damage();
-  } catch (const Error& error) {
-    const FrameResult& result = inspection.result;
-    inspection.damage = make_empty_damage_map(result.disparity.width(), result.disparity.height(), "no road was found");
-    inspection.warnings.push_back(std::string("damage was not looked for: ") + error.what());
-  }
-}
-
 void process(Inspection& inspection) {
   Pipeline pipeline(inspection.options, inspection.pair.calibration);
   inspection.result = pipeline.process(inspection.pair.left.view(), inspection.pair.right.view());
   inspection.engine = pipeline.engine_name();
   inspection.threads = used_threads(inspection.options);
   inspection.warnings = inspection.result.warnings;
-  find_damage(pipeline, inspection);
+  find_damage_or_warn(inspection.result, inspection.pair.calibration, inspection.options.damage,
+                      inspection.options.threads, inspection.damage, inspection.warnings);
   if (inspection.pair.calibration && inspection.result.roll_found) {
     inspection.plane = ground_plane(inspection.result.geometry.plane, *inspection.pair.calibration);
   }
 }
 
-void refuse_flight_options(const FlightSettings& settings) {
+void reject_flight_options(const FlightSettings& settings) {
   const auto reject = [](const char* option) { fail(option, " is for recordings only; LEFT and RIGHT are one pair"); };
   if (settings.resume) reject("--resume");
   if (settings.from != 0) reject("--from");
@@ -94,7 +85,7 @@ void refuse_flight_options(const FlightSettings& settings) {
 }
 
 void inspect_pair(const FlightSettings& settings) {
-  refuse_flight_options(settings);
+  reject_flight_options(settings);
   Inspection inspection;
   inspection.options = make_options(settings.processing);
   inspection.preset = settings.processing.preset;
@@ -114,7 +105,7 @@ void inspect_pair(const FlightSettings& settings) {
 }
 
 void inspect(Arguments arguments) {
-  place_names(arguments);
+  assign_names(arguments);
   is_one_pair(arguments.settings) ? inspect_pair(arguments.settings) : inspect_flight(arguments.settings);
 }
 

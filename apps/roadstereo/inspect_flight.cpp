@@ -67,8 +67,7 @@ void inspect_flight(const FlightSettings& settings) {
   auto stop = std::make_unique<StopSignals>();  // before any thread
   FlightRun run;
   run.options = make_options(settings.processing);
-  std::optional<FlightPositions> positions;
-  if (!settings.track.file.empty()) positions.emplace(settings.track);
+  FlightResults results(settings.track);
   RectifiedSource source(io::open_source(settings.source, make_source_options(settings.source_settings)),
                          settings.calibration);
   if (source.source().live()) fail(settings.source[0], ": cameras are not supported by inspect; use roadstereo live");
@@ -76,16 +75,15 @@ void inspect_flight(const FlightSettings& settings) {
   require_frames(settings, source.source());
   FlightFolder folder(settings.output);
   io::FlightJournal journal = open_journal(settings, run.options, folder);
-  io::FlightInventory inventory;
-  journal.for_each([&](const io::FlightFrame& frame) { inventory.add(frame); });
+  journal.for_each([&](const io::FlightFrame& frame) { results.add(frame); });
   if (journal.last() && journal.last()->white_level > 0) source.set_white_level(journal.last()->white_level);
   run.resumed_at = journal.frames();
 
   Progress progress(frames_to_do(settings, source.source()), journal.frames(), settings.quiet);
-  Flight flight{source, folder, journal, inventory, run.options, progress, *stop};
+  Flight flight{source, folder, journal, results, run.options, progress, *stop};
   run.complete = run_flight(settings, flight);
   stop.reset();  // the next Ctrl-C ends the program
-  run.options = flight.options;
+  if (journal.last() && journal.last()->white_level > 0) run.options.white_level = journal.last()->white_level;
   run.seconds = progress.seconds();
   run.frames_per_second = progress.frames_per_second();
   run.source = source.source().description();
@@ -93,8 +91,8 @@ void inspect_flight(const FlightSettings& settings) {
   run.engine = resolve_engine_name(run.options.engine);
   run.threads = used_threads(run.options);
 
-  FlightSummary summary;
-  const std::string json = write_flight_results(settings, run, journal, positions, folder, summary);
+  const std::string json = results.write(settings, run, folder);
+  const FlightSummary& summary = results.summary();
   progress.end();
   if (settings.json) fmt::print("{}", json);
   if (!settings.json && !settings.quiet) fmt::print("{}", flight_text(run, summary, folder));

@@ -290,7 +290,7 @@ TEST(DamageReport, SaysThatNoDamageWasFound) {
   truth.map.damages.clear();
   truth.map.ids.assign(480, 270, 0);
   const std::string html = damage_report(report_input(truth));
-  EXPECT_NE(html.find("no damage found"), std::string::npos);
+  EXPECT_NE(html.find("No damage found"), std::string::npos);
   EXPECT_EQ(html.find("<table"), std::string::npos);
   EXPECT_EQ(html.find("<canvas"), std::string::npos);
 }

@@ -54,7 +54,7 @@ TEST(Recorder, FullDiskStopsWithMessage) {
   EXPECT_EQ(tried, 2);
   EXPECT_EQ(state.recorded, 1);
   EXPECT_EQ(state.skipped, 2);
-  EXPECT_EQ(state.message, "recording has stopped: no space left");
+  EXPECT_EQ(state.message, "recording stopped: no space left");
 }
 
 }  // namespace

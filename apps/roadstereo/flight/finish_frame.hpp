@@ -9,7 +9,7 @@
 namespace roadstereo::cli {
 
 /// Finds the damage of a matched frame and encodes the requested files.
-void finish_frame(const std::optional<StereoCalibration>& calibration, const PipelineOptions& options,
+void finish_frame(const std::optional<StereoCalibration>& calibration, const DamageOptions& options,
                   const std::vector<FrameFile>& write, FlightJob& job);
 
 }  // namespace roadstereo::cli

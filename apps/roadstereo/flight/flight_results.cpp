@@ -66,21 +66,10 @@ std::vector<std::string> notices_of(const FlightRun& run, const FlightSummary& s
   return notices;
 }
 
-/// Returns the evenly spaced thumbnails with the names of the frames.
-std::vector<io::CaptionedPicture> thumbnails_of(const io::FlightJournal& journal, const FlightFolder& folder) {
-  std::vector<io::CaptionedPicture> thumbnails;
-  std::int64_t sequence = 0;
-  journal.for_each([&](const io::FlightFrame& frame) {
-    const std::int64_t here = sequence++;
-    const auto name = thumbnail_name(here);
-    if (!name || !is_shown(here, journal.frames()) || frame.status != io::FrameStatus::good) return;
-    std::string caption = frame.name;
-    if (!frame.damages.empty())
-      caption += fmt::format(" · {} damage{}", frame.damages.size(), frame.damages.size() == 1 ? "" : "s");
-    std::vector<std::uint8_t> jpeg = folder.read(*name);
-    if (!jpeg.empty()) thumbnails.push_back({caption, std::move(jpeg)});
-  });
-  return thumbnails;
+std::string caption_of(const io::FlightFrame& frame) {
+  const std::size_t damages = frame.damages.size();
+  if (damages == 0) return frame.name;
+  return fmt::format("{} · {} damage{}", frame.name, damages, damages == 1 ? "" : "s");
 }
 
 std::vector<io::PicturedDamage> worst_of(const io::FlightInventory& inventory, const FlightFolder& folder) {
@@ -100,46 +89,63 @@ std::string title_of(const FlightSettings& settings) {
   return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
 }
 
-std::string report_of(const FlightSettings& settings, const FlightRun& run, const FlightSummary& summary,
-                      const io::FlightJournal& journal, const io::FlightInventory& inventory,
-                      const FlightFolder& folder) {
+}  // namespace
+
+FlightResults::FlightResults(const TrackSettings& track)
+    : frames_csv_(io::frames_csv_names()), damages_csv_(io::flight_damages_csv_names()) {
+  if (!track.file.empty()) positions_.emplace(track);
+}
+
+std::vector<std::int64_t> FlightResults::add(const io::FlightFrame& frame) {
+  const std::int64_t sequence = summary_.frames;
+  const std::optional<std::string> thumbnail = thumbnail_name(sequence);
+  if (thumbnail && frame.status == io::FrameStatus::good) {
+    thumbnails_.push_back({sequence, *thumbnail, caption_of(frame)});
+  }
+  summary_.add(frame);
+  frames_csv_ += io::frames_csv_row(frame);
+  std::vector<std::int64_t> road_damages = inventory_.add(frame);
+  damages_csv_ += io::flight_damages_csv_rows(frame, road_damages);
+  if (positions_) positions_->add(frame);
+  return road_damages;
+}
+
+std::vector<io::CaptionedPicture> FlightResults::read_thumbnails(const FlightFolder& folder) const {
+  std::vector<io::CaptionedPicture> pictures;
+  for (const Thumbnail& thumbnail : thumbnails_) {
+    if (!is_shown(thumbnail.sequence, summary_.frames)) continue;
+    std::vector<std::uint8_t> jpeg = folder.read(thumbnail.name);
+    if (!jpeg.empty()) pictures.push_back({thumbnail.caption, std::move(jpeg)});
+  }
+  return pictures;
+}
+
+std::string FlightResults::report(const FlightSettings& settings, const FlightRun& run,
+                                  const FlightFolder& folder) const {
   io::FlightReportInput report;
   report.title = title_of(settings);
-  report.properties = properties_of(run, summary, inventory);
-  report.notices = notices_of(run, summary);
-  report.curves = summary.curves;
-  report.thumbnails = thumbnails_of(journal, folder);
-  report.worst = worst_of(inventory, folder);
-  report.damages = inventory.damages().size();
+  report.properties = properties_of(run, summary_, inventory_);
+  report.notices = notices_of(run, summary_);
+  report.curves = summary_.curves;
+  report.thumbnails = read_thumbnails(folder);
+  report.worst = worst_of(inventory_, folder);
+  report.damages = inventory_.damages().size();
   report.metric = !run.calibration_format.empty();
   return io::flight_report(report);
 }
 
-}  // namespace
-
-std::string write_flight_results(const FlightSettings& settings, const FlightRun& run, const io::FlightJournal& journal,
-                                 std::optional<FlightPositions>& positions, FlightFolder& folder,
-                                 FlightSummary& summary) {
-  std::string frames = io::frames_csv_names();
-  std::string damages = io::flight_damages_csv_names();
-  io::FlightInventory inventory;
-  journal.for_each([&](const io::FlightFrame& frame) {
-    summary.add(frame);
-    frames += io::frames_csv_row(frame);
-    damages += io::flight_damages_csv_rows(frame, inventory.add(frame));
-    if (positions) positions->add(frame);
-  });
-  summary.settle_times();
-  summary.damages = static_cast<std::int64_t>(inventory.damages().size());
-  if (positions) {
-    summary.located = static_cast<std::int64_t>(positions->located());
-    summary.no_position_reason = positions->no_position_reason();
+std::string FlightResults::write(const FlightSettings& settings, const FlightRun& run, FlightFolder& folder) {
+  summary_.settle_times();
+  summary_.damages = static_cast<std::int64_t>(inventory_.damages().size());
+  if (positions_) {
+    summary_.located = static_cast<std::int64_t>(positions_->located());
+    summary_.no_position_reason = positions_->no_position_reason();
   }
-  std::string json = flight_json(settings, run, summary, inventory);
-  std::vector<StagedFile> files = positions ? positions->files() : std::vector<StagedFile>{};
-  files.push_back(text_file("frames.csv", frames));
-  files.push_back(text_file("damages.csv", damages));
-  files.push_back(text_file("report.html", report_of(settings, run, summary, journal, inventory, folder)));
+  std::string json = flight_json(settings, run, summary_, inventory_);
+  std::vector<StagedFile> files = positions_ ? positions_->files() : std::vector<StagedFile>{};
+  files.push_back(text_file("frames.csv", frames_csv_));
+  files.push_back(text_file("damages.csv", damages_csv_));
+  files.push_back(text_file("report.html", report(settings, run, folder)));
   files.push_back(text_file("summary.json", json));
   folder.write(files);
   return json;

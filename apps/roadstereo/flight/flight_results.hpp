@@ -1,14 +1,17 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "flight/flight_folder.hpp"
 #include "flight/flight_positions.hpp"
 #include "flight/flight_settings.hpp"
 #include "flight/flight_summary.hpp"
-#include "flight/rectified_source.hpp"
-#include "roadstereo/io/flight_journal.hpp"
+#include "roadstereo/io/flight_inventory.hpp"
+#include "roadstereo/io/flight_report.hpp"
+#include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
 
@@ -25,10 +28,38 @@ struct FlightRun {
   std::int64_t resumed_at = 0;   ///< number of frames done by earlier runs
 };
 
-/// Writes frames.csv, damages.csv, summary.json and report.html from the journal, and the GIS files if `positions` is
-/// set. Fills `positions` and `summary`. Returns the text of summary.json.
-std::string write_flight_results(const FlightSettings& settings, const FlightRun& run, const io::FlightJournal& journal,
-                                 std::optional<FlightPositions>& positions, FlightFolder& folder,
-                                 FlightSummary& summary);
+/// Collects the results of a flight frame by frame and writes its tables, report and GIS files.
+class FlightResults {
+ public:
+  /// Reads the track, if any. Throws Error naming its file and line.
+  explicit FlightResults(const TrackSettings& track);
+
+  /// Adds the next frame. Returns the id of the road damage of each of its damages.
+  std::vector<std::int64_t> add(const io::FlightFrame& frame);
+
+  const io::FlightInventory& inventory() const { return inventory_; }
+
+  /// Writes frames.csv, damages.csv, summary.json and report.html, and the GIS files if there is a track. Completes the
+  /// summary; call it once. Returns the text of summary.json.
+  std::string write(const FlightSettings& settings, const FlightRun& run, FlightFolder& folder);
+
+  const FlightSummary& summary() const { return summary_; }
+
+ private:
+  struct Thumbnail {
+    std::int64_t sequence = 0;  ///< number of the frame in the flight
+    std::string name;           ///< of the file
+    std::string caption;
+  };
+  std::vector<io::CaptionedPicture> read_thumbnails(const FlightFolder& folder) const;
+  std::string report(const FlightSettings& settings, const FlightRun& run, const FlightFolder& folder) const;
+
+  FlightSummary summary_;
+  io::FlightInventory inventory_;
+  std::optional<FlightPositions> positions_;
+  std::vector<Thumbnail> thumbnails_;
+  std::string frames_csv_;
+  std::string damages_csv_;
+};
 
 }  // namespace roadstereo::cli

@@ -1,12 +1,12 @@
 #include "flight/run_flight.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
+#include "first_exception.hpp"
 #include "flight/bounded_queue.hpp"
 #include "flight/finish_frame.hpp"
 #include "flight/flight_job.hpp"
@@ -20,23 +20,6 @@ namespace roadstereo::cli {
 namespace {
 
 using JobPointer = std::unique_ptr<FlightJob>;
-
-/// Keeps the first exception of any thread.
-class FirstException {
- public:
-  void keep(std::exception_ptr failure) {
-    const std::lock_guard lock(mutex_);
-    if (!failure_) failure_ = std::move(failure);
-  }
-  void rethrow() {
-    const std::lock_guard lock(mutex_);
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  std::mutex mutex_;
-  std::exception_ptr failure_;
-};
 
 /// Threads of a flight: reader → matcher → finishers → writer in order.
 class FlightPipeline {
@@ -53,7 +36,7 @@ class FlightPipeline {
   void add_pictures(FlightJob& job, const std::vector<std::int64_t>& road_damages);
   void stop_all();
   template <class Work>
-  void guarded(const Work& work);
+  void run_stage(const Work& work);
 
   const FlightSettings& settings_;
   Flight& flight_;
@@ -101,13 +84,8 @@ void FlightPipeline::stop_all() {
 
 /// Runs `work`; an exception stops all threads.
 template <class Work>
-void FlightPipeline::guarded(const Work& work) {
-  try {
-    work();
-  } catch (...) {
-    failure_.keep(std::current_exception());
-    stop_all();
-  }
+void FlightPipeline::run_stage(const Work& work) {
+  failure_.run(work, [this] { stop_all(); });
 }
 
 /// Skips to the frame after the last one of an earlier run. Throws Error if that one has changed.
@@ -146,8 +124,9 @@ void FlightPipeline::match() {
     std::optional<JobPointer> job = free_.take();
     if (!job) break;
     if (!pipeline && pair->error.empty()) {  // white level and size are known now
-      if (!sets_white_level(settings_.processing)) flight_.options.white_level = flight_.source.white_level();
-      pipeline.emplace(flight_.options, flight_.source.calibration());
+      PipelineOptions options = flight_.options;
+      if (!sets_white_level(settings_.processing)) options.white_level = flight_.source.white_level();
+      pipeline.emplace(options, flight_.source.calibration());
       warm_up(*pipeline, *pair);
       if (before) pipeline->restore(before->pipeline_state);
     }
@@ -165,7 +144,7 @@ void FlightPipeline::match() {
 
 void FlightPipeline::finish() {
   while (std::optional<JobPointer> job = matched_.take()) {
-    finish_frame(flight_.source.calibration(), flight_.options, write_, **job);
+    finish_frame(flight_.source.calibration(), flight_.options.damage, write_, **job);
     sequencer_.run_in_order((*job)->sequence, [&] { commit_frame(**job); });
     free_.put(std::move(*job));
   }
@@ -173,7 +152,7 @@ void FlightPipeline::finish() {
 
 /// Writes the files before the journal entry, so that the files of all journal entries are complete.
 void FlightPipeline::commit_frame(FlightJob& job) {
-  add_pictures(job, flight_.inventory.add(job.frame));
+  add_pictures(job, flight_.results.add(job.frame));
   flight_.folder.write(job.files);
   flight_.journal.append(job.frame);
   flight_.progress.frame_done(job.frame.status == io::FrameStatus::good);
@@ -187,7 +166,7 @@ void FlightPipeline::add_pictures(FlightJob& job, const std::vector<std::int64_t
     job.files.push_back({*name, io::frame_thumbnail(left, job.damage)});
   }
   for (std::size_t i = 0; i < road_damages.size(); ++i) {
-    const io::RoadDamage& known = flight_.inventory.damages()[static_cast<std::size_t>(road_damages[i]) - 1];
+    const io::RoadDamage& known = flight_.results.inventory().damages()[static_cast<std::size_t>(road_damages[i]) - 1];
     if (known.frame != job.frame.index) continue;
     job.files.push_back({damage_picture_name(known.id), io::damage_picture(left, job.damage, job.frame.damages[i])});
   }
@@ -195,11 +174,11 @@ void FlightPipeline::add_pictures(FlightJob& job, const std::vector<std::int64_t
 
 bool FlightPipeline::run() {
   std::vector<std::thread> threads;
-  threads.emplace_back([this] { guarded([this] { read(); }); });
+  threads.emplace_back([this] { run_stage([this] { read(); }); });
   for (int i = 0; i < finishers_; ++i) {
-    threads.emplace_back([this] { guarded([this] { finish(); }); });
+    threads.emplace_back([this] { run_stage([this] { finish(); }); });
   }
-  guarded([this] { match(); });
+  run_stage([this] { match(); });
   for (std::thread& thread : threads) thread.join();
   failure_.rethrow();
   return reached_end_;

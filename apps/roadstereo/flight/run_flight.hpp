@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "flight/flight_folder.hpp"
+#include "flight/flight_results.hpp"
 #include "flight/flight_settings.hpp"
 #include "flight/progress.hpp"
 #include "flight/rectified_source.hpp"
-#include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/flight_journal.hpp"
 #include "stop_signals.hpp"
 
@@ -18,8 +18,8 @@ struct Flight {
   RectifiedSource& source;
   FlightFolder& folder;
   io::FlightJournal& journal;
-  io::FlightInventory& inventory;  ///< of the frames in the journal
-  PipelineOptions options;
+  FlightResults& results;          ///< of the frames in the journal
+  const PipelineOptions& options;  ///< the white level is determined by `source` unless it is set
   Progress& progress;
   const StopSignals& stop;
 };

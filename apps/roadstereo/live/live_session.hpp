@@ -1,15 +1,13 @@
 #pragma once
 
 #include <atomic>
-#include <exception>
-#include <functional>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "first_exception.hpp"
 #include "live/capture.hpp"
 #include "live/live_board.hpp"
 #include "live/processing.hpp"
@@ -51,7 +49,7 @@ class LiveSession {
 
  private:
   void start_recorder(const LiveOptions& options, const io::FrameSource& source);
-  void guarded(const std::function<void()>& work);
+
   void join();
 
   LiveBoard board_;
@@ -61,8 +59,7 @@ class LiveSession {
   std::unique_ptr<Processing> processing_;
   std::string description_;
   std::atomic<bool> finished_ = false;
-  std::mutex mutex_;
-  std::exception_ptr failure_;  ///< first exception of a thread
+  FirstException failure_;
   std::jthread capturing_;
   std::thread matching_;
   std::thread finishing_;

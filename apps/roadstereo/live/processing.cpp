@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "roadstereo/error.hpp"
+#include "find_damage_or_warn.hpp"
 
 namespace roadstereo::cli {
 
@@ -66,16 +66,11 @@ LiveView Processing::view_of(Matched matched) const {
   LiveView view;
   FrameResult& result = matched.result;
   view.warnings = std::move(result.warnings);
-  try {
-    DamageMap map = find_damage(result, matched.calibration, options_.pipeline.damage, options_.pipeline.threads);
-    view.damages = std::move(map.damages);
-    view.ids = std::move(map.ids);
-  } catch (const SystemError&) {
-    throw;
-  } catch (const Error& error) {  // a pair that shows no road is shown all the same
-    view.ids.assign(result.disparity.width(), result.disparity.height(), 0);
-    view.warnings.push_back(std::string("damage was not looked for: ") + error.what());
-  }
+  DamageMap map;
+  find_damage_or_warn(result, matched.calibration, options_.pipeline.damage, options_.pipeline.threads, map,
+                      view.warnings);
+  view.damages = std::move(map.damages);
+  view.ids = std::move(map.ids);
   view.name = std::move(matched.captured.pair.name);
   view.arrival = matched.captured.arrival;
   view.clock_s = matched.captured.clock_s;

@@ -13,7 +13,7 @@ double degrees(double radians) {
   return radians * 180 / std::numbers::pi;
 }
 
-ordered_json figure(const Measurement& measured, double scale, const char* unit) {
+ordered_json measurement_json(const Measurement& measured, double scale, const char* unit) {
   return {{"value", json_number(scale * measured.value)},
           {"error", json_number(scale * measured.std_error)},
           {"unit", unit}};
@@ -30,12 +30,12 @@ ordered_json damage_json(const ListedDamage& listed) {
     constexpr double mm = 1000;        // in a metre
     constexpr double cm2 = 100 * 100;  // in a square metre
     json["severity"] = name_of(damage.metrics->severity);
-    json["depth"] = figure(damage.metrics->max_depth_m, mm, "mm");
-    json["area"] = figure(damage.metrics->area_m2, cm2, "cm²");
+    json["depth"] = measurement_json(damage.metrics->max_depth_m, mm, "mm");
+    json["area"] = measurement_json(damage.metrics->area_m2, cm2, "cm²");
     return json;
   }
   json["severity"] = nullptr;
-  json["depth"] = figure(damage.max_depth_px, 1, "px");
+  json["depth"] = measurement_json(damage.max_depth_px, 1, "px");
   json["area"] = {{"value", damage.pixels}, {"error", nullptr}, {"unit", "px²"}};
   return json;
 }

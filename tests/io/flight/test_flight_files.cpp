@@ -236,8 +236,8 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   input.metric = true;
   const std::string html = flight_report(input);
   for (const char* part :
-       {"a &lt;flight&gt;", "1 of 3 frames", "The 1 worst of 12", "50.0\u00a0±\u00a01.0", "frame 1", "chip medium",
-        "alt=\"Roll, roll, deg\"", "alt=\"Height over the road, height, m\"", "data:image/jpeg;base64,"}) {
+       {"a &lt;flight&gt;", "1 of 3 frames", "The worst 1 of 12", "50.0\u00a0±\u00a01.0", "frame 1", "chip medium",
+        "alt=\"Roll, roll, deg\"", "alt=\"Height above the road, height, m\"", "data:image/jpeg;base64,"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(html.find("http"), std::string::npos);
@@ -246,7 +246,7 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   input.damages = 0;
   input.metric = false;
   const std::string clean = flight_report(input);
-  EXPECT_NE(clean.find("no damage found"), std::string::npos);
+  EXPECT_NE(clean.find("No damage found"), std::string::npos);
   EXPECT_NE(clean.find("Pixels only"), std::string::npos);
 }
 

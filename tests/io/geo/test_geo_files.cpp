@@ -48,7 +48,7 @@ std::vector<GeoFrame> two_frames() {
   GeoFrame lost;
   lost.index = 8;
   lost.name = "b";
-  lost.status = "refused: no partner";
+  lost.status = "rejected: unpaired";
   return {known, lost};
 }
 
@@ -249,7 +249,7 @@ TEST_F(GeoPackage, WritesFrames) {
   EXPECT_EQ(lost->GetGeometryRef(), nullptr);
   EXPECT_TRUE(lost->IsFieldNull(lost->GetFieldIndex("time_utc")));
   EXPECT_TRUE(lost->IsFieldNull(lost->GetFieldIndex("height_m")));
-  EXPECT_STREQ(lost->GetFieldAsString("status"), "refused: no partner");
+  EXPECT_STREQ(lost->GetFieldAsString("status"), "rejected: unpaired");
 }
 
 TEST_F(GeoPackage, WritesDamages) {
@@ -319,7 +319,7 @@ TEST(GdalErrors, BecomeErrors) {
       errors.require(true, "writing");
       ADD_FAILURE() << "no error";
     } catch (const SystemError& error) {
-      EXPECT_STREQ(error.what(), "cannot make the GeoPackage: writing failed: no room left");
+      EXPECT_STREQ(error.what(), "cannot write the GeoPackage: writing failed: no room left");
     }
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");

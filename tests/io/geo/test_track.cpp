@@ -202,9 +202,9 @@ TEST(TrackPoints, EqualTimesKeepFirst) {
 }
 
 TEST(TrackPoints, RejectsBadPoints) {
-  expect_error([] { Track({{noon, 0, 0}}); }, "the track has 1 point(s); at least two");
-  expect_error([] { Track({{noon, 0, 0}, {noon, 1, 1}}); }, "the track has 1 point(s); at least two");
-  expect_error([] { Track({{noon, 0, 0}, {noon - 2, 0, 0}}); }, "point 1 of the track is 2 s before the one before it");
+  expect_error([] { Track({{noon, 0, 0}}); }, "the track has 1 point(s); it must have at least two");
+  expect_error([] { Track({{noon, 0, 0}, {noon, 1, 1}}); }, "the track has 1 point(s); it must have at least two");
+  expect_error([] { Track({{noon, 0, 0}, {noon - 2, 0, 0}}); }, "point 1 of the track is 2 s before its predecessor");
   expect_error([] { Track({{noon, 0, 0}, {noon, 90.5, 0}}); }, "lat_deg is 90.5; it must be between -90 and 90");
   expect_error([] { Track({{noon, 0, 0}, {noon, 0, unknown}}); }, "lon_deg is nan");
   expect_error([] { Track({{noon * 1000, 0, 0}, {noon, 0, 0}}); }, "time_s is 1.7145648e+12; it must be between 0");
@@ -313,12 +313,12 @@ TEST_F(TrackFile, RejectsBadGpx) {
   expect_refused(replaced(gpx, "12:00:01.125Z", "11:59:58Z"), "line 13: the time is 2 s before that of line 12;");
   expect_refused(replaced(gpx, "12:00:01.125Z", "12:00:02.5Z"), "line 6: the time is 0.25 s before that of line 13;");
   expect_refused(replaced(gpx, ">12.5<", ">361<"), "line 7: course is 361; it must be between -360 and 360");
-  expect_refused(replaced(gpx, "</gpx>", "</xyz>"), "this is no valid XML");
-  expect_refused("<kml><Document/></kml>", "this is <kml>, not GPX or CSV");
+  expect_refused(replaced(gpx, "</gpx>", "</xyz>"), "invalid XML");
+  expect_refused("<kml><Document/></kml>", "the root element is <kml>; a track must be GPX or CSV");
   expect_refused("<gpx><trk><trkseg/></trk></gpx>", "the track has no points with a time");
   expect_refused(
       "<gpx><trk><trkseg><trkpt lat='1' lon='1'><time>2024-05-01T12:00:00Z</time></trkpt></trkseg></trk></gpx>",
-      "the track has 1 point(s) of one time");
+      "the track has 1 point(s) at one time");
 }
 
 const std::string csv =
@@ -378,11 +378,12 @@ TEST_F(TrackFile, RejectsBadCsv) {
                  "line 3: time is \"12:00:01\"; it must be Unix seconds, or");
   expect_refused(replaced(csv, "1714564801.25", "2024-05-01T25:00:01Z"), "line 3: time is \"2024-05-01T25:00:01Z\"");
   expect_refused(replaced(csv, "1714564801.25", "-5"), "line 3: time is -5 seconds since 1970; it must be between 0");
-  expect_refused(replaced(csv, ",,", ","), "line 3: the line has 4 cells; the line of names has 5");
+  expect_refused(replaced(csv, ",,", ","), "line 3: the line has 4 cells; the header line has 5");
   expect_refused(replaced(csv, "lat", "x"), "line 1: there is no column lat; a track is GPX, or CSV");
   expect_refused(csv.substr(0, csv.find('\n')), "the track has no points with a time");
-  expect_refused("time,lat,lon\n5,1,1\n5,2,2\n", "the track has 2 point(s) of one time; at least two times");
-  expect_refused("\n \n", "the file has no line of names");
+  expect_refused("time,lat,lon\n5,1,1\n5,2,2\n",
+                 "the track has 2 point(s) at one time; it must have at least two times");
+  expect_refused("\n \n", "the file has no header line");
   expect_refused("", "the file is empty");
   expect_refused(std::string("a\0b", 3), "not a text file");
 }

@@ -100,7 +100,7 @@ TEST_P(FolderLayout, IsRecognisedAndInOrder) {
   expect_numbers(pairs[1], 2, 102);
   expect_numbers(pairs[2], 10, 110);
   EXPECT_EQ(pairs[2].index, 2);
-  EXPECT_TRUE(std::isnan(pairs[2].time_s)) << "a number is no time";
+  EXPECT_TRUE(std::isnan(pairs[2].time_s)) << "a number is not a time";
 }
 
 INSTANTIATE_TEST_SUITE_P(Known, FolderLayout,
@@ -215,14 +215,14 @@ TEST_F(ListSource, ReadsSpreadsheetExports) {
     expect_numbers(pairs[0], 1, 2);
   }
   text("never.csv", "my x/one.png,y/two.png,nan\n");
-  EXPECT_NE(complaint("never.csv").find("\"nan\" is no time"), std::string::npos) << complaint("never.csv");
+  EXPECT_NE(complaint("never.csv").find("\"nan\" is not a time"), std::string::npos) << complaint("never.csv");
 }
 
 TEST_F(OpenSource, ErrorNamesFileAndRemedy) {
   text("pairs.txt", "one.png\n");
   EXPECT_NE(complaint("pairs.txt").find("line 1"), std::string::npos);
   text("empty.txt", "# nothing\n");
-  EXPECT_NE(complaint("empty.txt").find("lists no pairs"), std::string::npos);
+  EXPECT_NE(complaint("empty.txt").find("the list has no pairs"), std::string::npos);
   EXPECT_NE(complaint("missing").find("no such file"), std::string::npos);
   fs::create_directories(folder_ / "hollow");
   EXPECT_NE(complaint("hollow").find("no stereo pairs"), std::string::npos);

@@ -118,14 +118,14 @@ TEST_F(BagSource, RejectsImageWithoutPartner) {
     double time_s;
     int left;
     int right;
-    const char* refused;
+    const char* error;
   };
   const std::vector<Expected> expected{
       {0.000, 1, 101, ""},
-      {0.100, 0, 0, "the left picture has no partner: the nearest right one is 96 ms away, more than 5 ms"},
-      {0.200, 0, 0, "the left picture has no partner: the nearest right one is 20 ms away, more than 5 ms"},
-      {0.220, 0, 0, "the right picture has no partner: the nearest left one is 20 ms away, more than 5 ms"},
-      {0.301, 0, 0, "the left picture has no partner: the nearest right one is 4 ms away, and belongs to another"},
+      {0.100, 0, 0, "the left image is unpaired: the nearest right one is 96 ms away, more than 5 ms"},
+      {0.200, 0, 0, "the left image is unpaired: the nearest right one is 20 ms away, more than 5 ms"},
+      {0.220, 0, 0, "the right image is unpaired: the nearest left one is 20 ms away, more than 5 ms"},
+      {0.301, 0, 0, "the left image is unpaired: the nearest right one is 4 ms away, but is paired with another"},
       {0.304, 5, 105, ""}};
   const auto source = open_bag(file, {});
   for (const Expected& e : expected) {
@@ -215,7 +215,7 @@ TEST_F(BagSource, DamagedImageCostsOnePair) {
   EXPECT_EQ(pair_with({"yuv9", 32, 32, 32, false, std::vector<std::uint8_t>(1024)}).error.rfind(left_topic, 0), 0U);
   BagWriter::Picture cut = grey(3);
   cut.data.resize(1000);
-  EXPECT_NE(pair_with(cut).error.find("1000 bytes in rows of 48 are no picture of 40×32"), std::string::npos);
+  EXPECT_NE(pair_with(cut).error.find("1000 bytes in rows of 48 are not an image of 40×32"), std::string::npos);
 }
 
 TEST_F(BagSource, ReadsCompressedImages) {
@@ -296,7 +296,7 @@ TEST_F(BagSource, RejectsOtherFiles) {
   fs::resize_file(path("cut.bag"), fs::file_size(whole) / 2);
   expect_message([&] { open_bag(path("cut.bag"), {}); }, "rosbag reindex " + path("cut.bag"));
   std::ofstream(path("text.bag")) << "#ROSBAG it is not";
-  expect_message([&] { open_bag(path("text.bag"), {}); }, "text.bag: this is no ROS 1 bag");
+  expect_message([&] { open_bag(path("text.bag"), {}); }, "text.bag: this is not a readable ROS 1 bag");
   expect_message([&] { open_bag(path("none.bag"), {}); }, "none.bag: the file does not exist");
 }
 
@@ -331,11 +331,11 @@ TEST(BagTopics, AmbiguousNamesAreRejected) {
       [&] {
         find({"/a", "/b"});
       },
-      "x.bag: the names of the topics do not tell a left and a right camera; "
-      "--topics LEFT RIGHT must name two of its image topics, which are /a, /b");
-  expect_message([&] { find({}); }, "which are none");
+      "x.bag: no left and right camera can be recognised by the topic names; "
+      "select two of its image topics with --topics LEFT RIGHT: /a, /b");
+  expect_message([&] { find({}); }, "LEFT RIGHT: none");
   expect_message([&] { find({"/l/left", "/l/right", "/m/left", "/m/right"}); }, "more than one pair");
-  expect_message([&] { find({"/a", "/b"}, {"/a", "/imu"}); }, "/imu is no image topic of the bag");
+  expect_message([&] { find({"/a", "/b"}, {"/a", "/imu"}); }, "/imu is not an image topic of the bag");
   EXPECT_EQ(find({"/a", "/b"}, {"/b", "/a"}).first.name, "/b");
 }
 

@@ -273,7 +273,7 @@ TEST_F(VideoSource, ReportsMissingEndOfCutVideo) {
   EXPECT_LT(good, 20);
   ASSERT_TRUE(pair) << "the end went unnoticed";
   EXPECT_EQ(pair->index, good);
-  EXPECT_NE(pair->error.find(std::to_string(30 - good) + " pictures before its stated length of 30"), std::string::npos)
+  EXPECT_NE(pair->error.find(std::to_string(30 - good) + " frames before its stated length of 30"), std::string::npos)
       << pair->error;
   EXPECT_FALSE(source->next());
 }
@@ -303,7 +303,7 @@ TEST_F(VideoSource, PairsTwoVideosByNumber) {
     ASSERT_TRUE(pair);
     EXPECT_EQ(pair->index, i);
     EXPECT_NEAR(pair->time_s, i / 25.0, 1e-9);
-    EXPECT_EQ(pair->error, left + " has ended after 4 pictures");
+    EXPECT_EQ(pair->error, left + " has ended after 4 frames");
   }
   EXPECT_FALSE(source->next());
 }
@@ -316,7 +316,7 @@ TEST_F(VideoSource, RejectsTwoVideosThatDiffer) {
   expect_message([&] { open_two_videos(left, small, {}); }, "small.avi: the video has 96×48 pixels");
   const std::string slow = write(
       "slow.avi", "MJPG", 2, [](int i) { return view_of(i, true); }, 20);
-  expect_message([&] { open_two_videos(left, slow, {}); }, "slow.avi: the video has 20 pictures a second");
+  expect_message([&] { open_two_videos(left, slow, {}); }, "slow.avi: the video has 20 frames per second");
   SourceOptions options;
   options.rate_hz = 25;
   expect_pair(open_two_videos(left, slow, options)->next(), 0);
@@ -389,7 +389,7 @@ TEST_F(GStreamerSource, LivePipelineHasCaptureTimes) {
 
 TEST_F(GStreamerSource, PassesErrorsOn) {
   expect_message([] { open_gstreamer("nosuchsource ! videoconvert", {}); },
-                 "\"nosuchsource ! videoconvert\" is refused by GStreamer: no element \"nosuchsource\"");
+                 "\"nosuchsource ! videoconvert\" is rejected by GStreamer: no element \"nosuchsource\"");
   expect_message([] { open_gstreamer("filesrc location=/none.raw ! rawvideoparse width=192 height=64", {}); },
                  "has failed: filesrc");
   expect_message(
@@ -405,8 +405,8 @@ TEST_F(GStreamerSource, PassesErrorsOn) {
 // Pictures from a camera need a camera: only what goes wrong is tested.
 TEST(CameraSource, ErrorSaysWhyThereIsNone) {
   expect_message([] { open_camera("/dev/video-none", {}); }, "/dev/video-none: there is no such camera");
-  expect_message([] { open_camera("/dev/null", {}); }, "/dev/null: this is no camera");
-  expect_message([] { open_camera("/proc/self/stat", {}); }, "/proc/self/stat: this is not a camera but a file");
+  expect_message([] { open_camera("/dev/null", {}); }, "/dev/null: this is not a camera");
+  expect_message([] { open_camera("/proc/self/stat", {}); }, "/proc/self/stat: this is a file, not a camera");
 }
 
 }  // namespace
