@@ -46,9 +46,8 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
 }
 
 /// Clouds are metric. The calibration may be that of a bag.
-void require_calibration(const FlightSettings& settings, const RectifiedSource& source) {
-  const bool cloud = std::any_of(settings.write.begin(), settings.write.end(),
-                                 [](const std::string& name) { return frame_file(name) == FrameFile::cloud; });
+void require_calibration(const FlightPlan& plan, const RectifiedSource& source) {
+  const bool cloud = std::find(plan.write.begin(), plan.write.end(), FrameFile::cloud) != plan.write.end();
   if (cloud && source.calibration_format().empty()) {
     fail("--write cloud needs --calibration");
   }
@@ -63,15 +62,14 @@ void require_frames(const FlightSettings& settings, const io::FrameSource& sourc
 }  // namespace
 
 void inspect_flight(const FlightSettings& settings) {
-  settings.validate();
+  const FlightPlan plan = resolve(settings);
   auto stop = std::make_unique<StopSignals>();  // before any thread
   FlightRun run;
-  run.options = make_options(settings.processing);
+  run.options = plan.options;
   FlightResults results(settings.track);
-  RectifiedSource source(io::open_source(settings.source, make_source_options(settings.source_settings)),
-                         settings.calibration);
+  RectifiedSource source(io::open_source(settings.source, plan.source), settings.calibration);
   if (source.source().live()) fail(settings.source[0], ": cameras are not supported by inspect; use roadstereo live");
-  require_calibration(settings, source);
+  require_calibration(plan, source);
   require_frames(settings, source.source());
   FlightFolder folder(settings.output);
   io::FlightJournal journal = open_journal(settings, run.options, folder);
@@ -80,7 +78,7 @@ void inspect_flight(const FlightSettings& settings) {
   run.resumed_at = journal.frames();
 
   Progress progress(frames_to_do(settings, source.source()), journal.frames(), settings.quiet);
-  Flight flight{source, folder, journal, results, run.options, progress, *stop};
+  Flight flight{source, folder, journal, results, plan, progress, *stop};
   run.complete = run_flight(settings, flight);
   stop.reset();  // the next Ctrl-C ends the program
   if (journal.last() && journal.last()->white_level > 0) run.options.white_level = journal.last()->white_level;

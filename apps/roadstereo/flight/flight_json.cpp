@@ -30,7 +30,7 @@ Json frames_json(const FlightSummary& summary) {
           {"good", summary.good},
           {"rejected", summary.rejected},
           {"failed", summary.failed},
-          {"road_estimated_anew", summary.road_estimated},
+          {"road_estimated", summary.road_estimated},
           {"road_unknown", summary.road_unknown},
           {"located", summary.located ? Json(*summary.located) : Json(nullptr)},
           {"reasons", summary.reasons}};

@@ -29,7 +29,16 @@ void FlightSettings::validate() const {
   if (to && *to < from) fail("--to is ", *to, "; it must be at least --from, which is ", from);
   if (!std::isfinite(track.offset_s)) fail("--track-offset is ", track.offset_s, "; it must be a number of seconds");
   if (every < 1) fail("--every is ", every, "; it must be at least 1");
-  for (const std::string& name : write) frame_file(name);
+}
+
+FlightPlan resolve(const FlightSettings& settings) {
+  settings.validate();
+  FlightPlan plan;
+  plan.options = make_options(settings.processing);
+  plan.find_white_level = !sets_white_level(settings.processing);
+  plan.source = make_source_options(settings.source_settings);
+  for (const std::string& name : settings.write) plan.write.push_back(frame_file(name));
+  return plan;
 }
 
 }  // namespace roadstereo::cli

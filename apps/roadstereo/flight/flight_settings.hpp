@@ -43,4 +43,15 @@ struct FlightSettings {
   void validate() const;
 };
 
+/// Parsed and checked options of a flight.
+struct FlightPlan {
+  PipelineOptions options;
+  bool find_white_level = true;  ///< determines it from the first valid pair of a 16-bit source
+  io::SourceOptions source;
+  std::vector<FrameFile> write;
+};
+
+/// Parses and checks the command line options. Throws Error naming the option that is unknown or out of range.
+FlightPlan resolve(const FlightSettings& settings);
+
 }  // namespace roadstereo::cli

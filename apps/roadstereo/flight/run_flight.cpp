@@ -40,7 +40,7 @@ class FlightPipeline {
 
   const FlightSettings& settings_;
   Flight& flight_;
-  std::vector<FrameFile> write_;
+
   int finishers_;
   bool reached_end_ = false;
   BoundedQueue<io::SourcePair> pairs_;  ///< from reader to matcher
@@ -66,12 +66,11 @@ int finisher_count(const PipelineOptions& options) {
 FlightPipeline::FlightPipeline(const FlightSettings& settings, Flight& flight)
     : settings_(settings),
       flight_(flight),
-      finishers_(finisher_count(flight.options)),
+      finishers_(finisher_count(flight.plan.options)),
       pairs_(3),
       matched_(static_cast<std::size_t>(finishers_)),
       free_(static_cast<std::size_t>(2 * finishers_) + 1),
       sequencer_(flight.journal.frames()) {
-  for (const std::string& name : settings.write) write_.push_back(frame_file(name));
   for (int i = 0; i < 2 * finishers_ + 1; ++i) free_.put(std::make_unique<FlightJob>());
 }
 
@@ -124,8 +123,8 @@ void FlightPipeline::match() {
     std::optional<JobPointer> job = free_.take();
     if (!job) break;
     if (!pipeline && pair->error.empty()) {  // white level and size are known now
-      PipelineOptions options = flight_.options;
-      if (!sets_white_level(settings_.processing)) options.white_level = flight_.source.white_level();
+      PipelineOptions options = flight_.plan.options;
+      if (flight_.plan.find_white_level) options.white_level = flight_.source.white_level();
       pipeline.emplace(options, flight_.source.calibration());
       warm_up(*pipeline, *pair);
       if (before) pipeline->restore(before->pipeline_state);
@@ -144,7 +143,7 @@ void FlightPipeline::match() {
 
 void FlightPipeline::finish() {
   while (std::optional<JobPointer> job = matched_.take()) {
-    finish_frame(flight_.source.calibration(), flight_.options.damage, write_, **job);
+    finish_frame(flight_.source.calibration(), flight_.plan.options.damage, flight_.plan.write, **job);
     sequencer_.run_in_order((*job)->sequence, [&] { commit_frame(**job); });
     free_.put(std::move(*job));
   }

@@ -18,8 +18,8 @@ struct Flight {
   RectifiedSource& source;
   FlightFolder& folder;
   io::FlightJournal& journal;
-  FlightResults& results;          ///< of the frames in the journal
-  const PipelineOptions& options;  ///< the white level is determined by `source` unless it is set
+  FlightResults& results;  ///< of the frames in the journal
+  const FlightPlan& plan;
   Progress& progress;
   const StopSignals& stop;
 };

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "find_damage_or_warn.hpp"
+#include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
 

@@ -88,16 +88,16 @@ TEST(FlightFrameJson, RoundTripIsExact) {
 }
 
 TEST_F(FlightJournalFile, ResumesAfterCutLine) {
-  const Provenance facts{{"source", "a"}};
+  const Provenance provenance{{"source", "a"}};
   {
-    FlightJournal journal = FlightJournal::begin(file_, facts);
+    FlightJournal journal = FlightJournal::begin(file_, provenance);
     journal.append(frame_of(0, {}));
     journal.append(frame_of(1, {pothole(1, 1)}));
   }
   const std::string whole = text_of(file_);
   for (const std::size_t missing : {std::size_t{1}, std::size_t{2}, std::size_t{200}}) {
     fs::resize_file(file_, whole.size() - missing);
-    FlightJournal journal = FlightJournal::resume(file_, facts);
+    FlightJournal journal = FlightJournal::resume(file_, provenance);
     EXPECT_EQ(journal.frames(), 1);
     EXPECT_EQ(journal.last()->index, 0);
     journal.append(frame_of(1, {pothole(1, 1)}));
@@ -113,7 +113,7 @@ TEST_F(FlightJournalFile, RejectsOtherHeader) {
   EXPECT_EQ(FlightJournal::resume(file_, {{"source", "a"}, {"--every", "1"}}).frames(), 0);
   try {
     FlightJournal::resume(file_, {{"source", "a"}, {"--every", "2"}});
-    FAIL() << "other facts were taken";
+    FAIL() << "other provenance were taken";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("--every \"1\", not \"2\""), std::string::npos) << error.what();
   }
