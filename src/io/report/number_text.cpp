@@ -34,7 +34,7 @@ std::string value_text(double value, const std::string& unit) {
 std::string measured_text(const Measurement& measured, const std::string& unit) {
   const double error = measured.std_error;
   if (!std::isfinite(measured.value) || !(error > 0) || !std::isfinite(error)) return value_text(measured.value, unit);
-  const bool small_first_digit = error / std::pow(10.0, first_place(error)) < 3;
+  const bool small_first_digit = error / std::pow(10.0, first_exponent(error)) < 3;
   constexpr int max_digits = 5;  // of the value
   const int max_decimals = measured.value == 0 ? max_digits : decimals_for(measured.value, max_digits);
   const int decimals = std::min(decimals_for(error, small_first_digit ? 2 : 1), max_decimals);
