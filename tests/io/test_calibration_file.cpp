@@ -177,7 +177,7 @@ TEST_F(ReadCalibration, ReadsKTxt) {
   EXPECT_DOUBLE_EQ(file.rectified->baseline_m, 0.063);
   EXPECT_DOUBLE_EQ(rectified("700 0 320\n0 700 240\n0 0 1\n0.12").baseline_m, 0.12);
   expect_refused("700 0 320\n0 700 240\n0 0 1\n63", "the baseline is 63;");
-  expect_refused("700 0 320\n0 700 240\n0 0 1\n", "has 9 figures");
+  expect_refused("700 0 320\n0 700 240\n0 0 1\n", "has 9 values");
   expect_refused("700 0 320\n0 700 x\n0 0 1\n0.1", "K[5] is \"x\"");
   expect_refused("700 0 320\n0 700 nan\n0 0 1\n0.1", "K[5] is nan");
 }
