@@ -9,7 +9,7 @@
 #include <atomic>
 #include <cerrno>
 
-// The C library's own functions under the names that stay when malloc and the others are replaced.
+// The functions of glibc under the names that remain if malloc and the others are replaced.
 extern "C" {
 void* __libc_malloc(std::size_t);                 // NOLINT(bugprone-reserved-identifier)
 void* __libc_calloc(std::size_t, std::size_t);    // NOLINT(bugprone-reserved-identifier)

@@ -62,7 +62,7 @@ std::size_t peak_memory_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * kilobyte;
 }
 
-/// Runs the pipeline and its peers in turn, so that all see the same machine; the first run of each is left out.
+/// Runs the pipeline and OpenCV's matchers alternately for equal conditions; the first run of each is not counted.
 BenchmarkReport measure(const Arguments& arguments) {
   const StereoPair pair = make_pair(arguments);
   PipelineOptions options = preset(arguments.preset);
@@ -126,7 +126,8 @@ void write_json(const std::string& path, const std::string& text) {
 }
 
 void benchmark(const Arguments& arguments) {
-  if (arguments.files.left.empty() != arguments.files.right.empty()) fail("benchmark takes LEFT and RIGHT, or neither");
+  if (arguments.files.left.empty() != arguments.files.right.empty())
+    fail("benchmark needs both LEFT and RIGHT, or neither");
   if (arguments.runs < 1 || arguments.runs > 100000) {
     fail("--runs is ", arguments.runs, "; it must be between 1 and 100000");
   }
@@ -136,8 +137,8 @@ void benchmark(const Arguments& arguments) {
 }
 
 constexpr const char* benchmark_footer =
-    R"(Times the whole pipeline on frames whose road model is known from the frame before, stage by stage, and OpenCV's
-matchers in turn with it on the same frames, with as many disparities. Without LEFT and RIGHT a synthetic road is used.
+    R"(Measures the time of every stage of the pipeline on frames whose road model is known from the previous frame,
+alternating with OpenCV's matchers on the same frames and disparities. Without LEFT and RIGHT a synthetic road is used.
 
 Examples:
   roadstereo benchmark
@@ -147,12 +148,13 @@ Examples:
 }  // namespace
 
 void add_benchmark(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("benchmark", "Time the pipeline, stage by stage, beside OpenCV's matchers");
+  CLI::App* command =
+      app.add_subcommand("benchmark", "Measure the time of every stage, compared with OpenCV's matchers");
   command->footer(benchmark_footer);
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("LEFT", arguments->files.left, "Left image");
   command->add_option("RIGHT", arguments->files.right, "Right image");
-  command->add_option("--calibration", arguments->files.calibration, "Calibration of the rig")
+  command->add_option("--calibration", arguments->files.calibration, "Calibration file")
       ->type_name("FILE")
       ->expected(1)
       ->allow_extra_args(false)
@@ -160,17 +162,17 @@ void add_benchmark(CLI::App& app) {
   command->add_option("--size", arguments->size, "Size of the synthetic frame")
       ->type_name("WxH")
       ->capture_default_str();
-  command->add_option("--disparities", arguments->disparities, "Disparities searched; 0 derives them")
+  command->add_option("--disparities", arguments->disparities, "Number of disparities; 0: derived from the road model")
       ->type_name("D")
       ->capture_default_str();
-  command->add_option("--preset", arguments->preset, "Preset")->type_name("NAME")->capture_default_str();
+  command->add_option("--preset", arguments->preset, "Preset of the options")->type_name("NAME")->capture_default_str();
   command->add_option("--engine", arguments->engine, "Matching engine")->type_name("NAME")->capture_default_str();
-  command->add_option("--threads", arguments->threads, "Worker threads; 0 takes all cores")
+  command->add_option("--threads", arguments->threads, "Worker threads; 0: all cores")
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--runs", arguments->runs, "Frames timed")->type_name("N")->capture_default_str();
-  command->add_flag("--no-peers", arguments->no_peers, "Leave OpenCV's matchers out");
-  command->add_option("--json", arguments->json, "Also write the figures to this file")->type_name("FILE");
+  command->add_option("--runs", arguments->runs, "Number of runs")->type_name("N")->capture_default_str();
+  command->add_flag("--no-peers", arguments->no_peers, "Skip OpenCV's matchers");
+  command->add_option("--json", arguments->json, "Also write the results to this JSON file")->type_name("FILE");
   command->callback([arguments] { benchmark(*arguments); });
 }
 

@@ -5,10 +5,10 @@
 
 namespace roadstereo::cli {
 
-/// A synthetic road seen by a rig with a camera of the given size; always the same.
+/// Returns a synthetic road scene for images of that size; deterministic.
 StereoPair synthetic_pair(int width, int height);
 
-/// The pair as OpenCV's matchers get it: grey, the target already transformed, so that both search the same
+/// Returns the pair for OpenCV's matchers: grey, the target already transformed, so that all search the same
 /// disparities.
 struct PeerPair {
   GreyImage reference;

@@ -60,7 +60,7 @@ std::string report_text(const BenchmarkReport& report) {
   text += fmt::format("  {:<14} {:>9} {:>9} {:>9}\n", "milliseconds", "median", "min", "max");
   for (const Timing& stage : report.stages) text += timing_line(stage) + "\n";
   text += timing_line(report.total) + fmt::format("   {:.0f} Mde/s\n", report.mde_per_s());
-  text += timing_line(report.first) + "   road model found anew\n";
+  text += timing_line(report.first) + "   road model estimated\n";
   if (!report.baselines.empty())
     text += fmt::format("\n  {:<14} {:>9} {:>9} {:>9}   total / OpenCV\n", "OpenCV", "median", "min", "max");
   for (const Timing& peer : report.baselines) {

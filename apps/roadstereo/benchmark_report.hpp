@@ -9,7 +9,7 @@
 
 namespace roadstereo::cli {
 
-/// Times of many runs of one thing, milliseconds.
+/// Times of repeated runs, milliseconds.
 struct Timing {
   std::string name;
   std::vector<double> ms;
@@ -19,23 +19,23 @@ struct Timing {
   double slowest() const;
 };
 
-/// What `benchmark` measures.
+/// Results of `benchmark`.
 struct BenchmarkReport {
   int width = 0, height = 0, disparities = 0;
   std::string preset, engine, target, cpu;
   int threads = 0;
-  std::vector<Timing> stages;  ///< of frames whose road model is known from the frame before
+  std::vector<Timing> stages;  ///< of frames whose road model is known from the previous frame
   Timing total{"total", {}};
-  Timing first{"first frame", {}};  ///< road model found anew
+  Timing first{"first frame", {}};  ///< road model estimated
   std::vector<Timing> baselines;
   std::optional<double> allocations;         ///< per frame
-  std::optional<std::size_t> scratch_bytes;  ///< most in use beyond what was there before the pipeline was made
+  std::optional<std::size_t> scratch_bytes;  ///< maximum in use, minus the use before the pipeline was created
   std::size_t peak_memory_bytes = 0;         ///< of the whole process
 
   double mde_per_s() const;
 };
 
-/// Name of the processor; "unknown" where the system does not say.
+/// Returns the name of the processor or "unknown".
 std::string cpu_name();
 
 std::string report_text(const BenchmarkReport& report);

@@ -6,7 +6,7 @@ class App;
 
 namespace roadstereo::cli {
 
-// Each adds one subcommand to the command line; the subcommand runs when it is parsed.
+// Each adds one subcommand to the command line. The subcommand runs when it is parsed.
 void add_inspect(CLI::App& app);
 void add_live(CLI::App& app);
 void add_damage(CLI::App& app);

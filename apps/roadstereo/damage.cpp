@@ -28,13 +28,13 @@ struct Arguments {
   bool quiet = false;
 };
 
-/// Only options of damage have a meaning here.
+/// Throws Error for options of other stages.
 DamageOptions make_options(const std::vector<std::string>& settings) {
   PipelineOptions options;
   for (const std::string& setting : settings) {
     const std::string key = split_setting(setting).first;
     if (key.rfind("damage.", 0) != 0)
-      fail("\"", key, "\" has no effect here; damage takes keys that begin with damage.");
+      fail("\"", key, "\" has no effect here; damage accepts keys that start with damage.");
   }
   apply_settings(settings, options);
   options.damage.validate();
@@ -58,7 +58,7 @@ DamageMap find_in(const TransformedMap& map, const Arguments& arguments) {
 }
 
 void run(const Arguments& arguments) {
-  make_options(arguments.settings);  // refused before any work
+  make_options(arguments.settings);  // checked first
   const TransformedMap map = read_transformed_map(arguments.files);
   io::OutputFolder folder(arguments.output);
   const DamageMap damage = find_in(map, arguments);
@@ -68,20 +68,20 @@ void run(const Arguments& arguments) {
   report.transformed = map.transformed;
   report.calibration = map.calibration;
   report.title = std::filesystem::path(arguments.files.transformed).filename().string();
-  report.facts = {{"Transformed map", fmt::format("{}×{} px", map.transformed.width(), map.transformed.height())}};
+  report.properties = {{"Transformed map", fmt::format("{}×{} px", map.transformed.width(), map.transformed.height())}};
   io::add_damage_files(folder, report);
   folder.commit();
   if (arguments.quiet) return;
   fmt::print("{}: {}\n", arguments.files.transformed, damage_text(damage));
-  if (!damage.metric) fmt::print("  figures are in pixels: {}\n", damage.non_metric_reason);
-  fmt::print("  report    {}\n  pictures  {}\n", (folder.path() / "report.html").string(),
+  if (!damage.metric) fmt::print("  no metric values: {}\n", damage.non_metric_reason);
+  fmt::print("  report    {}\n  overlay   {}\n", (folder.path() / "report.html").string(),
              (folder.path() / "overlay.png").string());
 }
 
 constexpr const char* damage_footer =
-    R"(Into the output folder: damages.json, damages.csv, damage.png (16 bit, ids), overlay.png, report.html.
+    R"(Writes damages.json, damages.csv, damage.png (16 bit, ids), overlay.png and report.html to the output folder.
 
-Depressions have smaller values than the road. Without --disparity and --calibration figures are in the map's own unit.
+Depressions have smaller values than the road. Without --disparity and --calibration the unit is that of the map.
 
 Examples:
   roadstereo damage transformed.tiff --image left.png --output out
@@ -90,31 +90,29 @@ Examples:
 }  // namespace
 
 void add_damage(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("damage", "Finds and measures damage in a transformed disparity map");
+  CLI::App* command = app.add_subcommand("damage", "Find and measure damage in a transformed disparity map");
   command->footer(damage_footer);
   const auto arguments = std::make_shared<Arguments>();
   command
       ->add_option("TRANSFORMED", arguments->files.transformed,
                    "Transformed disparity: float TIFF, PFM, or 16-bit PNG of any scale (0 invalid)")
       ->required();
-  command->add_option("--image", arguments->files.image, "Left image: helps to draw outlines")->type_name("FILE");
+  command->add_option("--image", arguments->files.image, "Left image, background of the outlines")->type_name("FILE");
   command->add_option("--disparity", arguments->files.disparity, "Disparity map of the same view")->type_name("FILE");
   command
       ->add_option("--calibration", arguments->files.calibration,
-                   "Calibration of the rig: with --disparity, figures are in metres")
+                   "Calibration file; with --disparity the values are metric")
       ->type_name("FILE")
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
-  command->add_option("--output", arguments->output, "Folder for the results; made when it is missing")
-      ->type_name("DIR")
-      ->required();
-  command->add_option("--set", arguments->settings, "Sets one option, e.g. damage.min_depth_m=0.01; may be repeated")
+  command->add_option("--output", arguments->output, "Output folder; created if missing")->type_name("DIR")->required();
+  command->add_option("--set", arguments->settings, "Set one option, e.g. damage.min_depth_m=0.01; repeatable")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
-  command->add_option("--threads", arguments->threads, "Worker threads; 0 takes all cores")
+  command->add_option("--threads", arguments->threads, "Worker threads; 0: all cores")
       ->type_name("N")
       ->capture_default_str();
   command->add_flag("--quiet", arguments->quiet, "Print nothing on success");

@@ -17,12 +17,12 @@ std::string engines_json() {
   for (const EngineInfo& engine : engines()) {
     list.push_back({{"name", engine.name}, {"description", engine.description}, {"exact", engine.exact}});
   }
-  auto absent = nlohmann::ordered_json::array();
+  auto unavailable = nlohmann::ordered_json::array();
   for (const UnavailableEngine& engine : unavailable_engines()) {
-    absent.push_back({{"name", engine.name}, {"reason", engine.reason}});
+    unavailable.push_back({{"name", engine.name}, {"reason", engine.reason}});
   }
   const nlohmann::ordered_json document = {
-      {"auto", resolve_engine_name("auto")}, {"engines", list}, {"absent", absent}};
+      {"auto", resolve_engine_name("auto")}, {"engines", list}, {"unavailable", unavailable}};
   return document.dump(2);
 }
 
@@ -32,9 +32,9 @@ std::string engines_table() {
     table += fmt::format("{:<12} {}{}\n", engine.name, engine.description, engine.exact ? " (exact)" : "");
   }
   for (const UnavailableEngine& engine : unavailable_engines()) {
-    table += fmt::format("{:<12} not here: {}\n", engine.name, engine.reason);
+    table += fmt::format("{:<12} unavailable: {}\n", engine.name, engine.reason);
   }
-  return table + fmt::format("{:<12} {}\n", "auto", "stands for " + resolve_engine_name("auto"));
+  return table + fmt::format("{:<12} {}\n", "auto", "selects " + resolve_engine_name("auto"));
 }
 
 }  // namespace

@@ -6,13 +6,13 @@
 
 namespace roadstereo::cli {
 
-/// The values of a map that are neither NaN nor infinite, row by row.
+/// Returns the finite values of a map, row by row.
 std::vector<double> finite_values(ImageView<const float> map);
 
-/// Mean of the two middle values when their number is even; NaN when there is none.
+/// Returns the median: the mean of the two middle values if their number is even; NaN if there are none.
 double median(std::vector<double> values);
 
-/// Value that `share` (0 … 1) of the values do not exceed: the nearest rank. NaN when there is none.
+/// Returns the sorted value nearest to position share · (n − 1), `share` 0 … 1; NaN if there are none.
 double quantile(std::vector<double> values, double share);
 
 }  // namespace roadstereo::cli

@@ -15,7 +15,7 @@ ImageSize parse_image_size(const std::string& text) {
     const auto height = std::from_chars(width.ptr + 1, end, size.height);
     if (height.ec == std::errc() && height.ptr == end && size.width > 0 && size.height > 0) return size;
   }
-  fail("--size takes WIDTHxHEIGHT, for example 640x360, but got \"", text, "\"");
+  fail("--size must be WIDTHxHEIGHT, for example 640x360, but is \"", text, "\"");
 }
 
 }  // namespace roadstereo::cli

@@ -9,7 +9,7 @@ struct ImageSize {
   int height = 0;  ///< pixels
 };
 
-/// Reads "640x360", the argument of --size. Throws Error when it is not two positive numbers.
+/// Parses "640x360", the argument of --size. Throws Error if it is not two positive numbers.
 ImageSize parse_image_size(const std::string& text);
 
 }  // namespace roadstereo::cli

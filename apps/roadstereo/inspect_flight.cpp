@@ -24,67 +24,64 @@ std::optional<std::int64_t> frames_to_do(const FlightSettings& settings, const i
 }
 
 io::FlightJournal open_journal(const FlightSettings& settings, const PipelineOptions& options, FlightFolder& folder) {
-  const io::Provenance facts = provenance(settings, options);
+  const io::Provenance made_with = provenance(settings, options);
   if (settings.resume && std::filesystem::exists(folder.journal())) {
-    return io::FlightJournal::resume(folder.journal(), facts);
+    return io::FlightJournal::resume(folder.journal(), made_with);
   }
   folder.remove_earlier_flight();
-  return io::FlightJournal::begin(folder.journal(), facts);
+  return io::FlightJournal::begin(folder.journal(), made_with);
 }
 
 std::string flight_text(const FlightRun& run, const FlightSummary& summary, const FlightFolder& folder) {
   std::string text = fmt::format("roadstereo {}: {}\n", version, run.source);
-  text += fmt::format("  frames    {} ({} refused, {} failed), road estimated anew in {}\n", summary.frames,
-                      summary.refused, summary.failed, summary.road_estimated);
+  text += fmt::format("  frames    {} ({} rejected, {} failed), road re-estimated in {}\n", summary.frames,
+                      summary.rejected, summary.failed, summary.road_estimated);
   text += fmt::format("  damage    {} damages in {} sightings\n", summary.damages, summary.sightings);
-  if (summary.placed) text += fmt::format("  map       {} of {} frames are on it\n", *summary.placed, summary.frames);
-  if (!summary.track_note.empty()) text += fmt::format("            {}\n", summary.track_note);
+  if (summary.located)
+    text += fmt::format("  track     {} of {} frames have a position\n", *summary.located, summary.frames);
+  if (!summary.no_position_reason.empty()) text += fmt::format("            {}\n", summary.no_position_reason);
   text += fmt::format("  time      {:.1f} s, {:.1f} frames/s\n", run.seconds, run.frames_per_second);
   for (const std::string& reason : summary.reasons) text += fmt::format("  no result {}\n", reason);
   return text + fmt::format("  report    {}\n", (folder.path() / "report.html").string());
 }
 
-/// Clouds are in metres. A bag may bring a calibration of its own.
-void require_calibration(const FlightSettings& settings, const RectifiedSource& source) {
-  const bool cloud = std::any_of(settings.write.begin(), settings.write.end(),
-                                 [](const std::string& name) { return frame_file(name) == FrameFile::cloud; });
+/// Clouds are metric. The calibration may be that of a bag.
+void require_calibration(const FlightPlan& plan, const RectifiedSource& source) {
+  const bool cloud = std::find(plan.write.begin(), plan.write.end(), FrameFile::cloud) != plan.write.end();
   if (cloud && source.calibration_format().empty()) {
-    fail("--write cloud needs --calibration: without it no point has a place in space");
+    fail("--write cloud needs --calibration");
   }
 }
 
-/// Before an earlier flight is removed for nothing.
+/// Called before an earlier flight is removed.
 void require_frames(const FlightSettings& settings, const io::FrameSource& source) {
   if (frames_to_do(settings, source) != 0) return;
-  fail(settings.source[0], ": has ", source.size().value_or(0), " frames, the first of which is 0; --from is ",
-       settings.from);
+  fail(settings.source[0], ": the source has ", source.size().value_or(0), " frames; --from is ", settings.from);
 }
 
 }  // namespace
 
 void inspect_flight(const FlightSettings& settings) {
-  settings.validate();
+  const FlightPlan plan = resolve(settings);
   auto stop = std::make_unique<StopSignals>();  // before any thread
   FlightRun run;
-  run.options = make_options(settings.processing);
-  std::optional<FlightPlaces> places;
-  if (!settings.track.file.empty()) places.emplace(settings.track);
-  RectifiedSource source(io::open_source(settings.source, make_source_options(settings.choice)), settings.calibration);
-  if (source.source().live()) fail(settings.source[0], ": a camera has no end; see roadstereo live");
-  require_calibration(settings, source);
+  run.options = plan.options;
+  FlightResults results(settings.track);
+  RectifiedSource source(io::open_source(settings.source, plan.source), settings.calibration);
+  if (source.source().live()) fail(settings.source[0], ": cameras are not supported by inspect; use roadstereo live");
+  require_calibration(plan, source);
   require_frames(settings, source.source());
   FlightFolder folder(settings.output);
   io::FlightJournal journal = open_journal(settings, run.options, folder);
-  io::FlightInventory inventory;
-  journal.for_each([&](const io::FlightFrame& frame) { inventory.add(frame); });
+  journal.for_each([&](const io::FlightFrame& frame) { results.add(frame); });
   if (journal.last() && journal.last()->white_level > 0) source.set_white_level(journal.last()->white_level);
   run.resumed_at = journal.frames();
 
   Progress progress(frames_to_do(settings, source.source()), journal.frames(), settings.quiet);
-  Flight flight{source, folder, journal, inventory, run.options, progress, *stop};
+  Flight flight{source, folder, journal, results, plan, progress, *stop};
   run.complete = run_flight(settings, flight);
-  stop.reset();  // another Ctrl-C ends the program
-  run.options = flight.options;
+  stop.reset();  // the next Ctrl-C ends the program
+  if (journal.last() && journal.last()->white_level > 0) run.options.white_level = journal.last()->white_level;
   run.seconds = progress.seconds();
   run.frames_per_second = progress.frames_per_second();
   run.source = source.source().description();
@@ -92,13 +89,13 @@ void inspect_flight(const FlightSettings& settings) {
   run.engine = resolve_engine_name(run.options.engine);
   run.threads = used_threads(run.options);
 
-  FlightSummary summary;
-  const std::string json = write_flight_results(settings, run, journal, places, folder, summary);
+  const std::string json = results.write(settings, run, folder);
+  const FlightSummary& summary = results.summary();
   progress.end();
   if (settings.json) fmt::print("{}", json);
   if (!settings.json && !settings.quiet) fmt::print("{}", flight_text(run, summary, folder));
   if (!run.complete) throw Interrupted{};
-  if (summary.frames == 0) fail(settings.source[0], ": holds no frame between --from and --to");
+  if (summary.frames == 0) fail(settings.source[0], ": there is no frame between --from and --to");
   if (summary.good == 0) fail("none of the ", summary.frames, " frames could be matched: ", summary.reasons.front());
 }
 

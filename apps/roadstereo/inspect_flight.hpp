@@ -4,10 +4,10 @@
 
 namespace roadstereo::cli {
 
-/// Thrown when Ctrl-C ended a flight; what was done is written and can be gone on with.
+/// Thrown if Ctrl-C ended a flight; the results so far are written and the flight can be resumed.
 struct Interrupted {};
 
-/// Inspects a whole recording. Throws Interrupted, and Error when nothing of it could be matched.
+/// Inspects a recording. Throws Interrupted, and Error if no frame could be matched.
 void inspect_flight(const FlightSettings& settings);
 
 }  // namespace roadstereo::cli

@@ -10,18 +10,18 @@
 
 namespace roadstereo::cli {
 
-/// One inspected pair: what went in, how it was treated, what came out.
+/// One inspected pair: inputs, settings and results.
 struct Inspection {
   PairFiles files;
   StereoPair pair;
   std::string preset;
   PipelineOptions options;
-  std::string engine;  ///< the engine that ran
-  int threads = 0;     ///< the threads it ran on
+  std::string engine;  ///< name of the engine used
+  int threads = 0;     ///< number of threads used
   FrameResult result;
   DamageMap damage;
-  std::optional<GroundPlane> plane;   ///< in space; only with a calibration and a road
-  std::vector<std::string> warnings;  ///< the pipeline's and the command's own
+  std::optional<GroundPlane> plane;   ///< metric; needs a calibration and a road
+  std::vector<std::string> warnings;  ///< of the pipeline and of the command
 };
 
 }  // namespace roadstereo::cli

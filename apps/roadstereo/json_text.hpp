@@ -5,10 +5,10 @@
 
 namespace roadstereo::cli {
 
-/// A number, or null for what is not finite: JSON knows neither NaN nor infinity.
+/// Returns a number, or null if it is not finite, which JSON cannot represent.
 nlohmann::ordered_json json_number(double value);
 
-/// The text of a document; file names that are not UTF-8 are written with replacement characters.
+/// Serialises a document; invalid UTF-8, e.g. of file names, is replaced.
 std::string json_text(const nlohmann::ordered_json& document);
 
 }  // namespace roadstereo::cli

@@ -6,14 +6,14 @@
 
 namespace roadstereo::cli {
 
-/// A disparity map that fits a KITTI PNG.
+/// A disparity map that can be stored as KITTI PNG.
 struct KittiRange {
-  Image<float> disparity;  ///< values that do not fit are NaN
-  std::size_t lost = 0;    ///< how many did not fit
-  std::size_t valid = 0;   ///< how many there were
+  Image<float> disparity;  ///< values out of range are NaN
+  std::size_t lost = 0;    ///< number of values out of range
+  std::size_t valid = 0;   ///< number of valid values
 };
 
-/// Leaves out what 16 bits in steps of 1/256 px cannot hold: negative disparities and those above 255.99 px.
+/// Removes values that 16 bits in steps of 1/256 px cannot store: outside 0 … 255.99 px.
 KittiRange fit_kitti_range(ImageView<const float> disparity);
 
 }  // namespace roadstereo::cli

@@ -23,7 +23,7 @@ namespace {
 constexpr double mm = 1000;
 constexpr double to_radians = std::numbers::pi / 180;
 
-/// Depths at which ASTM D6433 grades potholes, metres.
+/// Depth classes of potholes in ASTM D6433, metres.
 constexpr std::array<double, 3> astm_depths_m{0.013, 0.025, 0.050};
 
 struct Arguments {
@@ -41,7 +41,7 @@ StereoCalibration read_rig(const Arguments& arguments) {
   const std::string& path = arguments.calibration.front();
   const io::CalibrationFile file =
       io::read_calibration(path, arguments.calibration.size() > 1 ? arguments.calibration[1] : "");
-  if (!file.rectified) fail(path, ": the rig is not rectified; give the calibration of the rectified pair");
+  if (!file.rectified) fail(path, ": the rig is not rectified; use the calibration of the rectified pair");
   StereoCalibration calibration = *file.rectified;
   if (!arguments.size.empty()) {
     const ImageSize size = parse_image_size(arguments.size);
@@ -49,7 +49,7 @@ StereoCalibration read_rig(const Arguments& arguments) {
     calibration.width = size.width;
     calibration.height = size.height;
   }
-  if (calibration.width < 1) fail(path, " does not say the size of the images; give it with --size WIDTHxHEIGHT");
+  if (calibration.width < 1) fail(path, " has no image size; set it with --size WIDTHxHEIGHT");
   return calibration;
 }
 
@@ -62,7 +62,7 @@ Table row_table(const ResolutionLimits& limits, int rows) {
                {"disparity px", "disparity_px"},
                {"1 px mm", "step_mm"},
                {"1 sigma mm", "std_error_mm"},
-               {"told apart mm", "resolvable_depth_mm"},
+               {"resolvable mm", "resolvable_depth_mm"},
                {"area cm2", "resolvable_area_cm2"},
                {"GSD across mm", "gsd_across_mm"},
                {"along mm", "gsd_along_mm"},
@@ -78,20 +78,19 @@ Table row_table(const ResolutionLimits& limits, int rows) {
   return table;
 }
 
-/// What can be said of one of ASTM's depths.
-std::string verdict(const ResolutionLimits& limits, double depth_m) {
+/// Describes where a depth class can be resolved.
+std::string resolvable_text(const ResolutionLimits& limits, double depth_m) {
   const std::optional<RowResolution> farthest = limits.farthest(depth_m);
   const double highest = limits.max_camera_height_m(depth_m);
-  const std::string from = highest > 0 ? fmt::format("; in the middle row up to a height of {:.2f} m", highest) : "";
+  const std::string from = highest > 0 ? fmt::format("; in the centre row up to a height of {:.2f} m", highest) : "";
   if (!farthest)
-    return fmt::format("At this height {:.0f} mm can be told apart nowhere in view{}.", mm * depth_m, from);
+    return fmt::format("At this height {:.0f} mm cannot be resolved anywhere in the image{}.", mm * depth_m, from);
   if (farthest->row_px <= limits.first_row()) {
-    return fmt::format(
-        "At this height {:.0f} mm can be told apart everywhere in view, up to {:.2f} m from the camera{}.",
-        mm * depth_m, farthest->distance_m, from);
+    return fmt::format("At this height {:.0f} mm can be resolved in the whole image, up to {:.2f} m from the camera{}.",
+                       mm * depth_m, farthest->distance_m, from);
   }
   return fmt::format(
-      "At this height {:.0f} mm can be told apart up to {:.2f} m ahead, {:.2f} m from the camera (row {:.0f}){}.",
+      "At this height {:.0f} mm can be resolved up to {:.2f} m ahead, {:.2f} m from the camera (row {:.0f}){}.",
       mm * depth_m, farthest->ahead_m, farthest->distance_m, farthest->row_px, from);
 }
 
@@ -112,29 +111,30 @@ nlohmann::ordered_json limits_json(const Arguments& arguments, const ResolutionL
   return document;
 }
 
-/// Depths against the place on the road, with ASTM's depths.
+/// Plots depths over the distance on the road, with the depth classes of ASTM.
 Frame limits_figure(const Arguments& arguments, const ResolutionLimits& limits) {
   constexpr int points = 200;
   constexpr double max_mm = 1000;
-  io::Curve step{"one pixel of disparity", {}, {}}, error{"one standard error", {}, {}}, told{"told apart", {}, {}};
+  io::Curve step{"one pixel of disparity", {}, {}}, error{"one standard error", {}, {}},
+      resolvable{"resolvable", {}, {}};
   for (const RowResolution& row : limits.rows(points)) {
-    for (io::Curve* curve : {&step, &error, &told}) curve->x.push_back(row.ahead_m);
+    for (io::Curve* curve : {&step, &error, &resolvable}) curve->x.push_back(row.ahead_m);
     const auto shown = [&](double depth) { return mm * depth < max_mm ? mm * depth : std::nan(""); };
     step.y.push_back(shown(row.step_m));
     error.y.push_back(shown(row.std_error_m));
-    told.y.push_back(shown(row.resolvable_depth_m));
+    resolvable.y.push_back(shown(row.resolvable_depth_m));
   }
   io::Panel panel{fmt::format("Height {:g} m, {:g} degrees below the horizon; lines: 13, 25, 50 mm (ASTM D6433)",
                               arguments.height_m, arguments.pitch_deg),
                   "ahead of the camera on the road, m",
                   "depth below the road, mm",
-                  {step, error, told},
+                  {step, error, resolvable},
                   true};
   for (const double depth : astm_depths_m) panel.horizontal_lines.push_back(mm * depth);
-  constexpr double min_reach_mm = 70;  // ASTM's depths are always in the picture
-  double reach = min_reach_mm;
-  for (const double depth : step.y) reach = std::fmax(reach, depth);
-  panel.y_highest = reach;
+  constexpr double min_range_mm = 70;  // always shows the depth classes of ASTM
+  double max_shown_mm = min_range_mm;
+  for (const double depth : step.y) max_shown_mm = std::fmax(max_shown_mm, depth);
+  panel.y_highest = max_shown_mm;
   constexpr int width = 900, height = 560;
   return io::draw_plot(panel, width, height);
 }
@@ -148,18 +148,16 @@ void limits(Arguments arguments) {
     return;
   }
   fmt::print("{}\n", row_table(limits, arguments.rows).text());
-  for (const double depth : astm_depths_m) fmt::print("{}\n", verdict(limits, depth));
+  for (const double depth : astm_depths_m) fmt::print("{}\n", resolvable_text(limits, depth));
   fmt::print(
-      "Depths along the road's normal. Told apart: {:g} standard errors of {:g} px; area: the window of a disparity, "
-      "at "
-      "least {:g} cm2;\nswath: seen by both cameras.\n",
+      "Depths along the road normal. Resolvable: {:g} standard errors of {:g} px; area: the matching window, at least "
+      "{:g} cm2;\nswath: visible in both cameras.\n",
       arguments.resolution.threshold_sigma, arguments.resolution.sigma_px, 1e4 * arguments.resolution.min_area_m2);
 }
 
 constexpr const char* limits_footer =
-    R"(For planning a flight or a mount: which depth and area the rig can tell apart, row by row, from the nearest to the
-farthest. The road is a plane, the camera's rows are level. Where the disparity falls by one pixel of D, the road lies
-height / (D - 1) deeper.
+    R"(Predicts the resolvable depth and area of a rig per image row, from the nearest to the farthest, to plan a flight or
+a mount. Assumes a planar road and no roll. A decrease of the disparity D by one pixel is a depth of height / (D - 1).
 
 Examples:
   roadstereo limits --calibration calibration.yaml --height 2
@@ -168,10 +166,11 @@ Examples:
 }  // namespace
 
 void add_limits(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("limits", "Smallest depth and area that a rig can tell apart from a height");
+  CLI::App* command = app.add_subcommand("limits", "Predict the smallest depth and area that a rig can resolve");
   command->footer(limits_footer);
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--calibration", arguments->calibration, "Calibration of the rectified rig; twice for a ROS pair")
+  command
+      ->add_option("--calibration", arguments->calibration, "Calibration of the rectified rig; repeat for a ROS pair")
       ->type_name("FILE")
       ->required()
       ->expected(1)
@@ -181,7 +180,7 @@ void add_limits(CLI::App& app) {
       ->type_name("M")
       ->required()
       ->check(CLI::Range(0.05, 1000.0));
-  command->add_option("--pitch", arguments->pitch_deg, "Degrees below the horizon; 90 looks straight down")
+  command->add_option("--pitch", arguments->pitch_deg, "Degrees below the horizon; 90: straight down")
       ->type_name("DEG")
       ->check(CLI::Range(-90.0, 90.0))
       ->capture_default_str();
@@ -190,16 +189,16 @@ void add_limits(CLI::App& app) {
                    "Standard error of a disparity, px; see sigma.tiff of inspect")
       ->check(CLI::Range(0.001, 10.0))
       ->capture_default_str();
-  command->add_option("--threshold", arguments->resolution.threshold_sigma, "Standard errors that tell a depth apart")
+  command->add_option("--threshold", arguments->resolution.threshold_sigma, "Resolvable depth in standard errors")
       ->check(CLI::Range(0.1, 100.0))
       ->capture_default_str();
-  command->add_option("--size", arguments->size, "Image size, when the calibration does not say it")
+  command->add_option("--size", arguments->size, "Image size, if it is not in the calibration")
       ->type_name("WIDTHxHEIGHT");
-  command->add_option("--rows", arguments->rows, "Rows of the table")
+  command->add_option("--rows", arguments->rows, "Number of rows of the table")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
-  command->add_flag("--json", arguments->json, "Print the figures as JSON");
-  command->add_option("--figure", arguments->figure, "Also draw them: a PNG for people")->type_name("FILE");
+  command->add_flag("--json", arguments->json, "Print JSON");
+  command->add_option("--figure", arguments->figure, "Also plot the table to this PNG")->type_name("FILE");
   command->callback([arguments] { limits(*arguments); });
 }
 

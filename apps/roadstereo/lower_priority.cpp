@@ -7,7 +7,7 @@ namespace roadstereo::cli {
 
 void lower_priority() {
   constexpr int nice = 10;
-  // Linux counts threads as processes here. Where it is not allowed the thread works as it is.
+  // Linux applies this to the calling thread. Errors are ignored.
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice);
 }
 

@@ -2,7 +2,7 @@
 
 namespace roadstereo::cli {
 
-/// The calling thread gives way to the others when cores are short.
+/// Lowers the priority of the calling thread.
 void lower_priority();
 
 }  // namespace roadstereo::cli

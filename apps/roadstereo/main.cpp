@@ -12,38 +12,38 @@
 
 #include "commands.hpp"
 #include "inspect_flight.hpp"
+#include "log_stderr.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/version.hpp"
-#include "say.hpp"
 
 namespace {
 
 constexpr int exit_bad_input = 2;
 constexpr int exit_failure = 1;
-constexpr int exit_interrupted = 130;  // as shells have it for Ctrl-C
+constexpr int exit_interrupted = 130;  // as shells report Ctrl-C
 
 constexpr const char* footer =
-    "Example: make a road, inspect it, look at the sheet\n"
+    "Example: render a road and inspect it\n"
     "  roadstereo synth --scene demo --output road\n"
     "  roadstereo inspect road/left.png road/right.png --calibration road/calibration.yaml --output out\n"
     "\n"
-    "Exit code: 0 success; 2 wrong usage or unreadable input; 1 anything else (a full disk, for one);\n"
-    "130 a flight that Ctrl-C ended.";
+    "Exit codes: 0 success; 2 wrong usage or invalid input; 1 other errors, e.g. a full disk;\n"
+    "130 flight interrupted by Ctrl-C.";
 
-/// Says what went wrong in one line, whatever the message's own line breaks.
+/// Prints an error message in one line.
 int report_error(std::string message, int exit_code) {
   std::replace(message.begin(), message.end(), '\n', ' ');
-  roadstereo::cli::say("roadstereo: {}\n", message);
+  roadstereo::cli::log_stderr("roadstereo: {}\n", message);
   return exit_code;
 }
 
-/// The command whose help answers a wrong command line.
+/// Returns the help command for a wrong command line.
 std::string help_command(const CLI::App& app) {
   const auto chosen = app.get_subcommands();
   return chosen.empty() ? "roadstereo --help" : "roadstereo " + chosen.front()->get_name() + " --help";
 }
 
-/// What waits in the buffer can still meet a full disk.
+/// Flushes standard output so that a write error is reported.
 void flush_output() {
   const bool written = std::fflush(stdout) == 0;
   if (!written) throw roadstereo::SystemError("standard output cannot be written");
@@ -64,12 +64,12 @@ int run(CLI::App& app, int argc, char** argv) {
 
 void describe(CLI::App& app) {
   app.description(
-      "roadstereo: dense stereo for road inspection.\n"
-      "From a stereo pair of a road: sub-pixel disparities, the roll angle, the road's model, and the\n"
-      "transformed disparity map, in which the intact road is flat and damage stands out.");
+      "roadstereo: dense stereo matching for road inspection.\n"
+      "Computes from a stereo pair of a road: a sub-pixel disparity map, the roll angle, the road model,\n"
+      "the transformed disparity map, in which intact road has a constant value, and the road damage.");
   app.footer(footer);
   app.set_version_flag("--version", std::string("roadstereo ") + roadstereo::version);
-  app.require_subcommand(0, 1);  // none is refused after parsing, when a mistyped one has been named
+  app.require_subcommand(0, 1);  // a missing one is checked after parsing, for better messages
   roadstereo::cli::add_inspect(app);
   roadstereo::cli::add_live(app);
   roadstereo::cli::add_damage(app);
@@ -82,8 +82,8 @@ void describe(CLI::App& app) {
 #endif
 }
 
-/// OpenCV and FFmpeg say in words of their own, on standard error, what the sentences of errors say. Whoever wants to
-/// hear them sets the variables.
+/// Silences the logging of OpenCV and FFmpeg unless the user has set the variables; errors are reported by this
+/// program.
 void quieten_decoders() {
   constexpr int keep_what_is_set = 0;
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", keep_what_is_set);  // FFmpeg's AV_LOG_QUIET
@@ -92,8 +92,7 @@ void quieten_decoders() {
   }
 }
 
-/// Frames come and go by the thousand: their memory is kept for the next one, not given back and asked for again page
-/// by page, which costs a millisecond a frame.
+/// Keeps freed memory in the process for the next frame; returning it to the system costs about 1 ms per frame.
 void keep_memory() {
 #ifdef __GLIBC__
   constexpr int max_kept = 64 << 20;
@@ -116,7 +115,7 @@ int main(int argc, char** argv) {
   } catch (const roadstereo::Error& error) {
     return report_error(error.what(), exit_bad_input);
   } catch (const roadstereo::cli::Interrupted&) {
-    return report_error("stopped; go on with --resume", exit_interrupted);
+    return report_error("interrupted; continue with --resume", exit_interrupted);
   } catch (const std::bad_alloc&) {
     return report_error("out of memory", exit_failure);
   } catch (const std::exception& error) {

@@ -15,10 +15,10 @@ namespace {
 void require_size(int width, int height, const Image<float>& map, const std::string& file, const MapFiles& files) {
   if (width == map.width() && height == map.height()) return;
   fail(file, " has ", width, "×", height, " pixels and ", files.transformed, " has ", map.width(), "×", map.height(),
-       "; they must have one size");
+       "; they must have equal sizes");
 }
 
-/// value = factor · residual + offset, between what the transformed map says and what stands above the road.
+/// Linear relation value = factor · residual + offset between the transformed map and the disparity above the road.
 struct Scale {
   double factor = 1;
   double offset = 0;
@@ -63,7 +63,7 @@ Scale fit_scale(const std::vector<Pairing>& pairs) {
   return {factor, values - factor * residuals, both / std::sqrt(along * across)};
 }
 
-/// Turns the map's own scale into pixels of disparity.
+/// Converts the map to pixels of disparity.
 void scale_to_pixels(const MapFiles& files, TransformedMap& map) {
   constexpr std::size_t min_pairs = 100;
   constexpr double min_correlation = 0.8;
@@ -75,8 +75,8 @@ void scale_to_pixels(const MapFiles& files, TransformedMap& map) {
   const Scale scale = fit_scale(pairs);
   if (!(scale.correlation >= min_correlation)) {
     fail(files.disparity, " does not belong to ", files.transformed,
-         ": above the road they agree with a correlation of ", scale.correlation, "; at least ", min_correlation,
-         " is needed");
+         ": the correlation of their values above the road is ", scale.correlation, "; it must be at least ",
+         min_correlation);
   }
   for (int v = 0; v < map.transformed.height(); ++v) {
     float* row = map.transformed.row(v);
@@ -104,7 +104,7 @@ void read_rig(const MapFiles& files, TransformedMap& map) {
   const io::CalibrationFile file =
       io::read_calibration(files.calibration.front(), files.calibration.size() > 1 ? files.calibration[1] : "");
   if (!file.rectified) {
-    fail(files.calibration.front(), ": the rig is not rectified; give the calibration of the rectified pair");
+    fail(files.calibration.front(), ": the rig is not rectified; use the calibration of the rectified pair");
   }
   map.calibration = *file.rectified;
   map.calibration->validate(map.transformed.width(), map.transformed.height(), files.calibration.front());

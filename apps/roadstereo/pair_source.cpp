@@ -13,7 +13,7 @@ namespace {
 
 void require_equal_sizes(const StereoPair& pair, const PairFiles& files) {
   if (pair.left.width == pair.right.width && pair.left.height == pair.right.height) return;
-  fail("left and right image differ in size: ", files.left, " has ", pair.left.width, "×", pair.left.height,
+  fail("left and right image have different sizes: ", files.left, " has ", pair.left.width, "×", pair.left.height,
        " pixels, ", files.right, " has ", pair.right.width, "×", pair.right.height);
 }
 
@@ -30,7 +30,7 @@ void apply_calibration(StereoPair& pair, const std::vector<std::string>& paths) 
   pair.calibration_format = file.format;
   pair.calibration = file.rectified;
   if (file.rig) rectify_pair(pair, *file.rig);
-  if (!pair.calibration) fail(paths[0], ": no calibration of a stereo rig was found in it");
+  if (!pair.calibration) fail(paths[0], ": there is no stereo calibration in this file");
   pair.calibration->validate(pair.left.width, pair.left.height, paths[0]);
 }
 

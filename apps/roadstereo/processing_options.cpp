@@ -22,16 +22,16 @@ std::string joined_presets() {
 }  // namespace
 
 void add_processing_options(CLI::App& command, ProcessingSettings& processing) {
-  command.add_option("--preset", processing.preset, "Where the options start from: " + joined_presets())
+  command.add_option("--preset", processing.preset, "Preset of the options: " + joined_presets())
       ->type_name("NAME")
       ->capture_default_str();
   command.add_option("--engine", processing.engine, "Matching engine, see roadstereo engines")
       ->type_name("NAME")
       ->capture_default_str();
-  command.add_option("--threads", processing.threads, "Worker threads; 0 takes all cores")
+  command.add_option("--threads", processing.threads, "Worker threads; 0: all cores")
       ->type_name("N")
       ->capture_default_str();
-  command.add_option("--set", processing.settings, "Sets one option; may be repeated")
+  command.add_option("--set", processing.settings, "Set one option; repeatable")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->allow_extra_args(false)
@@ -58,7 +58,7 @@ int used_threads(const PipelineOptions& options) {
 }
 
 std::string settings_help() {
-  std::string text = "Keys of --set, with the values of the default preset:\n";
+  std::string text = "Keys of --set with the values of the default preset:\n";
   for (const OptionText& option : list_options(preset("default"))) {
     text += fmt::format("  {:<38} {:<12} {}\n", option.key, option.value, option.description);
   }

@@ -11,7 +11,7 @@ class App;
 
 namespace roadstereo::cli {
 
-/// How the command line wants pairs to be treated.
+/// Command line options of the pipeline.
 struct ProcessingSettings {
   std::string preset = "default";
   std::string engine = "auto";
@@ -21,16 +21,16 @@ struct ProcessingSettings {
 
 void add_processing_options(CLI::App& command, ProcessingSettings& processing);
 
-/// The options that it asks for. Throws Error naming what is unknown or out of range.
+/// Returns the pipeline options. Throws Error naming the option that is unknown or out of range.
 PipelineOptions make_options(const ProcessingSettings& processing);
 
-/// Whether white is set by hand: then it is not looked for in the pictures.
+/// Returns whether the white level is set by the user.
 bool sets_white_level(const ProcessingSettings& processing);
 
-/// Worker threads that these options use.
+/// Returns the number of worker threads.
 int used_threads(const PipelineOptions& options);
 
-/// Every key of --set with its default and its meaning.
+/// Returns the help text of all keys of --set.
 std::string settings_help();
 
 }  // namespace roadstereo::cli

@@ -20,8 +20,8 @@ void add_kitti_png(Inspection& inspection, io::OutputFolder& folder) {
   folder.add("disparity.png", io::encode_kitti_png(range.disparity));
   if (range.lost == 0) return;
   inspection.warnings.push_back(
-      fmt::format("{:.2f} % of the disparities lie outside 0 … 255.99 px, which disparity.png cannot hold; "
-                  "disparity.tiff has them all",
+      fmt::format("{:.2f} % of the disparities are outside 0 … 255.99 px and invalid in disparity.png; "
+                  "disparity.tiff has all of them",
                   100.0 * static_cast<double>(range.lost) / static_cast<double>(range.valid)));
 }
 
@@ -29,7 +29,7 @@ void add_picture(io::OutputFolder& folder, const std::string& name, const Frame&
   folder.add(name, io::encode_png(picture.view()));
 }
 
-/// The points of the pair in the camera's frame, and turned so that the road is z = 0.
+/// Adds the point cloud in the camera frame and in road axes.
 void add_clouds(const Inspection& inspection, io::OutputFolder& folder) {
   if (!inspection.pair.calibration) return;
   const io::PointCloud cloud = io::cloud_from_disparity(inspection.result.disparity, inspection.pair.left.view(),
@@ -51,10 +51,10 @@ void add_result_files(Inspection& inspection, io::OutputFolder& folder) {
   folder.add("disparity.tiff", io::encode_float_tiff(result.disparity));
   folder.add("transformed.tiff", io::encode_float_tiff(result.transformed));
   add_kitti_png(inspection, folder);
-  const io::ColourScale spread = io::spread_scale(result.disparity, "disparity, px");
+  const io::ColourScale spread = io::percentile_scale(result.disparity, "disparity, px");
   add_picture(folder, "disparity_color.png", io::colour_map(result.disparity, spread));
   folder.add("sigma.tiff", io::encode_float_tiff(result.sigma));
-  const io::ColourScale errors = io::spread_scale(result.sigma, "standard error, px");
+  const io::ColourScale errors = io::percentile_scale(result.sigma, "standard error, px");
   add_picture(folder, "sigma_color.png", io::colour_map(result.sigma, errors));
   const io::ColourScale around_road = io::transformed_scale(result.transformed, result.delta_t);
   add_picture(folder, "transformed_color.png", io::colour_map(result.transformed, around_road));
@@ -70,7 +70,7 @@ void add_result_files(Inspection& inspection, io::OutputFolder& folder) {
   report.transformed = result.transformed;
   report.calibration = inspection.pair.calibration;
   report.title = title;
-  report.facts = summary_facts(inspection);
+  report.properties = summary_properties(inspection);
   report.sheet = std::move(sheet_bytes);
   io::add_damage_files(folder, report);
 }

@@ -5,7 +5,7 @@
 
 namespace roadstereo::cli {
 
-/// Stages every file of one inspected pair but result.json. What a file cannot hold becomes a warning.
+/// Stages all files of one inspected pair except result.json. Values that a file cannot store yield a warning.
 void add_result_files(Inspection& inspection, io::OutputFolder& folder);
 
 }  // namespace roadstereo::cli

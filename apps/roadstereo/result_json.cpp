@@ -19,7 +19,7 @@ Json inputs_json(const PairFiles& files) {
   return {{"left", files.left}, {"right", files.right}, {"calibration", calibration}};
 }
 
-/// Numbers and true/false as such, words as strings.
+/// Converts the text of an option to a number, boolean or string.
 Json option_value(const OptionText& option) {
   if (option.is_text) return option.value;
   Json value = Json::parse(option.value, nullptr, false);

@@ -7,10 +7,10 @@
 
 namespace roadstereo::cli {
 
-/// The content of result.json. What is not known is null.
+/// Returns the content of result.json. Unknown values are null.
 std::string result_json(const Inspection& inspection);
 
-/// Every option by its name.
+/// Returns all options by name.
 nlohmann::ordered_json options_json(const PipelineOptions& options);
 
 }  // namespace roadstereo::cli

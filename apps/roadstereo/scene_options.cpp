@@ -8,7 +8,7 @@ namespace roadstereo::cli {
 
 namespace {
 
-/// Sets the image size; the focal length follows the width, so that the view stays the same.
+/// Sets the image size; scales the focal length, so that the field of view is kept.
 void apply_size(synth::Rig& rig, const std::string& size) {
   const auto [width, height] = parse_image_size(size);
   rig.focal_px *= static_cast<double>(width) / rig.width;
@@ -26,11 +26,11 @@ synth::Scene base_scene(const SceneOptions& options) {
 }
 
 void add_rig_options(CLI::App& command, SceneOptions& options) {
-  command.add_option("--size", options.size, "Image size; the field of view stays")->type_name("WxH");
-  command.add_option("--height", options.camera_height_m, "Camera height over the road")->type_name("M");
-  command.add_option("--pitch", options.pitch_deg, "Optical axis below the horizon; 90 looks straight down")
+  command.add_option("--size", options.size, "Image size; keeps the field of view")->type_name("WxH");
+  command.add_option("--height", options.camera_height_m, "Camera height above the road")->type_name("M");
+  command.add_option("--pitch", options.pitch_deg, "Optical axis below the horizon; 90: straight down")
       ->type_name("DEG");
-  command.add_option("--roll", options.roll_deg, "Turn about the optical axis")->type_name("DEG");
+  command.add_option("--roll", options.roll_deg, "Rotation about the optical axis")->type_name("DEG");
   command.add_option("--focal", options.focal_px, "Focal length")->type_name("PX");
   command.add_option("--baseline", options.baseline_m, "Distance between the cameras")->type_name("M");
 }
@@ -38,20 +38,18 @@ void add_rig_options(CLI::App& command, SceneOptions& options) {
 void add_degradation_options(CLI::App& command, SceneOptions& options) {
   command.add_option("--noise", options.noise_grey, "Noise, standard deviation in grey levels")->type_name("GREY");
   command.add_option("--blur", options.blur_px, "Gaussian blur, standard deviation")->type_name("PX");
-  command.add_option("--gain", options.gain_difference, "The right image is 1 + X times as bright")->type_name("X");
-  command.add_option("--exposure", options.exposure, "Brightness of both images; above 1 white clips")->type_name("X");
+  command.add_option("--gain", options.gain_difference, "Gain of the right image minus 1")->type_name("X");
+  command.add_option("--exposure", options.exposure, "Brightness of both images; clips above 1")->type_name("X");
 }
 
 }  // namespace
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {
-  CLI::Option* name = command.add_option("--scene", options.name, "A named scene, see --list")
-                          ->type_name("NAME")
-                          ->capture_default_str();
-  CLI::Option* seed = command.add_option("--seed", options.seed, "A scene drawn at random; same seed, same scene")
-                          ->type_name("N")
-                          ->excludes(name);
-  command.add_flag("--degraded", options.degraded, "Wear of the picture drawn at random too")->needs(seed);
+  CLI::Option* name =
+      command.add_option("--scene", options.name, "Named scene, see --list")->type_name("NAME")->capture_default_str();
+  CLI::Option* seed =
+      command.add_option("--seed", options.seed, "Seed of a random scene")->type_name("N")->excludes(name);
+  command.add_flag("--degraded", options.degraded, "Add random image degradation")->needs(seed);
   add_rig_options(command, options);
   add_degradation_options(command, options);
 }

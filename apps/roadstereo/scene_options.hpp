@@ -12,11 +12,11 @@ class App;
 
 namespace roadstereo::cli {
 
-/// What the command line says about the scene to make. What is not given stays as the scene has it.
+/// Command line options of the scene; absent ones keep the value of the scene.
 struct SceneOptions {
   std::string name = "demo";
   std::optional<std::uint64_t> seed;  ///< a random scene instead of the named one
-  bool degraded = false;              ///< a random scene with wear of the picture
+  bool degraded = false;              ///< random image degradation
   std::optional<std::string> size;    ///< "WxH"
   std::optional<double> camera_height_m;
   std::optional<double> pitch_deg;
@@ -32,7 +32,7 @@ struct SceneOptions {
 /// Adds the options to a subcommand.
 void add_scene_options(CLI::App& command, SceneOptions& options);
 
-/// The scene that the options describe. Throws Error for an unknown name or a figure that is out of range.
+/// Returns the scene. Throws Error for an unknown name or a value out of range.
 synth::Scene make_scene(const SceneOptions& options);
 
 }  // namespace roadstereo::cli

@@ -8,7 +8,7 @@ namespace roadstereo::cli {
 std::pair<std::string, std::string> split_setting(const std::string& setting) {
   const auto equals = setting.find('=');
   if (equals == std::string::npos || equals == 0) {
-    fail("--set takes key=value, for example matcher.sigma_space=2, but got \"", setting, "\"");
+    fail("--set must be key=value, for example matcher.sigma_space=2, but is \"", setting, "\"");
   }
   return {setting.substr(0, equals), setting.substr(equals + 1)};
 }

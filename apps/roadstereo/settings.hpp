@@ -8,10 +8,10 @@
 
 namespace roadstereo::cli {
 
-/// The key and the value of one `--set KEY=VALUE`. Throws Error when it is not of that form.
+/// Splits `KEY=VALUE` of --set. Throws Error if it is not of that form.
 std::pair<std::string, std::string> split_setting(const std::string& setting);
 
-/// Sets one option after the other.
+/// Sets the options in order.
 void apply_settings(const std::vector<std::string>& settings, PipelineOptions& options);
 
 }  // namespace roadstereo::cli

@@ -7,18 +7,17 @@
 namespace roadstereo::cli {
 
 void add_calibration_option(CLI::App& command, std::vector<std::string>& calibration) {
-  command
-      .add_option("--calibration", calibration, "Calibration of the rig; give it twice (left, right) for a ROS pair")
+  command.add_option("--calibration", calibration, "Calibration file; repeat (left, right) for a ROS pair")
       ->type_name("FILE")
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
 }
 
-void add_source_options(CLI::App& command, SourceChoice& choice) {
+void add_source_options(CLI::App& command, SourceSettings& choice) {
   command
       .add_option("--layout", choice.layout,
-                  "How one picture holds both views: side-by-side, top-bottom, or auto (from its shape)")
+                  "Arrangement of both views in one image: side-by-side, top-bottom, or auto (by aspect ratio)")
       ->type_name("NAME")
       ->capture_default_str();
   command.add_option("--topics", choice.topics, "Left and right image topic of a ROS bag")
@@ -28,16 +27,17 @@ void add_source_options(CLI::App& command, SourceChoice& choice) {
       ->allow_extra_args(false);
   command
       .add_option("--max-time-difference", choice.max_time_difference_ms,
-                  "Views taken further apart are no pair, milliseconds")
+                  "Maximum time between the views of a pair, milliseconds")
       ->type_name("MS")
       ->capture_default_str();
-  command.add_option("--rate", choice.rate_hz, "Pairs a second, in the place of the source's own times")
-      ->type_name("HZ");
-  command.add_option("--camera-size", choice.camera_size, "Picture with both views to ask a V4L2 camera for")
+  command.add_option("--rate", choice.rate_hz, "Pairs per second, replaces the times of the source")->type_name("HZ");
+  command
+      .add_option("--camera-size", choice.camera_size,
+                  "Size of the image with both views, requested from a V4L2 camera")
       ->type_name("WxH");
 }
 
-io::SourceOptions make_source_options(const SourceChoice& choice) {
+io::SourceOptions make_source_options(const SourceSettings& choice) {
   constexpr double ms = 1e-3;
   io::SourceOptions options;
   options.layout = io::stereo_layout(choice.layout);

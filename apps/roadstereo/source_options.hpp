@@ -11,21 +11,21 @@ class App;
 
 namespace roadstereo::cli {
 
-/// What the command line says about a recording or a camera.
-struct SourceChoice {
+/// Command line options of a recording or a camera.
+struct SourceSettings {
   std::string layout = "auto";
   std::vector<std::string> topics;
   double max_time_difference_ms = 5;
   double rate_hz = 0;
-  std::string camera_size;  ///< "WxH" of the picture that holds both views; empty leaves the default
+  std::string camera_size;  ///< "WxH" of the image with both views; empty: default
 };
 
-/// --calibration: none, one file, or the two of a ROS pair.
+/// Adds --calibration: one file, or two ROS camera_info files.
 void add_calibration_option(CLI::App& command, std::vector<std::string>& calibration);
 
-void add_source_options(CLI::App& command, SourceChoice& choice);
+void add_source_options(CLI::App& command, SourceSettings& choice);
 
-/// The same, checked. Throws Error naming what is unknown or out of range.
-io::SourceOptions make_source_options(const SourceChoice& choice);
+/// Returns the checked options. Throws Error naming the option that is unknown or out of range.
+io::SourceOptions make_source_options(const SourceSettings& choice);
 
 }  // namespace roadstereo::cli

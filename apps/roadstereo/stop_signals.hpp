@@ -4,18 +4,18 @@
 
 namespace roadstereo::cli {
 
-/// Ctrl-C and the like, waited for instead of handled: made before any thread, so that all of them leave the signals
-/// alone.
+/// Blocks Ctrl-C and similar signals and waits for them. Create it before any thread, so that all threads inherit the
+/// mask.
 class StopSignals {
  public:
   StopSignals();
 
-  /// The usual meaning comes back: another Ctrl-C ends the program.
+  /// Restores the default: the next Ctrl-C ends the program.
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// Whether one came within so many seconds, less than one.
+  /// Waits up to that time, less than 1 s. Returns whether a signal has arrived.
   bool wait(double seconds) const;
 
  private:

@@ -4,7 +4,7 @@
 
 namespace roadstereo::cli {
 
-/// Milliseconds that a call takes.
+/// Returns the duration of a call, milliseconds.
 template <class Call>
 double time_ms(const Call& call) {
   const auto start = std::chrono::steady_clock::now();

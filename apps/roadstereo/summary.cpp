@@ -24,7 +24,7 @@ std::string pair_text(const Inspection& inspection) {
   const StereoPair& pair = inspection.pair;
   const std::string size = fmt::format("{}×{} px, ", pair.left.width, pair.left.height);
   if (!pair.calibration) return size + "no calibration: pixels only";
-  return size + pair.calibration_format + (pair.rectified_here ? " calibration, rectified here" : " calibration");
+  return size + pair.calibration_format + (pair.rectified_here ? " calibration, rectified" : " calibration");
 }
 
 std::string engine_text(const Inspection& inspection) {
@@ -33,14 +33,14 @@ std::string engine_text(const Inspection& inspection) {
 }
 
 std::string roll_text(const FrameResult& result) {
-  if (!result.roll_found) return "unknown: too few pixels have a disparity";
+  if (!result.roll_found) return "unknown: too few pixels with a disparity";
   const RollEstimate& geometry = result.geometry;
   std::string angle = fmt::format("{:.3f}° ± {:.3f}°", degrees(geometry.roll_rad), degrees(geometry.roll_stderr_rad));
   if (geometry.roll_observable) return angle;
   const bool trusted = result.road.reliable || result.warnings.empty();
   return std::string("not observable: ") +
-         (trusted ? "the road's disparity hardly changes over the image" : "see the warnings") + " (fitted " + angle +
-         ")";
+         (trusted ? "the disparity of the road is nearly constant in the image" : "see the warnings") + " (fitted " +
+         angle + ")";
 }
 
 std::string term(double factor, char coordinate) {
@@ -54,24 +54,24 @@ std::string road_text(const FrameResult& result) {
 }
 
 std::string camera_text(const GroundPlane& plane) {
-  return fmt::format("{:.3f} m above the road, looking {:.1f}° {} its horizon", plane.height_m,
+  return fmt::format("{:.3f} m above the road, optical axis {:.1f}° {} the horizon", plane.height_m,
                      degrees(std::abs(plane.pitch_rad)), plane.pitch_rad < 0 ? "above" : "below");
 }
 
 std::string spread_text(const FrameResult& result) {
   if (!result.roll_found) return "unknown";
-  return fmt::format("{:.3f} px on the road, {:.3f} px over everything", result.spread.sigma_road_px,
+  return fmt::format("{:.3f} px on the road, {:.3f} px on all pixels", result.spread.sigma_road_px,
                      result.spread.sigma_all_px);
 }
 
 std::string time_text(const FrameResult& result) {
-  return fmt::format("{:.1f} ms ({:.0f} Mde/s), {:.1f} ms of it matching", result.ms.total, result.mde_per_s,
+  return fmt::format("{:.1f} ms ({:.0f} Mde/s), matching {:.1f} ms", result.ms.total, result.mde_per_s,
                      result.ms.match);
 }
 
 std::string picture_lines(const std::filesystem::path& folder) {
   std::string lines = line("report", (folder / "report.html").string());
-  lines += line("pictures", (folder / "overlay.png").string());
+  lines += line("images", (folder / "overlay.png").string());
   lines += line("", (folder / "sheet.png").string());
   lines += line("", (folder / "disparity_color.png").string());
   lines += line("", (folder / "sigma_color.png").string());
@@ -99,17 +99,17 @@ std::string damage_text(const DamageMap& map) {
   return text + fmt::format("deepest {:.2f} ± {:.2f} px", deepest.max_depth_px.value, deepest.max_depth_px.std_error);
 }
 
-std::vector<std::pair<std::string, std::string>> summary_facts(const Inspection& inspection) {
+std::vector<std::pair<std::string, std::string>> summary_properties(const Inspection& inspection) {
   const FrameResult& result = inspection.result;
-  std::vector<std::pair<std::string, std::string>> facts{
+  std::vector<std::pair<std::string, std::string>> properties{
       {"Pair", pair_text(inspection)}, {"Roll", roll_text(result)}, {"Road", road_text(result)}};
-  if (inspection.plane) facts.emplace_back("Camera", camera_text(*inspection.plane));
-  facts.emplace_back("Pixels with a disparity", fmt::format("{:.1f} %", 100 * result.valid_share));
-  facts.emplace_back("Spread around the road", spread_text(result));
-  facts.emplace_back("Engine", engine_text(inspection));
-  facts.emplace_back("Time", time_text(result));
-  for (const std::string& warning : inspection.warnings) facts.emplace_back("Warning", warning);
-  return facts;
+  if (inspection.plane) properties.emplace_back("Camera", camera_text(*inspection.plane));
+  properties.emplace_back("Pixels with a disparity", fmt::format("{:.1f} %", 100 * result.valid_share));
+  properties.emplace_back("Standard deviation", spread_text(result));
+  properties.emplace_back("Engine", engine_text(inspection));
+  properties.emplace_back("Time", time_text(result));
+  for (const std::string& warning : inspection.warnings) properties.emplace_back("Warning", warning);
+  return properties;
 }
 
 std::string summary(const Inspection& inspection, const std::filesystem::path& folder) {

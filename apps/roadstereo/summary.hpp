@@ -9,13 +9,13 @@
 
 namespace roadstereo::cli {
 
-/// What the terminal shows of one inspected pair: one screen.
+/// Returns the terminal output for one inspected pair.
 std::string summary(const Inspection& inspection, const std::filesystem::path& folder);
 
-/// What was found, in one line.
+/// Describes the damage in one line.
 std::string damage_text(const DamageMap& map);
 
-/// The same figures as pairs of a name and a value, for the report.
-std::vector<std::pair<std::string, std::string>> summary_facts(const Inspection& inspection);
+/// Returns the summary as names and values for the report.
+std::vector<std::pair<std::string, std::string>> summary_properties(const Inspection& inspection);
 
 }  // namespace roadstereo::cli

@@ -23,12 +23,12 @@ constexpr int max_frames = 1'000'000;
 constexpr double min_rate_hz = 0.001;
 constexpr double max_rate_hz = 100'000;
 
-/// The command line of `synth`.
+/// Command line of `synth`.
 struct Arguments {
   std::string output;
   SceneOptions scene;
   int frames = 1;
-  std::string flight;  ///< empty: a little sway
+  std::string flight;  ///< empty: slight motion
   double rate_hz = 30;
   int threads = 0;
   bool list = false;
@@ -41,17 +41,17 @@ void list_scenes() {
 
 std::string made_text(const Arguments& arguments, const synth::Scene& scene, const io::OutputFolder& folder) {
   const std::string what = arguments.frames == 1 ? "one pair" : fmt::format("{} pairs", arguments.frames);
-  return fmt::format("Made {} of scene {} ({}×{}) with truth in {}\n", what, scene.name, scene.rig.width,
+  return fmt::format("Rendered {} of scene {} ({}×{}) with ground truth to {}\n", what, scene.name, scene.rig.width,
                      scene.rig.height, folder.path().string());
 }
 
-/// The scenes of the frames, one after the other.
+/// Scenes of the frames.
 class Frames {
  public:
   Frames(synth::Scene first, const Arguments& arguments) : first_(std::move(first)) {
     if (arguments.flight.empty()) return;
     path_ = parse_flight(arguments.flight);
-    // A flight that ends in the ground is refused before anything is rendered.
+    // Checks all frames first: the path of a flight may hit the ground.
     for (int frame = 0; frame < arguments.frames; ++frame) scene(frame);
   }
 
@@ -89,10 +89,10 @@ void make_frames(const Arguments& arguments) {
 }
 
 constexpr const char* synth_footer =
-    R"(Into the output folder: left.png, right.png, calibration.yaml, truth_disparity.tiff (32-bit float, NaN
-above the horizon), truth_visible.png (255 where the right camera sees the point too), truth_labels.png
-(16 bit, id of the damage), truth.json (plane, roll, rig, damages). With several frames left/000000.png
-and so on, and times.txt (seconds, a line per frame).
+    R"(Writes left.png, right.png, calibration.yaml, truth_disparity.tiff (32-bit float, NaN above the horizon),
+truth_visible.png (255: visible in both cameras), truth_labels.png (16 bit, damage ids) and truth.json (plane,
+roll, rig, damages) to the output folder. With several frames left/000000.png etc. and times.txt (seconds, one
+line per frame).
 
 Examples:
   roadstereo synth --scene demo --output road
@@ -102,21 +102,23 @@ Examples:
 }  // namespace
 
 void add_synth(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("synth", "Make stereo pairs of a road with exact truth");
+  CLI::App* command = app.add_subcommand("synth", "Render stereo pairs of a road with exact ground truth");
   command->footer(flight_help() + "\n" + synth_footer);
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--output", arguments->output, "Folder for the pairs; made when it is missing")->type_name("DIR");
+  command->add_option("--output", arguments->output, "Output folder; created if missing")->type_name("DIR");
   add_scene_options(*command, arguments->scene);
-  command->add_option("--frames", arguments->frames, "Pairs along the road")->type_name("N")->capture_default_str();
-  command->add_option("--flight", arguments->flight, "How the rig rolls, pitches and climbs; a little sway without")
+  command->add_option("--frames", arguments->frames, "Number of pairs along the road")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--flight", arguments->flight, "Roll, pitch and climb of the rig; default: slight motion")
       ->type_name("SPEC");
   command->add_option("--rate", arguments->rate_hz, "Frames per second, for times.txt")
       ->type_name("HZ")
       ->capture_default_str();
-  command->add_option("--threads", arguments->threads, "Worker threads; 0 takes all cores")
+  command->add_option("--threads", arguments->threads, "Worker threads; 0: all cores")
       ->type_name("N")
       ->capture_default_str();
-  command->add_flag("--list", arguments->list, "List the named scenes and stop");
+  command->add_flag("--list", arguments->list, "List the named scenes");
   command->add_flag("--quiet", arguments->quiet, "Print nothing on success");
   command->callback([arguments] { arguments->list ? list_scenes() : make_frames(*arguments); });
 }

@@ -6,7 +6,7 @@
 
 namespace roadstereo::cli {
 
-/// The content of truth.json: plane, roll, rig and every damage of one synthetic pair.
+/// Returns the content of truth.json: plane, roll, rig and all damages of one synthetic pair.
 std::string truth_json(const synth::Scene& scene, const synth::SyntheticPair& pair);
 
 }  // namespace roadstereo::cli

@@ -33,14 +33,14 @@ constexpr std::array<NamedType, 16> type_names{{{"char", PlyType::i8},
                                                 {"double", PlyType::f64},
                                                 {"float64", PlyType::f64}}};
 
-/// Takes the lines of a header one by one.
+/// Parses a header line by line.
 class HeaderReader {
  public:
   HeaderReader(const std::string& path, std::span<const std::uint8_t> bytes)
       : path_(path), text_(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), max_header_bytes)) {}
 
   PlyHeader read() {
-    if (next_line() != "ply") fail(path_, " is not a PLY file: it does not begin with \"ply\"");
+    if (next_line() != "ply") fail(path_, " is not a PLY file: it does not start with \"ply\"");
     bool has_format = false;
     for (std::string_view line = next_line(); line != "end_header"; line = next_line()) {
       const std::vector<std::string> words = split(line);
@@ -53,7 +53,7 @@ class HeaderReader {
       } else if (words[0] == "property") {
         read_property(words, line);
       } else {
-        refuse(line, "it must be a format, comment, element or property");
+        fail_line(line, "it must be a format, comment, element or property");
       }
     }
     if (!has_format) fail(path_, ": the PLY header has no line \"format\"");
@@ -62,7 +62,7 @@ class HeaderReader {
   }
 
  private:
-  [[noreturn]] void refuse(std::string_view line, const char* reason) const {
+  [[noreturn]] void fail_line(std::string_view line, const char* reason) const {
     fail(path_, ": the PLY header has the line \"", line.substr(0, max_shown), "\"; ", reason);
   }
 
@@ -91,34 +91,34 @@ class HeaderReader {
     } else if (name == "binary_big_endian") {
       header_.encoding = PlyEncoding::big_endian;
     } else {
-      refuse(line, "the format must be ascii, binary_little_endian or binary_big_endian");
+      fail_line(line, "the format must be ascii, binary_little_endian or binary_big_endian");
     }
   }
 
   void read_element(const std::vector<std::string>& words, std::string_view line) {
     PlyElement element;
-    if (words.size() != 3) refuse(line, "an element has a name and a number");
+    if (words.size() != 3) fail_line(line, "an element has a name and a number");
     element.name = words[1];
     const char* end = words[2].data() + words[2].size();
     const auto [stop, error] = std::from_chars(words[2].data(), end, element.count);
-    if (error != std::errc{} || stop != end) refuse(line, "the number of elements must be a whole number from 0 on");
+    if (error != std::errc{} || stop != end) fail_line(line, "the number of elements must be an integer of at least 0");
     header_.elements.push_back(element);
   }
 
   void read_property(const std::vector<std::string>& words, std::string_view line) {
-    if (header_.elements.empty()) refuse(line, "an element must come before it");
+    if (header_.elements.empty()) fail_line(line, "it must follow an element");
     PlyProperty property;
     property.is_list = words.size() == 5 && words[1] == "list";
-    if (!property.is_list && words.size() != 3) refuse(line, "a property has a type and a name");
+    if (!property.is_list && words.size() != 3) fail_line(line, "a property has a type and a name");
     property.name = words.back();
     property.type = read_type(words[words.size() - 2], line);
     if (property.is_list) property.count_type = read_type(words[2], line);
     const bool whole = property.count_type != PlyType::f32 && property.count_type != PlyType::f64;
-    if (!whole) refuse(line, "the length of a list must be of a whole type");
+    if (!whole) fail_line(line, "the length of a list must be of an integer type");
     auto& properties = header_.elements.back().properties;
     const bool twice = std::any_of(properties.begin(), properties.end(),
                                    [&](const PlyProperty& other) { return other.name == property.name; });
-    if (twice) refuse(line, "the element has that property already");
+    if (twice) fail_line(line, "the property is repeated");
     properties.push_back(property);
   }
 
@@ -126,7 +126,7 @@ class HeaderReader {
     const auto* found =
         std::find_if(type_names.begin(), type_names.end(), [&](const NamedType& type) { return type.first == name; });
     if (found == type_names.end())
-      refuse(line, "the type must be one of char, uchar, short, ushort, int, uint, float, double");
+      fail_line(line, "the type must be one of char, uchar, short, ushort, int, uint, float, double");
     return found->second;
   }
 

@@ -48,7 +48,7 @@ double decode(PlyType type, const std::uint8_t* bytes, bool swapped) {
   return value_at<double>(bytes, swapped);
 }
 
-/// The values after the header, one after the other, in whatever encoding.
+/// Reads the values after the header in any encoding.
 class Values {
  public:
   Values(const std::string& path, const PlyHeader& header, std::span<const std::uint8_t> data)
@@ -56,10 +56,10 @@ class Values {
 
   double next(PlyType type) { return encoding_ == PlyEncoding::ascii ? next_word() : next_bytes(type); }
 
-  /// What is left of the file.
+  /// Size of the unread part of the file.
   std::size_t bytes_left() const { return data_.size() - at_; }
 
-  /// Bytes that a value takes at the least; the last one of a text has no space behind it.
+  /// Minimum number of bytes of a value; the last one of a text file has no separator.
   std::size_t min_size(PlyType type) const { return encoding_ == PlyEncoding::ascii ? 1 : size_of(type); }
 
   void skip_list(const PlyProperty& property) {
@@ -70,7 +70,7 @@ class Values {
   }
 
   [[noreturn]] void fail_truncated() const {
-    fail(path_, ": the file is truncated: its PLY header promises more than there is");
+    fail(path_, ": the file is truncated: its PLY header declares more data");
   }
 
  private:
@@ -97,7 +97,7 @@ class Values {
     if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::quiet_NaN();
     if (error != std::errc{} || end != last) {
       constexpr std::size_t max_shown = 40;
-      fail(path_, ": \"", std::string(first, last).substr(0, max_shown), "\" stands where a number must be");
+      fail(path_, ": \"", std::string(first, last).substr(0, max_shown), "\" is not a number");
     }
     return value;
   }
@@ -108,15 +108,15 @@ class Values {
   std::size_t at_ = 0;
 };
 
-/// Every element takes at least so many bytes; refuses numbers that the file cannot hold before memory is asked for.
+/// Checks the number of elements against the size of the file before memory is allocated.
 void check_count(const std::string& path, const PlyElement& element, const Values& values) {
-  std::size_t least = 0;
+  std::size_t min_bytes = 0;
   for (const PlyProperty& property : element.properties) {
-    least += values.min_size(property.is_list ? property.count_type : property.type);
+    min_bytes += values.min_size(property.is_list ? property.count_type : property.type);
   }
-  if (least > 0 && element.count > values.bytes_left() / least) {
-    fail(path, ": the file is truncated: its header promises ", element.count, " of \"", element.name, "\", and ",
-         values.bytes_left(), " bytes are left for them");
+  if (min_bytes > 0 && element.count > values.bytes_left() / min_bytes) {
+    fail(path, ": the file is truncated: its header declares ", element.count, " of \"", element.name, "\", but only ",
+         values.bytes_left(), " bytes are left");
   }
 }
 
@@ -133,7 +133,7 @@ void skip_element(const PlyElement& element, Values& values) {
   }
 }
 
-/// The place of a scalar property among those of the vertices.
+/// Returns the index of a scalar property of the vertices.
 std::optional<std::size_t> find_property(const PlyElement& vertex, const std::string& name) {
   for (std::size_t i = 0; i < vertex.properties.size(); ++i) {
     if (vertex.properties[i].name == name && !vertex.properties[i].is_list) return i;
@@ -168,34 +168,34 @@ std::uint8_t colour_of(double value, PlyType type) {
   return std::isfinite(level) ? static_cast<std::uint8_t>(std::lround(std::clamp(level, 0.0, white))) : 0;
 }
 
-/// Where the figures of a vertex stand.
-struct VertexPlaces {
+/// Indices of coordinates and colours in the properties of a vertex.
+struct VertexProperties {
   std::array<std::size_t, 3> xyz{};
   std::optional<std::array<std::size_t, 3>> rgb{};
 };
 
-VertexPlaces find_places(const std::string& path, const PlyElement& vertex) {
-  VertexPlaces places;
+VertexProperties find_properties(const std::string& path, const PlyElement& vertex) {
+  VertexProperties properties;
   const std::array<std::string, 3> axes{"x", "y", "z"}, colours{"red", "green", "blue"};
   std::array<std::size_t, 3> rgb{};
   bool coloured = true;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = find_property(vertex, axes[i]);
     if (!axis) fail(path, ": the vertices have no property \"", axes[i], "\"");
-    places.xyz[i] = *axis;
+    properties.xyz[i] = *axis;
     const auto colour = find_property(vertex, colours[i]);
     coloured = coloured && colour;
     rgb[i] = colour.value_or(0);
   }
-  if (coloured) places.rgb = rgb;
-  return places;
+  if (coloured) properties.rgb = rgb;
+  return properties;
 }
 
 PointCloud read_vertices(const std::string& path, const PlyElement& vertex, Values& values) {
-  const VertexPlaces places = find_places(path, vertex);
+  const VertexProperties properties = find_properties(path, vertex);
   PointCloud cloud;
   cloud.points.reserve(vertex.count);
-  if (places.rgb) cloud.colours.reserve(vertex.count);
+  if (properties.rgb) cloud.colours.reserve(vertex.count);
   std::vector<double> row(vertex.properties.size());
   for (std::uint64_t i = 0; i < vertex.count; ++i) {
     for (std::size_t k = 0; k < row.size(); ++k) {
@@ -207,14 +207,14 @@ PointCloud read_vertices(const std::string& path, const PlyElement& vertex, Valu
       }
     }
     std::array<float, 3> point{};
-    for (std::size_t k = 0; k < 3; ++k) point[k] = static_cast<float>(row[places.xyz[k]]);
+    for (std::size_t k = 0; k < 3; ++k) point[k] = static_cast<float>(row[properties.xyz[k]]);
     if (!std::all_of(point.begin(), point.end(), [](float x) { return std::isfinite(x); })) continue;
     cloud.points.push_back(point);
-    if (!places.rgb) continue;
+    if (!properties.rgb) continue;
     std::array<std::uint8_t, 3> colour{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t place = (*places.rgb)[k];
-      colour[k] = colour_of(row[place], vertex.properties[place].type);
+      const std::size_t index = (*properties.rgb)[k];
+      colour[k] = colour_of(row[index], vertex.properties[index].type);
     }
     cloud.colours.push_back(colour);
   }

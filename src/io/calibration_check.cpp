@@ -17,11 +17,11 @@ void check_finite(double value, const std::string& source, const std::string& na
 
 void check_focal(double focal, int width, const std::string& source, const std::string& name) {
   check_finite(focal, source, name);
-  const double least = 0.2 * (width > 0 ? width : 32);  // images here are 32 … 8192 pixels wide
-  const double most = 50.0 * (width > 0 ? width : 8192);
-  if (!(focal >= least && focal <= most)) {
-    fail(source, ": the focal length is ", focal, "; it must be between ", least, " and ", most, " pixels (", name,
-         ")");
+  const double min_focal = 0.2 * (width > 0 ? width : 32);  // images here are 32 … 8192 pixels wide
+  const double max_focal = 50.0 * (width > 0 ? width : 8192);
+  if (!(focal >= min_focal && focal <= max_focal)) {
+    fail(source, ": the focal length is ", focal, "; it must be between ", min_focal, " and ", max_focal, " pixels (",
+         name, ")");
   }
 }
 
@@ -51,7 +51,7 @@ void check_matrix(const std::array<double, 9>& k, int width, const std::string& 
   check_focal(k[0], width, source, name + "[0]");
   check_focal(k[4], width, source, name + "[4]");
   if (k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
-    fail(source, ": ", name, " is no camera matrix; below its diagonal it must have zeros, and end with 1");
+    fail(source, ": ", name, " is not a camera matrix; it must be upper triangular and end with 1");
   }
 }
 
@@ -65,7 +65,7 @@ void check_distortion(const std::vector<double>& d, bool fisheye, const std::str
   }
 }
 
-/// Same matrix, no distortion, parallel axes, shifted along the rows alone.
+/// Whether both matrices are equal, without distortion, with parallel axes and a baseline along the rows.
 bool needs_no_rectification(const StereoRig& rig) {
   constexpr double tolerance = 1e-9;
   const auto zero = [](double value) { return std::abs(value) <= tolerance; };
@@ -103,7 +103,7 @@ void check_rig(const StereoRig& rig, const std::string& source) {
   check_distortion(rig.left_distortion, rig.fisheye, source, "D1");
   check_distortion(rig.right_distortion, rig.fisheye, source, "D2");
   for (const double value : rig.rotation) check_finite(value, source, "R");
-  if (!is_rotation(rig.rotation)) fail(source, ": R is no rotation; its rows must be orthogonal and of length 1");
+  if (!is_rotation(rig.rotation)) fail(source, ": R is not a rotation; its rows must be orthonormal");
   for (const double value : rig.translation_m) check_finite(value, source, "T");
   const auto& t = rig.translation_m;
   check_baseline(std::hypot(t[0], t[1], t[2]), source, "the length of T");

@@ -17,10 +17,10 @@ enum class Format { plain_yaml, opencv_stereo, ros_camera_info, kitti, middlebur
 CalibrationText read_text(const std::string& path) {
   const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
   if (std::find(bytes.begin(), bytes.end(), std::uint8_t{0}) != bytes.end()) {
-    fail(path, ": this is not a text file; a calibration is one");
+    fail(path, ": this is not a text file; a calibration must be one");
   }
   std::string text(bytes.begin(), bytes.end());
-  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // the byte order mark that some editors leave
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // byte order mark
   return {path, std::move(text)};
 }
 
@@ -36,7 +36,7 @@ bool is_opencv(std::string_view text) {
   return text.starts_with("%YAML:") || contains(text, "<opencv_storage") || contains(text, "opencv-matrix");
 }
 
-/// Numbers and nothing else; the first word tells, and the reader names one that is none.
+/// Whether the file starts with a number; the reader checks the others.
 bool is_k_txt(std::string_view text) {
   const std::vector<std::string_view> words = split_words(text, ",");
   constexpr std::string_view beginnings = "+-.0123456789";
@@ -59,7 +59,7 @@ Format recognise(const std::string& text) {
 }
 
 [[noreturn]] void fail_second(const CalibrationText& file, const std::string& second_path) {
-  fail(file.path, ": this calibration describes both cameras; the second file, ", second_path, ", must be left out");
+  fail(file.path, ": this calibration describes both cameras; remove the second file, ", second_path);
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ CalibrationFile read_calibration(const std::string& path, const std::string& sec
   const Format format = recognise(file.text);
   const bool has_second = !second_path.empty();
   if (format == Format::ros_camera_info) {
-    if (!has_second) fail(path, ": this is the camera_info of one camera; the right camera's file is needed too");
+    if (!has_second) fail(path, ": this is the camera_info of one camera; the file of the right camera is needed, too");
     return read_ros_camera_info(file, read_text(second_path));
   }
   if (format == Format::opencv_stereo) {
@@ -79,8 +79,8 @@ CalibrationFile read_calibration(const std::string& path, const std::string& sec
   }
   if (format == Format::unknown) {
     fail(path,
-         ": this is no calibration known here; it must be plain YAML (focal_px, cx_px, cy_px, baseline_m), "
-         "OpenCV stereo, ROS camera_info, KITTI, Middlebury or K.txt");
+         ": unknown calibration format; supported are plain YAML (focal_px, cx_px, cy_px, baseline_m), "
+         "OpenCV stereo, ROS camera_info, KITTI, Middlebury and K.txt");
   }
   if (has_second) fail_second(file, second_path);
   switch (format) {

@@ -15,20 +15,20 @@ struct CalibrationText {
   std::string text;
 };
 
-// One reader per format; each throws Error naming the file and the figure.
+// One reader per format. Each throws Error naming the file and the value.
 CalibrationFile read_plain_yaml(const CalibrationText& file);
-/// `second`, when given, is another file of the same kind that holds the keys missing in the first.
+/// `second`, if given, is another file of the same format with the keys missing in the first.
 CalibrationFile read_opencv_stereo(const CalibrationText& file, const CalibrationText* second);
 CalibrationFile read_ros_camera_info(const CalibrationText& left, const CalibrationText& right);
 CalibrationFile read_kitti(const CalibrationText& file);
 CalibrationFile read_middlebury(const CalibrationText& file);
 CalibrationFile read_k_txt(const CalibrationText& file);
 
-/// A number; throws Error when `text` is none or is not finite.
-double parse_figure(const std::string& path, const std::string& key, std::string_view text);
-/// Side of an image in pixels; throws Error when `text` is no whole number from 1 to 65535.
+/// Parses a finite number. Throws Error naming `path` and `key`.
+double parse_number(const std::string& path, const std::string& key, std::string_view text);
+/// Parses the side of an image, 1 … 65535 pixels. Throws Error naming `path` and `key`.
 int parse_side(const std::string& path, const std::string& key, std::string_view text);
-/// Words of a line or a file, separated by white space or one of `separators`.
+/// Splits text at white space and at any of `separators`.
 std::vector<std::string_view> split_words(std::string_view text, std::string_view separators = "");
 
 /// One line "key: value" or "key = value" of a text file.
@@ -36,12 +36,12 @@ struct KeyLine {
   std::string_view key;
   std::string_view value;
 };
-/// The lines of `text` that have the `separator` in them.
+/// Returns the lines of `text` that contain `separator`.
 std::vector<KeyLine> key_lines(std::string_view text, char separator);
-/// The line with that key; null when there is none.
+/// Returns the line with that key, or null.
 const KeyLine* find_key(const std::vector<KeyLine>& lines, std::string_view key);
 
-/// What the figures of a rectified rig are called in the file, for the sentence that refuses one.
+/// Names of the values of a rectified rig in its file, for error messages.
 struct FigureNames {
   std::string focal;
   std::string cx;
@@ -49,18 +49,18 @@ struct FigureNames {
   std::string baseline;
 };
 
-/// Refuses what is wrong whatever the image: figures that are not finite, an impossible focal length or
-/// baseline.
+/// Checks a rectified calibration. Throws Error if a value is not finite, or the focal length or baseline is out of
+/// range.
 void check_rectified(const StereoCalibration& calibration, const std::string& source, const FigureNames& names);
 
-/// One focal length must do for columns and rows.
+/// Throws Error if the focal lengths of columns and rows differ.
 void check_square_pixels(double fx, double fy, const std::string& source, const std::string& matrix);
 
-/// Refuses figures that are not finite, impossible focal lengths, a rotation that is none, an absurd distance
-/// between the cameras, a number of distortion coefficients that no model has.
+/// Checks an unrectified rig. Throws Error if a value is not finite, a focal length or the baseline is out of range, R
+/// is not a rotation, or the number of distortion coefficients fits no lens model.
 void check_rig(const StereoRig& rig, const std::string& source);
 
-/// A checked rig, as a rectified one when it needs no rectification.
+/// Checks the rig; returns it as `rectified` if it needs no rectification.
 CalibrationFile describe_rig(const StereoRig& rig, const std::string& format, const std::string& source);
 
 }  // namespace roadstereo::io

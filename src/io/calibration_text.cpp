@@ -16,7 +16,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(white_space) - first + 1);
 }
 
-/// YAML writes .nan and .inf, C writes nan and inf; from_chars knows the latter and no leading plus.
+/// from_chars accepts neither YAML's .nan and .inf nor a leading plus.
 std::string_view plain_number(std::string_view text) {
   if (text.size() > 1 && text.front() == '+') text.remove_prefix(1);
   if (text.size() > 1 && text.front() == '.' && (text[1] < '0' || text[1] > '9')) text.remove_prefix(1);
@@ -24,13 +24,13 @@ std::string_view plain_number(std::string_view text) {
 }
 
 std::string shortened(std::string_view text) {
-  constexpr std::size_t most = 40;
-  return std::string(text.substr(0, most)) + (text.size() > most ? "…" : "");
+  constexpr std::size_t max_shown = 40;
+  return std::string(text.substr(0, max_shown)) + (text.size() > max_shown ? "…" : "");
 }
 
 }  // namespace
 
-double parse_figure(const std::string& path, const std::string& key, std::string_view text) {
+double parse_number(const std::string& path, const std::string& key, std::string_view text) {
   const std::string_view number = plain_number(trimmed(text));
   double value = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
@@ -45,10 +45,10 @@ double parse_figure(const std::string& path, const std::string& key, std::string
 }
 
 int parse_side(const std::string& path, const std::string& key, std::string_view text) {
-  constexpr double most = 65535;
-  const double side = parse_figure(path, key, text);
-  if (side < 1 || side > most || side != std::floor(side)) {
-    fail(path, ": ", key, " is ", side, "; it must be a whole number of pixels from 1 to ", most);
+  constexpr double max_side = 65535;
+  const double side = parse_number(path, key, text);
+  if (side < 1 || side > max_side || side != std::floor(side)) {
+    fail(path, ": ", key, " is ", side, "; it must be a whole number of pixels from 1 to ", max_side);
   }
   return static_cast<int>(side);
 }

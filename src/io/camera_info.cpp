@@ -24,10 +24,10 @@ void check_projection(const CameraInfo& camera) {
        "; it must be the rectified focal length in pixels");
 }
 
-std::array<double, 9> figures_of(const cv::Matx33d& m) {
-  std::array<double, 9> figures{};
-  std::copy(m.val, m.val + 9, figures.begin());
-  return figures;
+std::array<double, 9> values_of(const cv::Matx33d& m) {
+  std::array<double, 9> values{};
+  std::copy(m.val, m.val + 9, values.begin());
+  return values;
 }
 
 void check_pair(const CameraInfo& left, const CameraInfo& right) {
@@ -42,7 +42,7 @@ void check_pair(const CameraInfo& left, const CameraInfo& right) {
   }
 }
 
-/// The camera's images are those of the rectified camera.
+/// Whether the images of the camera are already rectified.
 bool is_rectified(const CameraInfo& camera) {
   const bool undistorted = std::all_of(camera.d.begin(), camera.d.end(), [](double d) { return d == 0; });
   const cv::Matx33d p = camera.p.get_minor<3, 3>(0, 0);
@@ -50,7 +50,7 @@ bool is_rectified(const CameraInfo& camera) {
          cv::norm(camera.k - p) < 1e-6 * p(0, 0);
 }
 
-/// Position of the right camera's centre in the rectified left camera is −shift, metres.
+/// The centre of the right camera is at −shift in the rectified left camera, metres.
 cv::Vec3d rectified_shift(const CameraInfo& left, const CameraInfo& right) {
   const double f = left.p(0, 0);
   return {(right.p(0, 3) - left.p(0, 3)) / f, (right.p(1, 3) - left.p(1, 3)) / f, 0};
@@ -71,16 +71,16 @@ CalibrationFile rectified_file(const CameraInfo& left, const CameraInfo& right) 
   return {"ROS camera_info", calibration, std::nullopt};
 }
 
-/// Rectified coordinates are R_left·x_left and R_right·x_right, and differ by the shift alone:
+/// Rectified coordinates R_left·x_left and R_right·x_right differ only by the shift:
 /// x_right = R_rightᵀ·R_left·x_left + R_rightᵀ·shift.
 StereoRig rig_of(const CameraInfo& left, const CameraInfo& right) {
   const cv::Vec3d translation = right.r.t() * rectified_shift(left, right);
   StereoRig rig;
-  rig.left_matrix = figures_of(left.k);
-  rig.right_matrix = figures_of(right.k);
+  rig.left_matrix = values_of(left.k);
+  rig.right_matrix = values_of(right.k);
   rig.left_distortion = left.d;
   rig.right_distortion = right.d;
-  rig.rotation = figures_of(right.r.t() * left.r);
+  rig.rotation = values_of(right.r.t() * left.r);
   rig.translation_m = {translation[0], translation[1], translation[2]};
   rig.fisheye = is_fisheye(left);
   rig.width = left.width;

@@ -12,14 +12,14 @@
 namespace roadstereo::io {
 namespace {
 
-/// A colour at a place of the scale, 0 … 1.
+/// A colour at a position of the scale, 0 … 1.
 struct Stop {
   double at;
   cv::Vec3d bgr;
 };
 
-/// Red below, the grey of the road in the middle, blue above: a hole is red, and red-blind eyes tell both
-/// apart. The colours leave the grey quickly, so that shallow damage is seen.
+/// Diverging map: red below, grey at the road, blue above; distinguishable with red blindness. Saturation rises
+/// quickly, so that shallow damage is visible.
 constexpr std::size_t stop_count = 7;
 const std::array<Stop, stop_count>& diverging_stops() {
   static const std::array<Stop, stop_count> stops{{{0.00, {25, 0, 80}},
@@ -47,7 +47,7 @@ cv::Mat diverging_table() {
   return table;
 }
 
-/// Turbo without its darkest ends, which look like the black of invalid pixels.
+/// Turbo without its darkest ends, which resemble the black of invalid pixels.
 cv::Mat sequential_table() {
   constexpr int first = 16;
   constexpr int last = 246;
@@ -70,7 +70,7 @@ cv::Mat paint(const cv::Mat& levels, bool diverging) {
   return picture;
 }
 
-/// Robust standard deviation of the road around δt, from the values below it: vehicles and walls stand above.
+/// Robust standard deviation of the road around δt, from the values below δt only: vehicles and walls are above.
 double road_scatter(ImageView<const float> transformed, double delta_t) {
   Image<float> below(transformed.width(), transformed.height());
   const auto level = static_cast<float>(delta_t);
@@ -108,7 +108,7 @@ BarLayout bar_layout(const ColourScale& scale, int height, int text_height) {
 
 }  // namespace
 
-ColourScale spread_scale(ImageView<const float> map, const std::string& label) {
+ColourScale percentile_scale(ImageView<const float> map, const std::string& label) {
   const std::vector<double> ends = percentiles(map, {1, 99});
   ColourScale scale{0, 1, false, label};
   if (ends.empty()) return scale;
@@ -118,14 +118,14 @@ ColourScale spread_scale(ImageView<const float> map, const std::string& label) {
 }
 
 ColourScale transformed_scale(ImageView<const float> transformed, double delta_t) {
-  constexpr double min_reach_px = 1;
+  constexpr double min_half_range_px = 1;
   constexpr double max_scatters = 20;
   const std::vector<double> ends = percentiles(transformed, {0.25, 99.75});
-  double reach = 0;
-  for (const double end : ends) reach = std::max(reach, std::abs(end - delta_t));
-  reach = std::min(reach, max_scatters * road_scatter(transformed, delta_t));
-  reach = std::max(reach, min_reach_px);
-  return {delta_t - reach, delta_t + reach, true, "transformed, px (red: below road)"};
+  double half_range = 0;
+  for (const double end : ends) half_range = std::max(half_range, std::abs(end - delta_t));
+  half_range = std::min(half_range, max_scatters * road_scatter(transformed, delta_t));
+  half_range = std::max(half_range, min_half_range_px);
+  return {delta_t - half_range, delta_t + half_range, true, "transformed, px (red: below road)"};
 }
 
 cv::Mat colour_pixels(ImageView<const float> map, const ColourScale& scale) {

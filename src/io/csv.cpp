@@ -51,7 +51,7 @@ CsvLine& CsvLine::add_nothing() {
 }
 
 std::string CsvLine::end() {
-  text_.back() = '\r';  // in the place of the last comma
+  text_.back() = '\r';  // replaces the last comma
   text_ += '\n';
   return std::exchange(text_, {});
 }

@@ -6,17 +6,17 @@
 
 namespace roadstereo::io {
 
-/// A line of RFC 4180: cells between commas, CRLF at the end.
+/// Builds a line of RFC 4180 CSV.
 class CsvLine {
  public:
-  /// Quoted where it holds a comma, a quote or a line end.
+  /// Adds a text, quoted if it contains a comma, a quote or a line end.
   CsvLine& add(std::string_view text);
   CsvLine& add(const char* text) { return add(std::string_view(text)); }
   CsvLine& add(std::int64_t value);
   CsvLine& add(bool value);
-  /// The shortest digits that are read back as the same number; nothing for what is not finite.
+  /// Adds a number with the fewest digits that are read back as the same number; empty if it is not finite.
   CsvLine& add(double value);
-  /// With so many decimals.
+  /// Adds a number with `decimals` decimals.
   CsvLine& add(double value, int decimals);
   CsvLine& add_nothing();
 

@@ -8,7 +8,7 @@ namespace roadstereo::io {
 
 using Rgb = std::array<int, 3>;
 
-/// The colour of a damage in overlays and reports: that of its severity, or of its kind where no severity is known.
+/// Returns the colour of a damage in overlays and reports: by severity, or by kind if the severity is unknown.
 inline Rgb damage_colour(DamageKind kind, Severity severity) {
   switch (severity) {
     case Severity::high:

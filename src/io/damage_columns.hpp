@@ -10,19 +10,19 @@
 
 namespace roadstereo::io {
 
-/// One figure of a damage; monostate when it is not known. Numbers are finite.
+/// One value of a damage; monostate: unknown. Numbers are finite.
 using DamageValue = std::variant<std::monostate, std::int64_t, double, bool, std::string>;
 
-/// One column of the tables of damages.
+/// One column of the damage tables.
 struct DamageColumn {
   const char* name;
   DamageValue (*value)(const Damage& damage);
 };
 
-/// All of them, in their order.
+/// Returns all columns in order.
 const std::vector<DamageColumn>& damage_columns();
 
-/// Their names, and their values of one damage, as cells of a line. What is not known is empty.
+/// Append the names of the columns, or the values of one damage, to a line. Unknown values are empty.
 void add_damage_names(CsvLine& line);
 void add_damage_cells(const Damage& damage, CsvLine& line);
 

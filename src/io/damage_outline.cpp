@@ -14,7 +14,7 @@ cv::Scalar colour_of(const Damage& damage) {
   return {static_cast<double>(blue), static_cast<double>(green), static_cast<double>(red)};
 }
 
-/// Outlines of the region in the image's pixels; holes have theirs.
+/// Outlines of the region and of its holes, in pixels of the image.
 std::vector<std::vector<cv::Point>> outlines(const DamageMap& map, const Damage& damage) {
   const auto& [u0, v0, u1, v1] = damage.box_px;
   cv::Mat mask(v1 - v0 + 1, u1 - u0 + 1, CV_8UC1);

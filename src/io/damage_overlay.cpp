@@ -30,25 +30,25 @@ cv::Rect box_of(const Damage& damage) {
   return {cv::Point(u0, v0), cv::Point(u1 + 1, v1 + 1)};
 }
 
-/// Puts labels next to boxes where no label is yet.
-class LabelPlaces {
+/// Places labels next to boxes without overlap.
+class LabelPlacer {
  public:
-  LabelPlaces(cv::Size picture, int gap) : picture_(picture), gap_(gap) {}
+  LabelPlacer(cv::Size picture, int gap) : picture_(picture), gap_(gap) {}
 
   cv::Rect take(const cv::Rect& box, cv::Size label) {
     cv::Rect best;
-    int least = std::numeric_limits<int>::max();
-    for (const cv::Rect& place : candidates(box, label)) {
-      const int covered = overlap(place);
-      if (covered < least) best = place;
-      least = std::min(least, covered);
+    int min_covered = std::numeric_limits<int>::max();
+    for (const cv::Rect& position : candidates(box, label)) {
+      const int covered = overlap(position);
+      if (covered < min_covered) best = position;
+      min_covered = std::min(min_covered, covered);
     }
     taken_.push_back(best);
     return best;
   }
 
  private:
-  /// Above, below, right, left, in the middle; then further up and down.
+  /// Candidates: above, below, right, left, centre; then further up and down.
   std::vector<cv::Rect> candidates(const cv::Rect& box, cv::Size label) const {
     const int x = box.x + (box.width - label.width) / 2, y = box.y + (box.height - label.height) / 2;
     const int above = box.y - gap_ - label.height, below = box.br().y + gap_;
@@ -59,21 +59,21 @@ class LabelPlaces {
       corners.emplace_back(x, above - i * (label.height + gap_));
       corners.emplace_back(x, below + i * (label.height + gap_));
     }
-    std::vector<cv::Rect> places;
-    places.reserve(corners.size());
-    for (const cv::Point& corner : corners) places.push_back(inside({corner, label}));
-    return places;
+    std::vector<cv::Rect> positions;
+    positions.reserve(corners.size());
+    for (const cv::Point& corner : corners) positions.push_back(inside({corner, label}));
+    return positions;
   }
 
-  cv::Rect inside(cv::Rect place) const {
-    place.x = std::clamp(place.x, gap_, std::max(gap_, picture_.width - place.width - gap_));
-    place.y = std::clamp(place.y, gap_, std::max(gap_, picture_.height - place.height - gap_));
-    return place;
+  cv::Rect inside(cv::Rect position) const {
+    position.x = std::clamp(position.x, gap_, std::max(gap_, picture_.width - position.width - gap_));
+    position.y = std::clamp(position.y, gap_, std::max(gap_, picture_.height - position.height - gap_));
+    return position;
   }
 
-  int overlap(const cv::Rect& place) const {
+  int overlap(const cv::Rect& position) const {
     int area = 0;
-    for (const cv::Rect& other : taken_) area += (place & other).area();
+    for (const cv::Rect& other : taken_) area += (position & other).area();
     return area;
   }
 
@@ -83,9 +83,9 @@ class LabelPlaces {
 };
 
 void put_haloed(cv::Mat& picture, const std::string& text, cv::Point at, int height, const cv::Scalar& colour) {
-  const int reach = std::max(1, height / 7);
-  for (const int dy : {-reach, 0, reach}) {
-    for (const int dx : {-reach, 0, reach}) put_text(picture, text, at + cv::Point(dx, dy), height, dark);
+  const int halo = std::max(1, height / 7);
+  for (const int dy : {-halo, 0, halo}) {
+    for (const int dx : {-halo, 0, halo}) put_text(picture, text, at + cv::Point(dx, dy), height, dark);
   }
   put_text(picture, text, at, height, colour);
 }
@@ -94,20 +94,20 @@ void put_haloed(cv::Mat& picture, const std::string& text, cv::Point at, int hei
 
 Frame damage_overlay(const FrameView& picture, const DamageMap& map) {
   if (picture.width != map.ids.width() || picture.height != map.ids.height()) {
-    fail("the picture has ", picture.width, "×", picture.height, " pixels, but the map of damages has ",
-         map.ids.width(), "×", map.ids.height());
+    fail("the image has ", picture.width, "×", picture.height, " pixels, but the damage map has ", map.ids.width(), "×",
+         map.ids.height());
   }
   cv::Mat canvas = to_bgr(picture, find_white_level(picture, picture));
   const int letters = text_height_for(std::min(canvas.rows, canvas.cols));
   const int line = std::max(1, cvRound(letters / 7.0));
   for (const Damage& damage : map.damages) draw_outline(canvas, map, damage, line);
-  LabelPlaces places(canvas.size(), line + 2);
+  LabelPlacer positions(canvas.size(), line + 2);
   const cv::Scalar white{255, 255, 255};
   for (const Damage& damage : map.damages) {
     const std::string text = label_of(damage);
     const int width = text_width(text, letters);
-    const cv::Rect place = places.take(box_of(damage), {width + 2 * line, letters + letters / 2});
-    put_haloed(canvas, text, {place.x + line, place.y + letters + letters / 4}, letters, white);
+    const cv::Rect position = positions.take(box_of(damage), {width + 2 * line, letters + letters / 2});
+    put_haloed(canvas, text, {position.x + line, position.y + letters + letters / 4}, letters, white);
   }
   return frame_from(canvas, ChannelOrder::bgr);
 }

@@ -21,7 +21,7 @@ double scale_for(int height) {
   return cv::getFontScaleFromHeight(font, height, thickness_for(height));
 }
 
-/// What stands in for a character beyond ASCII.
+/// ASCII replacements of other characters.
 std::string substitute(std::string_view character) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 8> known{
       {{"×", "x"}, {"–", "-"}, {"−", "-"}, {"…", "..."}, {"°", " deg"}, {"±", "+/-"}, {"’", "'"}, {"·", "."}}};
@@ -70,7 +70,7 @@ void put_text(cv::Mat& picture, const std::string& text, cv::Point at, int heigh
 
 namespace {
 
-/// Paints with the colour as far as `cover` (0 … 255) covers the picture.
+/// Blends the colour with opacity `cover`, 0 … 255.
 void lay_colour(cv::Mat picture, const cv::Mat& cover, const cv::Scalar& colour) {
   const cv::Vec3d paint(colour[0], colour[1], colour[2]);
   for (int v = 0; v < picture.rows; ++v) {
@@ -101,22 +101,22 @@ void put_text_upwards(cv::Mat& picture, const std::string& text, cv::Point centr
 }
 
 int fitting_height(const std::string& text, int height, int max_length) {
-  constexpr int least = 6;
-  while (height > least && text_width(text, height) > max_length) --height;
+  constexpr int min_height = 6;
+  while (height > min_height && text_width(text, height) > max_length) --height;
   return height;
 }
 
-Ticks round_ticks(double lowest, double highest, int most) {
+Ticks round_ticks(double lowest, double highest, int max_count) {
   const double span = highest - lowest;
-  if (!(span > 0) || most < 1) return {{lowest}, 1};
-  const int exponent = static_cast<int>(std::floor(std::log10(span / most)));
+  if (!(span > 0) || max_count < 1) return {{lowest}, 1};
+  const int exponent = static_cast<int>(std::floor(std::log10(span / max_count)));
   double step = 0;
   int decimals = 0;
   for (int power = exponent; step == 0; ++power) {
     for (const double digit : {1.0, 2.0, 5.0}) {
       const double candidate = digit * std::pow(10.0, power);
       const double count = std::floor(highest / candidate) - std::ceil(lowest / candidate) + 1;
-      if (step == 0 && count <= most) {
+      if (step == 0 && count <= max_count) {
         step = candidate;
         decimals = std::max(0, -power);
       }

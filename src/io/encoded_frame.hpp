@@ -8,8 +8,7 @@
 
 namespace roadstereo::io {
 
-/// What `read_frame` does with the bytes of a file: PNG, JPEG, TIFF, PGM or PPM. Throws Error that begins with
-/// `source`.
+/// Decodes PNG, JPEG, TIFF, PGM or PPM, see `read_frame`. Throws Error; the message starts with `source`.
 Frame decode_frame(const std::string& source, const std::vector<std::uint8_t>& bytes);
 
 }  // namespace roadstereo::io

@@ -12,13 +12,13 @@ namespace {
 
 std::size_t size_of_ordinary_file(const std::string& path) {
   namespace fs = std::filesystem;
-  if (path.empty()) fail("the name of the file is empty");
+  if (path.empty()) fail("the file name is empty");
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) fail(path, ": the file does not exist");
   if (error) fail(path, ": the file cannot be read: ", error.message());
   if (fs::is_directory(status)) fail(path, ": this is a folder, not a file");
-  if (!fs::is_regular_file(status)) fail(path, ": this is not an ordinary file");
+  if (!fs::is_regular_file(status)) fail(path, ": this is not a regular file");
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) fail(path, ": the file cannot be read: ", error.message());
   return static_cast<std::size_t>(size);
@@ -29,7 +29,7 @@ std::size_t size_of_ordinary_file(const std::string& path) {
 std::vector<std::uint8_t> read_file(const std::string& path, std::size_t max_bytes) {
   const std::size_t size = size_of_ordinary_file(path);
   if (size > max_bytes) {
-    fail(path, ": the file has ", size, " bytes; a file of this kind has at most ", max_bytes);
+    fail(path, ": the file has ", size, " bytes; the limit is ", max_bytes);
   }
   errno = 0;
   std::ifstream file(path, std::ios::binary);

@@ -6,8 +6,8 @@
 
 namespace roadstereo::io {
 
-/// Reads a whole file. Throws Error naming it: missing, a folder, not an ordinary file, not readable, empty,
-/// or larger than `max_bytes`.
+/// Reads a whole file. Throws Error naming it if it is missing, not a regular file, unreadable, empty, or larger than
+/// `max_bytes`.
 std::vector<std::uint8_t> read_file(const std::string& path, std::size_t max_bytes);
 
 }  // namespace roadstereo::io

@@ -24,11 +24,11 @@ constexpr double kitti_steps = 256;  // per pixel of disparity
 cv::Mat decode(const std::string& path, const std::vector<std::uint8_t>& bytes) {
   cv::Mat mat;
   try {
-    mat = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);  // this mode also leaves the Exif orientation alone
+    mat = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);  // also ignores the Exif orientation
   } catch (const cv::Exception&) {
     mat.release();
   }
-  if (mat.empty()) fail(path, ": the image cannot be decoded; the file is damaged or of an unusual kind");
+  if (mat.empty()) fail(path, ": the image cannot be decoded; the file is damaged or of an unsupported type");
   return mat;
 }
 
@@ -44,8 +44,8 @@ std::vector<std::uint8_t> encode(const char* extension, const cv::Mat& mat, cons
   return bytes;
 }
 
-/// Reads PNG, JPEG or TIFF whose size is within limits. `least` and `most` are sides in pixels.
-cv::Mat decode_checked(const std::string& path, const std::vector<std::uint8_t>& bytes, int least,
+/// Decodes PNG, JPEG or TIFF. Throws Error if a side is not within `smallest_side` … `max_side` pixels.
+cv::Mat decode_checked(const std::string& path, const std::vector<std::uint8_t>& bytes, int smallest_side,
                        ImageHeader& header) {
   std::vector<std::uint8_t> essential;
   if (is_png(bytes)) {
@@ -55,25 +55,25 @@ cv::Mat decode_checked(const std::string& path, const std::vector<std::uint8_t>&
   } else {
     header = check_tiff(path, bytes);
   }
-  check_size(path, header.width, header.height, least, max_side);
+  check_size(path, header.width, header.height, smallest_side, max_side);
   return decode(path, essential.empty() ? bytes : essential);
 }
 
 void check_frame_depth(const std::string& path, const cv::Mat& mat) {
   if (mat.depth() != CV_8U && mat.depth() != CV_16U) {
     fail(path, ": the image's samples have ", 8 * mat.elemSize1(),
-         " bits or a sign; they must be whole numbers of 8 or 16 bits");
+         " bits or a sign; they must be unsigned integers of 8 or 16 bits");
   }
   if (mat.channels() != 1 && mat.channels() != 3 && mat.channels() != 4) {
     fail(path, ": the image has ", mat.channels(), " channels; it must have 1, 3 or 4");
   }
 }
 
-/// TIFF can hold samples that the decoder would not take quietly.
+/// Rejects TIFF samples that the decoder would print warnings for.
 void check_tiff_depth(const std::string& path, const ImageHeader& header) {
   if (header.is_float || (header.bits != 8 && header.bits != 16)) {
     fail(path, ": the image has ", header.bits, header.is_float ? "-bit floating-point" : "-bit",
-         " samples; they must be whole numbers of 8 or 16 bits");
+         " samples; they must be integers of 8 or 16 bits");
   }
 }
 
@@ -84,7 +84,7 @@ ChannelOrder order_of(const cv::Mat& mat) {
 
 std::uint16_t max_sample(const FrameView& frame) {
   const int channels = channel_count(frame.order);
-  const int colours = channels == 4 ? 3 : channels;  // opacity says nothing about light
+  const int colours = channels == 4 ? 3 : channels;  // without alpha
   std::uint16_t largest = 0;
   for (int v = 0; v < frame.height; ++v) {
     const auto* row =
@@ -100,7 +100,7 @@ Image<float> disparity_from_tiff(const std::string& path, const std::vector<std:
   ImageHeader header = check_tiff(path, bytes);
   if (!header.is_float || header.bits != 32 || header.channels != 1) {
     fail(path, ": the TIFF file has ", header.channels, " channel(s) of ", header.bits, "-bit ",
-         header.is_float ? "floating-point" : "whole", " numbers; a disparity TIFF has one of 32-bit floating-point");
+         header.is_float ? "floating-point" : "integer", " numbers; a disparity TIFF has one of 32-bit floating-point");
   }
   const cv::Mat mat = decode_checked(path, bytes, 1, header);
   if (mat.type() != CV_32FC1) fail(path, ": the TIFF file cannot be decoded as 32-bit floating-point numbers");
@@ -117,7 +117,7 @@ Image<float> disparity_from_png(const std::string& path, const std::vector<std::
   const cv::Mat mat = decode_checked(path, bytes, 1, header);
   if (mat.type() != CV_16UC1) {
     fail(path, ": the PNG file has ", mat.channels(), " channel(s) of ", 8 * mat.elemSize1(),
-         " bits; a disparity PNG has one of 16 bits (256 times the disparity)");
+         " bits; a disparity PNG has one channel of 16 bits (256 times the disparity)");
   }
   Image<float> map(mat.cols, mat.rows);
   for (int v = 0; v < mat.rows; ++v) {
@@ -133,7 +133,7 @@ std::uint16_t kitti_value(float disparity) {
   constexpr float max_px = 255.99F;
   if (!std::isfinite(disparity)) return 0;
   if (disparity < 0 || disparity > max_px) {
-    fail("a disparity is ", disparity, " px; a 16-bit PNG holds 0 … ", max_px, " px, a TIFF holds any");
+    fail("a disparity is ", disparity, " px; a 16-bit PNG can store 0 … ", max_px, " px, a TIFF any value");
   }
   return static_cast<std::uint16_t>(std::max(std::lround(kitti_steps * disparity), 1L));
 }
@@ -157,7 +157,8 @@ Frame read_frame(const std::string& path) {
 }
 
 double find_white_level(const FrameView& left, const FrameView& right) {
-  if (left.sample != right.sample) fail("one image of the pair has 8 bits, the other 16; both must have the same");
+  if (left.sample != right.sample)
+    fail("one image of the pair has 8 bits, the other 16; both must have the same depth");
   if (left.sample == SampleType::u8) return 255;
   const int largest = std::max(max_sample(left), max_sample(right));
   for (const int white : {1023, 4095, 16383}) {
@@ -175,7 +176,7 @@ Image<float> read_disparity(const std::string& path) {
 }
 
 std::vector<std::uint8_t> encode_float_tiff(ImageView<const float> map) {
-  constexpr int no_compression = 1;  // the one that every reader of float TIFF knows
+  constexpr int no_compression = 1;  // supported by every reader of float TIFF
   return encode(".tiff", mat_over(map), {cv::IMWRITE_TIFF_COMPRESSION, no_compression});
 }
 
@@ -188,7 +189,7 @@ std::vector<std::uint8_t> encode_kitti_png(ImageView<const float> disparity) {
 }
 
 std::vector<std::uint8_t> encode_png(const FrameView& frame) {
-  if (frame.sample != SampleType::u8) fail("the frame to encode has 16-bit samples; it must have 8-bit ones");
+  if (frame.sample != SampleType::u8) fail("the frame to encode has 16-bit samples; they must have 8 bits");
   const cv::Mat mat = mat_over(frame);
   if (frame.order != ChannelOrder::rgb && frame.order != ChannelOrder::rgba) return encode(".png", mat, {});
   cv::Mat swapped;

@@ -10,7 +10,7 @@
 namespace roadstereo::io {
 
 std::vector<std::uint8_t> encode_jpeg(const FrameView& frame, int quality, int max_width) {
-  if (frame.sample != SampleType::u8) fail("a JPEG holds 8 bits per sample, not 16");
+  if (frame.sample != SampleType::u8) fail("a JPEG has 8 bits per sample, not 16");
   cv::Mat pixels = frame.order == ChannelOrder::grey ? mat_over(frame) : to_bgr(frame, 255);
   if (pixels.cols > max_width) {
     const double scale = static_cast<double>(max_width) / pixels.cols;

@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint8_t end_of_image = 0xd9;
 constexpr std::uint8_t start_of_scan = 0xda;
 
-/// Start-of-frame markers; 0xc4, 0xc8 and 0xcc lie among them but are something else.
+/// Start-of-frame markers; 0xc4, 0xc8 and 0xcc are in their range but are none.
 bool is_start_of_frame(std::uint8_t marker) {
   return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
 }
@@ -22,7 +22,7 @@ int big_endian_16(Bytes bytes, std::size_t at) {
   return bytes[at] << 8 | bytes[at + 1];
 }
 
-/// Walks from marker to marker; each step says so when the file ends early.
+/// Reads marker by marker; throws Error if the file is truncated.
 class SegmentWalk {
  public:
   SegmentWalk(const std::string& path, Bytes bytes) : path_(path), bytes_(bytes) {}
@@ -44,7 +44,7 @@ class SegmentWalk {
     return bytes_.subspan(at_ - length + 2, length - 2);
   }
 
-  /// Coded data ends at the first marker that is neither a stuffed zero nor a restart.
+  /// Skips coded data up to the first marker that is neither a stuffed zero nor a restart.
   void skip_coded_data() {
     for (;;) {
       need(2);
@@ -101,7 +101,7 @@ ImageHeader check_jpeg(const std::string& path, Bytes bytes) {
       has_scan = true;
     }
   }
-  if (!has_frame || !has_scan) fail(path, ": the JPEG file is damaged: it has no picture");
+  if (!has_frame || !has_scan) fail(path, ": the JPEG file is damaged: it has no image");
   return header;
 }
 

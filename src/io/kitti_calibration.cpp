@@ -8,7 +8,7 @@ namespace {
 
 using Projection = std::array<double, 12>;
 
-/// How one pair of cameras is called in the file.
+/// Keys of one pair of cameras.
 struct PairNames {
   std::string left;
   std::string right;
@@ -20,14 +20,14 @@ Projection read_projection(const CalibrationText& file, const std::vector<KeyLin
   if (line == nullptr) fail(file.path, ": ", key, " is missing");
   const std::vector<std::string_view> words = split_words(line->value);
   Projection p{};
-  if (words.size() != p.size()) fail(file.path, ": ", key, " has ", words.size(), " figures; it must have 12");
+  if (words.size() != p.size()) fail(file.path, ": ", key, " has ", words.size(), " values; it must have 12");
   for (std::size_t i = 0; i < p.size(); ++i) {
-    p[i] = parse_figure(file.path, key + "[" + std::to_string(i) + "]", words[i]);
+    p[i] = parse_number(file.path, key + "[" + std::to_string(i) + "]", words[i]);
   }
   return p;
 }
 
-/// The colour pair wins over the grey one; what is there in part is named when the rest is missing.
+/// Prefers the colour pair to the grey one; an incomplete pair is named in the error.
 PairNames choose_pair(const std::vector<KeyLine>& lines) {
   const std::array<PairNames, 4> pairs{{{"P2", "P3", "S_rect_02"},
                                         {"P_rect_02", "P_rect_03", "S_rect_02"},
@@ -48,7 +48,7 @@ void read_size(const CalibrationText& file, const std::vector<KeyLine>& lines, c
   const KeyLine* line = find_key(lines, key);
   if (line == nullptr) return;
   const std::vector<std::string_view> words = split_words(line->value);
-  if (words.size() != 2) fail(file.path, ": ", key, " has ", words.size(), " figures; it must have 2");
+  if (words.size() != 2) fail(file.path, ": ", key, " has ", words.size(), " values; it must have 2");
   calibration.width = parse_side(file.path, key, words[0]);
   calibration.height = parse_side(file.path, key, words[1]);
 }

@@ -7,7 +7,7 @@
 
 namespace roadstereo::io {
 
-/// Encodes a frame of 8 or 16 bits as PNG with its own samples. `level`: 0 (none) … 9 (smallest); 1 is fast.
+/// Encodes an 8- or 16-bit frame as PNG, samples unchanged. `level`: compression, 0 (none) … 9 (smallest); 1 is fast.
 std::vector<std::uint8_t> encode_lossless_png(const FrameView& frame, int level);
 
 }  // namespace roadstereo::io

@@ -19,9 +19,9 @@ std::array<double, 9> read_camera(const CalibrationText& file, const std::vector
                                   const std::string& key) {
   const std::vector<std::string_view> words = split_words(value_of(file, lines, key), "[];,");
   std::array<double, 9> k{};
-  if (words.size() != k.size()) fail(file.path, ": ", key, " has ", words.size(), " figures; it must have 9");
+  if (words.size() != k.size()) fail(file.path, ": ", key, " has ", words.size(), " values; it must have 9");
   for (std::size_t i = 0; i < k.size(); ++i) {
-    k[i] = parse_figure(file.path, key + "[" + std::to_string(i) + "]", words[i]);
+    k[i] = parse_number(file.path, key + "[" + std::to_string(i) + "]", words[i]);
   }
   return k;
 }
@@ -44,10 +44,10 @@ CalibrationFile read_middlebury(const CalibrationText& file) {
   calibration.cx_px = left[2];
   calibration.cy_px = left[5];
   calibration.disparity_offset_px = find_key(lines, "doffs") != nullptr
-                                        ? parse_figure(file.path, "doffs", value_of(file, lines, "doffs"))
+                                        ? parse_number(file.path, "doffs", value_of(file, lines, "doffs"))
                                         : right[2] - left[2];
   calibration.baseline_m =
-      metres_per_millimetre * parse_figure(file.path, "baseline", value_of(file, lines, "baseline"));
+      metres_per_millimetre * parse_number(file.path, "baseline", value_of(file, lines, "baseline"));
   check_rectified(calibration, file.path,
                   {"cam0[0]", "cam0[2]", "cam0[5]", "\"baseline\", which this format gives in millimetres"});
   check_square_pixels(left[0], left[4], file.path, "cam0");

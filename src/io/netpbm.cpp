@@ -19,7 +19,7 @@ bool is_space(std::uint8_t c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-/// The words of a header: separated by white space, `#` opens a comment that ends with its line.
+/// Reads the words of a header: separated by white space; `#` starts a comment up to the end of the line.
 class Words {
  public:
   Words(const std::string& path, Bytes bytes) : path_(path), bytes_(bytes) {}
@@ -43,7 +43,7 @@ class Words {
     return value;
   }
 
-  /// The samples: after the single white space that ends the header.
+  /// Returns the samples after the single white space that ends the header.
   Bytes rest() const { return bytes_.subspan(std::min(at_ + 1, bytes_.size())); }
 
  private:
@@ -86,7 +86,7 @@ void read_binary_samples(const std::string& path, const Words& words, Frame& fra
   const Bytes data = words.rest();
   const std::size_t size = frame.bytes.size();
   if (data.size() < size) {
-    fail(path, ": the file is truncated: ", size, " bytes of samples are expected, ", data.size(), " are there");
+    fail(path, ": the file is truncated: ", size, " bytes of samples are expected, but there are ", data.size());
   }
   if (frame.sample == SampleType::u8) {
     std::memcpy(frame.bytes.data(), data.data(), size);
@@ -112,7 +112,7 @@ float float_at(const std::uint8_t* bytes, bool little_endian) {
   return std::bit_cast<float>(bits);
 }
 
-/// Some writers end the header's last line with carriage return and line feed.
+/// Some writers end the last line of the header with CRLF.
 Bytes without_line_feed(Bytes data, std::size_t size) {
   return data.size() > size && data[0] == '\n' ? data.subspan(1) : data;
 }
@@ -128,10 +128,10 @@ bool is_pfm(Bytes bytes) {
   return bytes.size() >= 3 && bytes[0] == 'P' && (bytes[1] == 'f' || bytes[1] == 'F') && is_space(bytes[2]);
 }
 
-void check_size(const std::string& path, std::int64_t width, std::int64_t height, int least, int most) {
-  if (width < least || height < least || width > most || height > most) {
-    fail(path, ": the image has ", width, "×", height, " pixels; it must have between ", least, "×", least, " and ",
-         most, "×", most);
+void check_size(const std::string& path, std::int64_t width, std::int64_t height, int min_side, int max_side) {
+  if (width < min_side || height < min_side || width > max_side || height > max_side) {
+    fail(path, ": the image has ", width, "×", height, " pixels; it must have between ", min_side, "×", min_side,
+         " and ", max_side, "×", max_side);
   }
 }
 
@@ -168,13 +168,13 @@ Image<float> read_pfm(const std::string& path, Bytes bytes) {
   check_size(path, width, height, 1, max_side);
   const auto scale = words.number<double>("the scale");
   if (!std::isfinite(scale) || scale == 0) {
-    fail(path, ": the scale is ", scale, "; its sign must tell the byte order");
+    fail(path, ": the scale is ", scale, "; it must not be 0, its sign is the byte order");
   }
   const std::size_t row_bytes = static_cast<std::size_t>(width) * sizeof(float);
   const std::size_t size = row_bytes * static_cast<std::size_t>(height);
   const Bytes data = without_line_feed(words.rest(), size);
   if (data.size() < size) {
-    fail(path, ": the file is truncated: ", size, " bytes of values are expected, ", data.size(), " are there");
+    fail(path, ": the file is truncated: ", size, " bytes of values are expected, but there are ", data.size());
   }
   Image<float> map(width, height);
   for (int v = 0; v < height; ++v) {

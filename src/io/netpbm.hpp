@@ -10,14 +10,14 @@ namespace roadstereo::io {
 bool is_netpbm(Bytes bytes);  ///< PGM or PPM, binary or text
 bool is_pfm(Bytes bytes);     ///< portable float map, grey or colour
 
-/// Throws Error naming `path` when a size is outside `least` … `most` pixels.
-void check_size(const std::string& path, std::int64_t width, std::int64_t height, int least, int most);
+/// Throws Error naming `path` if a side is outside `min_side` … `max_side` pixels.
+void check_size(const std::string& path, std::int64_t width, std::int64_t height, int min_side, int max_side);
 
-/// Samples of 8 bits are stretched to 0 … 255 when the file's white is lower; samples of 16 bits stay as they
-/// are.
+/// Decodes PGM or PPM. 8-bit samples are scaled to 0 … 255 if the maximum value of the file is lower; 16-bit samples
+/// are unchanged.
 Frame read_netpbm(const std::string& path, Bytes bytes);
 
-/// Not finite becomes NaN. Both byte orders; the scale factor's size says nothing and is ignored.
+/// Decodes PFM in either byte order; infinity becomes NaN. The magnitude of the scale factor is ignored.
 Image<float> read_pfm(const std::string& path, Bytes bytes);
 
 }  // namespace roadstereo::io

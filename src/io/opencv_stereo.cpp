@@ -8,7 +8,7 @@
 namespace roadstereo::io {
 namespace {
 
-/// The top level of one file or of two that complete each other.
+/// Top-level nodes of one file, or of two files that complete each other.
 class Storage {
  public:
   Storage(const CalibrationText& file, const CalibrationText* second) : path_(file.path) {
@@ -18,7 +18,7 @@ class Storage {
 
   const std::string& path() const { return path_; }
 
-  /// The first of `keys` that exists, with its name; an empty node when none does.
+  /// Returns the first existing node of `keys` and its name, or an empty node.
   cv::FileNode find(std::initializer_list<const char*> keys, std::string& name) const {
     for (const cv::FileStorage& file : files_) {
       if (!file.isOpened()) continue;
@@ -41,45 +41,45 @@ class Storage {
     try {
       opened = storage.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
     } catch (const cv::Exception& error) {
-      fail(file.path, ": this is no valid OpenCV calibration: ", error.err);
+      fail(file.path, ": invalid OpenCV calibration: ", error.err);
     }
-    if (!opened) fail(file.path, ": this is no valid OpenCV calibration");
+    if (!opened) fail(file.path, ": invalid OpenCV calibration");
   }
 
   std::string path_;
   std::array<cv::FileStorage, 2> files_;
 };
 
-/// A damaged file can claim a matrix that does not fit into memory.
+/// Limits the size of a matrix in a damaged file.
 void check_claimed_size(const Storage& storage, const std::string& key, const cv::FileNode& node) {
-  constexpr int most = 14;  // coefficients of the longest lens model
+  constexpr int max_side = 14;  // number of coefficients of the largest lens model
   for (const char* side : {"rows", "cols"}) {
     const cv::FileNode claimed = node[side];
-    if (claimed.isInt() && static_cast<int>(claimed) >= 0 && static_cast<int>(claimed) <= most) continue;
-    fail(storage.path(), ": ", key, " must be a matrix with at most ", most, " rows and columns");
+    if (claimed.isInt() && static_cast<int>(claimed) >= 0 && static_cast<int>(claimed) <= max_side) continue;
+    fail(storage.path(), ": ", key, " must be a matrix with at most ", max_side, " rows and columns");
   }
 }
 
-std::vector<double> figures_of(const Storage& storage, const std::string& key, const cv::FileNode& node) {
+std::vector<double> values_of(const Storage& storage, const std::string& key, const cv::FileNode& node) {
   cv::Mat matrix;
   if (node.isMap()) {
     check_claimed_size(storage, key, node);
     try {
       matrix = node.mat();
     } catch (const cv::Exception&) {
-      fail(storage.path(), ": ", key, " is no matrix of numbers");
+      fail(storage.path(), ": ", key, " is not a matrix of numbers");
     }
-    cv::Mat figures;
-    matrix.reshape(1, 1).convertTo(figures, CV_64F);
-    return {figures.begin<double>(), figures.end<double>()};
+    cv::Mat values;
+    matrix.reshape(1, 1).convertTo(values, CV_64F);
+    return {values.begin<double>(), values.end<double>()};
   }
-  std::vector<double> figures;
+  std::vector<double> values;
   if (!node.isSeq()) fail(storage.path(), ": ", key, " must be a matrix or a list of numbers");
   for (const cv::FileNode& item : node) {
     if (!item.isInt() && !item.isReal()) fail(storage.path(), ": ", key, " must be a list of numbers");
-    figures.push_back(static_cast<double>(item));
+    values.push_back(static_cast<double>(item));
   }
-  return figures;
+  return values;
 }
 
 template <std::size_t Count>
@@ -91,19 +91,19 @@ std::array<double, Count> read_matrix(const Storage& storage, std::initializer_l
     if (keys.size() > 1) other.append(" (or ").append(*(keys.begin() + 1)).append(")");
     fail(storage.path(), ": ", *keys.begin(), other, " is missing");
   }
-  const std::vector<double> figures = figures_of(storage, key, node);
-  if (figures.size() != Count) {
-    fail(storage.path(), ": ", key, " has ", figures.size(), " figures; it must have ", Count);
+  const std::vector<double> values = values_of(storage, key, node);
+  if (values.size() != Count) {
+    fail(storage.path(), ": ", key, " has ", values.size(), " values; it must have ", Count);
   }
   std::array<double, Count> matrix{};
-  std::copy(figures.begin(), figures.end(), matrix.begin());
+  std::copy(values.begin(), values.end(), matrix.begin());
   return matrix;
 }
 
 std::vector<double> read_distortion(const Storage& storage, const char* key) {
   std::string name;
   const cv::FileNode node = storage.find({key}, name);
-  return node.empty() ? std::vector<double>{} : figures_of(storage, key, node);
+  return node.empty() ? std::vector<double>{} : values_of(storage, key, node);
 }
 
 int read_side(const Storage& storage, std::initializer_list<const char*> keys, std::size_t index) {
@@ -144,8 +144,8 @@ StereoRig read_rig(const CalibrationText& file, const CalibrationText* second) {
 CalibrationFile read_opencv_stereo(const CalibrationText& file, const CalibrationText* second) {
   try {
     return describe_rig(read_rig(file, second), "OpenCV stereo", file.path);
-  } catch (const cv::Exception&) {  // a structure that the parser takes and the look-up does not
-    fail(file.path, ": this is no valid OpenCV calibration");
+  } catch (const cv::Exception&) {  // parsed, but of another structure
+    fail(file.path, ": invalid OpenCV calibration");
   }
 }
 

@@ -26,7 +26,7 @@ bool is_full(int error) {
   fail<SystemError>("cannot write ", file.string(), ": ", std::generic_category().message(error));
 }
 
-/// The folders on the way to `folder` that do not exist, innermost first.
+/// The missing folders of the path `folder`, innermost first.
 std::vector<fs::path> missing_folders(const fs::path& folder) {
   std::vector<fs::path> missing;
   std::error_code ignored;
@@ -39,7 +39,7 @@ void write_file(const fs::path& path, const fs::path& shown_as, std::span<const 
   if (file == nullptr) fail_write(shown_as, errno);
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
   const int write_error = errno;
-  const bool closed = std::fclose(file) == 0;  // the last bytes are written here
+  const bool closed = std::fclose(file) == 0;  // flushes the buffer
   if (!written) fail_write(shown_as, write_error);
   if (!closed) fail_write(shown_as, errno);
 }
@@ -48,16 +48,16 @@ void check_name(const std::string& name) {
   const fs::path path(name);
   const bool climbs = std::find(path.begin(), path.end(), fs::path("..")) != path.end();
   if (name.empty() || path.is_absolute() || climbs || !path.has_filename()) {
-    fail("the output file's name is \"", name, "\"; it must be a relative name without \"..\"");
+    fail("the output file name is \"", name, "\"; it must be relative and without \"..\"");
   }
 }
 
-/// Renames files and can take it back.
+/// Moves files with rollback.
 class Moves {
  public:
   explicit Moves(fs::path replaced) : replaced_(std::move(replaced)) {}
 
-  /// Moves `from` to `to`; a file that is there is kept aside.
+  /// Moves `from` to `to`; an existing file is backed up.
   void move(const fs::path& from, const fs::path& to) {
     Move done{from, to, {}};
     if (fs::is_directory(to)) throw fs::filesystem_error("", to, std::make_error_code(std::errc::is_a_directory));
@@ -92,7 +92,7 @@ class Moves {
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
-  if (folder.empty()) fail("the output folder's name is empty");
+  if (folder.empty()) fail("the name of the output folder is empty");
   made_folders_ = missing_folders(folder);
   std::error_code error;
   fs::create_directories(folder, error);

@@ -5,12 +5,12 @@ namespace roadstereo::io {
 CalibrationFile read_plain_yaml(const CalibrationText& file) {
   const YAML::Node root = load_yaml(file);
   StereoCalibration calibration;
-  calibration.focal_px = yaml_figure(file, root, "focal_px");
-  calibration.cx_px = yaml_figure(file, root, "cx_px");
-  calibration.cy_px = yaml_figure(file, root, "cy_px");
-  calibration.baseline_m = yaml_figure(file, root, "baseline_m");
+  calibration.focal_px = yaml_number(file, root, "focal_px");
+  calibration.cx_px = yaml_number(file, root, "cx_px");
+  calibration.cy_px = yaml_number(file, root, "cy_px");
+  calibration.baseline_m = yaml_number(file, root, "baseline_m");
   if (root["disparity_offset_px"]) {
-    calibration.disparity_offset_px = yaml_figure(file, root, "disparity_offset_px");
+    calibration.disparity_offset_px = yaml_number(file, root, "disparity_offset_px");
   }
   calibration.width = yaml_side(file, root, "width");
   calibration.height = yaml_side(file, root, "height");

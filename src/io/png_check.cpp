@@ -37,7 +37,7 @@ Chunk next_chunk(const std::string& path, Bytes bytes, std::size_t at) {
                     bytes.subspan(at + 8, size),
                     bytes.subspan(at, size + chunk_frame)};
   if (checksum(bytes.subspan(at + 4, size + 4)) != big_endian_32(bytes, at + 8 + size)) {
-    fail(path, ": the PNG file is damaged: a checksum does not agree");
+    fail(path, ": the PNG file is damaged: wrong checksum");
   }
   return chunk;
 }
@@ -104,7 +104,7 @@ ImageHeader check_png(const std::string& path, Bytes bytes, std::vector<std::uin
   }
   constexpr std::size_t colour_type_at = 25;
   if (!has_data || (essential[colour_type_at] == 3 && !has_palette)) {
-    fail(path, ": the PNG file is damaged: a part of it is missing");
+    fail(path, ": the PNG file is damaged: a chunk is missing");
   }
   return header;
 }

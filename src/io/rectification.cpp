@@ -12,7 +12,7 @@
 namespace roadstereo::io {
 namespace {
 
-/// Rotations into the rectified cameras and their common projection.
+/// Rotations to the rectified cameras and their projection matrices.
 struct RectifiedCameras {
   cv::Matx33d left_rotation;
   cv::Matx33d right_rotation;
@@ -20,14 +20,14 @@ struct RectifiedCameras {
   cv::Matx34d right;
 };
 
-/// Where each pixel of a rectified image comes from.
+/// Source coordinates of each pixel of a rectified image.
 struct PixelMap {
   cv::Mat x;
   cv::Mat y;
 };
 
-cv::Matx33d matrix_of(const std::array<double, 9>& figures) {
-  return cv::Matx33d(figures.data());
+cv::Matx33d matrix_of(const std::array<double, 9>& values) {
+  return cv::Matx33d(values.data());
 }
 
 std::string size_text(int width, int height) {
@@ -41,20 +41,20 @@ void check_size(const StereoRig& rig, int width, int height) {
   }
 }
 
-/// Rectification turns rows into epipolar lines, so the right camera must lie to the right.
+/// The right camera must be at the right of the left one, since rows become epipolar lines.
 void check_arrangement(const StereoRig& rig) {
   const cv::Vec3d translation(rig.translation_m.data());
-  const cv::Vec3d centre = matrix_of(rig.rotation).t() * -translation;  // of the right camera, seen from the left
+  const cv::Vec3d centre = matrix_of(rig.rotation).t() * -translation;  // of the right camera in the left one's frame
   const double sideways = std::abs(centre[0]);
-  const auto refuse = [](const char* where, double distance) {
-    fail("the right camera lies ", std::abs(distance), " m ", where, " the left one; it must lie to the right of it");
+  const auto reject = [](const char* where, double distance) {
+    fail("the right camera is ", std::abs(distance), " m ", where, " the left one; it must be to the right of it");
   };
   if (std::abs(centre[1]) >= sideways && std::abs(centre[1]) >= std::abs(centre[2])) {
-    refuse(centre[1] > 0 ? "below" : "above", centre[1]);
+    reject(centre[1] > 0 ? "below" : "above", centre[1]);
   }
-  if (std::abs(centre[2]) >= sideways) refuse(centre[2] > 0 ? "in front of" : "behind", centre[2]);
+  if (std::abs(centre[2]) >= sideways) reject(centre[2] > 0 ? "in front of" : "behind", centre[2]);
   if (centre[0] <= 0) {
-    fail("the right camera lies ", -centre[0],
+    fail("the right camera is ", -centre[0],
          " m to the left of the left one; the cameras are swapped, or T has the wrong sign");
   }
 }
@@ -95,22 +95,21 @@ PixelMap pixel_map(const std::array<double, 9>& matrix, const std::vector<double
 }
 
 bool lies_inside(const PixelMap& map, cv::Size size) {
-  constexpr double tolerance_px = 0.5;  // half of the border pixel
+  constexpr double tolerance_px = 0.5;  // half a pixel
   const auto within = [](const cv::Mat& coordinate, int side) {
-    double least = 0;
-    double most = 0;
-    cv::minMaxLoc(coordinate, &least, &most);
-    return least >= -tolerance_px && most <= side - 1 + tolerance_px;
+    double smallest = 0;
+    double largest = 0;
+    cv::minMaxLoc(coordinate, &smallest, &largest);
+    return smallest >= -tolerance_px && largest <= side - 1 + tolerance_px;
   };
   return within(map.x, size.width) && within(map.y, size.height);
 }
 
-/// Both maps, looking only at image content. OpenCV's own choice of the focal length is approximate (a few
-/// points of the border are tried) and for fisheye lenses far off, so the view is narrowed until no pixel
-/// looks outside.
+/// Computes both maps so that all pixels have image content. OpenCV's choice of the focal length is approximate (it
+/// tests a few points of the border) and wrong for fisheye lenses, so the view is narrowed step by step.
 std::pair<PixelMap, PixelMap> inner_maps(const StereoRig& rig, cv::Size size, RectifiedCameras& cameras) {
   constexpr double zoom = 1.01;
-  constexpr int max_steps = 160;  // about five times the focal length
+  constexpr int max_steps = 160;  // up to about five times the focal length
   for (int step = 0; step < max_steps; ++step) {
     PixelMap left =
         pixel_map(rig.left_matrix, rig.left_distortion, rig.fisheye, cameras.left_rotation, cameras.left, size);
@@ -123,7 +122,7 @@ std::pair<PixelMap, PixelMap> inner_maps(const StereoRig& rig, cv::Size size, Re
       (*p)(0, 3) *= zoom;  // f·T
     }
   }
-  fail("the rig cannot be rectified: the cameras look in too different directions, or a distortion is absurd");
+  fail("the rig cannot be rectified: the optical axes diverge too much, or a distortion is out of range");
 }
 
 Frame resample(const Frame& frame, const PixelMap& map) {

@@ -9,15 +9,15 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr int picture_width = 900;       // of one panel, so that the sheet is about 2000 wide
-constexpr int min_picture_height = 260;  // an axis must fit beside it
+constexpr int picture_width = 900;       // of one panel; the sheet is about 2000 wide
+constexpr int min_picture_height = 260;  // leaves room for an axis
 constexpr int max_picture_height = 900;
 constexpr int text_height = 14;
 constexpr int title_height = 20;
 
-/// Where the parts of a panel lie; every panel has the same.
+/// Layout of a panel; equal for all panels.
 struct SheetLayout {
-  cv::Size picture;  // the image or map
+  cv::Size picture;  // image or map
   cv::Size panel;    // with title, scale bar and axis
   int margin = 24;
   int head = 4 * title_height;
@@ -30,7 +30,7 @@ struct SheetLayout {
 
 constexpr int panel_head = 2 * title_height;
 
-/// The image's size scaled into the panel, its shape kept.
+/// Size of the image scaled to the panel with its aspect ratio.
 cv::Size picture_size(int width, int height) {
   const double scale =
       std::min(static_cast<double>(picture_width) / width, static_cast<double>(max_picture_height) / height);
@@ -60,7 +60,7 @@ void draw_map(cv::Mat& canvas, cv::Rect panel, const SheetLayout& layout, ImageV
 
 Frame result_sheet(const FrameView& left, ImageView<const float> disparity, ImageView<const float> transformed,
                    double delta_t, const std::optional<RollEstimate>& geometry, const std::string& title) {
-  const ColourScale disparity_scale = spread_scale(disparity, "disparity, px");
+  const ColourScale disparity_scale = percentile_scale(disparity, "disparity, px");
   const ColourScale damage_scale = transformed_scale(transformed, delta_t);
   const cv::Size axis = v_disparity_margin(disparity.height(), text_height);
   SheetLayout layout;
@@ -80,7 +80,7 @@ Frame result_sheet(const FrameView& left, ImageView<const float> disparity, Imag
   draw_picture(canvas, image_panel, to_bgr(left, find_white_level(left, left)), layout.picture);
 
   const cv::Rect disparity_panel = layout.area(1, 0);
-  draw_heading(canvas, disparity_panel, "disparity (black: none)");
+  draw_heading(canvas, disparity_panel, "disparity (black: invalid)");
   draw_map(canvas, disparity_panel, layout, disparity, disparity_scale);
 
   const cv::Rect damage_panel = layout.area(0, 1);

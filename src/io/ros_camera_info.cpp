@@ -9,10 +9,10 @@ template <int Columns>
 cv::Matx<double, 3, Columns> read_matrix(const CalibrationText& file, const YAML::Node& root, const std::string& key) {
   const YAML::Node node = root[key];
   const YAML::Node data = node && node.IsMap() ? node["data"] : node;
-  const std::vector<double> figures = yaml_figures(file, data, key);
+  const std::vector<double> values = yaml_numbers(file, data, key);
   constexpr auto count = static_cast<std::size_t>(3 * Columns);
-  if (figures.size() != count) fail(file.path, ": ", key, " has ", figures.size(), " figures; it must have ", count);
-  return cv::Matx<double, 3, Columns>(figures.data());
+  if (values.size() != count) fail(file.path, ": ", key, " has ", values.size(), " values; it must have ", count);
+  return cv::Matx<double, 3, Columns>(values.data());
 }
 
 std::string distortion_model(const YAML::Node& root) {
@@ -32,7 +32,7 @@ CameraInfo read_camera(const CalibrationText& file) {
   camera.p = read_matrix<4>(file, root, "projection_matrix");
   const YAML::Node distortion = root["distortion_coefficients"];
   const YAML::Node data = distortion && distortion.IsMap() ? distortion["data"] : distortion;
-  camera.d = yaml_figures(file, data, "distortion_coefficients");
+  camera.d = yaml_numbers(file, data, "distortion_coefficients");
   return camera;
 }
 

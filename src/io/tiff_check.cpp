@@ -19,7 +19,7 @@ enum Tag : std::uint16_t {
   sample_format = 339
 };
 
-/// The first picture's directory of a TIFF file.
+/// Directory of the first image of a TIFF file.
 class Directory {
  public:
   Directory(const std::string& path, Bytes bytes) : path_(path), bytes_(bytes), big_endian_(bytes[0] == 'M') {
@@ -28,7 +28,7 @@ class Directory {
     need(start_ + 2, entries_ * entry_size);
   }
 
-  /// The values of a tag; nothing when the directory does not have it.
+  /// Returns the values of a tag; empty if it is missing.
   std::vector<std::size_t> values(Tag tag) const {
     for (std::size_t i = 0; i < entries_; ++i) {
       const std::size_t entry = start_ + 2 + i * entry_size;
@@ -83,7 +83,7 @@ void check_data(const std::string& path, const Directory& directory) {
   const std::vector<std::size_t> offsets = directory.values(tiled ? tile_offsets : strip_offsets);
   const std::vector<std::size_t> counts = directory.values(tiled ? tile_byte_counts : strip_byte_counts);
   if (offsets.empty() || offsets.size() != counts.size()) {
-    fail(path, ": the TIFF file is damaged: it has no picture");
+    fail(path, ": the TIFF file is damaged: it has no image");
   }
   for (std::size_t i = 0; i < offsets.size(); ++i) directory.need(offsets[i], counts[i]);
 }
@@ -98,7 +98,7 @@ bool is_tiff(Bytes bytes) {
 }
 
 ImageHeader check_tiff(const std::string& path, Bytes bytes) {
-  if (bytes[2] == 43 || bytes[3] == 43) fail(path, ": BigTIFF is not read; save it as an ordinary TIFF");
+  if (bytes[2] == 43 || bytes[3] == 43) fail(path, ": BigTIFF is not supported; save it as a classic TIFF");
   const Directory directory(path, bytes);
   ImageHeader header;
   header.width = static_cast<std::int64_t>(directory.value(image_width, 0));

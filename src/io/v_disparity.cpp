@@ -12,7 +12,7 @@ namespace {
 const cv::Scalar line_colour{40, 130, 255};
 constexpr double line_opacity = 0.7;
 
-/// The part of the (disparity, row) plane that a plot shows.
+/// Range of disparities and rows in the plot.
 struct PlotRange {
   double residual_p01_px = 0;
   double residual_p99_px = 1;
@@ -31,8 +31,8 @@ PlotRange plot_range(ImageView<const float> disparity) {
   return range;
 }
 
-/// Pixels per cell of the histogram. Cells are at least an eighth of a pixel of disparity wide, and a
-/// disparity is shared between the two nearest, so that disparities in fixed steps leave no stripes.
+/// Histogram with linear interpolation between the two nearest cells, which are at least 1/8 px wide: avoids stripes of
+/// quantised disparities.
 cv::Mat count_pixels(ImageView<const float> disparity, const PlotRange& range, cv::Size plot) {
   const double span = range.residual_p99_px - range.residual_p01_px;
   const int columns = std::clamp(static_cast<int>(8 * span), 1, plot.width);
@@ -43,9 +43,9 @@ cv::Mat count_pixels(ImageView<const float> disparity, const PlotRange& range, c
     auto* out = counts.ptr<float>(static_cast<int>(static_cast<std::int64_t>(v) * rows / range.rows));
     for (int u = 0; u < range.columns; ++u) {
       if (!(in[u] >= range.residual_p01_px && in[u] < range.residual_p99_px)) continue;
-      const double place = std::clamp((in[u] - range.residual_p01_px) / span * columns - 0.5, 0.0, columns - 1.0);
-      const int column = static_cast<int>(place);
-      const auto share = static_cast<float>(place - column);
+      const double column_at = std::clamp((in[u] - range.residual_p01_px) / span * columns - 0.5, 0.0, columns - 1.0);
+      const int column = static_cast<int>(column_at);
+      const auto share = static_cast<float>(column_at - column);
       out[column] += 1 - share;
       if (share > 0) out[column + 1] += share;
     }
@@ -56,19 +56,19 @@ cv::Mat count_pixels(ImageView<const float> disparity, const PlotRange& range, c
 cv::Mat histogram_picture(ImageView<const float> disparity, const PlotRange& range, cv::Size plot) {
   cv::Mat brightness = count_pixels(disparity, range, plot);
   cv::log(brightness + 1, brightness);
-  double most = 0;
-  cv::minMaxLoc(brightness, nullptr, &most);
-  brightness.convertTo(brightness, CV_8U, most > 0 ? 255 / most : 0);
+  double brightest = 0;
+  cv::minMaxLoc(brightness, nullptr, &brightest);
+  brightness.convertTo(brightness, CV_8U, brightest > 0 ? 255 / brightest : 0);
   cv::resize(brightness, brightness, plot, 0, 0, cv::INTER_NEAREST);
   cv::Mat picture;
   cv::cvtColor(brightness, picture, cv::COLOR_GRAY2BGR);
   return picture;
 }
 
-/// Draws the road's disparity at column `u` over the rows.
+/// Draws the disparity of the road at column `u` over the rows.
 void draw_road_line(cv::Mat& picture, const PlotRange& range, const DisparityPlane& road, double u, bool dashed,
                     int width) {
-  const auto place = [&](double row_share) {
+  const auto point_at = [&](double row_share) {
     const double v = row_share * (range.rows - 1);
     const double x = (road.disparity(u, v) - range.residual_p01_px) / (range.residual_p99_px - range.residual_p01_px);
     return cv::Point2d(x * picture.cols, row_share * (picture.rows - 1));
@@ -76,10 +76,10 @@ void draw_road_line(cv::Mat& picture, const PlotRange& range, const DisparityPla
   constexpr int pieces = 60;
   for (int i = 0; i < pieces; ++i) {
     if (dashed && i % 2 == 1) continue;
-    const cv::Point2d from = place(static_cast<double>(i) / pieces);
-    const cv::Point2d to = place(static_cast<double>(i + 1) / pieces);
-    const double most = 4.0 * picture.cols;
-    if (std::abs(from.x) > most || std::abs(to.x) > most) continue;
+    const cv::Point2d from = point_at(static_cast<double>(i) / pieces);
+    const cv::Point2d to = point_at(static_cast<double>(i + 1) / pieces);
+    const double max_x = 4.0 * picture.cols;
+    if (std::abs(from.x) > max_x || std::abs(to.x) > max_x) continue;
     cv::line(picture, from, to, line_colour, width, cv::LINE_AA);
   }
 }
@@ -100,7 +100,7 @@ void draw_road(cv::Mat& picture, const PlotRange& range, const DisparityPlane& r
   cv::addWeighted(over, line_opacity, picture, 1 - line_opacity, 0, picture);
 }
 
-/// What the lines are, in the corner that a road leaves empty: disparities grow downwards.
+/// Legend in the upper right corner, which is empty because disparities increase downwards.
 void draw_legend(cv::Mat& picture, const DisparityPlane& road, int columns, int text_height) {
   std::vector<std::string> lines{"road, middle"};
   if (has_visible_roll(road, columns)) lines.emplace_back("road, sides");

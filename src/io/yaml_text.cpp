@@ -9,17 +9,17 @@ YAML::Node load_yaml(const CalibrationText& file) {
   try {
     root = YAML::Load(file.text);
   } catch (const YAML::Exception& error) {
-    fail(file.path, ": line ", error.mark.line + 1, " is no valid YAML: ", error.msg);
+    fail(file.path, ": line ", error.mark.line + 1, ": invalid YAML: ", error.msg);
   }
-  if (!root.IsMap()) fail(file.path, ": the file must be a list of \"key: value\" lines");
+  if (!root.IsMap()) fail(file.path, ": the file must consist of \"key: value\" lines");
   return root;
 }
 
-double yaml_figure(const CalibrationText& file, const YAML::Node& map, const std::string& key) {
+double yaml_number(const CalibrationText& file, const YAML::Node& map, const std::string& key) {
   const YAML::Node node = map[key];
   if (!node) fail(file.path, ": ", key, " is missing");
   if (!node.IsScalar()) fail(file.path, ": ", key, " must be a number");
-  return parse_figure(file.path, key, node.Scalar());
+  return parse_number(file.path, key, node.Scalar());
 }
 
 int yaml_side(const CalibrationText& file, const YAML::Node& map, const std::string& key) {
@@ -29,15 +29,15 @@ int yaml_side(const CalibrationText& file, const YAML::Node& map, const std::str
   return parse_side(file.path, key, node.Scalar());
 }
 
-std::vector<double> yaml_figures(const CalibrationText& file, const YAML::Node& node, const std::string& key) {
+std::vector<double> yaml_numbers(const CalibrationText& file, const YAML::Node& node, const std::string& key) {
   if (!node || node.IsNull()) fail(file.path, ": ", key, " is missing");
   if (!node.IsSequence()) fail(file.path, ": ", key, " must be a list of numbers");
-  std::vector<double> figures;
+  std::vector<double> values;
   for (const YAML::Node& item : node) {
     if (!item.IsScalar()) fail(file.path, ": ", key, " must be a list of numbers");
-    figures.push_back(parse_figure(file.path, key + "[" + std::to_string(figures.size()) + "]", item.Scalar()));
+    values.push_back(parse_number(file.path, key + "[" + std::to_string(values.size()) + "]", item.Scalar()));
   }
-  return figures;
+  return values;
 }
 
 }  // namespace roadstereo::io

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/format_message.hpp"
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
-#include "core/sentence.hpp"
 #include "pipeline/host_stages.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
@@ -106,13 +106,13 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   if (carried.road) {
     result.road = stages->verify_road_model(pair, *carried.road);
     if (result.road.reliable) return;
-    result.warnings.push_back(sentence("the road model was estimated anew: ", result.road.reason));
+    result.warnings.push_back(format_message("the road model was estimated anew: ", result.road.reason));
   }
   const GreyPair grey = stages->on_host(pair);
   result.road = roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads);
   if (!result.road.reliable) {
-    result.warnings.push_back(sentence("no reliable road model (", result.road.reason,
-                                       "): matched without perspective transformation over the full range"));
+    result.warnings.push_back(format_message("no reliable road model (", result.road.reason,
+                                             "): matched without perspective transformation over the full range"));
   }
   if (options.check_rows) measure_rows(grey);
 }
@@ -132,9 +132,9 @@ void Pipeline::State::measure_rows(const GreyPair& grey) {
     carried.row_offset_px = result.rows.median_px;
   }
   if (std::abs(result.rows.median_px) > max_offset_px || result.rows.sigma_px > max_spread_px) {
-    result.warnings.push_back(sentence("the rows of the pair do not agree: vertical offset ", result.rows.median_px,
-                                       " px (median of ", result.rows.points, " points, spread ", result.rows.sigma_px,
-                                       " px); rectify the pair"));
+    result.warnings.push_back(format_message("the rows of the pair do not agree: vertical offset ",
+                                             result.rows.median_px, " px (median of ", result.rows.points,
+                                             " points, spread ", result.rows.sigma_px, " px); rectify the pair"));
   }
 }
 
@@ -183,7 +183,7 @@ void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
   result.roll_found = fit.geometry.has_value();
   result.geometry = fit.geometry.value_or(RollEstimate{});
   if (!result.roll_found) {
-    result.warnings.push_back(sentence("only ", 100 * result.valid_share, " % of the pixels have a disparity"));
+    result.warnings.push_back(format_message("only ", 100 * result.valid_share, " % of the pixels have a disparity"));
   }
 }
 
@@ -204,8 +204,8 @@ void Pipeline::State::transform_disparity(ImageView<const float> disparity) {
   if (!result.road.reliable && result.spread.road_share < min_road_share) {
     result.geometry.roll_observable = false;
     result.warnings.push_back(
-        sentence("only ", 100 * result.spread.road_share,
-                 " % of the disparities lie on the plane found: there may be no road in the pair"));
+        format_message("only ", 100 * result.spread.road_share,
+                       " % of the disparities lie on the plane found: there may be no road in the pair"));
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/sentence.hpp"
+#include "core/format_message.hpp"
 
 namespace roadstereo {
 namespace {
@@ -59,12 +59,13 @@ void judge(const PlaneFitStatistics& evidence, double min_share, const TiltLimit
   estimate.residual_px = evidence.scale_px;
   const double share = inlier_share(evidence);
   if (!evidence.found) {
-    estimate.reason = sentence("only ", evidence.points, " correspondences lie near the supposed road");
+    estimate.reason = format_message("only ", evidence.points, " correspondences lie near the supposed road");
   } else if (share < min_share) {
-    estimate.reason = sentence("the road explains ", 100 * share, " % of the textured places where it should be seen, ",
-                               "less than ", 100 * min_share, " %");
+    estimate.reason =
+        format_message("the road explains ", 100 * share, " % of the textured places where it should be seen, ",
+                       "less than ", 100 * min_share, " %");
   } else if (evidence.rows_covered < min_rows_covered) {
-    estimate.reason = sentence("the road was found in ", 100 * evidence.rows_covered, " % of the rows only");
+    estimate.reason = format_message("the road was found in ", 100 * evidence.rows_covered, " % of the rows only");
   } else if (!limit.can_be_road(estimate.model)) {
     estimate.reason = "the plane found is tilted like a wall";
   } else {
@@ -83,12 +84,12 @@ RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const Pl
   judge(close, std::max(options.min_inlier_share, min_share_again), limit, estimate);
   if (estimate.reliable && estimate.residual_px > options.verify_tolerance_px) {
     estimate.reliable = false;
-    estimate.reason = sentence("the last frame's road leaves ", estimate.residual_px, " px on this one");
+    estimate.reason = format_message("the last frame's road leaves ", estimate.residual_px, " px on this one");
   }
   const double moved = max_move(estimate.model, previous, width, height);
   if (estimate.reliable && moved > max_step_px(width)) {
     estimate.reliable = false;
-    estimate.reason = sentence("the road has moved by ", moved, " px since the last frame");
+    estimate.reason = format_message("the road has moved by ", moved, " px since the last frame");
   }
   return estimate;
 }

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "core/downsample.hpp"
+#include "core/format_message.hpp"
 #include "core/require_range.hpp"
-#include "core/sentence.hpp"
 #include "road/coarse_match.hpp"
 #include "road/plane_fit.hpp"
 #include "road/plane_match.hpp"
@@ -166,7 +166,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   RoadModelEstimate estimate;
   estimate.matches = static_cast<int>(matches.size());
   if (estimate.matches < min_matches) {
-    estimate.reason = sentence("only ", matches.size(), " reliable correspondences in the whole image");
+    estimate.reason = format_message("only ", matches.size(), " reliable correspondences in the whole image");
     return estimate;
   }
   auto disparities = scratch_vector<double>();
@@ -177,7 +177,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   const auto coarse = search_road(matches, 0.8 * factor, left.height(), limit);
   if (!coarse) {
-    estimate.reason = sentence("none of ", matches.size(), " correspondences speak for a road");
+    estimate.reason = format_message("none of ", matches.size(), " correspondences speak for a road");
     return estimate;
   }
   // First wide, for the coarse plane is good to a pixel of the shrunk image at best; then close.

@@ -158,13 +158,13 @@ class Page(unittest.TestCase):
         notes = self.browser.find_elements(By.CSS_SELECTOR, ".overdue")
         self.assertEqual(len(notes), 2)
         for note in notes:
-            self.assertRegex(note.text, r"^no new picture for [\d.]+ s$")
+            self.assertRegex(note.text, r"^no new image for [\d.]+ s$")
 
     def test_a_killed_program_is_stale_not_live(self):
         player = self.open("--serve", "0")
         player.kill()
         self.wait_until("stale", lambda: self.state() == "stale")
-        self.assertIn("No answer", self.text("message"))
+        self.assertIn("No connection", self.text("message"))
 
     def test_everything_has_a_name(self):
         self.open("--serve", "0")

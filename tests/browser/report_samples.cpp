@@ -80,11 +80,11 @@ void write_sample(const std::filesystem::path& folder, const synth::SyntheticPai
   io::DamageReportInput input{truth.map};
   input.transformed = truth.transformed;
   input.title = folder.filename().string() + " <sample> & \"quotes\"";
-  input.facts = {{"roll", "0.012° ± 0.004°"},
-                 {"camera height", "2.600 m"},
-                 {"looking", "62.0° below the horizon"},
-                 {"noise", "0.050 px"},
-                 {"preset", "default"}};
+  input.properties = {{"roll", "0.012° ± 0.004°"},
+                      {"camera height", "2.600 m"},
+                      {"looking", "62.0° below the horizon"},
+                      {"noise", "0.050 px"},
+                      {"preset", "default"}};
   if (with_image) input.left = pair.left.view();
   if (calibrated) {
     input.disparity = truth.disparity;

@@ -28,8 +28,8 @@ TEST_F(LimitsCommand, PrintsTableAndDrawsFigure) {
   const Outcome outcome = run("--calibration rig.yaml --height 2 --figure limits.png");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("69.0"), std::string::npos) << outcome.out;  // 2 m / 29
-  EXPECT_NE(outcome.out.find("13 mm can be told apart nowhere in view"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("50 mm can be told apart everywhere in view"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("13 mm cannot be resolved anywhere in the image"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("50 mm can be resolved in the whole image"), std::string::npos) << outcome.out;
   EXPECT_GT(io::read_frame((folder_ / "limits.png").string()).width, 640);
 }
 

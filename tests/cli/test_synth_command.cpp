@@ -50,9 +50,9 @@ TEST_F(SynthCommand, FollowsFlightPath) {
 
 TEST_F(SynthCommand, RejectsBadFlightPath) {
   const std::string synth = "synth --frames 9 --size 64x36 --output flight --flight ";
-  expect_complaint(run(synth + "rol=3"), "knows no 'rol'");
+  expect_complaint(run(synth + "rol=3"), "has no key 'rol'");
   expect_complaint(run(synth + "roll"), "key=value");
-  expect_complaint(run(synth + "roll=3,step=fast"), "'fast' is no value for step");
+  expect_complaint(run(synth + "roll=3,step=fast"), "'fast' is not a value of step");
   expect_complaint(run(synth + "roll=90"), "roll_deg is 90; it must be between 0 and 45");
   expect_complaint(run(synth + "jump=8,jump_climb=-9"), "camera_height_m is -");
   expect_complaint(run(synth + "default --rate 0"), "--rate is 0");

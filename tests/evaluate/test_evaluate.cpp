@@ -262,7 +262,7 @@ TEST_F(Evaluate, RejectsBadOptions) {
   expect_complaint(run("lambda --min-lambda 5 --max-lambda 1"), "--min-lambda 5");
   expect_complaint(run("roll --angles 0"), "--angles is 0");
   expect_complaint(run("blur --scene bluur"), "did you mean");
-  expect_complaint(run("runtime --size 10"), "--size takes WIDTHxHEIGHT");
+  expect_complaint(run("runtime --size 10"), "--size must be WIDTHxHEIGHT");
   expect_complaint(run("flatness nowhere"), "nowhere");
 }
 

@@ -148,17 +148,17 @@ TEST_F(FlightCommand, FolderGivesTablesReportAndPictures) {
   write("left/1.png", std::string("no picture"));
   const Outcome outcome = run("inspect . --calibration rig.yaml --output out --rate 10 --write disparity,cloud");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("4 (1 refused, 0 failed)"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("4 (1 rejected, 0 failed)"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("4 of 4 frames"), std::string::npos) << outcome.err;
   const std::vector<std::string> frames = rows("out/frames.csv");
   ASSERT_EQ(frames.size(), 5U);
   EXPECT_EQ(frames[1].rfind("0,0,0,good,", 0), 0U) << frames[1];
-  EXPECT_EQ(frames[2].rfind("1,1,0.1,refused,", 0), 0U) << frames[2];
+  EXPECT_EQ(frames[2].rfind("1,1,0.1,rejected,", 0), 0U) << frames[2];
   EXPECT_NE(frames[2].find("left/1.png"), std::string::npos) << frames[2];
-  EXPECT_NE(frames[3].find(",carried over,"), std::string::npos) << "over the frame that is missing: " << frames[3];
+  EXPECT_NE(frames[3].find(",tracked,"), std::string::npos) << "over the frame that is missing: " << frames[3];
   const nlohmann::json summary = json_file("out/summary.json");
   EXPECT_EQ(summary["frames"]["good"], 3);
-  EXPECT_EQ(summary["frames"]["refused"], 1);
+  EXPECT_EQ(summary["frames"]["rejected"], 1);
   EXPECT_TRUE(summary["run"]["complete"].get<bool>());
   EXPECT_NEAR(summary["height_m"]["median"].get<double>(), synth::named_scene("uav").rig.camera_height_m, 0.3);
   EXPECT_EQ(summary["damages"]["sightings"], rows("out/damages.csv").size() - 1);
@@ -252,7 +252,7 @@ TEST_F(FlightCommand, CtrlCEndsAfterFramesInFlight) {
   EXPECT_LT(frames, 5000U);
   EXPECT_EQ(rows("out/flight/journal.jsonl").size(), frames + 1);
   EXPECT_FALSE(json_file("out/summary.json")["run"]["complete"].get<bool>());
-  EXPECT_NE(read_text(folder_ / "out/report.html").find("stopped before its end"), std::string::npos);
+  EXPECT_NE(read_text(folder_ / "out/report.html").find("was interrupted"), std::string::npos);
   for (const auto& entry : fs::directory_iterator(folder_ / "out")) {
     EXPECT_NE(entry.path().filename().string()[0], '.') << "left over: " << entry.path();
   }
@@ -262,7 +262,7 @@ TEST_F(FlightCommand, RejectsResumeOfOtherFlight) {
   write_list(3);
   EXPECT_EQ(run("inspect flight.txt --output out --quiet").exit_code, 0);
   expect_complaint(run("inspect flight.txt --output out --quiet --resume --every 2"), "--every \"1\", not \"2\"");
-  expect_complaint(run("inspect flight.txt --output out --quiet --resume --preset fast"), "begun with");
+  expect_complaint(run("inspect flight.txt --output out --quiet --resume --preset fast"), "started with");
   EXPECT_EQ(run("inspect flight.txt --output out --quiet --resume --threads 1").exit_code, 0)
       << "threads change nothing";
 }
@@ -310,7 +310,7 @@ TEST_F(FlightCommand, LocksOutputFolder) {
   fs::create_directories(folder_ / "out/flight");
   const int lock = ::open((folder_ / "out/flight/lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
   ASSERT_EQ(::flock(lock, LOCK_EX), 0);
-  expect_complaint(run("inspect flight.txt --output out --quiet"), "another program is writing");
+  expect_complaint(run("inspect flight.txt --output out --quiet"), "another process is writing");
   ::close(lock);
   EXPECT_EQ(run("inspect flight.txt --output out --quiet").exit_code, 0);
 }
@@ -323,8 +323,8 @@ TEST_F(FlightCommand, RejectsBadInput) {
   expect_complaint(run("inspect flight.txt --output out --every 0"), "--every is 0");
   expect_complaint(run("inspect flight.txt --output out --layout upside-down"), "the layout is \"upside-down\"");
   expect_complaint(run("inspect nowhere --output out"), "nowhere: no such file");
-  expect_complaint(run("inspect left/0.png --output out"), "give both images");
-  expect_complaint(run("inspect left/0.png right/0.png --resume --output out"), "--resume belongs to a recording");
+  expect_complaint(run("inspect left/0.png --output out"), "give two images");
+  expect_complaint(run("inspect left/0.png right/0.png --resume --output out"), "--resume is for recordings only");
   EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing was begun";
   write("blank.txt", "left/0.png left/0.png\n");
   expect_complaint(run("inspect blank.txt --output out --quiet"), "none of the 1 frames could be matched");

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "flight/bounded_queue.hpp"
-#include "flight/in_turn.hpp"
+#include "flight/sequencer.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -63,14 +63,14 @@ TEST(Sequencer, RunsInOrder) {
   constexpr int first = 5;
   constexpr int places = 400;
   constexpr int workers = 4;
-  Sequencer turn(first);
-  std::vector<int> order;  // unguarded on purpose: the turn is the guard
+  Sequencer sequencer(first);
+  std::vector<int> order;  // guarded by the sequencer
   std::atomic<int> next{first};
   std::vector<std::thread> threads;
   for (int i = 0; i < workers; ++i) {
     threads.emplace_back([&] {
       for (int place = next++; place < first + places; place = next++) {
-        turn.run_in_order(place, [&] { order.push_back(place); });
+        sequencer.run_in_order(place, [&] { order.push_back(place); });
       }
     });
   }
@@ -79,13 +79,13 @@ TEST(Sequencer, RunsInOrder) {
   for (int i = 0; i < places; ++i) EXPECT_EQ(order[static_cast<std::size_t>(i)], first + i);
 }
 
-TEST(Sequencer, BreakOffWakesWaiters) {
-  Sequencer turn(0);
+TEST(Sequencer, CancelWakesWaiters) {
+  Sequencer sequencer(0);
   bool called = false;
-  std::thread waiting([&] { turn.run_in_order(7, [&] { called = true; }); });
-  turn.break_off();
+  std::thread waiting([&] { sequencer.run_in_order(7, [&] { called = true; }); });
+  sequencer.cancel();
   waiting.join();
-  turn.run_in_order(0, [&] { called = true; });
+  sequencer.run_in_order(0, [&] { called = true; });
   EXPECT_FALSE(called);
 }
 

@@ -93,16 +93,16 @@ TEST_F(ReadCalibration, RejectsBadPlainYaml) {
   expect_refused(replaced(plain, "1064.3", "[1, 2]"), "cx_px must be a number");
   expect_refused(replaced(plain, "2079", "20.5"), "width is 20.5");
   expect_refused(replaced(plain, "baseline_m", "baseline"), "baseline_m is missing");
-  expect_refused(plain + "\tx: [\n", "valid YAML");
+  expect_refused(plain + "\tx: [\n", "invalid YAML");
 }
 
 TEST_F(ReadCalibration, RejectsOtherFiles) {
   expect_refused("", "the file is empty");
-  expect_refused("hello world\n", "no calibration known here");
+  expect_refused("hello world\n", "unknown calibration format");
   expect_refused(std::string("a\0b", 3), "not a text file");
   expect_refused_file((fs::temp_directory_path() / "roadstereo-none.yaml").string(), "does not exist");
   expect_refused_file(fs::temp_directory_path().string(), "is a folder");
-  expect_refused_file(write(plain), "must be left out", write(plain, "second"));
+  expect_refused_file(write(plain), "remove the second file", write(plain, "second"));
 }
 
 const std::string kitti =
@@ -139,7 +139,7 @@ TEST_F(ReadCalibration, KittiRawHasImageSize) {
 
 TEST_F(ReadCalibration, RejectsBadKitti) {
   expect_refused("P2: 721.5 0 609.5 0 0 721.5 172.8 0 0 0 1 0\n", "P3 is missing");
-  expect_refused("P2: 1 2 3\nP3: 1 2 3\n", "P2 has 3 figures; it must have 12");
+  expect_refused("P2: 1 2 3\nP3: 1 2 3\n", "P2 has 3 values; it must have 12");
   expect_refused(replaced(kitti, "7.215377e+02", "nan"), "P2[0] is nan");
   expect_refused(replaced(kitti, "7.215377e+02", "x"), "P2[0] is \"x\"");
   expect_refused(replaced(kitti, "7.215377e+02", "800"), "P3 has 721.5377");
@@ -177,7 +177,7 @@ TEST_F(ReadCalibration, ReadsKTxt) {
   EXPECT_DOUBLE_EQ(file.rectified->baseline_m, 0.063);
   EXPECT_DOUBLE_EQ(rectified("700 0 320\n0 700 240\n0 0 1\n0.12").baseline_m, 0.12);
   expect_refused("700 0 320\n0 700 240\n0 0 1\n63", "the baseline is 63;");
-  expect_refused("700 0 320\n0 700 240\n0 0 1\n", "has 9 figures");
+  expect_refused("700 0 320\n0 700 240\n0 0 1\n", "has 9 values");
   expect_refused("700 0 320\n0 700 x\n0 0 1\n0.1", "K[5] is \"x\"");
   expect_refused("700 0 320\n0 700 nan\n0 0 1\n0.1", "K[5] is nan");
 }
@@ -252,7 +252,7 @@ TEST_F(ReadCalibration, RejectsBadOpenCvStereo) {
   expect_refused(opencv_file("X", "-0.12, 0., 0."), "K1 (or M1) is missing");
   expect_refused(replaced(good, "T: ", "U: "), "T is missing");
   expect_refused(replaced(good, "500.", "3."), "the focal length is 3;");
-  expect_refused(replaced(good, "0.8, -0.6", "0.8, -0.7"), "R is no rotation");
+  expect_refused(replaced(good, "0.8, -0.6", "0.8, -0.7"), "R is not a rotation");
   expect_refused(replaced(good, "data: [ 500.", "data: [ [ 500."), "OpenCV calibration");
   expect_refused("%YAML:1.0\n---\nK1: hello\n", "K1 must be a matrix");
   expect_refused("<?xml version=\"1.0\"?>\n<opencv_storage>\n<K1>", "");
@@ -323,7 +323,7 @@ TEST_F(ReadCalibration, ReadsRectifiedRosPair) {
   EXPECT_EQ(file.rectified->focal_px, 500);
   EXPECT_DOUBLE_EQ(file.rectified->baseline_m, 0.12);
   EXPECT_EQ(file.rectified->width, 640);
-  expect_refused_file(left, "the right camera's file is needed too");
+  expect_refused_file(left, "the file of the right camera is needed, too");
   expect_refused_file(left, "the baseline is 0;", left);
   expect_refused_file(left, "swapped", write(ros_file(none, 60, d), "right.yaml"));
   expect_refused_file(left, "the baseline is 60;", write(ros_file(none, -30000, d), "right.yaml"));

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "io/report/figures.hpp"
 #include "io/report/markup.hpp"
+#include "io/report/number_text.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/damage_files.hpp"
 #include "roadstereo/io/damage_overlay.hpp"
@@ -253,7 +253,7 @@ TEST(DamageReport, EscapesText) {
   const TrueDamage truth = damage_from_truth(road());
   DamageReportInput input = report_input(truth);
   input.title = "<script>alert('x')</script> & \"more\" {{&damages}}";
-  input.facts = {{"<b>name</b>", "a < b & c"}};
+  input.properties = {{"<b>name</b>", "a < b & c"}};
   const std::string html = damage_report(input);
   EXPECT_EQ(html.find("<script>alert"), std::string::npos);
   EXPECT_EQ(html.find("<b>name"), std::string::npos);
@@ -290,7 +290,7 @@ TEST(DamageReport, SaysThatNoDamageWasFound) {
   truth.map.damages.clear();
   truth.map.ids.assign(480, 270, 0);
   const std::string html = damage_report(report_input(truth));
-  EXPECT_NE(html.find("no damage found"), std::string::npos);
+  EXPECT_NE(html.find("No damage found"), std::string::npos);
   EXPECT_EQ(html.find("<table"), std::string::npos);
   EXPECT_EQ(html.find("<canvas"), std::string::npos);
 }

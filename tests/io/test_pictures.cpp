@@ -50,7 +50,7 @@ Image<float> road_disparity(int width, int height, const DisparityPlane& road) {
 TEST(Pictures, ScaleSpansFirstToLastPercentile) {
   Image<float> map(101, 32, nan_value);
   for (int u = 0; u <= 100; ++u) map(u, 7) = static_cast<float>(u);
-  const ColourScale scale = spread_scale(map, "disparity, px");
+  const ColourScale scale = percentile_scale(map, "disparity, px");
   EXPECT_EQ(scale.lowest, 1);
   EXPECT_EQ(scale.highest, 99);
   EXPECT_FALSE(scale.diverging);
@@ -60,8 +60,8 @@ TEST(Pictures, ScaleSpansFirstToLastPercentile) {
 TEST(Pictures, EmptyAndFlatMapsHaveFiniteScale) {
   const Image<float> empty(40, 40, nan_value);
   const Image<float> flat(40, 40, 7.0f);
-  EXPECT_GT(spread_scale(empty, "").highest, spread_scale(empty, "").lowest);
-  EXPECT_GT(spread_scale(flat, "").highest, spread_scale(flat, "").lowest);
+  EXPECT_GT(percentile_scale(empty, "").highest, percentile_scale(empty, "").lowest);
+  EXPECT_GT(percentile_scale(flat, "").highest, percentile_scale(flat, "").lowest);
   for (const Image<float>* map : {&empty, &flat}) {
     const ColourScale scale = transformed_scale(*map, 7);
     EXPECT_EQ(scale.lowest, 6);
@@ -123,7 +123,7 @@ TEST(Pictures, ValidPixelsAreNeverBlack) {
 TEST(Pictures, EveryColourMapHasScaleBar) {
   for (const auto& [width, height] : {std::pair{32, 32}, {32, 400}, {400, 32}, {640, 360}, {2079, 1040}}) {
     const Image<float> map = road_disparity(width, height, {10, 0.1, 0});
-    const Frame picture = colour_map(map, spread_scale(map, "disparity, px"));
+    const Frame picture = colour_map(map, percentile_scale(map, "disparity, px"));
     EXPECT_GE(picture.height, height);
     EXPECT_GT(picture.width, width + 30);
     EXPECT_LT(picture.width, width + 80 + height / 5);

@@ -133,7 +133,7 @@ TEST_F(PlyFile, RejectsHeadersThatLie) {
   const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
   const std::string binary = "ply\nformat binary_little_endian 1.0\n";
   const std::vector<std::array<std::string, 2>> cases{
-      {"plyx\nformat ascii 1.0\n", "begin with"},
+      {"plyx\nformat ascii 1.0\n", "start with"},
       {std::string(100, 'a'), "not a PLY"},
       {"ply\nformat ascii 1.0\nelement vertex 1\n" + xyz, "does not end"},
       {"ply\nelement vertex 1\n" + xyz + "end_header\n0 0 0\n", "format"},
@@ -145,8 +145,8 @@ TEST_F(PlyFile, RejectsHeadersThatLie) {
       {binary + "element vertex 1\nproperty float x\nproperty float y\nend_header\n12345678", "\"z\""},
       {binary + "element vertex 1\nproperty float x\nproperty float x\nend_header\n12345678", "already"},
       {binary + "element vertex 1\nproperty quad x\nend_header\n", "type"},
-      {binary + "property float x\nend_header\n", "element must come"},
-      {binary + "element vertex 1\nproperty list float int x\nend_header\n", "whole type"},
+      {binary + "property float x\nend_header\n", "follow an element"},
+      {binary + "element vertex 1\nproperty list float int x\nend_header\n", "integer type"},
       {binary + "element face 1\nproperty list int int i\nelement vertex 1\n" + xyz + "end_header\n\xff\xff\xff\xff" +
            std::string(20, 'a'),
        "entries"},

@@ -66,7 +66,7 @@ class MemorySource final : public io::FrameSource {
     pair.name = std::to_string(pair.index);
     if (plan_.interval_s > 0) pair.time_s = 1000 + plan_.interval_s * static_cast<double>(pair.index);
     if (pair.index == plan_.refused_at) {
-      pair.refused = "the file is damaged";
+      pair.error = "the file is damaged";
       return pair;
     }
     std::tie(pair.left, pair.right) = (*frames_)[frame_of(pair.index)];

@@ -5,14 +5,14 @@
 #include <memory>
 
 #include "live/capture.hpp"
-#include "live/retry_pause.hpp"
+#include "live/retry_backoff.hpp"
 #include "tests/live/live_test.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
-TEST(RetryPause, DoublesUpToLimitUntilReset) {
-  RetryPause pause(0.5, 5);
+TEST(RetryBackoff, DoublesUpToLimitUntilReset) {
+  RetryBackoff pause(0.5, 5);
   for (const double expected : {0.5, 1.0, 2.0, 4.0, 5.0, 5.0}) EXPECT_EQ(pause.next(), expected);
   pause.reset();
   EXPECT_EQ(pause.next(), 0.5);
@@ -35,8 +35,8 @@ TEST(Capture, DropsPairsThatAreNotTaken) {
   bench.run([] { return source_of({40, 0.001, false, "", 7}); });
   const LiveCounts counts = bench.board.status().counts;
   EXPECT_EQ(counts.taken, 40);
-  EXPECT_EQ(counts.refused, counts.taken - counts.dropped - 1) << "one waits in the slot";
-  EXPECT_LE(counts.refused, 1) << "it may have been passed over";
+  EXPECT_EQ(counts.rejected, counts.taken - counts.dropped - 1) << "one waits in the slot";
+  EXPECT_LE(counts.rejected, 1) << "it may have been passed over";
   bench.slot.close();
   const auto newest = bench.slot.take();
   ASSERT_TRUE(newest);
@@ -60,7 +60,7 @@ TEST(Capture, SkipsOverduePairs) {
 TEST(Capture, ReopensLostCamera) {
   CaptureBench bench;
   CaptureOptions options;
-  options.pause = RetryPause(0.001, 0.002);
+  options.pause = RetryBackoff(0.001, 0.002);
   int openings = 0;
   bench.run(
       [&]() -> std::unique_ptr<io::FrameSource> {

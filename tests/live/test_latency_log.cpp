@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 TEST(LatencyLog, QuantilesAreRanks) {
   LatencyLog log;
   for (int i = 100; i >= 1; --i) log.add(i);
-  for (const LatencyFigures& figures : {log.recent(), log.all()}) {
+  for (const LatencyStatistics& figures : {log.recent(), log.all()}) {
     EXPECT_EQ(figures.median_ms, 50);
     EXPECT_EQ(figures.p95_ms, 95);
     EXPECT_EQ(figures.max_ms, 100);

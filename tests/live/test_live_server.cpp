@@ -172,7 +172,7 @@ TEST(LiveServer, ServesPicturesOfViewOrNewest) {
   }
   const auto transformed = bench.client.Get("/transformed.jpg?frame=1");
   EXPECT_EQ(transformed->get_header_value("Frame"), "1");
-  EXPECT_EQ(std::stod(transformed->get_header_value("Reach")), 1) << "flat but for one pixel";
+  EXPECT_EQ(std::stod(transformed->get_header_value("Colour-Range")), 1) << "flat but for one pixel";
 }
 
 TEST(LiveServer, RejectsBadRequests) {

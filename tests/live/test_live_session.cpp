@@ -38,8 +38,8 @@ TEST(LiveSession, CountsEveryPair) {
   const LiveStatus status = run_session(options, {12, 0.01, false, "", 11});
   const LiveCounts& counts = status.counts;
   EXPECT_EQ(counts.taken, 12);
-  EXPECT_EQ(counts.taken, counts.shown + counts.dropped + counts.too_old + counts.refused);
-  EXPECT_EQ(counts.refused, 1);
+  EXPECT_EQ(counts.taken, counts.shown + counts.dropped + counts.too_old + counts.rejected);
+  EXPECT_EQ(counts.rejected, 1);
   EXPECT_GE(counts.shown, 1);
   ASSERT_TRUE(status.view);
   EXPECT_EQ(status.view->left.width, 320);
@@ -68,7 +68,7 @@ TEST(LiveSession, CountsRejectedPairs) {
   while (!session.finished()) std::this_thread::sleep_for(1ms);
   EXPECT_NE(session.board().wait_for_news(0, 0.01).message.find("same image"), std::string::npos);
   session.end();
-  EXPECT_EQ(session.board().status().counts.refused, 2);
+  EXPECT_EQ(session.board().status().counts.rejected, 2);
 }
 
 TEST_F(LiveSessionFiles, UnstartedSessionLeavesNoRecording) {

@@ -27,7 +27,7 @@ TEST(Recorder, BlockedDiskDoesNotBlockOffer) {
     begun.get_future().wait();
     const int most = static_cast<int>(Recorder::max_waiting);
     for (int i = 1; i <= most + 5; ++i) recorder.offer(frames_pair(), i);  // would hang if it waited
-    EXPECT_EQ(board.status().recording.left_out, 5);
+    EXPECT_EQ(board.status().recording.skipped, 5);
     EXPECT_EQ(board.status().recording.recorded, 0);
     freed.set_value();
   }
@@ -53,8 +53,8 @@ TEST(Recorder, FullDiskStopsWithMessage) {
   const RecordingState state = board.status().recording;
   EXPECT_EQ(tried, 2);
   EXPECT_EQ(state.recorded, 1);
-  EXPECT_EQ(state.left_out, 2);
-  EXPECT_EQ(state.message, "recording has stopped: no space left");
+  EXPECT_EQ(state.skipped, 2);
+  EXPECT_EQ(state.message, "recording stopped: no space left");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ TEST(TerminalLine, ShowsStateAndFigures) {
   status.recording = {true, 5, 1, ""};
   EXPECT_EQ(
       status_line(status),
-      "stale 30.0 fps, latency 40/61 ms, age 1500 ms, roll 5.73°, damages 2/7, dropped 3, recorded 5 (1 left out)");
+      "stale 30.0 fps, latency 40/61 ms, age 1500 ms, roll 5.73°, damages 2/7, dropped 3, recorded 5 (1 skipped)");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ std::vector<io::SheetCell> kitti_sheet_row(const std::string& name, const KittiF
                                            ImageView<const float> ours, ImageView<const float> peer,
                                            const std::string& peer_name) {
   constexpr int lidar_reach_px = 2;  // rows of the lidar lie about four pixels apart
-  const io::ColourScale disparities = io::spread_scale(frame.truth, "disparity, px");
+  const io::ColourScale disparities = io::percentile_scale(frame.truth, "disparity, px");
   const io::ColourScale errors{0, 3, false, "error, px"};
   const auto error_picture = [&](ImageView<const float> map) {
     return io::colour_map(thicken(absolute_error(map, frame.truth, std::nullopt), lidar_reach_px), errors);

@@ -23,7 +23,7 @@ struct Arguments {
 
 /// Left image, truth, our disparities, our errors.
 std::vector<io::SheetCell> sheet_row(const MiddleburyScene& scene, ImageView<const float> ours) {
-  const io::ColourScale disparities = io::spread_scale(scene.truth, "disparity, px");
+  const io::ColourScale disparities = io::percentile_scale(scene.truth, "disparity, px");
   const Image<float> errors = absolute_error(ours, scene.truth, scene.visible.view());
   return {{scene.name, scene.pair.left},
           {"truth", io::colour_map(scene.truth, disparities)},

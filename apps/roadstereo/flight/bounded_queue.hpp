@@ -9,13 +9,13 @@
 
 namespace roadstereo::cli {
 
-/// Hands items from one thread to others in order. Who puts waits while it is full, who takes while it is empty.
+/// Blocking FIFO queue between threads. `put` waits while it is full, `take` while it is empty.
 template <class Item>
 class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  /// False when the queue was closed: the item is dropped.
+  /// Adds an item. Returns false, and drops the item, if the queue is closed.
   bool put(Item item) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || items_.size() < capacity_; });
@@ -25,7 +25,7 @@ class BoundedQueue {
     return true;
   }
 
-  /// Nothing when the queue was closed and is empty.
+  /// Removes an item. Returns nullopt if the queue is closed and empty.
   std::optional<Item> take() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || !items_.empty(); });
@@ -36,14 +36,14 @@ class BoundedQueue {
     return item;
   }
 
-  /// No more is put; what is in it can still be taken.
+  /// Closes the queue; the remaining items can still be taken.
   void close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
     changed_.notify_all();
   }
 
-  /// Closes it and drops what is in it.
+  /// Closes the queue and drops the remaining items.
   void abandon() {
     const std::lock_guard lock(mutex_);
     closed_ = true;

@@ -8,8 +8,8 @@
 
 namespace roadstereo::cli {
 
-/// What becomes of a matched frame: its damage is found and measured, and the files that are asked for are encoded.
-void finish_frame(const std::optional<StereoCalibration>& calibration, const PipelineOptions& options,
+/// Finds the damage of a matched frame and encodes the requested files.
+void finish_frame(const std::optional<StereoCalibration>& calibration, const DamageOptions& options,
                   const std::vector<FrameFile>& write, FlightJob& job);
 
 }  // namespace roadstereo::cli

@@ -21,10 +21,10 @@ namespace {
 
 constexpr std::int64_t max_thumbnails = 32;
 
-/// Frames from one small picture to the next, for a flight that has come as far as `place`.
-std::int64_t thumbnail_step(std::int64_t place) {
+/// Interval of thumbnails in a flight with frames up to `sequence`.
+std::int64_t thumbnail_step(std::int64_t sequence) {
   std::int64_t step = 1;
-  while (place >= step * max_thumbnails) step *= 2;
+  while (sequence >= step * max_thumbnails) step *= 2;
   return step;
 }
 
@@ -37,10 +37,10 @@ int lock_folder(const fs::path& folder) {
   }
   if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
   ::close(descriptor);
-  fail(folder.parent_path().string(), ": another program is writing a flight into this folder");
+  fail(folder.parent_path().string(), ": another process is writing to this folder");
 }
 
-/// What runs into this folder stage their files in.
+/// Staging folders of all runs.
 std::vector<fs::path> hidden_folders(const fs::path& folder) {
   std::vector<fs::path> found;
   std::error_code ignored;
@@ -58,7 +58,7 @@ FlightFolder::FlightFolder(const fs::path& folder) : before_(hidden_folders(fold
   fs::create_directories(own, error);
   if (error) fail("cannot write to folder ", own.string(), ": ", error.message());
   lock_ = lock_folder(own);
-  // Whoever holds the lock is the only one who writes: what was there before belongs to runs that were killed.
+  // The lock is exclusive: older staging folders are left by killed runs.
   for (const fs::path& stale : before_) fs::remove_all(stale, error);
 }
 
@@ -77,7 +77,7 @@ void FlightFolder::remove_earlier_flight() {
     io::read_flight_journal(journal(), [&](const io::FlightFrame& frame) {
       for (const std::string& name : frame_file_names(frame.index)) fs::remove(path() / name, ignored);
     });
-  } catch (const Error&) {  // what is no journal names no files
+  } catch (const Error&) {  // an unreadable journal lists no files
   }
   for (const char* name : {"frames.csv", "damages.csv", "summary.json", "report.html", "frames.geojson",
                            "damages.geojson", "flight.gpkg", "damages", "flight/thumbnails", "flight/journal.jsonl"}) {
@@ -96,13 +96,13 @@ std::vector<std::uint8_t> FlightFolder::read(const std::string& name) const {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-std::optional<std::string> thumbnail_name(std::int64_t place) {
-  if (place % thumbnail_step(place) != 0) return std::nullopt;
-  return fmt::format("flight/thumbnails/{:06}.jpg", place);
+std::optional<std::string> thumbnail_name(std::int64_t sequence) {
+  if (sequence % thumbnail_step(sequence) != 0) return std::nullopt;
+  return fmt::format("flight/thumbnails/{:06}.jpg", sequence);
 }
 
-bool is_shown(std::int64_t place, std::int64_t frames) {
-  return place % thumbnail_step(frames - 1) == 0;
+bool is_shown(std::int64_t sequence, std::int64_t frames) {
+  return sequence % thumbnail_step(frames - 1) == 0;
 }
 
 std::string damage_picture_name(std::int64_t road_damage) {

@@ -12,11 +12,11 @@
 
 namespace roadstereo::cli {
 
-/// The output folder of a flight. One program at a time writes into it.
+/// Output folder of a flight, locked for exclusive writing.
 class FlightFolder {
  public:
-  /// Makes it, locks it, and clears away what a killed run left half written. Throws Error when another program writes
-  /// into it.
+  /// Creates and locks the folder; removes staging folders left by killed runs. Throws Error if another process holds
+  /// the lock.
   explicit FlightFolder(const std::filesystem::path& folder);
   FlightFolder(const FlightFolder&) = delete;
   FlightFolder& operator=(const FlightFolder&) = delete;
@@ -25,29 +25,29 @@ class FlightFolder {
   std::filesystem::path journal() const;
   const std::filesystem::path& path() const { return files_.path(); }
 
-  /// Removes what an earlier flight wrote, frame by frame, before another begins in its place.
+  /// Removes the files of an earlier flight.
   void remove_earlier_flight();
 
-  /// Writes the files of a frame, each whole.
+  /// Writes files atomically.
   void write(const std::vector<StagedFile>& files);
 
-  /// The content of a file, or nothing when there is none.
+  /// Reads a file; empty if it is missing.
   std::vector<std::uint8_t> read(const std::string& name) const;
 
  private:
   int lock_ = -1;
-  std::vector<std::filesystem::path> before_;  ///< staging folders that were there before this one's
+  std::vector<std::filesystem::path> before_;  ///< staging folders of earlier runs
   io::OutputFolder files_;
 };
 
-/// Name of the small picture of a frame, when that frame of the flight is to have one: of 17 to 32 frames, evenly
-/// spaced, however long the flight becomes.
-std::optional<std::string> thumbnail_name(std::int64_t place);
+/// Returns the file name of a frame's thumbnail, or nullopt if the frame has none. A flight of any length has 17 to 32
+/// evenly spaced thumbnails.
+std::optional<std::string> thumbnail_name(std::int64_t sequence);
 
-/// Whether that frame is among the evenly spaced ones of a flight of `frames`.
-bool is_shown(std::int64_t place, std::int64_t frames);
+/// Returns whether the thumbnail is in the report of a flight of `frames`.
+bool is_shown(std::int64_t sequence, std::int64_t frames);
 
-/// Name of the picture of a damage of the road.
+/// Returns the file name of the image of a road damage.
 std::string damage_picture_name(std::int64_t road_damage);
 
 }  // namespace roadstereo::cli

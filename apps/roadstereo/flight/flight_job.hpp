@@ -11,7 +11,7 @@
 
 namespace roadstereo::cli {
 
-/// A file that waits to be written.
+/// A file to be written.
 struct StagedFile {
   std::string name;
   std::vector<std::uint8_t> bytes;
@@ -21,9 +21,9 @@ inline StagedFile text_file(const std::string& name, const std::string& text) {
   return {name, {text.begin(), text.end()}};
 }
 
-/// One frame on its way through the program. Its memory serves one frame after the other.
+/// One frame in the flight pipeline. Jobs are reused to avoid allocations.
 struct FlightJob {
-  std::int64_t place = 0;  ///< which frame of the flight, from 0, whatever its place in the source
+  std::int64_t sequence = 0;  ///< number of the frame in the flight, from 0
   io::SourcePair pair;
   io::FlightFrame frame;
   FrameResult result;

@@ -14,13 +14,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Least, middle and largest of the figures that are known.
+/// Minimum, median and maximum of the finite values.
 Json range_json(std::vector<double> values) {
   values.erase(std::remove_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); }),
                values.end());
   if (values.empty()) return nullptr;
-  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
-  Json range = {{"min", *least}, {"median", 0}, {"max", *largest}};
+  const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
+  Json range = {{"min", *smallest}, {"median", 0}, {"max", *largest}};
   range["median"] = median(values);
   return range;
 }
@@ -28,11 +28,11 @@ Json range_json(std::vector<double> values) {
 Json frames_json(const FlightSummary& summary) {
   return {{"total", summary.frames},
           {"good", summary.good},
-          {"refused", summary.refused},
+          {"rejected", summary.rejected},
           {"failed", summary.failed},
-          {"road_estimated_anew", summary.road_estimated},
+          {"road_estimated", summary.road_estimated},
           {"road_unknown", summary.road_unknown},
-          {"placed_on_track", summary.placed ? Json(*summary.placed) : Json(nullptr)},
+          {"located", summary.located ? Json(*summary.located) : Json(nullptr)},
           {"reasons", summary.reasons}};
 }
 

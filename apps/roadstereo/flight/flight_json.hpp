@@ -6,7 +6,7 @@
 
 namespace roadstereo::cli {
 
-/// The content of summary.json. What is not known is null.
+/// Returns the content of summary.json. Unknown values are null.
 std::string flight_json(const FlightSettings& settings, const FlightRun& run, const FlightSummary& summary,
                         const io::FlightInventory& inventory);
 

@@ -1,33 +1,65 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "flight/flight_folder.hpp"
-#include "flight/flight_places.hpp"
+#include "flight/flight_positions.hpp"
 #include "flight/flight_settings.hpp"
 #include "flight/flight_summary.hpp"
-#include "flight/rectified_source.hpp"
-#include "roadstereo/io/flight_journal.hpp"
+#include "roadstereo/io/flight_inventory.hpp"
+#include "roadstereo/io/flight_report.hpp"
+#include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
 
-/// How a run of the program over a flight went.
+/// One run over a flight.
 struct FlightRun {
   bool complete = false;           ///< the end of the source was reached
-  std::string source;              ///< what it is, for people
+  std::string source;              ///< description of the source
   std::string calibration_format;  ///< empty without a calibration
-  std::string engine;              ///< the one that ran
+  std::string engine;              ///< name of the engine used
   int threads = 0;                 ///< of matching
   PipelineOptions options;
   double seconds = 0;            ///< of this run
   double frames_per_second = 0;  ///< of this run, from the first frame to the last
-  std::int64_t resumed_at = 0;   ///< frames that earlier runs had done
+  std::int64_t resumed_at = 0;   ///< number of frames done by earlier runs
 };
 
-/// Writes frames.csv, damages.csv, summary.json and report.html from the journal, and the maps when there is a track
-/// (`places`, which takes the frames). Returns the text of summary.json.
-std::string write_flight_results(const FlightSettings& settings, const FlightRun& run, const io::FlightJournal& journal,
-                                 std::optional<FlightPlaces>& places, FlightFolder& folder, FlightSummary& summary);
+/// Collects the results of a flight frame by frame and writes its tables, report and GIS files.
+class FlightResults {
+ public:
+  /// Reads the track, if any. Throws Error naming its file and line.
+  explicit FlightResults(const TrackSettings& track);
+
+  /// Adds the next frame. Returns the id of the road damage of each of its damages.
+  std::vector<std::int64_t> add(const io::FlightFrame& frame);
+
+  const io::FlightInventory& inventory() const { return inventory_; }
+
+  /// Writes frames.csv, damages.csv, summary.json and report.html, and the GIS files if there is a track. Completes the
+  /// summary; call it once. Returns the text of summary.json.
+  std::string write(const FlightSettings& settings, const FlightRun& run, FlightFolder& folder);
+
+  const FlightSummary& summary() const { return summary_; }
+
+ private:
+  struct Thumbnail {
+    std::int64_t sequence = 0;  ///< number of the frame in the flight
+    std::string name;           ///< of the file
+    std::string caption;
+  };
+  std::vector<io::CaptionedPicture> read_thumbnails(const FlightFolder& folder) const;
+  std::string report(const FlightSettings& settings, const FlightRun& run, const FlightFolder& folder) const;
+
+  FlightSummary summary_;
+  io::FlightInventory inventory_;
+  std::optional<FlightPositions> positions_;
+  std::vector<Thumbnail> thumbnails_;
+  std::string frames_csv_;
+  std::string damages_csv_;
+};
 
 }  // namespace roadstereo::cli

@@ -10,37 +10,48 @@
 
 namespace roadstereo::cli {
 
-/// What can be written of every frame.
+/// Optional output files of a frame.
 enum class FrameFile { disparity, transformed, sheet, cloud, overlay };
 
-/// The file of that name. Throws Error naming those that exist.
+/// Parses the name of a FrameFile. Throws Error listing the names.
 FrameFile frame_file(const std::string& name);
 
-/// The track that places a flight on the earth.
+/// Options of the GNSS track.
 struct TrackSettings {
   std::string file;          ///< empty: no track
-  double offset_s = 0;       ///< added to the frames' times to have the track's
-  double mount_yaw_deg = 0;  ///< the camera's forward against the heading, clockwise
+  double offset_s = 0;       ///< added to the times of the frames
+  double mount_yaw_deg = 0;  ///< yaw of the camera relative to the heading, clockwise
 };
 
-/// What the command line says about a flight.
+/// Command line options of `inspect`.
 struct FlightSettings {
   std::vector<std::string> source;  ///< one name, or left and right
   std::vector<std::string> calibration;
   std::string output;
   ProcessingSettings processing;
-  SourceChoice choice;
+  SourceSettings source_settings;
   bool resume = false;
   std::int64_t from = 0;           ///< first frame of the source, from 0
-  std::optional<std::int64_t> to;  ///< last frame, included; absent: the end
-  std::int64_t every = 1;          ///< takes each so-manieth frame
+  std::optional<std::int64_t> to;  ///< last frame, inclusive; absent: the end
+  std::int64_t every = 1;          ///< processes every N-th frame
   std::vector<std::string> write;  ///< names of FrameFile
   TrackSettings track;
   bool quiet = false;
   bool json = false;
 
-  /// Throws Error naming what is out of range.
+  /// Throws Error naming the first option out of range.
   void validate() const;
 };
+
+/// Parsed and checked options of a flight.
+struct FlightPlan {
+  PipelineOptions options;
+  bool find_white_level = true;  ///< determines it from the first valid pair of a 16-bit source
+  io::SourceOptions source;
+  std::vector<FrameFile> write;
+};
+
+/// Parses and checks the command line options. Throws Error naming the option that is unknown or out of range.
+FlightPlan resolve(const FlightSettings& settings);
 
 }  // namespace roadstereo::cli

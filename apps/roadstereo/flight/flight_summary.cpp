@@ -12,7 +12,7 @@ void FlightSummary::add(const io::FlightFrame& frame) {
   constexpr double degrees = 180 / std::numbers::pi;  // in a radian
   ++frames;
   good += frame.status == io::FrameStatus::good ? 1 : 0;
-  refused += frame.status == io::FrameStatus::refused ? 1 : 0;
+  rejected += frame.status == io::FrameStatus::rejected ? 1 : 0;
   failed += frame.status == io::FrameStatus::failed ? 1 : 0;
   if (frame.status == io::FrameStatus::good) {
     road_unknown += frame.road_reliable ? 0 : 1;

@@ -10,19 +10,19 @@
 
 namespace roadstereo::cli {
 
-/// What the frames of a flight add up to.
+/// Statistics of the frames of a flight.
 struct FlightSummary {
   std::int64_t frames = 0;
   std::int64_t good = 0;
-  std::int64_t refused = 0;
+  std::int64_t rejected = 0;
   std::int64_t failed = 0;
-  std::int64_t road_estimated = 0;     ///< frames whose road was estimated anew
-  std::int64_t road_unknown = 0;       ///< ... or not found before matching
-  std::optional<std::int64_t> placed;  ///< frames that the track has a place for; absent without a track
-  std::string track_note;              ///< why no frame has a place, when none has
-  std::int64_t damages = 0;            ///< of the road (FlightInventory)
-  std::int64_t sightings = 0;          ///< of damages, over all frames
-  std::vector<std::string> reasons;    ///< why frames are not good, each once, the first few
+  std::int64_t road_estimated = 0;      ///< frames whose road model was estimated, not tracked
+  std::int64_t road_unknown = 0;        ///< frames without a road model before matching
+  std::optional<std::int64_t> located;  ///< frames with a position; absent without a track
+  std::string no_position_reason;       ///< reason if no frame has a position
+  std::int64_t damages = 0;             ///< road damages (FlightInventory)
+  std::int64_t sightings = 0;           ///< damages of all frames
+  std::vector<std::string> reasons;     ///< first distinct reasons why frames are not good
   double first_time_s = io::FlightFrame::unknown;
   double last_time_s = io::FlightFrame::unknown;
   io::FlightCurves curves;  ///< of every frame
@@ -32,7 +32,7 @@ struct FlightSummary {
 
   void add(const io::FlightFrame& frame);
 
-  /// Turns the curves' times into seconds since the first frame, where all frames have one; else numbers of frames.
+  /// Converts the times of the curves to seconds since the first frame if all are known, else to frame numbers.
   void settle_times();
 };
 

@@ -40,7 +40,7 @@ std::vector<std::uint8_t> sheet_of(const FlightJob& job) {
 }
 
 std::vector<std::uint8_t> content_of(FrameFile file, const std::optional<StereoCalibration>& calibration,
-                                     const PipelineOptions& options, const FlightJob& job) {
+                                     const FlightJob& job) {
   switch (file) {
     case FrameFile::disparity:
       return io::encode_float_tiff(job.result.disparity);
@@ -49,7 +49,7 @@ std::vector<std::uint8_t> content_of(FrameFile file, const std::optional<StereoC
     case FrameFile::sheet:
       return sheet_of(job);
     case FrameFile::cloud:
-      return io::encode_ply(io::cloud_from_disparity(job.result.disparity, job.pair.left.view(), options.white_level,
+      return io::encode_ply(io::cloud_from_disparity(job.result.disparity, job.pair.left.view(), job.frame.white_level,
                                                      calibration.value()));
     case FrameFile::overlay:
       return io::encode_png(io::damage_overlay(job.pair.left.view(), job.damage).view());
@@ -60,8 +60,8 @@ std::vector<std::uint8_t> content_of(FrameFile file, const std::optional<StereoC
 }  // namespace
 
 StagedFile encode_frame_file(FrameFile file, const std::optional<StereoCalibration>& calibration,
-                             const PipelineOptions& options, const FlightJob& job) {
-  return {name_of_file(file, job.frame.index), content_of(file, calibration, options, job)};
+                             const FlightJob& job) {
+  return {name_of_file(file, job.frame.index), content_of(file, calibration, job)};
 }
 
 std::vector<std::string> frame_file_names(std::int64_t index) {

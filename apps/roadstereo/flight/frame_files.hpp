@@ -7,11 +7,10 @@
 
 namespace roadstereo::cli {
 
-/// One of the files of a frame, "disparity/000012.tiff" for example; of frame 12 of the source.
-StagedFile encode_frame_file(FrameFile file, const std::optional<StereoCalibration>& calibration,
-                             const PipelineOptions& options, const FlightJob& job);
+/// Encodes one file of a frame, e.g. "disparity/000012.tiff" of frame 12 of the source.
+StagedFile encode_frame_file(FrameFile file, const std::optional<StereoCalibration>& calibration, const FlightJob& job);
 
-/// The names of all files that a frame can have.
+/// Returns the names of all possible files of a frame.
 std::vector<std::string> frame_file_names(std::int64_t index);
 
 }  // namespace roadstereo::cli

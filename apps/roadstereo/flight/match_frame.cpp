@@ -28,15 +28,15 @@ void record(const FrameResult& result, const std::optional<StereoCalibration>& c
   frame.pitch_rad = plane.pitch_rad;
 }
 
-/// What is known of a frame before it is matched.
+/// Resets the job and fills the fields known before matching.
 void begin(FlightJob& job) {
   io::FlightFrame& frame = job.frame;
   frame = {};
   frame.index = job.pair.index;
   frame.name = job.pair.name;
   frame.time_s = job.pair.time_s;
-  frame.reason = job.pair.refused;
-  if (!frame.reason.empty()) frame.status = io::FrameStatus::refused;
+  frame.reason = job.pair.error;
+  if (!frame.reason.empty()) frame.status = io::FrameStatus::rejected;
   job.damage.damages.clear();
   job.files.clear();
 }
@@ -55,14 +55,14 @@ void match_frame(Pipeline& pipeline, const std::optional<StereoCalibration>& cal
     }
   }
   job.frame.white_level = pipeline.options().white_level;
-  job.frame.carried = pipeline.carried();
+  job.frame.pipeline_state = pipeline.carried();
 }
 
-void record_refused(const std::optional<io::FlightFrame>& before, FlightJob& job) {
+void record_rejected(const std::optional<io::FlightFrame>& before, FlightJob& job) {
   begin(job);
   if (!before) return;
   job.frame.white_level = before->white_level;
-  job.frame.carried = before->carried;
+  job.frame.pipeline_state = before->pipeline_state;
 }
 
 }  // namespace roadstereo::cli

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "say.hpp"
+#include "log_stderr.hpp"
 
 namespace roadstereo::cli {
 
@@ -22,7 +22,7 @@ Progress::Progress(std::optional<std::int64_t> total, std::int64_t done, bool qu
       shown_(start_) {}
 
 void Progress::end() {
-  if (drawn_) say("\n");
+  if (drawn_) log_stderr("\n");
   drawn_ = false;
 }
 
@@ -49,11 +49,11 @@ void Progress::frame_done(bool good) {
 
 void Progress::show() {
   if (terminal_) {
-    say("\r{} {}\033[K", bar(), line());
+    log_stderr("\r{} {}\033[K", bar(), line());
     std::fflush(stderr);
     drawn_ = true;
   } else {
-    say("{}\n", line());
+    log_stderr("{}\n", line());
   }
 }
 

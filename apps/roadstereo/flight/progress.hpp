@@ -7,17 +7,17 @@
 
 namespace roadstereo::cli {
 
-/// How far a flight is, on standard error: a bar that is redrawn on a terminal, else a line every few seconds.
+/// Progress of a flight on standard error: a bar on a terminal, else a line every few seconds.
 class Progress {
  public:
-  /// `total` frames, of which `done` were done by an earlier run. A quiet one shows nothing.
+  /// `total` frames, `done` of them by an earlier run. Prints nothing if `quiet`.
   Progress(std::optional<std::int64_t> total, std::int64_t done, bool quiet);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   void frame_done(bool good);
 
-  /// Leaves the line that was drawn.
+  /// Ends the current line.
   void end();
 
   double seconds() const;

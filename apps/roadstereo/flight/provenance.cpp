@@ -20,7 +20,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// A number that tells contents of files apart (FNV-1a).
+/// FNV-1a hash of a file.
 std::string digest(const std::vector<std::string>& files) {
   constexpr std::uint64_t basis = 0xcbf29ce484222325ULL;
   constexpr std::uint64_t prime = 0x100000001b3ULL;
@@ -38,21 +38,21 @@ std::string digest(const std::vector<std::string>& files) {
 }  // namespace
 
 io::Provenance provenance(const FlightSettings& settings, const PipelineOptions& options) {
-  io::Provenance facts{{"version", version},
-                       {"source", joined(settings.source)},
-                       {"calibration", joined(settings.calibration)},
-                       {"content of the calibration", digest(settings.calibration)},
-                       {"--from", std::to_string(settings.from)},
-                       {"--every", std::to_string(settings.every)},
-                       {"--write", joined(settings.write)},
-                       {"--layout", settings.choice.layout},
-                       {"--topics", joined(settings.choice.topics)},
-                       {"--max-time-difference", fmt::format("{}", settings.choice.max_time_difference_ms)},
-                       {"--rate", fmt::format("{}", settings.choice.rate_hz)}};
+  io::Provenance entries{{"version", version},
+                         {"source", joined(settings.source)},
+                         {"calibration", joined(settings.calibration)},
+                         {"content of the calibration", digest(settings.calibration)},
+                         {"--from", std::to_string(settings.from)},
+                         {"--every", std::to_string(settings.every)},
+                         {"--write", joined(settings.write)},
+                         {"--layout", settings.source_settings.layout},
+                         {"--topics", joined(settings.source_settings.topics)},
+                         {"--max-time-difference", fmt::format("{}", settings.source_settings.max_time_difference_ms)},
+                         {"--rate", fmt::format("{}", settings.source_settings.rate_hz)}};
   for (const OptionText& option : list_options(options)) {
-    if (option.key != "threads") facts.emplace_back(option.key, option.value);
+    if (option.key != "threads") entries.emplace_back(option.key, option.value);
   }
-  return facts;
+  return entries;
 }
 
 }  // namespace roadstereo::cli

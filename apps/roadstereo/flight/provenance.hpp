@@ -5,7 +5,7 @@
 
 namespace roadstereo::cli {
 
-/// All that the results of a flight depend on, the content of its calibration included: it goes on only with the same.
+/// Returns all inputs and options that determine the results of a flight, including a hash of its calibration.
 /// Throws Error naming a calibration that cannot be read.
 io::Provenance provenance(const FlightSettings& settings, const PipelineOptions& options);
 

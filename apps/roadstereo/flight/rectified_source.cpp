@@ -14,19 +14,19 @@ RectifiedSource::RectifiedSource(std::unique_ptr<io::FrameSource> source, const 
     file_name_ = calibration[0];
   } else {
     file_ = source_->calibration();
-    file_name_ = "the source's calibration";
+    file_name_ = "the calibration of the source";
   }
   if (!file_) return;
   format_ = file_->format;
   calibration_ = file_->rectified;
-  if (!file_->rectified && !file_->rig) fail(file_name_, ": no calibration of a stereo rig was found in it");
+  if (!file_->rectified && !file_->rig) fail(file_name_, ": there is no stereo calibration in this file");
   if (file_->rig && file_->rig->width > 0) {
     rectifier_.emplace(*file_->rig, file_->rig->width, file_->rig->height);
     calibration_ = rectifier_->calibration();
   }
 }
 
-/// What the first good pair tells: the size of the frames, and white.
+/// Determines the white level and the rectification maps from the first valid pair.
 void RectifiedSource::prepare(const io::SourcePair& first) {
   if (!white_known_ && first.left.sample == SampleType::u16 && first.right.sample == SampleType::u16) {
     white_level_ = io::find_white_level(first.left.view(), first.right.view());
@@ -44,7 +44,7 @@ void RectifiedSource::set_white_level(double level) {
 }
 
 void RectifiedSource::rectify(io::SourcePair& pair) {
-  if (!pair.refused.empty()) return;
+  if (!pair.error.empty()) return;
   try {
     if (!prepared_) prepare(pair);
     if (rectifier_) {
@@ -57,7 +57,7 @@ void RectifiedSource::rectify(io::SourcePair& pair) {
   } catch (const SystemError&) {
     throw;
   } catch (const Error& error) {
-    pair.refused = error.what();
+    pair.error = error.what();
   }
 }
 

@@ -12,30 +12,30 @@
 
 namespace roadstereo::cli {
 
-/// A source together with its calibration: its pairs come out rectified.
+/// A source whose pairs are rectified with its calibration.
 class RectifiedSource {
  public:
-  /// `calibration`: none (then the source's own, if it has one), one file, or the two of a ROS pair. Throws Error
-  /// naming a file that is no calibration.
+  /// `calibration`: empty (then that of the source, if any), one file, or two ROS camera_info files. Throws Error
+  /// naming a file that is not a calibration.
   RectifiedSource(std::unique_ptr<io::FrameSource> source, const std::vector<std::string>& calibration);
 
-  /// The next pair, rectified; one that cannot be (another size, say) carries its reason. Nothing at the end.
+  /// Returns the next pair, rectified, or nullopt at the end. `error` is set if it cannot be rectified.
   std::optional<io::SourcePair> next();
 
-  /// The same for a pair that was taken from the source.
+  /// Rectifies a pair of the source in place; sets its `error` on failure.
   void rectify(io::SourcePair& pair);
 
   io::FrameSource& source() { return *source_; }
 
-  /// The calibration that belongs to rectified frames; known before the first frame unless the rig must be rectified
-  /// and its file does not tell the size. Absent without a calibration.
+  /// Calibration of the rectified frames; absent without a calibration, and before the first pair if the file of an
+  /// unrectified rig has no image size.
   const std::optional<StereoCalibration>& calibration() const { return calibration_; }
   const std::string& calibration_format() const { return format_; }  ///< empty without a calibration
 
-  /// Sample value of white, found on the first good pair of a 16-bit source; 0 takes the largest of the sample type.
+  /// Sample value of white, determined from the first valid pair of a 16-bit source; 0: maximum of the sample type.
   double white_level() const { return white_level_; }
 
-  /// Takes white as found earlier instead of looking for it.
+  /// Sets the white level instead of determining it.
   void set_white_level(double level);
 
  private:

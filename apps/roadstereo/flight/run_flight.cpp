@@ -1,17 +1,17 @@
 #include "flight/run_flight.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
+#include "first_exception.hpp"
 #include "flight/bounded_queue.hpp"
 #include "flight/finish_frame.hpp"
 #include "flight/flight_job.hpp"
-#include "flight/in_turn.hpp"
 #include "flight/match_frame.hpp"
+#include "flight/sequencer.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_pictures.hpp"
 
@@ -21,27 +21,10 @@ namespace {
 
 using JobPointer = std::unique_ptr<FlightJob>;
 
-/// The first thing that went wrong in any thread.
-class FirstFailure {
+/// Threads of a flight: reader → matcher → finishers → writer in order.
+class FlightPipeline {
  public:
-  void keep(std::exception_ptr failure) {
-    const std::lock_guard lock(mutex_);
-    if (!failure_) failure_ = std::move(failure);
-  }
-  void rethrow() {
-    const std::lock_guard lock(mutex_);
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  std::mutex mutex_;
-  std::exception_ptr failure_;
-};
-
-/// The threads of one flight and what goes to and fro between them.
-class Line {
- public:
-  Line(const FlightSettings& settings, Flight& flight);
+  FlightPipeline(const FlightSettings& settings, Flight& flight);
   bool run();
 
  private:
@@ -53,77 +36,71 @@ class Line {
   void add_pictures(FlightJob& job, const std::vector<std::int64_t>& road_damages);
   void stop_all();
   template <class Work>
-  void guarded(const Work& work);
+  void run_stage(const Work& work);
 
   const FlightSettings& settings_;
   Flight& flight_;
-  std::vector<FrameFile> write_;
+
   int finishers_;
   bool reached_end_ = false;
-  BoundedQueue<io::SourcePair> pairs_;  ///< read, to be matched
-  BoundedQueue<JobPointer> matched_;    ///< to be finished
-  BoundedQueue<JobPointer> free_;       ///< jobs whose memory is not in use
-  Sequencer in_turn_;
-  FirstFailure failure_;
+  BoundedQueue<io::SourcePair> pairs_;  ///< from reader to matcher
+  BoundedQueue<JobPointer> matched_;    ///< from matcher to finishers
+  BoundedQueue<JobPointer> free_;       ///< unused jobs
+  Sequencer sequencer_;
+  FirstException failure_;
 };
 
-/// Makes memory and threads before the first frame, which would else take longer than the others.
+/// Allocates memory and threads before the first frame.
 void warm_up(Pipeline& pipeline, const io::SourcePair& pair) {
   try {
     pipeline.warm_up(pair.left.width, pair.left.height);
-  } catch (const Error&) {  // of a size that the pair itself is about to be refused for, with its name
+  } catch (const Error&) {  // an invalid size is reported when the pair is processed
   }
 }
 
 int finisher_count(const PipelineOptions& options) {
-  constexpr int most = 4;
-  return std::clamp(used_threads(options) / 2, 1, most);
+  constexpr int max_finishers = 4;
+  return std::clamp(used_threads(options) / 2, 1, max_finishers);
 }
 
-Line::Line(const FlightSettings& settings, Flight& flight)
+FlightPipeline::FlightPipeline(const FlightSettings& settings, Flight& flight)
     : settings_(settings),
       flight_(flight),
-      finishers_(finisher_count(flight.options)),
+      finishers_(finisher_count(flight.plan.options)),
       pairs_(3),
       matched_(static_cast<std::size_t>(finishers_)),
       free_(static_cast<std::size_t>(2 * finishers_) + 1),
-      in_turn_(flight.journal.frames()) {
-  for (const std::string& name : settings.write) write_.push_back(frame_file(name));
+      sequencer_(flight.journal.frames()) {
   for (int i = 0; i < 2 * finishers_ + 1; ++i) free_.put(std::make_unique<FlightJob>());
 }
 
-void Line::stop_all() {
+void FlightPipeline::stop_all() {
   pairs_.abandon();
   matched_.abandon();
   free_.abandon();
-  in_turn_.break_off();
+  sequencer_.cancel();
 }
 
-/// A thread that fails takes the others with it.
+/// Runs `work`; an exception stops all threads.
 template <class Work>
-void Line::guarded(const Work& work) {
-  try {
-    work();
-  } catch (...) {
-    failure_.keep(std::current_exception());
-    stop_all();
-  }
+void FlightPipeline::run_stage(const Work& work) {
+  failure_.run(work, [this] { stop_all(); });
 }
 
-/// Behind the last frame of an earlier run, which must still be what it was.
-void Line::seek(io::FrameSource& source) const {
+/// Skips to the frame after the last one of an earlier run. Throws Error if that one has changed.
+void FlightPipeline::seek(io::FrameSource& source) const {
   const std::optional<io::FlightFrame>& last = flight_.journal.last();
   if (!last) return source.skip(settings_.from);
   source.skip(last->index);
   const std::optional<io::SourcePair> again = source.next();
   if (!again || again->name != last->name) {
-    fail(settings_.source[0], ": has changed since this flight was begun: frame ", last->index, " was \"", last->name,
-         "\" and is now ", again ? "\"" + again->name + "\"" : "missing", "; begin anew without --resume");
+    fail(settings_.source[0], ": the source has changed since this flight was started: frame ", last->index, " was \"",
+         last->name, "\" and is now ", again ? "\"" + again->name + "\"" : "missing", "; start again without --resume");
   }
   source.skip(settings_.every - 1);
 }
 
-void Line::read() {
+void FlightPipeline::read() {
   io::FrameSource& source = flight_.source.source();
   seek(source);
   while (!flight_.stop.wait(0)) {
@@ -138,68 +115,69 @@ void Line::read() {
   pairs_.close();
 }
 
-void Line::match() {
-  const std::optional<io::FlightFrame> before = flight_.journal.last();  // the journal grows from here on
+void FlightPipeline::match() {
+  const std::optional<io::FlightFrame> before = flight_.journal.last();  // before the journal grows
   std::optional<Pipeline> pipeline;
-  std::int64_t place = flight_.journal.frames();
+  std::int64_t sequence = flight_.journal.frames();
   while (std::optional<io::SourcePair> pair = pairs_.take()) {
     std::optional<JobPointer> job = free_.take();
     if (!job) break;
-    if (!pipeline && pair->refused.empty()) {  // white and the size are known from the first good pair on
-      if (!sets_white_level(settings_.processing)) flight_.options.white_level = flight_.source.white_level();
-      pipeline.emplace(flight_.options, flight_.source.calibration());
+    if (!pipeline && pair->error.empty()) {  // white level and size are known now
+      PipelineOptions options = flight_.plan.options;
+      if (flight_.plan.find_white_level) options.white_level = flight_.source.white_level();
+      pipeline.emplace(options, flight_.source.calibration());
       warm_up(*pipeline, *pair);
-      if (before) pipeline->restore(before->carried);
+      if (before) pipeline->restore(before->pipeline_state);
     }
-    (*job)->place = place++;
+    (*job)->sequence = sequence++;
     (*job)->pair = std::move(*pair);
     if (pipeline) {
       match_frame(*pipeline, flight_.source.calibration(), **job);
     } else {
-      record_refused(before, **job);
+      record_rejected(before, **job);
     }
     if (!matched_.put(std::move(*job))) break;
   }
   matched_.close();
 }
 
-void Line::finish() {
+void FlightPipeline::finish() {
   while (std::optional<JobPointer> job = matched_.take()) {
-    finish_frame(flight_.source.calibration(), flight_.options, write_, **job);
-    in_turn_.run_in_order((*job)->place, [&] { commit_frame(**job); });
+    finish_frame(flight_.source.calibration(), flight_.plan.options.damage, flight_.plan.write, **job);
+    sequencer_.run_in_order((*job)->sequence, [&] { commit_frame(**job); });
     free_.put(std::move(*job));
   }
 }
 
-/// Files first: what the journal has is whole.
-void Line::commit_frame(FlightJob& job) {
-  add_pictures(job, flight_.inventory.add(job.frame));
+/// Writes the files before the journal entry, so that the files of all journal entries are complete.
+void FlightPipeline::commit_frame(FlightJob& job) {
+  add_pictures(job, flight_.results.add(job.frame));
   flight_.folder.write(job.files);
   flight_.journal.append(job.frame);
   flight_.progress.frame_done(job.frame.status == io::FrameStatus::good);
 }
 
-/// A small picture now and then, and one of each damage from the frame that shows it best so far.
-void Line::add_pictures(FlightJob& job, const std::vector<std::int64_t>& road_damages) {
+/// Adds thumbnails, and an image of each damage from its best frame so far.
+void FlightPipeline::add_pictures(FlightJob& job, const std::vector<std::int64_t>& road_damages) {
   if (job.frame.status != io::FrameStatus::good) return;
   const FrameView left = job.pair.left.view();
-  if (const auto name = thumbnail_name(job.place)) {
+  if (const auto name = thumbnail_name(job.sequence)) {
     job.files.push_back({*name, io::frame_thumbnail(left, job.damage)});
   }
   for (std::size_t i = 0; i < road_damages.size(); ++i) {
-    const io::RoadDamage& known = flight_.inventory.damages()[static_cast<std::size_t>(road_damages[i]) - 1];
+    const io::RoadDamage& known = flight_.results.inventory().damages()[static_cast<std::size_t>(road_damages[i]) - 1];
     if (known.frame != job.frame.index) continue;
     job.files.push_back({damage_picture_name(known.id), io::damage_picture(left, job.damage, job.frame.damages[i])});
   }
 }
 
-bool Line::run() {
+bool FlightPipeline::run() {
   std::vector<std::thread> threads;
-  threads.emplace_back([this] { guarded([this] { read(); }); });
+  threads.emplace_back([this] { run_stage([this] { read(); }); });
   for (int i = 0; i < finishers_; ++i) {
-    threads.emplace_back([this] { guarded([this] { finish(); }); });
+    threads.emplace_back([this] { run_stage([this] { finish(); }); });
   }
-  guarded([this] { match(); });
+  run_stage([this] { match(); });
   for (std::thread& thread : threads) thread.join();
   failure_.rethrow();
   return reached_end_;
@@ -208,7 +186,7 @@ bool Line::run() {
 }  // namespace
 
 bool run_flight(const FlightSettings& settings, Flight& flight) {
-  return Line(settings, flight).run();
+  return FlightPipeline(settings, flight).run();
 }
 
 }  // namespace roadstereo::cli

@@ -15,7 +15,7 @@ namespace roadstereo::cli {
 std::string random_token() {
   std::array<std::uint8_t, 16> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
-    fail<SystemError>("the system gives no random numbers for a token");
+    fail<SystemError>("no random numbers are available for a token");
   }
   constexpr std::string_view digits = "0123456789abcdef";
   std::string token;

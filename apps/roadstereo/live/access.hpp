@@ -5,14 +5,13 @@
 
 namespace roadstereo::cli {
 
-/// 128 bits from the system's source of randomness, as 32 hexadecimal digits. Throws SystemError when it has none.
+/// Returns 128 random bits of the system as 32 hexadecimal digits. Throws SystemError if they are not available.
 std::string random_token();
 
-/// Whether the texts are equal; takes as long wherever they differ.
+/// Compares two texts in constant time.
 bool equal_in_constant_time(std::string_view given, std::string_view wanted);
 
-/// Whether a Host header may stand in a request to a server on this machine only: a page from elsewhere, whose name was
-/// made to point here, comes with its own name.
+/// Returns whether a Host header is allowed in a request to a loopback server. Protects against DNS rebinding.
 bool names_this_machine(std::string_view host_header);
 
 }  // namespace roadstereo::cli

@@ -32,7 +32,7 @@ void Capture::sleep_until(Clock::time_point time, const std::stop_token& stop) {
 }
 
 void Capture::lose(const std::string& reason) {
-  source_.reset();  // a device is opened by one at a time
+  source_.reset();  // a device can be opened only once
   board_.lose_camera(reason);
 }
 
@@ -49,7 +49,7 @@ void Capture::reconnect(const std::stop_token& stop) {
 std::optional<io::SourcePair> Capture::next_of_camera() {
   try {
     std::optional<io::SourcePair> pair = source_->next();
-    if (!pair) lose("the camera gives no more pictures");
+    if (!pair) lose("the camera does not deliver images any more");
     return pair;
   } catch (const Error& error) {
     lose(error.what());
@@ -57,7 +57,7 @@ std::optional<io::SourcePair> Capture::next_of_camera() {
   return std::nullopt;
 }
 
-/// Pairs that cannot be shown any more are passed over without being decoded; but not the last one.
+/// Skips overdue pairs without decoding them, except the last one.
 void Capture::skip_overdue() {
   std::int64_t overdue = playback_.overdue(Clock::now());
   if (const std::optional<std::int64_t> size = source_->size()) overdue = std::min(overdue, *size - next_index_ - 1);
@@ -80,7 +80,7 @@ std::optional<io::SourcePair> Capture::next_of_recording(const std::stop_token& 
     sleep_until(playback_.due(*pair, Clock::now()), stop);
     return pair;
   }
-  if (options_.loop && next_index_ == 0) fail("the recording holds no pair to play again");
+  if (options_.loop && next_index_ == 0) fail("the recording has no pair to repeat");
   ended_ = !options_.loop;
   if (options_.loop) {
     source_ = opener_();
@@ -92,8 +92,8 @@ std::optional<io::SourcePair> Capture::next_of_recording(const std::stop_token& 
 
 void Capture::deliver(io::SourcePair pair) {
   board_.count_taken();
-  if (!pair.refused.empty()) {
-    board_.refuse(pair.refused);
+  if (!pair.error.empty()) {
+    board_.count_rejected(pair.error);
     return;
   }
   CapturedPair captured{std::move(pair), Clock::now(), calendar_s()};
@@ -114,7 +114,7 @@ void Capture::run(const std::stop_token& stop) {
     }
     std::optional<io::SourcePair> pair = live_ ? next_of_camera() : next_of_recording(stop);
     if (!pair || stop.stop_requested()) continue;
-    if (std::exchange(lost, false)) {  // only a picture tells that it is back
+    if (std::exchange(lost, false)) {  // an image shows that the camera is back
       options_.pause.reset();
       board_.camera_is_back();
     }

@@ -14,27 +14,27 @@
 #include "live/live_board.hpp"
 #include "live/playback.hpp"
 #include "live/recorder.hpp"
-#include "live/retry_pause.hpp"
+#include "live/retry_backoff.hpp"
 
 namespace roadstereo::cli {
 
-/// Opens the source; called again to get a lost camera back and for another round of a recording. Throws Error.
+/// Opens the source; called again to reconnect a camera and to repeat a recording. Throws Error.
 using SourceOpener = std::function<std::unique_ptr<io::FrameSource>()>;
 
 struct CaptureOptions {
-  double rate_hz = 0;  ///< of a recording, pairs a second; 0: at its own times
-  bool loop = false;   ///< a recording begins again
-  RetryPause pause;    ///< between attempts to get a camera back
+  double rate_hz = 0;  ///< of a recording, pairs per second; 0: times of the recording
+  bool loop = false;   ///< repeats a recording
+  RetryBackoff pause;  ///< between attempts to reconnect a camera
 };
 
-/// Takes pairs from a source as they come, or as they come due, and puts the newest into a slot.
+/// Reads pairs of a camera, or of a recording in real time, and stores the newest in a LatestValue.
 class Capture {
  public:
   /// `recorder` may be null.
   Capture(std::unique_ptr<io::FrameSource> first, SourceOpener opener, const CaptureOptions& options, LiveBoard& board,
           LatestValue<CapturedPair>& slot, Recorder* recorder);
 
-  /// Until it is told to stop, or a recording ends. Throws Error when a recording cannot be read any further.
+  /// Runs until `stop`, or the end of a recording. Throws Error if a recording cannot be read.
   void run(const std::stop_token& stop);
 
  private:
@@ -47,7 +47,7 @@ class Capture {
   void deliver(io::SourcePair pair);
   void sleep_until(Clock::time_point time, const std::stop_token& stop);
 
-  std::unique_ptr<io::FrameSource> source_;  ///< none while the camera is lost
+  std::unique_ptr<io::FrameSource> source_;  ///< null while the camera is lost
   SourceOpener opener_;
   CaptureOptions options_;
   LiveBoard& board_;

@@ -5,11 +5,11 @@
 
 namespace roadstereo::cli {
 
-/// A pair on its way from the source.
+/// A pair with its time of arrival.
 struct CapturedPair {
   io::SourcePair pair;
   Clock::time_point arrival{};
-  double clock_s = 0;  ///< the same by the calendar, seconds since 1970
+  double clock_s = 0;  ///< the same as system time, seconds since 1970
 };
 
 }  // namespace roadstereo::cli

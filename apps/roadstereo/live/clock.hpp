@@ -4,7 +4,7 @@
 
 namespace roadstereo::cli {
 
-/// What ages and pauses are counted with: never set back.
+/// Monotonic clock of ages and pauses.
 using Clock = std::chrono::steady_clock;
 
 inline double seconds_between(Clock::time_point from, Clock::time_point to) {

@@ -6,7 +6,7 @@
 namespace roadstereo::cli {
 namespace {
 
-/// How long a damage may be missed before what is seen there is another one, seconds.
+/// Maximum time between two sightings of a damage, seconds.
 constexpr double memory_s = 1;
 
 double half_diagonal(const Damage& damage) {
@@ -14,7 +14,7 @@ double half_diagonal(const Damage& damage) {
   return std::hypot(u1 - u0 + 1, v1 - v0 + 1) / 2;
 }
 
-/// How well a depth is known, as a share of itself.
+/// Relative error of the depth.
 double uncertainty(const Damage& damage) {
   const Measurement& depth = damage.metrics ? damage.metrics->max_depth_m : damage.max_depth_px;
   return depth.std_error / std::max(std::abs(depth.value), 1e-9);
@@ -31,7 +31,7 @@ double distance(const std::array<double, 2>& a, const std::array<double, 2>& b) 
 
 }  // namespace
 
-/// A damage that was seen once moves as others do: the road does not.
+/// A damage seen once is assumed to move like the others.
 std::array<double, 2> DamageList::expected(const Track& track, Clock::time_point time) const {
   const double passed = seconds_between(track.seen, time);
   const std::array<double, 2>& speed = track.moved ? track.speed : common_speed_;
@@ -39,18 +39,18 @@ std::array<double, 2> DamageList::expected(const Track& track, Clock::time_point
 }
 
 DamageList::Track* DamageList::nearest(const Damage& damage, const LiveView& view, const std::vector<bool>& taken) {
-  constexpr double min_reach_px = 12;
+  constexpr double min_radius_px = 12;
   Track* best = nullptr;
-  double least = HUGE_VAL;
+  double min_distance = HUGE_VAL;
   for (std::size_t i = 0; i < taken.size(); ++i) {
     Track& track = tracks_[i];
     if (taken[i] || track.kind != damage.kind) continue;
     const double away = std::min(distance(expected(track, view.arrival), damage.centroid_px),
-                                 distance(track.centre, damage.centroid_px));  // it may have stopped or turned
-    const double reach = std::max({min_reach_px, track.reach, half_diagonal(damage)});
-    if (away <= reach && away < least) {
+                                 distance(track.centre, damage.centroid_px));  // in case the motion has changed
+    const double radius = std::max({min_radius_px, track.radius, half_diagonal(damage)});
+    if (away <= radius && away < min_distance) {
       best = &track;
-      least = away;
+      min_distance = away;
     }
   }
   return best;
@@ -66,7 +66,7 @@ void DamageList::follow(Track& track, const Damage& damage, const LiveView& view
   }
   track.seen = view.arrival;
   track.centre = damage.centroid_px;
-  track.reach = half_diagonal(damage);
+  track.radius = half_diagonal(damage);
   const auto entry = std::find_if(entries_.begin(), entries_.end(),
                                   [&track](const ListedDamage& listed) { return listed.id == track.id; });
   if (entry == entries_.end()) return;
@@ -82,7 +82,7 @@ void DamageList::begin(const Damage& damage, const LiveView& view) {
   track.kind = damage.kind;
   track.seen = view.arrival;
   track.centre = damage.centroid_px;
-  track.reach = half_diagonal(damage);
+  track.radius = half_diagonal(damage);
   tracks_.push_back(track);
   entries_.push_front({track.id, view.clock_s, view.number, 1, damage});
   if (entries_.size() > max_entries) entries_.pop_back();

@@ -9,38 +9,37 @@
 
 namespace roadstereo::cli {
 
-/// One damage of the running list, however many pictures show it.
+/// One damage of the list, seen in one or several views.
 struct ListedDamage {
-  std::int64_t id = 0;          ///< from 1, in the order of their appearance
+  std::int64_t id = 0;          ///< from 1, in the order of the first sighting
   double first_seen_s = 0;      ///< seconds since 1970
-  std::int64_t changed_in = 0;  ///< number of the view that last changed this entry
-  std::int64_t views = 0;       ///< that showed it
-  Damage best;                  ///< as the view measured it that knows its depth best; uncut before cut
+  std::int64_t changed_in = 0;  ///< number of the view with the last change
+  std::int64_t views = 0;       ///< number of views that show it
+  Damage best;                  ///< most precise measurement; not cut by the border if possible
 };
 
-/// The latest damages of a run. What two successive views show at about the same place, as far as it was seen to move,
-/// is one damage.
+/// Tracks the latest damages of a run: damages of successive views are one if they are near their predicted position.
 class DamageList {
  public:
   void add(const LiveView& view);
 
-  /// Newest first.
+  /// The damages, newest first.
   const std::deque<ListedDamage>& entries() const { return entries_; }
 
-  std::int64_t found() const { return found_; }  ///< of the whole run
+  std::int64_t found() const { return found_; }  ///< number of damages of the whole run
 
   static constexpr std::size_t max_entries = 100;
 
  private:
-  /// A damage that is followed from view to view.
+  /// A tracked damage.
   struct Track {
     std::int64_t id = 0;
     DamageKind kind = DamageKind::depression;
     Clock::time_point seen{};
     std::array<double, 2> centre{};  ///< pixels
-    std::array<double, 2> speed{};   ///< pixels a second
-    bool moved = false;              ///< its speed has been seen
-    double reach = 0;                ///< half the diagonal of its box, pixels
+    std::array<double, 2> speed{};   ///< pixels per second
+    bool moved = false;              ///< `speed` is measured
+    double radius = 0;               ///< half the diagonal of its box, pixels
   };
 
   Track* nearest(const Damage& damage, const LiveView& view, const std::vector<bool>& taken);
@@ -50,7 +49,7 @@ class DamageList {
 
   std::deque<ListedDamage> entries_;
   std::vector<Track> tracks_;
-  std::array<double, 2> common_speed_{};  ///< of the last damage that was followed, pixels a second
+  std::array<double, 2> common_speed_{};  ///< of the last tracked damage, pixels per second
   std::int64_t found_ = 0;
 };
 

@@ -8,11 +8,11 @@
 namespace roadstereo::cli {
 
 void LatencyLog::add(double ms) {
-  if (recent_.size() < most_recent) {
+  if (recent_.size() < max_recent) {
     recent_.push_back(ms);
   } else {
     recent_[oldest_] = ms;
-    oldest_ = (oldest_ + 1) % most_recent;
+    oldest_ = (oldest_ + 1) % max_recent;
   }
   const double bin = std::ceil(std::max(ms, 0.0) / bin_ms);
   ++counts_[bin > static_cast<double>(bins) ? bins : static_cast<std::size_t>(bin)];
@@ -20,14 +20,14 @@ void LatencyLog::add(double ms) {
   max_ms_ = std::max(max_ms_, ms);
 }
 
-LatencyFigures LatencyLog::recent() const {
+LatencyStatistics LatencyLog::recent() const {
   if (recent_.empty()) return {};
   std::vector<double> values = recent_;
   return {covering_quantile(values, 0.5), covering_quantile(values, 0.95),
           *std::max_element(values.begin(), values.end())};
 }
 
-double LatencyLog::quantile_of_all(double share) const {
+double LatencyLog::nearest_rank_of_all(double share) const {
   const double rank = std::ceil(share * static_cast<double>(total_));
   double seen = 0;
   for (std::size_t bin = 0; bin < bins; ++bin) {
@@ -37,9 +37,9 @@ double LatencyLog::quantile_of_all(double share) const {
   return max_ms_;
 }
 
-LatencyFigures LatencyLog::all() const {
+LatencyStatistics LatencyLog::all() const {
   if (total_ == 0) return {};
-  return {quantile_of_all(0.5), quantile_of_all(0.95), max_ms_};
+  return {nearest_rank_of_all(0.5), nearest_rank_of_all(0.95), max_ms_};
 }
 
 }  // namespace roadstereo::cli

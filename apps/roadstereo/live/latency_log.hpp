@@ -7,34 +7,34 @@
 
 namespace roadstereo::cli {
 
-struct LatencyFigures {
+struct LatencyStatistics {
   double median_ms = 0;
   double p95_ms = 0;
   double max_ms = 0;
 };
 
-/// Latencies of a run of any length in bounded memory: of the last frames, and of all.
+/// Statistics of the latencies of the last frames and of the whole run, in constant memory.
 class LatencyLog {
  public:
   void add(double ms);
 
-  /// Of the last frames, exact.
-  LatencyFigures recent() const;
+  /// Statistics of the last frames, exact.
+  LatencyStatistics recent() const;
 
-  /// Of all: the largest is exact, the others to a quarter of a millisecond, from above. Beyond two seconds they are
-  /// the largest.
-  LatencyFigures all() const;
+  /// Statistics of all frames: the maximum is exact, the quantiles are rounded up to 0.25 ms; above 2 s they are the
+  /// maximum.
+  LatencyStatistics all() const;
 
  private:
   static constexpr double bin_ms = 0.25;
   static constexpr std::size_t bins = 8000;
-  static constexpr std::size_t most_recent = 150;
+  static constexpr std::size_t max_recent = 150;
 
-  double quantile_of_all(double share) const;
+  double nearest_rank_of_all(double share) const;
 
-  std::vector<double> recent_;  ///< a ring
+  std::vector<double> recent_;  ///< ring buffer
   std::size_t oldest_ = 0;
-  std::array<std::uint32_t, bins + 1> counts_{};  ///< the last bin is open
+  std::array<std::uint32_t, bins + 1> counts_{};  ///< the last bin has no upper limit
   std::int64_t total_ = 0;
   double max_ms_ = 0;
 };

@@ -7,12 +7,12 @@
 
 namespace roadstereo::cli {
 
-/// Room for one thing between two threads: what is put in takes the place of what was not fetched yet, so that the
-/// newest wins and nobody waits for the one who fetches.
+/// Mailbox for one value between two threads. A new value replaces one that was not taken yet, so that `put` never
+/// waits.
 template <class T>
 class LatestValue {
  public:
-  /// Whether something was lost: what waited here, or the thing itself because the slot is closed.
+  /// Stores a value. Returns whether one was dropped: the previous value, or this one because the mailbox is closed.
   [[nodiscard]] bool put(T thing) {
     bool lost = false;
     {
@@ -24,14 +24,14 @@ class LatestValue {
     return lost;
   }
 
-  /// Waits for the next thing; nothing when the slot is closed and empty.
+  /// Waits for a value. Returns nullopt if the mailbox is closed and empty.
   std::optional<T> take() {
     std::unique_lock lock(mutex_);
     filled_.wait(lock, [this] { return closed_ || thing_.has_value(); });
     return std::exchange(thing_, std::nullopt);
   }
 
-  /// Nothing more is put in; what waits can still be fetched.
+  /// Closes the mailbox; a stored value can still be taken.
   void close() {
     {
       const std::lock_guard lock(mutex_);

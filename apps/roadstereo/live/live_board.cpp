@@ -6,7 +6,7 @@
 namespace roadstereo::cli {
 namespace {
 
-/// Views that can still be asked for by their number.
+/// Number of views kept.
 constexpr std::size_t kept_views = 3;
 
 }  // namespace
@@ -42,10 +42,10 @@ void LiveBoard::count_too_old() {
   ++counts_.too_old;
 }
 
-void LiveBoard::refuse(const std::string& reason) {
+void LiveBoard::count_rejected(const std::string& reason) {
   const std::lock_guard lock(mutex_);
-  ++counts_.refused;
-  if (!lost_ && !ended_) message_ = "the last pair was refused: " + reason;
+  ++counts_.rejected;
+  if (!lost_ && !ended_) message_ = "the last pair was rejected: " + reason;
 }
 
 void LiveBoard::lose_camera(const std::string& reason) {
@@ -73,7 +73,7 @@ void LiveBoard::set_recording(const RecordingState& recording) {
 }
 
 void LiveBoard::publish(LiveView view) {
-  SharedView gone;  // freed without the lock
+  SharedView removed;  // freed without the lock
   {
     const std::lock_guard lock(mutex_);
     const Clock::time_point now = Clock::now();
@@ -85,7 +85,7 @@ void LiveBoard::publish(LiveView view) {
     if (!lost_ && !ended_) message_.clear();
     views_.push_front(std::make_shared<const LiveView>(std::move(view)));
     if (views_.size() > kept_views) {
-      gone = std::move(views_.back());
+      removed = std::move(views_.back());
       views_.pop_back();
     }
   }
@@ -145,7 +145,7 @@ SharedView LiveBoard::view(std::int64_t number) const {
   return wanted == views_.end() ? views_.front() : *wanted;
 }
 
-LatencyFigures LiveBoard::latency_of_all() const {
+LatencyStatistics LiveBoard::latency_of_all() const {
   const std::lock_guard lock(mutex_);
   return latency_.all();
 }

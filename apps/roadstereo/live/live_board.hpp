@@ -16,47 +16,47 @@
 namespace roadstereo::cli {
 
 enum class LiveState {
-  starting,      ///< nothing was shown yet
-  live,          ///< what is shown is younger than the limit
-  stale,         ///< it is older
+  starting,      ///< no view yet
+  live,          ///< the view is younger than the limit
+  stale,         ///< the view is older
   reconnecting,  ///< the camera is lost
   ended
 };
 const char* name_of(LiveState state);
 
-/// What became of the pairs that came due. Once all is done, taken = shown + dropped + too_old + refused.
+/// Counts of pairs. At the end taken = shown + dropped + too_old + rejected.
 struct LiveCounts {
-  std::int64_t taken = 0;       ///< pairs that came due
-  std::int64_t shown = 0;       ///< processed to the end
-  std::int64_t dropped = 0;     ///< came while the program was busy
-  std::int64_t too_old = 0;     ///< waited longer than the limit
-  std::int64_t refused = 0;     ///< could not be processed
-  std::int64_t reconnects = 0;  ///< times that a lost camera came back
+  std::int64_t taken = 0;       ///< read from the source, or due
+  std::int64_t shown = 0;       ///< processed
+  std::int64_t dropped = 0;     ///< arrived while another pair was processed
+  std::int64_t too_old = 0;     ///< older than the limit
+  std::int64_t rejected = 0;    ///< could not be processed
+  std::int64_t reconnects = 0;  ///< number of times a camera was reconnected
 };
 
-/// What a recording of the raw pairs has come to.
+/// State of the recording of raw pairs.
 struct RecordingState {
   bool on = false;
   std::int64_t recorded = 0;
-  std::int64_t left_out = 0;  ///< pairs it could not keep up with
-  std::string message;        ///< why it stopped; empty while it goes on
+  std::int64_t skipped = 0;  ///< pairs skipped because the disk was too slow
+  std::string message;       ///< why it stopped; empty while running
 };
 
-/// How things stand at one moment.
+/// Snapshot of a run.
 struct LiveStatus {
   LiveState state = LiveState::starting;
-  std::string message;  ///< about the state: why the camera is lost, why the last pair was refused
-  SharedView view;      ///< the newest; none at the beginning
-  double age_s = 0;     ///< of that view, since its pair arrived; without one, since the start
+  std::string message;  ///< why the camera is lost or the last pair was rejected
+  SharedView view;      ///< the newest; null at the start
+  double age_s = 0;     ///< since the pair of `view` arrived; without a view, since the start
   double fps = 0;
-  LatencyFigures latency;  ///< of the last frames
+  LatencyStatistics latency;  ///< of the last frames
   LiveCounts counts;
   RecordingState recording;
   std::int64_t damages_found = 0;     ///< of the whole run
-  std::vector<ListedDamage> damages;  ///< newest first: those changed after the view that was asked for
+  std::vector<ListedDamage> damages;  ///< newest first: those changed after the given view
 };
 
-/// Where the threads of a run meet: what is counted, what is shown, and who waits for it. For any number of threads.
+/// Shared state of a run: counts, views, damages. Notifies waiting threads. Thread-safe.
 class LiveBoard {
  public:
   explicit LiveBoard(double max_age_s) : max_age_s_(max_age_s) {}
@@ -66,29 +66,29 @@ class LiveBoard {
   void count_taken(std::int64_t pairs = 1);
   void count_dropped(std::int64_t pairs = 1);
   void count_too_old();
-  void refuse(const std::string& reason);
+  void count_rejected(const std::string& reason);
 
   void lose_camera(const std::string& reason);
   void camera_is_back();
 
   void set_recording(const RecordingState& recording);
 
-  /// Numbers the view, measures its latency and shows it.
+  /// Numbers the view, measures its latency and publishes it.
   void publish(LiveView view);
 
-  /// Nothing more comes.
+  /// Sets the state to ended.
   void end(const std::string& message = "");
 
-  /// How things stand. `after`: the number of the view from which on damages have changed.
+  /// Returns a snapshot with the damages changed after the view of number `after`.
   LiveStatus status(std::int64_t after = 0);
 
-  /// The same once there is a newer view than that, or the state has changed since the call, or time is up.
+  /// The same, after waiting for a newer view, a change of state or the timeout.
   LiveStatus wait_for_news(std::int64_t after, double max_s);
 
-  /// The view of that number, or the newest where that is gone; none at the beginning.
+  /// Returns the view of that number, or the newest if it is not kept any more; null at the start.
   SharedView view(std::int64_t number) const;
 
-  LatencyFigures latency_of_all() const;
+  LatencyStatistics latency_of_all() const;
 
  private:
   LiveState state(Clock::time_point now) const;

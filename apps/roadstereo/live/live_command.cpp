@@ -10,20 +10,20 @@
 #include "live/live_session.hpp"
 #include "live/live_summary.hpp"
 #include "live/terminal_line.hpp"
+#include "log_stderr.hpp"
 #include "processing_options.hpp"
 #include "roadstereo/error.hpp"
-#include "say.hpp"
 #include "source_options.hpp"
 #include "stop_signals.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
-/// The command line of `live`.
+/// Command line of `live`.
 struct Arguments {
   std::vector<std::string> names;
   std::vector<std::string> calibration;
-  SourceChoice source;
+  SourceSettings source;
   ProcessingSettings processing;
   std::string record;
   std::string serve;
@@ -35,9 +35,9 @@ struct Arguments {
 };
 
 LiveOptions live_options(const Arguments& arguments) {
-  if (!std::isfinite(arguments.max_age_ms)) fail("--max-age is ", arguments.max_age_ms, "; it must be a number of ms");
+  if (!std::isfinite(arguments.max_age_ms)) fail("--max-age is ", arguments.max_age_ms, "; it must be a finite number");
   if (!std::isfinite(arguments.seconds)) fail("--seconds is ", arguments.seconds, "; it must be a number");
-  if (arguments.calibration.size() > 2) fail("--calibration takes one file, or the two of a ROS pair");
+  if (arguments.calibration.size() > 2) fail("--calibration needs one file, or two ROS camera_info files");
   LiveOptions options;
   options.processing.pipeline = make_options(arguments.processing);
   options.processing.find_white_level = !sets_white_level(arguments.processing);
@@ -49,7 +49,7 @@ LiveOptions live_options(const Arguments& arguments) {
   return options;
 }
 
-/// Until the source ends, enough was seen, or somebody stops it.
+/// Runs until the end of the source, the frame or time limit, or a signal.
 void watch(const Arguments& arguments, LiveSession& session, Clock::time_point start, const StopSignals& signals) {
   constexpr double period_s = 0.05;
   TerminalLine line;
@@ -71,7 +71,7 @@ void live(const Arguments& arguments, const NamedOpener& opener) {
   std::unique_ptr<LiveServer> server;
   if (address) {
     server = std::make_unique<LiveServer>(*address, session.board());
-    say("roadstereo: showing {} at {}\n", session.description(), server->url());
+    log_stderr("roadstereo: serving {} at {}\n", session.description(), server->url());
   }
   const Clock::time_point start = Clock::now();
   session.start();
@@ -85,19 +85,18 @@ void live(const Arguments& arguments, const NamedOpener& opener) {
 }
 
 constexpr const char* footer =
-    R"(The newest pair wins: what comes while the program is busy is dropped and counted, and nothing older than --max-age is
-processed. A recording is played back in real time, at its own times or at --rate. A camera that is lost is tried again
-until it is back.
+    R"(Processes the newest pair: pairs that arrive during processing are dropped and counted, and pairs older than --max-age
+are not processed. A recording is played back in real time, at its own times or at --rate. A lost camera is reconnected.
 
---record DIR keeps the raw pairs without loss, left/NNNNNN.png and right/NNNNNN.png with times.txt and the calibration,
-for roadstereo inspect DIR. It never delays the view: pairs that the disk cannot keep up with are left out and counted.
+--record DIR writes the raw pairs losslessly as left/NNNNNN.png and right/NNNNNN.png with times.txt and the calibration,
+for roadstereo inspect DIR. It never delays processing: if the disk is too slow, pairs are skipped and counted.
 
---serve PORT shows a page on this machine: left image with outlined damage, transformed disparity, roll, height, frames a
-second, latency, age, and the running list of damages. With a HOST (0.0.0.0 for all addresses) other machines can see
-it, too, if they know the token in the address that is printed. Port 0 takes any that is free.
+--serve PORT serves a web page on this machine: left image with outlined damage, transformed disparity, roll, height,
+frame rate, latency, age, and the list of damages. With a HOST (0.0.0.0: all addresses) other machines can open it with
+the token in the printed address. Port 0: any free port.
 
-On a terminal one line is rewritten: latency as median/95th percentile, height, damages as seen now/in all. Ctrl-C ends,
-with a summary.
+The status line shows the latency (median/95th percentile), the height, and the damages (current/total). Ctrl-C stops and
+prints a summary.
 
 Examples:
   roadstereo live /dev/video0 --calibration rig.yaml --serve 8080
@@ -107,31 +106,30 @@ Examples:
 )";
 
 void add_options(CLI::App& command, Arguments& arguments) {
-  command.add_option("SOURCE", arguments.names, "Camera, video, folder, list, bag or pipeline; or left and right")
+  command.add_option("SOURCE", arguments.names, "Camera, video, folder, list, bag or pipeline; or two: left and right")
       ->required()
       ->expected(1, 2);
   add_calibration_option(command, arguments.calibration);
   command.add_option("--record", arguments.record, "New folder for the raw pairs")->type_name("DIR");
-  command.add_option("--serve", arguments.serve, "Show a page at that port")->type_name("[HOST:]PORT");
-  command.add_option("--max-age", arguments.max_age_ms, "Older pairs are not processed, ms")
+  command.add_option("--serve", arguments.serve, "Serve a web page at this port")->type_name("[HOST:]PORT");
+  command.add_option("--max-age", arguments.max_age_ms, "Maximum age of a pair, ms")
       ->type_name("MS")
       ->check(CLI::Range(1.0, 60000.0))
       ->capture_default_str();
-  command.add_flag("--loop", arguments.loop, "Play a recording again and again");
-  command.add_option("--frames", arguments.frames, "End after so many processed pairs")
+  command.add_flag("--loop", arguments.loop, "Repeat a recording");
+  command.add_option("--frames", arguments.frames, "Stop after this number of processed pairs")
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
-  command.add_option("--seconds", arguments.seconds, "End after that time")
+  command.add_option("--seconds", arguments.seconds, "Stop after this time")
       ->type_name("S")
       ->check(CLI::Range(0.001, 1e7));
-  command.add_flag("--json", arguments.json, "Print the summary as JSON");
+  command.add_flag("--json", arguments.json, "Print JSON");
 }
 
 }  // namespace
 
 void add_live_command(CLI::App& app, const NamedOpener& opener) {
-  CLI::App* command =
-      app.add_subcommand("live", "Disparity, roll and damage of a camera's pairs, or a recording's, as they come");
+  CLI::App* command = app.add_subcommand("live", "Process a camera or a recording in real time");
   command->footer(footer + settings_help());
   const auto arguments = std::make_shared<Arguments>();
   add_options(*command, *arguments);

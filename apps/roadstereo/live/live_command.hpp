@@ -13,7 +13,7 @@ class App;
 
 namespace roadstereo::cli {
 
-/// Opens what the command line names.
+/// Opens the source named on the command line.
 using NamedOpener =
     std::function<std::unique_ptr<io::FrameSource>(const std::vector<std::string>&, const io::SourceOptions&)>;
 

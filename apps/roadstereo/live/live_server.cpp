@@ -23,12 +23,12 @@ namespace {
 using httplib::Request;
 using httplib::Response;
 
-constexpr std::size_t max_connections = 48;  // served at a time
-constexpr int patience_s = 2;                // with a client that neither asks nor reads
+constexpr std::size_t max_connections = 48;  // served at the same time
+constexpr int timeout_s = 2;                 // of idle clients
 constexpr double max_poll_s = 1;
-constexpr double farewell_s = 0.5;  // for pages to hear that the run has ended
+constexpr double shutdown_grace_s = 0.5;  // lets pages fetch the final state
 
-/// Two programs at one port are refused, but one that has just ended does not block it.
+/// A port in use is an error, but not one in TIME_WAIT.
 void share_no_port(socket_t socket) {
   const int yes = 1;
   (void)setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
@@ -43,7 +43,7 @@ httplib::Headers safe_headers() {
           {"Cross-Origin-Resource-Policy", "same-origin"}};
 }
 
-/// A whole number from 0; absent is 0; nothing when it is something else.
+/// Returns a query parameter as integer of at least 0; 0 if it is missing; nullopt if it is invalid.
 std::optional<std::int64_t> number_of(const Request& request, const char* name) {
   const std::string text = request.get_param_value(name);
   if (text.empty()) return 0;
@@ -68,7 +68,7 @@ struct LiveServer::State {
   ServeAddress address;
   LiveBoard& board;
   std::string token;
-  std::string session = random_token();  // tells the page that another run has begun
+  std::string session = random_token();  // lets the page recognise another run
   httplib::Server server;
   ViewPictures pictures;
   std::string ramp = scale_ramp_png();
@@ -131,7 +131,7 @@ void LiveServer::State::send_picture(const Request& request, Response& response,
   }
   response.set_header("Frame", std::to_string(view->number));
   const ViewPictures::Shared picture = (pictures.*make)(view);
-  response.set_header("Reach", std::to_string(picture->reach_px));
+  response.set_header("Colour-Range", std::to_string(picture->half_range_px));
   response.set_content(picture->jpeg, "image/jpeg");
 }
 
@@ -159,15 +159,14 @@ void LiveServer::State::listen() {
   server.set_default_headers(safe_headers());
   server.set_keep_alive_timeout(1);
   server.set_keep_alive_max_count(100000);
-  server.set_read_timeout(patience_s);
-  server.set_write_timeout(patience_s);
+  server.set_read_timeout(timeout_s);
+  server.set_write_timeout(timeout_s);
   server.set_payload_max_length(1024);
   const int bound = address.port == 0 ? server.bind_to_any_port(address.host)
                                       : (server.bind_to_port(address.host, address.port) ? address.port : -1);
   if (bound < 0) {
-    fail(
-        "cannot serve at ", url_host(address.host), ":", address.port,
-        ": the port is in use or not allowed, or the address is none of this machine's; port 0 takes any that is free");
+    fail("cannot listen on ", url_host(address.host), ":", address.port,
+         ": the port is in use or not allowed, or the address is not local; port 0 selects a free port");
   }
   address.port = bound;
   thread = std::thread([this] {
@@ -184,9 +183,9 @@ LiveServer::LiveServer(const ServeAddress& address, LiveBoard& board)
 
 LiveServer::~LiveServer() {
   const bool watched = seconds_between(state_->start, Clock::now()) - state_->last_poll_s < 2 * max_poll_s;
-  if (watched) std::this_thread::sleep_for(clock_span(farewell_s));
+  if (watched) std::this_thread::sleep_for(clock_span(shutdown_grace_s));
   while (!state_->server.is_running() && !state_->ended)
-    std::this_thread::yield();  // a stop before the start would be lost
+    std::this_thread::yield();  // a stop before the start has no effect
   state_->server.stop();
   state_->thread.join();
 }

@@ -8,19 +8,19 @@
 
 namespace roadstereo::cli {
 
-/// The page and what it fetches, by HTTP. To this machine alone, unless the address says otherwise; then only to those
-/// who know the token. Clients, slow or hung, keep nobody waiting but themselves.
+/// HTTP server of the live page. Accepts requests with the token, or on loopback without one. Slow clients do not delay
+/// processing or each other.
 class LiveServer {
  public:
-  /// Listens. Throws Error naming the address when it cannot.
+  /// Starts listening. Throws Error naming the address on failure.
   LiveServer(const ServeAddress& address, LiveBoard& board);
 
-  /// Ends the requests that are being served, within about two seconds.
+  /// Stops within about two seconds.
   ~LiveServer();
   LiveServer(const LiveServer&) = delete;
   LiveServer& operator=(const LiveServer&) = delete;
 
-  /// For a browser; with the token, where there is one.
+  /// Address of the page including the token.
   std::string url() const;
 
   int port() const;

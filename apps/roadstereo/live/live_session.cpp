@@ -10,8 +10,7 @@
 namespace roadstereo::cli {
 namespace {
 
-/// Stands for every source of a run where only its calibration matters: sources come and go with the camera, what is
-/// known of the rig stays.
+/// A source without pairs that keeps the calibration while the real source is reopened.
 class CalibrationOnly final : public io::FrameSource {
  public:
   explicit CalibrationOnly(const io::FrameSource& source)
@@ -41,10 +40,11 @@ LiveSession::LiveSession(const LiveOptions& options, SourceOpener opener) : boar
 }
 
 void LiveSession::start() {
-  finishing_ = std::thread([this] { guarded([this] { processing_->finish(); }); });
-  matching_ = std::thread([this] { guarded([this] { processing_->match(); }); });
-  capturing_ = std::jthread([this](const std::stop_token& stop) {
-    guarded([this, &stop] { capture_->run(stop); });
+  const auto set_finished = [this] { finished_ = true; };
+  finishing_ = std::thread([=, this] { failure_.run([this] { processing_->finish(); }, set_finished); });
+  matching_ = std::thread([=, this] { failure_.run([this] { processing_->match(); }, set_finished); });
+  capturing_ = std::jthread([=, this](const std::stop_token& stop) {
+    failure_.run([&] { capture_->run(stop); }, set_finished);
     captured_.close();
     finished_ = true;
   });
@@ -59,17 +59,7 @@ void LiveSession::start_recorder(const LiveOptions& options, const io::FrameSour
   recorder_ = std::make_unique<Recorder>([folder](const RecordedPair& pair) { folder->write(pair); }, board_);
 }
 
-void LiveSession::guarded(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (...) {
-    const std::lock_guard lock(mutex_);
-    if (!failure_) failure_ = std::current_exception();
-    finished_ = true;
-  }
-}
-
-/// Every thread ends when the one before it has: what is on its way still arrives.
+/// Stops the threads in the order of the data flow, so that pairs already read are finished.
 void LiveSession::join() {
   if (!capturing_.joinable()) return;
   capturing_.request_stop();
@@ -81,16 +71,13 @@ void LiveSession::join() {
 
 void LiveSession::end() {
   join();
-  if (!failure_) {
-    board_.end();
-    return;
-  }
   try {
-    std::rethrow_exception(failure_);
+    failure_.rethrow();
   } catch (const std::exception& error) {
     board_.end(error.what());
     throw;
   }
+  board_.end();
 }
 
 LiveSession::~LiveSession() {

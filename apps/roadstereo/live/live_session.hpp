@@ -1,15 +1,13 @@
 #pragma once
 
 #include <atomic>
-#include <exception>
-#include <functional>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "first_exception.hpp"
 #include "live/capture.hpp"
 #include "live/live_board.hpp"
 #include "live/processing.hpp"
@@ -20,39 +18,38 @@ namespace roadstereo::cli {
 struct LiveOptions {
   ProcessingOptions processing;
   CaptureOptions capture;
-  std::vector<std::string> calibration;  ///< none, one file, or the two of a ROS pair
-  double max_age_s = 0.5;                ///< older pairs are not processed, and what is shown counts as stale
-  std::string record;                    ///< folder; empty: nothing is recorded
+  std::vector<std::string> calibration;  ///< empty, one file, or two ROS camera_info files
+  double max_age_s = 0.5;                ///< older pairs are not processed, older views are stale
+  std::string record;                    ///< folder; empty: no recording
 };
 
-/// A run from its source to the board, on threads of its own: capture, matching, damage, and recording.
+/// One live run: threads for capture, matching, damage and recording that report to a LiveBoard.
 class LiveSession {
  public:
-  /// Opens the source. Throws Error when the source cannot be opened, the calibration cannot be read, or the
-  /// folder of the recording cannot be written to.
+  /// Opens the source. Throws Error if the source, the calibration or the folder of the recording cannot be opened.
   LiveSession(const LiveOptions& options, SourceOpener opener);
 
-  /// Ends the run.
+  /// Stops the run.
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
 
-  /// From here on pairs are taken.
+  /// Starts the threads.
   void start();
 
   LiveBoard& board() { return board_; }
-  const std::string& description() const { return description_; }  ///< of the source, for people
+  const std::string& description() const { return description_; }  ///< of the source
 
-  /// Whether nothing more will come: the recording has ended, or a thread has failed.
+  /// Whether the recording has ended or a thread has failed.
   bool finished() const { return finished_; }
 
-  /// Stops taking pairs, finishes those on their way and the recording, and sets the board to ended. Throws what a
-  /// thread has failed with.
+  /// Stops reading, finishes all pairs already read and the recording, and sets the board to ended. Rethrows the first
+  /// exception of a thread.
   void end();
 
  private:
   void start_recorder(const LiveOptions& options, const io::FrameSource& source);
-  void guarded(const std::function<void()>& work);
+
   void join();
 
   LiveBoard board_;
@@ -62,8 +59,7 @@ class LiveSession {
   std::unique_ptr<Processing> processing_;
   std::string description_;
   std::atomic<bool> finished_ = false;
-  std::mutex mutex_;
-  std::exception_ptr failure_;  ///< the first
+  FirstException failure_;
   std::jthread capturing_;
   std::thread matching_;
   std::thread finishing_;

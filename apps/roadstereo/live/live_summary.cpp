@@ -19,18 +19,18 @@ double mean_fps(const LiveSummary& summary) {
 std::string summary_text(const LiveSummary& summary) {
   const LiveCounts& counts = summary.status.counts;
   std::string text = fmt::format("roadstereo {}: {}\n", version, summary.source);
-  text += fmt::format("  {:<10}{} taken, {} processed, {} dropped, {} too old, {} refused\n", "pairs", counts.taken,
-                      counts.shown, counts.dropped, counts.too_old, counts.refused);
-  text += fmt::format("  {:<10}{:.1f} a second over {:.1f} s\n", "rate", mean_fps(summary), summary.seconds);
-  text += fmt::format("  {:<10}median {:.1f} ms, 95 %: {:.1f} ms, largest {:.1f} ms\n", "latency",
+  text += fmt::format("  {:<10}{} taken, {} processed, {} dropped, {} too old, {} rejected\n", "pairs", counts.taken,
+                      counts.shown, counts.dropped, counts.too_old, counts.rejected);
+  text += fmt::format("  {:<10}{:.1f} frames/s over {:.1f} s\n", "rate", mean_fps(summary), summary.seconds);
+  text += fmt::format("  {:<10}median {:.1f} ms, 95 %: {:.1f} ms, max {:.1f} ms\n", "latency",
                       summary.latency.median_ms, summary.latency.p95_ms, summary.latency.max_ms);
-  text += fmt::format("  {:<10}{} seen\n", "damages", summary.status.damages_found);
+  text += fmt::format("  {:<10}{} found\n", "damages", summary.status.damages_found);
   const RecordingState& recording = summary.status.recording;
   if (recording.on) {
-    text += fmt::format("  {:<10}{} pairs, {} left out{}{}\n", "recorded", recording.recorded, recording.left_out,
+    text += fmt::format("  {:<10}{} pairs, {} skipped{}{}\n", "recorded", recording.recorded, recording.skipped,
                         recording.message.empty() ? "" : "; ", recording.message);
   }
-  if (counts.reconnects > 0) text += fmt::format("  {:<10}lost and back {} times\n", "camera", counts.reconnects);
+  if (counts.reconnects > 0) text += fmt::format("  {:<10}reconnected {} times\n", "camera", counts.reconnects);
   return text;
 }
 
@@ -41,7 +41,7 @@ std::string summary_json(const LiveSummary& summary) {
   json["fps"] = json_number(mean_fps(summary));
   json["latency_ms"] = latency_json(summary.latency);
   json["recorded"] = recording.recorded;
-  json["recording_left_out"] = recording.left_out;
+  json["recording_skipped"] = recording.skipped;
   json["recording_message"] = recording.message;
   json["damages"] = summary.status.damages_found;
   json["peak_memory_mib"] = json_number(memory_use().peak_mib);

@@ -6,17 +6,17 @@
 
 namespace roadstereo::cli {
 
-/// What a run came to, when it has ended.
+/// Results of a finished run.
 struct LiveSummary {
-  std::string source;  ///< for people
-  double seconds = 0;  ///< from the start to the end
+  std::string source;  ///< description of the source
+  double seconds = 0;  ///< duration of the run
   LiveStatus status;
-  LatencyFigures latency;  ///< of all frames
+  LatencyStatistics latency;  ///< of all frames
 };
 
 std::string summary_text(const LiveSummary& summary);
 
-/// The same as JSON, with the peak of memory.
+/// Returns JSON including the peak memory use.
 std::string summary_json(const LiveSummary& summary);
 
 }  // namespace roadstereo::cli

@@ -14,19 +14,19 @@
 
 namespace roadstereo::cli {
 
-/// One processed pair, as far as it is shown.
+/// Displayed results of one pair.
 struct LiveView {
-  std::int64_t number = 0;               ///< of the view, from 1; set when it is published
-  std::string name;                      ///< the source's
-  Clock::time_point arrival{};           ///< when the pair came from its source
-  double clock_s = 0;                    ///< the same by the calendar, seconds since 1970
+  std::int64_t number = 0;               ///< from 1; set on publication
+  std::string name;                      ///< in the source
+  Clock::time_point arrival{};           ///< of the pair from the source
+  double clock_s = 0;                    ///< the same as system time, seconds since 1970
   double latency_ms = 0;                 ///< from arrival to publication
   Frame left;                            ///< rectified
   Image<float> transformed;              ///< ℓ', pixels
   double delta_t = 0;                    ///< δt, pixels
-  Image<std::uint16_t> ids;              ///< of the damage at each pixel, 0 none
+  Image<std::uint16_t> ids;              ///< of the damage at each pixel, 0: none
   std::vector<Damage> damages;           ///< deepest first
-  std::optional<RollEstimate> geometry;  ///< absent when no road was found
+  std::optional<RollEstimate> geometry;  ///< absent if no road was found
   std::optional<GroundPlane> plane;      ///< absent without a road or a calibration
   std::vector<std::string> warnings;
 };

@@ -2,7 +2,7 @@
 
 namespace roadstereo::cli {
 
-/// Of this process, MiB; 0 where the system does not tell.
+/// Memory use of the process, MiB; 0: unknown.
 struct MemoryUse {
   double now_mib = 0;
   double peak_mib = 0;

@@ -7,28 +7,28 @@
 
 namespace roadstereo::cli {
 
-/// Seconds from the recording's beginning, by whatever clock.
-double Playback::place_s(const io::SourcePair& pair) const {
+/// Time of a pair in the recording, seconds.
+double Playback::position_s(const io::SourcePair& pair) const {
   if (rate_hz_ > 0) return static_cast<double>(pair.index) / rate_hz_;
   if (std::isfinite(pair.time_s)) return pair.time_s;
-  if (started_ && interval_s_) return last_s_ + *interval_s_;  // one pair without a time, a refused one say
-  fail("the recording has no times: give --rate, pairs a second");
+  if (started_ && interval_s_) return last_s_ + *interval_s_;  // a pair without a time, e.g. a rejected one
+  fail("the recording has no times; set --rate");
 }
 
 Clock::time_point Playback::due(const io::SourcePair& pair, Clock::time_point now) {
-  const double place = place_s(pair);
+  const double time_s = position_s(pair);
   const auto steps = static_cast<double>(pair.index - last_index_);
-  if (started_ && !again_ && place > last_s_ && steps > 0) interval_s_ = (place - last_s_) / steps;
-  if (!started_ || again_ || place < last_s_) {
+  if (started_ && !again_ && time_s > last_s_ && steps > 0) interval_s_ = (time_s - last_s_) / steps;
+  if (!started_ || again_ || time_s < last_s_) {
     const bool follows = started_ && interval_s_.has_value();
     start_ = follows ? std::max(now, last_due_ + clock_span(*interval_s_)) : now;
-    first_s_ = place;
+    first_s_ = time_s;
     started_ = true;
     again_ = false;
   }
-  last_s_ = place;
+  last_s_ = time_s;
   last_index_ = pair.index;
-  last_due_ = start_ + clock_span(place - first_s_);
+  last_due_ = start_ + clock_span(time_s - first_s_);
   return last_due_;
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "find_damage_or_warn.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
@@ -12,7 +13,7 @@ Processing::Processing(const ProcessingOptions& options, std::unique_ptr<Rectifi
   options_.pipeline.validate();
 }
 
-/// Made when the first pair has told what white is.
+/// Creates the pipeline on first use, when the white level is known.
 Pipeline& Processing::pipeline() {
   if (!pipeline_) {
     if (options_.find_white_level) options_.pipeline.white_level = rectifier_->white_level();
@@ -27,8 +28,8 @@ std::optional<Processing::Matched> Processing::match(CapturedPair captured) {
     return std::nullopt;
   }
   rectifier_->rectify(captured.pair);
-  if (!captured.pair.refused.empty()) {
-    board_.refuse(captured.pair.refused);
+  if (!captured.pair.error.empty()) {
+    board_.count_rejected(captured.pair.error);
     return std::nullopt;
   }
   Matched matched;
@@ -37,7 +38,7 @@ std::optional<Processing::Matched> Processing::match(CapturedPair captured) {
   } catch (const SystemError&) {
     throw;
   } catch (const Error& error) {
-    board_.refuse(error.what());
+    board_.count_rejected(error.what());
     return std::nullopt;
   }
   matched.calibration = rectifier_->calibration();
@@ -66,16 +67,11 @@ LiveView Processing::view_of(Matched matched) const {
   LiveView view;
   FrameResult& result = matched.result;
   view.warnings = std::move(result.warnings);
-  try {
-    DamageMap map = find_damage(result, matched.calibration, options_.pipeline.damage, options_.pipeline.threads);
-    view.damages = std::move(map.damages);
-    view.ids = std::move(map.ids);
-  } catch (const SystemError&) {
-    throw;
-  } catch (const Error& error) {  // a pair that shows no road is shown all the same
-    view.ids.assign(result.disparity.width(), result.disparity.height(), 0);
-    view.warnings.push_back(std::string("damage was not looked for: ") + error.what());
-  }
+  DamageMap map;
+  find_damage_or_warn(result, matched.calibration, options_.pipeline.damage, options_.pipeline.threads, map,
+                      view.warnings);
+  view.damages = std::move(map.damages);
+  view.ids = std::move(map.ids);
   view.name = std::move(matched.captured.pair.name);
   view.arrival = matched.captured.arrival;
   view.clock_s = matched.captured.clock_s;

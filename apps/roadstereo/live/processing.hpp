@@ -13,23 +13,23 @@
 
 namespace roadstereo::cli {
 
-/// How pairs are treated.
+/// Options of Processing.
 struct ProcessingOptions {
   PipelineOptions pipeline;
-  bool find_white_level = true;  ///< on the first pair of a 16-bit source
+  bool find_white_level = true;  ///< determines it from the first pair of a 16-bit source
 };
 
-/// The way from a captured pair to the view that is shown, in two steps that run at the same time on successive pairs.
+/// Converts captured pairs to views in two stages, which run concurrently on successive pairs.
 class Processing {
  public:
-  /// `rectifier`: only its `rectify` is used. Throws Error when an option is out of range.
+  /// `rectifier`: only its `rectify` is used. Throws Error if an option is out of range.
   Processing(const ProcessingOptions& options, std::unique_ptr<RectifiedSource> rectifier, LiveBoard& board,
              LatestValue<CapturedPair>& captured);
 
-  /// First step, on a thread of its own: rectifies and matches until the slot is closed and empty.
+  /// First stage: rectifies and matches until `captured` is closed and empty.
   void match();
 
-  /// Second step, on another: finds damage and publishes until the first step has ended.
+  /// Second stage: finds damage and publishes until the first stage has ended.
   void finish();
 
  private:

@@ -7,7 +7,7 @@
 
 namespace roadstereo::cli {
 
-/// Frames a second over the last two seconds.
+/// Frame rate over the last two seconds.
 class RateMeter {
  public:
   void add(Clock::time_point time) {
@@ -18,7 +18,7 @@ class RateMeter {
   double per_second(Clock::time_point now) {
     forget(now);
     if (times_.size() < 2) return 0;
-    // A gap that is still open counts as soon as it is longer than the usual one.
+    // The current gap counts if it is longer than the mean one.
     const double span = seconds_between(times_.front(), times_.back());
     const auto gaps = static_cast<double>(times_.size() - 1);
     const double open = seconds_between(times_.back(), now);

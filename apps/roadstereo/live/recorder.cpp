@@ -25,7 +25,7 @@ Recorder::~Recorder() {
 void Recorder::offer(const io::SourcePair& pair, double time_s) {
   const std::lock_guard lock(mutex_);
   if (!state_.message.empty() || waiting_.size() >= max_waiting) {
-    ++state_.left_out;
+    ++state_.skipped;
     board_.set_recording(state_);
     return;
   }
@@ -44,8 +44,8 @@ std::unique_ptr<RecordedPair> Recorder::next() {
 
 void Recorder::stop_with(const char* message) {
   const std::lock_guard lock(mutex_);
-  state_.message = std::string("recording has stopped: ") + message;
-  state_.left_out += 1 + static_cast<std::int64_t>(waiting_.size());
+  state_.message = std::string("recording stopped: ") + message;
+  state_.skipped += 1 + static_cast<std::int64_t>(waiting_.size());
   waiting_.clear();
   board_.set_recording(state_);
 }

@@ -12,28 +12,28 @@
 
 namespace roadstereo::cli {
 
-/// A raw pair to keep.
+/// A raw pair to record.
 struct RecordedPair {
   Frame left;
   Frame right;
   double time_s = 0;
 };
 
-/// Records raw pairs on a thread of its own, which gives way to all others. What it cannot keep up with is left out and
-/// counted; when writing fails, recording stops with a message. Never keeps the caller waiting.
+/// Records raw pairs on a low-priority thread. Never blocks the caller: if writing is too slow, pairs are skipped and
+/// counted; if it fails, recording stops with a message.
 class Recorder {
  public:
-  /// Writes one pair, whole or not at all. Throws Error.
+  /// Writes one pair atomically. Throws Error.
   using Writer = std::function<void(const RecordedPair&)>;
 
   Recorder(Writer writer, LiveBoard& board);
 
-  /// Writes what waits.
+  /// Writes the waiting pairs.
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Copies the pair when there is room for it.
+  /// Copies the pair to the queue, or skips it if the queue is full.
   void offer(const io::SourcePair& pair, double time_s);
 
   static constexpr std::size_t max_waiting = 8;  ///< pairs

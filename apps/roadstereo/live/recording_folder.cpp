@@ -11,14 +11,14 @@
 #include <utility>
 
 #include "io/lossless_png.hpp"
-#include "live/whole_file.hpp"
+#include "live/atomic_file.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int png_level = 1;  // a camera is fast
+constexpr int png_level = 1;  // fast
 
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -27,19 +27,19 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) fail("cannot record into ", folder.string(), ": ", error.message());
+  if (error) fail("cannot record to ", folder.string(), ": ", error.message());
 }
 
 void require_no_recording(const fs::path& folder) {
   std::error_code ignored;
   for (const char* name : {"left", "right", "times.txt"}) {
     if (fs::exists(folder / name, ignored)) {
-      fail("cannot record into ", folder.string(), ": it has ", name, " already; --record takes a new folder");
+      fail("cannot record to ", folder.string(), ": it already contains ", name, "; --record needs a new folder");
     }
   }
 }
 
-/// Names of the copies: those of the files, told apart by side where they are equal.
+/// Names of the copies: those of the files, with the side as prefix if they are equal.
 std::vector<std::string> copy_names(const std::vector<std::string>& files) {
   std::vector<std::string> names;
   names.reserve(files.size());
@@ -71,15 +71,15 @@ RecordingFolder::RecordingFolder(fs::path folder, const std::vector<std::string>
 RecordingFolder::~RecordingFolder() {
   ::close(times_);
   if (pairs_ > 0) return;
-  std::error_code ignored;  // nothing was recorded: the folder can be taken again
+  std::error_code ignored;  // nothing was recorded: the folder can be reused
   for (const char* name : {"left", "right", "times.txt"}) fs::remove(folder_ / name, ignored);
 }
 
 void RecordingFolder::add_calibration(const std::string& name, const std::string& text) {
-  write_whole_file(folder_ / name, bytes_of(text));
+  write_file_atomically(folder_ / name, bytes_of(text));
 }
 
-/// A line is there whole or not at all, too.
+/// Writes a line atomically, too.
 void RecordingFolder::write_time(double time_s) {
   const std::string line = fmt::format("{:.6f}\n", time_s);
   const off_t before = ::lseek(times_, 0, SEEK_END);
@@ -95,8 +95,8 @@ void RecordingFolder::write(const RecordedPair& pair) {
   const fs::path left = folder_ / "left" / name;
   const fs::path right = folder_ / "right" / name;
   try {
-    write_whole_file(left, io::encode_lossless_png(pair.left.view(), png_level));
-    write_whole_file(right, io::encode_lossless_png(pair.right.view(), png_level));
+    write_file_atomically(left, io::encode_lossless_png(pair.left.view(), png_level));
+    write_file_atomically(right, io::encode_lossless_png(pair.right.view(), png_level));
     write_time(pair.time_s);
   } catch (...) {
     std::error_code ignored;

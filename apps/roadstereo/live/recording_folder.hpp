@@ -9,21 +9,21 @@
 
 namespace roadstereo::cli {
 
-/// A folder that `roadstereo inspect` reads: left/NNNNNN.png, right/NNNNNN.png, times.txt (seconds, one a line) and the
-/// calibration. Pictures appear whole or not at all, and with both views.
+/// Writes a recording for `roadstereo inspect`: left/NNNNNN.png, right/NNNNNN.png, times.txt (seconds, one per line)
+/// and the calibration. Pairs are written atomically.
 class RecordingFolder {
  public:
-  /// Makes the folder when it is missing and copies the calibration files into it. Throws Error naming it when it
-  /// cannot be written to or holds a recording already.
+  /// Creates the folder if it is missing and copies the calibration files to it. Throws Error naming it if it cannot be
+  /// written to or already contains a recording.
   RecordingFolder(std::filesystem::path folder, const std::vector<std::string>& calibration);
   ~RecordingFolder();
   RecordingFolder(const RecordingFolder&) = delete;
   RecordingFolder& operator=(const RecordingFolder&) = delete;
 
-  /// Adds a calibration that has no file.
+  /// Writes a calibration that has no file.
   void add_calibration(const std::string& name, const std::string& text);
 
-  /// Throws SystemError naming the file when it cannot be written; what was written of the pair is removed.
+  /// Writes a pair. Throws SystemError naming the file on failure; a partly written pair is removed.
   void write(const RecordedPair& pair);
 
  private:

@@ -4,22 +4,22 @@
 
 namespace roadstereo::cli {
 
-/// Where the page is served.
+/// Address of the live page.
 struct ServeAddress {
   std::string host = "127.0.0.1";
-  int port = 0;  ///< 0: any that is free
+  int port = 0;  ///< 0: any free port
 
-  /// Only this machine can reach it.
+  /// Whether only this machine can connect.
   bool loopback() const;
 };
 
-/// From "[HOST:]PORT": "8080", "0.0.0.0:8080", "[::]:8080". Throws Error when it is none.
+/// Parses "[HOST:]PORT": "8080", "0.0.0.0:8080", "[::]:8080". Throws Error if it is invalid.
 ServeAddress serve_address(const std::string& text);
 
-/// The host as it stands in a URL: IPv6 addresses in brackets.
+/// Formats the host for a URL: IPv6 addresses in brackets.
 std::string url_host(const std::string& host);
 
-/// An address by which other machines may reach this one; its name when it has none.
+/// Returns an address of this machine for other machines; its host name if there is none.
 std::string outside_address();
 
 }  // namespace roadstereo::cli

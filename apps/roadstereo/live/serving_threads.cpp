@@ -7,7 +7,7 @@ namespace roadstereo::cli {
 ServingThreads::Taken ServingThreads::enqueue(std::function<void()> task) {
   const std::lock_guard lock(mutex_);
   tasks_.push_back(std::move(task));
-  if (tasks_.size() > idle_ && threads_.size() < most_) {
+  if (tasks_.size() > idle_ && threads_.size() < max_threads_) {
     threads_.emplace_back([this] { serve(); });
   } else {
     changed_.notify_one();

@@ -12,13 +12,13 @@
 
 namespace roadstereo::cli {
 
-/// The server's threads: one for each connection that is being served, made when it is needed, up to a limit; further
-/// connections wait. They give way to the threads that make the views.
+/// Thread pool of the server: one low-priority thread per connection, created on demand up to a limit; further
+/// connections wait.
 class ServingThreads final : public httplib::TaskQueue {
  public:
-  explicit ServingThreads(std::size_t most) : most_(most) {}
+  explicit ServingThreads(std::size_t max_threads) : max_threads_(max_threads) {}
 
-  /// What the library's version wants returned: nothing, or that the task was taken.
+  /// Return type of the version of httplib: void, or bool (task accepted).
   using Taken = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));
 
   Taken enqueue(std::function<void()> task) override;
@@ -27,7 +27,7 @@ class ServingThreads final : public httplib::TaskQueue {
  private:
   void serve();
 
-  std::size_t most_;
+  std::size_t max_threads_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> tasks_;

@@ -13,7 +13,7 @@ double degrees(double radians) {
   return radians * 180 / std::numbers::pi;
 }
 
-ordered_json figure(const Measurement& measured, double scale, const char* unit) {
+ordered_json measurement_json(const Measurement& measured, double scale, const char* unit) {
   return {{"value", json_number(scale * measured.value)},
           {"error", json_number(scale * measured.std_error)},
           {"unit", unit}};
@@ -30,12 +30,12 @@ ordered_json damage_json(const ListedDamage& listed) {
     constexpr double mm = 1000;        // in a metre
     constexpr double cm2 = 100 * 100;  // in a square metre
     json["severity"] = name_of(damage.metrics->severity);
-    json["depth"] = figure(damage.metrics->max_depth_m, mm, "mm");
-    json["area"] = figure(damage.metrics->area_m2, cm2, "cm²");
+    json["depth"] = measurement_json(damage.metrics->max_depth_m, mm, "mm");
+    json["area"] = measurement_json(damage.metrics->area_m2, cm2, "cm²");
     return json;
   }
   json["severity"] = nullptr;
-  json["depth"] = figure(damage.max_depth_px, 1, "px");
+  json["depth"] = measurement_json(damage.max_depth_px, 1, "px");
   json["area"] = {{"value", damage.pixels}, {"error", nullptr}, {"unit", "px²"}};
   return json;
 }
@@ -62,17 +62,17 @@ ordered_json view_json(const LiveView& view) {
 
 ordered_json recording_json(const RecordingState& recording) {
   if (!recording.on) return nullptr;
-  return {{"recorded", recording.recorded}, {"left_out", recording.left_out}, {"message", recording.message}};
+  return {{"recorded", recording.recorded}, {"skipped", recording.skipped}, {"message", recording.message}};
 }
 
 }  // namespace
 
 ordered_json counts_json(const LiveCounts& counts) {
-  return {{"taken", counts.taken},     {"processed", counts.shown}, {"dropped", counts.dropped},
-          {"too_old", counts.too_old}, {"refused", counts.refused}, {"reconnects", counts.reconnects}};
+  return {{"taken", counts.taken},     {"processed", counts.shown},   {"dropped", counts.dropped},
+          {"too_old", counts.too_old}, {"rejected", counts.rejected}, {"reconnects", counts.reconnects}};
 }
 
-ordered_json latency_json(const LatencyFigures& latency) {
+ordered_json latency_json(const LatencyStatistics& latency) {
   return {{"median", json_number(latency.median_ms)},
           {"p95", json_number(latency.p95_ms)},
           {"max", json_number(latency.max_ms)}};

@@ -6,10 +6,10 @@
 
 namespace roadstereo::cli {
 
-/// What /state tells the page. What is not known is null.
+/// Returns the response of /state. Unknown values are null.
 nlohmann::ordered_json status_json(const LiveStatus& status, double max_age_s);
 
 nlohmann::ordered_json counts_json(const LiveCounts& counts);
-nlohmann::ordered_json latency_json(const LatencyFigures& latency);
+nlohmann::ordered_json latency_json(const LatencyStatistics& latency);
 
 }  // namespace roadstereo::cli

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "say.hpp"
+#include "log_stderr.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -25,7 +25,7 @@ std::string road_text(const LiveView& view) {
   return text;
 }
 
-/// The first so many columns: what is longer would wrap and could not be rewritten. Letters are UTF-8.
+/// Truncates UTF-8 text to that many columns, because a wrapped line cannot be rewritten.
 std::string cut_to(const std::string& text, int columns) {
   int seen = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -58,10 +58,10 @@ std::string status_line(const LiveStatus& status) {
   line += road_text(*status.view);
   line += fmt::format(", damages {}/{}, dropped {}", status.view->damages.size(), status.damages_found,
                       counts.dropped + counts.too_old);
-  if (counts.refused > 0) line += fmt::format(", refused {}", counts.refused);
+  if (counts.rejected > 0) line += fmt::format(", rejected {}", counts.rejected);
   if (status.recording.on) {
     line += fmt::format(", recorded {}", status.recording.recorded);
-    if (status.recording.left_out > 0) line += fmt::format(" ({} left out)", status.recording.left_out);
+    if (status.recording.skipped > 0) line += fmt::format(" ({} skipped)", status.recording.skipped);
   }
   return line;
 }
@@ -76,17 +76,17 @@ void TerminalLine::show(const LiveStatus& status) {
   const Clock::time_point now = Clock::now();
   if (std::string message = message_of(status); message != message_) {
     message_ = std::move(message);
-    if (!message_.empty()) say("{}{}\n", written_ ? "\r\033[K" : "", message_);
+    if (!message_.empty()) log_stderr("{}{}\n", written_ ? "\r\033[K" : "", message_);
     due_ = now;
   }
   if (now < due_) return;
   due_ = now + clock_span(terminal_ ? terminal_period_s : plain_period_s);
   if (terminal_) {
-    say("\r\033[K{}", cut_to(status_line(status), terminal_columns()));
+    log_stderr("\r\033[K{}", cut_to(status_line(status), terminal_columns()));
     std::fflush(stderr);
     written_ = true;
   } else {
-    say("{}\n", status_line(status));
+    log_stderr("{}\n", status_line(status));
   }
 }
 

@@ -7,10 +7,10 @@
 
 namespace roadstereo::cli {
 
-/// How things stand in one line: latency as median/95th percentile, height over the road, damages as seen now/in all.
+/// Formats the status line: latency as median/95th percentile, height above the road, damages as current/total.
 std::string status_line(const LiveStatus& status);
 
-/// The line on stderr: rewritten on a terminal, a plain one every few seconds elsewhere. Its end is a new line.
+/// Status line on stderr: rewritten on a terminal, else printed every few seconds. The destructor ends the line.
 class TerminalLine {
  public:
   TerminalLine();
@@ -18,14 +18,14 @@ class TerminalLine {
   TerminalLine(const TerminalLine&) = delete;
   TerminalLine& operator=(const TerminalLine&) = delete;
 
-  /// Called often; prints what has become due.
+  /// Prints the line if it is due; call it often.
   void show(const LiveStatus& status);
 
  private:
   bool terminal_;
-  bool written_ = false;  ///< a line that has no end yet
+  bool written_ = false;  ///< the current line has no end yet
   Clock::time_point due_{};
-  std::string message_;  ///< the last one that was printed
+  std::string message_;  ///< last printed message
 };
 
 }  // namespace roadstereo::cli

@@ -14,7 +14,7 @@ namespace {
 constexpr int quality = 82;
 constexpr int max_width = 1280;  // pixels
 
-/// The colours without the bar that colour maps have beside them: the page draws its own.
+/// Crops the scale bar of a colour map; the page draws its own.
 FrameView without_bar(const Frame& picture, ImageView<const float> map) {
   FrameView view = picture.view();
   view.width = map.width();
@@ -34,20 +34,21 @@ ViewPicture left_picture(const LiveView& view) {
   return picture_of(io::damage_overlay(view.left.view(), map).view());
 }
 
-/// A round number, so that the colours of successive views mean the same.
-double reach_of(const LiveView& view) {
+/// Returns a round number, so that successive views have equal scales.
+double half_range_of(const LiveView& view) {
   constexpr std::array round_px = {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0};
   const io::ColourScale scale = io::transformed_scale(view.transformed, view.delta_t);
-  const double reach = (scale.highest - scale.lowest) / 2;
-  const auto* const place = std::lower_bound(round_px.begin(), round_px.end(), reach);
-  return place == round_px.end() ? reach : *place;
+  const double half_range = (scale.highest - scale.lowest) / 2;
+  const auto* const entry = std::lower_bound(round_px.begin(), round_px.end(), half_range);
+  return entry == round_px.end() ? half_range : *entry;
 }
 
 ViewPicture transformed_picture(const LiveView& view) {
-  const double reach = reach_of(view);
-  const Frame colours = io::colour_map(view.transformed, {view.delta_t - reach, view.delta_t + reach, true, ""});
+  const double half_range = half_range_of(view);
+  const Frame colours =
+      io::colour_map(view.transformed, {view.delta_t - half_range, view.delta_t + half_range, true, ""});
   ViewPicture picture = picture_of(without_bar(colours, view.transformed));
-  picture.reach_px = reach;
+  picture.half_range_px = half_range;
   return picture;
 }
 
@@ -62,29 +63,29 @@ std::string scale_ramp_png() {
   return {png.begin(), png.end()};
 }
 
-std::shared_ptr<ViewPictures::Place> ViewPictures::place_of(const SharedView& view, Kind kind) {
+std::shared_ptr<ViewPictures::Entry> ViewPictures::entry_of(const SharedView& view, Kind kind) {
   constexpr std::size_t kept = 4;
   const std::lock_guard lock(mutex_);
-  const auto found = std::find_if(places_.begin(), places_.end(), [&](const std::shared_ptr<Place>& place) {
-    return place->view == view && place->kind == kind;
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const std::shared_ptr<Entry>& entry) {
+    return entry->view == view && entry->kind == kind;
   });
-  if (found != places_.end()) return *found;
-  auto place = std::make_shared<Place>();
-  place->view = view;
-  place->kind = kind;
-  places_.push_front(place);
-  if (places_.size() > kept) places_.pop_back();
-  return place;
+  if (found != entries_.end()) return *found;
+  auto entry = std::make_shared<Entry>();
+  entry->view = view;
+  entry->kind = kind;
+  entries_.push_front(entry);
+  if (entries_.size() > kept) entries_.pop_back();
+  return entry;
 }
 
 ViewPictures::Shared ViewPictures::get(const SharedView& view, Kind kind) {
-  const std::shared_ptr<Place> place = place_of(view, kind);
-  const std::lock_guard lock(place->mutex);
-  if (!place->picture) {
-    place->picture =
+  const std::shared_ptr<Entry> entry = entry_of(view, kind);
+  const std::lock_guard lock(entry->mutex);
+  if (!entry->picture) {
+    entry->picture =
         std::make_shared<const ViewPicture>(kind == Kind::left ? left_picture(*view) : transformed_picture(*view));
   }
-  return place->picture;
+  return entry->picture;
 }
 
 ViewPictures::Shared ViewPictures::left(const SharedView& view) {

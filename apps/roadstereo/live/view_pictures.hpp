@@ -12,16 +12,16 @@
 
 namespace roadstereo::cli {
 
-/// A picture of a view.
+/// An encoded image of a view.
 struct ViewPicture {
   std::string jpeg;
-  double reach_px = 0;  ///< of a transformed map: its colours go from so far below the road to as far above it
+  double half_range_px = 0;  ///< of a transformed map: its colours show ± this around the road
 };
 
-/// The scale's colours from its lowest to its highest value, PNG.
+/// Returns the colour scale as PNG, lowest value first.
 std::string scale_ramp_png();
 
-/// JPEGs of the latest views, made when somebody asks for them, once for all who do.
+/// JPEGs of the latest views, encoded on request, once for all clients.
 class ViewPictures {
  public:
   using Shared = std::shared_ptr<const ViewPicture>;
@@ -31,18 +31,18 @@ class ViewPictures {
 
  private:
   enum class Kind { left, transformed };
-  struct Place {
+  struct Entry {
     SharedView view;
     Kind kind = Kind::left;
-    std::mutex mutex;  ///< held while it is made: others wait for it instead of making it, too
+    std::mutex mutex;  ///< held while encoding: other clients wait for the result
     Shared picture;
   };
 
-  std::shared_ptr<Place> place_of(const SharedView& view, Kind kind);
+  std::shared_ptr<Entry> entry_of(const SharedView& view, Kind kind);
   Shared get(const SharedView& view, Kind kind);
 
   std::mutex mutex_;
-  std::deque<std::shared_ptr<Place>> places_;  ///< newest first
+  std::deque<std::shared_ptr<Entry>> entries_;  ///< newest first
 };
 
 }  // namespace roadstereo::cli

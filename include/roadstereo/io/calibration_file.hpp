@@ -9,23 +9,23 @@
 
 namespace roadstereo::io {
 
-/// A rig as a calibration program leaves it: lenses distort, cameras are not parallel. Matrices row-major.
+/// Calibration of an unrectified stereo rig. Matrices are row-major.
 struct StereoRig {
   std::array<double, 9> left_matrix{};    ///< K1, pixels
-  std::vector<double> left_distortion;    ///< D1, OpenCV order; empty = none
+  std::vector<double> left_distortion;    ///< D1, OpenCV order; empty: no distortion
   std::array<double, 9> right_matrix{};   ///< K2
   std::vector<double> right_distortion;   ///< D2
   std::array<double, 9> rotation{};       ///< R: left camera to right camera
   std::array<double, 3> translation_m{};  ///< T: left camera to right camera, metres
   bool fisheye = false;                   ///< equidistant model instead of OpenCV's plumb-bob / rational
-  int width = 0;                          ///< 0 when the file does not say
+  int width = 0;                          ///< pixels; 0: not in the file
   int height = 0;
 };
 
-/// What a calibration file says.
+/// Contents of a calibration file: exactly one of `rectified` and `rig` is set.
 struct CalibrationFile {
   std::string format;                          ///< e.g. "plain YAML", "OpenCV stereo", "ROS camera_info", "KITTI P2/P3"
-  std::optional<StereoCalibration> rectified;  ///< the images are rectified already
+  std::optional<StereoCalibration> rectified;  ///< the images are already rectified
   std::optional<StereoRig> rig;                ///< the images must be rectified first
 };
 
@@ -35,8 +35,8 @@ struct CalibrationFile {
 ///   ROS            camera_info; `second_path` is the right camera's file
 ///   KITTI          calib*.txt with P0/P1 or P2/P3 (also P_rect_0N); P2/P3 wins when a file has both
 ///   Middlebury     calib.txt with cam0, cam1, doffs, baseline in millimetres
-///   K.txt          nine figures of K and the baseline in metres
-/// Throws Error naming the file and the figure that is missing, not finite or absurd.
+///   K.txt          nine values of K and the baseline in metres
+/// Throws Error naming the file and the value that is missing, not finite or out of range.
 CalibrationFile read_calibration(const std::string& path, const std::string& second_path = "");
 
 }  // namespace roadstereo::io

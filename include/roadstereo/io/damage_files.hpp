@@ -5,8 +5,8 @@
 
 namespace roadstereo::io {
 
-/// Adds what is known of a frame's damage: damages.json, damages.csv, damage.png (16-bit grey, ids), overlay.png and
-/// report.html. Throws Error when the sizes of maps and image differ.
+/// Adds the damage results of one frame: damages.json, damages.csv, damage.png (16-bit grey, ids), overlay.png and
+/// report.html. Throws Error if the sizes of the maps and the image differ.
 void add_damage_files(OutputFolder& folder, const DamageReportInput& input);
 
 }  // namespace roadstereo::io

@@ -5,8 +5,8 @@
 
 namespace roadstereo::io {
 
-/// The picture (8 bit) with the outline of every damage, coloured by severity, or by kind without a calibration; beside
-/// it id and depth, heights of protrusions with a plus. Throws Error when the sizes differ.
+/// Draws the outline, id and depth of every damage on the image (8 bit). Colours show the severity, or the kind if
+/// there is no calibration; heights of protrusions have a plus sign. Throws Error if the sizes differ.
 Frame damage_overlay(const FrameView& picture, const DamageMap& map);
 
 }  // namespace roadstereo::io

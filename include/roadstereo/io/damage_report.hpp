@@ -12,23 +12,23 @@
 
 namespace roadstereo::io {
 
-/// What is told about the damage of one frame. Maps and image have the map's size; empty ones are absent.
+/// Input of `damage_report`. Maps and image have the size of `map`; empty ones are absent.
 struct DamageReportInput {
   const DamageMap& map;
-  FrameView left{};                                ///< absent: the transformed map, coloured, in its place
-  ImageView<const float> disparity{};              ///< ℓ; NaN in the holes
-  ImageView<const float> transformed{};            ///< ℓ'; tells the holes where there is no ℓ
-  std::optional<StereoCalibration> calibration{};  ///< with ℓ, puts cross-sections and 3-D views on the road
+  FrameView left{};                                ///< absent: the coloured transformed map is shown instead
+  ImageView<const float> disparity{};              ///< ℓ, px; NaN invalid
+  ImageView<const float> transformed{};            ///< ℓ', px; marks the holes if ℓ is absent
+  std::optional<StereoCalibration> calibration{};  ///< with ℓ: cross-sections and 3-D views are metric
   std::string title{};                             ///< the frame's name
-  std::vector<std::pair<std::string, std::string>> facts{};  ///< key figures of the frame: name, value with unit
-  std::vector<std::uint8_t> sheet{};                         ///< the result sheet, PNG or JPEG
+  std::vector<std::pair<std::string, std::string>> properties{};  ///< of the frame: name, value with unit
+  std::vector<std::uint8_t> sheet{};                              ///< the result sheet, PNG or JPEG
 };
 
-/// The report as one HTML file that needs nothing else: styles, scripts and pictures are inside. Throws Error when the
-/// sizes differ or the sheet is not a picture.
+/// Returns a self-contained HTML report: styles, scripts and images are embedded. Throws Error if the
+/// sizes differ or the sheet cannot be decoded.
 std::string damage_report(const DamageReportInput& input);
 
-/// The picture that damage is shown on, 8-bit BGR: the left image, else the transformed map coloured, else the depths.
+/// Background of the overlay, 8-bit BGR: the left image, else the coloured transformed map, else the coloured depths.
 Frame damage_background(const DamageReportInput& input);
 
 }  // namespace roadstereo::io

@@ -6,13 +6,13 @@
 
 namespace roadstereo::io {
 
-// One row per damage, deepest first. Both files have the same columns, named with their units. What is not known is
-// empty in CSV and null in JSON: everything metric of an uncalibrated frame, and what is not a finite number.
+// One row per damage, deepest first. Both files have the same columns, named with their units. Unknown values are empty
+// in CSV and null in JSON: all metric values of an uncalibrated frame, and all values that are not finite.
 
-/// The damages with the frame's noise, and why nothing is metric where that is so.
+/// Returns the damages, the noise of the frame, and the reason if no values are metric.
 std::string damages_json(const DamageMap& map);
 
-/// RFC 4180: lines end with CRLF; the line of names is there even when there is no damage.
+/// Returns RFC 4180 CSV: lines end with CRLF; the header line is always present.
 std::string damages_csv(const DamageMap& map);
 
 }  // namespace roadstereo::io

@@ -10,38 +10,38 @@
 
 namespace roadstereo::io {
 
-/// One damage of the road as a flight saw it, in one frame or in several.
+/// One damage of the road, seen in one or several frames of a flight.
 struct RoadDamage {
-  std::int64_t id = 0;         ///< over the whole flight, from 1
-  std::int64_t sightings = 0;  ///< frames that saw it
-  std::int64_t frame = 0;      ///< the frame that measured it best: whole if any did, then with the least error
+  std::int64_t id = 0;         ///< unique in the flight, from 1
+  std::int64_t sightings = 0;  ///< number of frames that show it
+  std::int64_t frame = 0;      ///< index of the best frame: not cut by the border if possible, then smallest error
   std::string frame_name;
   double time_s = FlightFrame::unknown;
-  Damage best;  ///< as measured in that frame
+  Damage best;  ///< the measurement in that frame
 };
 
-/// Orders by severity, then by depth: the worst first.
+/// Returns whether `one` is more severe than `other`, or as severe and deeper.
 bool is_worse(const RoadDamage& one, const RoadDamage& other);
 
-/// The damages of a flight, frame by frame: sightings in successive frames whose outlines, moved as the picture moved,
-/// lie over each other are one damage. A frame whose road was found anew does not follow from the one before, and
-/// frames far apart do not overlap: then each sighting counts by itself.
+/// Tracks damages over the frames of a flight. Sightings in successive frames are one damage if their boxes overlap
+/// after the image motion is compensated. Tracking restarts at a frame whose road model was estimated anew; frames too
+/// far apart to overlap yield one damage per sighting.
 class FlightInventory {
  public:
-  /// Takes the damages of the next frame in order, and tells the road damage that each belongs to.
+  /// Adds the next frame of the flight. Returns the id of the road damage of each of its damages.
   std::vector<std::int64_t> add(const FlightFrame& frame);
 
-  /// All of them, in the order in which they were first seen.
+  /// All damages of the road in the order of their first sighting.
   const std::vector<RoadDamage>& damages() const { return damages_; }
 
-  /// The worst ones, worst first, `most` of them.
-  std::vector<RoadDamage> worst(std::size_t most) const;
+  /// At most `max_count` damages, worst first.
+  std::vector<RoadDamage> worst(std::size_t max_count) const;
 
  private:
-  /// Where a damage was last seen.
+  /// Last sighting of a damage.
   struct Sighting {
     std::int64_t id = 0;
-    std::int64_t place = 0;  ///< which frame of the flight
+    std::int64_t sequence = 0;  ///< number of the frame in the flight
     Damage damage;
   };
   const Sighting* seen_before(const Damage& damage, const std::vector<std::int64_t>& taken) const;
@@ -49,8 +49,8 @@ class FlightInventory {
 
   std::vector<RoadDamage> damages_;
   std::vector<Sighting> recent_;
-  std::array<double, 2> motion_px_{};  ///< of the picture from frame to frame
-  std::int64_t place_ = 0;
+  std::array<double, 2> motion_px_{};  ///< image motion from frame to frame
+  std::int64_t sequence_ = 0;
 };
 
 }  // namespace roadstereo::io

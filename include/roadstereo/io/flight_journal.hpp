@@ -12,33 +12,32 @@
 
 namespace roadstereo::io {
 
-/// What a flight was made with, as names and values; a flight goes on only with the same.
+/// Inputs and options of a flight as names and values. A flight is resumed only with identical ones.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
-/// The record of a flight while it is made: a text file with one line a frame, appended as frames are done. A line
-/// that a kill cut short is left out and written again.
+/// Append-only journal of a flight: a text file with one line per finished frame. An incomplete last line, left by a
+/// killed run, is ignored and overwritten.
 class FlightJournal {
  public:
-  /// Begins a journal; an earlier one is replaced. Throws SystemError when the file cannot be written.
-  static FlightJournal begin(const std::filesystem::path& file, const Provenance& facts);
+  /// Creates a journal; replaces an existing one. Throws SystemError if the file cannot be written.
+  static FlightJournal begin(const std::filesystem::path& file, const Provenance& provenance);
 
-  /// Goes on with one. Throws Error when there is none, or when it was begun with other facts: the sentence names the
-  /// first that differs.
-  static FlightJournal resume(const std::filesystem::path& file, const Provenance& facts);
+  /// Opens an existing journal. Throws Error if there is none, or naming the first entry of `provenance` that differs.
+  static FlightJournal resume(const std::filesystem::path& file, const Provenance& provenance);
 
   FlightJournal(FlightJournal&& other) noexcept;
   FlightJournal& operator=(FlightJournal&&) = delete;
   ~FlightJournal();
 
-  /// Appends a frame; once this returns, the frame outlives a kill. Throws SystemError on a full disk.
+  /// Appends a frame; it is on disk when this returns. Throws SystemError on a full disk.
   void append(const FlightFrame& frame);
 
   std::int64_t frames() const { return frames_; }
 
-  /// The last frame that was appended, by this run or an earlier one.
+  /// The last frame, appended by this run or an earlier one.
   const std::optional<FlightFrame>& last() const { return last_; }
 
-  /// Reads the frames from first to last, one at a time.
+  /// Calls `visit` for every frame in order.
   void for_each(const std::function<void(const FlightFrame&)>& visit) const;
 
  private:
@@ -51,7 +50,7 @@ class FlightJournal {
   std::optional<FlightFrame> last_;
 };
 
-/// Every frame of a journal, one at a time. Throws Error when there is none.
+/// Calls `visit` for every frame of a journal in order. Throws Error if there is no journal.
 void read_flight_journal(const std::filesystem::path& file, const std::function<void(const FlightFrame&)>& visit);
 
 }  // namespace roadstereo::io

@@ -8,16 +8,16 @@
 
 namespace roadstereo::io {
 
-// Tables over all frames of a flight, line by line (RFC 4180: CRLF). What is not known is empty.
+// CSV tables of a flight, line by line (RFC 4180: CRLF). Unknown values are empty.
 
-/// Names of the columns of frames.csv: a row a frame, whatever became of it.
+/// Header line of frames.csv: one row per frame, good or not.
 std::string frames_csv_names();
 std::string frames_csv_row(const FlightFrame& frame);
 
-/// Names of the columns of damages.csv: the damage of the road (FlightInventory), frame, name and time_s, then those of
-/// a single frame's damages.csv.
+/// Header line of damages.csv: id of the road damage (FlightInventory), frame, name and time_s, then the columns of a
+/// single frame's damages.csv.
 std::string flight_damages_csv_names();
-/// A row a damage of this frame; `road_damages` are their numbers over the flight.
+/// One row per damage of the frame; `road_damages` are their ids in the flight.
 std::string flight_damages_csv_rows(const FlightFrame& frame, const std::vector<std::int64_t>& road_damages);
 
 }  // namespace roadstereo::io

@@ -12,40 +12,40 @@
 
 namespace roadstereo::io {
 
-/// How one picture holds both views.
+/// Arrangement of both views in one image.
 enum class StereoLayout {
-  automatic,     ///< the one whose views have the shape of a camera's, 5:4 … 2.4:1; Error where none has
+  automatic,     ///< the layout whose views have an aspect ratio of 5:4 … 2.4:1; Error if there is none
   side_by_side,  ///< left view in the left half
   top_bottom     ///< left view in the upper half
 };
 
-/// The layout of that name: "auto", "side-by-side" or "top-bottom". Throws Error naming those that exist.
+/// Parses "auto", "side-by-side" or "top-bottom". Throws Error listing them for another name.
 StereoLayout stereo_layout(const std::string& name);
 
 struct SourceOptions {
   StereoLayout layout = StereoLayout::automatic;  ///< of videos and cameras
-  std::vector<std::string> topics;                ///< left and right image topic of a ROS bag; empty: the only two
-  double max_time_difference_s = 0.005;           ///< between the views of a pair; more is refused, 0 … 10
-  int camera_width = 2560;  ///< of the whole picture, asked of a V4L2 camera, which takes its nearest; 64 … 16384
+  std::vector<std::string> topics;                ///< left and right image topic of a ROS bag; empty: the only pair
+  double max_time_difference_s = 0.005;           ///< between the views of a pair, 0 … 10
+  int camera_width = 2560;  ///< of the image with both views, requested from a V4L2 camera; 64 … 16384
   int camera_height = 720;  ///< likewise
-  double rate_hz = 0;  ///< pairs a second where the source has no times, 0 … 10000; 0: the source's own, or no times
+  double rate_hz = 0;       ///< pairs per second, replaces the times of the source; 0 … 10000; 0: off
 
-  /// Throws Error naming the first option that is out of range.
+  /// Throws Error naming the first option out of range.
   void validate() const;
 };
 
-/// One pair as the source has it, not rectified yet; or the reason why there is none.
+/// One unrectified pair of a source, or the reason why it is missing.
 struct SourcePair {
-  std::int64_t index = 0;  ///< its place in the source, from 0
-  std::string name;        ///< of the file, or the place in six digits
+  std::int64_t index = 0;  ///< in the source, from 0
+  std::string name;        ///< file name, or the index in six digits
   double time_s =
-      std::numeric_limits<double>::quiet_NaN();  ///< since 1970 where the source knows, else since its start
+      std::numeric_limits<double>::quiet_NaN();  ///< since 1970 if known, else since the start of the source
   Frame left;
   Frame right;
-  std::string refused;  ///< why the views are no pair: unreadable, no partner, too far apart in time; empty: they are
+  std::string error;  ///< reason if the pair is invalid: unreadable, unpaired, too far apart in time; empty: valid
 };
 
-/// A recording or a camera. Not for two threads at a time.
+/// A recording or a camera. Not thread-safe.
 class FrameSource {
  public:
   FrameSource() = default;
@@ -53,40 +53,40 @@ class FrameSource {
   FrameSource& operator=(const FrameSource&) = delete;
   virtual ~FrameSource() = default;
 
-  /// The next pair; nothing at the end. A pair that cannot be had is returned with its reason. Throws Error when the
-  /// source itself fails: a camera that is gone.
+  /// Returns the next pair, or nullopt at the end. An invalid pair is returned with `error` set. Throws Error if the
+  /// source itself fails, e.g. a camera is unplugged.
   virtual std::optional<SourcePair> next() = 0;
 
-  /// Passes over pairs without decoding them, where the format allows it. Stops at the end.
+  /// Skips pairs, without decoding them if the format allows it. Stops at the end.
   virtual void skip(std::int64_t pairs) = 0;
 
-  /// Pairs from first to last, where the source knows. A video's own figure may be off by a few.
+  /// Number of pairs if known. For videos an estimate that may be off by a few.
   virtual std::optional<std::int64_t> size() const = 0;
 
-  /// A camera: pairs come when they are taken, and never end.
+  /// Whether the source is a camera: pairs arrive in real time and never end.
   virtual bool live() const { return false; }
 
-  /// Calibration that travels with the pairs (camera_info of a bag), where there is one.
+  /// Calibration contained in the source (camera_info of a bag), if any.
   virtual std::optional<CalibrationFile> calibration() const { return std::nullopt; }
 
-  /// What it is, for people: "folder, 300 pairs".
+  /// Short description for messages, e.g. "folder, 300 pairs".
   virtual std::string description() const = 0;
 };
 
-/// Opens a recording or a camera; the kind is recognised:
+/// Opens a recording or a camera. Recognises:
 ///   folder         with left/ right/, image_2/ image_3/, image_0/ image_1/, image_02/data image_03/data,
 ///                  cam0/data cam1/data (EuRoC), or L*.png R*.png names; times from times.txt, data.csv or EuRoC names
-///   list file      .txt or .csv: "left right [seconds]" a line, relative to the list; # begins a comment
-///   video          both views in one picture, see StereoLayout
+///   list file      .txt or .csv: lines "left right [seconds]", paths relative to the list; # starts a comment
+///   video          both views in one image, see StereoLayout
 ///   two names      left and right: two folders or two videos
-///   /dev/video*    V4L2 camera with both views in one picture
-///   GStreamer      a pipeline: a text with " ! "; " ! videoconvert ! appsink max-buffers=2 sync=false" is added when
-///                  it has no appsink, and drops pictures that come too fast when the pipeline is live
+///   /dev/video*    V4L2 camera with both views in one image
+///   GStreamer      a pipeline description, i.e. text with " ! "; if it has no appsink,
+///                  " ! videoconvert ! appsink max-buffers=2 sync=false" is appended (live pipelines then drop frames)
 ///   .bag           ROS 1 bag with two image topics
-/// Throws Error when it is none of these or cannot be opened.
+/// Throws Error if the source is none of these or cannot be opened.
 std::unique_ptr<FrameSource> open_source(const std::vector<std::string>& names, const SourceOptions& options = {});
 
-/// Whether `open_source` would take that name; an image, or what does not exist, is none.
+/// Returns whether `open_source` accepts the name; false for an image and for a missing file.
 bool is_recording(const std::string& name);
 
 }  // namespace roadstereo::io

@@ -9,11 +9,11 @@
 namespace roadstereo::io {
 
 /// Reads PNG, JPEG, TIFF or PGM/PPM; 8 or 16 bit; grey or colour.
-/// Throws Error naming the file: missing, not readable, not an image, not 8 or 16 bit, size outside 32×32 …
+/// Throws Error naming the file if it is missing, unreadable, no image, not 8 or 16 bit, or not of 32×32 …
 /// 8192×8192.
 Frame read_frame(const std::string& path);
 
-/// White level of a 16-bit pair whose camera has fewer bits than its container: the smallest of 2^10−1,
+/// Returns the white level of a 16-bit pair whose camera has fewer than 16 bits: the smallest of 2^10−1,
 /// 2^12−1, 2^14−1, 2^16−1 that no sample of either frame exceeds. 255 for 8-bit frames.
 double find_white_level(const FrameView& left, const FrameView& right);
 
@@ -24,8 +24,8 @@ Image<float> read_disparity(const std::string& path);
 /// Encodes a float map as 32-bit TIFF, NaN kept.
 std::vector<std::uint8_t> encode_float_tiff(ImageView<const float> map);
 
-/// Encodes disparities as 16-bit PNG the KITTI way: value = round(256 d), 0 invalid. A disparity that rounds
-/// to 0 is written as 1. Throws Error naming the value when one is negative or above 255.99 px.
+/// Encodes disparities as 16-bit KITTI PNG: value = round(256 d), 0 invalid. A disparity that rounds
+/// to 0 is written as 1. Throws Error naming the first value outside 0 … 255.99 px.
 std::vector<std::uint8_t> encode_kitti_png(ImageView<const float> disparity);
 
 /// Encodes an 8-bit frame (grey or colour) as PNG.

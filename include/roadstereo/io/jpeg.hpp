@@ -7,7 +7,7 @@
 
 namespace roadstereo::io {
 
-/// Encodes an 8-bit frame as JPEG of that quality, 1 … 100; a frame wider than `max_width` pixels is shrunk to it.
+/// Encodes an 8-bit frame as JPEG, `quality` 1 … 100. A frame wider than `max_width` pixels is downsampled to it.
 std::vector<std::uint8_t> encode_jpeg(const FrameView& frame, int quality, int max_width);
 
 }  // namespace roadstereo::io

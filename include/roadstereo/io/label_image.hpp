@@ -7,7 +7,7 @@
 
 namespace roadstereo::io {
 
-/// Encodes ids of damages as 16-bit grey PNG, each value as it is.
+/// Encodes damage ids as 16-bit grey PNG, values unchanged.
 std::vector<std::uint8_t> encode_label_png(ImageView<const std::uint16_t> labels);
 
 }  // namespace roadstereo::io

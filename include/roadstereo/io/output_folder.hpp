@@ -8,23 +8,21 @@
 
 namespace roadstereo::io {
 
-/// A folder whose files appear together or not at all: everything is written to a hidden folder inside it (so
-/// on the same file system) and moved by `commit`. What is not committed is removed, with the folders made
-/// for it.
+/// Writes a set of files atomically: files are staged in a hidden folder inside the output folder and moved by
+/// `commit`. Uncommitted files, and the folders created for them, are removed on destruction.
 class OutputFolder {
  public:
-  /// Makes the folder when it is missing. Throws Error naming it when it cannot be made or written to.
+  /// Creates the folder if it is missing. Throws Error naming it if it cannot be created or written to.
   explicit OutputFolder(const std::filesystem::path& folder);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Stages one file; `name` may have folders in it. Throws SystemError naming the file when the disk is full
-  /// or the write fails.
+  /// Stages one file; `name` may contain folders. Throws SystemError naming the file if the write fails.
   void add(const std::string& name, std::span<const std::uint8_t> bytes);
   void add(const std::string& name, const std::string& text);
 
-  /// Moves every staged file to its place. Throws SystemError.
+  /// Moves all staged files into the output folder. Throws SystemError; the folder is then unchanged.
   void commit();
 
   const std::filesystem::path& path() const { return folder_; }

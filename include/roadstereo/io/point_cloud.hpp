@@ -10,27 +10,27 @@
 
 namespace roadstereo::io {
 
-/// Points in space with their colours, in no particular order.
+/// Unordered 3-D points with optional colours.
 struct PointCloud {
-  std::vector<std::array<float, 3>> points;          ///< (x, y, z); the unit is the producer's, metres in this program
-  std::vector<std::array<std::uint8_t, 3>> colours;  ///< (red, green, blue), one per point; empty: no colours
+  std::vector<std::array<float, 3>> points;          ///< (x, y, z), metres unless read from a file in another unit
+  std::vector<std::array<std::uint8_t, 3>> colours;  ///< (red, green, blue) per point; empty: no colours
 };
 
-/// Farthest point that a cloud takes in, in baselines: there an error of a tenth of a pixel moves a point by several
+/// Maximum distance of a cloud's points, in baselines: there a disparity error of 0.1 px moves a point by several
 /// metres with any usual camera.
 inline constexpr double farthest_baselines = 250;
 
-/// The points that a disparity map stands for: camera frame (x right, y down, z forward), metres, row by row, with the
-/// colours of the left image. Left out are pixels without a disparity, with d + doffs ≤ 0, and farther away than
-/// `farthest_baselines` baselines. `white_level` as in to_grey. Throws Error when the sizes differ.
+/// Triangulates a disparity map: camera frame (x right, y down, z forward), metres, row by row, with the colours of the
+/// left image. Skips pixels without a disparity, with d + doffs ≤ 0, and farther away than
+/// `farthest_baselines` baselines. `white_level` as in to_grey. Throws Error if the sizes differ.
 PointCloud cloud_from_disparity(ImageView<const float> disparity, const FrameView& left, double white_level,
                                 const StereoCalibration& calibration);
 
-/// The same points in the axes of the road, metres: the road is z = 0, damage lies below.
+/// Transforms the points to road axes, metres: the road is z = 0, depressions have z < 0.
 PointCloud to_road_axes(const PointCloud& cloud, const RoadAxes& road);
 
-/// Encodes a cloud as binary little-endian PLY: float x y z and, with colours, uchar red green blue. Throws Error when
-/// there are colours, but not one per point.
+/// Encodes a cloud as binary little-endian PLY: float x y z and, with colours, uchar red green blue. Throws Error if
+/// the numbers of points and colours differ.
 std::vector<std::uint8_t> encode_ply(const PointCloud& cloud);
 
 }  // namespace roadstereo::io

@@ -8,27 +8,27 @@
 
 namespace roadstereo::io {
 
-/// A rectified pair and the rectified rig it belongs to. Every pixel has image content (no black borders).
+/// A rectified pair and its calibration. Every pixel has image content (no black borders).
 struct RectifiedPair {
   Frame left;
   Frame right;
   StereoCalibration calibration;
 };
 
-/// Undistorts pairs of one rig and makes their rows agree; where each pixel comes from is worked out once.
+/// Undistorts and rectifies pairs of one rig. The pixel maps are computed once.
 class Rectifier {
  public:
-  /// For frames of this size. Throws Error when that is not the rig's size, or the rig cannot be rectified sideways
-  /// (right camera above, below or left of the left one: the sentence says which).
+  /// For frames of this size. Throws Error if the rig has another size, or if its right camera is not to the right of
+  /// the left one (the message names its position).
   Rectifier(const StereoRig& rig, int width, int height);
   ~Rectifier();
   Rectifier(Rectifier&&) noexcept;
   Rectifier& operator=(Rectifier&&) noexcept;
 
-  /// Of the rectified frames.
+  /// Calibration of the rectified frames.
   const StereoCalibration& calibration() const;
 
-  /// Throws Error when a frame does not have the size.
+  /// Rectifies a pair. Throws Error if a frame has another size.
   RectifiedPair rectify(const Frame& left, const Frame& right) const;
 
  private:
@@ -36,7 +36,7 @@ class Rectifier {
   std::unique_ptr<Maps> maps_;
 };
 
-/// One pair, see Rectifier.
+/// Rectifies one pair, see Rectifier.
 RectifiedPair rectify(const Frame& left, const Frame& right, const StereoRig& rig);
 
 }  // namespace roadstereo::io

@@ -4,7 +4,7 @@
 
 #include "core/cuda/check.hpp"
 #include "core/cuda/probe.hpp"
-#include "core/sentence.hpp"
+#include "core/format_message.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cuda {
@@ -37,12 +37,12 @@ Device find_device() {
   if (status == cudaSuccess) status = cudaGetDeviceProperties(&properties, index);
   if (status != cudaSuccess) return unusable("the GPU does not answer: " + said(status));
   const std::string name =
-      sentence(properties.name, " (compute capability ", properties.major, ".", properties.minor, ")");
+      format_message(properties.name, " (compute capability ", properties.major, ".", properties.minor, ")");
   status = cudaFree(nullptr);  // makes the context, for which a GPU may be too busy or its memory too full
-  if (status != cudaSuccess) return unusable(sentence("the ", name, " cannot be used now: ", said(status)));
+  if (status != cudaSuccess) return unusable(format_message("the ", name, " cannot be used now: ", said(status)));
   if (const cudaError_t code = probe_code(); code != cudaSuccess) {
-    return unusable(sentence("this binary carries no code that the ", name, " can run (", said(code),
-                             "): build it with CMAKE_CUDA_ARCHITECTURES=", properties.major, properties.minor));
+    return unusable(format_message("this binary carries no code that the ", name, " can run (", said(code),
+                                   "): build it with CMAKE_CUDA_ARCHITECTURES=", properties.major, properties.minor));
   }
   Device device;
   device.name = name;

@@ -12,7 +12,6 @@ __global__ void empty_kernel() {}
 cudaError_t probe_code() {
   cudaFuncAttributes attributes{};
   return cudaFuncGetAttributes(&attributes, empty_kernel);
-#endif
 }
 
 }  // namespace roadstereo::cuda

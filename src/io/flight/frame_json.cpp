@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Puts fields into a document.
+/// Writes fields to a document.
 class Writer {
  public:
   Json take() { return std::move(document_); }
@@ -31,7 +31,7 @@ class Writer {
   Json document_ = Json::object();
 };
 
-/// Takes fields out of a document.
+/// Reads fields from a document.
 class Reader {
  public:
   explicit Reader(const Json& document) : document_(document) {}
@@ -53,9 +53,9 @@ class Reader {
 };
 
 template <class Visit>
-void each_field(Measurement& figure, Visit& visit) {
-  visit("value", figure.value);
-  visit("std_error", figure.std_error);
+void each_field(Measurement& measured, Visit& visit) {
+  visit("value", measured.value);
+  visit("std_error", measured.std_error);
 }
 
 template <class Visit>
@@ -131,7 +131,7 @@ void each_field(FlightFrame& frame, Visit& visit) {
   visit("damages", frame.damages);
   visit("warnings", frame.warnings);
   visit("white_level", frame.white_level);
-  visit("carried", frame.carried);
+  visit("pipeline_state", frame.pipeline_state);
 }
 
 template <class Value>
@@ -163,7 +163,7 @@ Json Writer::written(const Value& value) {
     return list;
   } else {
     Writer part;
-    each_field(const_cast<Value&>(value), part);  // the list of fields serves reading, too
+    each_field(const_cast<Value&>(value), part);  // the visitor only reads
     return part.take();
   }
 }
@@ -192,8 +192,8 @@ const char* name_of(FrameStatus status) {
   switch (status) {
     case FrameStatus::good:
       return "good";
-    case FrameStatus::refused:
-      return "refused";
+    case FrameStatus::rejected:
+      return "rejected";
     case FrameStatus::failed:
       return "failed";
   }
@@ -215,7 +215,7 @@ FlightFrame read_flight_frame(const std::string& json) {
     each_field(frame, reader);
     return frame;
   } catch (const Json::exception& error) {
-    fail("no record of a frame: ", error.what());
+    fail("this is not a frame record: ", error.what());
   }
 }
 

@@ -9,7 +9,7 @@
 namespace roadstereo::io {
 namespace {
 
-/// Frames that a damage may be missed in between.
+/// Maximum number of frames between two sightings of a damage.
 constexpr std::int64_t max_gap = 2;
 
 double depth_of(const Damage& damage) {
@@ -20,12 +20,12 @@ double error_of(const Damage& damage) {
   return damage.metrics ? damage.metrics->max_depth_m.std_error : damage.max_depth_px.std_error;
 }
 
-/// Whether the damage is measured better: whole before cut by the border, then with less error.
+/// Whether the damage is measured better: not cut by the border, then smaller error.
 bool is_better(const Damage& one, const Damage& other) {
   return std::tuple(one.cut_by_border, error_of(one)) < std::tuple(other.cut_by_border, error_of(other));
 }
 
-/// Share of the smaller of two boxes that lies in the other when `box` is moved.
+/// Overlap of two boxes after `box` is moved, as a fraction of the smaller one.
 double overlap(const std::array<int, 4>& box, const std::array<double, 2>& move, const std::array<int, 4>& other) {
   const auto length = [](double first, double last) { return std::max(0.0, last - first + 1); };
   const double width =
@@ -46,38 +46,38 @@ bool is_worse(const RoadDamage& one, const RoadDamage& other) {
   return rank(one) < rank(other);
 }
 
-/// The recent sighting that lies most under the damage, or none.
+/// Returns the recent sighting with the largest overlap, or null.
 const FlightInventory::Sighting* FlightInventory::seen_before(const Damage& damage,
                                                               const std::vector<std::int64_t>& taken) const {
   constexpr double min_overlap = 0.2;
   const Sighting* best = nullptr;
-  double most = min_overlap;
+  double max_share = min_overlap;
   for (const Sighting& sighting : recent_) {
     if (sighting.damage.kind != damage.kind) continue;
     if (std::find(taken.begin(), taken.end(), sighting.id) != taken.end()) continue;
-    const auto frames = static_cast<double>(place_ - sighting.place);
+    const auto frames = static_cast<double>(sequence_ - sighting.sequence);
     const double share =
         overlap(sighting.damage.box_px, {frames * motion_px_[0], frames * motion_px_[1]}, damage.box_px);
-    if (share <= most) continue;
-    most = share;
+    if (share <= max_share) continue;
+    max_share = share;
     best = &sighting;
   }
   return best;
 }
 
-/// Keeps the sightings for the frames to come, and takes the motion of the picture from those that were seen before.
+/// Stores the sightings for the next frames and updates the image motion from those seen before.
 void FlightInventory::remember(const std::vector<Sighting>& sightings) {
   std::vector<double> along_u, along_v;
   for (const Sighting& now : sightings) {
     const auto before = std::find_if(recent_.begin(), recent_.end(), [&](const Sighting& s) { return s.id == now.id; });
     if (before == recent_.end()) continue;
-    const auto frames = static_cast<double>(now.place - before->place);
+    const auto frames = static_cast<double>(now.sequence - before->sequence);
     along_u.push_back((now.damage.centroid_px[0] - before->damage.centroid_px[0]) / frames);
     along_v.push_back((now.damage.centroid_px[1] - before->damage.centroid_px[1]) / frames);
   }
   if (!along_u.empty()) motion_px_ = {upper_median(along_u), upper_median(along_v)};
   const auto outdated = [&](const Sighting& old) {
-    return place_ - old.place > max_gap ||
+    return sequence_ - old.sequence > max_gap ||
            std::any_of(sightings.begin(), sightings.end(), [&](const Sighting& now) { return now.id == old.id; });
   };
   recent_.erase(std::remove_if(recent_.begin(), recent_.end(), outdated), recent_.end());
@@ -85,8 +85,8 @@ void FlightInventory::remember(const std::vector<Sighting>& sightings) {
 }
 
 std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
-  ++place_;
-  if (frame.status == FrameStatus::good && !frame.road_tracked) recent_.clear();  // a cut, or a jump
+  ++sequence_;
+  if (frame.status == FrameStatus::good && !frame.road_tracked) recent_.clear();  // tracking was lost
   std::vector<std::int64_t> ids;
   std::vector<Sighting> sightings;
   for (const Damage& damage : frame.damages) {
@@ -102,15 +102,15 @@ std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
       known.best = damage;
     }
     ids.push_back(id);
-    sightings.push_back({id, place_, damage});
+    sightings.push_back({id, sequence_, damage});
   }
   remember(sightings);
   return ids;
 }
 
-std::vector<RoadDamage> FlightInventory::worst(std::size_t most) const {
+std::vector<RoadDamage> FlightInventory::worst(std::size_t max_count) const {
   std::vector<RoadDamage> sorted = damages_;
-  const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(most, sorted.size()));
+  const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(max_count, sorted.size()));
   std::partial_sort(sorted.begin(), end, sorted.end(), is_worse);
   sorted.erase(end, sorted.end());
   return sorted;

@@ -26,20 +26,20 @@ int open_file(const fs::path& file, int flags) {
   return descriptor;
 }
 
-std::string facts_line(const Provenance& facts) {
+std::string provenance_line(const Provenance& provenance) {
   Json document = Json::object();
-  for (const auto& [name, value] : facts) document[name] = value;
+  for (const auto& [name, value] : provenance) document[name] = value;
   return document.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Whole lines of a file, in order, with the place behind each.
+/// Calls `visit` for every complete line of a file with the position after it.
 template <class Visit>
 void for_each_line(const fs::path& file, const Visit& visit) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file.string(), ": there is no flight to go on with");
+  if (!stream) fail(file.string(), ": there is no flight to resume");
   std::string line;
   std::uintmax_t end = 0;
-  while (std::getline(stream, line) && !stream.eof()) {  // without its line end it was cut short
+  while (std::getline(stream, line) && !stream.eof()) {  // a line without its end is incomplete
     end += line.size() + 1;
     visit(line, end);
   }
@@ -49,18 +49,18 @@ FlightFrame frame_of(const std::string& line, const fs::path& file, std::int64_t
   try {
     return read_flight_frame(line);
   } catch (const Error& error) {
-    fail(file.string(), ", line ", number, ": ", error.what(), "; begin anew without --resume");
+    fail(file.string(), ", line ", number, ": ", error.what(), "; start again without --resume");
   }
 }
 
-void require_same(const std::string& begun_with, const Provenance& facts, const fs::path& file) {
+void require_same(const std::string& begun_with, const Provenance& provenance, const fs::path& file) {
   const Json begun = Json::parse(begun_with, nullptr, false);
-  if (!begun.is_object()) fail(file.string(), ": is no journal of a flight; begin anew without --resume");
-  for (const auto& [name, value] : facts) {
+  if (!begun.is_object()) fail(file.string(), ": this is not a flight journal; start again without --resume");
+  for (const auto& [name, value] : provenance) {
     const std::string before = begun.contains(name) && begun[name].is_string() ? begun[name].get<std::string>() : "";
     if (before == value) continue;
-    fail(file.string(), ": this flight was begun with ", name, " \"", before, "\", not \"", value,
-         "\"; go on with the same, or begin anew without --resume");
+    fail(file.string(), ": this flight was started with ", name, " \"", before, "\", not \"", value,
+         "\"; use the same, or start again without --resume");
   }
 }
 
@@ -89,23 +89,23 @@ void FlightJournal::write_line(const std::string& line) {
   }
 }
 
-FlightJournal FlightJournal::begin(const fs::path& file, const Provenance& facts) {
+FlightJournal FlightJournal::begin(const fs::path& file, const Provenance& provenance) {
   FlightJournal journal(file, open_file(file, O_CREAT | O_TRUNC));
-  journal.write_line(facts_line(facts));
+  journal.write_line(provenance_line(provenance));
   return journal;
 }
 
-FlightJournal FlightJournal::resume(const fs::path& file, const Provenance& facts) {
+FlightJournal FlightJournal::resume(const fs::path& file, const Provenance& provenance) {
   std::uintmax_t good_end = 0;
   std::int64_t lines = 0;
   std::optional<FlightFrame> last;
   for_each_line(file, [&](const std::string& line, std::uintmax_t end) {
-    if (lines == 0) require_same(line, facts, file);
+    if (lines == 0) require_same(line, provenance, file);
     if (lines > 0) last = frame_of(line, file, lines + 1);
     ++lines;
     good_end = end;
   });
-  if (lines == 0) fail(file.string(), ": is no journal of a flight; begin anew without --resume");
+  if (lines == 0) fail(file.string(), ": this is not a flight journal; start again without --resume");
   std::error_code error;
   fs::resize_file(file, good_end, error);
   if (error) fail_write(file, error.value());

@@ -16,7 +16,7 @@ std::vector<std::uint8_t> jpeg_of(const cv::Mat& picture) {
   return encode_jpeg(frame_from(picture, ChannelOrder::bgr).view(), quality, picture.cols);
 }
 
-/// The part of the frame at that scale, in 8 bits and colour; white is the largest value of a deeper frame.
+/// Crops and scales the frame to 8-bit colour; the maximum of a 16-bit frame becomes white.
 cv::Mat part_of(const FrameView& frame, const PixelBox& box, double scale) {
   const cv::Mat whole = mat_over(frame);
   const cv::Mat part = whole(cv::Rect(box.u0, box.v0, box.width(), box.height()));

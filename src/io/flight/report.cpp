@@ -6,8 +6,8 @@
 #include "io/flight/templates.hpp"
 #include "io/plot.hpp"
 #include "io/report/cells.hpp"
-#include "io/report/figures.hpp"
 #include "io/report/markup.hpp"
+#include "io/report/number_text.hpp"
 #include "io/report/summary.hpp"
 #include "io/report/templates.hpp"
 #include "roadstereo/io/flight_report.hpp"
@@ -29,18 +29,18 @@ std::string notices_of(const FlightReportInput& input) {
   for (const std::string& notice : input.notices) html += "<p class=\"notice\">" + escaped(notice) + "</p>\n";
   if (input.damages == 0) {
     html +=
-        "<p class=\"notice good\"><strong>Good news: no damage found.</strong> Nothing on the road in view stands out "
-        "of its surface by more than this rig can tell apart.</p>";
+        "<p class=\"notice good\"><strong>No damage found.</strong> No part of the visible road deviates from its "
+        "surface by more than the resolvable depth of this rig.</p>";
   }
   if (!input.metric) {
     html +=
-        "<p class=\"notice\"><strong>Pixels only.</strong> There is no calibration: nothing here is in metres and no "
-        "severity is given.</p>";
+        "<p class=\"notice\"><strong>Pixels only.</strong> Without a calibration there are no metric values and no "
+        "severities.</p>";
   }
   return html;
 }
 
-std::string strip_of(const std::vector<CaptionedPicture>& strip) {
+std::string thumbnails_of(const std::vector<CaptionedPicture>& strip) {
   if (strip.empty()) return "";
   std::string items;
   for (const CaptionedPicture& picture : strip) {
@@ -82,7 +82,7 @@ std::vector<Column> sighting_columns() {
            }}};
 }
 
-/// A figure of a damage that has metres.
+/// A metric value of a damage.
 template <class Figure>
 ReportCell metric_cell(const Row& row, const Figure& figure) {
   if (!row.damage.best.metrics) return {"", std::numeric_limits<double>::quiet_NaN()};
@@ -123,8 +123,8 @@ std::string damages_of(const FlightReportInput& input) {
   }
   std::string hint = sorting_hint;
   if (input.worst.size() < input.damages) {
-    hint = "The " + std::to_string(input.worst.size()) + " worst of " + std::to_string(input.damages) +
-           "; all are in damages.csv. " + hint;
+    hint = "The worst " + std::to_string(input.worst.size()) + " of " + std::to_string(input.damages) +
+           " damages; all are in damages.csv. " + hint;
   }
   return fill(templates::table, {{"id", "damages"},
                                  {"title", "Damages by severity"},
@@ -154,10 +154,10 @@ std::string plot_of(const FlightCurves& curves, const std::vector<double>& value
 
 std::string plots_of(const FlightCurves& curves) {
   const std::string plots = plot_of(curves, curves.roll_deg, "Roll", "roll, deg") +
-                            plot_of(curves, curves.height_m, "Height over the road", "height, m") +
-                            plot_of(curves, curves.sigma_d_px, "Spread around the road", "sigma_d, px");
+                            plot_of(curves, curves.height_m, "Height above the road", "height, m") +
+                            plot_of(curves, curves.sigma_d_px, "Standard deviation on the road", "sigma_d, px");
   if (plots.empty()) return "";
-  return "<section id=\"plots\"><h2>Over the flight</h2>\n" + plots + "</section>\n";
+  return "<section id=\"plots\"><h2>Time series</h2>\n" + plots + "</section>\n";
 }
 
 }  // namespace
@@ -171,8 +171,8 @@ std::string flight_report(const FlightReportInput& input) {
   fields["version"] = version;
   fields["notices"] = notices_of(input);
   fields["cards"] = "";
-  fields["facts"] = fact_list(input.facts);
-  fields["strip"] = strip_of(input.strip);
+  fields["properties"] = property_list(input.properties);
+  fields["strip"] = thumbnails_of(input.thumbnails);
   fields["damages"] = damages_of(input);
   fields["legend"] = input.metric && !input.worst.empty() ? severity_legend() : "";
   fields["plots"] = plots_of(input.curves);

@@ -9,18 +9,18 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;  // in a radian
 
-/// What the pipeline had to say, in one cell.
+/// The warnings of the pipeline in one cell.
 std::string remarks(const FlightFrame& frame) {
   std::string text = frame.reason;
   for (const std::string& warning : frame.warnings) text += (text.empty() ? "" : "; ") + warning;
   return text;
 }
 
-/// How the road was known before matching.
+/// Origin of the road model used for matching.
 const char* road_source(const FlightFrame& frame) {
   if (frame.status != FrameStatus::good) return "";
   if (!frame.road_reliable) return "unknown";
-  return frame.road_tracked ? "carried over" : "estimated";
+  return frame.road_tracked ? "tracked" : "estimated";
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ std::string frames_csv_names() {
                            "damages",
                            "matching_ms",
                            "damage_ms",
-                           "remarks"}) {
+                           "warnings"}) {
     line.add(name);
   }
   return line.end();

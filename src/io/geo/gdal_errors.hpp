@@ -8,7 +8,7 @@
 
 namespace roadstereo::io {
 
-/// While it lives, GDAL's errors of this thread come here, not to stderr.
+/// Collects GDAL's errors of this thread during its lifetime instead of printing them.
 class GdalErrors {
  public:
   GdalErrors() { CPLPushErrorHandlerEx(&GdalErrors::collect, this); }
@@ -16,11 +16,11 @@ class GdalErrors {
   GdalErrors(const GdalErrors&) = delete;
   GdalErrors& operator=(const GdalErrors&) = delete;
 
-  /// Throws SystemError with GDAL's first reason unless `done` and nothing failed so far.
+  /// Throws SystemError with GDAL's first message if `done` is false or an error occurred.
   void require(bool done, const char* what) const {
     if (done && first_.empty()) return;
-    fail<SystemError>("cannot make the GeoPackage: ", what,
-                      " failed: ", first_.empty() ? "GDAL gave no reason" : first_);
+    fail<SystemError>("cannot write the GeoPackage: ", what,
+                      " failed: ", first_.empty() ? "no message from GDAL" : first_);
   }
 
  private:

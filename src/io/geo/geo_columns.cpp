@@ -13,7 +13,7 @@ GeoValue number(double value) {
   return value;
 }
 
-/// A column of damages.csv as a property; its type is that of a damage of which everything is known.
+/// A column of damages.csv as a property; its type is taken from a damage with all values known.
 GeoColumn<GeoDamage> damage_property(const DamageColumn& column) {
   struct TypeOf {
     GeoType operator()(std::int64_t) const { return GeoType::whole; }
@@ -48,8 +48,9 @@ const std::vector<FrameColumn>& geo_frame_columns() {
       {"time_s", GeoType::number, [](const GeoFrame& f) { return number(f.time_s); }},
       {"status", GeoType::text, [](const GeoFrame& f) { return GeoValue(f.status); }},
       {"damages", GeoType::whole, [](const GeoFrame& f) { return GeoValue(std::int64_t{f.damages}); }},
-      {"heading_deg", GeoType::number, [](const GeoFrame& f) { return number(f.place.value_or(Place{}).heading_deg); }},
-      {"alt_m", GeoType::number, [](const GeoFrame& f) { return number(f.place.value_or(Place{}).alt_m); }},
+      {"heading_deg", GeoType::number,
+       [](const GeoFrame& f) { return number(f.position.value_or(GeoPosition{}).heading_deg); }},
+      {"alt_m", GeoType::number, [](const GeoFrame& f) { return number(f.position.value_or(GeoPosition{}).alt_m); }},
       {"roll_deg", GeoType::number, [](const GeoFrame& f) { return number(f.roll_rad * 180 / std::numbers::pi); }},
       {"height_m", GeoType::number, [](const GeoFrame& f) { return number(f.height_m); }},
       {"sigma_d_px", GeoType::number, [](const GeoFrame& f) { return number(f.sigma_d_px); }},

@@ -17,23 +17,23 @@ struct ToJson {
   }
 };
 
-/// The nearest number with that many decimals, never "-0.0".
+/// Rounds to that many decimals; never "-0.0".
 double rounded(double value, double decimals) {
   const double unit = std::pow(10.0, decimals);
   return std::round(value * unit) / unit + 0.0;
 }
 
-Json geometry(const std::optional<Place>& place) {
-  if (!place) return nullptr;
+Json geometry(const std::optional<GeoPosition>& position) {
+  if (!position) return nullptr;
   constexpr double degree_decimals = 7;
   constexpr double metre_decimals = 3;
-  Json position = {rounded(place->lon_deg, degree_decimals), rounded(place->lat_deg, degree_decimals)};
-  if (std::isfinite(place->alt_m)) position.push_back(rounded(place->alt_m, metre_decimals));
-  return {{"type", "Point"}, {"coordinates", position}};
+  Json coordinates = {rounded(position->lon_deg, degree_decimals), rounded(position->lat_deg, degree_decimals)};
+  if (std::isfinite(position->alt_m)) coordinates.push_back(rounded(position->alt_m, metre_decimals));
+  return {{"type", "Point"}, {"coordinates", coordinates}};
 }
 
-/// A feature to the line, so that files of two runs can be compared. Numbered: GDAL takes a property "id", which counts
-/// within a frame, for the feature's own unless it has one.
+/// One feature per line, so that files can be compared with diff. Features are numbered because GDAL would otherwise
+/// take the property "id", which is unique within a frame only, for the id of the feature.
 template <class Row>
 std::string features(std::span<const Row> rows, const std::vector<GeoColumn<Row>>& columns) {
   std::string text = "{\"type\": \"FeatureCollection\", \"features\": [";
@@ -43,7 +43,7 @@ std::string features(std::span<const Row> rows, const std::vector<GeoColumn<Row>
     Json properties = Json::object();
     for (const GeoColumn<Row>& column : columns) properties[column.name] = std::visit(ToJson{}, column.value(row));
     const Json feature = {
-        {"type", "Feature"}, {"id", ++id}, {"geometry", geometry(row.place)}, {"properties", properties}};
+        {"type", "Feature"}, {"id", ++id}, {"geometry", geometry(row.position)}, {"properties", properties}};
     text += before + feature.dump(-1, ' ', false, Json::error_handler_t::replace);
     before = ",\n";
   }

@@ -7,23 +7,23 @@
 
 #include "io/geo/gdal_errors.hpp"
 #include "io/geo/geo_columns.hpp"
-#include "io/geo/track_stretches.hpp"
+#include "io/geo/track_segments.hpp"
 
 namespace roadstereo::io {
 namespace {
 
 GDALDriver* geopackage_driver() {
   static std::once_flag once;
-  std::call_once(once, RegisterOGRGeoPackage);  // this one only: the others load plugins and take their time
+  std::call_once(once, RegisterOGRGeoPackage);  // only this one: the others load plugins
   return GetGDALDriverManager()->GetDriverByName("GPKG");
 }
 
-/// A file in GDAL's memory.
+/// A file in GDAL's in-memory file system.
 class MemoryFile {
  public:
   MemoryFile() {
     std::ostringstream name;
-    name << "/vsimem/roadstereo-" << this << ".gpkg";  // nobody else has this address
+    name << "/vsimem/roadstereo-" << this << ".gpkg";  // unique
     name_ = name.str();
   }
   ~MemoryFile() { VSIUnlink(name_.c_str()); }
@@ -74,54 +74,54 @@ struct SetField {
   void operator()(bool value) const { feature.SetField(field, value ? 1 : 0); }
   void operator()(const std::string& value) const { feature.SetField(field, value.c_str()); }
   void operator()(const UtcTime& time) const {
-    constexpr int utc = 100;  // GDAL's number of this zone
+    constexpr int utc = 100;  // time zone flag of GDAL
     feature.SetField(field, time.year, time.month, time.day, time.hour, time.minute,
                      static_cast<float>(time.millisecond) / 1000, utc);
   }
 };
 
-std::unique_ptr<OGRGeometry> shape_of(const TrackStretch& stretch) {
+std::unique_ptr<OGRGeometry> shape_of(const TrackSegment& segment) {
   auto line = std::make_unique<OGRLineString>();
-  for (const TrackPoint& point : stretch.points) line->addPoint(point.lon_deg, point.lat_deg);
+  for (const TrackPoint& point : segment.points) line->addPoint(point.lon_deg, point.lat_deg);
   return line;
 }
 
-/// Null without a place.
+/// Returns null without a position.
 template <class Row>
 std::unique_ptr<OGRGeometry> shape_of(const Row& row) {
-  if (!row.place) return nullptr;
-  return std::make_unique<OGRPoint>(row.place->lon_deg, row.place->lat_deg);
+  if (!row.position) return nullptr;
+  return std::make_unique<OGRPoint>(row.position->lon_deg, row.position->lat_deg);
 }
 
-/// A GeoPackage that is being made.
+/// Writes a GeoPackage.
 class Package {
  public:
   explicit Package(const GdalErrors& errors) : errors_(errors) {
     GDALDriver* driver = geopackage_driver();
-    errors_.require(driver != nullptr, "finding the driver GPKG");
+    errors_.require(driver != nullptr, "loading the driver GPKG");
     dataset_.reset(driver->Create(file_.name(), 0, 0, 0, GDT_Unknown, nullptr));
-    errors_.require(dataset_ != nullptr, "making the file");
+    errors_.require(dataset_ != nullptr, "creating the file");
     errors_.require(wgs84_.importFromEPSG(4326) == OGRERR_NONE, "looking up EPSG:4326");
     wgs84_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    errors_.require(dataset_->StartTransaction() == OGRERR_NONE, "beginning the transaction");
+    errors_.require(dataset_->StartTransaction() == OGRERR_NONE, "starting the transaction");
   }
 
   template <class Row>
   void add(const char* name, OGRwkbGeometryType shape, const std::vector<GeoColumn<Row>>& columns,
            std::span<const Row> rows) {
     OGRLayer* layer = dataset_->CreateLayer(name, &wgs84_, shape, nullptr);
-    errors_.require(layer != nullptr, "making a layer");
+    errors_.require(layer != nullptr, "creating a layer");
     for (const GeoColumn<Row>& column : columns) {
       const FieldType type = field_type(column.type);
       OGRFieldDefn field(column.name.c_str(), type.type);
       field.SetSubType(type.part);
-      errors_.require(layer->CreateField(&field) == OGRERR_NONE, "making a column");
+      errors_.require(layer->CreateField(&field) == OGRERR_NONE, "creating a column");
     }
     for (const Row& row : rows) add_row(*layer, columns, row);
   }
 
   std::vector<std::uint8_t> finish() {
-    errors_.require(dataset_->CommitTransaction() == OGRERR_NONE, "ending the transaction");
+    errors_.require(dataset_->CommitTransaction() == OGRERR_NONE, "committing the transaction");
     dataset_.reset();  // the last bytes are written here
     std::vector<std::uint8_t> bytes = file_.bytes();
     errors_.require(!bytes.empty(), "writing");
@@ -132,7 +132,7 @@ class Package {
   template <class Row>
   void add_row(OGRLayer& layer, const std::vector<GeoColumn<Row>>& columns, const Row& row) {
     const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer.GetLayerDefn()));
-    errors_.require(feature != nullptr, "making a feature");
+    errors_.require(feature != nullptr, "creating a feature");
     int field = 0;
     for (const GeoColumn<Row>& column : columns) std::visit(SetField{*feature, field++}, column.value(row));
     feature->SetGeometryDirectly(shape_of(row).release());
@@ -153,8 +153,8 @@ std::vector<std::uint8_t> geopackage(std::span<const GeoFrame> frames, std::span
   Package package(errors);
   package.add("frames", wkbPoint, geo_frame_columns(), frames);
   package.add("damages", wkbPoint, geo_damage_columns(), damages);
-  const std::vector<TrackStretch> stretches = track_stretches(track);
-  package.add("track", wkbLineString, track_stretch_columns(), std::span<const TrackStretch>(stretches));
+  const std::vector<TrackSegment> segments = track_segments(track);
+  package.add("track", wkbLineString, track_segment_columns(), std::span<const TrackSegment>(segments));
   return package.finish();
 }
 

@@ -14,11 +14,11 @@
 namespace roadstereo::io {
 namespace {
 
-/// An angle as on a compass: 0 ≤ angle < 360.
+/// Normalises an angle to 0 ≤ angle < 360.
 double on_compass(double angle_deg) {
   const double turned = std::fmod(angle_deg, 360.0);
   const double positive = turned < 0 ? turned + 360 : turned;
-  return positive >= 360 ? 0 : positive;  // a tiny negative angle rounds up to 360; NaN stays
+  return positive >= 360 ? 0 : positive;  // a tiny negative angle rounds up to 360; NaN is kept
 }
 
 void check_point(const TrackPoint& point, std::size_t index) {
@@ -38,7 +38,7 @@ void check_points(const std::vector<TrackPoint>& points) {
     check_point(points[i], i);
     if (i > 0 && points[i].time_s < points[i - 1].time_s) {
       fail("point ", i, " of the track is ", points[i - 1].time_s - points[i].time_s,
-           " s before the one before it; times must increase");
+           " s before its predecessor; times must increase");
     }
   }
 }
@@ -51,7 +51,7 @@ double between_headings(double from_deg, double to_deg, double share) {
   return from_deg + share * std::remainder(to_deg - from_deg, 360.0);
 }
 
-Place place_of(const TrackPoint& point, double mount_yaw_deg) {
+GeoPosition position_of(const TrackPoint& point, double mount_yaw_deg) {
   return {point.lat_deg, point.lon_deg, point.alt_m, on_compass(point.heading_deg + mount_yaw_deg)};
 }
 
@@ -79,26 +79,26 @@ Track::Track(std::vector<TrackPoint> points, const TrackOptions& options)
   const auto same_time = [](const TrackPoint& one, const TrackPoint& other) { return one.time_s == other.time_s; };
   points_.erase(std::unique(points_.begin(), points_.end(), same_time), points_.end());
   if (points_.size() < 2)
-    fail("the track has ", points_.size(), " point(s); at least two at different times are needed");
+    fail("the track has ", points_.size(), " point(s); it must have at least two at different times");
   fill_headings(points_, options_);
 }
 
-std::optional<Place> place_at(const Track& track, double time_s) {
+std::optional<GeoPosition> position_at(const Track& track, double time_s) {
   const std::vector<TrackPoint>& points = track.points();
   const TrackOptions& options = track.options();
   if (!(time_s >= points.front().time_s && time_s <= points.back().time_s)) return std::nullopt;
   const auto after = std::lower_bound(points.begin(), points.end(), time_s,
                                       [](const TrackPoint& point, double time) { return point.time_s < time; });
-  if (after->time_s == time_s) return place_of(*after, options.mount_yaw_deg);
+  if (after->time_s == time_s) return position_of(*after, options.mount_yaw_deg);
   const auto before = std::prev(after);
   if (after->time_s - before->time_s > options.max_gap_s) return std::nullopt;
-  return place_of(point_between(*before, *after, time_s), options.mount_yaw_deg);
+  return position_of(point_between(*before, *after, time_s), options.mount_yaw_deg);
 }
 
-std::optional<Place> offset_place(const Place& from, double right_m, double forward_m, double up_m) {
+std::optional<GeoPosition> offset_position(const GeoPosition& from, double right_m, double forward_m, double up_m) {
   if (!std::isfinite(from.heading_deg + right_m + forward_m)) return std::nullopt;
   const double bearing_deg = from.heading_deg + std::atan2(right_m, forward_m) * 180 / std::numbers::pi;
-  Place to = from;
+  GeoPosition to = from;
   GeographicLib::Geodesic::WGS84().Direct(from.lat_deg, from.lon_deg, bearing_deg, std::hypot(right_m, forward_m),
                                           to.lat_deg, to.lon_deg);
   to.alt_m = from.alt_m + up_m;

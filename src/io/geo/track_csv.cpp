@@ -26,7 +26,7 @@ std::string_view bare(std::string_view cell) {
   return trim(trim(cell, around), "\"");
 }
 
-/// Cells of a line; separators between quotes are none.
+/// Splits a line; separators between quotes are part of a cell.
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells) {
   cells.clear();
   bool quoted = false;
@@ -40,7 +40,7 @@ void split_cells(std::string_view line, char separator, std::vector<std::string_
   cells.push_back(bare(line.substr(from)));
 }
 
-/// Lines that say something, with their numbers.
+/// Returns the non-empty lines with their numbers.
 class Lines {
  public:
   explicit Lines(std::string_view text) : rest_(text) {}
@@ -67,7 +67,7 @@ struct Column {
   std::size_t index = 0;
 };
 
-/// Where the columns are.
+/// Indices of the columns.
 struct Columns {
   Column time, lat, lon;
   std::optional<Column> alt, heading;
@@ -99,7 +99,7 @@ Columns find_columns(const std::string& where, const std::vector<std::string_vie
     std::optional<Column> column = find_column(header, names);
     if (!column) {
       fail(where, ": there is no column ", names.front(),
-           "; a track is GPX, or CSV with the columns time, lat, lon and ", "perhaps alt, heading");
+           "; a track is GPX, or CSV with the columns time, lat, lon and optionally alt, heading");
     }
     return *std::move(column);
   };
@@ -111,11 +111,11 @@ Columns find_columns(const std::string& where, const std::vector<std::string_vie
           header.size()};
 }
 
-/// Nothing where the receiver had no fix.
+/// Returns nullopt if the receiver had no fix.
 std::optional<TrackPoint> read_row(const std::string& where, const Columns& columns,
                                    const std::vector<std::string_view>& cells) {
   if (cells.size() != columns.count) {
-    fail(where, ": the line has ", cells.size(), " cells; the line of names has ", columns.count);
+    fail(where, ": the line has ", cells.size(), " cells; the header line has ", columns.count);
   }
   if (cells[columns.lat.index].empty() && cells[columns.lon.index].empty()) return std::nullopt;
   TrackPoint point;
@@ -132,7 +132,7 @@ std::optional<TrackPoint> read_row(const std::string& where, const Columns& colu
 std::vector<TrackLine> read_track_csv(const TrackText& file) {
   Lines lines(file.text);
   const std::optional<std::string_view> header = lines.next();
-  if (!header) fail(file.path, ": the file has no line of names; a track is GPX, or CSV with time, lat, lon");
+  if (!header) fail(file.path, ": the file has no header line; a track is GPX, or CSV with time, lat, lon");
   const char separator = separator_of(*header);
   std::vector<std::string_view> cells;
   split_cells(*header, separator, cells);

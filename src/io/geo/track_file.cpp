@@ -7,15 +7,15 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr std::size_t max_bytes = std::size_t{1} << 28U;  // a day at 10 Hz is some 100 MB of GPX
+constexpr std::size_t max_bytes = std::size_t{1} << 28U;  // a day at 10 Hz is about 100 MB of GPX
 
 TrackText read_text(const std::string& path) {
   const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
   if (std::find(bytes.begin(), bytes.end(), std::uint8_t{0}) != bytes.end()) {
-    fail(path, ": this is not a text file; a track is one: GPX or CSV");
+    fail(path, ": this is not a text file; a track must be GPX or CSV");
   }
   std::string text(bytes.begin(), bytes.end());
-  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // the byte order mark that some editors leave
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // byte order mark
   return {path, std::move(text)};
 }
 
@@ -33,9 +33,9 @@ void check_times(const std::string& path, const std::vector<TrackLine>& lines) {
            "; times must increase");
     }
   }
-  if (lines.empty()) fail(path, ": the track has no points with a time; at least two are needed");
+  if (lines.empty()) fail(path, ": the track has no points with a time; it must have at least two");
   if (lines.front().point.time_s == lines.back().point.time_s) {
-    fail(path, ": the track has ", lines.size(), " point(s) of one time; at least two times are needed");
+    fail(path, ": the track has ", lines.size(), " point(s) at one time; it must have at least two times");
   }
 }
 

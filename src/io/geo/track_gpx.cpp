@@ -8,7 +8,7 @@
 namespace roadstereo::io {
 namespace {
 
-/// The name without its namespace's prefix.
+/// Removes the namespace prefix of a name.
 std::string_view local_name(std::string_view name) {
   return name.substr(name.find(':') + 1);  // npos + 1 is 0
 }
@@ -32,7 +32,7 @@ std::string_view text_of(const pugi::xml_node& node) {
   return trimmed(node.child_value());
 }
 
-/// Lines of places that are asked for in their order.
+/// Finds the line numbers of ascending offsets.
 class LineCount {
  public:
   explicit LineCount(std::string_view text) : text_(text) {}
@@ -55,7 +55,7 @@ std::string_view attribute(const std::string& where, const pugi::xml_node& node,
   return found.value();
 }
 
-/// GPX 1.0 has <course> in the point, 1.1 has it in extensions of many makers.
+/// GPX 1.0 has <course> in the point; in 1.1 it is in vendor extensions.
 double heading_of(const std::string& where, const pugi::xml_node& node) {
   for (const char* name : {"heading", "yaw", "course"}) {
     const pugi::xml_node found = node.find_node([name](const pugi::xml_node& each) { return is_called(each, name); });
@@ -71,7 +71,7 @@ TrackLine read_point(const std::string& path, const pugi::xml_node& node, LineCo
   read.point.lat_deg = parse_latitude(where, "lat", attribute(where, node, "lat"));
   read.point.lon_deg = parse_longitude(where, "lon", attribute(where, node, "lon"));
   const pugi::xml_node time = child_called(node, "time");
-  if (!time) fail(where, ": this trkpt has no <time>; without it no frame can be placed");
+  if (!time) fail(where, ": this trkpt has no <time>");
   read.point.time_s = parse_date_time(where, "time", text_of(time), true);
   read.point.alt_m = parse_altitude(where, "ele", text_of(child_called(node, "ele")));
   read.point.heading_deg = heading_of(where, node);
@@ -82,8 +82,7 @@ pugi::xml_document parse(const TrackText& file) {
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer(file.text.data(), file.text.size());
   if (!result) {
-    fail(name_line(file.path, LineCount(file.text).line_at(result.offset)),
-         ": this is no valid XML: ", result.description());
+    fail(name_line(file.path, LineCount(file.text).line_at(result.offset)), ": invalid XML: ", result.description());
   }
   return document;
 }
@@ -93,8 +92,7 @@ pugi::xml_document parse(const TrackText& file) {
 std::vector<TrackLine> read_gpx(const TrackText& file) {
   const pugi::xml_document document = parse(file);
   const pugi::xml_node root = document.document_element();
-  if (!is_called(root, "gpx"))
-    fail(file.path, ": this is <", root.name(), ">, not GPX or CSV; a track is one of these");
+  if (!is_called(root, "gpx")) fail(file.path, ": the root element is <", root.name(), ">; a track must be GPX or CSV");
   LineCount lines(file.text);
   std::vector<std::vector<TrackLine>> segments;
   for (const pugi::xml_node& track : root.children()) {

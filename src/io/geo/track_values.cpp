@@ -11,7 +11,7 @@ namespace roadstereo::io {
 namespace {
 
 double parse_angle(const std::string& where, const std::string& name, std::string_view text, double max_deg) {
-  const double value = parse_figure(where, name, text);
+  const double value = parse_number(where, name, text);
   if (std::abs(value) > max_deg) {
     fail(where, ": ", name, " is ", value, "; it must be between ", -max_deg, " and ", max_deg, " degrees");
   }
@@ -44,7 +44,7 @@ double parse_longitude(const std::string& where, const std::string& name, std::s
 
 double parse_altitude(const std::string& where, const std::string& name, std::string_view text) {
   if (is_unknown(text)) return std::numeric_limits<double>::quiet_NaN();
-  return parse_figure(where, name, text);
+  return parse_number(where, name, text);
 }
 
 double parse_heading(const std::string& where, const std::string& name, std::string_view text) {
@@ -69,7 +69,7 @@ double parse_any_time(const std::string& where, const std::string& name, std::st
     fail(where, ": ", name, " is \"", text.substr(0, 40),
          "\"; it must be Unix seconds, or a date and time with a zone like 2024-05-01T12:00:00.25Z");
   }
-  return in_time(where, name, parse_figure(where, name, text));
+  return in_time(where, name, parse_number(where, name, text));
 }
 
 }  // namespace roadstereo::io

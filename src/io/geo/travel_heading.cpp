@@ -14,7 +14,7 @@ bool is_gap(const TrackPoint& before, const TrackPoint& after, const TrackOption
   return after.time_s - before.time_s > options.max_gap_s;
 }
 
-/// First and last point that may tell the heading of one.
+/// First and last point of the window around a point.
 struct Window {
   std::size_t first = 0;
   std::size_t last = 0;
@@ -34,19 +34,19 @@ Window window_around(const std::vector<TrackPoint>& points, std::size_t middle, 
   return window;
 }
 
-/// Azimuth of the shortest way, out of ever wider ones around the point, that is long enough; NaN when none is.
+/// Azimuth over the smallest symmetric span around the point that is long enough; NaN if there is none.
 double travel_heading(const std::vector<TrackPoint>& points, std::size_t middle, const TrackOptions& options) {
   const Window window = window_around(points, middle, options);
   const std::size_t widest = std::max(middle - window.first, window.last - middle);
-  for (std::size_t reach = 1, before = 0; before < widest; before = reach, reach *= 2) {
-    const TrackPoint& from = points[middle - std::min(reach, middle - window.first)];
-    const TrackPoint& to = points[middle + std::min(reach, window.last - middle)];
+  for (std::size_t span = 1, before = 0; before < widest; before = span, span *= 2) {
+    const TrackPoint& from = points[middle - std::min(span, middle - window.first)];
+    const TrackPoint& to = points[middle + std::min(span, window.last - middle)];
     double way_m = 0;
     double from_deg = 0;
     double to_deg = 0;
     GeographicLib::Geodesic::WGS84().Inverse(from.lat_deg, from.lon_deg, to.lat_deg, to.lon_deg, way_m, from_deg,
                                              to_deg);
-    if (way_m >= options.heading_stretch_m) return from_deg + std::remainder(to_deg - from_deg, 360.0) / 2;
+    if (way_m >= options.min_heading_distance_m) return from_deg + std::remainder(to_deg - from_deg, 360.0) / 2;
   }
   return unknown;
 }

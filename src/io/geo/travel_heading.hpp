@@ -6,8 +6,8 @@
 
 namespace roadstereo::io {
 
-/// Gives the points without a heading that of the way travelled around them; where it stands still, the last one since
-/// the last gap.
+/// Computes unknown headings from the movement around each point; at standstill keeps the last heading since the last
+/// gap.
 void fill_headings(std::vector<TrackPoint>& points, const TrackOptions& options);
 
 }  // namespace roadstereo::io

@@ -11,21 +11,21 @@ namespace {
 
 constexpr double first_day_of_1980_s = 315532800;
 
-/// Takes a text apart from its front.
+/// Consumes a text from its front.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : rest_(text) {}
 
   bool at_end() const { return rest_.empty(); }
 
-  /// Takes one letter when it is there.
+  /// Consumes one letter if it is next.
   bool take(char letter) {
     if (rest_.empty() || rest_.front() != letter) return false;
     rest_.remove_prefix(1);
     return true;
   }
 
-  /// Takes exactly that many digits; -1 when they are not there.
+  /// Consumes exactly that many digits; -1 if there are fewer.
   int digits(int count) {
     int value = 0;
     for (int i = 0; i < count; ++i) {
@@ -36,7 +36,7 @@ class Scanner {
     return value;
   }
 
-  /// Takes digits after a decimal point: 0 … 1; -1 when there is none.
+  /// Consumes the digits after a decimal point, 0 … 1; -1 if there are none.
   double fraction() {
     double value = 0;
     double unit = 1;
@@ -60,7 +60,7 @@ class Scanner {
   std::string_view rest_;
 };
 
-/// Seconds from 1970 to the beginning of a day.
+/// Seconds from 1970 to the start of a day.
 std::optional<double> take_date(Scanner& text) {
   const int year = text.digits(4);
   if (year < 0 || !text.take('-')) return std::nullopt;

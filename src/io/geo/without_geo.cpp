@@ -1,4 +1,4 @@
-// Stands in where the program is built without GDAL, GeographicLib and pugixml.
+// Replacement for builds without GDAL, GeographicLib and pugixml.
 
 #include <utility>
 
@@ -9,7 +9,7 @@ namespace roadstereo::io {
 namespace {
 
 [[noreturn]] void fail_without_geo() {
-  fail("this program was built without tracks and maps; they need the packages libgdal-dev, libgeographiclib-dev ",
+  fail("this build does not support tracks; it needs the packages libgdal-dev, libgeographiclib-dev ",
        "(libgeographic-dev on Ubuntu 22.04) and libpugixml-dev, and CMake's -DROADSTEREO_GEO=ON");
 }
 
@@ -24,11 +24,12 @@ Track read_track(const std::string& /*path*/, const TrackOptions& /*options*/) {
   fail_without_geo();
 }
 
-std::optional<Place> place_at(const Track& /*track*/, double /*time_s*/) {
+std::optional<GeoPosition> position_at(const Track& /*track*/, double /*time_s*/) {
   fail_without_geo();
 }
 
-std::optional<Place> offset_place(const Place& /*from*/, double /*right_m*/, double /*forward_m*/, double /*up_m*/) {
+std::optional<GeoPosition> offset_position(const GeoPosition& /*from*/, double /*right_m*/, double /*forward_m*/,
+                                           double /*up_m*/) {
   fail_without_geo();
 }
 

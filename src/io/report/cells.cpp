@@ -6,13 +6,13 @@
 
 #include "io/damage_colours.hpp"
 #include "io/drawing.hpp"
-#include "io/report/figures.hpp"
 #include "io/report/markup.hpp"
+#include "io/report/number_text.hpp"
 
 namespace roadstereo::io {
 namespace {
 
-/// The attribute that a cell is sorted by; empty for what is not known.
+/// Attribute with the sort key of a cell; empty: unknown.
 std::string key_attribute(const ReportCell& cell) {
   if (!cell.key) return "";
   if (!std::isfinite(*cell.key)) return " data-key=\"\"";
@@ -23,8 +23,8 @@ std::string key_attribute(const ReportCell& cell) {
 
 }  // namespace
 
-ReportCell measured_cell(const Measurement& figure) {
-  return {escaped(measured_text(figure, "")), figure.value};
+ReportCell measured_cell(const Measurement& measured) {
+  return {escaped(measured_text(measured, "")), measured.value};
 }
 
 ReportCell plain_cell(double value) {

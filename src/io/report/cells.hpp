@@ -8,20 +8,20 @@
 
 namespace roadstereo::io {
 
-/// A cell of a report's table: what it shows, and the number it is sorted by; without one it is sorted by its text.
+/// A cell of a report table: its content and its sort key; without a key it is sorted by its text.
 struct ReportCell {
   std::string html;
   std::optional<double> key{};
 };
 
-ReportCell measured_cell(const Measurement& figure);
-/// A value with three significant digits.
+ReportCell measured_cell(const Measurement& measured);
+/// Shows a value with three significant digits.
 ReportCell plain_cell(double value);
 ReportCell fixed_cell(double value, int decimals);
 ReportCell severity_cell(const Damage& damage);
 
-/// What a reader must know of a table whose columns can be sorted.
-inline constexpr const char* sorting_hint = "A click on a column's head sorts by it; another turns the order round.";
+/// Hint above sortable tables.
+inline constexpr const char* sorting_hint = "Click a column header to sort; click again to reverse the order.";
 
 template <class Row>
 struct ReportColumn {
@@ -30,7 +30,7 @@ struct ReportColumn {
   ReportCell (*cell)(const Row& row);
 };
 
-/// A column's head, with the button that sorts by it.
+/// Header cell of a column with its sort button.
 std::string report_heading(const std::string& title, const std::string& unit);
 std::string report_cell(const ReportCell& cell);
 

@@ -22,8 +22,7 @@ namespace {
 
 void require_size(const DamageMap& map, const char* what, int width, int height) {
   if (width == map.ids.width() && height == map.ids.height()) return;
-  fail(what, " has ", width, "×", height, " pixels, but the map of damages has ", map.ids.width(), "×",
-       map.ids.height());
+  fail(what, " has ", width, "×", height, " pixels, but the damage map has ", map.ids.width(), "×", map.ids.height());
 }
 
 void validate(const DamageReportInput& input) {
@@ -38,9 +37,9 @@ cv::Mat background_of(const DamageReportInput& input) {
   validate(input);
   if (input.left.data != nullptr) return to_bgr(input.left, find_white_level(input.left, input.left));
   const ImageView<const float> map = input.transformed;
-  if (map.empty()) return colour_pixels(input.map.depth, spread_scale(input.map.depth, ""));
+  if (map.empty()) return colour_pixels(input.map.depth, percentile_scale(input.map.depth, ""));
   const std::vector<double> road = percentiles(input.map.surface, {50});
-  return colour_pixels(map, road.empty() ? spread_scale(map, "") : transformed_scale(map, road.front()));
+  return colour_pixels(map, road.empty() ? percentile_scale(map, "") : transformed_scale(map, road.front()));
 }
 
 std::string figure(const std::string& id, const std::string& title, const std::string& picture,
@@ -51,18 +50,19 @@ std::string figure(const std::string& id, const std::string& title, const std::s
 std::string sheet_figure(const DamageReportInput& input) {
   constexpr PictureLimit limit{1700, 700000};
   if (input.sheet.empty()) return "";
-  return figure("sheet", "Result sheet", picture_uri(input.sheet, limit),
-                "Left image, disparity, transformed disparity (the intact road is flat) and v-disparity histogram.");
+  return figure(
+      "sheet", "Result sheet", picture_uri(input.sheet, limit),
+      "Left image, disparity, transformed disparity (intact road has a constant value) and v-disparity histogram.");
 }
 
 std::string overlay_figure(const DamageReportInput& input) {
   constexpr PictureLimit limit{1400, 600000};
   if (input.map.damages.empty()) return "";
   const Frame overlay = damage_overlay(damage_background(input).view(), input.map);
-  return figure("overlay", "Where the damage is", picture_uri(mat_over(overlay.view()), limit),
+  return figure("overlay", "Overlay", picture_uri(mat_over(overlay.view()), limit),
                 input.map.metric
-                    ? "Every damage with its number and largest depth, coloured by severity; + is above the road."
-                    : "Every damage with its number and largest change of disparity; + is above the road.");
+                    ? "Every damage with its id and maximum depth, coloured by severity; +: above the road."
+                    : "Every damage with its id and maximum disparity change; +: above the road.");
 }
 
 std::string sections(const DamageReportInput& input) {
@@ -70,7 +70,7 @@ std::string sections(const DamageReportInput& input) {
   if (damages.empty()) return "";
   const cv::Mat background = background_of(input);
   const SectionSize size = SectionSize::for_count(damages.size());
-  std::string html = "<h2>Each damage</h2>\n";
+  std::string html = "<h2>Damage details</h2>\n";
   if (damages.size() > max_reliefs) {
     html += "<p class=\"hint\">The " + std::to_string(max_reliefs) + " deepest of the " +
             std::to_string(damages.size()) + " damages have a 3-D view.</p>\n";
@@ -81,7 +81,7 @@ std::string sections(const DamageReportInput& input) {
   return html;
 }
 
-/// The colours of depths for the scripts, from above the road to below it.
+/// The depth colours for the scripts, from above the road to below it.
 std::string palette_json() {
   constexpr int steps = 65;
   const cv::Mat ramp = depth_ramp(steps);
@@ -115,7 +115,7 @@ std::string damage_report(const DamageReportInput& input) {
   fields["size"] = std::to_string(map.ids.width()) + " × " + std::to_string(map.ids.height()) + " px";
   fields["notices"] = summary_notices(map);
   fields["cards"] = summary_cards(map);
-  fields["facts"] = fact_list(input.facts);
+  fields["properties"] = property_list(input.properties);
   fields["sheet"] = sheet_figure(input);
   fields["overlay"] = overlay_figure(input);
   fields["list"] = damage_list(map);

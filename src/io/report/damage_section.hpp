@@ -8,19 +8,19 @@
 
 namespace roadstereo::io {
 
-/// How much a report of so many damages may show of each.
+/// Size limits of one damage in a report with that many damages.
 struct SectionSize {
-  PictureLimit picture;   ///< each of the two
-  int relief_points = 0;  ///< points of a 3-D view along its longest side
+  PictureLimit picture;   ///< of each image
+  int relief_points = 0;  ///< points along the longer side of a 3-D view
 
   static SectionSize for_count(std::size_t damages);
 };
 
-/// How many of the deepest damages have a 3-D view.
+/// Number of damages with a 3-D view, deepest first.
 inline constexpr std::size_t max_reliefs = 30;
 
-/// The section of one damage: its figures, image, depths, cross-section and, `with_relief`, 3-D view. `background` is
-/// that of the report, 8-bit BGR.
+/// Returns the section of one damage: values, image, depths, cross-section and, if `with_relief`, 3-D view.
+/// `background` is the background image of the report, 8-bit BGR.
 std::string damage_section(const DamageReportInput& input, const cv::Mat& background, const Damage& damage,
                            const SectionSize& size, bool with_relief);
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "io/report/cells.hpp"
-#include "io/report/figures.hpp"
 #include "io/report/markup.hpp"
+#include "io/report/number_text.hpp"
 #include "io/report/templates.hpp"
 
 namespace roadstereo::io {

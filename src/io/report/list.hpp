@@ -6,7 +6,7 @@
 
 namespace roadstereo::io {
 
-/// The table of all damages, whose columns can be sorted. Empty without damage.
+/// Returns the sortable table of all damages; empty without damage.
 std::string damage_list(const DamageMap& map);
 
 }  // namespace roadstereo::io

@@ -41,12 +41,12 @@ std::string fill(std::string_view text, const Fields& fields) {
     filled += text.substr(at, open - at);
     if (open == std::string_view::npos) return filled;
     const std::size_t close = text.find(closing, open);
-    if (close == std::string_view::npos) fail("a place of a template is not closed: ", text.substr(open));
+    if (close == std::string_view::npos) fail("a template field is not closed: ", text.substr(open));
     std::string_view name = text.substr(open + opening.size(), close - open - opening.size());
     const bool markup = name.starts_with('&');
     if (markup) name.remove_prefix(1);
     const auto field = fields.find(name);
-    if (field == fields.end()) fail("the template's place \"", name, "\" has no field");
+    if (field == fields.end()) fail("the template field \"", name, "\" has no value");
     filled += markup ? field->second : escaped(field->second);
     at = close + closing.size();
   }

@@ -8,14 +8,14 @@
 
 namespace roadstereo::io {
 
-/// Text as HTML shows it, also inside quoted attributes.
+/// Escapes text for HTML, also inside quoted attributes.
 std::string escaped(std::string_view text);
 
-/// What stands in a template's places, by name.
+/// Values of the template fields by name.
 using Fields = std::map<std::string, std::string, std::less<>>;
 
-/// The template with `{{name}}` replaced by the field's text, escaped, and `{{&name}}` by the field as it is. Throws
-/// Error naming a place that has no field.
+/// Fills a template: replaces `{{name}}` by the escaped value of the field and `{{&name}}` by the unescaped one. Throws
+/// Error naming a field without a value.
 std::string fill(std::string_view text, const Fields& fields);
 
 std::string base64(std::span<const std::uint8_t> bytes);

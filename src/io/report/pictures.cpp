@@ -21,7 +21,7 @@ namespace {
 
 using Mask = Image<std::uint8_t>;
 
-/// The edges between the mask and what is around it, as a path of straight pieces.
+/// Outline of the mask as an SVG path of axis-parallel segments.
 std::string edge_path(const Mask& mask) {
   const auto at = [&](int u, int v) {
     return u >= 0 && v >= 0 && u < mask.width() && v < mask.height() && mask(u, v) != 0;
@@ -49,7 +49,7 @@ std::string edge_path(const Mask& mask) {
   return path;
 }
 
-/// The mask's cells of `side` pixels as a path of bars along the rows.
+/// Cells of `side` pixels of the mask as an SVG path of horizontal bars.
 std::string area_path(const Mask& mask, int side) {
   std::ostringstream path;
   for (int v = 0; v < mask.height(); ++v) {
@@ -66,7 +66,7 @@ std::string area_path(const Mask& mask, int side) {
   return path.str();
 }
 
-/// Cells of `side` pixels, at least half of which are in the mask.
+/// Cells of `side` pixels of which at least half is in the mask.
 Mask in_cells(const Mask& mask, int side) {
   Mask cells((mask.width() + side - 1) / side, (mask.height() + side - 1) / side);
   for (int row = 0; row < cells.height(); ++row) {
@@ -84,7 +84,7 @@ Mask in_cells(const Mask& mask, int side) {
   return cells;
 }
 
-/// A mask over the crop's scaled pixels of what holds at the nearest pixel of the map.
+/// Mask of the scaled crop: the predicate at the nearest pixel of the map.
 template <class Holds>
 Mask crop_mask(const Crop& crop, Holds holds) {
   Mask mask(crop.size.width, crop.size.height);
@@ -116,17 +116,17 @@ Fields crop_fields(const cv::Mat& picture, const DamageMap& map, const Damage& d
           {"id", std::to_string(damage.id)}};
 }
 
-/// The line of a cross-section.
+/// Line of a cross-section as an SVG path.
 std::string cut_path(const CrossSection& section, const Crop& crop) {
   const double scale = static_cast<double>(crop.size.width) / crop.box.width();
-  const auto place = [&](const std::array<int, 2>& pixel) {
+  const auto point_text = [&](const std::array<int, 2>& pixel) {
     return number_text((pixel[0] - crop.box.u0 + 0.5) * scale, 1) + " " +
            number_text((pixel[1] - crop.box.v0 + 0.5) * scale, 1);
   };
-  return "M" + place(section.pixel.front()) + "L" + place(section.pixel.back());
+  return "M" + point_text(section.pixel.front()) + "L" + point_text(section.pixel.back());
 }
 
-/// Height above the road, so that the colours of transformed maps (red below) hold.
+/// Height above the road, for the same colours as transformed maps (red below).
 Image<float> heights(const DamageMap& map, const PixelBox& box) {
   Image<float> part(box.width(), box.height());
   for (int v = 0; v < box.height(); ++v) {
@@ -149,7 +149,7 @@ cv::Mat shrunk(const cv::Mat& picture, int max_side) {
 std::vector<std::uint8_t> encoded(const char* format, const cv::Mat& picture, const std::vector<int>& options) {
   std::vector<std::uint8_t> bytes;
   if (!cv::imencode(format, picture, bytes, options)) {
-    fail<SystemError>("a picture of the report could not be encoded as ", format);
+    fail<SystemError>("an image of the report could not be encoded as ", format);
   }
   return bytes;
 }
@@ -174,7 +174,7 @@ std::string picture_uri(const cv::Mat& picture, const PictureLimit& limit) {
 std::string picture_uri(std::span<const std::uint8_t> encoded_picture, const PictureLimit& limit) {
   const std::vector<std::uint8_t> bytes(encoded_picture.begin(), encoded_picture.end());
   const cv::Mat picture = cv::imdecode(bytes, cv::IMREAD_COLOR);
-  if (picture.empty()) fail("the sheet for the report, ", bytes.size(), " bytes, is not a PNG or JPEG picture");
+  if (picture.empty()) fail("the sheet for the report, ", bytes.size(), " bytes, is not a PNG or JPEG image");
   return picture_uri(picture, limit);
 }
 
@@ -182,7 +182,7 @@ Crop crop_around(const DamageMap& map, const Damage& damage, const PictureLimit&
   constexpr double share = 0.25;
   constexpr int min_margin_px = 8;
   const auto& [u0, v0, u1, v1] = damage.box_px;
-  const int longer = std::max(u1 - u0, v1 - v0) + 1;  // a thin one still shows what is around it
+  const int longer = std::max(u1 - u0, v1 - v0) + 1;  // also shows the surroundings of a thin damage
   const PixelBox box = box_with_margin(map, damage, share, std::max(min_margin_px, longer / 8));
   const double scale = std::min(1.0, static_cast<double>(limit.side) / std::max(box.width(), box.height()));
   return {box, {std::max(1, cvRound(scale * box.width())), std::max(1, cvRound(scale * box.height()))}, limit.bytes};
@@ -194,12 +194,12 @@ std::string crop_svg(const cv::Mat& picture, const DamageMap& map, const Damage&
 
 std::string depth_svg(const DamageMap& map, const Damage& damage, const Crop& crop, const DepthMarks& marks) {
   const ImageView<const float> holes = marks.holes;
-  const cv::Mat colours = colour_pixels(heights(map, crop.box), {-marks.reach, marks.reach, true, ""});
+  const cv::Mat colours = colour_pixels(heights(map, crop.box), {-marks.max_depth, marks.max_depth, true, ""});
   Fields fields = crop_fields(colours, map, damage, crop);
   const Mask interpolated = crop_mask(crop, [&](int u, int v) {
     return !holes.empty() && std::isfinite(map.depth(u, v)) && !std::isfinite(holes(u, v));
   });
-  constexpr int max_cells = 200;  // along a side, so that many small holes do not swell the report
+  constexpr int max_cells = 200;  // along a side; limits the size of the report
   const int side = 1 + (std::max(crop.size.width, crop.size.height) - 1) / max_cells;
   fields["holes"] = area_path(in_cells(interpolated, side), side);
   fields["cut"] = marks.section == nullptr ? "" : cut_path(*marks.section, crop);

@@ -12,41 +12,40 @@
 
 namespace roadstereo::io {
 
-/// How large a picture in a report may be.
+/// Size limit of an image in a report.
 struct PictureLimit {
   int side = 0;           ///< longest side, pixels
-  std::size_t bytes = 0;  ///< of its file, about
+  std::size_t bytes = 0;  ///< of the file, approximate
 };
 
-/// An 8-bit BGR picture as the source of an image: JPEG, or PNG where that is smaller. Shrunk to the limit's side, and
-/// compressed or shrunk more until it keeps to its bytes.
+/// Encodes an 8-bit BGR image as data URI: JPEG, or PNG if that is smaller. Downsampled and compressed to meet `limit`.
 std::string picture_uri(const cv::Mat& picture, const PictureLimit& limit);
 
-/// The same of an encoded picture. Throws Error when it is none.
+/// The same for an encoded image. Throws Error if it cannot be decoded.
 std::string picture_uri(std::span<const std::uint8_t> encoded, const PictureLimit& limit);
 
-/// The part of a frame that shows a damage, scaled as a whole so that drawings on it stay small.
+/// Part of a frame around a damage, scaled by an integer factor.
 struct Crop {
   PixelBox box;
-  cv::Size size;          ///< pixels of the scaled picture
-  std::size_t bytes = 0;  ///< of its file, about
+  cv::Size size;          ///< pixels of the scaled image
+  std::size_t bytes = 0;  ///< of the file, approximate
 };
 Crop crop_around(const DamageMap& map, const Damage& damage, const PictureLimit& limit);
 
-/// The crop of the picture with the damage's outline, as SVG.
+/// Returns the crop of the image with the outline of the damage as SVG.
 std::string crop_svg(const cv::Mat& picture, const DamageMap& map, const Damage& damage, const Crop& crop);
 
-/// What the picture of depths shows besides them.
+/// Marks on the depth image.
 struct DepthMarks {
-  ImageView<const float> holes;           ///< its NaN are hatched
-  const CrossSection* section = nullptr;  ///< its line is drawn
-  double reach = 1;                       ///< depth of the last colour
+  ImageView<const float> holes;           ///< NaN is hatched
+  const CrossSection* section = nullptr;  ///< may be null
+  double max_depth = 1;                   ///< end of the colour scale
 };
 
-/// The crop of the depths with outline and marks, as SVG.
+/// Returns the crop of the depths with outline and marks as SVG.
 std::string depth_svg(const DamageMap& map, const Damage& damage, const Crop& crop, const DepthMarks& marks);
 
-/// The colours of depths from −reach (above the road) to reach as a picture one pixel wide, top to bottom.
+/// Returns the colour scale from −max_depth (above the road, top) to max_depth as an image one pixel wide.
 cv::Mat depth_ramp(int steps);
 
 }  // namespace roadstereo::io

@@ -7,8 +7,8 @@
 
 namespace roadstereo::io {
 
-/// The cut through a damage as SVG: depth downwards, the undamaged road at 0, what was interpolated dashed.
-/// `metric_depth` is that of the map.
+/// Draws a cross-section of a damage as SVG: depth downwards, the undamaged road at 0, interpolated parts dashed.
+/// `metric_depth`: depths are in metres.
 std::string profile_svg(const CrossSection& section, const Damage& damage, bool metric_depth);
 
 }  // namespace roadstereo::io

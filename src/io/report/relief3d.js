@@ -1,4 +1,4 @@
-// 3-D views of damages: a grid of points, turned and seen from afar (parallel projection), drawn from back to front.
+// 3-D views of damages: a grid of points in parallel projection, drawn from back to front.
 (() => {
   "use strict";
 
@@ -38,7 +38,7 @@
   function readSurface(data) {
     const bits = bytesOf(data.measured);
     const surface = {
-      columns: Number(data.columns), rows: Number(data.rows), unit: data.unit, reach: Number(data.reach),
+      columns: Number(data.columns), rows: Number(data.rows), unit: data.unit, maxDepth: Number(data.maxDepth),
       x: valuesOf(data.x, data.xStep), y: valuesOf(data.y, data.yStep), z: valuesOf(data.depth, data.depthStep),
       measured: (i) => (bits[i >> 3] >> (i & 7)) & 1,
     };
@@ -53,9 +53,9 @@
     return surface;
   }
 
-  /** Exaggeration at which the depth is about a seventh of the width. */
+  /** Returns the exaggeration at which the depth is about a seventh of the width. */
   function goodExaggeration(surface) {
-    const wanted = (0.28 * surface.radius) / surface.reach;
+    const wanted = (0.28 * surface.radius) / surface.maxDepth;
     return Math.min(20, Math.max(1, Math.round(2 * wanted) / 2));
   }
 
@@ -100,7 +100,7 @@
 
     reset() { this.turnTo(START.turn, START.tilt); }
 
-    /** tilt: 0 looks along the road, π/2 straight down. */
+    /** tilt: 0 along the road, π/2 straight down. */
     turnTo(turn, tilt) {
       this.pose = { turn, tilt: Math.min(Math.PI / 2, Math.max(0.1, tilt)) };
       this.draw();
@@ -129,12 +129,12 @@
       this.paintFrame(context, project);
     }
 
-    /** Places on the canvas; `far` grows away from the eye. */
+    /** Points on the canvas; `far` increases away from the viewer. */
     projection(width, height, exaggeration) {
       const { turn, tilt } = this.pose;
       const { radius, lowest, highest } = this.surface;
       const [c, s, lift, lower] = [Math.cos(turn), Math.sin(turn), Math.cos(tilt), Math.sin(tilt)];
-      // What rises or falls is near the middle; the road's corners are at the ends.
+      // Depths are largest near the middle; the corners of the road limit the drawing.
       const above = Math.max(0.95 * radius * lower, 0.5 * radius * lower + highest * exaggeration * lift);
       const below = Math.max(0.95 * radius * lower, 0.5 * radius * lower - lowest * exaggeration * lift);
       const scale = Math.min((width - 24) / (2 * radius), (height - 44) / (above + below));
@@ -147,7 +147,7 @@
 
     paintSurface(context, project, exaggeration) {
       const { columns, rows, x, y, z } = this.surface;
-      const places = Array.from(x, (value, i) => project(value, y[i], z[i]));
+      const points = Array.from(x, (value, i) => project(value, y[i], z[i]));
       const corner = (i) => project(x[i], y[i], 0).far;
       const rowsForth = corner(0) > corner((rows - 1) * columns);
       const columnsForth = corner(0) > corner(columns - 1);
@@ -156,30 +156,30 @@
         const row = rowsForth ? r : rows - 2 - r;
         for (let k = 0; k < columns - 1; ++k) {
           const at = row * columns + (columnsForth ? k : columns - 2 - k);
-          this.paintCell(context, places, at, exaggeration);
+          this.paintCell(context, points, at, exaggeration);
         }
       }
     }
 
-    paintCell(context, places, at, exaggeration) {
-      const { columns, z, reach, measured } = this.surface;
+    paintCell(context, points, at, exaggeration) {
+      const { columns, z, maxDepth, measured } = this.surface;
       const cell = [at, at + 1, at + columns + 1, at + columns];
       const height = (z[cell[0]] + z[cell[1]] + z[cell[2]] + z[cell[3]]) / 4;
       if (Number.isNaN(height)) return;
       const whole = cell.every(measured);
-      const share = Math.min(1, Math.max(0, (1 - height / reach) / 2));
+      const share = Math.min(1, Math.max(0, (1 - height / maxDepth) / 2));
       const speckled = !whole && (Math.floor(at / columns) + (at % columns)) % 2 === 0;
       const colour = colourOf(Math.round(share * (palette.length - 1)), this.shadeOf(cell, exaggeration), speckled);
       context.fillStyle = colour;
       context.strokeStyle = colour;
       context.beginPath();
-      cell.forEach((i, k) => (k === 0 ? context.moveTo(places[i].x, places[i].y) : context.lineTo(places[i].x, places[i].y)));
+      cell.forEach((i, k) => (k === 0 ? context.moveTo(points[i].x, points[i].y) : context.lineTo(points[i].x, points[i].y)));
       context.closePath();
       context.fill();
       context.stroke();
     }
 
-    /** How directly the light falls on a cell. */
+    /** Shade of a cell from its angle to the light. */
     shadeOf(cell, exaggeration) {
       const { x, y, z } = this.surface;
       const across = (values, factor = 1) => [factor * (values[cell[2]] - values[cell[0]]), factor * (values[cell[1]] - values[cell[3]])];
@@ -193,12 +193,12 @@
     /** The undamaged road as a dashed outline with the lengths of two sides. */
     paintFrame(context, project) {
       const { corners, unit } = this.surface;
-      const places = corners.map(([x, y]) => project(x, y, 0));
+      const points = corners.map(([x, y]) => project(x, y, 0));
       context.strokeStyle = "#1d2530";
       context.setLineDash([5, 4]);
       context.lineWidth = 1;
       context.beginPath();
-      places.forEach((place, i) => (i === 0 ? context.moveTo(place.x, place.y) : context.lineTo(place.x, place.y)));
+      points.forEach((point, i) => (i === 0 ? context.moveTo(point.x, point.y) : context.lineTo(point.x, point.y)));
       context.closePath();
       context.stroke();
       context.setLineDash([]);
@@ -207,14 +207,14 @@
       context.lineWidth = 3;
       context.strokeStyle = "#fff";
       context.fillStyle = "#1d2530";
-      const nearest = places.map((place, i) => ({ i, far: place.far + places[(i + 1) % 4].far })).sort((a, b) => a.far - b.far);
+      const nearest = points.map((point, i) => ({ i, far: point.far + points[(i + 1) % 4].far })).sort((a, b) => a.far - b.far);
       for (const { i } of nearest.slice(0, 2)) {
         const next = (i + 1) % 4;
         const length = Math.hypot(corners[i][0] - corners[next][0], corners[i][1] - corners[next][1]);
         const text = unit === "m" ? `${length.toFixed(2)} m` : `${length.toFixed(0)} px`;
-        const place = [(places[i].x + places[next].x) / 2, (places[i].y + places[next].y) / 2 + 16];
-        context.strokeText(text, ...place);
-        context.fillText(text, ...place);
+        const point = [(points[i].x + points[next].x) / 2, (points[i].y + points[next].y) / 2 + 16];
+        context.strokeText(text, ...point);
+        context.fillText(text, ...point);
       }
     }
   }

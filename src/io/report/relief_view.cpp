@@ -16,9 +16,9 @@ namespace {
 constexpr double max_steps = 32000;
 constexpr std::int16_t unknown_step = -32768;
 
-/// Values as whole steps, two bytes each, low byte first.
+/// Values quantised to 16 bits, little-endian.
 struct Steps {
-  double step = 1;  ///< what one is worth
+  double step = 1;  ///< of quantisation
   std::string text;
 };
 
@@ -40,7 +40,7 @@ Steps in_steps(const Image<float>& values) {
   return {step, base64(bytes)};
 }
 
-/// One bit per point, the first point in the lowest bit.
+/// One bit per point, starting at the lowest bit.
 std::string in_bits(const Image<std::uint8_t>& mask) {
   std::vector<std::uint8_t> bytes((mask.pixels() + 7) / 8);
   const std::uint8_t* const begin = mask.row(0);
@@ -57,13 +57,13 @@ std::string number(double value) {
 
 }  // namespace
 
-std::string relief_html(const Relief& relief, const Damage& damage, double reach) {
+std::string relief_html(const Relief& relief, const Damage& damage, double max_depth) {
   const Steps x = in_steps(relief.x), y = in_steps(relief.y), depth = in_steps(relief.depth);
   return fill(templates::relief, {{"id", std::to_string(damage.id)},
                                   {"columns", std::to_string(relief.depth.width())},
                                   {"rows", std::to_string(relief.depth.height())},
                                   {"unit", relief.metric ? "m" : "px"},
-                                  {"reach", number(reach)},
+                                  {"max_depth", number(max_depth)},
                                   {"x", x.text},
                                   {"x_step", number(x.step)},
                                   {"y", y.text},

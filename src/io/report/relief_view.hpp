@@ -7,8 +7,8 @@
 
 namespace roadstereo::io {
 
-/// The 3-D view of a damage: its surface in steps of 16 bits for relief3d.js to draw. `reach` is the depth of the last
-/// colour, in the unit of the relief's depths.
-std::string relief_html(const Relief& relief, const Damage& damage, double reach);
+/// Returns the 3-D view of a damage: its surface, quantised to 16 bits, for relief3d.js. `max_depth`: end of the colour
+/// scale, in the unit of the relief.
+std::string relief_html(const Relief& relief, const Damage& damage, double max_depth);
 
 }  // namespace roadstereo::io

@@ -1,9 +1,9 @@
-// Tables whose columns are sorted by their heads: by the number in a cell's data-key, or its text where it has none.
-// Empty cells come last either way.
+// Sorts tables by clicks on column headers: by the number in a cell's data-key, or by its text if it has none. Empty
+// cells are last in both orders.
 (() => {
   "use strict";
 
-  /** A number, a text, or null for nothing. */
+  /** Returns a number, a text, or null if the cell is empty. */
   function keyOf(row, column) {
     const cell = row.cells[column];
     const key = cell.dataset.key;

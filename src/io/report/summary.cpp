@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "io/damage_colours.hpp"
-#include "io/report/figures.hpp"
 #include "io/report/markup.hpp"
+#include "io/report/number_text.hpp"
 #include "io/report/templates.hpp"
 
 namespace roadstereo::io {
@@ -46,15 +46,15 @@ std::string severity_chips(const DamageMap& map) {
   return html;
 }
 
-/// The sum of a figure over the damages of a kind; their errors count as independent.
+/// Sum of a value over the damages of a kind; the errors are taken as independent.
 template <auto Member>
 Measurement total(const DamageMap& map, DamageKind kind) {
   Measurement sum;
   for (const Damage& damage : map.damages) {
     if (damage.kind != kind || !damage.metrics) continue;
-    const Measurement& figure = (*damage.metrics).*Member;
-    sum.value += figure.value;
-    sum.std_error = std::hypot(sum.std_error, figure.std_error);
+    const Measurement& measured = (*damage.metrics).*Member;
+    sum.value += measured.value;
+    sum.std_error = std::hypot(sum.std_error, measured.std_error);
   }
   return sum;
 }
@@ -71,9 +71,9 @@ std::string deepest_card(const DamageMap& map) {
   const Damage& deepest = map.damages.front();
   const std::string link = "<a href=\"#damage-" + std::to_string(deepest.id) + "\">damage " +
                            std::to_string(deepest.id) + "</a>, a " + name_of(deepest.kind);
-  if (!deepest.metrics) return card("Largest disparity change", measured_text(deepest.max_depth_px, "px"), link);
+  if (!deepest.metrics) return card("Maximum disparity change", measured_text(deepest.max_depth_px, "px"), link);
   const bool below = deepest.kind == DamageKind::depression;
-  return card(below ? "Deepest" : "Largest height", measured_text(scaled(deepest.metrics->max_depth_m, mm), "mm"),
+  return card(below ? "Maximum depth" : "Maximum height", measured_text(scaled(deepest.metrics->max_depth_m, mm), "mm"),
               link);
 }
 
@@ -99,22 +99,20 @@ std::string summary_notices(const DamageMap& map) {
   std::string notices;
   if (map.damages.empty()) {
     notices +=
-        "<p class=\"notice good\"><strong>Good news: no damage found.</strong> Nothing on the road in view stands out "
-        "of its surface by more than this rig can tell apart.</p>";
+        "<p class=\"notice good\"><strong>No damage found.</strong> No part of the visible road deviates from its "
+        "surface by more than the resolvable depth of this rig.</p>";
   }
   if (!map.metric) {
     const std::string why = map.non_metric_reason.empty() ? "the frame has no calibration" : map.non_metric_reason;
-    notices +=
-        "<p class=\"notice\"><strong>Pixels only.</strong> Nothing here is in metres and no severity is given, "
-        "because: " +
-        escaped(why) + ".</p>";
+    notices += "<p class=\"notice\"><strong>Pixels only.</strong> There are no metric values and no severities: " +
+               escaped(why) + ".</p>";
   }
   return notices;
 }
 
-std::string fact_list(const std::vector<std::pair<std::string, std::string>>& facts) {
+std::string property_list(const std::vector<std::pair<std::string, std::string>>& properties) {
   std::string html;
-  for (const auto& [name, value] : facts) {
+  for (const auto& [name, value] : properties) {
     html += "<div><dt>" + escaped(name) + "</dt><dd>" + escaped(value) + "</dd></div>";
   }
   return html.empty() ? html : "<dl class=\"facts\">" + html + "</dl>";
@@ -123,10 +121,10 @@ std::string fact_list(const std::vector<std::pair<std::string, std::string>>& fa
 std::string severity_legend() {
   struct Row {
     const char* name;
-    double depth_m;  // in the middle of the row
+    double depth_m;  // centre of the row
   };
   constexpr std::array<Row, 3> rows{{{"13 – 25 mm", 0.019}, {"25 – 50 mm", 0.037}, {"over 50 mm", 0.07}}};
-  constexpr std::array<double, 3> diameters_m{0.15, 0.3, 0.6};  // in the middle of the columns
+  constexpr std::array<double, 3> diameters_m{0.15, 0.3, 0.6};  // centres of the columns
   std::string html;
   for (const Row& row : rows) {
     html += "<tr><th scope=\"row\">" + std::string(row.name) + "</th>";

@@ -8,19 +8,19 @@
 
 namespace roadstereo::io {
 
-/// The figures at the head of a report: how many damages of which severity, how large altogether.
+/// Returns the summary cards: number of damages by severity, total area and volume.
 std::string summary_cards(const DamageMap& map);
 
-/// A sentence when there is no damage, or no metres, else nothing.
+/// Returns a notice if there is no damage or no metric result, else "".
 std::string summary_notices(const DamageMap& map);
 
-/// Key figures as a list of names and values.
-std::string fact_list(const std::vector<std::pair<std::string, std::string>>& facts);
+/// Returns names and values as an HTML list.
+std::string property_list(const std::vector<std::pair<std::string, std::string>>& properties);
 
-/// What the severities mean.
+/// Returns the legend of the severities.
 std::string severity_legend();
 
-/// The colours of the severities as custom properties of a style sheet.
+/// Returns the severity colours as CSS custom properties.
 std::string severity_colours();
 
 }  // namespace roadstereo::io

@@ -15,14 +15,14 @@
 namespace roadstereo::io {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "messages are read as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "messages are read without byte swapping");
 
 class MessageReader {
  public:
   MessageReader(const std::string& source, std::span<const std::uint8_t> rest) : source_(source), rest_(rest) {}
 
   std::span<const std::uint8_t> bytes(std::size_t count) {
-    if (count > rest_.size()) fail(source_, ": the message is cut short");
+    if (count > rest_.size()) fail(source_, ": the message is truncated");
     const auto taken = rest_.first(count);
     rest_ = rest_.subspan(count);
     return taken;
@@ -52,9 +52,9 @@ class MessageReader {
     return 1'000'000'000 * seconds + nanoseconds;
   }
   int side(const char* name) {
-    constexpr std::uint32_t most = 65535;
+    constexpr std::uint32_t max_side = 65535;
     const auto pixels = value<std::uint32_t>();
-    if (pixels > most) fail(source_, ": ", name, " is ", pixels, "; it must be at most ", most);
+    if (pixels > max_side) fail(source_, ": ", name, " is ", pixels, "; it must be at most ", max_side);
     return static_cast<int>(pixels);
   }
 
@@ -67,9 +67,9 @@ constexpr int no_mosaic = -1;
 
 struct Encoding {
   std::string_view name;
-  int type;            // OpenCV's, as the samples lie in the message
+  int type;            // OpenCV's type of the samples in the message
   ChannelOrder order;  // of the frame
-  int mosaic;          // OpenCV's conversion of a colour mosaic
+  int mosaic;          // OpenCV's conversion of a Bayer pattern
 };
 
 constexpr std::array encodings = {
@@ -86,7 +86,7 @@ constexpr std::array encodings = {
     Encoding{"rgb16", CV_16UC3, ChannelOrder::rgb, no_mosaic},
     Encoding{"bgra16", CV_16UC4, ChannelOrder::bgra, no_mosaic},
     Encoding{"rgba16", CV_16UC4, ChannelOrder::rgba, no_mosaic},
-    // OpenCV calls a mosaic by its second row's second and third pixel.
+    // OpenCV names a Bayer pattern by the second and third pixel of its second row.
     Encoding{"bayer_rggb8", CV_8UC1, ChannelOrder::bgr, cv::COLOR_BayerBG2BGR},
     Encoding{"bayer_bggr8", CV_8UC1, ChannelOrder::bgr, cv::COLOR_BayerRG2BGR},
     Encoding{"bayer_gbrg8", CV_8UC1, ChannelOrder::bgr, cv::COLOR_BayerGR2BGR},
@@ -101,7 +101,7 @@ const Encoding& find_encoding(const std::string& source, const std::string& name
   const auto found =
       std::find_if(encodings.begin(), encodings.end(), [&](const Encoding& e) { return e.name == name; });
   if (found != encodings.end()) return *found;
-  fail(source, ": the encoding is \"", name, "\"; mono, rgb, bgr, rgba, bgra and bayer of 8 or 16 bits are taken");
+  fail(source, ": the encoding is \"", name, "\"; supported are mono, rgb, bgr, rgba, bgra and bayer of 8 or 16 bits");
 }
 
 void swap_bytes(Frame& frame) {
@@ -125,8 +125,8 @@ Frame read_image(const std::string& source, const std::vector<std::uint8_t>& mes
   const auto data = reader.list();
   const std::size_t row = static_cast<std::size_t>(width) * static_cast<std::size_t>(CV_ELEM_SIZE(encoding.type));
   if (width == 0 || height == 0 || step < row || data.size() < step * static_cast<std::size_t>(height)) {
-    fail(source, ": ", data.size(), " bytes in rows of ", step, " are no picture of ", width, "×", height, " pixels (",
-         encoding.name, ")");
+    fail(source, ": ", data.size(), " bytes in rows of ", step, " are not an image of ", width, "×", height,
+         " pixels (", encoding.name, ")");
   }
   const cv::Mat samples(height, width, encoding.type, const_cast<std::uint8_t*>(data.data()), step);
   const ChannelOrder order = encoding.mosaic == no_mosaic ? encoding.order : ChannelOrder::grey;
@@ -141,7 +141,7 @@ Frame read_image(const std::string& source, const std::vector<std::uint8_t>& mes
 Frame read_compressed_image(const std::string& source, const std::vector<std::uint8_t>& message) {
   MessageReader reader(source, message);
   reader.header();
-  reader.text();  // format: free text; the bytes tell
+  reader.text();  // format: free text, not needed
   const auto data = reader.list();
   return decode_frame(source, {data.begin(), data.end()});
 }
@@ -166,8 +166,8 @@ CameraInfo read_camera_info(const std::string& source, const std::vector<std::ui
   const auto top = reader.value<std::uint32_t>();
   if (binning_x > 1 || binning_y > 1 || left > 0 || top > 0) {
     fail(source,
-         ": the pictures are binned or a part of the sensor's, which is not taken; a calibration file of these ",
-         "pictures is");
+         ": camera_info with binning or a region of interest is not supported; use a calibration file of these ",
+         "images");
   }
   return camera;
 }

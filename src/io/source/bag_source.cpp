@@ -25,14 +25,14 @@ std::vector<std::uint8_t> bytes_of(const rosbag::MessageInstance& message) {
 }
 
 void open_for_reading(rosbag::Bag& bag, const std::string& file) {
-  if (!std::filesystem::is_regular_file(file)) fail(file, ": the file does not exist, or is not an ordinary one");
+  if (!std::filesystem::is_regular_file(file)) fail(file, ": the file does not exist, or is not a regular file");
   try {
     bag.open(file, rosbag::bagmode::Read);
   } catch (const rosbag::BagUnindexedException&) {
-    fail(file, ": the bag has no index, since recording did not end well; rosbag reindex ", file, " makes one");
+    fail(file, ": the bag has no index, because the recording was interrupted; rosbag reindex ", file, " creates it");
   } catch (const ros::Exception& error) {
-    fail(file, ": this is no ROS 1 bag that can be read (", error.what(), "); where it was cut short, rosbag reindex ",
-         file, " may mend it");
+    fail(file, ": this is not a readable ROS 1 bag (", error.what(), "); if it is truncated, rosbag reindex ", file,
+         " may repair it");
   }
 }
 
@@ -45,7 +45,7 @@ std::vector<BagTopic> topics_of(rosbag::View& view) {
   return topics;
 }
 
-/// Memory stays flat: messages are read one by one, in the order in which they were recorded.
+/// Reads messages one by one in the order of the recording; memory use is constant.
 class BagSource final : public FrameSource {
  public:
   BagSource(const std::string& file, const SourceOptions& options)
@@ -66,8 +66,8 @@ class BagSource final : public FrameSource {
     if (!matched) return std::nullopt;
     SourcePair pair = numbered_pair(index_++, 0);
     pair.time_s = 1e-9 * static_cast<double>((matched->left ? matched->left : matched->right)->stamp_ns);
-    pair.refused = matched->refused;
-    if (pair.refused.empty()) decode(*matched, pair);
+    pair.error = matched->error;
+    if (pair.error.empty()) decode(*matched, pair);
     return pair;
   }
 
@@ -81,7 +81,7 @@ class BagSource final : public FrameSource {
     if (left_info_.empty() || right_info_.empty()) return std::nullopt;
     const CameraInfo left = camera_info(left_, left_info_);
     const CameraInfo right = camera_info(right_, right_info_);
-    if (left.k(0, 0) == 0 && right.k(0, 0) == 0) return std::nullopt;  // ROS's way to say: not calibrated
+    if (left.k(0, 0) == 0 && right.k(0, 0) == 0) return std::nullopt;  // not calibrated
     return join_camera_infos(left, right);
   }
 
@@ -92,12 +92,12 @@ class BagSource final : public FrameSource {
   }
 
  private:
-  /// What ROS throws becomes a sentence that names the file.
+  /// Converts exceptions of ROS to Error naming the file.
   void reading(const std::function<void()>& call) const {
     try {
       call();
     } catch (const ros::Exception& error) {
-      fail(file_, ": the bag cannot be read: ", error.what(), "; rosbag reindex ", file_, " may mend it");
+      fail(file_, ": the bag cannot be read: ", error.what(), "; rosbag reindex ", file_, " may repair it");
     }
   }
 
@@ -117,7 +117,7 @@ class BagSource final : public FrameSource {
     right_info_ = first_message(camera_info_topic(right_.name));
   }
 
-  /// The camera of the pictures on that topic: image_rect* are rectified, and camera_info describes what they were.
+  /// The camera of the images of a topic: image_rect* are rectified, camera_info describes the raw images.
   CameraInfo camera_info(const BagTopic& image, const std::vector<std::uint8_t>& message) const {
     CameraInfo camera = read_camera_info(file_ + ": " + camera_info_topic(image.name), message);
     if (image.name.find("/image_rect") != std::string::npos) {
@@ -160,13 +160,13 @@ class BagSource final : public FrameSource {
                                              : read_compressed_image(topic.name, message.bytes);
   }
 
-  /// A picture that is damaged costs its pair, not the bag.
+  /// A damaged image invalidates its pair only.
   void decode(const MatchedMessages& matched, SourcePair& pair) const {
     try {
       pair.left = read_view(left_, *matched.left);
       pair.right = read_view(right_, *matched.right);
     } catch (const Error& error) {
-      pair.refused = error.what();
+      pair.error = error.what();
     }
   }
 

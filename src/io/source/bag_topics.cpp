@@ -21,12 +21,12 @@ constexpr std::array side_names = {SideNames{"left", "right"},        SideNames{
                                    SideNames{"image_02", "image_03"}, SideNames{"image_0", "image_1"},
                                    SideNames{"image_2", "image_3"},   SideNames{"infra1", "infra2"}};
 
-/// The name without what image_transport adds.
+/// Removes the suffix of image_transport.
 std::string camera_topic(const std::string& name) {
   return name.ends_with(compressed_ending) ? name.substr(0, name.size() - compressed_ending.size()) : name;
 }
 
-/// The other camera's name, when this is a left one's; else empty.
+/// Returns the name of the right camera if this is the left one, else "".
 std::string right_partner(const std::string& left) {
   for (const SideNames& names : side_names) {
     std::string right = left;
@@ -48,11 +48,11 @@ const BagTopic* find_topic(const std::vector<BagTopic>& topics, const std::strin
                               const std::vector<BagTopic>& images) {
   std::string list;
   for (const BagTopic& topic : images) list += (list.empty() ? "" : ", ") + topic.name;
-  fail(source, ": ", reason, "; --topics LEFT RIGHT must name two of its image topics, which are ",
-       list.empty() ? "none" : list);
+  fail(source, ": ", reason,
+       "; select two of its image topics with --topics LEFT RIGHT: ", list.empty() ? "none" : list);
 }
 
-/// One topic per camera: the raw one where there are both.
+/// Keeps one topic per camera, preferring raw images.
 std::vector<BagTopic> one_per_camera(const std::vector<BagTopic>& images) {
   std::vector<BagTopic> cameras;
   std::copy_if(images.begin(), images.end(), std::back_inserter(cameras), [&](const BagTopic& topic) {
@@ -76,8 +76,8 @@ std::pair<BagTopic, BagTopic> find_image_topics(const std::string& source, const
   if (wanted.size() == 2) {
     const BagTopic* left = find_topic(images, wanted[0]);
     const BagTopic* right = find_topic(images, wanted[1]);
-    if (left == nullptr) fail_topics(source, wanted[0] + " is no image topic of the bag", images);
-    if (right == nullptr) fail_topics(source, wanted[1] + " is no image topic of the bag", images);
+    if (left == nullptr) fail_topics(source, wanted[0] + " is not an image topic of the bag", images);
+    if (right == nullptr) fail_topics(source, wanted[1] + " is not an image topic of the bag", images);
     return {*left, *right};
   }
   const std::vector<BagTopic> cameras = one_per_camera(images);
@@ -87,7 +87,7 @@ std::pair<BagTopic, BagTopic> find_image_topics(const std::string& source, const
     const BagTopic* right = find_topic(cameras, partner);
     if (right != nullptr) pairs.emplace_back(camera, *right);
   }
-  if (pairs.empty()) fail_topics(source, "the names of the topics do not tell a left and a right camera", images);
+  if (pairs.empty()) fail_topics(source, "no left and right camera can be recognised by the topic names", images);
   if (pairs.size() > 1) fail_topics(source, "the bag has more than one pair of cameras", images);
   return pairs.front();
 }

@@ -12,16 +12,16 @@ struct BagTopic {
   std::string type;  ///< "sensor_msgs/Image"
 };
 
-/// Whether the topic carries pictures: sensor_msgs/Image or sensor_msgs/CompressedImage.
+/// Returns whether the topic has images: sensor_msgs/Image or sensor_msgs/CompressedImage.
 bool is_image_topic(const BagTopic& topic);
 
-/// The left and the right image topic: `wanted`, when it names two, else the only two whose names tell left from right
-/// (left and right, cam0 and cam1, image_0 and image_1, …). Of a camera that is there raw and compressed, raw is taken.
-/// Throws Error that begins with `source`, lists the image topics and names --topics.
+/// Selects the left and the right image topic: `wanted` if it names two, else the only pair recognised by name (left
+/// and right, cam0 and cam1, image_0 and image_1, …). Raw topics are preferred to compressed ones. Throws Error that
+/// starts with `source` and lists the image topics.
 std::pair<BagTopic, BagTopic> find_image_topics(const std::string& source, const std::vector<BagTopic>& topics,
                                                 const std::vector<std::string>& wanted);
 
-/// The topic beside it that has the camera's calibration: "/stereo/left/camera_info".
+/// Returns the topic with the calibration of the same camera, e.g. "/stereo/left/camera_info".
 std::string camera_info_topic(const std::string& image_topic);
 
 }  // namespace roadstereo::io

@@ -21,8 +21,8 @@ double seconds(std::chrono::nanoseconds time) {
   return std::chrono::duration<double>(time).count();
 }
 
-/// The system's clock at the time of `monotonic_s`, which drivers stamp their pictures with. Some stamp nothing or with
-/// another clock: then it is now.
+/// Converts the monotonic time stamp of a driver to system time. Returns the current time if the stamp is missing or of
+/// another clock.
 double system_time(double monotonic_s) {
   constexpr double oldest_s = 10;
   const double now_s = seconds(std::chrono::system_clock::now().time_since_epoch());
@@ -30,20 +30,20 @@ double system_time(double monotonic_s) {
   return age_s >= 0 && age_s < oldest_s ? now_s - age_s : now_s;
 }
 
-/// Says why, where the system knows. OpenCV only says that.
+/// Throws Error with the system's reason, which OpenCV does not report.
 void check_device(const std::string& device) {
   struct stat status {};
   if (::stat(device.c_str(), &status) != 0) {
     fail(device, ": there is no such camera: ", std::generic_category().message(errno));
   }
-  if (!S_ISCHR(status.st_mode)) fail(device, ": this is not a camera but a file");
+  if (!S_ISCHR(status.st_mode)) fail(device, ": this is a file, not a camera");
   const int descriptor = ::open(device.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   const int reason = errno;
   if (descriptor >= 0) {
     ::close(descriptor);
     return;
   }
-  const char* advice = reason == EACCES ? "; members of the group \"video\" may" : "";
+  const char* advice = reason == EACCES ? "; add the user to the group \"video\"" : "";
   fail(device, ": the camera cannot be opened: ", std::generic_category().message(reason), advice);
 }
 
@@ -51,17 +51,17 @@ class CameraSource final : public FrameSource {
  public:
   CameraSource(const std::string& device, const SourceOptions& options) : device_(device) {
     if (!cv::videoio_registry::hasBackend(cv::CAP_V4L2)) {
-      fail(device, ": this OpenCV was built without V4L2, which reads cameras");
+      fail(device, ": OpenCV was built without V4L2, which is needed for cameras");
     }
     check_device(device);
     if (!capture_.open(device, cv::CAP_V4L2)) {
-      fail(device, ": this is no camera, or another program has it, or its pictures are of a kind not known here");
+      fail(device, ": this is not a camera, it is in use, or its image format is not supported");
     }
-    // A wish each: the driver takes what is nearest. Compressed pictures, since USB is too slow for others.
+    // The driver chooses the nearest mode. Compressed images, because USB is too slow for raw ones.
     capture_.set(cv::CAP_PROP_FOURCC, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'));
     capture_.set(cv::CAP_PROP_FRAME_WIDTH, options.camera_width);
     capture_.set(cv::CAP_PROP_FRAME_HEIGHT, options.camera_height);
-    capture_.set(cv::CAP_PROP_BUFFERSIZE, 2);  // what is old is of no use
+    capture_.set(cv::CAP_PROP_BUFFERSIZE, 2);  // low latency
     width_ = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH));
     height_ = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT));
     layout_ = find_layout(device, width_, height_, options.layout);
@@ -73,7 +73,7 @@ class CameraSource final : public FrameSource {
     pair.time_s = system_time(1e-3 * capture_.get(cv::CAP_PROP_POS_MSEC));
     cv::Mat picture;
     if (!capture_.retrieve(picture) || picture.cols != width_ || picture.rows != height_) {
-      pair.refused = "the camera's picture cannot be decoded";
+      pair.error = "the image of the camera cannot be decoded";
     } else {
       split_views(device_, picture, layout_, pair);
     }
@@ -96,7 +96,7 @@ class CameraSource final : public FrameSource {
 
  private:
   void grab() {
-    if (!capture_.grab()) fail(device_, ": the camera gives no more pictures; was it unplugged?");
+    if (!capture_.grab()) fail(device_, ": the camera does not deliver images any more; was it unplugged?");
   }
 
   std::string device_;

@@ -18,7 +18,7 @@ struct SubFolders {
   const char* right;
 };
 
-/// Colour before grey where a recording has both.
+/// Colour is preferred to grey.
 constexpr std::array layouts = {SubFolders{"left", "right"},
                                 SubFolders{"image_2", "image_3"},
                                 SubFolders{"image_02/data", "image_03/data"},
@@ -27,7 +27,7 @@ constexpr std::array layouts = {SubFolders{"left", "right"},
                                 SubFolders{"cam0/data", "cam1/data"},
                                 SubFolders{"mav0/cam0/data", "mav0/cam1/data"}};
 
-/// How names in one folder tell the side.
+/// Names of the sides in a folder with both views: prefix or suffix.
 struct SideNames {
   const char* left;
   const char* right;
@@ -61,7 +61,7 @@ std::vector<ViewFile> images_in(const fs::path& folder) {
   return views;
 }
 
-/// What is left of a name without its side ("L0001" and "R0001" are both "0001"), or nothing when it names the other.
+/// Returns the name without its side ("L0001" and "R0001" are both "0001"), or nullopt if it does not name that side.
 std::optional<std::string> without_side(const std::string& stem, const std::string& side, bool at_end) {
   if (stem.size() < side.size()) return std::nullopt;
   const std::size_t at = at_end ? stem.size() - side.size() : 0;
@@ -85,7 +85,7 @@ bool share_a_key(const std::vector<ViewFile>& left, const std::vector<ViewFile>&
   return std::any_of(left.begin(), left.end(), [&](const ViewFile& view) { return keys.count(view.key) > 0; });
 }
 
-/// Names that differ by the camera ("left0001", "right0001") have their numbers in common.
+/// Uses the number as key if the names differ by camera ("left0001", "right0001").
 void key_by_number(std::vector<ViewFile>& views) {
   for (ViewFile& view : views) {
     const auto last = view.stem.find_last_of("0123456789");
@@ -97,7 +97,7 @@ void key_by_number(std::vector<ViewFile>& views) {
   }
 }
 
-/// Times that lie beside the images: times.txt of KITTI's odometry and of `synth`, timestamps.txt of KITTI's raw data.
+/// Finds the file of times: times.txt of KITTI odometry and `synth`, timestamps.txt of KITTI raw data.
 std::optional<fs::path> times_file(const fs::path& folder, const fs::path& left) {
   for (const fs::path& file :
        {folder / "times.txt", left / "times.txt", left.parent_path() / "timestamps.txt", left / "timestamps.txt"}) {
@@ -106,7 +106,7 @@ std::optional<fs::path> times_file(const fs::path& folder, const fs::path& left)
   return std::nullopt;
 }
 
-/// Times of the left images, in their order. A pair without a left image has none.
+/// Assigns the times to the left images in order. A pair without a left image has none.
 void set_times(std::vector<ImagePair>& pairs, const std::vector<double>& times) {
   auto time = times.begin();
   for (ImagePair& pair : pairs) {
@@ -117,8 +117,8 @@ void set_times(std::vector<ImagePair>& pairs, const std::vector<double>& times) 
 void add_times(std::vector<ImagePair>& pairs, std::size_t left_images, const std::optional<fs::path>& file,
                const SourceOptions& options) {
   if (options.rate_hz > 0) {
-    double place = 0;
-    for (ImagePair& pair : pairs) pair.time_s = place++ / options.rate_hz;
+    double index = 0;
+    for (ImagePair& pair : pairs) pair.time_s = index++ / options.rate_hz;
   } else if (file) {
     set_times(pairs, read_times(*file, left_images));
   }
@@ -129,7 +129,7 @@ std::unique_ptr<FrameSource> folder_pair(const fs::path& folder, const fs::path&
   std::vector<ViewFile> left = images_in(left_folder);
   std::vector<ViewFile> right = images_in(right_folder);
   for (const auto& [views, in] : {std::pair(&left, &left_folder), std::pair(&right, &right_folder)}) {
-    if (views->empty()) fail(in->string(), ": holds no image (PNG, JPEG, TIFF, PGM or PPM)");
+    if (views->empty()) fail(in->string(), ": there is no image (PNG, JPEG, TIFF, PGM or PPM) in this folder");
   }
   const bool by_time = left[0].time_s && right[0].time_s;
   if (!by_time && !share_a_key(left, right)) {
@@ -137,7 +137,7 @@ std::unique_ptr<FrameSource> folder_pair(const fs::path& folder, const fs::path&
     key_by_number(right);
     if (!share_a_key(left, right)) {
       fail(left_folder.string(), " and ", right_folder.string(), " have no names in common, ", left[0].stem, " and ",
-           right[0].stem, " for example; images of a pair must have one name or one number");
+           right[0].stem, " for example; both images of a pair must have the same name or number");
     }
   }
   const std::size_t left_images = left.size();
@@ -158,7 +158,7 @@ std::unique_ptr<FrameSource> one_folder(const fs::path& folder, const SourceOpti
     add_times(pairs, left_images, times_file(folder, folder), options);
     return std::make_unique<ImagePairs>(std::move(pairs), "folder");
   }
-  fail(folder.string(), ": no stereo pairs were found in it; there must be folders left/ right/, image_2/ image_3/, ",
+  fail(folder.string(), ": there are no stereo pairs in this folder; it must contain left/ right/, image_2/ image_3/, ",
        "image_0/ image_1/ or cam0/data cam1/data, or images named L… and R…");
 }
 

@@ -23,7 +23,7 @@ std::optional<double> whole_number(const std::string& text) {
   return value;
 }
 
-/// "2011-09-26 13:02:25.964389445", or with a T between.
+/// Parses "2011-09-26 13:02:25.964389445", also with a T.
 std::optional<double> date_time(const std::string& text) {
   tm date{};
   const char* rest = ::strptime(text.c_str(), "%Y-%m-%d", &date);
@@ -70,7 +70,7 @@ std::vector<double> read_times(const std::filesystem::path& file, std::size_t co
     const auto time = seconds ? seconds : date_time(text);
     if (!time) {
       fail(file.string(), ", line ", number, ": \"", text,
-           "\" is no time; seconds or YYYY-MM-DD hh:mm:ss.fff are taken");
+           "\" is not a time; it must be seconds or YYYY-MM-DD hh:mm:ss.fff");
     }
     times.push_back(*time);
   }

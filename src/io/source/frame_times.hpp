@@ -7,12 +7,12 @@
 
 namespace roadstereo::io {
 
-/// The time that a file name of a recording tells, seconds since 1970: 19, 16 or 13 digits (nano-, micro-,
-/// milliseconds, as EuRoC has them) or seconds with a decimal point. Nothing for other names: a number is no time.
+/// Parses a file name that is a time, seconds since 1970: 19, 16 or 13 digits (nano-, micro-, milliseconds, EuRoC) or
+/// seconds with a decimal point. Returns nullopt for other names, e.g. frame numbers.
 std::optional<double> time_of_name(const std::string& stem);
 
-/// One time a line: seconds, or a date and time of day (UTC) as KITTI's timestamps.txt has them. Throws Error naming
-/// file and line when one is neither, and when there are not `count` of them.
+/// Reads one time per line: seconds, or date and time of day (UTC, KITTI's timestamps.txt). Throws Error naming file
+/// and line if one is neither, or if their number is not `count`.
 std::vector<double> read_times(const std::filesystem::path& file, std::size_t count);
 
 }  // namespace roadstereo::io

@@ -10,7 +10,7 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr GstClockTime slice = 100 * GST_MSECOND;  // between looks at what the pipeline says
+constexpr GstClockTime slice = 100 * GST_MSECOND;  // between checks of the message bus
 constexpr int max_slices = 100;
 
 struct ErrorFree {
@@ -32,7 +32,7 @@ GstElement* find_sink(GstElement* pipeline) {
   return sink;
 }
 
-/// A copy of the picture; empty when it is none.
+/// Copies the image; empty if it is none.
 cv::Mat copy_samples(GstSample* sample) {
   GstVideoInfo info;
   const GstCaps* caps = gst_sample_get_caps(sample);
@@ -73,17 +73,17 @@ void GStreamerPipeline::parse(const std::string& text) {
   }
   if (parsed != nullptr) pipeline_.reset(GST_ELEMENT(gst_object_ref_sink(parsed)));
   const std::unique_ptr<GError, ErrorFree> error(raw_error);
-  if (error != nullptr) fail(name_, " is refused by GStreamer: ", error->message);
-  if (pipeline_ == nullptr || !GST_IS_BIN(pipeline_.get())) fail(name_, " is no pipeline to GStreamer");
+  if (error != nullptr) fail(name_, " is rejected by GStreamer: ", error->message);
+  if (pipeline_ == nullptr || !GST_IS_BIN(pipeline_.get())) fail(name_, " is not a GStreamer pipeline");
   GstElement* sink = find_sink(pipeline_.get());
-  if (sink == nullptr) fail(name_, " has no appsink, though the word is in it");
+  if (sink == nullptr) fail(name_, " contains the word appsink, but has no such element");
   sink_.reset(GST_APP_SINK(sink));
   GstCaps* caps = gst_caps_from_string("video/x-raw, format=(string){ BGR, GRAY8 }");
   gst_app_sink_set_caps(sink_.get(), caps);
   gst_caps_unref(caps);
 }
 
-/// Paused first: only then GStreamer says whether a pipeline is live, that is, has nothing to show while it waits.
+/// Pauses first: only then GStreamer reports whether the pipeline is live, i.e. has no preroll.
 void GStreamerPipeline::start(bool drop_when_live) {
   gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
   GstStateChangeReturn state = GST_STATE_CHANGE_ASYNC;
@@ -91,7 +91,7 @@ void GStreamerPipeline::start(bool drop_when_live) {
     state = gst_element_get_state(pipeline_.get(), nullptr, nullptr, slice);
     throw_failure();
   }
-  if (state == GST_STATE_CHANGE_ASYNC) fail(name_, " gives no picture within ten seconds");
+  if (state == GST_STATE_CHANGE_ASYNC) fail(name_, " delivers no image within ten seconds");
   live_ = state == GST_STATE_CHANGE_NO_PREROLL;
   if (drop_when_live) gst_app_sink_set_drop(sink_.get(), live_ ? TRUE : FALSE);
   const bool failed = state == GST_STATE_CHANGE_FAILURE ||
@@ -110,7 +110,7 @@ void GStreamerPipeline::throw_failure() const {
   const std::string element = GST_OBJECT_NAME(GST_MESSAGE_SRC(message));
   gst_message_unref(message);
   const std::unique_ptr<GError, ErrorFree> error(raw_error);
-  fail(name_, " has failed: ", element, " says: ", error->message);
+  fail(name_, " has failed: ", element, ": ", error->message);
 }
 
 double GStreamerPipeline::taken_at(const GstBuffer* buffer) const {
@@ -129,11 +129,12 @@ std::optional<PipelinePicture> GStreamerPipeline::pull() {
     const std::unique_ptr<GstSample, SampleUnref> sample(gst_app_sink_try_pull_sample(sink_.get(), slice));
     if (sample != nullptr)
       return PipelinePicture{copy_samples(sample.get()), taken_at(gst_sample_get_buffer(sample.get()))};
-    const bool ended = gst_app_sink_is_eos(sink_.get()) == TRUE;  // before looking, since an end follows a failure
+    const bool ended =
+        gst_app_sink_is_eos(sink_.get()) == TRUE;  // checked before the errors, because an error is followed by an end
     throw_failure();
     if (ended) return std::nullopt;
   }
-  fail(name_, " has given no picture for ten seconds");
+  fail(name_, " has delivered no image for ten seconds");
 }
 
 }  // namespace roadstereo::io

@@ -9,28 +9,28 @@
 
 namespace roadstereo::io {
 
-/// A picture out of a pipeline.
+/// An image of a pipeline.
 struct PipelinePicture {
   cv::Mat samples;    ///< BGR or grey, 8 bits
-  double time_s = 0;  ///< since 1970: when it was taken, of a live pipeline; else when it came
+  double time_s = 0;  ///< since 1970: capture time if live, else time of arrival
 };
 
-/// A GStreamer pipeline that ends in an appsink. OpenCV's own waits for ever for one of which an element is missing,
-/// and keeps for itself what GStreamer says.
+/// A GStreamer pipeline that ends in an appsink. Used instead of OpenCV's capture, which hangs if an element is missing
+/// and does not report GStreamer's errors.
 class GStreamerPipeline {
  public:
-  /// Opens and starts it; adds " ! videoconvert ! appsink max-buffers=2 sync=false" when it has no appsink, which drops
-  /// pictures that nobody takes when the pipeline is live. Throws Error with what GStreamer says when it is no
-  /// pipeline, fails, or gives nothing within ten seconds.
+  /// Opens and starts the pipeline; appends " ! videoconvert ! appsink max-buffers=2 sync=false" if it has no appsink.
+  /// A live pipeline drops images that are not read in time. Throws Error with GStreamer's message if the text is not a
+  /// pipeline, or if it fails or delivers nothing within ten seconds.
   explicit GStreamerPipeline(const std::string& text);
 
-  /// The next picture; nothing when the pipeline has ended. Throws Error when it has failed, or gives nothing for ten
-  /// seconds.
+  /// Returns the next image, or nullopt at the end. Throws Error if the pipeline has failed, or delivers nothing for
+  /// ten seconds.
   std::optional<PipelinePicture> pull();
 
-  /// A camera, or another source that does not wait.
+  /// Whether the source is a camera or another one that does not wait.
   bool live() const { return live_; }
-  /// The text that opens messages: the pipeline "…".
+  /// Start of error messages: the pipeline "…".
   const std::string& name() const { return name_; }
 
  private:

@@ -6,7 +6,7 @@
 namespace roadstereo::io {
 namespace {
 
-/// A pipeline that plays a file ends like one; one with a camera that is gone fails.
+/// A pipeline that plays a file ends; one whose camera is unplugged fails.
 class GStreamerSource final : public FrameSource {
  public:
   GStreamerSource(const std::string& pipeline, const SourceOptions& options)
@@ -18,7 +18,7 @@ class GStreamerSource final : public FrameSource {
     SourcePair pair = numbered_pair(index_++, 0);
     pair.time_s = picture->time_s;
     if (picture->samples.empty()) {
-      pair.refused = "what came out of the pipeline is no picture";
+      pair.error = "the output of the pipeline is not an image";
       return pair;
     }
     const cv::Mat& samples = picture->samples;

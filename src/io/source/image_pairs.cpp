@@ -18,17 +18,17 @@ std::optional<SourcePair> ImagePairs::next() {
   pair.index = static_cast<std::int64_t>(next_++);
   pair.name = files.name;
   pair.time_s = files.time_s;
-  pair.refused = files.refused;
-  if (!pair.refused.empty()) return pair;
+  pair.error = files.error;
+  if (!pair.error.empty()) return pair;
   try {
     pair.left = read_frame(files.left);
     pair.right = read_frame(files.right);
     if (pair.left.width != pair.right.width || pair.left.height != pair.right.height) {
-      fail("left and right image differ in size: ", files.left, " has ", pair.left.width, "×", pair.left.height,
+      fail("left and right image have different sizes: ", files.left, " has ", pair.left.width, "×", pair.left.height,
            " pixels, ", files.right, " has ", pair.right.width, "×", pair.right.height);
     }
   } catch (const Error& error) {
-    pair.refused = error.what();
+    pair.error = error.what();
   }
   return pair;
 }

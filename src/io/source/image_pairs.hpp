@@ -8,16 +8,16 @@
 
 namespace roadstereo::io {
 
-/// One pair of image files, or the reason why there is none.
+/// One pair of image files, or the reason why it is incomplete.
 struct ImagePair {
   std::string name;
   std::string left;
   std::string right;
   double time_s = std::numeric_limits<double>::quiet_NaN();
-  std::string refused;
+  std::string error;
 };
 
-/// Pairs of image files, decoded one after the other.
+/// Reads pairs of image files.
 class ImagePairs final : public FrameSource {
  public:
   ImagePairs(std::vector<ImagePair> pairs, std::string kind);

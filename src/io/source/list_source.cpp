@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-/// The words of a line, between blanks; with a comma or semicolon in it, between those. Quotes hold a word together.
+/// Splits a line at commas or semicolons if there are any, else at blanks. Quotes protect separators.
 std::vector<std::string> words_of(const std::string& line) {
   const char* const separators = line.find_first_of(",;") != std::string::npos ? ",;" : " \t";
   const bool blanks_separate = separators[0] == ' ';
@@ -34,14 +34,14 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
-/// The names of columns that tables begin with.
+/// Whether the line is a header "left right …".
 bool is_heading(const std::vector<std::string>& words) {
   return words.size() >= 2 && words[0] == "left" && words[1] == "right";
 }
 
 ImagePair pair_of(const std::vector<std::string>& words, const std::string& where, const fs::path& folder) {
   if (words.size() < 2 || words.size() > 3 || words[0].empty() || words[1].empty()) {
-    fail(where, ": \"left right [seconds]\" is expected, but there are ", words.size(), " words");
+    fail(where, ": \"left right [seconds]\" is expected, but the line has ", words.size(), " words");
   }
   ImagePair pair;
   pair.left = (folder / words[0]).string();
@@ -51,7 +51,7 @@ ImagePair pair_of(const std::vector<std::string>& words, const std::string& wher
   const char* end = words[2].data() + words[2].size();
   const auto [read_to, error] = std::from_chars(words[2].data(), end, pair.time_s);
   if (error != std::errc{} || read_to != end || !std::isfinite(pair.time_s))
-    fail(where, ": \"", words[2], "\" is no time in seconds");
+    fail(where, ": \"", words[2], "\" is not a time in seconds");
   return pair;
 }
 
@@ -69,10 +69,10 @@ std::unique_ptr<FrameSource> open_list(const std::string& file, const SourceOpti
     if (words.empty() || words[0].empty() || words[0][0] == '#' || (pairs.empty() && is_heading(words))) continue;
     pairs.push_back(pair_of(words, file + ", line " + std::to_string(number), fs::path(file).parent_path()));
   }
-  if (pairs.empty()) fail(file, ": lists no pairs; a line is \"left right [seconds]\"");
+  if (pairs.empty()) fail(file, ": the list has no pairs; a line must be \"left right [seconds]\"");
   if (options.rate_hz > 0) {
-    double place = 0;
-    for (ImagePair& pair : pairs) pair.time_s = place++ / options.rate_hz;
+    double index = 0;
+    for (ImagePair& pair : pairs) pair.time_s = index++ / options.rate_hz;
   }
   return std::make_unique<ImagePairs>(std::move(pairs), "list");
 }

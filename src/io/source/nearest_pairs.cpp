@@ -13,7 +13,7 @@ void insert(std::deque<TimedMessage>& waiting, TimedMessage message) {
   waiting.insert(std::upper_bound(waiting.begin(), waiting.end(), message.stamp_ns, later), std::move(message));
 }
 
-/// To the microsecond.
+/// Formats milliseconds with microsecond resolution.
 double milliseconds(std::int64_t nanoseconds) {
   return 1e-3 * std::round(1e-3 * static_cast<double>(nanoseconds));
 }
@@ -37,7 +37,7 @@ TimedMessage NearestPairs::Side::take() {
   return message;
 }
 
-/// Two of each side: the partner, and whether the next is nearer.
+/// Needs two messages of each side: the partner and the next one for comparison.
 bool NearestPairs::can_tell() const {
   const std::size_t left = left_.waiting.size();
   const std::size_t right = right_.waiting.size();
@@ -59,15 +59,15 @@ MatchedMessages NearestPairs::alone(bool is_left) {
   TimedMessage message = (is_left ? left_ : right_).take();
   const std::optional<std::int64_t> distance = distance_ns(message.stamp_ns, is_left ? right_ : left_);
   std::ostringstream reason;
-  reason << "the " << (is_left ? "left" : "right") << " picture has no partner";
+  reason << "the " << (is_left ? "left" : "right") << " image is unpaired";
   if (distance) {
     reason << ": the nearest " << (is_left ? "right" : "left") << " one is " << milliseconds(*distance) << " ms away"
-           << (*distance <= limit_ns_ ? ", and belongs to another" : ", more than ");
+           << (*distance <= limit_ns_ ? ", but is paired with another" : ", more than ");
     if (*distance > limit_ns_) reason << milliseconds(limit_ns_) << " ms";
   }
   MatchedMessages result;
   (is_left ? result.left : result.right) = std::move(message);
-  result.refused = reason.str();
+  result.error = reason.str();
   return result;
 }
 

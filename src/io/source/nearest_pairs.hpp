@@ -8,22 +8,21 @@
 
 namespace roadstereo::io {
 
-/// A message as it lies in the recording, and when its picture was taken, nanoseconds.
+/// A serialised message and the time stamp of its image, nanoseconds.
 struct TimedMessage {
   std::int64_t stamp_ns = 0;
   std::vector<std::uint8_t> bytes;
 };
 
-/// A left and a right message; or one of them that has no partner, and the reason.
+/// A left and a right message, or an unpaired one with the reason.
 struct MatchedMessages {
   std::optional<TimedMessage> left;
   std::optional<TimedMessage> right;
-  std::string refused;
+  std::string error;
 };
 
-/// Pairs two streams of messages by their stamps: each goes with the other's nearest, if that is not nearer to another
-/// and not farther than a limit. Pairs come in the order of time. Keeps a few messages only: a stream may lag behind
-/// the other by up to `max_waiting`.
+/// Pairs two streams of messages by time stamp: mutual nearest neighbours within a limit. Pairs are returned in
+/// chronological order. One stream may lag behind the other by up to `max_waiting` messages.
 class NearestPairs {
  public:
   static constexpr std::size_t max_waiting = 32;  ///< messages of one side
@@ -32,15 +31,15 @@ class NearestPairs {
 
   void add_left(TimedMessage message);
   void add_right(TimedMessage message);
-  /// No more come.
+  /// Marks the end of both streams.
   void finish() { finished_ = true; }
 
-  /// The next pair or message without partner; nothing while more messages are needed to tell, and at the end.
+  /// Returns the next pair or unpaired message, or nullopt if more messages are needed or at the end.
   std::optional<MatchedMessages> next();
 
  private:
   struct Side {
-    std::deque<TimedMessage> waiting;  // in the order of stamps
+    std::deque<TimedMessage> waiting;  // sorted by time stamp
     std::optional<std::int64_t> last_stamp_ns;
     TimedMessage take();
   };

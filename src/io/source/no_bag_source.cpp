@@ -4,7 +4,7 @@
 namespace roadstereo::io {
 
 std::unique_ptr<FrameSource> open_bag(const std::string& file, const SourceOptions&) {
-  fail(file, ": this program was built without ROS bags; Debian's librosbag-storage-dev is needed when it is built");
+  fail(file, ": this build does not support ROS bags; it needs the package librosbag-storage-dev");
 }
 
 }  // namespace roadstereo::io

@@ -6,8 +6,8 @@
 
 namespace roadstereo::io {
 
-/// A pair that has its place, the place as its name in six digits, and its time from the first pair on; no time when
-/// `rate_hz` is 0. The views are still empty.
+/// Returns a pair without views: its index, the index in six digits as name, and its time since the first pair; NaN if
+/// `rate_hz` is 0.
 SourcePair numbered_pair(std::int64_t index, double rate_hz);
 
 }  // namespace roadstereo::io

@@ -51,10 +51,11 @@ Kind kind_of(const std::string& name) {
     fail(name, ": no such file, folder, camera (/dev/video0) or GStreamer pipeline (a ! b)");
   }
   if (extension == ".svo" || extension == ".svo2") {
-    fail(name, ": ZED's own SVO format needs its SDK; export it as a side-by-side video first");
+    fail(name, ": SVO files of ZED cameras need the ZED SDK; export them as side-by-side video first");
   }
-  fail(name, ": is no recording: a folder, a list (.txt, .csv), a video (.mp4, .avi, .mkv, …), a ROS bag (.bag), a ",
-       "camera (/dev/video0) or a GStreamer pipeline is taken; of one pair give both images, left and right");
+  fail(
+      name, ": unknown source type; supported are a folder, a list (.txt, .csv), a video (.mp4, .avi, .mkv, …), a ROS ",
+      "bag (.bag), a camera (/dev/video0) and a GStreamer pipeline; for a single pair give two images, left and right");
 }
 
 std::unique_ptr<FrameSource> open_one(const std::string& name, const SourceOptions& options) {
@@ -72,7 +73,7 @@ std::unique_ptr<FrameSource> open_one(const std::string& name, const SourceOptio
     case Kind::bag:
       return open_bag(name, options);
   }
-  fail(name, ": not a source");
+  fail(name, ": unknown source type");
 }
 
 std::unique_ptr<FrameSource> open_two(const std::string& left, const std::string& right, const SourceOptions& options) {
@@ -81,7 +82,7 @@ std::unique_ptr<FrameSource> open_two(const std::string& left, const std::string
     if (kind == Kind::folder) return open_two_folders(left, right, options);
     if (kind == Kind::video) return open_two_videos(left, right, options);
   }
-  fail(left, " and ", right, ": two names must be two folders or two videos, left and right");
+  fail(left, " and ", right, ": two sources must be two folders or two videos, left and right");
 }
 
 }  // namespace
@@ -99,7 +100,7 @@ void SourceOptions::validate() const {
   require_range("source", "camera_width", camera_width, 64, 16384);
   require_range("source", "camera_height", camera_height, 64, 16384);
   if (!topics.empty() && topics.size() != 2) {
-    fail("source.topics has ", topics.size(), " names; it must be the left and the right image topic");
+    fail("source.topics has ", topics.size(), " names; it must have two: left and right image topic");
   }
 }
 
@@ -111,7 +112,7 @@ std::unique_ptr<FrameSource> open_source(const std::vector<std::string>& names, 
   options.validate();
   if (names.size() == 1) return open_one(names[0], options);
   if (names.size() == 2) return open_two(names[0], names[1], options);
-  fail("a source is one name, or two: left and right; got ", names.size());
+  fail("a source has one name, or two: left and right; got ", names.size());
 }
 
 }  // namespace roadstereo::io

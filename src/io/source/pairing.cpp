@@ -12,7 +12,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// The digits that begin at `at`, leading zeros left out; moves `at` behind them.
+/// Returns the digits from `at` on without leading zeros; advances `at`.
 std::string number_at(const std::string& text, std::size_t& at) {
   const std::size_t first = at;
   while (at < text.size() && is_digit(text[at])) ++at;
@@ -37,7 +37,7 @@ ImagePair unpaired(const ViewFile& view, Side side) {
   pair.name = view.stem;
   (left ? pair.left : pair.right) = view.path;
   pair.time_s = view.time_s.value_or(pair.time_s);
-  pair.refused = view.path + (left ? " has no right image" : " has no left image");
+  pair.error = view.path + (left ? " has no right image" : " has no left image");
   return pair;
 }
 
@@ -57,7 +57,7 @@ std::vector<ImagePair> pair_by_key(const std::vector<ViewFile>& left, const std:
   return pairs;
 }
 
-/// Whether the image after `view` is nearer to `time` than `view` is.
+/// Whether the image after `view` is nearer in time.
 bool next_is_nearer(std::vector<ViewFile>::const_iterator view, std::vector<ViewFile>::const_iterator end,
                     double time) {
   const auto after = std::next(view);
@@ -65,10 +65,9 @@ bool next_is_nearer(std::vector<ViewFile>::const_iterator view, std::vector<View
 }
 
 std::string apart_text(double difference_s, double limit_s) {
-  const double difference_ms = std::round(1e5 * std::abs(difference_s)) / 100;  // as exact as seconds since 1970 are
+  const double difference_ms = std::round(1e5 * std::abs(difference_s)) / 100;  // resolution of seconds since 1970
   std::ostringstream text;
-  text << "the views were taken " << difference_ms << " ms apart; at most " << 1e3 * limit_s
-       << " ms are taken for a pair";
+  text << "the views are " << difference_ms << " ms apart; the limit is " << 1e3 * limit_s << " ms";
   return text.str();
 }
 
@@ -85,7 +84,7 @@ std::vector<ImagePair> pair_by_time(const std::vector<ViewFile>& left, const std
       pairs.push_back(unpaired(*r++, Side::right));
     } else {
       pairs.push_back(whole_pair(*l, *r));
-      if (std::abs(difference) > limit_s) pairs.back().refused = apart_text(difference, limit_s);
+      if (std::abs(difference) > limit_s) pairs.back().error = apart_text(difference, limit_s);
       ++l;
       ++r;
     }

@@ -12,15 +12,15 @@ namespace roadstereo::io {
 struct ViewFile {
   std::string path;
   std::string stem;              ///< file name without extension
-  std::string key;               ///< what both views of a pair have in common
-  std::optional<double> time_s;  ///< as its name tells
+  std::string key;               ///< equal for both views of a pair
+  std::optional<double> time_s;  ///< parsed from the name
 };
 
-/// Orders names as people count: "frame2" before "frame10".
+/// Natural order of names: "frame2" before "frame10".
 bool natural_less(const std::string& one, const std::string& other);
 
-/// Pairs the images of equal key; where both cameras name their images by the time, those nearest in time. What has no
-/// partner, or one that is further away than `max_time_difference_s`, is refused.
+/// Pairs images with equal keys, or nearest in time if both cameras name their images by time. Unpaired images and
+/// pairs farther apart than `max_time_difference_s` have `error` set.
 std::vector<ImagePair> pair_views(std::vector<ViewFile> left, std::vector<ViewFile> right,
                                   double max_time_difference_s);
 

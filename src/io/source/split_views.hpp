@@ -7,15 +7,14 @@
 
 namespace roadstereo::io {
 
-/// How a picture of that size holds both views: `wanted`, or for `automatic` the one layout whose views have the shape
-/// of a camera's, 5:4 … 2.4:1. Throws Error that begins with `source` when no layout has, or the picture cannot be
-/// halved. Never `automatic`.
+/// Returns the layout of an image of that size: `wanted`, or for `automatic` the layout whose views have an aspect
+/// ratio of 5:4 … 2.4:1. Throws Error that starts with `source` if there is none, or if the size is odd.
 StereoLayout find_layout(const std::string& source, int width, int height, StereoLayout wanted);
 
-/// A picture as a frame: one channel is grey, three are BGR, four BGRA; 8 or 16 bits. Throws Error naming `source`.
+/// Converts a matrix of 8 or 16 bits to a frame: 1 channel grey, 3 BGR, 4 BGRA. Throws Error naming `source`.
 Frame picture_frame(const std::string& source, const cv::Mat& picture);
 
-/// Copies the halves of the picture into the pair's views. The layout fits the picture, see `find_layout`.
+/// Copies the halves of the image to the views of the pair. `layout` is a result of `find_layout`.
 void split_views(const std::string& source, const cv::Mat& picture, StereoLayout layout, SourcePair& pair);
 
 }  // namespace roadstereo::io

@@ -17,12 +17,12 @@ void check_sizes(const VideoFile& left, const VideoFile& right) {
        left.width(), "×", left.height());
 }
 
-/// The pictures are paired by number, which only means the same time at the same rate.
+/// Pairing by frame number requires equal rates.
 void check_rates(const VideoFile& left, const VideoFile& right) {
-  constexpr double tolerance = 1e-4;  // containers round rates to ticks
+  constexpr double tolerance = 1e-4;  // containers round rates
   if (std::abs(left.rate_hz() - right.rate_hz()) <= tolerance * left.rate_hz()) return;
-  fail(right.name(), ": the video has ", right.rate_hz(), " pictures a second, but ", left.name(), " has ",
-       left.rate_hz(), "; where both cameras were triggered together all the same, --rate says how often");
+  fail(right.name(), ": the video has ", right.rate_hz(), " frames per second, but ", left.name(), " has ",
+       left.rate_hz(), "; if both cameras were triggered together, set the rate with --rate");
 }
 
 class TwoVideosSource final : public FrameSource {
@@ -46,8 +46,8 @@ class TwoVideosSource final : public FrameSource {
     if (has_left && has_right) {
       read_views(pair);
     } else {
-      pair.refused = (has_left ? right_ : left_).name() + " has ended after " +
-                     std::to_string(std::min(left_.grabbed(), right_.grabbed())) + " pictures";
+      pair.error = (has_left ? right_ : left_).name() + " has ended after " +
+                   std::to_string(std::min(left_.grabbed(), right_.grabbed())) + " frames";
     }
     return pair;
   }
@@ -78,7 +78,7 @@ class TwoVideosSource final : public FrameSource {
     const cv::Mat left = left_.picture();
     const cv::Mat right = right_.picture();
     if (left.empty() || right.empty()) {
-      pair.refused = "the picture of " + (left.empty() ? left_ : right_).name() + " cannot be decoded";
+      pair.error = "the frame of " + (left.empty() ? left_ : right_).name() + " cannot be decoded";
       return;
     }
     pair.left = picture_frame(left_.name(), left);
@@ -89,8 +89,8 @@ class TwoVideosSource final : public FrameSource {
     const VideoFile& worse = left_.missing_pictures() >= right_.missing_pictures() ? left_ : right_;
     const std::int64_t missing = worse.missing_pictures();
     if (missing == 0) return std::nullopt;
-    pair.refused = worse.name() + " ends " + std::to_string(missing) + " pictures before its stated length of " +
-                   std::to_string(worse.grabbed() + missing) + "; it is damaged or was cut short";
+    pair.error = worse.name() + " ends " + std::to_string(missing) + " frames before its stated length of " +
+                 std::to_string(worse.grabbed() + missing) + "; it is damaged or truncated";
     return pair;
   }
 

@@ -16,7 +16,7 @@ void check_ordinary_file(const std::string& name) {
   const fs::file_status status = fs::status(name, error);
   if (status.type() == fs::file_type::not_found) fail(name, ": the file does not exist");
   if (error) fail(name, ": the file cannot be read: ", error.message());
-  if (!fs::is_regular_file(status)) fail(name, ": this is not an ordinary file");
+  if (!fs::is_regular_file(status)) fail(name, ": this is not a regular file");
   if (fs::file_size(name, error) == 0) fail(name, ": the file is empty");
 }
 
@@ -29,19 +29,17 @@ bool is_grey(const cv::VideoCapture& capture) {
 
 VideoFile::VideoFile(std::string name) : name_(std::move(name)) {
   if (!cv::videoio_registry::hasBackend(cv::CAP_FFMPEG)) {
-    fail(name_, ": this OpenCV was built without FFmpeg, which reads videos");
+    fail(name_, ": OpenCV was built without FFmpeg, which is needed for videos");
   }
   check_ordinary_file(name_);
-  // An absolute path, since FFmpeg takes "a:b.mp4" for a protocol.
+  // An absolute path, because FFmpeg takes "a:b.mp4" for a protocol.
   if (!capture_.open(fs::absolute(name_).string(), cv::CAP_FFMPEG)) {
-    fail(name_,
-         ": the video cannot be opened; it is damaged, was cut short while it was written, or is of a kind that ",
-         "FFmpeg does not know here");
+    fail(name_, ": the video cannot be opened; it is damaged, truncated, or of a format that FFmpeg does not support");
   }
   width_ = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH));
   height_ = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT));
-  if (width_ <= 0 || height_ <= 0) fail(name_, ": there are no pictures in the video");
-  constexpr double max_hz = 10000;  // beyond are the ticks of a clock
+  if (width_ <= 0 || height_ <= 0) fail(name_, ": the video has no frames");
+  constexpr double max_hz = 10000;  // higher values are clock ticks
   const double rate = capture_.get(cv::CAP_PROP_FPS);
   if (rate > 0 && rate <= max_hz) rate_hz_ = rate;
   constexpr double max_pictures = 1e12;
@@ -50,7 +48,7 @@ VideoFile::VideoFile(std::string name) : name_(std::move(name)) {
   grey_ = is_grey(capture_);
 }
 
-/// Behind a picture that cannot be decoded others may follow: OpenCV says the same as at the end.
+/// OpenCV reports a frame that cannot be decoded like the end of the video, but others may follow.
 bool VideoFile::find_next() {
   constexpr int max_lost = 64;
   for (int lost = 0; lost < max_lost; ++lost) {

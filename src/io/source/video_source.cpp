@@ -8,8 +8,7 @@
 namespace roadstereo::io {
 namespace {
 
-/// Times are those of a constant rate: FFmpeg's own, as OpenCV hands them out, belong to another picture where a codec
-/// reorders them.
+/// Times follow from a constant rate: FFmpeg's times, as OpenCV returns them, are wrong if the codec reorders frames.
 class VideoSource final : public FrameSource {
  public:
   VideoSource(const std::string& file, const SourceOptions& options)
@@ -26,7 +25,7 @@ class VideoSource final : public FrameSource {
     }
     const cv::Mat picture = video_.picture();
     if (picture.empty()) {
-      pair.refused = "the picture cannot be decoded";
+      pair.error = "the frame cannot be decoded";
     } else {
       split_views(video_.name(), picture, layout_, pair);
     }
@@ -52,8 +51,8 @@ class VideoSource final : public FrameSource {
   std::optional<SourcePair> early_end(SourcePair pair) const {
     const std::int64_t missing = video_.missing_pictures();
     if (missing == 0) return std::nullopt;
-    pair.refused = "the video ends " + std::to_string(missing) + " pictures before its stated length of " +
-                   std::to_string(video_.grabbed() + missing) + "; it is damaged or was cut short";
+    pair.error = "the video ends " + std::to_string(missing) + " frames before its stated length of " +
+                 std::to_string(video_.grabbed() + missing) + "; it is damaged or truncated";
     return pair;
   }
 

@@ -67,7 +67,7 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   frame.roll_rad = -0.1 / 3;
   frame.road = {1.0 / 3, 2.0 / 7, -1e-17};
   frame.warnings = {"a \"quoted\" word", "line\nend"};
-  frame.carried = {640, 360, DisparityPlane{1.0 / 3, 1e-300, 5}, 1.0 / 7, -0.3};
+  frame.pipeline_state = {640, 360, DisparityPlane{1.0 / 3, 1e-300, 5}, 1.0 / 7, -0.3};
   const FlightFrame back = read_flight_frame(flight_frame_json(frame));
   EXPECT_EQ(back.index, 7);
   EXPECT_EQ(back.time_s, frame.time_s);
@@ -76,8 +76,8 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   EXPECT_EQ(back.road.a2, frame.road.a2);
   EXPECT_TRUE(std::isnan(back.height_m));
   EXPECT_EQ(back.warnings, frame.warnings);
-  EXPECT_EQ(back.carried.road->a1, 1e-300);
-  EXPECT_EQ(back.carried.row_offset_px, -0.3);
+  EXPECT_EQ(back.pipeline_state.road->a1, 1e-300);
+  EXPECT_EQ(back.pipeline_state.row_offset_px, -0.3);
   ASSERT_EQ(back.damages.size(), 2U);
   EXPECT_EQ(back.damages[0].metrics->max_depth_m.value, 0.1 / 3);
   EXPECT_EQ(back.damages[0].metrics->severity, Severity::medium);
@@ -88,16 +88,16 @@ TEST(FlightFrameJson, RoundTripIsExact) {
 }
 
 TEST_F(FlightJournalFile, ResumesAfterCutLine) {
-  const Provenance facts{{"source", "a"}};
+  const Provenance provenance{{"source", "a"}};
   {
-    FlightJournal journal = FlightJournal::begin(file_, facts);
+    FlightJournal journal = FlightJournal::begin(file_, provenance);
     journal.append(frame_of(0, {}));
     journal.append(frame_of(1, {pothole(1, 1)}));
   }
   const std::string whole = text_of(file_);
   for (const std::size_t missing : {std::size_t{1}, std::size_t{2}, std::size_t{200}}) {
     fs::resize_file(file_, whole.size() - missing);
-    FlightJournal journal = FlightJournal::resume(file_, facts);
+    FlightJournal journal = FlightJournal::resume(file_, provenance);
     EXPECT_EQ(journal.frames(), 1);
     EXPECT_EQ(journal.last()->index, 0);
     journal.append(frame_of(1, {pothole(1, 1)}));
@@ -113,7 +113,7 @@ TEST_F(FlightJournalFile, RejectsOtherHeader) {
   EXPECT_EQ(FlightJournal::resume(file_, {{"source", "a"}, {"--every", "1"}}).frames(), 0);
   try {
     FlightJournal::resume(file_, {{"source", "a"}, {"--every", "2"}});
-    FAIL() << "other facts were taken";
+    FAIL() << "other provenance were taken";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("--every \"1\", not \"2\""), std::string::npos) << error.what();
   }
@@ -133,10 +133,10 @@ TEST_F(FlightJournalFile, RejectsOtherHeader) {
 TEST(FlightTables, QuotesCommasAndLeavesUnknownEmpty) {
   FlightFrame frame = frame_of(3, {});
   frame.name = "a,b";
-  frame.status = FrameStatus::refused;
+  frame.status = FrameStatus::rejected;
   frame.reason = "no \"right\" image";
   const std::string row = frames_csv_row(frame);
-  EXPECT_EQ(row.substr(0, 16), "3,\"a,b\",,refused");
+  EXPECT_EQ(row.substr(0, 16), "3,\"a,b\",,rejected");
   EXPECT_NE(row.find("\"no \"\"right\"\" image\"\r\n"), std::string::npos) << row;
   const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
   EXPECT_EQ(commas(row), commas(frames_csv_names()) + 1);  // the one in the name
@@ -189,7 +189,7 @@ TEST(FlightInventory, CutStartsNewDamages) {
   cut.road_tracked = false;
   EXPECT_EQ(inventory.add(cut), std::vector<std::int64_t>{2});
   FlightFrame refused = frame_of(2, {});
-  refused.status = FrameStatus::refused;
+  refused.status = FrameStatus::rejected;
   refused.road_tracked = false;
   inventory.add(refused);
   EXPECT_EQ(inventory.add(frame_of(3, {pothole(100, 100)})), std::vector<std::int64_t>{2})
@@ -225,10 +225,10 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   left.bytes.assign(64 * 48, 120);
   FlightReportInput input;
   input.title = "a <flight>";
-  input.facts = {{"Frames", "3"}};
+  input.properties = {{"Frames", "3"}};
   input.notices = {"1 of 3 frames have no result"};
   input.curves = {{0, 1, 2}, true, {1, FlightFrame::unknown, 2}, {3, 3, 3}, {0.1, 0.2, 0.1}};
-  input.strip = {{"first", frame_thumbnail(left.view(), map)}};
+  input.thumbnails = {{"first", frame_thumbnail(left.view(), map)}};
   input.worst.resize(1);
   input.worst[0].damage = {7, 3, 1, "frame 1", 0.5, damage};
   input.worst[0].jpeg = damage_picture(left.view(), map, damage);
@@ -236,8 +236,8 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   input.metric = true;
   const std::string html = flight_report(input);
   for (const char* part :
-       {"a &lt;flight&gt;", "1 of 3 frames", "The 1 worst of 12", "50.0\u00a0±\u00a01.0", "frame 1", "chip medium",
-        "alt=\"Roll, roll, deg\"", "alt=\"Height over the road, height, m\"", "data:image/jpeg;base64,"}) {
+       {"a &lt;flight&gt;", "1 of 3 frames", "The worst 1 of 12", "50.0\u00a0±\u00a01.0", "frame 1", "chip medium",
+        "alt=\"Roll, roll, deg\"", "alt=\"Height above the road, height, m\"", "data:image/jpeg;base64,"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(html.find("http"), std::string::npos);
@@ -246,7 +246,7 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   input.damages = 0;
   input.metric = false;
   const std::string clean = flight_report(input);
-  EXPECT_NE(clean.find("no damage found"), std::string::npos);
+  EXPECT_NE(clean.find("No damage found"), std::string::npos);
   EXPECT_NE(clean.find("Pixels only"), std::string::npos);
 }
 

@@ -38,7 +38,7 @@ std::vector<GeoFrame> two_frames() {
   known.index = 7;
   known.name = "strasse \"ä\".png";
   known.time_s = noon + 59.9996;  // to the millisecond: the next minute
-  known.place = Place{50.123456789, -8.00000001, 123.4567, 271.5};
+  known.position = GeoPosition{50.123456789, -8.00000001, 123.4567, 271.5};
   known.roll_rad = 0.1;
   known.height_m = 4.25;
   known.sigma_d_px = 0.5;
@@ -48,7 +48,7 @@ std::vector<GeoFrame> two_frames() {
   GeoFrame lost;
   lost.index = 8;
   lost.name = "b";
-  lost.status = "refused: no partner";
+  lost.status = "rejected: unpaired";
   return {known, lost};
 }
 
@@ -58,7 +58,7 @@ std::vector<GeoDamage> two_damages() {
   metric.frame = 7;
   metric.frame_name = "a";
   metric.time_s = noon;
-  metric.place = Place{-33.5, 179.9999999999, unknown, 0};
+  metric.position = GeoPosition{-33.5, 179.9999999999, unknown, 0};
   metric.damage.id = 3;
   metric.damage.kind = DamageKind::depression;
   metric.damage.pixels = 1234;
@@ -160,7 +160,7 @@ TEST(GeoJson, NoFramesGiveEmptyCollection) {
 TEST(GeoJson, PositionsHaveSevenDecimals) {
   GeoFrame frame;
   for (const double lat_deg : {1.0 / 3, -1e-9, -89.99999999, 12.00000005}) {
-    frame.place = Place{lat_deg, lat_deg, unknown, 0};
+    frame.position = GeoPosition{lat_deg, lat_deg, unknown, 0};
     const std::string text = frames_geojson(std::span(&frame, 1));
     EXPECT_FALSE(std::regex_search(text, std::regex(R"(coordinates":\[[^\]]*\.\d{8})"))) << text;
     EXPECT_FALSE(std::regex_search(text, std::regex(R"(-0\.0[,\]])"))) << text;
@@ -249,7 +249,7 @@ TEST_F(GeoPackage, WritesFrames) {
   EXPECT_EQ(lost->GetGeometryRef(), nullptr);
   EXPECT_TRUE(lost->IsFieldNull(lost->GetFieldIndex("time_utc")));
   EXPECT_TRUE(lost->IsFieldNull(lost->GetFieldIndex("height_m")));
-  EXPECT_STREQ(lost->GetFieldAsString("status"), "refused: no partner");
+  EXPECT_STREQ(lost->GetFieldAsString("status"), "rejected: unpaired");
 }
 
 TEST_F(GeoPackage, WritesDamages) {
@@ -319,7 +319,7 @@ TEST(GdalErrors, BecomeErrors) {
       errors.require(true, "writing");
       ADD_FAILURE() << "no error";
     } catch (const SystemError& error) {
-      EXPECT_STREQ(error.what(), "cannot make the GeoPackage: writing failed: no room left");
+      EXPECT_STREQ(error.what(), "cannot write the GeoPackage: writing failed: no room left");
     }
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");

@@ -46,7 +46,7 @@ TrackPoint point_at(double time_s, double east_m, double north_m) {
 }
 
 double heading_at(const Track& track, double time_s) {
-  return place_at(track, noon + time_s).value().heading_deg;
+  return position_at(track, noon + time_s).value().heading_deg;
 }
 
 double turn_deg(double from_deg, double to_deg) {
@@ -55,40 +55,41 @@ double turn_deg(double from_deg, double to_deg) {
 
 TEST(TrackPosition, IsInterpolatedInTime) {
   const Track track({{noon, 0, 8, 100, unknown}, {noon + 2, 0.0001, 8, 120, unknown}});
-  const Place place = place_at(track, noon + 0.5).value();
-  EXPECT_NEAR(place.lat_deg, 0.000025, 1e-12);
-  EXPECT_NEAR(place.lon_deg, 8, 1e-12);
-  EXPECT_DOUBLE_EQ(place.alt_m, 105);
-  EXPECT_NEAR(turn_deg(0, place.heading_deg), 0, 1e-9);
+  const GeoPosition position = position_at(track, noon + 0.5).value();
+  EXPECT_NEAR(position.lat_deg, 0.000025, 1e-12);
+  EXPECT_NEAR(position.lon_deg, 8, 1e-12);
+  EXPECT_DOUBLE_EQ(position.alt_m, 105);
+  EXPECT_NEAR(turn_deg(0, position.heading_deg), 0, 1e-9);
 }
 
 TEST(TrackPosition, FollowsGeodesic) {
   const TrackOptions options{.max_gap_s = 3600};
-  const Place middle = place_at(Track({{noon, 45, 0}, {noon + 1000, 45, 90}}, options), noon + 500).value();
+  const GeoPosition middle = position_at(Track({{noon, 45, 0}, {noon + 1000, 45, 90}}, options), noon + 500).value();
   EXPECT_NEAR(middle.lon_deg, 45, 1e-9);
   EXPECT_NEAR(middle.lat_deg, 54.7356, 0.15);  // of a sphere: atan √2; the parallel would give 45
 }
 
 TEST(TrackPosition, CrossesAntimeridian) {
   const Track track({{noon, 10, 179.9999}, {noon + 4, 10, -179.9999}});
-  EXPECT_NEAR(place_at(track, noon + 1).value().lon_deg, 179.99995, 1e-9);
-  EXPECT_NEAR(std::abs(place_at(track, noon + 2).value().lon_deg), 180, 1e-9);
-  EXPECT_NEAR(place_at(track, noon + 3).value().lon_deg, -179.99995, 1e-9);
-  EXPECT_NEAR(place_at(track, noon + 3).value().heading_deg, 90, 1e-4);
+  EXPECT_NEAR(position_at(track, noon + 1).value().lon_deg, 179.99995, 1e-9);
+  EXPECT_NEAR(std::abs(position_at(track, noon + 2).value().lon_deg), 180, 1e-9);
+  EXPECT_NEAR(position_at(track, noon + 3).value().lon_deg, -179.99995, 1e-9);
+  EXPECT_NEAR(position_at(track, noon + 3).value().heading_deg, 90, 1e-4);
 }
 
 TEST(TrackPosition, IsUnknownOutsideTrackAndInGaps) {
   const Track track({point_at(0, 0, 0), point_at(5, 0, 5), point_at(10.5, 0, 10), point_at(12, 0, 12)});
   for (const double time_s : {-0.001, 12.001, 5.001, 8.0, 10.499, unknown, -1e9, 1e300}) {
-    EXPECT_FALSE(place_at(track, noon + time_s)) << time_s;
+    EXPECT_FALSE(position_at(track, noon + time_s)) << time_s;
   }
-  for (const double time_s : {0.0, 2.5, 5.0, 10.5, 11.0, 12.0}) EXPECT_TRUE(place_at(track, noon + time_s)) << time_s;
+  for (const double time_s : {0.0, 2.5, 5.0, 10.5, 11.0, 12.0})
+    EXPECT_TRUE(position_at(track, noon + time_s)) << time_s;
 }
 
 TEST(TrackPosition, AltitudeNeedsBothNeighbours) {
   const Track track({{noon, 1, 1, 50, 0}, {noon + 1, 1, 1, unknown, 0}});
-  EXPECT_DOUBLE_EQ(place_at(track, noon).value().alt_m, 50);
-  EXPECT_TRUE(std::isnan(place_at(track, noon + 0.5).value().alt_m));
+  EXPECT_DOUBLE_EQ(position_at(track, noon).value().alt_m, 50);
+  EXPECT_TRUE(std::isnan(position_at(track, noon + 0.5).value().alt_m));
 }
 
 TEST(TrackHeading, TurnsShorterWay) {
@@ -117,8 +118,8 @@ TEST(TrackHeading, IsTangentOfCurve) {
 TEST(TrackHeading, IsMeasuredOverStretch) {
   std::vector<TrackPoint> points;
   for (int i = 0; i <= 100; ++i) points.push_back(point_at(0.1 * i, 0.1 * i, i % 4 < 2 ? 0.1 : -0.1));
-  const Track coarse(points, {.heading_stretch_m = 2});
-  const Track fine(points, {.heading_stretch_m = 0.01});
+  const Track coarse(points, {.min_heading_distance_m = 2});
+  const Track fine(points, {.min_heading_distance_m = 0.01});
   double worst_deg = 0;
   double worst_fine_deg = 0;
   for (int i = 20; i <= 80; ++i) {
@@ -138,7 +139,7 @@ TEST(TrackHeading, StaysWhileStandingStill) {
   points.push_back(point_at(71, 27, 0));
   const Track track(points);
   EXPECT_TRUE(std::isnan(heading_at(track, 0)));
-  EXPECT_FALSE(offset_place(place_at(track, noon).value(), 1, 1));
+  EXPECT_FALSE(offset_position(position_at(track, noon).value(), 1, 1));
   EXPECT_NEAR(heading_at(track, 15), 90, 1e-4);
   EXPECT_NEAR(heading_at(track, 40), 90, 10);
   EXPECT_DOUBLE_EQ(heading_at(track, 40), heading_at(track, 55.5));
@@ -152,7 +153,7 @@ TEST(TrackHeading, AddsMountingAngle) {
 }
 
 TEST(OffsetPosition, OneDegreeOfLatitude) {
-  const Place to = offset_place({0, 0, unknown, 0}, 0, 110574.389).value();
+  const GeoPosition to = offset_position({0, 0, unknown, 0}, 0, 110574.389).value();
   EXPECT_NEAR(to.lat_deg, 1, 1e-8);
   EXPECT_NEAR(to.lon_deg, 0, 1e-12);
 }
@@ -160,27 +161,29 @@ TEST(OffsetPosition, OneDegreeOfLatitude) {
 TEST(OffsetPosition, HundredMetresEast) {
   for (const double lat_deg : {0.0, 50.0, -33.0}) {
     const double expected_deg = 8 + 100 / metres_of_longitude(lat_deg);
-    EXPECT_NEAR(offset_place({lat_deg, 8, unknown, 0}, 100, 0).value().lon_deg, expected_deg, 2e-9) << "to the right";
-    EXPECT_NEAR(offset_place({lat_deg, 8, unknown, 90}, 0, 100).value().lon_deg, expected_deg, 2e-9) << "forward";
-    EXPECT_NEAR(offset_place({lat_deg, 8, unknown, 180}, -100, 0).value().lon_deg, expected_deg, 2e-9) << "to the left";
-    EXPECT_NEAR(offset_place({lat_deg, 8, unknown, 270}, 0, -100).value().lon_deg, expected_deg, 2e-9) << "back";
+    EXPECT_NEAR(offset_position({lat_deg, 8, unknown, 0}, 100, 0).value().lon_deg, expected_deg, 2e-9)
+        << "to the right";
+    EXPECT_NEAR(offset_position({lat_deg, 8, unknown, 90}, 0, 100).value().lon_deg, expected_deg, 2e-9) << "forward";
+    EXPECT_NEAR(offset_position({lat_deg, 8, unknown, 180}, -100, 0).value().lon_deg, expected_deg, 2e-9)
+        << "to the left";
+    EXPECT_NEAR(offset_position({lat_deg, 8, unknown, 270}, 0, -100).value().lon_deg, expected_deg, 2e-9) << "back";
   }
 }
 
 TEST(OffsetPosition, CrossesAntimeridian) {
   const double step_deg = 100 / metres_of_longitude(0);
-  const Place to = offset_place({0, 180 - step_deg / 4, unknown, 90}, 0, 100).value();
+  const GeoPosition to = offset_position({0, 180 - step_deg / 4, unknown, 90}, 0, 100).value();
   EXPECT_NEAR(to.lon_deg, -180 + 0.75 * step_deg, 1e-9);
 }
 
 TEST(OffsetPosition, NeedsHeading) {
-  const Place from{50, 8, 120, 30};
-  EXPECT_TRUE(std::isnan(offset_place(from, 1, 1).value().alt_m));
-  EXPECT_DOUBLE_EQ(offset_place(from, 1, 1, -4).value().alt_m, 116);
-  EXPECT_DOUBLE_EQ(offset_place(from, 1, 1).value().heading_deg, 30);
-  EXPECT_DOUBLE_EQ(offset_place(from, 0, 0).value().lat_deg, 50);
-  EXPECT_FALSE(offset_place({50, 8, 120, unknown}, 1, 1));
-  EXPECT_FALSE(offset_place(from, unknown, 1));
+  const GeoPosition from{50, 8, 120, 30};
+  EXPECT_TRUE(std::isnan(offset_position(from, 1, 1).value().alt_m));
+  EXPECT_DOUBLE_EQ(offset_position(from, 1, 1, -4).value().alt_m, 116);
+  EXPECT_DOUBLE_EQ(offset_position(from, 1, 1).value().heading_deg, 30);
+  EXPECT_DOUBLE_EQ(offset_position(from, 0, 0).value().lat_deg, 50);
+  EXPECT_FALSE(offset_position({50, 8, 120, unknown}, 1, 1));
+  EXPECT_FALSE(offset_position(from, unknown, 1));
 }
 
 void expect_error(const std::function<void()>& call, const std::string& part) {
@@ -199,14 +202,15 @@ TEST(TrackPoints, EqualTimesKeepFirst) {
 }
 
 TEST(TrackPoints, RejectsBadPoints) {
-  expect_error([] { Track({{noon, 0, 0}}); }, "the track has 1 point(s); at least two");
-  expect_error([] { Track({{noon, 0, 0}, {noon, 1, 1}}); }, "the track has 1 point(s); at least two");
-  expect_error([] { Track({{noon, 0, 0}, {noon - 2, 0, 0}}); }, "point 1 of the track is 2 s before the one before it");
+  expect_error([] { Track({{noon, 0, 0}}); }, "the track has 1 point(s); it must have at least two");
+  expect_error([] { Track({{noon, 0, 0}, {noon, 1, 1}}); }, "the track has 1 point(s); it must have at least two");
+  expect_error([] { Track({{noon, 0, 0}, {noon - 2, 0, 0}}); }, "point 1 of the track is 2 s before its predecessor");
   expect_error([] { Track({{noon, 0, 0}, {noon, 90.5, 0}}); }, "lat_deg is 90.5; it must be between -90 and 90");
   expect_error([] { Track({{noon, 0, 0}, {noon, 0, unknown}}); }, "lon_deg is nan");
   expect_error([] { Track({{noon * 1000, 0, 0}, {noon, 0, 0}}); }, "time_s is 1.7145648e+12; it must be between 0");
   expect_error([] { Track({{noon, 0, 0}, {noon + 1, 0, 0}}, {.max_gap_s = 0}); }, "track.max_gap_s is 0");
-  expect_error([] { TrackOptions{.heading_stretch_m = unknown}.validate(); }, "track.heading_stretch_m is nan");
+  expect_error([] { TrackOptions{.min_heading_distance_m = unknown}.validate(); },
+               "track.min_heading_distance_m is nan");
 }
 
 class TrackFile : public testing::Test {
@@ -309,12 +313,12 @@ TEST_F(TrackFile, RejectsBadGpx) {
   expect_refused(replaced(gpx, "12:00:01.125Z", "11:59:58Z"), "line 13: the time is 2 s before that of line 12;");
   expect_refused(replaced(gpx, "12:00:01.125Z", "12:00:02.5Z"), "line 6: the time is 0.25 s before that of line 13;");
   expect_refused(replaced(gpx, ">12.5<", ">361<"), "line 7: course is 361; it must be between -360 and 360");
-  expect_refused(replaced(gpx, "</gpx>", "</xyz>"), "this is no valid XML");
-  expect_refused("<kml><Document/></kml>", "this is <kml>, not GPX or CSV");
+  expect_refused(replaced(gpx, "</gpx>", "</xyz>"), "invalid XML");
+  expect_refused("<kml><Document/></kml>", "the root element is <kml>; a track must be GPX or CSV");
   expect_refused("<gpx><trk><trkseg/></trk></gpx>", "the track has no points with a time");
   expect_refused(
       "<gpx><trk><trkseg><trkpt lat='1' lon='1'><time>2024-05-01T12:00:00Z</time></trkpt></trkseg></trk></gpx>",
-      "the track has 1 point(s) of one time");
+      "the track has 1 point(s) at one time");
 }
 
 const std::string csv =
@@ -374,11 +378,12 @@ TEST_F(TrackFile, RejectsBadCsv) {
                  "line 3: time is \"12:00:01\"; it must be Unix seconds, or");
   expect_refused(replaced(csv, "1714564801.25", "2024-05-01T25:00:01Z"), "line 3: time is \"2024-05-01T25:00:01Z\"");
   expect_refused(replaced(csv, "1714564801.25", "-5"), "line 3: time is -5 seconds since 1970; it must be between 0");
-  expect_refused(replaced(csv, ",,", ","), "line 3: the line has 4 cells; the line of names has 5");
+  expect_refused(replaced(csv, ",,", ","), "line 3: the line has 4 cells; the header line has 5");
   expect_refused(replaced(csv, "lat", "x"), "line 1: there is no column lat; a track is GPX, or CSV");
   expect_refused(csv.substr(0, csv.find('\n')), "the track has no points with a time");
-  expect_refused("time,lat,lon\n5,1,1\n5,2,2\n", "the track has 2 point(s) of one time; at least two times");
-  expect_refused("\n \n", "the file has no line of names");
+  expect_refused("time,lat,lon\n5,1,1\n5,2,2\n",
+                 "the track has 2 point(s) at one time; it must have at least two times");
+  expect_refused("\n \n", "the file has no header line");
   expect_refused("", "the file is empty");
   expect_refused(std::string("a\0b", 3), "not a text file");
 }

@@ -74,7 +74,7 @@ using ListSource = Sources;
 using OpenSource = Sources;
 
 void expect_numbers(const SourcePair& pair, int left, int right) {
-  EXPECT_EQ(pair.refused, "");
+  EXPECT_EQ(pair.error, "");
   ASSERT_FALSE(pair.left.bytes.empty());
   EXPECT_EQ(pair.left.bytes[1], left);
   EXPECT_EQ(pair.right.bytes[1], right);
@@ -100,7 +100,7 @@ TEST_P(FolderLayout, IsRecognisedAndInOrder) {
   expect_numbers(pairs[1], 2, 102);
   expect_numbers(pairs[2], 10, 110);
   EXPECT_EQ(pairs[2].index, 2);
-  EXPECT_TRUE(std::isnan(pairs[2].time_s)) << "a number is no time";
+  EXPECT_TRUE(std::isnan(pairs[2].time_s)) << "a number is not a time";
 }
 
 INSTANTIATE_TEST_SUITE_P(Known, FolderLayout,
@@ -120,12 +120,12 @@ TEST_F(FolderSource, EurocPairsByTime) {
   ASSERT_EQ(pairs.size(), 3U);
   expect_numbers(pairs[0], 1, 2);
   EXPECT_NEAR(pairs[0].time_s, 1403636579.763555584, 1e-6);
-  EXPECT_NE(pairs[1].refused.find("10 ms apart"), std::string::npos) << pairs[1].refused;
-  EXPECT_NE(pairs[1].refused.find("5 ms"), std::string::npos) << pairs[1].refused;
+  EXPECT_NE(pairs[1].error.find("10 ms apart"), std::string::npos) << pairs[1].error;
+  EXPECT_NE(pairs[1].error.find("5 ms"), std::string::npos) << pairs[1].error;
   expect_numbers(pairs[2], 5, 6);
   SourceOptions patient;
   patient.max_time_difference_s = 0.02;
-  EXPECT_EQ(all(".", patient)[1].refused, "");
+  EXPECT_EQ(all(".", patient)[1].error, "");
 }
 
 TEST_F(FolderSource, RejectsImageWithoutPartnerOnly) {
@@ -134,9 +134,9 @@ TEST_F(FolderSource, RejectsImageWithoutPartnerOnly) {
   text("times.txt", "0.5\n1.5\n2.5\n");
   const std::vector<SourcePair> pairs = all();
   ASSERT_EQ(pairs.size(), 4U);
-  EXPECT_EQ(pairs[0].refused, "");
-  EXPECT_NE(pairs[1].refused.find("no right image"), std::string::npos) << pairs[1].refused;
-  EXPECT_NE(pairs[3].refused.find("no left image"), std::string::npos) << pairs[3].refused;
+  EXPECT_EQ(pairs[0].error, "");
+  EXPECT_NE(pairs[1].error.find("no right image"), std::string::npos) << pairs[1].error;
+  EXPECT_NE(pairs[3].error.find("no left image"), std::string::npos) << pairs[3].error;
   EXPECT_EQ(pairs[1].time_s, 1.5);
   EXPECT_EQ(pairs[2].time_s, 2.5) << "times count left images";
   EXPECT_TRUE(std::isnan(pairs[3].time_s));
@@ -150,7 +150,7 @@ TEST_F(FolderSource, MissingTimeStampCostsOnePair) {
   }
   const std::vector<SourcePair> pairs = all();
   ASSERT_EQ(pairs.size(), 6U);
-  for (int i = 0; i < 6; ++i) EXPECT_EQ(pairs[static_cast<std::size_t>(i)].refused.empty(), i != 2) << i;
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(pairs[static_cast<std::size_t>(i)].error.empty(), i != 2) << i;
 }
 
 TEST_F(FolderSource, RejectsBrokenImageByNameOnly) {
@@ -162,8 +162,8 @@ TEST_F(FolderSource, RejectsBrokenImageByNameOnly) {
   image("right/3.png", 1);
   const std::vector<SourcePair> pairs = all();
   ASSERT_EQ(pairs.size(), 3U);
-  EXPECT_NE(pairs[1].refused.find("left/2.png"), std::string::npos) << pairs[1].refused;
-  EXPECT_EQ(pairs[2].refused, "");
+  EXPECT_NE(pairs[1].error.find("left/2.png"), std::string::npos) << pairs[1].error;
+  EXPECT_EQ(pairs[2].error, "");
 }
 
 TEST_F(FolderSource, SkipsExactly) {
@@ -199,7 +199,7 @@ TEST_F(ListSource, ReadsRelativePathsAndTimes) {
   ASSERT_EQ(pairs.size(), 2U);
   expect_numbers(pairs[0], 1, 2);
   EXPECT_EQ(pairs[0].time_s, 12.25);
-  EXPECT_NE(pairs[1].refused.find("none.png"), std::string::npos);
+  EXPECT_NE(pairs[1].error.find("none.png"), std::string::npos);
   EXPECT_EQ(all("pairs.csv")[0].time_s, 3);
 }
 
@@ -215,14 +215,14 @@ TEST_F(ListSource, ReadsSpreadsheetExports) {
     expect_numbers(pairs[0], 1, 2);
   }
   text("never.csv", "my x/one.png,y/two.png,nan\n");
-  EXPECT_NE(complaint("never.csv").find("\"nan\" is no time"), std::string::npos) << complaint("never.csv");
+  EXPECT_NE(complaint("never.csv").find("\"nan\" is not a time"), std::string::npos) << complaint("never.csv");
 }
 
 TEST_F(OpenSource, ErrorNamesFileAndRemedy) {
   text("pairs.txt", "one.png\n");
   EXPECT_NE(complaint("pairs.txt").find("line 1"), std::string::npos);
   text("empty.txt", "# nothing\n");
-  EXPECT_NE(complaint("empty.txt").find("lists no pairs"), std::string::npos);
+  EXPECT_NE(complaint("empty.txt").find("the list has no pairs"), std::string::npos);
   EXPECT_NE(complaint("missing").find("no such file"), std::string::npos);
   fs::create_directories(folder_ / "hollow");
   EXPECT_NE(complaint("hollow").find("no stereo pairs"), std::string::npos);

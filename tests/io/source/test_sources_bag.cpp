@@ -89,7 +89,7 @@ TEST_F(BagSource, PairsByStamp) {
   for (int i = 1; i < 5; ++i) {
     const std::optional<SourcePair> pair = source->next();
     ASSERT_TRUE(pair);
-    EXPECT_EQ(pair->refused, "");
+    EXPECT_EQ(pair->error, "");
     EXPECT_EQ(pair->index, i);
     EXPECT_NEAR(pair->time_s, start_s + 0.1 * i, 1e-6);
     ASSERT_EQ(pair->left.bytes.size(), std::size_t{40} * 32);  // without the padding
@@ -118,22 +118,22 @@ TEST_F(BagSource, RejectsImageWithoutPartner) {
     double time_s;
     int left;
     int right;
-    const char* refused;
+    const char* error;
   };
   const std::vector<Expected> expected{
       {0.000, 1, 101, ""},
-      {0.100, 0, 0, "the left picture has no partner: the nearest right one is 96 ms away, more than 5 ms"},
-      {0.200, 0, 0, "the left picture has no partner: the nearest right one is 20 ms away, more than 5 ms"},
-      {0.220, 0, 0, "the right picture has no partner: the nearest left one is 20 ms away, more than 5 ms"},
-      {0.301, 0, 0, "the left picture has no partner: the nearest right one is 4 ms away, and belongs to another"},
+      {0.100, 0, 0, "the left image is unpaired: the nearest right one is 96 ms away, more than 5 ms"},
+      {0.200, 0, 0, "the left image is unpaired: the nearest right one is 20 ms away, more than 5 ms"},
+      {0.220, 0, 0, "the right image is unpaired: the nearest left one is 20 ms away, more than 5 ms"},
+      {0.301, 0, 0, "the left image is unpaired: the nearest right one is 4 ms away, but is paired with another"},
       {0.304, 5, 105, ""}};
   const auto source = open_bag(file, {});
   for (const Expected& e : expected) {
     const std::optional<SourcePair> pair = source->next();
     ASSERT_TRUE(pair);
     EXPECT_NEAR(pair->time_s, start_s + e.time_s, 1e-6);
-    EXPECT_EQ(pair->refused, e.refused);
-    if (pair->refused.empty()) {
+    EXPECT_EQ(pair->error, e.error);
+    if (pair->error.empty()) {
       EXPECT_EQ(first_sample(pair->left), e.left);
       EXPECT_EQ(first_sample(pair->right), e.right);
     }
@@ -143,7 +143,7 @@ TEST_F(BagSource, RejectsImageWithoutPartner) {
   generous.max_time_difference_s = 0.03;
   const auto again = open_bag(file, generous);
   again->skip(2);
-  EXPECT_EQ(again->next().value().refused, "") << "20 ms are within 30";
+  EXPECT_EQ(again->next().value().error, "") << "20 ms are within 30";
 }
 
 TEST_F(BagSource, ContinuesAfterOneCameraStops) {
@@ -158,7 +158,7 @@ TEST_F(BagSource, ContinuesAfterOneCameraStops) {
   for (int i = 0; i < 100; ++i) {
     const std::optional<SourcePair> pair = source->next();
     ASSERT_TRUE(pair);
-    EXPECT_EQ(pair->refused.empty(), i < 10 || i >= 90) << i << ": " << pair->refused;
+    EXPECT_EQ(pair->error.empty(), i < 10 || i >= 90) << i << ": " << pair->error;
   }
   EXPECT_FALSE(source->next());
 }
@@ -170,7 +170,7 @@ TEST_F(BagSource, MissingStampIsTimeOfReception) {
   writer.write_image(right_topic, 0, start_s + 0.001, grey(2));
   writer.close();
   const SourcePair pair = open_bag(file, {})->next().value();
-  EXPECT_EQ(pair.refused, "");
+  EXPECT_EQ(pair.error, "");
   EXPECT_NEAR(pair.time_s, start_s, 1e-6);
 }
 
@@ -183,7 +183,7 @@ TEST_F(BagSource, ReadsEveryEncoding) {
   const auto expect_pixel = [&](const BagWriter::Picture& picture, ChannelOrder order,
                                 std::vector<std::uint8_t> pixel) {
     const SourcePair pair = pair_with(picture);
-    ASSERT_EQ(pair.refused, "") << picture.encoding;
+    ASSERT_EQ(pair.error, "") << picture.encoding;
     EXPECT_EQ(pair.left.order, order) << picture.encoding;
     const auto at = pair.left.bytes.begin() + static_cast<long>(pixel.size() * (32 * 7 + 9));
     EXPECT_EQ(std::vector<std::uint8_t>(at, at + static_cast<long>(pixel.size())), pixel) << picture.encoding;
@@ -212,10 +212,10 @@ TEST_F(BagSource, ReadsEveryEncoding) {
 }
 
 TEST_F(BagSource, DamagedImageCostsOnePair) {
-  EXPECT_EQ(pair_with({"yuv9", 32, 32, 32, false, std::vector<std::uint8_t>(1024)}).refused.rfind(left_topic, 0), 0U);
+  EXPECT_EQ(pair_with({"yuv9", 32, 32, 32, false, std::vector<std::uint8_t>(1024)}).error.rfind(left_topic, 0), 0U);
   BagWriter::Picture cut = grey(3);
   cut.data.resize(1000);
-  EXPECT_NE(pair_with(cut).refused.find("1000 bytes in rows of 48 are no picture of 40×32"), std::string::npos);
+  EXPECT_NE(pair_with(cut).error.find("1000 bytes in rows of 48 are not an image of 40×32"), std::string::npos);
 }
 
 TEST_F(BagSource, ReadsCompressedImages) {
@@ -233,12 +233,12 @@ TEST_F(BagSource, ReadsCompressedImages) {
   writer.close();
   const auto source = open_bag(file, {});
   const SourcePair pair = source->next().value();
-  EXPECT_EQ(pair.refused, "");
+  EXPECT_EQ(pair.error, "");
   EXPECT_EQ(pair.left.bytes, std::vector<std::uint8_t>(std::size_t{32} * 48, 77));
   ASSERT_EQ(pair.right.order, ChannelOrder::bgr);
   EXPECT_NEAR(pair.right.bytes[0], 30, 3);
   EXPECT_NEAR(pair.right.bytes[2], 90, 3);
-  EXPECT_NE(source->next().value().refused, "");
+  EXPECT_NE(source->next().value().error, "");
 }
 
 BagWriter::Camera camera(double right_shift_px) {
@@ -296,7 +296,7 @@ TEST_F(BagSource, RejectsOtherFiles) {
   fs::resize_file(path("cut.bag"), fs::file_size(whole) / 2);
   expect_message([&] { open_bag(path("cut.bag"), {}); }, "rosbag reindex " + path("cut.bag"));
   std::ofstream(path("text.bag")) << "#ROSBAG it is not";
-  expect_message([&] { open_bag(path("text.bag"), {}); }, "text.bag: this is no ROS 1 bag");
+  expect_message([&] { open_bag(path("text.bag"), {}); }, "text.bag: this is not a readable ROS 1 bag");
   expect_message([&] { open_bag(path("none.bag"), {}); }, "none.bag: the file does not exist");
 }
 
@@ -331,11 +331,11 @@ TEST(BagTopics, AmbiguousNamesAreRejected) {
       [&] {
         find({"/a", "/b"});
       },
-      "x.bag: the names of the topics do not tell a left and a right camera; "
-      "--topics LEFT RIGHT must name two of its image topics, which are /a, /b");
-  expect_message([&] { find({}); }, "which are none");
+      "x.bag: no left and right camera can be recognised by the topic names; "
+      "select two of its image topics with --topics LEFT RIGHT: /a, /b");
+  expect_message([&] { find({}); }, "LEFT RIGHT: none");
   expect_message([&] { find({"/l/left", "/l/right", "/m/left", "/m/right"}); }, "more than one pair");
-  expect_message([&] { find({"/a", "/b"}, {"/a", "/imu"}); }, "/imu is no image topic of the bag");
+  expect_message([&] { find({"/a", "/b"}, {"/a", "/imu"}); }, "/imu is not an image topic of the bag");
   EXPECT_EQ(find({"/a", "/b"}, {"/b", "/a"}).first.name, "/b");
 }
 

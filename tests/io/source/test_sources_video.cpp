@@ -54,7 +54,7 @@ bool is_right(const Frame& frame) {
 
 void expect_pair(const std::optional<SourcePair>& pair, int number) {
   ASSERT_TRUE(pair) << "pair " << number;
-  EXPECT_EQ(pair->refused, "");
+  EXPECT_EQ(pair->error, "");
   EXPECT_EQ(pair->index, number);
   ASSERT_EQ(pair->left.width, view_width);
   ASSERT_EQ(pair->left.height, view_height);
@@ -254,7 +254,7 @@ TEST_F(VideoSource, UndecodableFrameCostsOnePair) {
     }
     ASSERT_TRUE(pair);
     EXPECT_EQ(pair->index, 2);
-    EXPECT_NE(pair->refused.find("cannot be decoded"), std::string::npos) << pair->refused;
+    EXPECT_NE(pair->error.find("cannot be decoded"), std::string::npos) << pair->error;
   }
   EXPECT_FALSE(source->next());
   const auto again = open_video(file, {});
@@ -268,14 +268,13 @@ TEST_F(VideoSource, ReportsMissingEndOfCutVideo) {
   const auto source = open_video(cut(whole, "cut.mkv", 0.6), {});
   int good = 0;
   std::optional<SourcePair> pair = source->next();
-  for (; pair && pair->refused.empty(); pair = source->next()) expect_pair(pair, good++);
+  for (; pair && pair->error.empty(); pair = source->next()) expect_pair(pair, good++);
   EXPECT_GT(good, 10);
   EXPECT_LT(good, 20);
   ASSERT_TRUE(pair) << "the end went unnoticed";
   EXPECT_EQ(pair->index, good);
-  EXPECT_NE(pair->refused.find(std::to_string(30 - good) + " pictures before its stated length of 30"),
-            std::string::npos)
-      << pair->refused;
+  EXPECT_NE(pair->error.find(std::to_string(30 - good) + " frames before its stated length of 30"), std::string::npos)
+      << pair->error;
   EXPECT_FALSE(source->next());
 }
 
@@ -304,7 +303,7 @@ TEST_F(VideoSource, PairsTwoVideosByNumber) {
     ASSERT_TRUE(pair);
     EXPECT_EQ(pair->index, i);
     EXPECT_NEAR(pair->time_s, i / 25.0, 1e-9);
-    EXPECT_EQ(pair->refused, left + " has ended after 4 pictures");
+    EXPECT_EQ(pair->error, left + " has ended after 4 frames");
   }
   EXPECT_FALSE(source->next());
 }
@@ -317,7 +316,7 @@ TEST_F(VideoSource, RejectsTwoVideosThatDiffer) {
   expect_message([&] { open_two_videos(left, small, {}); }, "small.avi: the video has 96×48 pixels");
   const std::string slow = write(
       "slow.avi", "MJPG", 2, [](int i) { return view_of(i, true); }, 20);
-  expect_message([&] { open_two_videos(left, slow, {}); }, "slow.avi: the video has 20 pictures a second");
+  expect_message([&] { open_two_videos(left, slow, {}); }, "slow.avi: the video has 20 frames per second");
   SourceOptions options;
   options.rate_hz = 25;
   expect_pair(open_two_videos(left, slow, options)->next(), 0);
@@ -345,7 +344,7 @@ TEST_F(GStreamerSource, ReadsEveryFrameOfFinitePipeline) {
   for (int i = 0; i < 5; ++i) {
     const std::optional<SourcePair> pair = source->next();
     ASSERT_TRUE(pair) << i;
-    EXPECT_EQ(pair->refused, "");
+    EXPECT_EQ(pair->error, "");
     EXPECT_EQ(pair->index, i);
     ASSERT_EQ(pair->left.width, view_width);
     ASSERT_EQ(pair->right.height, view_height);
@@ -378,7 +377,7 @@ TEST_F(GStreamerSource, LivePipelineHasCaptureTimes) {
   int pairs = 0;
   double last_s = 1.6e9;
   while (const std::optional<SourcePair> pair = source->next()) {
-    EXPECT_EQ(pair->refused, "");
+    EXPECT_EQ(pair->error, "");
     EXPECT_EQ(pair->left.width, view_width);
     EXPECT_GT(pair->time_s, last_s);
     last_s = pair->time_s;
@@ -390,7 +389,7 @@ TEST_F(GStreamerSource, LivePipelineHasCaptureTimes) {
 
 TEST_F(GStreamerSource, PassesErrorsOn) {
   expect_message([] { open_gstreamer("nosuchsource ! videoconvert", {}); },
-                 "\"nosuchsource ! videoconvert\" is refused by GStreamer: no element \"nosuchsource\"");
+                 "\"nosuchsource ! videoconvert\" is rejected by GStreamer: no element \"nosuchsource\"");
   expect_message([] { open_gstreamer("filesrc location=/none.raw ! rawvideoparse width=192 height=64", {}); },
                  "has failed: filesrc");
   expect_message(
@@ -406,8 +405,8 @@ TEST_F(GStreamerSource, PassesErrorsOn) {
 // Pictures from a camera need a camera: only what goes wrong is tested.
 TEST(CameraSource, ErrorSaysWhyThereIsNone) {
   expect_message([] { open_camera("/dev/video-none", {}); }, "/dev/video-none: there is no such camera");
-  expect_message([] { open_camera("/dev/null", {}); }, "/dev/null: this is no camera");
-  expect_message([] { open_camera("/proc/self/stat", {}); }, "/proc/self/stat: this is not a camera but a file");
+  expect_message([] { open_camera("/dev/null", {}); }, "/dev/null: this is not a camera");
+  expect_message([] { open_camera("/proc/self/stat", {}); }, "/proc/self/stat: this is a file, not a camera");
 }
 
 }  // namespace

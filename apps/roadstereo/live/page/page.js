@@ -1,15 +1,15 @@
-// Asks for the newest picture, shows it with its figures, and asks again: a slow line shows fewer pictures, not older ones.
+// Requests the newest view, shows it, and requests the next one: a slow connection shows fewer views, not older ones.
 (() => {
   "use strict";
 
-  const MOST_LISTED = 100;
-  const PATIENCE_MS = 6000; // with a server that answers within a second
-  const PAUSE_MS = 1000; // after a failure
+  const MAX_LISTED = 100;
+  const TIMEOUT_MS = 6000; // the server answers within a second
+  const RETRY_MS = 1000; // pause after a failure
   const NAMES = { starting: "Starting", live: "Live", stale: "Stale", reconnecting: "Reconnecting", ended: "Ended" };
   const token = new URLSearchParams(location.search).get("token");
   const element = (id) => document.getElementById(id);
 
-  let shown = null; // the state that belongs to the pictures
+  let shown = null; // state of the shown images
   let shownAt = 0; // when it arrived, by performance.now()
   let session = null;
   let unreachable = ""; // why the server does not answer
@@ -24,8 +24,8 @@
   const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
   async function get(path, values) {
-    const answer = await fetch(address(path, values), { signal: AbortSignal.timeout(PATIENCE_MS) });
-    if (!answer.ok) throw new Error(`the program answers with error ${answer.status}`);
+    const answer = await fetch(address(path, values), { signal: AbortSignal.timeout(TIMEOUT_MS) });
+    if (!answer.ok) throw new Error(`the server returned error ${answer.status}`);
     return answer;
   }
 
@@ -33,7 +33,7 @@
     return value === null ? "–" : value.toFixed(decimals).replace("-", "−");
   }
 
-  /** Two figures are enough, and whole numbers from a hundred on. */
+  /** Rounds a value and its error to about two significant digits of the error. */
   function rounded(value, error) {
     const decimals = error === null || error >= 10 || Math.abs(value) >= 1000 ? 0 : error >= 1 || value >= 100 ? 1 : 2;
     return [number(value, decimals), error === null ? null : number(error, decimals)];
@@ -42,7 +42,7 @@
   async function draw(id, frame) {
     const answer = await get(`/${id}.jpg`, { frame });
     const picture = await createImageBitmap(await answer.blob());
-    return { canvas: element(id), picture, reach: Number(answer.headers.get("Reach")) };
+    return { canvas: element(id), picture, halfRange: Number(answer.headers.get("Colour-Range")) };
   }
 
   function put({ canvas, picture }) {
@@ -54,16 +54,16 @@
     picture.close();
   }
 
-  function showReach(reach) {
-    element("scale_low").textContent = `−${reach} px, below road`;
-    element("scale_high").textContent = `above road, +${reach} px`;
+  function showColourRange(halfRange) {
+    element("scale_low").textContent = `−${halfRange} px, below road`;
+    element("scale_high").textContent = `above road, +${halfRange} px`;
   }
 
-  /** A long line that turns about the middle of the picture, between marks that stay level. */
+  /** Draws a line through the image centre at the roll angle, between level marks. */
   function showHorizon(view) {
     const seen = view !== null && view.roll !== null && view.roll.observable;
     element("horizon").toggleAttribute("hidden", !seen);
-    element("horizon_note").textContent = seen ? "the line turns with the roll" : "roll is not observable: no line";
+    element("horizon_note").textContent = seen ? "the line shows the roll" : "the roll is not observable";
     if (!seen) return;
     const { width, height } = view;
     const [x, y] = [width / 2, height / 2];
@@ -78,14 +78,14 @@
   function showRoll(roll) {
     const known = roll !== null && roll.observable;
     element("roll").textContent = known ? `${number(roll.degrees, 2)}°` : roll === null ? "–" : "not observable";
-    const why = roll === null ? "no road found" : "disparity hardly changes";
+    const why = roll === null ? "no road found" : "disparity nearly constant";
     element("roll_more").textContent = known ? `± ${number(roll.error_degrees, 2)}°` : why;
   }
 
   function showHeight(view) {
     element("height").textContent = view.height_m === null ? "–" : `${number(view.height_m, 2)} m`;
     const pitch = view.pitch_degrees;
-    const looking = `looking ${number(Math.abs(pitch), 1)}° ${pitch < 0 ? "up" : "down"}`;
+    const looking = `pitch ${number(Math.abs(pitch), 1)}° ${pitch < 0 ? "up" : "down"}`;
     element("height_more").textContent = pitch === null ? "needs a calibration" : looking;
   }
 
@@ -93,13 +93,13 @@
     const { counts, latency_ms: latency, recording } = state;
     const dropped = counts.dropped + counts.too_old;
     element("fps").textContent = number(state.fps, 1);
-    element("fps_more").textContent = `${dropped} dropped` + (counts.refused > 0 ? `, ${counts.refused} refused` : "");
+    element("fps_more").textContent = `${dropped} dropped` + (counts.rejected > 0 ? `, ${counts.rejected} rejected` : "");
     element("latency").textContent = `${number(latency.median, 0)} ms`;
     element("latency_more").textContent = `95 %: ${number(latency.p95, 0)} ms`;
     element("recording").hidden = recording === null;
     if (recording === null) return;
     element("recorded").textContent = `${recording.recorded} pairs`;
-    element("recorded_more").textContent = recording.message ? "stopped" : `${recording.left_out} left out`;
+    element("recorded_more").textContent = recording.message ? "stopped" : `${recording.skipped} skipped`;
   }
 
   function cell(row, ...content) {
@@ -137,25 +137,25 @@
   }
 
   function showList(state) {
-    element("found").textContent = `${state.damages_found} seen`;
+    element("found").textContent = `${state.damages_found} found`;
     if (state.damages.length === 0) return;
     for (const damage of state.damages) listed.set(damage.id, row(damage));
-    const newest = [...listed.keys()].sort((a, b) => b - a).slice(0, MOST_LISTED);
+    const newest = [...listed.keys()].sort((a, b) => b - a).slice(0, MAX_LISTED);
     listed = new Map(newest.map((id) => [id, listed.get(id)]));
     document.querySelector("#list tbody").replaceChildren(...listed.values());
     document.querySelector("#list .scroll").hidden = false;
     element("none").hidden = true;
   }
 
-  /** What is wrong, for people; empty when nothing is. */
-  function complaint() {
+  /** Returns the error message to show, or "". */
+  function errorText() {
     if (unreachable) return unreachable;
     if (shown === null) return "";
     const parts = [shown.message, shown.recording?.message, ...(shown.view?.warnings ?? [])];
     return parts.filter(Boolean).join(". ");
   }
 
-  /** Called often: the age goes on when nothing comes. */
+  /** Updates the age; called periodically. */
   function showAge() {
     const age = shown === null ? 0 : shown.age_s + (performance.now() - shownAt) / 1000;
     const pictured = shown !== null && shown.view !== null;
@@ -169,9 +169,9 @@
     element("age_more").textContent = shown === null ? "" : `limit ${number(1000 * shown.max_age_s, 0)} ms`;
     for (const overdue of document.querySelectorAll(".overdue")) {
       overdue.hidden = !old;
-      overdue.textContent = `no new picture for ${number(age, age < 10 ? 1 : 0)} s`;
+      overdue.textContent = `no new image for ${number(age, age < 10 ? 1 : 0)} s`;
     }
-    const text = complaint();
+    const text = errorText();
     element("message").hidden = text === "";
     if (element("message").textContent !== text) element("message").textContent = text;
   }
@@ -189,31 +189,31 @@
     showAge();
   }
 
-  function beginAnew(state) {
+  function resetSession(state) {
     session = state.session;
     listed.clear();
     document.querySelector("#list tbody").replaceChildren();
   }
 
-  /** Asks once; returns the number of the view that was answered with. */
+  /** Requests one view; returns its number. */
   async function refresh(after) {
     const state = await (await get("/state", { after })).json();
     const arrived = performance.now();
     unreachable = "";
     if (session !== state.session) {
       const first = session === null;
-      beginAnew(state);
-      if (!first) return 0; // another run: everything from its beginning
+      resetSession(state);
+      if (!first) return 0; // another run: start again
     }
     showList(state);
     if (state.frame > after && !document.hidden) {
       const [left, transformed] = await Promise.all([draw("left", state.frame), draw("transformed", state.frame)]);
       put(left);
       put(transformed);
-      showReach(transformed.reach);
+      showColourRange(transformed.halfRange);
     }
     show(state, arrived);
-    if (state.state === "ended" || document.hidden) await pause(PAUSE_MS);
+    if (state.state === "ended" || document.hidden) await pause(RETRY_MS);
     return state.frame;
   }
 
@@ -224,8 +224,8 @@
         after = await refresh(after);
       } catch (error) {
         const ended = shown !== null && shown.state === "ended";
-        unreachable = ended ? "The run has ended." : `No answer from roadstereo (${error.message}); trying again.`;
-        await pause(PAUSE_MS);
+        unreachable = ended ? "The run has ended." : `No connection to roadstereo (${error.message}); retrying.`;
+        await pause(RETRY_MS);
       }
     }
   }

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// The files of this folder, embedded when the program is built. {{query}} stands for the token of every address.
+/// Files of this folder, embedded at build time. {{query}} is replaced by the query with the token.
 namespace roadstereo::cli::page_files {
 
 extern const std::string_view page;    ///< page.html

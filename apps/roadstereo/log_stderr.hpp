@@ -8,9 +8,9 @@
 
 namespace roadstereo::cli {
 
-/// Writes to standard error. Nobody may be there to read it, after a lost connection for example: the work goes on.
+/// Prints to standard error. Write errors, e.g. of a closed terminal, are ignored.
 template <class... Values>
-void say(fmt::format_string<Values...> text, Values&&... values) {
+void log_stderr(fmt::format_string<Values...> text, Values&&... values) {
   std::fputs(fmt::format(text, std::forward<Values>(values)...).c_str(), stderr);
   std::fflush(stderr);
 }

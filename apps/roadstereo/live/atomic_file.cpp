@@ -1,4 +1,4 @@
-#include "live/whole_file.hpp"
+#include "live/atomic_file.hpp"
 
 #include <cerrno>
 #include <cstdio>
@@ -10,20 +10,20 @@ namespace roadstereo::cli {
 namespace fs = std::filesystem;
 namespace {
 
-/// The system's error number; 0 when all went well.
+/// Writes a file. Returns the error number of the system, 0 on success.
 int write_bytes(const fs::path& path, std::span<const std::uint8_t> bytes) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (file == nullptr) return errno;
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
   const int write_error = errno;
-  const bool closed = std::fclose(file) == 0;  // the last bytes are written here
+  const bool closed = std::fclose(file) == 0;  // flushes the buffer
   if (!written) return write_error;
   return closed ? 0 : errno;
 }
 
 }  // namespace
 
-void write_whole_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
+void write_file_atomically(const fs::path& path, std::span<const std::uint8_t> bytes) {
   const fs::path beside = path.parent_path() / ("." + path.filename().string() + ".part");
   int error = write_bytes(beside, bytes);
   if (error == 0 && std::rename(beside.c_str(), path.c_str()) != 0) error = errno;

@@ -7,7 +7,7 @@ namespace roadstereo {
 
 /// Concatenates the parts, numbers with three digits: for reasons and warnings.
 template <class... Parts>
-std::string sentence(const Parts&... parts) {
+std::string format_message(const Parts&... parts) {
   std::ostringstream text;
   text.precision(3);
   (text << ... << parts);

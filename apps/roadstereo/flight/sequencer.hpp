@@ -6,26 +6,26 @@
 
 namespace roadstereo::cli {
 
-/// Lets threads do something one after the other in a given order, whichever is ready first.
+/// Serialises actions of several threads in the order of their numbers.
 class Sequencer {
  public:
   explicit Sequencer(std::int64_t first) : next_(first) {}
 
-  /// Calls `action` when it is the turn of `place`; never when the order was broken off.
+  /// Waits until all actions before `sequence` are done and calls `action`. Returns without calling it after `cancel`.
   template <class Action>
-  void run_in_order(std::int64_t place, const Action& action) {
+  void run_in_order(std::int64_t sequence, const Action& action) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return broken_ || next_ == place; });
-    if (broken_) return;
+    changed_.wait(lock, [&] { return cancelled_ || next_ == sequence; });
+    if (cancelled_) return;
     action();
     ++next_;
     changed_.notify_all();
   }
 
-  /// No turn comes any more.
-  void break_off() {
+  /// Releases all waiting threads.
+  void cancel() {
     const std::lock_guard lock(mutex_);
-    broken_ = true;
+    cancelled_ = true;
     changed_.notify_all();
   }
 
@@ -33,7 +33,7 @@ class Sequencer {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::int64_t next_;
-  bool broken_ = false;
+  bool cancelled_ = false;
 };
 
 }  // namespace roadstereo::cli

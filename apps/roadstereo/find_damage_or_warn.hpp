@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadstereo/pipeline.hpp"
+
+namespace roadstereo::cli {
+
+/// Finds the damage of a frame. If that fails, e.g. because no road was found, `damage` becomes an empty map and a
+/// warning is added. Returns whether it succeeded. Throws SystemError.
+bool find_damage_or_warn(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
+                         const DamageOptions& options, int threads, DamageMap& damage,
+                         std::vector<std::string>& warnings);
+
+}  // namespace roadstereo::cli
