@@ -1,6 +1,7 @@
 """The tables of README.md and docs/ as Markdown, made from the results in docs/accuracy.json by figures.py.
 
-A function per table: it takes the results by experiment and returns the lines, or None while an experiment is missing.
+A function per table: it takes the results by experiment, and under "dates" the day of each, and returns the lines, or None
+while an experiment is missing.
 """
 OPENCV = ("SGBM", "3WAY", "HH4", "BM")
 METHODS = {"default": "`default`", "fast": "`fast`", "paper": "`paper`"} | {name: f"OpenCV {name}" for name in OPENCV}
@@ -244,10 +245,11 @@ def scan(result):
 
 def benchmarks(results):
     """Times of the pipeline beside OpenCV's matchers."""
-    table = []
+    table, machines = [], set()
     for name, result in results.items():
         if not name.startswith("benchmark "):
             continue
+        machines.add(f"{result['threads']} threads of {result['cpu']}")
         _, preset, size, disparities = name.split()
         peers = {peer["name"]: peer for peer in result["peers"]}
         other = peers[BASELINES[preset]]
@@ -257,7 +259,9 @@ def benchmarks(results):
                       BASELINES[preset], number(other["ratio"], 2)])
     if not table:
         return None
-    return markdown(["preset", "work", "total ms", "Mde/s", *(f"{peer} ms" for peer in OPENCV), "against", "ratio"], table)
+    dates = sorted({date for name, date in results["dates"].items() if name.startswith("benchmark ")})
+    return markdown(["preset", "work", "total ms", "Mde/s", *(f"{peer} ms" for peer in OPENCV), "against", "ratio"],
+                    table) + ["", f"Measured on {', '.join(dates)}, {', '.join(sorted(machines))}."]
 
 
 def span(values, decimals):

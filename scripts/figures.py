@@ -125,7 +125,9 @@ def rendered(text, results):
 
 
 def write(verify):
-    results = {name: entry["result"] for name, entry in stored().items()}
+    figures = stored()
+    results = {name: entry["result"] for name, entry in figures.items()}
+    results["dates"] = {name: entry["date"] for name, entry in figures.items()}
     stale = []
     for name in DOCUMENTS:
         path = ROOT / name
