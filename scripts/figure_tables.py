@@ -173,7 +173,7 @@ def flatness(result):
 def blur(result):
     lengths = sorted({row["length_px"] for row in result["rows"]})
     table = [[METHODS[name], number(length, 0), number(row["rms_px"], 3), number(row["e_p_or_missing_1px_percent"], 1)]
-             for name in ("default", "paper", "SGBM", "3WAY") for length in lengths[::max(1, len(lengths) // 2)]
+             for name in ("default", "paper", "SGBM") for length in lengths[::max(1, len(lengths) // 2)]
              for row in rows_where(result["rows"], method=name, length_px=length)]
     return markdown(["", "motion px", "e_r px", "e_p+(1) %"], table)
 
@@ -306,7 +306,7 @@ SUMMARY = [
          *(lambda row: (significant(row["false_depressions"] + row["false_protrusions"]), number(row["iou"], 2)))(
              row_where(kitti["rows"], frame="mean")))),
     (("roll",), "Roll angle of matched synthetic pairs, mean error",
-     lambda roll: f"{rows_where(roll['rows'], maps='matched pairs, damage, noise')[0]['mean_rad']:.4f} rad"),
+     lambda roll: f"{rows_where(roll['rows'], maps='matched pair, damage')[0]['mean_rad']:.4f} rad"),
     (("flatness",), "σ_d of the transformed road, KITTI truth, without and with roll correction",
      lambda flatness: "{}, {} px".format(
          *(number(row_where(flatness["rows"], frame="mean", disparities="truth")[key], 2)
