@@ -161,8 +161,8 @@ def worse(golden, now, place):
                 full = 100 if SHARES.search(key) else 1 if key in SHARES_OF_ONE else None
                 if full is None and not ERRORS.search(key):
                     continue
-                error, limit = (full - new, SLACK * (full - old)) if full else (new, SLACK * old)
-                if new is None or error > limit + 1e-6:
+                limit = SLACK * (full - old if full else old) + 1e-6
+                if new is None or (full - new if full else new) > limit:
                     yield f"{place}: {key} is {new}, measured was {old}"
 
 
