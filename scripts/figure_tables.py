@@ -107,7 +107,7 @@ def synth_damage(result):
 def ablation(result):
     keys = [("kitti_density_percent", 1), ("kitti_e_r_px", 3), ("kitti_e_p_2px_percent", 2),
             ("kitti_e_p_or_missing_2px_percent", 2), ("clean_median_error_px", 4),
-            ("damage_e_p_or_missing_0.5px_percent", 2), ("match_ms", 0)]
+            ("damage_e_p_or_missing_0.5px_percent", 2)]
     table, bases = [], {}
     for row in result["variants"]:
         name = row["variant"]
@@ -121,8 +121,7 @@ def ablation(result):
             cells = [("+" if change > 0 else "") + (number(change, decimals) if change else "0")
                      for change, (_, decimals) in zip(changes, keys)]
         table.append([name, *cells])
-    return markdown(["", "KITTI density %", "e_r px", "e_p(2) %", "e_p+(2) %", "clean median px", "damage %", "match ms"],
-                    table)
+    return markdown(["", "KITTI density %", "e_r px", "e_p(2) %", "e_p+(2) %", "clean median px", "damage %"], table)
 
 
 @needs("sigma")
