@@ -221,23 +221,12 @@ def damage_errors(result):
 SCAN_KEYS = [("completeness_percent", 1), ("rms_mm", 2), ("median_mm", 2), ("rms_missing_10mm", 2)]
 
 
-def scan_means(result):
-    """Mean of the pairs by method."""
-    return {method: {key: sum(row[key] for row in rows) / len(rows) for key, _ in SCAN_KEYS}
-            for method in ("default", "SGBM") for rows in [rows_where(result, method=method)]}
-
-
-def scan_rows(result):
-    return [row for row in result["rows"] if row["pair"] != "mean"] if isinstance(result, dict) else result
-
-
 @needs("scan")
 def scan(result):
-    rows = scan_rows(result)
     table = []
-    for pair in [*dict.fromkeys(row["pair"] for row in rows), "mean"]:
-        means = scan_means(rows_where(rows, pair=pair) if pair != "mean" else rows)
-        table.append([pair, *(f"{number(means['default'][key], decimals)} ({number(means['SGBM'][key], decimals)})"
+    for pair in dict.fromkeys(row["pair"] for row in result):
+        ours, other = (row_where(result, pair=pair, method=method) for method in ("default", "SGBM"))
+        table.append([pair, *(f"{number(ours[key], decimals)} ({number(other[key], decimals)})"
                               for key, decimals in SCAN_KEYS)])
     return markdown(["pair", "complete %", "RMS mm", "median mm", "RMS, missing 10 mm"], table)
 
@@ -291,8 +280,8 @@ SUMMARY = [
      lambda maps, pairs: "; ".join(number(row_where(result["rows"], frame="all pixels")["f"], 3)
                                    for result in (maps, pairs))),
     (("scan",), "Potholes against laser scans, five pairs: RMS, labelled pixels measured; OpenCV SGBM",
-     lambda scan: "; ".join(f"{number(mean['rms_mm'], 1)} mm, {number(mean['completeness_percent'], 1)} %"
-                            for mean in scan_means(scan_rows(scan)).values())),
+     lambda scan: "; ".join(f"{number(row['rms_mm'], 1)} mm, {number(row['completeness_percent'], 1)} %"
+                            for row in rows_where(scan, pair="mean"))),
     (("damage_scenes",),
      "Damage of matched synthetic roads: potholes and bumps deeper than 3 standard errors found; false positives",
      lambda scenes: f"{100 * row_where(scenes['detection'], kind='without cracks')['recall']:.0f} %; "
