@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the experiments and writes their figures into docs/accuracy.json, README.md and docs/: one command after a change of
-# the algorithms. All of them take about half an hour on two cores; names run a part (scripts/figures.py lists them).
+# the algorithms. All of them take 15 to 30 minutes on two cores; names run a part (scripts/figures.py lists them).
 #   scripts/update_figures.sh [PROGRAM [NAME…]]      PROGRAM: build/bin/roadstereo
 # $ROADSTEREO_DATA names the real data, if build/ was not configured with them.
 set -euo pipefail
