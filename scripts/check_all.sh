@@ -35,8 +35,10 @@ nvcc() {
 
 part ./scripts/install_deps.sh --all-checks
 part ./scripts/check_format.sh
+part ./scripts/check_layers.py
 part ./scripts/test.sh -DROADSTEREO_WERROR=ON -DROADSTEREO_CUDA=OFF
-part ./scripts/check_figures.py build/bin/roadstereo build
+part ./scripts/check_figures.sh build/bin/roadstereo
+part cmake --build build --target docs
 part ./scripts/check_tidy.sh --all
 part ./scripts/check_install.sh
 # Without precompiled headers: a source includes what it uses.

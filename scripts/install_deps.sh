@@ -13,7 +13,7 @@ packages=(build-essential cmake ninja-build pkg-config
           libgdal-dev libpugixml-dev "$geographiclib"
           libgstreamer-plugins-base1.0-dev librosbag-storage-dev libcpp-httplib-dev
           libgtest-dev libbenchmark-dev)
-checks=(clang-format-14 clang-tidy gdal-bin libsensor-msgs-dev gstreamer1.0-plugins-base)
+checks=(clang-format-14 clang-tidy doxygen python3 gdal-bin libsensor-msgs-dev gstreamer1.0-plugins-base)
 case "${1:-}" in
   "") ;;
   --checks) packages+=("${checks[@]}") ;;
