@@ -27,7 +27,7 @@ class FrameStages {
   /// Both grey images on the host, for what is done once in a while.
   virtual GreyPair grey(FrameResult& result) = 0;
   /// verify_road_model.
-  virtual RoadModelEstimate verify_road(const DisparityPlane& previous, const FrameResult& result) = 0;
+  virtual RoadModelEstimate verify_road(const TrackedRoad& previous, const FrameResult& result) = 0;
   /// transform_target by result.shift, π_tar → π_tar'.
   virtual void transform_perspective(const FrameResult& result) = 0;
   /// Which disparities each tile can have, and a coarse map that matching leans on where the costs leave a choice.

@@ -59,7 +59,7 @@ class HostStages final : public FrameStages {
 
   GreyPair grey(FrameResult& result) override { return {result.grey, right_}; }
 
-  RoadModelEstimate verify_road(const DisparityPlane& previous, const FrameResult& result) override {
+  RoadModelEstimate verify_road(const TrackedRoad& previous, const FrameResult& result) override {
     return verify_road_model(result.grey, right_, previous, calibration_, options_.road_model, threads_);
   }
 

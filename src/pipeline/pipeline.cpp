@@ -91,8 +91,11 @@ void Pipeline::State::find_road() {
   const GreyPair grey = stages->grey(result);
   result.road = estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads);
   if (!result.road.reliable) {
-    result.warnings.push_back(sentence("no reliable road model (", result.road.reason,
+    result.warnings.push_back(sentence("no road was found (", result.road.reason,
                                        "): matched without perspective transformation over the full range"));
+  } else if (result.road.status == RoadStatus::weak) {
+    result.warnings.push_back(sentence("the road is weak: the evidence for it is ", result.road.evidence,
+                                       " per pixel, less than ", options.road_model.weak_evidence));
   }
   if (options.check_rows) measure_rows(grey);
 }
@@ -134,11 +137,13 @@ void Pipeline::State::match() {
 
 /// Roll angle and projection model, section 3.3.
 void Pipeline::State::find_geometry() {
-  constexpr double min_valid_share = 0.01;
+  // Of a pair without a road nothing is told but its disparities.
+  constexpr double min_valid_share = 0.01, never = 2;
   result.geometry = {};
-  const auto prior = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
-  result.roll_found = stages->fit_geometry(prior, carried.roll_rad, min_valid_share, result);
-  if (!result.roll_found) {
+  const bool has_road = result.road.status != RoadStatus::none;
+  result.roll_found = stages->fit_geometry(has_road ? std::optional(result.road.model) : std::nullopt,
+                                           carried.roll_rad, has_road ? min_valid_share : never, result);
+  if (has_road && !result.roll_found) {
     result.warnings.push_back(sentence("only ", 100 * result.valid_share, " % of the pixels have a disparity"));
   }
 }
@@ -152,21 +157,14 @@ void Pipeline::State::transform() {
     return;
   }
   stages->transform(result);
-  // Nothing vouches for a plane that the images did not show before matching and that few disparities lie on.
-  constexpr double min_road_share = 0.3;
-  if (!result.road.reliable && result.spread.road_share < min_road_share) {
-    result.geometry.roll_observable = false;
-    result.warnings.push_back(
-        sentence("only ", 100 * result.spread.road_share,
-                 " % of the disparities lie on the plane found: there may be no road in the pair"));
-  }
 }
 
 /// What the next frame starts from, and the figures of this one.
 void Pipeline::State::summarise() {
   carried.width = width;
   carried.height = height;
-  carried.road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
+  carried.road.reset();
+  if (result.road.reliable) carried.road = TrackedRoad{result.road.model, result.road.inlier_share};
   carried.roll_rad = result.roll_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   result.mde_per_s = static_cast<double>(width) * height * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
 }

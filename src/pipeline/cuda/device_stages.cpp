@@ -63,8 +63,8 @@ class DeviceStages final : public FrameStages {
     return {left_on_host_, right_on_host_};
   }
 
-  RoadModelEstimate verify_road(const DisparityPlane& previous, const FrameResult&) override {
-    verification_.run(maps_.grey(), plane(right_), {nullptr, plane_terms(previous)}, options_.road_model.with_roll,
+  RoadModelEstimate verify_road(const TrackedRoad& previous, const FrameResult&) override {
+    verification_.run(maps_.grey(), plane(right_), {nullptr, plane_terms(previous.model)}, options_.road_model.with_roll,
                       stream());
     wait_for_pair();
     return assess_road_verification(verification_.figures(), previous, width_, height_, calibration_,

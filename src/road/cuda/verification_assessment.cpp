@@ -23,7 +23,7 @@ PlaneFitStatistics evidence_of(const SearchStatistics& figures, int height) {
 
 }  // namespace
 
-RoadModelEstimate assess_road_verification(const VerificationFigures& figures, const DisparityPlane& previous,
+RoadModelEstimate assess_road_verification(const VerificationFigures& figures, const TrackedRoad& previous,
                                            int width, int height, const std::optional<StereoCalibration>& calibration,
                                            const RoadModelOptions& options) {
   const int factor = fine_factor(width);
