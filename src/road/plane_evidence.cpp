@@ -20,6 +20,7 @@ constexpr double tilt_penalty = 0.5;        ///< share of the score that a plane
 constexpr double max_slope = 0.3;           ///< disparity per column
 constexpr double slope_step = 2.0;          ///< pixels of disparity at the left and right border
 constexpr int bottom_steps = 40, top_steps = 56;
+constexpr int row_step = 2;                 ///< every second row of cells is enough to find a line
 constexpr double lowest_top = -0.6;         ///< disparity of the uppermost row, as a share of the largest
 
 /// What the cells say to planes, in pixels of the downsampled image.
@@ -60,15 +61,19 @@ class EvidenceGrid {
   /// Score of the plane d = a0 + a1·v + a2·u of the downsampled image.
   double score(const DisparityPlane& plane) const {
     double sum = 0;
+    const auto last = static_cast<float>(disparities_ - 1);
+    const auto step = static_cast<float>(plane.a2 * evidence_columns);
     for (int r = 0; r < rows_; ++r) {
+      const auto first = static_cast<float>(plane.disparity(column(0), row(r)));
+      float of_row = 0;
       for (int c = 0; c < columns_; ++c) {
-        const double d = plane.disparity(column(c), row(r));
-        if (d <= 0 || d >= disparities_ - 1) continue;
+        const float d = first + step * static_cast<float>(c);
+        if (d <= 0 || d >= last) continue;
         const int whole = static_cast<int>(d);
         const float* value = values(r, c) + whole;
-        const double share = d - whole;
-        sum += (1 - share) * value[0] + share * value[1];
+        of_row += value[0] + (d - static_cast<float>(whole)) * (value[1] - value[0]);
       }
+      sum += of_row;
     }
     return sum;
   }
@@ -148,14 +153,14 @@ void search_lines(const EvidenceGrid& grid, const ShearedRows& sheared, double s
     for (int t = 0; t <= top_steps; ++t) {
       const double top = grid.disparities() * (lowest_top + (1 - lowest_top) * t / top_steps);
       const ThreePoints points{{bottom - span, bottom + span, top}};
-      if (!limit.can_be_road(to_full_size(points.plane(grid), factor))) continue;
-      const float step = last_row > 0 ? static_cast<float>((bottom - top) / last_row) : 0;
-      double sum = 0;
-      for (int r = last_row; r >= 0; --r) {
+      const float step = static_cast<float>((bottom - top) / last_row);
+      float sum = 0;
+      for (int r = last_row; r >= 0; r -= row_step) {
         const int d = static_cast<int>(static_cast<float>(bottom) - step * static_cast<float>(last_row - r) + 0.5f);
         if (d > 0 && d < grid.disparities()) sum += sheared.row(r)[d];
       }
-      if (sum > best[b].score) best[b] = {points, sum};
+      if (static_cast<double>(sum) <= best[b].score) continue;
+      if (limit.can_be_road(to_full_size(points.plane(grid), factor))) best[b] = {points, sum};
     }
   }
 }
@@ -227,7 +232,7 @@ ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const 
     const ShearedRows rows(grid, slope, sheared.data() + static_cast<std::size_t>(worker) * ShearedRows::size(grid));
     search_lines(grid, rows, slope, coarse.factor, limit, candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
   });
-  constexpr std::size_t refined = 10;
+  constexpr std::size_t refined = 8;
   ScratchVector<Candidate> best = choose(candidates, refined, 2 * slope_step);
   parallel_for(static_cast<int>(best.size()), threads, [&](int i, int) {
     Candidate& candidate = best[static_cast<std::size_t>(i)];
