@@ -32,7 +32,9 @@ class DisparityEvidence {
   int columns() const { return columns_; }
   int disparities() const { return disparities_; }
 
-  EvidenceCell cell(int row, int column) { return {support_.data() + at(row, column), beyond_.data() + at(row, column)}; }
+  EvidenceCell cell(int row, int column) {
+    return {support_.data() + at(row, column), beyond_.data() + at(row, column)};
+  }
   const float* support(int row, int column) const { return support_.data() + at(row, column); }
   const float* beyond(int row, int column) const { return beyond_.data() + at(row, column); }
 

@@ -11,17 +11,17 @@
 namespace roadstereo {
 namespace {
 
-constexpr double beyond_weight = 3.0;     ///< of evidence below the plane, against support along it
-constexpr double beyond_margin = 1.5;     ///< pixels of the downsampled image that the road may be uneven
-constexpr double full_weight_share = 0.15;  ///< of the largest disparity, from where a cell counts in full: the far road
-                                            ///< is a small patch that any surface there supports
-constexpr double base_row_weight = 0.2;     ///< of the uppermost row; the lowest has this and 1
-constexpr double tilt_penalty = 0.5;        ///< share of the score that a plane at the limit of the tilt loses
-constexpr double max_slope = 0.3;           ///< disparity per column
-constexpr double slope_step = 2.0;          ///< pixels of disparity at the left and right border
+constexpr double beyond_weight = 3.0;       ///< of evidence below the plane, against support along it
+constexpr double beyond_margin = 1.5;       ///< pixels of the downsampled image that the road may be uneven
+constexpr double full_weight_share = 0.15;  ///< of the largest disparity, from where a cell counts in full: the far
+                                            ///< road is a small patch that any surface there supports
+constexpr double base_row_weight = 0.2;  ///< of the uppermost row; the lowest has this and 1
+constexpr double tilt_penalty = 0.5;     ///< share of the score that a plane at the limit of the tilt loses
+constexpr double max_slope = 0.3;        ///< disparity per column
+constexpr double slope_step = 2.0;       ///< pixels of disparity at the left and right border
 constexpr int bottom_steps = 40, top_steps = 56;
-constexpr int row_step = 2;                 ///< every second row of cells is enough to find a line
-constexpr double lowest_top = -0.6;         ///< disparity of the uppermost row, as a share of the largest
+constexpr int row_step = 2;          ///< every second row of cells is enough to find a line
+constexpr double lowest_top = -0.6;  ///< disparity of the uppermost row, as a share of the largest
 
 /// What the cells say to planes, in pixels of the downsampled image.
 class EvidenceGrid {
@@ -31,7 +31,8 @@ class EvidenceGrid {
         columns_(coarse.evidence.columns()),
         disparities_(coarse.evidence.disparities()),
         first_row_(coarse.first_row),
-        values_(scratch_vector<float>(static_cast<std::size_t>(rows_ * columns_) * static_cast<std::size_t>(disparities_))) {
+        values_(scratch_vector<float>(static_cast<std::size_t>(rows_ * columns_) *
+                                      static_cast<std::size_t>(disparities_))) {
     const double full_weight = 1.0 / (full_weight_share * disparities_);
     for (int r = 0; r < rows_; ++r) {
       const double lower = row(r) / coarse.height;
@@ -225,12 +226,12 @@ ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const 
   const double half_width = 0.5 * (grid.column(grid.columns() - 1) - grid.column(0));
   const int slopes = static_cast<int>(max_slope * half_width / slope_step);
   auto candidates = scratch_vector<Candidate>(static_cast<std::size_t>((2 * slopes + 1) * bottom_steps));
-  auto sheared =
-      scratch_vector<float>(static_cast<std::size_t>(resolve_threads(threads)) * ShearedRows::size(grid));
+  auto sheared = scratch_vector<float>(static_cast<std::size_t>(resolve_threads(threads)) * ShearedRows::size(grid));
   parallel_for(2 * slopes + 1, threads, [&](int i, int worker) {
     const double slope = (i - slopes) * slope_step / half_width;
     const ShearedRows rows(grid, slope, sheared.data() + static_cast<std::size_t>(worker) * ShearedRows::size(grid));
-    search_lines(grid, rows, slope, coarse.factor, limit, candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
+    search_lines(grid, rows, slope, coarse.factor, limit,
+                 candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
   });
   constexpr std::size_t refined = 8;
   ScratchVector<Candidate> best = choose(candidates, refined, 2 * slope_step);
@@ -252,7 +253,8 @@ PlaneEvidence measure_evidence(const CoarseMatches& coarse, const DisparityPlane
   double possible = 0, beyond = 0, pixels = 0;
   for (int r = 0; r < grid.rows(); ++r) {
     for (int c = 0; c < grid.columns(); ++c) {
-      const double u = to_full_resolution(grid.column(c), coarse.factor), v = to_full_resolution(grid.row(r), coarse.factor);
+      const double u = to_full_resolution(grid.column(c), coarse.factor),
+                   v = to_full_resolution(grid.row(r), coarse.factor);
       const double d = plane.disparity(u, v) / factor;
       if (d <= 1 || d >= grid.disparities() - 1) continue;
       const int whole = static_cast<int>(d);

@@ -15,10 +15,10 @@ struct PlaneHypothesis {
 };
 
 /// Search planes by total evidence: a Hough transform over slope along the columns and a line in v-disparity space,
-/// then a local search. Nothing has to be matched pixel by pixel: where noise or defocus leave a single block undecided,
-/// the sum over all of them still decides. A plane gains where the pixels support its disparity and loses where they
-/// lie beyond it, for nothing but damage lies below a road; lower rows count more. Best first, at most `max_planes`,
-/// and none of them nearly equal. `limit` rejects walls.
+/// then a local search. Nothing has to be matched pixel by pixel: where noise or defocus leave a single block
+/// undecided, the sum over all of them still decides. A plane gains where the pixels support its disparity and loses
+/// where they lie beyond it, for nothing but damage lies below a road; lower rows count more. Best first, at most
+/// `max_planes`, and none of them nearly equal. `limit` rejects walls.
 ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const TiltLimit& limit, int max_planes,
                                              int threads);
 

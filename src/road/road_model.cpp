@@ -82,18 +82,20 @@ class FinePair {
   ImageView<const std::int16_t> left_, right_;
 };
 
-Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, const FineSearch& search, bool with_roll,
-                       int threads) {
+using PlaneMatcher = decltype(match_along_plane);
+
+Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneMatcher match, const FineSearch& search,
+                       bool with_roll, int threads) {
   const int factor = pair.factor();
   const int height = pair.left().height() * factor;
-  PlaneMatches found = match_along_plane(pair.left(), pair.right(), downsample_plane(plane, factor), search.range_px,
-                                         search.places, threads);
+  PlaneMatches found =
+      match(pair.left(), pair.right(), downsample_plane(plane, factor), search.range_px, search.places, threads);
   Refinement result;
   PlaneFitStatistics& evidence = result.evidence;
   evidence.tried = found.tried;
   result.points = points_to_full_resolution(std::move(found.points), factor);
   evidence.points = static_cast<int>(result.points.size());
-  if (evidence.points < min_matches) return result;
+  if (evidence.points < found.min_points) return result;
   const auto fit = fit_plane_irls(result.points, plane, fine_fit_scale * factor, with_roll, fine_fit_iterations);
   if (!fit) return result;
   evidence.plane = fit->plane;
@@ -103,7 +105,7 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, const 
     if (fit->weights[i] > 0) rows.push_back(result.points[i].v);
   }
   evidence.inliers = static_cast<int>(rows.size());
-  evidence.found = evidence.inliers >= min_matches;
+  evidence.found = evidence.inliers >= found.min_points;
   if (evidence.found) {
     evidence.rows_covered = (percentile(rows, row_p95) - percentile(rows, row_p05)) / height;
   }
@@ -179,12 +181,16 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   if (planes.empty()) estimate.reason = "no plane has more evidence for it than against it";
   const FinePair fine(left, right);
   for (const PlaneHypothesis& hypothesis : planes) {
-    // First wide, for the coarse plane is good to a pixel of the downsampled image at best; then close.
-    Refinement refinement = refine_road(fine, hypothesis.plane, first_search, options.with_roll, threads);
-    if (refinement.evidence.found) {
-      refinement = refine_road(fine, refinement.evidence.plane, close_search, options.with_roll, threads);
+    // First wide, for the coarse plane is good to a pixel of the downsampled image at best; then close. By single
+    // blocks, and where these find nothing by cells of them.
+    for (PlaneMatcher* match : {&match_along_plane, &match_cells_along_plane}) {
+      Refinement refinement = refine_road(fine, hypothesis.plane, *match, first_search, options.with_roll, threads);
+      if (refinement.evidence.found) {
+        refinement = refine_road(fine, refinement.evidence.plane, *match, close_search, options.with_roll, threads);
+      }
+      assess_found_road(refinement.evidence, hypothesis.score / coarse.pixels(), limit, options, estimate);
+      if (refinement.evidence.found) break;
     }
-    assess_found_road(refinement.evidence, hypothesis.score / coarse.pixels(), limit, options, estimate);
     if (estimate.reliable) break;
   }
   measure_range(matches, estimate);
@@ -197,8 +203,9 @@ RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageVie
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   const FinePair fine(left, right);
   const Refinement around =
-      refine_road(fine, previous.model, first_search_again, options.with_roll, threads);
-  const Refinement close = around.evidence.found ? refine_road(fine, around.evidence.plane, close_search_again, options.with_roll, threads)
+      refine_road(fine, previous.model, match_along_plane, first_search_again, options.with_roll, threads);
+  const Refinement close = around.evidence.found ? refine_road(fine, around.evidence.plane, match_along_plane,
+                                                               close_search_again, options.with_roll, threads)
                                                  : Refinement();
   RoadModelEstimate estimate =
       assess_tracked_road(around.evidence, close.evidence, previous, left.width(), left.height(), calibration, options);

@@ -33,7 +33,7 @@ struct FineSearch {
 inline constexpr FineSearch first_search{7, 1000};  ///< the coarse plane is good to a pixel of the shrunk image at best
 inline constexpr FineSearch close_search{4, 2500};
 inline constexpr FineSearch close_search_again{2, 1500};
-inline constexpr FineSearch first_search_again{7, 500};  ///< around the last frame's plane
+inline constexpr FineSearch first_search_again{4, 700};  ///< around the last frame's plane
 
 /// Of the robust fit after a search. The window is in pixels of the shrunk image: a kerb must not pull the plane, a
 /// road that is not flat must stay in.

@@ -121,8 +121,7 @@ void add_evidence(const RowCorrelations& row, int first, float* posterior, const
       const auto valid = hn::Gt(at, zero);
       const Float smooth = hn::MulAdd(at, half, hn::Mul(hn::Add(before, after), quarter));
       const Float ratio = hn::Mul(smooth, per_chance);
-      const Float support =
-          hn::Div(hn::Mul(hn::Set(df, 3.2f), hn::Sub(ratio, one)), hn::Add(ratio, hn::Set(df, 6.0f)));
+      const Float support = hn::Div(hn::Mul(hn::Set(df, 3.2f), hn::Sub(ratio, one)), hn::Add(ratio, hn::Set(df, 6.0f)));
       cumulative = hn::MulAdd(at, inverse_total, cumulative);
       chance = hn::Add(chance, hn::IfThenElseZero(valid, inverse_count));
       cell.support[d] += hn::GetLane(hn::SumOfLanes(df, hn::IfThenElseZero(valid, support)));
