@@ -87,7 +87,9 @@ void register_all() {
   };
   add_stage("grey", [](Frame& f) { to_grey(f.pair.left.view(), 0, f.left); });
   add_stage("estimate_road", [](Frame& f) { estimate_road_model(f.left, f.right, f.pair.calibration, {}); });
-  add_stage("verify_road", [](Frame& f) { verify_road_model(f.left, f.right, f.road.model, f.pair.calibration, {}); });
+  add_stage("verify_road", [](Frame& f) {
+    verify_road_model(f.left, f.right, {f.road.model, f.road.inlier_share}, f.pair.calibration, {});
+  });
   add_stage("transform_target", [](Frame& f) { transform_target(f.right, f.shift, 0, f.target, f.first_column); });
   add_stage("restore_disparity", [](Frame& f) { restore_disparity(f.maps.disparity, f.shift, 0, f.disparity); });
   add_stage("roll", [](Frame& f) { estimate_roll(f.disparity, std::nullopt, f.road.model, 0, {}); });

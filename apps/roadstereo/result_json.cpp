@@ -43,7 +43,9 @@ Json model_json(const DisparityPlane& model) {
 }
 
 Json estimate_json(const RoadModelEstimate& road) {
-  Json estimate = {{"reliable", road.reliable}, {"reason", road.reason}};
+  Json estimate = {{"status", name_of(road.status)}, {"reason", road.reason}};
+  estimate["evidence"] = json_number(road.evidence);
+  estimate["inlier_share"] = json_number(road.inlier_share);
   estimate["road_model"] = road.reliable ? model_json(road.model) : Json(nullptr);
   estimate["matches"] = road.matches;
   estimate["inliers"] = road.inliers;

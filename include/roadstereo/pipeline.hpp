@@ -83,7 +83,7 @@ struct FrameResult {
 struct PipelineState {
   int width = 0;                       ///< size of the frames, pixels; 0 before the first one
   int height = 0;                      ///< pixels
-  std::optional<DisparityPlane> road;  ///< the last frame's road model; absent when it was not reliable
+  std::optional<TrackedRoad> road;     ///< the last frame's road; absent when it had none
   double roll_rad = 0;                 ///< ψ(t), start of the descent of ψ(t+1), eq. (24); 0 when not observable
   double row_offset_px = 0;            ///< of the target's rows; measured whenever the road model is estimated anew
 };

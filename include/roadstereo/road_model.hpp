@@ -13,19 +13,32 @@ struct RoadModelOptions {
   bool with_roll = true;              ///< estimate a2; false is the paper's model, eq. (4)
   double max_disparity_share = 0.35;  ///< largest disparity searched, as a share of the image width, 0.05 … 0.9
   double max_road_tilt_deg = 30.0;    ///< steepest sideways tilt of a road; a steeper plane is a wall, 5 … 80
-  double min_inlier_share = 0.25;     ///< share of the reliable matches that are inliers of a reliable model, 0 … 1
-  double verify_tolerance_px = 1.0;   ///< largest spread of a carried-over model, pixels, above 0, at most 100
+  double min_evidence = 0.03;         ///< below this mean evidence per pixel there is no road, 0 … 1
+  double weak_evidence = 0.08;        ///< below this mean evidence per pixel the road is weak, 0 … 1
+  double verify_tolerance_px = 1.0;   ///< largest spread that a tracked road may leave, pixels, above 0 … 100
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
 };
 
+/// What is known of the road of a pair.
+enum class RoadStatus {
+  none,    ///< there is no road in the pair, or nothing shows it: no roll, nothing metric, no damage
+  weak,    ///< a road with little evidence: it fills little of the picture, or the picture is poor
+  found,   ///< found in this pair alone
+  tracked  ///< the last frame's road, found again in this pair
+};
+const char* name_of(RoadStatus status);
+
 /// Road model before matching.
 struct RoadModelEstimate {
   DisparityPlane model;
-  bool reliable = false;        ///< false: `reason` says why, and matching searches the full range
-  bool tracked = false;         ///< the last frame's model, verified on this frame
-  std::string reason;           ///< empty when reliable
+  RoadStatus status = RoadStatus::none;
+  bool reliable = false;        ///< the status is not `none`: the pair is transformed by `model`
+  bool tracked = false;         ///< the last frame's model was tried
+  std::string reason;           ///< why there is no road; empty when reliable
+  double evidence = 0;          ///< mean evidence for the plane per pixel, about 0 … 2; 0 when tracked
+  double inlier_share = 0;      ///< share of the textured samples below the horizon that the plane explains, 0 … 1
   int matches = 0;              ///< reliable correspondences found over the whole image
   int inliers = 0;              ///< correspondences on the road
   double residual_px = 0;       ///< robust standard deviation of the inliers around the model, pixels
@@ -34,16 +47,24 @@ struct RoadModelEstimate {
   double max_disparity_px = 0;  ///< 99th percentile of all correspondences, for a search without a model
 };
 
-/// Estimates the road model from a grey pair: dense coarse-to-fine matching along the rows, then a robust plane.
-/// `reliable` is false when the evidence is poor. `calibration`, when given, tells walls from roads by their real tilt.
-/// Throws Error when the images seem to be swapped (the matches lie at negative disparities).
+/// Finds the road from the images alone: the plane with the most evidence over all pixels of the downsampled pair, then
+/// a robust fit to correspondences along it. Never guesses: when the evidence is poor, the status is `none`.
+/// `calibration`, when given, tells walls from roads by their real tilt.
+/// Throws Error when the images look swapped (the matches lie at negative disparities).
 RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                       const std::optional<StereoCalibration>& calibration,
                                       const RoadModelOptions& options, int threads = 0);
 
-/// Verifies `previous`, the last frame's model, on this pair and refines it; `reliable` is false when it does not fit.
+/// The last frame's road, where tracking starts.
+struct TrackedRoad {
+  DisparityPlane model;
+  double inlier_share = 0;  ///< RoadModelEstimate::inlier_share, 0 … 1
+};
+
+/// Tracks the last frame's road: searches around `previous` and refits. `reliable` is false when the road explains far
+/// less of this pair than of the last one, or has moved farther than the search can see.
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                    const DisparityPlane& previous, const std::optional<StereoCalibration>& calibration,
+                                    const TrackedRoad& previous, const std::optional<StereoCalibration>& calibration,
                                     const RoadModelOptions& options, int threads = 0);
 
 }  // namespace roadstereo

@@ -51,7 +51,7 @@ class FrameStages {
   /// The pair in host memory.
   virtual GreyPair on_host(const GreyPair& pair) = 0;
   /// verify_road_model.
-  virtual RoadModelEstimate verify_road_model(const GreyPair& pair, const DisparityPlane& previous) = 0;
+  virtual RoadModelEstimate verify_road_model(const GreyPair& pair, const TrackedRoad& previous) = 0;
   /// transform_target, π_tar → π_tar': returns the pair to match, without search ranges and prior.
   virtual MatchInput transform_perspective(const GreyPair& pair, const PerspectiveShift& shift) = 0;
   /// CoarseSearch: returns `pair` with search ranges and prior.

@@ -111,8 +111,11 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const GreyPair grey = stages->on_host(pair);
   result.road = roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads);
   if (!result.road.reliable) {
-    result.warnings.push_back(format_message("no reliable road model (", result.road.reason,
-                                             "): matched without perspective transformation over the full range"));
+    result.warnings.push_back(format_message("no road was found (", result.road.reason,
+                                       "): matched without perspective transformation over the full range"));
+  } else if (result.road.status == RoadStatus::weak) {
+    result.warnings.push_back(format_message("the road is weak: the evidence for it is ", result.road.evidence,
+                                       " per pixel, less than ", options.road_model.weak_evidence));
   }
   if (options.check_rows) measure_rows(grey);
 }
@@ -175,14 +178,17 @@ ImageView<const float> Pipeline::State::refine(const DisparityMaps& maps) {
 
 /// Roll angle and projection model, section 3.3.
 void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
-  constexpr double min_valid_share = 0.01;
+  // Of a pair without a road nothing is told but its disparities.
+  constexpr double min_valid_share = 0.01, never = 2;
   const StageTimer timer(result.ms.roll);
-  const auto prior = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
-  const RollFit fit = stages->estimate_roll(disparity, prior, carried.roll_rad, min_valid_share, result.shift);
+  const bool has_road = result.road.status != RoadStatus::none;
+  const auto prior = has_road ? std::optional(result.road.model) : std::nullopt;
+  const RollFit fit = stages->estimate_roll(disparity, prior, carried.roll_rad, has_road ? min_valid_share : never,
+                                            result.shift);
   result.valid_share = fit.valid_share;
   result.roll_found = fit.geometry.has_value();
   result.geometry = fit.geometry.value_or(RollEstimate{});
-  if (!result.roll_found) {
+  if (has_road && !result.roll_found) {
     result.warnings.push_back(format_message("only ", 100 * result.valid_share, " % of the pixels have a disparity"));
   }
 }
@@ -199,14 +205,6 @@ void Pipeline::State::transform_disparity(ImageView<const float> disparity) {
   const TransformedRoad road = stages->transform_disparity(disparity, result.geometry, result.shift);
   result.delta_t = road.delta_t;
   result.spread = road.spread;
-  // Without a road model, a plane that few disparities lie on need not be a road.
-  constexpr double min_road_share = 0.3;
-  if (!result.road.reliable && result.spread.road_share < min_road_share) {
-    result.geometry.roll_observable = false;
-    result.warnings.push_back(
-        format_message("only ", 100 * result.spread.road_share,
-                       " % of the disparities lie on the plane found: there may be no road in the pair"));
-  }
 }
 
 void Pipeline::State::download() {
@@ -219,7 +217,8 @@ void Pipeline::State::end_frame() {
   result.ms.total = ms_since(begin);
   carried.width = width;
   carried.height = height;
-  carried.road = result.road.reliable ? std::optional(result.road.model) : std::nullopt;
+  carried.road.reset();
+  if (result.road.reliable) carried.road = TrackedRoad{result.road.model, result.road.inlier_share};
   carried.roll_rad = result.roll_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   result.mde_per_s = static_cast<double>(width) * height * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
   has_frame = has_maps = true;

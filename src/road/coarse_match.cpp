@@ -14,7 +14,8 @@ namespace {
 
 constexpr int half_width = row_block_half_width;
 constexpr int half_height = row_block_half_height;
-constexpr float min_deviation = 1.2f * grey_scale;  ///< of a block with texture
+/// Added to the variance of a block: what has less texture correlates with nothing.
+constexpr float noise_deviation = 1.0f * grey_scale;
 constexpr float min_correlation = 0.7f;
 constexpr float min_margin = 0.03f;  ///< by which the best must beat every other but its neighbours
 constexpr int band_rows = 12;
@@ -62,6 +63,7 @@ class BandMemory {
         row_size_(layout.row_size()),
         sums_(scratch_vector<std::int32_t>(layout.volume_size())),
         values_(scratch_vector<float>(layout.volume_size())),
+        posterior_(scratch_vector<float>(static_cast<std::size_t>(layout.disparities * row_guard))),
         rows_(scratch_vector<float>(row_count * row_size_)),
         columns_(scratch_vector<std::int32_t>(2 * row_size_)) {}
 
@@ -76,6 +78,7 @@ class BandMemory {
   BestOfRow best_of_left() { return {row(4), row(5)}; }
   BestOfRow best_of_right() { return {row(6), row(7)}; }
   float* rivals() { return row(8); }
+  float* posterior() { return posterior_.data(); }
 
   /// No disparity is the best yet.
   void clear_best() { std::fill_n(row(4) - front_, 4 * row_size_, -1.0f); }
@@ -87,7 +90,7 @@ class BandMemory {
   std::ptrdiff_t front_;
   std::size_t row_size_;
   ScratchVector<std::int32_t> sums_;
-  ScratchVector<float> values_, rows_;
+  ScratchVector<float> values_, posterior_, rows_;
   ScratchVector<std::int32_t> columns_;
 };
 
@@ -113,9 +116,8 @@ void describe_blocks(const PaddedImage& image, int v, int width, BandMemory& mem
   for (int u = half_width; u + half_width < width; ++u) {
     const float mean = static_cast<float>(block_sum(sums + u)) / row_block_pixels;
     const float variance = static_cast<float>(block_sum(squares + u)) / row_block_pixels - mean * mean;
-    const bool textured = variance >= min_deviation * min_deviation;
     blocks.mean[u] = mean;
-    blocks.inverse_deviation[u] = textured ? 1 / std::sqrt(variance) : 0;
+    blocks.inverse_deviation[u] = 1 / std::sqrt(std::max(variance, 0.0f) + noise_deviation * noise_deviation);
   }
 }
 
@@ -152,7 +154,8 @@ struct SmallPair {
 
 /// The matches of the rows whose blocks begin at the rows first … last − 1. Sums of products slide from row to row;
 /// they are whole numbers, so that it does not matter where a band begins.
-std::size_t match_band(const SmallPair& pair, int first, int last, BandMemory& memory, DisparityPoint* matches) {
+std::size_t match_band(const SmallPair& pair, int first, int last, BandMemory& memory, DisparityPoint* matches,
+                       DisparityEvidence& evidence) {
   const int width = pair.layout.width;
   const RowCorrelations row{memory.values(), pair.layout.pitch, width, pair.layout.disparities};
   const auto add = [&](int v, int sign) {
@@ -169,6 +172,9 @@ std::size_t match_band(const SmallPair& pair, int first, int last, BandMemory& m
     memory.clear_best();
     correlate_row(memory.sums(), memory.left(), memory.right(), row, memory.best_of_left(), memory.best_of_right());
     found += collect(row, memory, v, pair.factor, matches + found);
+    for (int column = 0; column < evidence.columns(); ++column) {
+      add_evidence(row, column * evidence_columns, memory.posterior(), evidence.cell(top / evidence_rows, column));
+    }
     add(top, -1);
   }
   return found;
@@ -176,12 +182,17 @@ std::size_t match_band(const SmallPair& pair, int first, int last, BandMemory& m
 
 }  // namespace
 
-ScratchVector<DisparityPoint> match_coarsely(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                             int factor, double max_disparity_px, int threads) {
-  auto matches = scratch_vector<DisparityPoint>();
+CoarseMatches match_coarsely(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int factor,
+                             double max_disparity_px, int threads) {
+  static_assert(band_rows % evidence_rows == 0);
+  CoarseMatches matches;
   const int width = left.width() / factor;
   const int rows = left.height() / factor - 2 * half_height;
   const int disparities = std::min(static_cast<int>(max_disparity_px / factor) + 1, width - 2 * half_width);
+  matches.factor = factor;
+  matches.first_row = half_height;
+  matches.width = width;
+  matches.height = left.height() / factor;
   if (rows < 1 || disparities < 1) return matches;
   const Layout layout{width, disparities};
   const SmallPair pair{PaddedImage(left, factor, layout), PaddedImage(right, factor, layout), layout, factor};
@@ -193,14 +204,16 @@ ScratchVector<DisparityPoint> match_coarsely(ImageView<const std::int16_t> left,
   const std::size_t band_size = static_cast<std::size_t>(band_rows) * static_cast<std::size_t>(width);
   auto by_band = scratch_vector<DisparityPoint>(static_cast<std::size_t>(bands) * band_size);
   auto found = scratch_vector<std::size_t>(static_cast<std::size_t>(bands));
+  matches.evidence = DisparityEvidence((rows + evidence_rows - 1) / evidence_rows,
+                                       (width + evidence_columns - 1) / evidence_columns, disparities);
   parallel_rows(rows, band_rows, threads, [&](int first, int last, int worker) {
     const auto band = static_cast<std::size_t>(first / band_rows);
-    found[band] =
-        match_band(pair, first, last, memory[static_cast<std::size_t>(worker)], by_band.data() + band * band_size);
+    found[band] = match_band(pair, first, last, memory[static_cast<std::size_t>(worker)],
+                             by_band.data() + band * band_size, matches.evidence);
   });
   for (std::size_t band = 0; band < found.size(); ++band) {
     const DisparityPoint* of_band = by_band.data() + band * band_size;
-    matches.insert(matches.end(), of_band, of_band + found[band]);
+    matches.points.insert(matches.points.end(), of_band, of_band + found[band]);
   }
   return matches;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "road/disparity_evidence.hpp"
 #include "road/plane_fit.hpp"
 #include "roadstereo/image.hpp"
 
@@ -7,10 +8,21 @@
 
 namespace roadstereo {
 
-/// Correspondences over the whole image and the whole range of disparities, from a dense search along the rows of the
-/// shrunk pair: only those that are textured, distinct, and found from both sides. Coordinates and disparities are
-/// those of the full-size image, good to about `factor`/4 pixels.
-ScratchVector<DisparityPoint> match_coarsely(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                             int factor, double max_disparity_px, int threads);
+/// What a dense search along the rows of the downsampled pair found, over the whole image and the whole range.
+struct CoarseMatches {
+  /// Only those that are textured, distinct, and found from both sides. Coordinates and disparities are those of the
+  /// full-size image, good to about `factor`/4 pixels.
+  ScratchVector<DisparityPoint> points = scratch_vector<DisparityPoint>();
+  DisparityEvidence evidence;  ///< of the downsampled image
+  int factor = 1;              ///< by which the pair was downsampled
+  int first_row = 0;           ///< row of the downsampled image where the first cell begins
+  int width = 0;               ///< of the downsampled image, pixels
+  int height = 0;              ///< of the downsampled image, pixels
+
+  double pixels() const { return static_cast<double>(width) * height; }
+};
+
+CoarseMatches match_coarsely(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int factor,
+                             double max_disparity_px, int threads);
 
 }  // namespace roadstereo

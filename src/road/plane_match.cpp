@@ -6,6 +6,7 @@
 
 #include "core/parallel.hpp"
 #include "road/plane_search.hpp"
+#include "road/road_search.hpp"
 #include "road/strip_correlation.hpp"
 
 namespace roadstereo {
@@ -39,13 +40,69 @@ std::optional<double> best_residual(const StripCorrelations& correlations, int r
   return range - (static_cast<double>(at - first) + parabola_offset(*(at - 1), *at, *(at + 1)));
 }
 
+/// Searches around a plane at single samples.
+class PlaneSearch {
+ public:
+  PlaneSearch(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, const DisparityPlane& plane,
+              int range_px)
+      : left_(left),
+        right_(right),
+        plane_(plane),
+        range_(range_px),
+        extent_(plane_search_extent(plane.a1, plane.a2, range_px)) {}
+
+  /// Correlations of the block at (u, v) with the residuals +range … −range; false where there is no texture or the
+  /// search leaves the image.
+  bool correlate(int u, int v, Strip& strip, StripCorrelations& correlations) const {
+    if (!search_in_view(u, plane_.disparity(u, v), extent_, left_.width())) return false;
+    const CorrelationBlock block(left_, u, v, plane_block_half_width, plane_block_half_height);
+    if (block.deviation < plane_match_min_deviation) return false;
+    sample_around(right_, block, u, v, plane_, range_, strip);
+    correlate_strip(block, strip, 2 * range_ + 1, plane_match_min_deviation, correlations);
+    return true;
+  }
+
+  /// What was matched is the target column at u − residual of the shifted image.
+  DisparityPoint point(double u, double v, double residual) const {
+    return {u, v, plane_.disparity(u - residual, v) + residual};
+  }
+
+ private:
+  ImageView<const std::int16_t> left_, right_;
+  DisparityPlane plane_;
+  int range_;
+  double extent_;
+};
+
+/// Residual at the peak of a cell's mean correlation; nothing when it does not stand out from the other residuals.
+std::optional<double> cell_residual(const StripCorrelations& sums, int range) {
+  constexpr double min_peak_sigmas = 2.5;
+  const int count = 2 * range + 1;
+  const auto* first = sums.data();
+  const auto* at = std::max_element(first, first + count);
+  if (at == first || at == first + count - 1) return std::nullopt;
+  double sum = 0, squares = 0;
+  int others = 0;
+  for (const auto* value = first; value < first + count; ++value) {
+    if (std::abs(value - at) <= 2) continue;
+    sum += *value;
+    squares += static_cast<double>(*value) * *value;
+    ++others;
+  }
+  if (others < 2) return std::nullopt;
+  const double mean = sum / others;
+  const double sigma = std::sqrt(std::max(0.0, squares / others - mean * mean));
+  if (*at - mean < min_peak_sigmas * sigma) return std::nullopt;
+  return range - (static_cast<double>(at - first) + parabola_offset(*(at - 1), *at, *(at + 1)));
+}
+
 }  // namespace
 
 PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                const DisparityPlane& plane, int range_px, int places, int threads) {
   const SampleGrid grid = sample_grid(left.width(), left.height(), range_px, places);
-  const double reach = plane_search_extent(plane.a1, plane.a2, range_px);
   if (std::abs(plane.a2) >= plane_match_max_slant) return {};
+  const PlaneSearch search(left, right, plane, range_px);
   auto points = scratch_vector<DisparityPoint>(static_cast<std::size_t>(grid.places()));
   auto rows = scratch_vector<RowCount>(static_cast<std::size_t>(grid.rows));
   parallel_for(grid.rows, threads, [&](int grid_row, int) {
@@ -56,22 +113,62 @@ PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<con
     StripCorrelations correlations{};
     for (int column = 0; column < grid.columns; ++column) {
       const int u = grid.column(column);
-      if (!search_in_view(u, plane.disparity(u, v), reach, left.width())) continue;
-      const CorrelationBlock block(left, u, v, plane_block_half_width, plane_block_half_height);
-      if (block.deviation < plane_match_min_deviation) continue;
+      if (!search.correlate(u, v, strip, correlations)) continue;
       ++row.tried;
-      sample_around(right, block, u, v, plane, range_px, strip);
-      correlate_strip(block, strip, 2 * range_px + 1, plane_match_min_deviation, correlations);
       if (const auto residual = best_residual(correlations, range_px)) {
-        // What was matched is the target column at u − residual of the shifted image.
-        of_row[row.found++] = {static_cast<double>(u), static_cast<double>(v),
-                               plane.disparity(u - *residual, v) + *residual};
+        of_row[row.found++] = search.point(u, v, *residual);
       }
     }
   });
   PlaneMatches matches;
+  matches.min_points = min_matches;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const DisparityPoint* of_row = points.data() + r * static_cast<std::size_t>(grid.columns);
+    matches.points.insert(matches.points.end(), of_row, of_row + rows[r].found);
+    matches.tried += rows[r].tried;
+  }
+  return matches;
+}
+
+PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                     const DisparityPlane& plane, int range_px, int places, int threads) {
+  constexpr int cell = 5;  // samples along each side
+  const SampleGrid grid = sample_grid(left.width(), left.height(), range_px, places);
+  if (std::abs(plane.a2) >= plane_match_max_slant) return {};
+  const PlaneSearch search(left, right, plane, range_px);
+  const int cell_rows = (grid.rows + cell - 1) / cell, cell_columns = (grid.columns + cell - 1) / cell;
+  auto points = scratch_vector<DisparityPoint>(static_cast<std::size_t>(cell_rows * cell_columns));
+  auto rows = scratch_vector<RowCount>(static_cast<std::size_t>(cell_rows));
+  parallel_for(cell_rows, threads, [&](int cell_row, int) {
+    RowCount& row = rows[static_cast<std::size_t>(cell_row)];
+    DisparityPoint* of_row = points.data() + static_cast<std::ptrdiff_t>(cell_row) * cell_columns;
+    Strip strip{};
+    StripCorrelations correlations{};
+    for (int cell_column = 0; cell_column < cell_columns; ++cell_column) {
+      StripCorrelations sums{};
+      double sum_u = 0, sum_v = 0;
+      int samples = 0;
+      for (int i = 0; i < cell * cell; ++i) {
+        const int grid_row = cell_row * cell + i / cell, grid_column = cell_column * cell + i % cell;
+        if (grid_row >= grid.rows || grid_column >= grid.columns) continue;
+        const int u = grid.column(grid_column), v = grid.row(grid_row);
+        if (!search.correlate(u, v, strip, correlations)) continue;
+        for (std::size_t k = 0; k <= static_cast<std::size_t>(2 * range_px); ++k) sums[k] += correlations[k];
+        sum_u += u;
+        sum_v += v;
+        ++samples;
+      }
+      if (samples < cell * cell / 2) continue;
+      ++row.tried;
+      if (const auto residual = cell_residual(sums, range_px)) {
+        of_row[row.found++] = search.point(sum_u / samples, sum_v / samples, *residual);
+      }
+    }
+  });
+  PlaneMatches matches;
+  matches.min_points = min_matches / 3;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const DisparityPoint* of_row = points.data() + r * static_cast<std::size_t>(cell_columns);
     matches.points.insert(matches.points.end(), of_row, of_row + rows[r].found);
     matches.tried += rows[r].tried;
   }

@@ -5,11 +5,14 @@
 #include <numbers>
 
 #include "core/format_message.hpp"
+#include "road/road_search.hpp"
 
 namespace roadstereo {
 namespace {
 
-constexpr double min_share_again = 0.5;  ///< that a carried-over model explains; to look anew costs only time
+/// A tracked road must explain this much of what it explained in the last frame.
+constexpr double min_share_of_last = 0.6;
+constexpr double min_share = 0.1;  ///< in any case
 
 /// Share of the textured places of the road that the model explains.
 double inlier_share(const PlaneFitStatistics& evidence) {
@@ -29,11 +32,11 @@ double max_move(const DisparityPlane& now, const DisparityPlane& before, int wid
   return largest;
 }
 
-/// A road that has moved further than this from one frame to the next has jumped: then nothing says that the search
-/// around the last frame's plane has seen all of it. In a smooth flight it moves a tenth as far.
+/// A road that has moved farther than this from one frame to the next has jumped: then nothing says that the search
+/// around the last frame's plane has seen all of it.
 double max_step_px(int width) {
-  constexpr double share_of_width = 1.0 / 640, min_px = 0.25;
-  return std::max(min_px, share_of_width * width);
+  constexpr double share_of_range = 0.7;
+  return share_of_range * first_search_again.range_px * fine_factor(width);
 }
 
 }  // namespace
@@ -52,44 +55,61 @@ bool TiltLimit::can_be_road(const DisparityPlane& plane) const {
   return length > 0 && std::abs(plane.a2) <= max_sine_ * length && plane.a1 >= -max_sine_ * length;
 }
 
-void judge(const PlaneFitStatistics& evidence, double min_share, const TiltLimit& limit, RoadModelEstimate& estimate) {
+double TiltLimit::relative_tilt(const DisparityPlane& plane) const {
+  const double depth = (plane.disparity(cx_, cy_) + offset_) / focal_;
+  const double length = std::hypot(plane.a1, plane.a2, depth);
+  return length > 0 ? std::abs(plane.a2) / (length * max_sine_) : 1;
+}
+
+std::string assess_plane_fit(const PlaneFitStatistics& fit, const TiltLimit& limit, RoadModelEstimate& estimate) {
   constexpr double min_rows_covered = 0.1;
-  estimate.model = evidence.plane;
-  estimate.inliers = evidence.inliers;
-  estimate.residual_px = evidence.scale_px;
-  const double share = inlier_share(evidence);
-  if (!evidence.found) {
-    estimate.reason = format_message("only ", evidence.points, " correspondences lie near the supposed road");
-  } else if (share < min_share) {
-    estimate.reason =
-        format_message("the road explains ", 100 * share, " % of the textured places where it should be seen, ",
-                       "less than ", 100 * min_share, " %");
-  } else if (evidence.rows_covered < min_rows_covered) {
-    estimate.reason = format_message("the road was found in ", 100 * evidence.rows_covered, " % of the rows only");
-  } else if (!limit.can_be_road(estimate.model)) {
-    estimate.reason = "the plane found is tilted like a wall";
-  } else {
-    estimate.reliable = true;
+  estimate.model = fit.plane;
+  estimate.inliers = fit.inliers;
+  estimate.inlier_share = inlier_share(fit);
+  estimate.residual_px = fit.scale_px;
+  if (!fit.found) return format_message("only ", fit.points, " correspondences lie near the supposed road");
+  if (fit.rows_covered < min_rows_covered) {
+    return format_message("the road was found in ", 100 * fit.rows_covered, " % of the rows only");
+  }
+  if (!limit.can_be_road(estimate.model)) return "the plane found is tilted like a wall";
+  return {};
+}
+
+void assess_found_road(const PlaneFitStatistics& fit, double evidence, const TiltLimit& limit,
+                       const RoadModelOptions& options, RoadModelEstimate& estimate) {
+  estimate.evidence = evidence;
+  estimate.reason = assess_plane_fit(fit, limit, estimate);
+  if (estimate.reason.empty() && evidence < options.min_evidence) {
+    estimate.reason = format_message("the evidence for a road is ", evidence, " per pixel, less than ", options.min_evidence);
+  }
+  estimate.reliable = estimate.reason.empty();
+  if (estimate.reliable) {
+    estimate.status = evidence < options.weak_evidence ? RoadStatus::weak : RoadStatus::found;
   }
 }
 
 RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const PlaneFitStatistics& close,
-                                      const DisparityPlane& previous, int width, int height,
+                                      const TrackedRoad& previous, int width, int height,
                                       const std::optional<StereoCalibration>& calibration,
                                       const RoadModelOptions& options) {
   RoadModelEstimate estimate;
   estimate.tracked = true;
   estimate.matches = around.points;
   const TiltLimit limit(width, height, calibration, options.max_road_tilt_deg);
-  judge(close, std::max(options.min_inlier_share, min_share_again), limit, estimate);
-  if (estimate.reliable && estimate.residual_px > options.verify_tolerance_px) {
-    estimate.reliable = false;
+  estimate.reason = assess_plane_fit(close, limit, estimate);
+  const double least = std::max(min_share, min_share_of_last * previous.inlier_share);
+  const double moved = max_move(estimate.model, previous.model, width, height);
+  if (!estimate.reason.empty()) return estimate;
+  if (estimate.inlier_share < least) {
+    estimate.reason = format_message("the last frame's road explains ", 100 * estimate.inlier_share,
+                               " % of the textured samples where it should be seen, less than ", 100 * least, " %");
+  } else if (estimate.residual_px > options.verify_tolerance_px) {
     estimate.reason = format_message("the last frame's road leaves ", estimate.residual_px, " px on this one");
-  }
-  const double moved = max_move(estimate.model, previous, width, height);
-  if (estimate.reliable && moved > max_step_px(width)) {
-    estimate.reliable = false;
+  } else if (moved > max_step_px(width)) {
     estimate.reason = format_message("the road has moved by ", moved, " px since the last frame");
+  } else {
+    estimate.reliable = true;
+    estimate.status = RoadStatus::tracked;
   }
   return estimate;
 }

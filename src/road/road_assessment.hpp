@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "roadstereo/road_model.hpp"
 
@@ -13,6 +14,9 @@ class TiltLimit {
   TiltLimit(int width, int height, const std::optional<StereoCalibration>& calibration, double max_tilt_deg);
 
   bool can_be_road(const DisparityPlane& plane) const;
+
+  /// Sine of the sideways tilt as a share of that of the limit, 0 … 1 for what can be a road.
+  double relative_tilt(const DisparityPlane& plane) const;
 
  private:
   double focal_, cx_, cy_, offset_, max_sine_;
@@ -29,12 +33,16 @@ struct PlaneFitStatistics {
   double rows_covered = 0;  ///< share of the image height between the 5th and the 95th percentile of the inliers' rows
 };
 
-/// Fills in the estimate from the last search and says whether, and if not why not, it can be trusted.
-void judge(const PlaneFitStatistics& evidence, double min_share, const TiltLimit& limit, RoadModelEstimate& estimate);
+/// Fills in the estimate from the last search. Empty when the fit can be a road's, else why it cannot.
+std::string assess_plane_fit(const PlaneFitStatistics& fit, const TiltLimit& limit, RoadModelEstimate& estimate);
+
+/// A road found anew, by the mean evidence per pixel of its plane.
+void assess_found_road(const PlaneFitStatistics& fit, double evidence, const TiltLimit& limit,
+                       const RoadModelOptions& options, RoadModelEstimate& estimate);
 
 /// The estimate from the two searches around the last frame's model; all but the range of the residuals.
 RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const PlaneFitStatistics& close,
-                                      const DisparityPlane& previous, int width, int height,
+                                      const TrackedRoad& previous, int width, int height,
                                       const std::optional<StereoCalibration>& calibration,
                                       const RoadModelOptions& options);
 

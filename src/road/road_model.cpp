@@ -8,6 +8,7 @@
 #include "core/format_message.hpp"
 #include "core/require_range.hpp"
 #include "road/coarse_match.hpp"
+#include "road/plane_evidence.hpp"
 #include "road/plane_fit.hpp"
 #include "road/plane_match.hpp"
 #include "road/road_assessment.hpp"
@@ -16,28 +17,6 @@
 
 namespace roadstereo {
 namespace {
-
-/// How much a match speaks for a plane. The road is what fills the lower part of the picture, and nothing but damage
-/// lies below it: a match beyond the plane speaks against it, one in front of it (a vehicle, a verge) hardly.
-double vote(const DisparityPoint& point, const DisparityPlane& plane, double tolerance_px, int height) {
-  const double expected = plane.disparity(point.u, point.v);
-  if (expected <= 0) return 0;  // above the horizon
-  const double relative = (point.d - expected) / tolerance_px;
-  const double lower = point.v / height;
-  const double weight = 0.2 + lower * lower;
-  if (std::abs(relative) < 1) return weight * (1 - relative * relative);
-  return relative < 0 ? -0.7 * weight : -0.1 * weight;
-}
-
-std::optional<DisparityPlane> search_road(std::span<const DisparityPoint> matches, double tolerance_px, int height,
-                                          const TiltLimit& limit) {
-  const auto votes = [&](std::span<const DisparityPoint> points, const DisparityPlane& plane) {
-    double sum = 0;
-    for (const DisparityPoint& p : points) sum += vote(p, plane, tolerance_px, height);
-    return sum;
-  };
-  return ransac_plane(matches, votes, [&](const DisparityPlane& plane) { return limit.can_be_road(plane); });
-}
 
 /// The same plane in the coordinates of the image shrunk by `factor`.
 DisparityPlane downsample_plane(const DisparityPlane& plane, int factor) {
@@ -69,9 +48,6 @@ struct Refinement {
   ScratchVector<DisparityPoint> points = scratch_vector<DisparityPoint>();  ///< full-size coordinates
 };
 
-/// Where the plane that a refinement starts from comes from.
-enum class Origin { this_pair, last_frame };
-
 /// The pair as the fine search sees it: at full size, or a large one shrunk.
 class FinePair {
  public:
@@ -101,24 +77,21 @@ class FinePair {
   ImageView<const std::int16_t> left_, right_;
 };
 
-Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, Origin origin, const FineSearch& search,
-                       const TiltLimit& limit, bool with_roll, int threads) {
-  constexpr double tolerance = 1.0;  // of the vote, pixels of the shrunk image
+using PlaneMatcher = decltype(match_along_plane);
+
+Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneMatcher match, const FineSearch& search,
+                       bool with_roll, int threads) {
   const int factor = pair.factor();
   const int height = pair.left().height() * factor;
-  PlaneMatches found = match_along_plane(pair.left(), pair.right(), downsample_plane(plane, factor), search.range_px,
-                                         search.places, threads);
+  PlaneMatches found =
+      match(pair.left(), pair.right(), downsample_plane(plane, factor), search.range_px, search.places, threads);
   Refinement result;
   PlaneFitStatistics& evidence = result.evidence;
   evidence.tried = found.tried;
   result.points = points_to_full_resolution(std::move(found.points), factor);
   evidence.points = static_cast<int>(result.points.size());
-  if (evidence.points < min_matches) return result;
-  // The supposed plane may lie between a road and its pavement: vote anew with the sharper points.
-  const auto start = origin == Origin::last_frame ? std::optional(plane)
-                                                  : search_road(result.points, tolerance * factor, height, limit);
-  if (!start) return result;
-  const auto fit = fit_plane_irls(result.points, *start, fine_fit_scale * factor, with_roll, fine_fit_iterations);
+  if (evidence.points < found.min_points) return result;
+  const auto fit = fit_plane_irls(result.points, plane, fine_fit_scale * factor, with_roll, fine_fit_iterations);
   if (!fit) return result;
   evidence.plane = fit->plane;
   evidence.scale_px = fit->scale_px;
@@ -127,7 +100,7 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, Origin
     if (fit->weights[i] > 0) rows.push_back(result.points[i].v);
   }
   evidence.inliers = static_cast<int>(rows.size());
-  evidence.found = evidence.inliers >= min_matches;
+  evidence.found = evidence.inliers >= found.min_points;
   if (evidence.found) {
     evidence.rows_covered = (lower_quantile(rows, row_p95) - lower_quantile(rows, row_p05)) / height;
   }
@@ -141,25 +114,41 @@ bool look_swapped(ImageView<const std::int16_t> left, ImageView<const std::int16
   constexpr std::size_t usual_share = 5;  // a fifth of the pixels
   const std::size_t pixels = left.pixels() / static_cast<std::size_t>(factor * factor);
   if (matches > pixels / usual_share) return false;
-  const auto swapped = match_coarsely(right, left, factor, max_disparity_px, threads);
+  const auto swapped = match_coarsely(right, left, factor, max_disparity_px, threads).points;
   return swapped.size() > std::max<std::size_t>(3 * matches, min_matches);
 }
 
 }  // namespace
 
+const char* name_of(RoadStatus status) {
+  switch (status) {
+    case RoadStatus::none:
+      return "none";
+    case RoadStatus::weak:
+      return "weak";
+    case RoadStatus::found:
+      return "found";
+    case RoadStatus::tracked:
+      return "tracked";
+  }
+  return "none";
+}
+
 void RoadModelOptions::validate() const {
   require_range("road_model", "max_disparity_share", max_disparity_share, 0.05, 0.9);
   require_range("road_model", "max_road_tilt_deg", max_road_tilt_deg, 5.0, 80.0);
-  require_range("road_model", "min_inlier_share", min_inlier_share, 0.0, 1.0);
+  require_range("road_model", "min_evidence", min_evidence, 0.0, 1.0);
+  require_range("road_model", "weak_evidence", weak_evidence, 0.0, 1.0);
   require_range("road_model", "verify_tolerance_px", verify_tolerance_px, Above{0.0}, 100.0);
 }
 
 RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                       const std::optional<StereoCalibration>& calibration,
                                       const RoadModelOptions& options, int threads) {
-  const int factor = coarse_factor(left.width());
+  const int factor = coarse_factor(left.width(), left.height());
   const double max_disparity = options.max_disparity_share * left.width();
-  const ScratchVector<DisparityPoint> matches = match_coarsely(left, right, factor, max_disparity, threads);
+  const CoarseMatches coarse = match_coarsely(left, right, factor, max_disparity, threads);
+  const ScratchVector<DisparityPoint>& matches = coarse.points;
   if (look_swapped(left, right, factor, max_disparity, matches.size(), threads)) {
     fail("left and right look swapped: the matches lie at negative disparities");
   }
@@ -175,33 +164,37 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   estimate.max_disparity_px = lower_quantile(disparities, 0.99);
 
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
-  const auto coarse = search_road(matches, 0.8 * factor, left.height(), limit);
-  if (!coarse) {
-    estimate.reason = format_message("none of ", matches.size(), " correspondences speak for a road");
-    return estimate;
-  }
-  // First wide, for the coarse plane is good to a pixel of the shrunk image at best; then close.
+  // The plane with the most evidence; the next where that is no road after all.
+  constexpr int max_planes = 3;
+  const ScratchVector<PlaneHypothesis> planes = search_planes(coarse, limit, max_planes, threads);
+  if (planes.empty()) estimate.reason = "no plane has more evidence for it than against it";
   const FinePair fine(left, right);
-  Refinement refinement =
-      refine_road(fine, *coarse, Origin::this_pair, first_search, limit, options.with_roll, threads);
-  if (refinement.evidence.found) {
-    refinement = refine_road(fine, refinement.evidence.plane, Origin::this_pair, close_search, limit, options.with_roll,
-                             threads);
+  for (const PlaneHypothesis& hypothesis : planes) {
+    // First wide, for the coarse plane is good to a pixel of the downsampled image at best; then close. By single
+    // blocks, and where these find nothing by cells of them.
+    for (PlaneMatcher* match : {&match_along_plane, &match_cells_along_plane}) {
+      Refinement refinement = refine_road(fine, hypothesis.plane, *match, first_search, options.with_roll, threads);
+      if (refinement.evidence.found) {
+        refinement = refine_road(fine, refinement.evidence.plane, *match, close_search, options.with_roll, threads);
+      }
+      assess_found_road(refinement.evidence, hypothesis.score / coarse.pixels(), limit, options, estimate);
+      if (refinement.evidence.found) break;
+    }
+    if (estimate.reliable) break;
   }
-  judge(refinement.evidence, options.min_inlier_share, limit, estimate);
   measure_range(matches, estimate);
   return estimate;
 }
 
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                    const DisparityPlane& previous, const std::optional<StereoCalibration>& calibration,
+                                    const TrackedRoad& previous, const std::optional<StereoCalibration>& calibration,
                                     const RoadModelOptions& options, int threads) {
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   const FinePair fine(left, right);
   const Refinement around =
-      refine_road(fine, previous, Origin::last_frame, first_search_again, limit, options.with_roll, threads);
-  const Refinement close = around.evidence.found ? refine_road(fine, around.evidence.plane, Origin::last_frame,
-                                                               close_search_again, limit, options.with_roll, threads)
+      refine_road(fine, previous.model, match_along_plane, first_search_again, options.with_roll, threads);
+  const Refinement close = around.evidence.found ? refine_road(fine, around.evidence.plane, match_along_plane,
+                                                               close_search_again, options.with_roll, threads)
                                                  : Refinement();
   RoadModelEstimate estimate =
       assess_tracked_road(around.evidence, close.evidence, previous, left.width(), left.height(), calibration, options);

@@ -7,20 +7,21 @@
 // How the road is looked for, on the host and on the device.
 namespace roadstereo {
 
-inline constexpr int coarse_width = 120;  ///< the coarse search shrinks the image to between this and twice this
+inline constexpr int coarse_pixels = 14000;  ///< that the coarse search leaves at least, where the image has them
 inline constexpr int min_matches = 40;    ///< below this nothing is known
 
-/// Power of two that brings the image near the width of the coarse search.
-inline int coarse_factor(int width) {
+/// Power of two by which the coarse search downsamples the image.
+inline int coarse_factor(int width, int height) {
   int factor = 1;
-  while (width / (2 * factor) >= coarse_width) factor *= 2;
+  while ((width / (2 * factor)) * (height / (2 * factor)) >= coarse_pixels) factor *= 2;
   return factor;
 }
 
-/// By how much the fine search shrinks large images.
+/// By how much the fine search downsamples large images.
 inline int fine_factor(int width) {
-  const int factor = coarse_factor(width) / 8;
-  return factor > 1 ? factor : 1;
+  int factor = 1;
+  while (width / (2 * factor) >= 960) factor *= 2;
+  return factor;
 }
 
 /// How far and in how many places a search around a supposed plane looks. Each first brings the plane near, then
@@ -32,7 +33,7 @@ struct FineSearch {
 inline constexpr FineSearch first_search{7, 1000};  ///< the coarse plane is good to a pixel of the shrunk image at best
 inline constexpr FineSearch close_search{4, 2500};
 inline constexpr FineSearch close_search_again{2, 1500};
-inline constexpr FineSearch first_search_again{4, 500};  ///< around the last frame's plane
+inline constexpr FineSearch first_search_again{4, 700};  ///< around the last frame's plane
 
 /// Of the robust fit after a search. The window is in pixels of the shrunk image: a kerb must not pull the plane, a
 /// road that is not flat must stay in.

@@ -87,6 +87,51 @@ void find_rivals(const RowCorrelations& row, const float* best_disparity, float*
   }
 }
 
+/// (1 − ρ²)^−6 of a correlation; 0 of a block without a counterpart.
+HWY_INLINE Float likelihood(Float correlation) {
+  const Floats df;
+  const Float one = hn::Set(df, 1.0f);
+  const Float rho = hn::Min(hn::Max(correlation, hn::Zero(df)), hn::Set(df, 0.98f));
+  const Float unexplained = hn::NegMulAdd(rho, rho, one);
+  const Float inverse = hn::Div(one, unexplained);
+  const Float cubed = hn::Mul(inverse, hn::Mul(inverse, inverse));
+  return hn::IfThenElseZero(hn::Gt(correlation, hn::Set(df, -1.0f)), hn::Mul(cubed, cubed));
+}
+
+void add_evidence(const RowCorrelations& row, int first, float* posterior, const EvidenceCell& cell) {
+  const Floats df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  const Float zero = hn::Zero(df), one = hn::Set(df, 1.0f), half = hn::Set(df, 0.5f), quarter = hn::Set(df, 0.25f);
+  for (int u = first; u < first + evidence_columns && u < row.width; u += lanes) {
+    const auto inside = hn::Lt(hn::Iota(df, static_cast<float>(u)), hn::Set(df, static_cast<float>(row.width)));
+    Float total = zero, count = zero;
+    for (int d = 0; d < row.disparities; ++d) {
+      const Float p = hn::IfThenElseZero(inside, likelihood(hn::LoadU(df, row.values + d * row.pitch + u)));
+      hn::StoreU(p, df, posterior + d * lanes);
+      total = hn::Add(total, p);
+      count = hn::Add(count, hn::IfThenElseZero(hn::Gt(p, zero), one));
+    }
+    const auto seen = hn::Gt(count, zero);
+    const Float inverse_total = hn::IfThenElseZero(seen, hn::Div(one, total));
+    const Float inverse_count = hn::IfThenElseZero(seen, hn::Div(one, count));
+    const Float per_chance = hn::Mul(count, inverse_total);  // posterior over prior of a likelihood of 1
+    Float before = zero, at = hn::LoadU(df, posterior), cumulative = zero, chance = zero;
+    for (int d = 0; d < row.disparities; ++d) {
+      const Float after = d + 1 < row.disparities ? hn::LoadU(df, posterior + (d + 1) * lanes) : zero;
+      const auto valid = hn::Gt(at, zero);
+      const Float smooth = hn::MulAdd(at, half, hn::Mul(hn::Add(before, after), quarter));
+      const Float ratio = hn::Mul(smooth, per_chance);
+      const Float support = hn::Div(hn::Mul(hn::Set(df, 3.2f), hn::Sub(ratio, one)), hn::Add(ratio, hn::Set(df, 6.0f)));
+      cumulative = hn::MulAdd(at, inverse_total, cumulative);
+      chance = hn::Add(chance, hn::IfThenElseZero(valid, inverse_count));
+      cell.support[d] += hn::GetLane(hn::SumOfLanes(df, hn::IfThenElseZero(valid, support)));
+      cell.beyond[d] += hn::GetLane(hn::SumOfLanes(df, hn::Max(zero, hn::Sub(cumulative, chance))));
+      before = at;
+      at = after;
+    }
+  }
+}
+
 }  // namespace roadstereo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -96,6 +141,7 @@ namespace roadstereo {
 HWY_EXPORT(add_products);
 HWY_EXPORT(correlate_row);
 HWY_EXPORT(find_rivals);
+HWY_EXPORT(add_evidence);
 
 void add_products(const std::int16_t* left, const std::int16_t* right, const RowCorrelations& row, int sign,
                   std::int32_t* sums) {
@@ -109,6 +155,10 @@ void correlate_row(const std::int32_t* sums, const BlockRow& left, const BlockRo
 
 void find_rivals(const RowCorrelations& row, const float* best_disparity, float* rivals) {
   HWY_DYNAMIC_DISPATCH(find_rivals)(row, best_disparity, rivals);
+}
+
+void add_evidence(const RowCorrelations& row, int first, float* posterior, const EvidenceCell& cell) {
+  HWY_DYNAMIC_DISPATCH(add_evidence)(row, first, posterior, cell);
 }
 
 }  // namespace roadstereo

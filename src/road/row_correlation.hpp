@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "road/disparity_evidence.hpp"
+
 namespace roadstereo {
 
 // Wide and flat blocks: on a road seen at a slant the disparity changes from row to row, not along them.
@@ -48,5 +50,10 @@ void correlate_row(const std::int32_t* sums, const BlockRow& left, const BlockRo
 /// The highest correlation of each left column among the disparities that are no neighbours of the best: more than two
 /// away from it.
 void find_rivals(const RowCorrelations& row, const float* best_disparity, float* rivals);
+
+/// Adds to `cell` the evidence of the pixels from column `first` on: the posterior of each disparity,
+/// P(d) ∝ (1 − ρ²)^−6 with ρ the positive part of the correlation, against that of a disparity drawn at random.
+/// `posterior` is memory for disparities × evidence_columns values.
+void add_evidence(const RowCorrelations& row, int first, float* posterior, const EvidenceCell& cell);
 
 }  // namespace roadstereo

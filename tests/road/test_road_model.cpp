@@ -70,7 +70,7 @@ TEST(DisparityPlane, CarriesOverToNextFrame) {
   ASSERT_TRUE(start.reliable);
   const Pair second = render_pair(synth::next_frame(scene("uav"), 1));
   const RoadModelEstimate next =
-      verify_road_model(second.left, second.right, start.model, second.truth.calibration, RoadModelOptions{});
+      verify_road_model(second.left, second.right, {start.model, start.inlier_share}, second.truth.calibration, RoadModelOptions{});
   EXPECT_TRUE(next.reliable) << next.reason;
   EXPECT_TRUE(next.tracked);
   EXPECT_LT(worst_difference(next.model, second.truth), 0.5);
@@ -82,7 +82,7 @@ TEST(DisparityPlane, JumpIsUnreliable) {
   lower.rig.camera_height_m *= 0.5;
   const Pair jumped = render_pair(lower);
   const RoadModelEstimate lost =
-      verify_road_model(jumped.left, jumped.right, before, jumped.truth.calibration, RoadModelOptions{});
+      verify_road_model(jumped.left, jumped.right, {before, 0.9}, jumped.truth.calibration, RoadModelOptions{});
   EXPECT_FALSE(lost.reliable);
   EXPECT_FALSE(lost.reason.empty());
 }
@@ -130,7 +130,7 @@ TEST(RoadModelOptions, RejectsValuesOutOfRange) {
   options.max_road_tilt_deg = 90;
   EXPECT_THROW(options.validate(), Error);
   options = {};
-  options.min_inlier_share = -1;
+  options.min_evidence = -1;
   EXPECT_THROW(options.validate(), Error);
 }
 

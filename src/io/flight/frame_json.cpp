@@ -66,6 +66,12 @@ void each_field(DisparityPlane& model, Visit& visit) {
 }
 
 template <class Visit>
+void each_field(TrackedRoad& road, Visit& visit) {
+  visit("model", road.model);
+  visit("inlier_share", road.inlier_share);
+}
+
+template <class Visit>
 void each_field(PipelineState& state, Visit& visit) {
   visit("width", state.width);
   visit("height", state.height);

@@ -57,8 +57,8 @@ class DeviceStages final : public FrameStages {
     return {left_on_host_, right_on_host_};
   }
 
-  RoadModelEstimate verify_road_model(const GreyPair& pair, const DisparityPlane& previous) override {
-    verification_.run(pair.left, pair.right, {nullptr, previous}, options_.road_model.with_roll, stream());
+  RoadModelEstimate verify_road_model(const GreyPair& pair, const TrackedRoad& previous) override {
+    verification_.run(pair.left, pair.right, {nullptr, previous.model}, options_.road_model.with_roll, stream());
     wait_for_pair();
     return assess_road_verification(verification_.statistics(), previous, width_, height_, calibration_,
                                     options_.road_model);

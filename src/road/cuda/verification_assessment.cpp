@@ -22,7 +22,7 @@ PlaneFitStatistics statistics_of(const SearchStatistics& statistics, int height)
 
 }  // namespace
 
-RoadModelEstimate assess_road_verification(const VerificationStatistics& statistics, const DisparityPlane& previous,
+RoadModelEstimate assess_road_verification(const VerificationStatistics& statistics, const TrackedRoad& previous,
                                            int width, int height, const std::optional<StereoCalibration>& calibration,
                                            const RoadModelOptions& options) {
   const int factor = fine_factor(width);

@@ -9,7 +9,7 @@ namespace roadstereo::cuda {
 
 /// The rest of verify_road_model(), on the host: what the statistics of RoadVerification say of the last frame's model
 /// on a pair of width × height pixels. Takes what it does from the same functions.
-RoadModelEstimate assess_road_verification(const VerificationStatistics& statistics, const DisparityPlane& previous,
+RoadModelEstimate assess_road_verification(const VerificationStatistics& statistics, const TrackedRoad& previous,
                                            int width, int height, const std::optional<StereoCalibration>& calibration,
                                            const RoadModelOptions& options);
 

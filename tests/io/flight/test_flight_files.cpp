@@ -76,7 +76,7 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   EXPECT_EQ(back.road.a2, frame.road.a2);
   EXPECT_TRUE(std::isnan(back.height_m));
   EXPECT_EQ(back.warnings, frame.warnings);
-  EXPECT_EQ(back.pipeline_state.road->a1, 1e-300);
+  EXPECT_EQ(back.pipeline_state.road->model.a1, 1e-300);
   EXPECT_EQ(back.pipeline_state.row_offset_px, -0.3);
   ASSERT_EQ(back.damages.size(), 2U);
   EXPECT_EQ(back.damages[0].metrics->max_depth_m.value, 0.1 / 3);

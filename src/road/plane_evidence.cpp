@@ -1,0 +1,277 @@
+#include "road/plane_evidence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/full_resolution.hpp"
+#include "core/parallel.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr double beyond_weight = 3.0;       ///< of evidence below the plane, against support along it
+constexpr double beyond_margin = 1.5;       ///< pixels of the downsampled image that the road may be uneven
+constexpr double full_weight_share = 0.15;  ///< of the largest disparity, from where a cell counts in full: the far
+                                            ///< road is a small patch that any surface there supports
+constexpr double base_row_weight = 0.2;  ///< of the uppermost row; the lowest has this and 1
+constexpr double tilt_penalty = 0.5;     ///< share of the score that a plane at the limit of the tilt loses
+constexpr double max_slope = 0.3;        ///< disparity per column
+constexpr double slope_step = 2.0;       ///< pixels of disparity at the left and right border
+constexpr int bottom_steps = 40, top_steps = 56;
+constexpr int row_step = 2;          ///< every second row of cells is enough to find a line
+constexpr double lowest_top = -0.6;  ///< disparity of the uppermost row, as a share of the largest
+
+/// What the cells say to planes, in pixels of the downsampled image.
+class EvidenceGrid {
+ public:
+  explicit EvidenceGrid(const CoarseMatches& coarse)
+      : rows_(coarse.evidence.rows()),
+        columns_(coarse.evidence.columns()),
+        disparities_(coarse.evidence.disparities()),
+        first_row_(coarse.first_row),
+        values_(scratch_vector<float>(static_cast<std::size_t>(rows_ * columns_) *
+                                      static_cast<std::size_t>(disparities_))) {
+    const double full_weight = 1.0 / (full_weight_share * disparities_);
+    for (int r = 0; r < rows_; ++r) {
+      const double lower = row(r) / coarse.height;
+      const double weight = base_row_weight + lower * lower;
+      for (int c = 0; c < columns_; ++c) {
+        const float *support = coarse.evidence.support(r, c), *beyond = coarse.evidence.beyond(r, c);
+        float* value = values_.data() + at(r, c);
+        for (int d = 0; d < disparities_; ++d) {
+          const double before = d - beyond_margin;
+          const int whole = static_cast<int>(std::floor(before));
+          const double share = before - whole;
+          const double below = whole < 0 ? 0 : (1 - share) * beyond[whole] + share * beyond[whole + 1];
+          value[d] = static_cast<float>(weight * (std::min(1.0, d * full_weight) * support[d] - beyond_weight * below));
+        }
+      }
+    }
+  }
+
+  int rows() const { return rows_; }
+  int columns() const { return columns_; }
+  int disparities() const { return disparities_; }
+  double row(int r) const { return first_row_ + evidence_rows * (r + 0.5) - 0.5; }
+  double column(int c) const { return evidence_columns * (c + 0.5) - 0.5; }
+  double middle_column() const { return 0.5 * (column(0) + column(columns_ - 1)); }
+  const float* values(int r, int c) const { return values_.data() + at(r, c); }
+
+  /// Score of the plane d = a0 + a1·v + a2·u of the downsampled image.
+  double score(const DisparityPlane& plane) const {
+    double sum = 0;
+    const auto last = static_cast<float>(disparities_ - 1);
+    const auto step = static_cast<float>(plane.a2 * evidence_columns);
+    for (int r = 0; r < rows_; ++r) {
+      const auto first = static_cast<float>(plane.disparity(column(0), row(r)));
+      float of_row = 0;
+      for (int c = 0; c < columns_; ++c) {
+        const float d = first + step * static_cast<float>(c);
+        if (d <= 0 || d >= last) continue;
+        const int whole = static_cast<int>(d);
+        const float* value = values(r, c) + whole;
+        of_row += value[0] + (d - static_cast<float>(whole)) * (value[1] - value[0]);
+      }
+      sum += of_row;
+    }
+    return sum;
+  }
+
+ private:
+  std::size_t at(int r, int c) const {
+    return static_cast<std::size_t>(r * columns_ + c) * static_cast<std::size_t>(disparities_);
+  }
+
+  int rows_, columns_, disparities_, first_row_;
+  ScratchVector<float> values_;
+};
+
+/// A plane by its disparities at the left and right end of the lowest row of cells and in the middle of the uppermost.
+struct ThreePoints {
+  std::array<double, 3> d;  ///< bottom left, bottom right, top centre
+
+  DisparityPlane plane(const EvidenceGrid& grid) const {
+    const double left = grid.column(0), right = grid.column(grid.columns() - 1);
+    const double top = grid.row(0), bottom = grid.row(grid.rows() - 1);
+    const double a2 = right > left ? (d[1] - d[0]) / (right - left) : 0;
+    const double middle = 0.5 * (d[0] + d[1]);
+    const double a1 = bottom > top ? (middle - d[2]) / (bottom - top) : 0;
+    return {middle - a1 * bottom - a2 * grid.middle_column(), a1, a2};
+  }
+};
+
+struct Candidate {
+  ThreePoints points{};
+  double score = -std::numeric_limits<double>::infinity();
+};
+
+/// The plane of the downsampled image in the coordinates of the full-size one.
+DisparityPlane to_full_size(const DisparityPlane& plane, int factor) {
+  // u = factor·u' + offset, d = factor·d'
+  const double offset = to_full_resolution(0, factor);
+  return {factor * plane.a0 - (plane.a1 + plane.a2) * offset, plane.a1, plane.a2};
+}
+
+/// Rows of the grid with the columns summed along one slope: the v-disparity image sheared by it.
+class ShearedRows {
+ public:
+  /// `values` is memory for rows × disparities values.
+  ShearedRows(const EvidenceGrid& grid, double slope, float* values)
+      : disparities_(grid.disparities()), values_(values) {
+    std::fill_n(values_, size(grid), 0.0f);
+    for (int c = 0; c < grid.columns(); ++c) {
+      const double offset = slope * (grid.column(c) - grid.middle_column());
+      const int whole = static_cast<int>(std::floor(offset));
+      const float share = static_cast<float>(offset - whole);
+      const int first = std::max(0, -whole), last = std::min(disparities_, disparities_ - 1 - whole);
+      for (int r = 0; r < grid.rows(); ++r) {
+        const float* in = grid.values(r, c) + whole;
+        float* out = values_ + static_cast<std::ptrdiff_t>(r) * disparities_;
+        for (int d = first; d < last; ++d) out[d] += (1 - share) * in[d] + share * in[d + 1];
+      }
+    }
+  }
+
+  static std::size_t size(const EvidenceGrid& grid) {
+    return static_cast<std::size_t>(grid.rows()) * static_cast<std::size_t>(grid.disparities());
+  }
+  const float* row(int r) const { return values_ + static_cast<std::ptrdiff_t>(r) * disparities_; }
+
+ private:
+  int disparities_;
+  float* values_;
+};
+
+/// The best lines of one slope, one for each disparity of the lowest row.
+void search_lines(const EvidenceGrid& grid, const ShearedRows& sheared, double slope, int factor,
+                  const TiltLimit& limit, Candidate* best) {
+  const double span = slope * (grid.column(grid.columns() - 1) - grid.middle_column());
+  const int last_row = grid.rows() - 1;
+  for (int b = 0; b < bottom_steps; ++b) {
+    const double bottom = (b + 1.0) * grid.disparities() / bottom_steps;
+    for (int t = 0; t <= top_steps; ++t) {
+      const double top = grid.disparities() * (lowest_top + (1 - lowest_top) * t / top_steps);
+      const ThreePoints points{{bottom - span, bottom + span, top}};
+      const float step = static_cast<float>((bottom - top) / last_row);
+      float sum = 0;
+      for (int r = last_row; r >= 0; r -= row_step) {
+        const int d = static_cast<int>(static_cast<float>(bottom) - step * static_cast<float>(last_row - r) + 0.5f);
+        if (d > 0 && d < grid.disparities()) sum += sheared.row(r)[d];
+      }
+      if (static_cast<double>(sum) <= best[b].score) continue;
+      if (limit.can_be_road(to_full_size(points.plane(grid), factor))) best[b] = {points, sum};
+    }
+  }
+}
+
+/// Coordinate descent over the three points with a step that is halved.
+void refine_plane(const EvidenceGrid& grid, int factor, const TiltLimit& limit, Candidate& candidate) {
+  constexpr double first_step = 1.0, last_step = 0.12;
+  candidate.score = grid.score(candidate.points.plane(grid));
+  for (double step = first_step; step > last_step; step /= 2) {
+    for (bool moved = true; moved;) {
+      moved = false;
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (const double change : {-step, step}) {
+          Candidate next = candidate;
+          next.points.d[i] += change;
+          const DisparityPlane plane = next.points.plane(grid);
+          next.score = grid.score(plane);
+          if (next.score <= candidate.score || !limit.can_be_road(to_full_size(plane, factor))) continue;
+          candidate = next;
+          moved = true;
+        }
+      }
+    }
+  }
+}
+
+bool nearly_equal(const ThreePoints& a, const ThreePoints& b, double tolerance) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (std::abs(a.d[i] - b.d[i]) > tolerance) return false;
+  }
+  return true;
+}
+
+/// Rigs hang level: of two planes with like evidence the one less tilted is the road.
+void penalise_tilt(const EvidenceGrid& grid, int factor, const TiltLimit& limit, Candidate& candidate) {
+  const double tilt = limit.relative_tilt(to_full_size(candidate.points.plane(grid), factor));
+  candidate.score *= 1 - tilt_penalty * tilt * tilt;
+}
+
+/// The best candidates that differ, best first.
+ScratchVector<Candidate> choose(ScratchVector<Candidate>& candidates, std::size_t count, double tolerance) {
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  auto chosen = scratch_vector<Candidate>();
+  for (const Candidate& candidate : candidates) {
+    if (chosen.size() == count || candidate.score <= 0) break;
+    const bool known = std::any_of(chosen.begin(), chosen.end(), [&](const Candidate& other) {
+      return nearly_equal(candidate.points, other.points, tolerance);
+    });
+    if (!known) chosen.push_back(candidate);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const TiltLimit& limit, int max_planes,
+                                             int threads) {
+  auto planes = scratch_vector<PlaneHypothesis>();
+  const EvidenceGrid grid(coarse);
+  if (grid.rows() < 2 || grid.columns() < 2 || grid.disparities() < 4) return planes;
+  const double half_width = 0.5 * (grid.column(grid.columns() - 1) - grid.column(0));
+  const int slopes = static_cast<int>(max_slope * half_width / slope_step);
+  auto candidates = scratch_vector<Candidate>(static_cast<std::size_t>((2 * slopes + 1) * bottom_steps));
+  auto sheared = scratch_vector<float>(static_cast<std::size_t>(resolve_threads(threads)) * ShearedRows::size(grid));
+  parallel_for(2 * slopes + 1, threads, [&](int i, int worker) {
+    const double slope = (i - slopes) * slope_step / half_width;
+    const ShearedRows rows(grid, slope, sheared.data() + static_cast<std::size_t>(worker) * ShearedRows::size(grid));
+    search_lines(grid, rows, slope, coarse.factor, limit,
+                 candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
+  });
+  constexpr std::size_t refined = 8;
+  ScratchVector<Candidate> best = choose(candidates, refined, 2 * slope_step);
+  parallel_for(static_cast<int>(best.size()), threads, [&](int i, int) {
+    Candidate& candidate = best[static_cast<std::size_t>(i)];
+    refine_plane(grid, coarse.factor, limit, candidate);
+    penalise_tilt(grid, coarse.factor, limit, candidate);
+  });
+  for (const Candidate& candidate : choose(best, static_cast<std::size_t>(max_planes), slope_step)) {
+    planes.push_back({to_full_size(candidate.points.plane(grid), coarse.factor), candidate.score});
+  }
+  return planes;
+}
+
+PlaneEvidence measure_evidence(const CoarseMatches& coarse, const DisparityPlane& plane) {
+  PlaneEvidence result;
+  const EvidenceGrid grid(coarse);
+  const double factor = coarse.factor;
+  double possible = 0, beyond = 0, pixels = 0;
+  for (int r = 0; r < grid.rows(); ++r) {
+    for (int c = 0; c < grid.columns(); ++c) {
+      const double u = to_full_resolution(grid.column(c), coarse.factor),
+                   v = to_full_resolution(grid.row(r), coarse.factor);
+      const double d = plane.disparity(u, v) / factor;
+      if (d <= 1 || d >= grid.disparities() - 1) continue;
+      const int whole = static_cast<int>(d);
+      const double share = d - whole;
+      const float *support = coarse.evidence.support(r, c), *below = coarse.evidence.beyond(r, c);
+      const double here = (1 - share) * support[whole] + share * support[whole + 1];
+      const double best = *std::max_element(support, support + grid.disparities());
+      result.support += std::max(0.0, here);
+      possible += std::max(0.0, best);
+      beyond += below[std::max(0, whole - 2)];
+      pixels += best > 0 ? 1 : 0;
+      result.score += here;
+    }
+  }
+  result.explained = possible > 0 ? result.support / possible : 0;
+  result.beyond = pixels > 0 ? beyond / (pixels * evidence_columns * evidence_rows) : 0;
+  return result;
+}
+
+}  // namespace roadstereo
