@@ -46,7 +46,7 @@ Json estimate_json(const RoadModelEstimate& road) {
   Json estimate = {{"status", name_of(road.status)}, {"reason", road.reason}};
   estimate["evidence"] = json_number(road.evidence);
   estimate["inlier_share"] = json_number(road.inlier_share);
-  estimate["road_model"] = road.reliable ? model_json(road.model) : Json(nullptr);
+  estimate["model"] = road.reliable ? model_json(road.model) : Json(nullptr);
   estimate["matches"] = road.matches;
   estimate["inliers"] = road.inliers;
   estimate["residual_px"] = road.reliable ? json_number(road.residual_px) : Json(nullptr);
@@ -120,7 +120,7 @@ std::string result_json(const Inspection& inspection) {
   document["damages"] = inspection.damage.damages.size();  // each is in damages.json
   document["road_noise_px"] = json_number(inspection.damage.noise_px);
   document["rows"] = rows_json(result.rows);
-  document["road_model_before_matching"] = estimate_json(result.road);
+  document["road"] = estimate_json(result.road);
   document["ms"] = times_json(result.ms);
   document["mde_per_s"] = json_number(result.mde_per_s);
   document["warnings"] = inspection.warnings;

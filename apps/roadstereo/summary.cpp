@@ -33,14 +33,12 @@ std::string engine_text(const Inspection& inspection) {
 }
 
 std::string roll_text(const FrameResult& result) {
+  if (result.road.status == RoadStatus::none) return "unknown: no road was found";
   if (!result.roll_found) return "unknown: too few pixels with a disparity";
   const RollEstimate& geometry = result.geometry;
   std::string angle = fmt::format("{:.3f}° ± {:.3f}°", degrees(geometry.roll_rad), degrees(geometry.roll_stderr_rad));
   if (geometry.roll_observable) return angle;
-  const bool trusted = result.road.reliable || result.warnings.empty();
-  return std::string("not observable: ") +
-         (trusted ? "the disparity of the road is nearly constant in the image" : "see the warnings") + " (fitted " +
-         angle + ")";
+  return "not observable: the disparity of the road is nearly constant in the image (fitted " + angle + ")";
 }
 
 std::string term(double factor, char coordinate) {
@@ -48,9 +46,11 @@ std::string term(double factor, char coordinate) {
 }
 
 std::string road_text(const FrameResult& result) {
-  if (!result.roll_found) return "unknown";
+  if (result.road.status == RoadStatus::none) return "none: " + result.road.reason;
+  if (!result.roll_found) return name_of(result.road.status);
   const DisparityPlane& plane = result.geometry.plane;
-  return fmt::format("d = {:.2f}{}{} px", plane.a0, term(plane.a1, 'v'), term(plane.a2, 'u'));
+  return fmt::format("{}, d = {:.2f}{}{} px", name_of(result.road.status), plane.a0, term(plane.a1, 'v'),
+                     term(plane.a2, 'u'));
 }
 
 std::string camera_text(const GroundPlane& plane) {

@@ -15,8 +15,8 @@ void FlightSummary::add(const io::FlightFrame& frame) {
   rejected += frame.status == io::FrameStatus::rejected ? 1 : 0;
   failed += frame.status == io::FrameStatus::failed ? 1 : 0;
   if (frame.status == io::FrameStatus::good) {
-    road_unknown += frame.road_reliable ? 0 : 1;
-    road_estimated += frame.road_reliable && !frame.road_tracked ? 1 : 0;
+    road_unknown += frame.road_status == RoadStatus::none ? 1 : 0;
+    road_estimated += frame.road_status == RoadStatus::found || frame.road_status == RoadStatus::weak ? 1 : 0;
     matching_ms.push_back(frame.matching_ms);
     damage_ms.push_back(frame.damage_ms);
     valid_share.push_back(frame.valid_share);

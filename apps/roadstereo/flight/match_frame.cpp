@@ -8,8 +8,7 @@ namespace roadstereo::cli {
 namespace {
 
 void record(const FrameResult& result, const std::optional<StereoCalibration>& calibration, io::FlightFrame& frame) {
-  frame.road_reliable = result.road.reliable;
-  frame.road_tracked = result.road.tracked;
+  frame.road_status = result.road.status;
   frame.valid_share = result.valid_share;
   frame.matching_ms = result.ms.total;
   frame.warnings = result.warnings;

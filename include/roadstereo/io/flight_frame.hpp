@@ -27,8 +27,7 @@ struct FlightFrame {
   double time_s = unknown;  ///< since 1970, or since the start of the source
   FrameStatus status = FrameStatus::good;
   std::string reason;                              ///< why `status` is not good
-  bool road_reliable = false;                      ///< the road model was found before matching
-  bool road_tracked = false;                       ///< ... by tracking from the previous frame; else it was estimated
+  RoadStatus road_status = RoadStatus::none;       ///< of the road model before matching
   double roll_rad = unknown;                       ///< ψ
   double roll_stderr_rad = unknown;                ///< standard error of ψ
   bool roll_observable = false;                    ///< false if the camera looks straight down

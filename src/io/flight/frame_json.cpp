@@ -119,8 +119,7 @@ void each_field(FlightFrame& frame, Visit& visit) {
   visit("time_s", frame.time_s);
   visit("status", frame.status);
   visit("reason", frame.reason);
-  visit("road_reliable", frame.road_reliable);
-  visit("road_tracked", frame.road_tracked);
+  visit("road_status", frame.road_status);
   visit("roll_rad", frame.roll_rad);
   visit("roll_stderr_rad", frame.roll_stderr_rad);
   visit("roll_observable", frame.roll_observable);

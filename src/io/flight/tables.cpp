@@ -16,11 +16,9 @@ std::string remarks(const FlightFrame& frame) {
   return text;
 }
 
-/// Origin of the road model used for matching.
-const char* road_source(const FlightFrame& frame) {
-  if (frame.status != FrameStatus::good) return "";
-  if (!frame.road_reliable) return "unknown";
-  return frame.road_tracked ? "tracked" : "estimated";
+/// Status of the road model used for matching.
+const char* road_status(const FlightFrame& frame) {
+  return frame.status == FrameStatus::good ? name_of(frame.road_status) : "";
 }
 
 }  // namespace
@@ -60,7 +58,7 @@ std::string frames_csv_row(const FlightFrame& frame) {
   line.add(frame.index).add(frame.name).add(frame.time_s).add(name_of(frame.status));
   line.add(frame.roll_rad * degrees).add(frame.roll_stderr_rad * degrees);
   good ? line.add(frame.roll_observable) : line.add_nothing();
-  line.add(road_source(frame)).add(frame.alpha0).add(frame.alpha1);
+  line.add(road_status(frame)).add(frame.alpha0).add(frame.alpha1);
   line.add(frame.road.a0).add(frame.road.a1).add(frame.road.a2);
   line.add(frame.height_m).add(frame.pitch_rad * degrees).add(frame.sigma_d_px).add(frame.noise_px);
   line.add(100 * frame.valid_share);

@@ -39,7 +39,7 @@ FlightFrame frame_of(std::int64_t index, std::vector<Damage> damages) {
   FlightFrame frame;
   frame.index = index;
   frame.name = std::to_string(index);
-  frame.road_tracked = true;
+  frame.road_status = RoadStatus::tracked;
   frame.damages = std::move(damages);
   return frame;
 }
@@ -186,11 +186,11 @@ TEST(FlightInventory, CutStartsNewDamages) {
   FlightInventory inventory;
   inventory.add(frame_of(0, {pothole(100, 100)}));
   FlightFrame cut = frame_of(1, {pothole(100, 100)});
-  cut.road_tracked = false;
+  cut.road_status = RoadStatus::found;
   EXPECT_EQ(inventory.add(cut), std::vector<std::int64_t>{2});
   FlightFrame refused = frame_of(2, {});
   refused.status = FrameStatus::rejected;
-  refused.road_tracked = false;
+  refused.road_status = RoadStatus::found;
   inventory.add(refused);
   EXPECT_EQ(inventory.add(frame_of(3, {pothole(100, 100)})), std::vector<std::int64_t>{2})
       << "over a frame that is missing";
