@@ -81,7 +81,7 @@ TEST_F(InspectCommand, ResultJsonHasEveryOptionAndFigure) {
                           "sigma_d_px",
                           "sigma_d_all_px",
                           "rows",
-                          "road_model_before_matching",
+                          "road",
                           "ms",
                           "mde_per_s",
                           "warnings"}) {
