@@ -46,6 +46,7 @@ Json estimate_json(const RoadModelEstimate& road) {
   Json estimate = {{"status", name_of(road.status)}, {"reason", road.reason}};
   estimate["evidence"] = json_number(road.evidence);
   estimate["inlier_share"] = json_number(road.inlier_share);
+  estimate["correlation"] = json_number(road.correlation);
   estimate["model"] = road.reliable ? model_json(road.model) : Json(nullptr);
   estimate["matches"] = road.matches;
   estimate["inliers"] = road.inliers;

@@ -15,6 +15,7 @@ enum class WindowShape { square, disc };
 
 /// Options of section 3.2: matching cost, aggregation, winner-take-all, left–right check, sub-pixel disparity.
 struct MatcherOptions {
+  bool adapt_support = true;   ///< larger blocks and more weight of the prior where the pair is noisy
   int block_radius = 2;        ///< N⁺ is (2r+1)² pixels, 1 … 10; the paper's 120-connected system is 5
   int aggregation_radius = 8;  ///< radius of the bilateral window, pixels, 0 … 10; 0 switches aggregation off
   /// Height of the window over its width, 0.1 … 1: a road is foreshortened along the columns, and its damage with it.

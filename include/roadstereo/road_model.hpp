@@ -39,6 +39,7 @@ struct RoadModelEstimate {
   std::string reason;           ///< why there is no road; empty when reliable
   double evidence = 0;          ///< mean evidence for the plane per pixel, about 0 … 2; 0 when tracked
   double inlier_share = 0;      ///< share of the textured samples below the horizon that the plane explains, 0 … 1
+  double correlation = 0;       ///< 10th percentile of the NCC of blocks on the road, 0.3 … 1; 0 when unknown
   int matches = 0;              ///< reliable correspondences found over the whole image
   int inliers = 0;              ///< correspondences on the road
   double residual_px = 0;       ///< robust standard deviation of the inliers around the model, pixels
@@ -59,6 +60,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
 struct TrackedRoad {
   DisparityPlane model;
   double inlier_share = 0;  ///< RoadModelEstimate::inlier_share, 0 … 1
+  double correlation = 0;   ///< RoadModelEstimate::correlation; of the pair in which the road was found
 };
 
 /// Tracks the last frame's road: searches around `previous` and refits. `reliable` is false when the road explains far

@@ -20,11 +20,13 @@ struct GreyPair {
 /// Residual disparities: of the left image and the transformed right one. NaN invalid.
 struct ResidualMaps {
   ImageView<float> disparity, variance;
+  double samples = 0;  ///< effective samples of one disparity
 };
 
 /// Disparities of the original images, with their variances from matching (pixels²). NaN invalid.
 struct DisparityMaps {
   ImageView<const float> disparity, variance;
+  double samples = 0;  ///< effective samples of one disparity
 };
 
 /// Section 3.3.1 on one disparity map.

@@ -40,7 +40,6 @@ class HostStages final : public FrameStages {
       : options_(options),
         calibration_(calibration),
         threads_(resolve_threads(options.threads)),
-        support_(effective_samples(options.matcher)),
         engine_(make_engine(options.engine, options.threads)) {
     if (options.narrow_search || options.matcher.prior_weight > 0) {
       coarse_search_.emplace(options.coarse_search, options.threads);
@@ -82,16 +81,16 @@ class HostStages final : public FrameStages {
 
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
     engine_->match(input, options, matched_);
-    return {matched_.disparity, matched_.variance};
+    return {matched_.disparity, matched_.variance, effective_samples(options)};
   }
 
   DisparityMaps restore_disparity(const ResidualMaps& residual, const PerspectiveShift& shift) override {
     roadstereo::restore_disparity(residual.disparity, shift, threads_, restored_);
-    return {restored_, residual.variance};
+    return {restored_, residual.variance, residual.samples};
   }
 
   ImageView<const float> refine(const DisparityMaps& maps, const DisparityPlane& road) override {
-    refine_disparities(maps.disparity, maps.variance, road, support_, options_.refinement, threads_, disparity_,
+    refine_disparities(maps.disparity, maps.variance, road, maps.samples, options_.refinement, threads_, disparity_,
                        sigma_);
     return disparity_;
   }
@@ -133,7 +132,6 @@ class HostStages final : public FrameStages {
   PipelineOptions options_;
   std::optional<StereoCalibration> calibration_;
   int threads_;
-  double support_;  ///< effective samples of one disparity
   std::unique_ptr<StereoEngine> engine_;
   std::optional<CoarseSearch> coarse_search_;
 

@@ -10,6 +10,7 @@
 #include "pipeline/host_stages.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
+#include "stereo/adaptive_support.hpp"
 #if defined(ROADSTEREO_WITH_CUDA)
 #include "pipeline/cuda/device_stages.hpp"
 #endif
@@ -105,6 +106,7 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   result.rows = {};
   if (carried.road) {
     result.road = stages->verify_road_model(pair, *carried.road);
+    result.road.correlation = carried.road->correlation;
     if (result.road.reliable) return;
     result.warnings.push_back(format_message("the road model was estimated anew: ", result.road.reason));
   }
@@ -112,10 +114,10 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   result.road = roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads);
   if (!result.road.reliable) {
     result.warnings.push_back(format_message("no road was found (", result.road.reason,
-                                       "): matched without perspective transformation over the full range"));
+                                             "): matched without perspective transformation over the full range"));
   } else if (result.road.status == RoadStatus::weak) {
     result.warnings.push_back(format_message("the road is weak: the evidence for it is ", result.road.evidence,
-                                       " per pixel, less than ", options.road_model.weak_evidence));
+                                             " per pixel, less than ", options.road_model.weak_evidence));
   }
   if (options.check_rows) measure_rows(grey);
 }
@@ -158,7 +160,7 @@ MatchInput Pipeline::State::search_coarsely(const MatchInput& pair) {
 ResidualMaps Pipeline::State::match(const MatchInput& input) {
   constexpr double truncation_without_road_px = 2;
   const StageTimer timer(result.ms.match);
-  MatcherOptions matcher = options.matcher;
+  MatcherOptions matcher = adapt_support(options.matcher, result.road.correlation);
   if (!result.shift.enabled) {
     matcher.prior_truncation_px = std::min(matcher.prior_truncation_px, truncation_without_road_px);
   }
@@ -183,8 +185,8 @@ void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
   const StageTimer timer(result.ms.roll);
   const bool has_road = result.road.status != RoadStatus::none;
   const auto prior = has_road ? std::optional(result.road.model) : std::nullopt;
-  const RollFit fit = stages->estimate_roll(disparity, prior, carried.roll_rad, has_road ? min_valid_share : never,
-                                            result.shift);
+  const RollFit fit =
+      stages->estimate_roll(disparity, prior, carried.roll_rad, has_road ? min_valid_share : never, result.shift);
   result.valid_share = fit.valid_share;
   result.roll_found = fit.geometry.has_value();
   result.geometry = fit.geometry.value_or(RollEstimate{});
@@ -218,7 +220,9 @@ void Pipeline::State::end_frame() {
   carried.width = width;
   carried.height = height;
   carried.road.reset();
-  if (result.road.reliable) carried.road = TrackedRoad{result.road.model, result.road.inlier_share};
+  if (result.road.reliable) {
+    carried.road = TrackedRoad{result.road.model, result.road.inlier_share, result.road.correlation};
+  }
   carried.roll_rad = result.roll_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   result.mde_per_s = static_cast<double>(width) * height * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
   has_frame = has_maps = true;

@@ -15,10 +15,10 @@ constexpr double beyond_weight = 3.0;       ///< of evidence below the plane, ag
 constexpr double beyond_margin = 1.5;       ///< pixels of the downsampled image that the road may be uneven
 constexpr double full_weight_share = 0.15;  ///< of the largest disparity, from where a cell counts in full: the far
                                             ///< road is a small patch that any surface there supports
-constexpr double base_row_weight = 0.2;  ///< of the uppermost row; the lowest has this and 1
-constexpr double tilt_penalty = 0.5;     ///< share of the score that a plane at the limit of the tilt loses
-constexpr double max_slope = 0.3;        ///< disparity per column
-constexpr double slope_step = 2.0;       ///< pixels of disparity at the left and right border
+constexpr double base_row_weight = 0.2;     ///< of the uppermost row; the lowest has this and 1
+constexpr double tilt_penalty = 0.5;        ///< share of the score that a plane at the limit of the tilt loses
+constexpr double max_slope = 0.3;           ///< disparity per column
+constexpr double slope_step = 2.0;          ///< pixels of disparity at the left and right border
 constexpr int bottom_steps = 40, top_steps = 56;
 constexpr int row_step = 2;          ///< every second row of cells is enough to find a line
 constexpr double lowest_top = -0.6;  ///< disparity of the uppermost row, as a share of the largest

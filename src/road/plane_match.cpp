@@ -16,6 +16,7 @@ namespace {
 struct RowCount {
   int tried = 0;
   std::size_t found = 0;
+  std::size_t near = 0;  ///< samples that match within a pixel of the plane
 };
 
 /// The right image along the rows of a block, each column shifted by the plane. The plane is taken at the block's own
@@ -28,6 +29,15 @@ void sample_around(ImageView<const std::int16_t> right, const CorrelationBlock& 
     sample_strip(right.row(row), right.width(), first - plane.disparity(first, row), 1 - plane.a2,
                  block.width + 2 * range, strip.row(y));
   }
+}
+
+/// The highest correlation, where it lies within a pixel of the plane.
+std::optional<float> correlation_on_plane(const StripCorrelations& correlations, int range) {
+  constexpr float min_correlation = 0.3F;  // below it chance decides
+  const float* first = correlations.data();
+  const float* at = std::max_element(first, first + std::ptrdiff_t{2} * range + 1);
+  if (std::abs(at - first - range) > 1 || *at < min_correlation) return std::nullopt;
+  return *at;
 }
 
 /// Residual of the highest correlation, refined by a parabola; nothing when it is low or at an end. Index 0 is +range,
@@ -104,6 +114,7 @@ PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<con
   if (std::abs(plane.a2) >= plane_match_max_slant) return {};
   const PlaneSearch search(left, right, plane, range_px);
   auto points = scratch_vector<DisparityPoint>(static_cast<std::size_t>(grid.places()));
+  auto near = scratch_vector<float>(static_cast<std::size_t>(grid.places()));
   auto rows = scratch_vector<RowCount>(static_cast<std::size_t>(grid.rows));
   parallel_for(grid.rows, threads, [&](int grid_row, int) {
     RowCount& row = rows[static_cast<std::size_t>(grid_row)];
@@ -115,6 +126,9 @@ PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<con
       const int u = grid.column(column);
       if (!search.correlate(u, v, strip, correlations)) continue;
       ++row.tried;
+      if (const auto correlation = correlation_on_plane(correlations, range_px)) {
+        near[static_cast<std::size_t>(grid_row * grid.columns) + row.near++] = *correlation;
+      }
       if (const auto residual = best_residual(correlations, range_px)) {
         of_row[row.found++] = search.point(u, v, *residual);
       }
@@ -123,8 +137,9 @@ PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<con
   PlaneMatches matches;
   matches.min_points = min_matches;
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    const DisparityPoint* of_row = points.data() + r * static_cast<std::size_t>(grid.columns);
-    matches.points.insert(matches.points.end(), of_row, of_row + rows[r].found);
+    const std::size_t first = r * static_cast<std::size_t>(grid.columns);
+    matches.points.insert(matches.points.end(), points.data() + first, points.data() + first + rows[r].found);
+    matches.correlations.insert(matches.correlations.end(), near.data() + first, near.data() + first + rows[r].near);
     matches.tried += rows[r].tried;
   }
   return matches;
@@ -138,6 +153,7 @@ PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageVi
   const PlaneSearch search(left, right, plane, range_px);
   const int cell_rows = (grid.rows + cell - 1) / cell, cell_columns = (grid.columns + cell - 1) / cell;
   auto points = scratch_vector<DisparityPoint>(static_cast<std::size_t>(cell_rows * cell_columns));
+  auto near = scratch_vector<float>(static_cast<std::size_t>(cell_rows * cell * grid.columns));
   auto rows = scratch_vector<RowCount>(static_cast<std::size_t>(cell_rows));
   parallel_for(cell_rows, threads, [&](int cell_row, int) {
     RowCount& row = rows[static_cast<std::size_t>(cell_row)];
@@ -153,6 +169,9 @@ PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageVi
         if (grid_row >= grid.rows || grid_column >= grid.columns) continue;
         const int u = grid.column(grid_column), v = grid.row(grid_row);
         if (!search.correlate(u, v, strip, correlations)) continue;
+        if (const auto correlation = correlation_on_plane(correlations, range_px)) {
+          near[static_cast<std::size_t>(cell_row * cell * grid.columns) + row.near++] = *correlation;
+        }
         for (std::size_t k = 0; k <= static_cast<std::size_t>(2 * range_px); ++k) sums[k] += correlations[k];
         sum_u += u;
         sum_v += v;
@@ -170,6 +189,8 @@ PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageVi
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const DisparityPoint* of_row = points.data() + r * static_cast<std::size_t>(cell_columns);
     matches.points.insert(matches.points.end(), of_row, of_row + rows[r].found);
+    const float* of_cells = near.data() + r * static_cast<std::size_t>(cell * grid.columns);
+    matches.correlations.insert(matches.correlations.end(), of_cells, of_cells + rows[r].near);
     matches.tried += rows[r].tried;
   }
   return matches;

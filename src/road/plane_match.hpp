@@ -9,8 +9,10 @@ namespace roadstereo {
 struct PlaneMatches {
   ScratchVector<DisparityPoint> points =
       scratch_vector<DisparityPoint>();  ///< sub-pixel correspondences within the range
-  int tried = 0;                         ///< textured samples of the road that both views see
-  int min_points = 0;                    ///< fewer of them are no evidence of a plane
+  ScratchVector<float> correlations =
+      scratch_vector<float>();  ///< highest of each sample that matches within a pixel of the plane, however low
+  int tried = 0;                ///< textured samples of the road that both views see
+  int min_points = 0;           ///< fewer of them are no evidence of a plane
 };
 
 /// Looks for correspondences within `range_px` of the supposed road, on a grid of about `places` places: each block

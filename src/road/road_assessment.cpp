@@ -78,9 +78,11 @@ std::string assess_plane_fit(const PlaneFitStatistics& fit, const TiltLimit& lim
 void assess_found_road(const PlaneFitStatistics& fit, double evidence, const TiltLimit& limit,
                        const RoadModelOptions& options, RoadModelEstimate& estimate) {
   estimate.evidence = evidence;
+  estimate.correlation = fit.correlation;
   estimate.reason = assess_plane_fit(fit, limit, estimate);
   if (estimate.reason.empty() && evidence < options.min_evidence) {
-    estimate.reason = format_message("the evidence for a road is ", evidence, " per pixel, less than ", options.min_evidence);
+    estimate.reason =
+        format_message("the evidence for a road is ", evidence, " per pixel, less than ", options.min_evidence);
   }
   estimate.reliable = estimate.reason.empty();
   if (estimate.reliable) {
@@ -101,8 +103,9 @@ RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const Pl
   const double moved = max_move(estimate.model, previous.model, width, height);
   if (!estimate.reason.empty()) return estimate;
   if (estimate.inlier_share < least) {
-    estimate.reason = format_message("the last frame's road explains ", 100 * estimate.inlier_share,
-                               " % of the textured samples where it should be seen, less than ", 100 * least, " %");
+    estimate.reason =
+        format_message("the last frame's road explains ", 100 * estimate.inlier_share,
+                       " % of the textured samples where it should be seen, less than ", 100 * least, " %");
   } else if (estimate.residual_px > options.verify_tolerance_px) {
     estimate.reason = format_message("the last frame's road leaves ", estimate.residual_px, " px on this one");
   } else if (moved > max_step_px(width)) {

@@ -29,6 +29,7 @@ struct PlaneFitStatistics {
   int points = 0;       ///< correspondences
   int tried = 0;        ///< textured places of the road that both views see
   int inliers = 0;
+  double correlation = 0;  ///< of blocks on the plane, 10th percentile; 0 when unknown
   bool found = false;
   double rows_covered = 0;  ///< share of the image height between the 5th and the 95th percentile of the inliers' rows
 };

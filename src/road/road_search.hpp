@@ -8,7 +8,7 @@
 namespace roadstereo {
 
 inline constexpr int coarse_pixels = 14000;  ///< that the coarse search leaves at least, where the image has them
-inline constexpr int min_matches = 40;    ///< below this nothing is known
+inline constexpr int min_matches = 40;       ///< below this nothing is known
 
 /// Power of two by which the coarse search downsamples the image.
 inline int coarse_factor(int width, int height) {

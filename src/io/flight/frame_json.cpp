@@ -69,6 +69,7 @@ template <class Visit>
 void each_field(TrackedRoad& road, Visit& visit) {
   visit("model", road.model);
   visit("inlier_share", road.inlier_share);
+  visit("correlation", road.correlation);
 }
 
 template <class Visit>

@@ -84,19 +84,19 @@ class DeviceStages final : public FrameStages {
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
     const DeviceMatchMaps& matched = matcher_.match(input, options, stream());
     clock_.mark(StageClock::matched, stream());
-    return {matched.disparity, matched.variance};
+    return {matched.disparity, matched.variance, effective_samples(options)};
   }
 
   /// In place.
   DisparityMaps restore_disparity(const ResidualMaps& residual, const PerspectiveShift& shift) override {
     cuda::restore_disparity(residual.disparity, shift, residual.disparity, stream());
-    return {residual.disparity, residual.variance};
+    return {residual.disparity, residual.variance, residual.samples};
   }
 
   ImageView<const float> refine(const DisparityMaps& maps, const DisparityPlane& road) override {
     cuda::refine_disparities(maps.disparity, maps.variance, road,
-                             refinement_settings(options_.refinement, effective_samples(options_.matcher)),
-                             maps_.disparity(), maps_.sigma(), stream());
+                             refinement_settings(options_.refinement, maps.samples), maps_.disparity(), maps_.sigma(),
+                             stream());
     clock_.mark(StageClock::refined, stream());
     return maps_.disparity();
   }
