@@ -1,0 +1,44 @@
+// Support against noise: the scale by its definition, and what it does to the options.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "roadstereo/pipeline.hpp"
+#include "stereo/adaptive_support.hpp"
+
+namespace roadstereo {
+namespace {
+
+TEST(AdaptiveSupport, ScaleKeepsPixelsTimesSignalToNoise) {
+  EXPECT_DOUBLE_EQ(support_scale(0.9), 1);
+  EXPECT_DOUBLE_EQ(support_scale(1.0), 1);
+  // (1 + 3 · (1 − ρ)/ρ) is 4/3 for ρ = 0.9, 4 for ρ = 0.5 and 8 for ρ = 0.3.
+  EXPECT_NEAR(support_scale(0.5), std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(support_scale(0.3), std::sqrt(6.0), 1e-12);
+  EXPECT_DOUBLE_EQ(support_scale(0.1), support_scale(0.3));
+}
+
+TEST(AdaptiveSupport, GrowsBlockAndPriorOfNoisyPairs) {
+  MatcherOptions options;
+  options.block_radius = 2;
+  options.prior_weight = 0.08;
+  const MatcherOptions noisy = adapt_support(options, 0.5);
+  EXPECT_EQ(noisy.block_radius, 3);  // 2 · √3 = 3.46
+  EXPECT_NEAR(noisy.prior_weight, 0.08 * std::sqrt(3.0), 1e-12);
+  options.block_radius = 5;
+  EXPECT_EQ(adapt_support(options, 0.3).block_radius, 7);  // at most
+  options.block_radius = 9;
+  EXPECT_EQ(adapt_support(options, 0.3).block_radius, 9);  // never smaller
+}
+
+TEST(AdaptiveSupport, LeavesOptionsWithoutNoiseOrKnowledge) {
+  const MatcherOptions options;
+  EXPECT_EQ(adapt_support(options, 0).block_radius, options.block_radius);
+  EXPECT_EQ(adapt_support(options, 0.95).prior_weight, options.prior_weight);
+  const MatcherOptions paper = preset("paper").matcher;
+  EXPECT_EQ(adapt_support(paper, 0.3).block_radius, paper.block_radius);
+}
+
+}  // namespace
+}  // namespace roadstereo
