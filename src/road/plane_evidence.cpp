@@ -15,10 +15,10 @@ constexpr double beyond_weight = 3.0;       ///< of evidence below the plane, ag
 constexpr double beyond_margin = 1.5;       ///< pixels of the downsampled image that the road may be uneven
 constexpr double full_weight_share = 0.15;  ///< of the largest disparity, from where a cell counts in full: the far
                                             ///< road is a small patch that any surface there supports
-constexpr double base_row_weight = 0.2;  ///< of the uppermost row; the lowest has this and 1
-constexpr double tilt_penalty = 0.5;     ///< share of the score that a plane at the limit of the tilt loses
-constexpr double max_slope = 0.3;        ///< disparity per column
-constexpr double slope_step = 2.0;       ///< pixels of disparity at the left and right border
+constexpr double base_row_weight = 0.2;     ///< of the uppermost row; the lowest has this and 1
+constexpr double tilt_penalty = 0.5;        ///< share of the score that a plane at the limit of the tilt loses
+constexpr double max_slope = 0.3;           ///< disparity per column
+constexpr double slope_step = 2.0;          ///< pixels of disparity at the left and right border
 constexpr int bottom_steps = 40, top_steps = 56;
 constexpr int row_step = 2;          ///< every second row of cells is enough to find a line
 constexpr double lowest_top = -0.6;  ///< disparity of the uppermost row, as a share of the largest
@@ -105,6 +105,7 @@ struct ThreePoints {
 struct Candidate {
   ThreePoints points{};
   double score = -std::numeric_limits<double>::infinity();
+  double weight = 1;  ///< of the score in comparisons
 };
 
 /// The plane of the downsampled image in the coordinates of the full-size one.
@@ -161,7 +162,7 @@ void search_lines(const EvidenceGrid& grid, const ShearedRows& sheared, double s
         if (d > 0 && d < grid.disparities()) sum += sheared.row(r)[d];
       }
       if (static_cast<double>(sum) <= best[b].score) continue;
-      if (limit.can_be_road(to_full_size(points.plane(grid), factor))) best[b] = {points, sum};
+      if (limit.can_be_road(to_full_size(points.plane(grid), factor))) best[b] = {points, sum, 1};
     }
   }
 }
@@ -204,7 +205,7 @@ void penalise_tilt(const EvidenceGrid& grid, int factor, const TiltLimit& limit,
 /// The best candidates that differ, best first.
 ScratchVector<Candidate> choose(ScratchVector<Candidate>& candidates, std::size_t count, double tolerance) {
   std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+                   [](const Candidate& a, const Candidate& b) { return a.weight * a.score > b.weight * b.score; });
   auto chosen = scratch_vector<Candidate>();
   for (const Candidate& candidate : candidates) {
     if (chosen.size() == count || candidate.score <= 0) break;
@@ -218,8 +219,8 @@ ScratchVector<Candidate> choose(ScratchVector<Candidate>& candidates, std::size_
 
 }  // namespace
 
-ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const TiltLimit& limit, int max_planes,
-                                             int threads) {
+ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const TiltLimit& limit, const RigPrior& prior,
+                                             int max_planes, int threads) {
   auto planes = scratch_vector<PlaneHypothesis>();
   const EvidenceGrid grid(coarse);
   if (grid.rows() < 2 || grid.columns() < 2 || grid.disparities() < 4) return planes;
@@ -233,12 +234,17 @@ ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const 
     search_lines(grid, rows, slope, coarse.factor, limit,
                  candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
   });
+  const auto weigh = [&](Candidate& candidate) {
+    if (candidate.score > 0) candidate.weight = prior.weight(to_full_size(candidate.points.plane(grid), coarse.factor));
+  };
+  std::for_each(candidates.begin(), candidates.end(), weigh);
   constexpr std::size_t refined = 8;
   ScratchVector<Candidate> best = choose(candidates, refined, 2 * slope_step);
   parallel_for(static_cast<int>(best.size()), threads, [&](int i, int) {
     Candidate& candidate = best[static_cast<std::size_t>(i)];
     refine_plane(grid, coarse.factor, limit, candidate);
     penalise_tilt(grid, coarse.factor, limit, candidate);
+    weigh(candidate);
   });
   for (const Candidate& candidate : choose(best, static_cast<std::size_t>(max_planes), slope_step)) {
     planes.push_back({to_full_size(candidate.points.plane(grid), coarse.factor), candidate.score});

@@ -4,7 +4,7 @@
 #include <array>
 #include <filesystem>
 
-#include "evaluate/mask_file.hpp"
+#include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
 
