@@ -7,6 +7,7 @@
 #include "core/order_statistics.hpp"
 #include "evaluate/experiments.hpp"
 #include "evaluate/labelled_sheet.hpp"
+#include "evaluate/rendered_sources.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/robustness_trials.hpp"
 #include "evaluate/score_columns.hpp"
@@ -139,7 +140,10 @@ void robustness(const Arguments& arguments) {
     fail("--scenes is ", arguments.scenes, "; it must be between 0 and 10000");
   }
   RobustnessSources found = find_robustness_sources(arguments.folders);
-  if (arguments.scenes > 0) found.labelled.push_back(rendered_source(arguments.scenes, arguments.methods.threads));
+  if (arguments.scenes > 0) {
+    found.labelled.push_back(rendered_roads(arguments.scenes, arguments.methods.threads));
+    found.labelled.push_back(rendered_streets(arguments.scenes, arguments.methods.threads));
+  }
   if (found.labelled.empty() && found.drives.empty()) fail("there is no source: give DIR, or --scenes above 0");
   std::vector<SourceTrials> sources;
   for (const LabelledSource& source : found.labelled) {
@@ -179,7 +183,7 @@ void add_robustness(CLI::App& evaluate) {
   command->footer(robustness_footer);
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("DIR", arguments->folders, "Folders of sources");
-  command->add_option("--scenes", arguments->scenes, "Number of rendered random scenes")
+  command->add_option("--scenes", arguments->scenes, "Number of rendered random roads, and of streets")
       ->type_name("N")
       ->capture_default_str();
   add_method_options(*command, arguments->methods);

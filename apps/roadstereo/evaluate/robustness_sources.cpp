@@ -1,17 +1,13 @@
 #include "evaluate/robustness_sources.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <utility>
 
 #include "evaluate/kitti_frames.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/frame_source.hpp"
 #include "roadstereo/io/image_file.hpp"
-#include "roadstereo/synth.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -105,20 +101,6 @@ void find_sources(const fs::path& folder, RobustnessSources& sources) {
   for (const fs::path& inside : others) find_sources(inside, sources);
 }
 
-LabelledFrame render_scene(std::uint64_t seed, int threads) {
-  synth::SyntheticPair rendered = synth::render(synth::random_scene(seed, true), threads);
-  LabelledFrame frame;
-  frame.pair.left = std::move(rendered.left);
-  frame.pair.right = std::move(rendered.right);
-  frame.pair.calibration = rendered.calibration;
-  frame.road = std::move(rendered.visible);
-  frame.truth.resize(rendered.disparity.width(), rendered.disparity.height());
-  std::transform(rendered.disparity.row(0), rendered.disparity.row(0) + rendered.disparity.pixels(), frame.truth.row(0),
-                 [](double disparity) { return static_cast<float>(disparity); });
-  frame.disparities = disparities_of(frame.truth, 0);
-  return frame;
-}
-
 }  // namespace
 
 RobustnessSources find_robustness_sources(const std::vector<std::string>& folders) {
@@ -131,12 +113,6 @@ RobustnessSources find_robustness_sources(const std::vector<std::string>& folder
     fail(folder, ": there are no labelled pairs and no drive in this folder");
   }
   return sources;
-}
-
-LabelledSource rendered_source(int count, int threads) {
-  LabelledSource source{"own scenes", {}, [threads](std::size_t frame) { return render_scene(frame + 1, threads); }};
-  for (int seed = 1; seed <= count; ++seed) source.frames.push_back(fmt::format("seed {}", seed));
-  return source;
 }
 
 }  // namespace roadstereo::cli

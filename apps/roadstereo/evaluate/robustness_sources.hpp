@@ -33,7 +33,4 @@ struct RobustnessSources {
 /// occ.png, region.png); a recording with its calibration.yaml. Throws Error naming a folder without any.
 RobustnessSources find_robustness_sources(const std::vector<std::string>& folders);
 
-/// Random degraded scenes with the seeds 1 … `count`, rendered when they are read.
-LabelledSource rendered_source(int count, int threads);
-
 }  // namespace roadstereo::cli

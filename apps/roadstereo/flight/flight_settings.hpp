@@ -13,16 +13,6 @@ namespace roadstereo::cli {
 /// Optional output files of a frame.
 enum class FrameFile { disparity, transformed, sheet, cloud, overlay };
 
-/// Options of the pipeline, those of --height, --pitch and --mask included. Throws Error naming the option that is
-/// unknown or out of range.
-PipelineOptions make_options(const FlightSettings& settings);
-
-/// Reads --mask: 255 where the picture has 255; empty without --mask.
-Image<std::uint8_t> read_ignored(const FlightSettings& settings);
-
-/// Throws Error unless the mask is empty or has the size of the frames.
-void require_mask_size(const FlightSettings& settings, const Image<std::uint8_t>& mask, int width, int height);
-
 /// Parses the name of a FrameFile. Throws Error listing the names.
 FrameFile frame_file(const std::string& name);
 
@@ -55,6 +45,16 @@ struct FlightSettings {
   /// Throws Error naming the first option out of range.
   void validate() const;
 };
+
+/// Options of the pipeline, those of --height, --pitch and --mask included. Throws Error naming the option that is
+/// unknown or out of range.
+PipelineOptions make_options(const FlightSettings& settings);
+
+/// Reads --mask: 255 where the picture has 255; empty without --mask.
+Image<std::uint8_t> read_ignored(const FlightSettings& settings);
+
+/// Throws Error unless the mask is empty or has the size of the frames.
+void require_mask_size(const FlightSettings& settings, const Image<std::uint8_t>& mask, int width, int height);
 
 /// Parsed and checked options of a flight.
 struct FlightPlan {
