@@ -103,6 +103,31 @@ def synth_damage(result):
     return markdown(["group", "e_r px", "e_p+(0.5) %", "e_p+(1) %"], table)
 
 
+@needs("robustness")
+def robustness(result):
+    table = [[row["source"], str(row["frame_count"]), number(row["found_percent"], 1), number(row["weak_percent"], 1),
+              number(row["plane_px"], 2), row["worst_frame"]] for row in result["roads"]]
+    return markdown(["source", "frames", "found %", "of these weak %", "plane px", "worst frame"], table)
+
+
+@needs("robustness")
+def robustness_disparities(result):
+    keys = [("density_percent", 1), ("e_r_px", 3), ("e_p_2px_percent", 2), ("e_p_3px_percent", 2),
+            ("e_p_or_missing_0.5px_percent", 1), ("e_p_or_missing_1px_percent", 2),
+            ("e_p_or_missing_2px_percent", 2)]
+    table = [[row["source"], METHODS[row["method"]]] + [number(row[key], decimals) for key, decimals in keys]
+             for row in result["disparities"]]
+    return markdown(["source", "", "density %", "e_r px", "e_p(2) %", "e_p(3) %", "e_p+(0.5) %", "e_p+(1) %",
+                     "e_p+(2) %"], table)
+
+
+@needs("robustness")
+def robustness_drives(result):
+    table = [[row["drive"], str(row["frame_count"]), number(row["tracked_percent"], 1), number(row["found_percent"], 1),
+              number(row["none_percent"], 1), str(row["damages"])] for row in result["drives"]]
+    return markdown(["drive", "frames", "tracked %", "found anew %", "none %", "damages"], table)
+
+
 @needs("ablation")
 def ablation(result):
     keys = [("kitti_density_percent", 1), ("kitti_e_r_px", 3), ("kitti_e_p_2px_percent", 2),

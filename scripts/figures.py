@@ -46,6 +46,7 @@ EXPERIMENTS = {
     "scan": "evaluate scan {data}/potholes",
     "flight": "evaluate flight",
     "flight_jumps": "evaluate flight --flight jump=100,jump=200",
+    "robustness": "evaluate robustness {data}/kitti2015 {data}/wider --scenes 20",
     "ablation": "evaluate ablation --kitti {data}/kitti2015 --sizes small",
 }
 SIZES = ("640x360 32", "1242x375 64", "2079x1040 64")

@@ -63,6 +63,7 @@ bool is_one_pair(const FlightSettings& settings) {
 
 void process(Inspection& inspection) {
   Pipeline pipeline(inspection.options, inspection.pair.calibration);
+  if (!inspection.mask.empty()) pipeline.set_mask(inspection.mask);
   inspection.result = pipeline.process(inspection.pair.left.view(), inspection.pair.right.view());
   inspection.engine = pipeline.engine_name();
   inspection.threads = used_threads(inspection.options);
@@ -87,10 +88,13 @@ void reject_flight_options(const FlightSettings& settings) {
 void inspect_pair(const FlightSettings& settings) {
   reject_flight_options(settings);
   Inspection inspection;
-  inspection.options = make_options(settings.processing);
+  inspection.options = make_options(settings);
   inspection.preset = settings.processing.preset;
   inspection.files = {settings.source[0], settings.source[1], settings.calibration};
   inspection.pair = read_pair(inspection.files);
+  inspection.mask_file = settings.mask;
+  inspection.mask = read_ignored(settings);
+  require_mask_size(settings, inspection.mask, inspection.pair.left.width, inspection.pair.left.height);
   if (!sets_white_level(settings.processing)) inspection.options.white_level = inspection.pair.white_level;
 
   io::OutputFolder folder(settings.output);  // fails early
@@ -143,6 +147,18 @@ void add_input_options(CLI::App& command, Arguments& arguments) {
                   "A recording; or LEFT and RIGHT: two images of equal size (PNG, JPEG, TIFF, PGM or PPM; 8 or 16 bit)")
       ->required();
   add_calibration_option(command, arguments.settings.calibration);
+  command
+      .add_option("--mask", arguments.settings.mask,
+                  "Image of the size of the rectified frames; its white pixels (255) are left out, e.g. a bonnet")
+      ->type_name("FILE");
+  command
+      .add_option("--height", arguments.settings.height_m,
+                  "Expected height of the camera above the road; needs a calibration")
+      ->type_name("M");
+  command
+      .add_option("--pitch", arguments.settings.pitch_deg,
+                  "Expected pitch of the camera below the horizon, 90 straight down; needs a calibration")
+      ->type_name("DEG");
 }
 
 void add_output_options(CLI::App& command, FlightSettings& settings) {

@@ -14,6 +14,8 @@ namespace roadstereo::cli {
 struct Inspection {
   PairFiles files;
   StereoPair pair;
+  std::string mask_file;     ///< empty: none
+  Image<std::uint8_t> mask;  ///< not 0 left out; empty: none
   std::string preset;
   PipelineOptions options;
   std::string engine;  ///< name of the engine used

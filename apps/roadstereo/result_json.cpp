@@ -13,10 +13,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json inputs_json(const PairFiles& files) {
+Json inputs_json(const PairFiles& files, const std::string& mask) {
   Json calibration = nullptr;
   if (!files.calibration.empty()) calibration = files.calibration;
-  return {{"left", files.left}, {"right", files.right}, {"calibration", calibration}};
+  return {{"left", files.left},
+          {"right", files.right},
+          {"calibration", calibration},
+          {"mask", mask.empty() ? Json(nullptr) : Json(mask)}};
 }
 
 /// Converts the text of an option to a number, boolean or string.
@@ -109,7 +112,7 @@ Json options_json(const PipelineOptions& options) {
 
 std::string result_json(const Inspection& inspection) {
   const FrameResult& result = inspection.result;
-  Json document = {{"version", version}, {"inputs", inputs_json(inspection.files)}};
+  Json document = {{"version", version}, {"inputs", inputs_json(inspection.files, inspection.mask_file)}};
   document["size"] = {{"width", result.disparity.width()}, {"height", result.disparity.height()}};
   document["preset"] = inspection.preset;
   document["options"] = options_json(inspection.options);

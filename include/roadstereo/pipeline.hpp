@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -81,11 +82,11 @@ struct FrameResult {
 
 /// State that one frame hands to the next; a run restored from it gives the same bits. Frames of another size reset it.
 struct PipelineState {
-  int width = 0;                       ///< size of the frames, pixels; 0 before the first one
-  int height = 0;                      ///< pixels
-  std::optional<TrackedRoad> road;     ///< the last frame's road; absent when it had none
-  double roll_rad = 0;                 ///< ψ(t), start of the descent of ψ(t+1), eq. (24); 0 when not observable
-  double row_offset_px = 0;            ///< of the target's rows; measured whenever the road model is estimated anew
+  int width = 0;                    ///< size of the frames, pixels; 0 before the first one
+  int height = 0;                   ///< pixels
+  std::optional<TrackedRoad> road;  ///< the last frame's road; absent when it had none
+  double roll_rad = 0;              ///< ψ(t), start of the descent of ψ(t+1), eq. (24); 0 when not observable
+  double row_offset_px = 0;         ///< of the target's rows; measured whenever the road model is estimated anew
 };
 
 /// Runs section 3 of the paper on successive stereo pairs. Keeps the state and the scratch memory between frames. Not
@@ -101,7 +102,7 @@ class Pipeline {
 
   /// Processes one rectified pair. The result belongs to the pipeline and is valid until the next call.
   /// Throws Error for an invalid pair: sizes differ or are outside 32×32 … 8192×8192, an image has one colour, both
-  /// images are the same, left and right seem to be swapped, or the calibration belongs to another size.
+  /// images are the same, left and right seem to be swapped, or the calibration or the mask belongs to another size.
   const FrameResult& process(const FrameView& left, const FrameView& right);
 
   /// The same, but swaps the result with `result` and reuses its memory: with two or more results in turn, one frame
@@ -126,6 +127,11 @@ class Pipeline {
 
   /// Makes the next frame start without state.
   void reset();
+
+  /// Leaves out pixels of the left image where `mask` (W×H) is not 0, such as those of a bonnet: they take no part in
+  /// finding the road, and have neither disparity nor damage. It holds for all later frames; an empty mask ends it.
+  /// Throws Error with the engine cuda; `process` throws it when the sizes differ.
+  void set_mask(ImageView<const std::uint8_t> mask);
 
   /// Engine cuda: shares a device with the caller (roadstereo/device.hpp), from the next frame on. Frames may also lie
   /// in device memory. Throws Error for any other engine.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -9,6 +10,9 @@
 
 namespace roadstereo {
 
+/// Value of RoadModelOptions::pitch_deg that expects none.
+inline constexpr double unknown_pitch_deg = -90;
+
 struct RoadModelOptions {
   bool with_roll = true;              ///< estimate a2; false is the paper's model, eq. (4)
   double max_disparity_share = 0.35;  ///< largest disparity searched, as a share of the image width, 0.05 … 0.9
@@ -16,6 +20,8 @@ struct RoadModelOptions {
   double min_evidence = 0.03;         ///< below this mean evidence per pixel there is no road, 0 … 1
   double weak_evidence = 0.08;        ///< below this mean evidence per pixel the road is weak, 0 … 1
   double verify_tolerance_px = 1.0;   ///< largest spread that a tracked road may leave, pixels, above 0 … 100
+  double height_m = 0;                ///< expected height of the camera above the road, metres, 0 … 1000; 0: unknown
+  double pitch_deg = unknown_pitch_deg;  ///< expected pitch of the camera below the horizon, −90 … 90; −90: unknown
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
@@ -50,11 +56,13 @@ struct RoadModelEstimate {
 
 /// Finds the road from the images alone: the plane with the most evidence over all pixels of the downsampled pair, then
 /// a robust fit to correspondences along it. Never guesses: when the evidence is poor, the status is `none`.
-/// `calibration`, when given, tells walls from roads by their real tilt.
+/// `calibration`, when given, tells walls from roads by their real tilt, and is needed for an expected height or pitch.
+/// Pixels where `mask` (W×H, or empty) is not 0 take no part.
 /// Throws Error when the images look swapped (the matches lie at negative disparities).
 RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                       const std::optional<StereoCalibration>& calibration,
-                                      const RoadModelOptions& options, int threads = 0);
+                                      const RoadModelOptions& options, int threads = 0,
+                                      ImageView<const std::uint8_t> mask = {});
 
 /// The last frame's road, where tracking starts.
 struct TrackedRoad {
@@ -64,9 +72,10 @@ struct TrackedRoad {
 };
 
 /// Tracks the last frame's road: searches around `previous` and refits. `reliable` is false when the road explains far
-/// less of this pair than of the last one, or has moved farther than the search can see.
+/// less of this pair than of the last one, or has moved farther than the search can see. `mask` as above.
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                     const TrackedRoad& previous, const std::optional<StereoCalibration>& calibration,
-                                    const RoadModelOptions& options, int threads = 0);
+                                    const RoadModelOptions& options, int threads = 0,
+                                    ImageView<const std::uint8_t> mask = {});
 
 }  // namespace roadstereo

@@ -15,6 +15,7 @@ struct DeviceMaps;
 
 struct GreyPair {
   ImageView<const std::int16_t> left, right;
+  ImageView<const std::uint8_t> mask{};  ///< of the left image, not 0 masked; empty: none
 };
 
 /// Residual disparities: of the left image and the transformed right one. NaN invalid.

@@ -60,7 +60,8 @@ class HostStages final : public FrameStages {
   GreyPair on_host(const GreyPair& pair) override { return pair; }
 
   RoadModelEstimate verify_road_model(const GreyPair& pair, const TrackedRoad& previous) override {
-    return roadstereo::verify_road_model(pair.left, pair.right, previous, calibration_, options_.road_model, threads_);
+    return roadstereo::verify_road_model(pair.left, pair.right, previous, calibration_, options_.road_model, threads_,
+                                         pair.mask);
   }
 
   MatchInput transform_perspective(const GreyPair& pair, const PerspectiveShift& shift) override {

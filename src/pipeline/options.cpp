@@ -51,6 +51,11 @@ void visit_options(Options& o, Visitor visit) {
   visit("road_model.verify_tolerance_px", o.road_model.verify_tolerance_px,
         "largest spread of a carried-over model, pixels");
 
+  visit("road_model.height_m", o.road_model.height_m,
+        "expected height of the camera, metres (needs a calibration); 0: unknown");
+  visit("road_model.pitch_deg", o.road_model.pitch_deg,
+        "expected pitch of the camera below the horizon, degrees (needs a calibration); -90: unknown");
+
   visit("perspective.enabled", o.perspective.enabled, "shift the rows of the target image by the road model");
   visit("perspective.shift", o.perspective.shift, "whole_pixel or sub_pixel");
   visit("perspective.max_damage_depth_m", o.perspective.max_damage_depth_m,

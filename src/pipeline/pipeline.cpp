@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "core/format_message.hpp"
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
 #include "pipeline/host_stages.hpp"
+#include "road/rig_prior.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/adaptive_support.hpp"
@@ -54,6 +56,7 @@ struct Pipeline::State {
   std::string engine_name;
   int threads = 1;
   std::unique_ptr<FrameStages> stages;
+  Image<std::uint8_t> mask;  ///< not 0 masked; empty: none
 
   PipelineState carried;
   Clock::time_point begin;    ///< of the frame
@@ -91,13 +94,19 @@ void Pipeline::State::begin_frame(const FrameView& left, const FrameView& right)
   }
   width = left.width;
   height = left.height;
+  if (!mask.empty() && (mask.width() != width || mask.height() != height)) {
+    fail("the mask has ", mask.width(), "×", mask.height(), " pixels; it must have ", width, "×", height,
+         " like the pair");
+  }
   if (calibration) calibration->validate(width, height, "calibration");
   if (carried.width != width || carried.height != height) carried = {};
 }
 
 GreyPair Pipeline::State::convert_to_grey(const FrameView& left, const FrameView& right) {
   const StageTimer timer(result.ms.prepare);
-  return stages->convert_to_grey(left, right);
+  GreyPair pair = stages->convert_to_grey(left, right);
+  pair.mask = mask;
+  return pair;
 }
 
 /// Road model Δu, eq. (4): the last frame's when it still fits, else from the images.
@@ -111,13 +120,18 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
     result.warnings.push_back(format_message("the road model was estimated anew: ", result.road.reason));
   }
   const GreyPair grey = stages->on_host(pair);
-  result.road = roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads);
+  result.road =
+      roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, pair.mask);
   if (!result.road.reliable) {
     result.warnings.push_back(format_message("no road was found (", result.road.reason,
                                              "): matched without perspective transformation over the full range"));
   } else if (result.road.status == RoadStatus::weak) {
     result.warnings.push_back(format_message("the road is weak: the evidence for it is ", result.road.evidence,
                                              " per pixel, less than ", options.road_model.weak_evidence));
+  }
+  if (result.road.reliable) {
+    const std::string disagreement = RigPrior(options.road_model, calibration).disagreement(result.road.model);
+    if (!disagreement.empty()) result.warnings.push_back(disagreement);
   }
   if (options.check_rows) measure_rows(grey);
 }
@@ -156,7 +170,8 @@ MatchInput Pipeline::State::search_coarsely(const MatchInput& pair) {
   return stages->search_coarsely(pair, result.shift);
 }
 
-/// Section 3.2. Without a road model the prior rests on its rows alone, and its truncation is smaller.
+/// Section 3.2. Masked pixels have no disparity. Without a road model the prior rests on its rows alone, and its
+/// truncation is smaller.
 ResidualMaps Pipeline::State::match(const MatchInput& input) {
   constexpr double truncation_without_road_px = 2;
   const StageTimer timer(result.ms.match);
@@ -164,7 +179,13 @@ ResidualMaps Pipeline::State::match(const MatchInput& input) {
   if (!result.shift.enabled) {
     matcher.prior_truncation_px = std::min(matcher.prior_truncation_px, truncation_without_road_px);
   }
-  return stages->match(input, matcher);
+  const ResidualMaps maps = stages->match(input, matcher);
+  for (int v = 0; v < mask.height(); ++v) {
+    for (int u = 0; u < mask.width(); ++u) {
+      if (mask(u, v) != 0) maps.disparity(u, v) = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  return maps;
 }
 
 /// Adds Δu − δp back. The left-right check of `match` needs no shift: it cancels there.
@@ -231,6 +252,7 @@ void Pipeline::State::end_frame() {
 Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
     : state_(std::make_unique<State>()) {
   options.validate();
+  const RigPrior checked(options.road_model, calibration);
   state_->options = options;
   state_->calibration = calibration;
   state_->engine_name = resolve_engine_name(options.engine);
@@ -311,6 +333,12 @@ const PipelineState& Pipeline::carried() const {
 void Pipeline::restore(const PipelineState& carried) {
   state_->has_frame = state_->has_maps = false;
   state_->carried = carried;
+}
+
+void Pipeline::set_mask(ImageView<const std::uint8_t> mask) {
+  if (state_->engine_name == "cuda") fail("the engine cuda takes no mask; use another one, such as cpu");
+  state_->mask.resize(mask.width(), mask.height());
+  for (int v = 0; v < mask.height(); ++v) std::copy_n(mask.row(v), mask.width(), state_->mask.row(v));
 }
 
 void Pipeline::set_device_options(const DeviceOptions& use) {

@@ -7,6 +7,7 @@
 #include "core/downsample.hpp"
 #include "core/parabola.hpp"
 #include "core/parallel.hpp"
+#include "road/masked_blocks.hpp"
 #include "road/row_correlation.hpp"
 
 namespace roadstereo {
@@ -101,7 +102,8 @@ std::int32_t block_sum(const std::int32_t* centre) {
   return sum;
 }
 
-void describe_blocks(const PaddedImage& image, int v, int width, BandMemory& memory, const BlockRow& blocks) {
+void describe_blocks(const PaddedImage& image, int v, int width, const MaskedBlocks& masked, BandMemory& memory,
+                     const BlockRow& blocks) {
   std::int32_t* sums = memory.column_sums();
   std::int32_t* squares = memory.column_squares();
   std::fill_n(sums, width, 0);
@@ -117,7 +119,9 @@ void describe_blocks(const PaddedImage& image, int v, int width, BandMemory& mem
     const float mean = static_cast<float>(block_sum(sums + u)) / row_block_pixels;
     const float variance = static_cast<float>(block_sum(squares + u)) / row_block_pixels - mean * mean;
     blocks.mean[u] = mean;
-    blocks.inverse_deviation[u] = 1 / std::sqrt(std::max(variance, 0.0f) + noise_deviation * noise_deviation);
+    blocks.inverse_deviation[u] = masked.contains(u, v, half_width, half_height)
+                                      ? 0.0f
+                                      : 1 / std::sqrt(std::max(variance, 0.0f) + noise_deviation * noise_deviation);
   }
 }
 
@@ -148,6 +152,7 @@ std::size_t collect(const RowCorrelations& row, BandMemory& memory, int v, int f
 /// A shrunk pair.
 struct SmallPair {
   PaddedImage left, right;
+  MaskedBlocks masked;  ///< of the left image
   Layout layout;
   int factor;
 };
@@ -167,8 +172,8 @@ std::size_t match_band(const SmallPair& pair, int first, int last, BandMemory& m
   for (int top = first; top < last; ++top) {
     const int v = top + half_height;
     add(v + half_height, 1);
-    describe_blocks(pair.left, v, width, memory, memory.left());
-    describe_blocks(pair.right, v, width, memory, memory.right());
+    describe_blocks(pair.left, v, width, pair.masked, memory, memory.left());
+    describe_blocks(pair.right, v, width, {}, memory, memory.right());
     memory.clear_best();
     correlate_row(memory.sums(), memory.left(), memory.right(), row, memory.best_of_left(), memory.best_of_right());
     found += collect(row, memory, v, pair.factor, matches + found);
@@ -183,7 +188,7 @@ std::size_t match_band(const SmallPair& pair, int first, int last, BandMemory& m
 }  // namespace
 
 CoarseMatches match_coarsely(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int factor,
-                             double max_disparity_px, int threads) {
+                             double max_disparity_px, int threads, ImageView<const std::uint8_t> mask) {
   static_assert(band_rows % evidence_rows == 0);
   CoarseMatches matches;
   const int width = left.width() / factor;
@@ -195,7 +200,8 @@ CoarseMatches match_coarsely(ImageView<const std::int16_t> left, ImageView<const
   matches.height = left.height() / factor;
   if (rows < 1 || disparities < 1) return matches;
   const Layout layout{width, disparities};
-  const SmallPair pair{PaddedImage(left, factor, layout), PaddedImage(right, factor, layout), layout, factor};
+  const SmallPair pair{PaddedImage(left, factor, layout), PaddedImage(right, factor, layout),
+                       MaskedBlocks(mask, factor), layout, factor};
   const int bands = (rows + band_rows - 1) / band_rows;
   const int workers = std::min(resolve_threads(threads), bands);
   std::pmr::vector<BandMemory> memory(ScratchScope::memory());

@@ -22,7 +22,8 @@ struct CoarseMatches {
   double pixels() const { return static_cast<double>(width) * height; }
 };
 
+/// Pixels where `mask` (W×H, or empty) is not 0 take no part: no block of the left image contains them.
 CoarseMatches match_coarsely(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int factor,
-                             double max_disparity_px, int threads);
+                             double max_disparity_px, int threads, ImageView<const std::uint8_t> mask = {});
 
 }  // namespace roadstereo

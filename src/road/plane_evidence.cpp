@@ -105,6 +105,7 @@ struct ThreePoints {
 struct Candidate {
   ThreePoints points{};
   double score = -std::numeric_limits<double>::infinity();
+  double weight = 1;  ///< of the score in comparisons
 };
 
 /// The plane of the downsampled image in the coordinates of the full-size one.
@@ -161,7 +162,7 @@ void search_lines(const EvidenceGrid& grid, const ShearedRows& sheared, double s
         if (d > 0 && d < grid.disparities()) sum += sheared.row(r)[d];
       }
       if (static_cast<double>(sum) <= best[b].score) continue;
-      if (limit.can_be_road(to_full_size(points.plane(grid), factor))) best[b] = {points, sum};
+      if (limit.can_be_road(to_full_size(points.plane(grid), factor))) best[b] = {points, sum, 1};
     }
   }
 }
@@ -204,7 +205,7 @@ void penalise_tilt(const EvidenceGrid& grid, int factor, const TiltLimit& limit,
 /// The best candidates that differ, best first.
 ScratchVector<Candidate> choose(ScratchVector<Candidate>& candidates, std::size_t count, double tolerance) {
   std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+                   [](const Candidate& a, const Candidate& b) { return a.weight * a.score > b.weight * b.score; });
   auto chosen = scratch_vector<Candidate>();
   for (const Candidate& candidate : candidates) {
     if (chosen.size() == count || candidate.score <= 0) break;
@@ -218,8 +219,8 @@ ScratchVector<Candidate> choose(ScratchVector<Candidate>& candidates, std::size_
 
 }  // namespace
 
-ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const TiltLimit& limit, int max_planes,
-                                             int threads) {
+ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const TiltLimit& limit, const RigPrior& prior,
+                                             int max_planes, int threads) {
   auto planes = scratch_vector<PlaneHypothesis>();
   const EvidenceGrid grid(coarse);
   if (grid.rows() < 2 || grid.columns() < 2 || grid.disparities() < 4) return planes;
@@ -233,12 +234,17 @@ ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const 
     search_lines(grid, rows, slope, coarse.factor, limit,
                  candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
   });
+  const auto weigh = [&](Candidate& candidate) {
+    if (candidate.score > 0) candidate.weight = prior.weight(to_full_size(candidate.points.plane(grid), coarse.factor));
+  };
+  std::for_each(candidates.begin(), candidates.end(), weigh);
   constexpr std::size_t refined = 8;
   ScratchVector<Candidate> best = choose(candidates, refined, 2 * slope_step);
   parallel_for(static_cast<int>(best.size()), threads, [&](int i, int) {
     Candidate& candidate = best[static_cast<std::size_t>(i)];
     refine_plane(grid, coarse.factor, limit, candidate);
     penalise_tilt(grid, coarse.factor, limit, candidate);
+    weigh(candidate);
   });
   for (const Candidate& candidate : choose(best, static_cast<std::size_t>(max_planes), slope_step)) {
     planes.push_back({to_full_size(candidate.points.plane(grid), coarse.factor), candidate.score});

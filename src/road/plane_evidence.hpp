@@ -4,6 +4,7 @@
 
 #include "core/scratch.hpp"
 #include "road/coarse_match.hpp"
+#include "road/rig_prior.hpp"
 #include "road/road_assessment.hpp"
 
 namespace roadstereo {
@@ -18,9 +19,9 @@ struct PlaneHypothesis {
 /// then a local search. Nothing has to be matched pixel by pixel: where noise or defocus leave a single block
 /// undecided, the sum over all of them still decides. A plane gains where the pixels support its disparity and loses
 /// where they lie beyond it, for nothing but damage lies below a road; lower rows count more. Best first, at most
-/// `max_planes`, and none of them nearly equal. `limit` rejects walls.
-ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const TiltLimit& limit, int max_planes,
-                                             int threads);
+/// `max_planes`, and none of them nearly equal. `limit` rejects walls, `prior` weighs the score in that order.
+ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const TiltLimit& limit, const RigPrior& prior,
+                                             int max_planes, int threads);
 
 /// How much of the picture a plane explains.
 struct PlaneEvidence {

@@ -54,17 +54,19 @@ std::optional<double> best_residual(const StripCorrelations& correlations, int r
 class PlaneSearch {
  public:
   PlaneSearch(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, const DisparityPlane& plane,
-              int range_px)
+              int range_px, const MaskedBlocks& masked)
       : left_(left),
         right_(right),
         plane_(plane),
+        masked_(masked),
         range_(range_px),
         extent_(plane_search_extent(plane.a1, plane.a2, range_px)) {}
 
-  /// Correlations of the block at (u, v) with the residuals +range … −range; false where there is no texture or the
-  /// search leaves the image.
+  /// Correlations of the block at (u, v) with the residuals +range … −range; false where there is no texture, the
+  /// search leaves the image, or the block is masked.
   bool correlate(int u, int v, Strip& strip, StripCorrelations& correlations) const {
     if (!search_in_view(u, plane_.disparity(u, v), extent_, left_.width())) return false;
+    if (masked_.contains(u, v, plane_block_half_width, plane_block_half_height)) return false;
     const CorrelationBlock block(left_, u, v, plane_block_half_width, plane_block_half_height);
     if (block.deviation < plane_match_min_deviation) return false;
     sample_around(right_, block, u, v, plane_, range_, strip);
@@ -80,6 +82,7 @@ class PlaneSearch {
  private:
   ImageView<const std::int16_t> left_, right_;
   DisparityPlane plane_;
+  const MaskedBlocks& masked_;
   int range_;
   double extent_;
 };
@@ -109,10 +112,11 @@ std::optional<double> cell_residual(const StripCorrelations& sums, int range) {
 }  // namespace
 
 PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                               const DisparityPlane& plane, int range_px, int places, int threads) {
+                               const DisparityPlane& plane, int range_px, int places, int threads,
+                               const MaskedBlocks& masked) {
   const SampleGrid grid = sample_grid(left.width(), left.height(), range_px, places);
   if (std::abs(plane.a2) >= plane_match_max_slant) return {};
-  const PlaneSearch search(left, right, plane, range_px);
+  const PlaneSearch search(left, right, plane, range_px, masked);
   auto points = scratch_vector<DisparityPoint>(static_cast<std::size_t>(grid.places()));
   auto near = scratch_vector<float>(static_cast<std::size_t>(grid.places()));
   auto rows = scratch_vector<RowCount>(static_cast<std::size_t>(grid.rows));
@@ -146,11 +150,12 @@ PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<con
 }
 
 PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                     const DisparityPlane& plane, int range_px, int places, int threads) {
+                                     const DisparityPlane& plane, int range_px, int places, int threads,
+                                     const MaskedBlocks& masked) {
   constexpr int cell = 5;  // samples along each side
   const SampleGrid grid = sample_grid(left.width(), left.height(), range_px, places);
   if (std::abs(plane.a2) >= plane_match_max_slant) return {};
-  const PlaneSearch search(left, right, plane, range_px);
+  const PlaneSearch search(left, right, plane, range_px, masked);
   const int cell_rows = (grid.rows + cell - 1) / cell, cell_columns = (grid.columns + cell - 1) / cell;
   auto points = scratch_vector<DisparityPoint>(static_cast<std::size_t>(cell_rows * cell_columns));
   auto near = scratch_vector<float>(static_cast<std::size_t>(cell_rows * cell * grid.columns));

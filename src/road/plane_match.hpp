@@ -1,5 +1,6 @@
 #pragma once
 
+#include "road/masked_blocks.hpp"
 #include "road/plane_fit.hpp"
 #include "roadstereo/image.hpp"
 
@@ -16,13 +17,15 @@ struct PlaneMatches {
 };
 
 /// Looks for correspondences within `range_px` of the supposed road, on a grid of about `places` places: each block
-/// follows the slant of the plane, so that it matches sharply.
+/// follows the slant of the plane, so that it matches sharply. `masked` blocks are left out.
 PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                               const DisparityPlane& plane, int range_px, int places, int threads);
+                               const DisparityPlane& plane, int range_px, int places, int threads,
+                               const MaskedBlocks& masked = {});
 
 /// The same for cells of 5×5 samples, by the sum of their correlations: where noise or defocus leave no single block
 /// distinct, a cell of them still is.
 PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                     const DisparityPlane& plane, int range_px, int places, int threads);
+                                     const DisparityPlane& plane, int range_px, int places, int threads,
+                                     const MaskedBlocks& masked = {});
 
 }  // namespace roadstereo

@@ -8,9 +8,11 @@
 #include "core/format_message.hpp"
 #include "core/require_range.hpp"
 #include "road/coarse_match.hpp"
+#include "road/masked_blocks.hpp"
 #include "road/plane_evidence.hpp"
 #include "road/plane_fit.hpp"
 #include "road/plane_match.hpp"
+#include "road/rig_prior.hpp"
 #include "road/road_assessment.hpp"
 #include "road/road_search.hpp"
 #include "roadstereo/error.hpp"
@@ -51,8 +53,8 @@ struct Refinement {
 /// The pair as the fine search sees it: at full size, or a large one shrunk.
 class FinePair {
  public:
-  FinePair(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right)
-      : factor_(fine_factor(left.width())) {
+  FinePair(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, ImageView<const std::uint8_t> mask)
+      : factor_(fine_factor(left.width())), masked_(mask, factor_) {
     // At full size there is nothing to shrink, and nothing to copy.
     const std::size_t size = factor_ > 1 ? left.pixels() / static_cast<std::size_t>(factor_ * factor_) : 0;
     pixels_.resize(2 * size);
@@ -62,6 +64,7 @@ class FinePair {
 
   ImageView<const std::int16_t> left() const { return left_; }
   ImageView<const std::int16_t> right() const { return right_; }
+  const MaskedBlocks& masked() const { return masked_; }
   int factor() const { return factor_; }
 
  private:
@@ -73,6 +76,7 @@ class FinePair {
   }
 
   int factor_;
+  MaskedBlocks masked_;
   ScratchVector<std::int16_t> pixels_ = scratch_vector<std::int16_t>();
   ImageView<const std::int16_t> left_, right_;
 };
@@ -83,8 +87,8 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneM
                        bool with_roll, int threads) {
   const int factor = pair.factor();
   const int height = pair.left().height() * factor;
-  PlaneMatches found =
-      match(pair.left(), pair.right(), downsample_plane(plane, factor), search.range_px, search.places, threads);
+  PlaneMatches found = match(pair.left(), pair.right(), downsample_plane(plane, factor), search.range_px, search.places,
+                             threads, pair.masked());
   Refinement result;
   PlaneFitStatistics& evidence = result.evidence;
   evidence.tried = found.tried;
@@ -113,11 +117,11 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneM
 /// Whether exchanging the images explains them far better than the order they came in. Only asked when few pixels of
 /// the shrunk image matched.
 bool look_swapped(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int factor,
-                  double max_disparity_px, std::size_t matches, int threads) {
+                  double max_disparity_px, std::size_t matches, int threads, ImageView<const std::uint8_t> mask) {
   constexpr std::size_t usual_share = 5;  // a fifth of the pixels
   const std::size_t pixels = left.pixels() / static_cast<std::size_t>(factor * factor);
   if (matches > pixels / usual_share) return false;
-  const auto swapped = match_coarsely(right, left, factor, max_disparity_px, threads).points;
+  const auto swapped = match_coarsely(right, left, factor, max_disparity_px, threads, mask).points;
   return swapped.size() > std::max<std::size_t>(3 * matches, min_matches);
 }
 
@@ -142,17 +146,20 @@ void RoadModelOptions::validate() const {
   require_range("road_model", "max_road_tilt_deg", max_road_tilt_deg, 5.0, 80.0);
   require_range("road_model", "min_evidence", min_evidence, 0.0, 1.0);
   require_range("road_model", "weak_evidence", weak_evidence, 0.0, 1.0);
+  require_range("road_model", "height_m", height_m, 0.0, 1000.0);
+  require_range("road_model", "pitch_deg", pitch_deg, unknown_pitch_deg, 90.0);
   require_range("road_model", "verify_tolerance_px", verify_tolerance_px, Above{0.0}, 100.0);
 }
 
 RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                       const std::optional<StereoCalibration>& calibration,
-                                      const RoadModelOptions& options, int threads) {
+                                      const RoadModelOptions& options, int threads,
+                                      ImageView<const std::uint8_t> mask) {
   const int factor = coarse_factor(left.width(), left.height());
   const double max_disparity = options.max_disparity_share * left.width();
-  const CoarseMatches coarse = match_coarsely(left, right, factor, max_disparity, threads);
+  const CoarseMatches coarse = match_coarsely(left, right, factor, max_disparity, threads, mask);
   const ScratchVector<DisparityPoint>& matches = coarse.points;
-  if (look_swapped(left, right, factor, max_disparity, matches.size(), threads)) {
+  if (look_swapped(left, right, factor, max_disparity, matches.size(), threads, mask)) {
     fail("left and right look swapped: the matches lie at negative disparities");
   }
   RoadModelEstimate estimate;
@@ -169,9 +176,10 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   // The plane with the most evidence; the next where that is no road after all.
   constexpr int max_planes = 3;
-  const ScratchVector<PlaneHypothesis> planes = search_planes(coarse, limit, max_planes, threads);
+  const ScratchVector<PlaneHypothesis> planes =
+      search_planes(coarse, limit, RigPrior(options, calibration), max_planes, threads);
   if (planes.empty()) estimate.reason = "no plane has more evidence for it than against it";
-  const FinePair fine(left, right);
+  const FinePair fine(left, right, mask);
   for (const PlaneHypothesis& hypothesis : planes) {
     // First wide, for the coarse plane is good to a pixel of the downsampled image at best; then close. By single
     // blocks, and where these find nothing by cells of them.
@@ -191,9 +199,9 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
 
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                     const TrackedRoad& previous, const std::optional<StereoCalibration>& calibration,
-                                    const RoadModelOptions& options, int threads) {
+                                    const RoadModelOptions& options, int threads, ImageView<const std::uint8_t> mask) {
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
-  const FinePair fine(left, right);
+  const FinePair fine(left, right, mask);
   const Refinement around =
       refine_road(fine, previous.model, match_along_plane, first_search_again, options.with_roll, threads);
   const Refinement close = around.evidence.found ? refine_road(fine, around.evidence.plane, match_along_plane,

@@ -60,31 +60,12 @@ TEST_F(InspectCommand, ResultJsonHasEveryOptionAndFigure) {
   make_road();
   ASSERT_EQ(inspect("--calibration road/calibration.yaml --preset paper --threads 2").exit_code, 0);
   const auto result = json_file("result/result.json");
-  for (const char* key : {"version",
-                          "inputs",
-                          "size",
-                          "preset",
-                          "options",
-                          "engine",
-                          "threads",
-                          "calibration",
-                          "road_model",
-                          "alpha0",
-                          "alpha1",
-                          "roll_rad",
-                          "roll_stderr_rad",
-                          "roll_observable",
-                          "delta_p",
-                          "delta_t",
-                          "disparities",
-                          "valid_fraction",
-                          "sigma_d_px",
-                          "sigma_d_all_px",
-                          "rows",
-                          "road",
-                          "ms",
-                          "mde_per_s",
-                          "warnings"}) {
+  for (const char* key :
+       {"version",         "inputs",          "size",       "preset",  "options",     "engine",
+        "threads",         "calibration",     "road_model", "alpha0",  "alpha1",      "roll_rad",
+        "roll_stderr_rad", "roll_observable", "delta_p",    "delta_t", "disparities", "valid_fraction",
+        "sigma_d_px",      "sigma_d_all_px",  "rows",       "road",    "ms",          "mde_per_s",
+        "warnings"}) {
     EXPECT_TRUE(result.contains(key)) << key;
   }
   for (const auto& option : list_options(preset("paper"))) {
@@ -134,6 +115,46 @@ TEST_F(InspectCommand, SigmaIsDefinedWhereDisparityIs) {
   EXPECT_GE(median, known[(known.size() - 1) / 2] - 1e-6);
   EXPECT_LE(median, known[known.size() / 2] + 1e-6);
   EXPECT_GT(io::read_frame((folder_ / "result/sigma_color.png").string()).width, 320);  // map and scale bar
+}
+
+TEST_F(InspectCommand, MaskLeavesOutWhitePixels) {
+  make_road();
+  const auto mask = [&](const std::string& name, int width, int height) {
+    Frame frame{std::vector<std::uint8_t>(static_cast<std::size_t>(width * height), 0), width, height};
+    std::fill(frame.bytes.begin() + frame.bytes.size() / 2, frame.bytes.end(), 255);
+    frame.bytes.front() = 254;  // only white is left out
+    write(name, io::encode_png(frame.view()));
+  };
+  mask("mask.png", 320, 180);
+  mask("small.png", 300, 180);
+  const Outcome outcome = inspect("--calibration road/calibration.yaml --mask mask.png");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto disparity = io::read_disparity((folder_ / "result/disparity.tiff").string());
+  int above = 0;
+  for (int u = 0; u < 320; ++u) {
+    above += std::isnan(disparity(u, 60)) ? 0 : 1;
+    EXPECT_TRUE(std::isnan(disparity(u, 90))) << u;
+    EXPECT_TRUE(std::isnan(disparity(u, 179))) << u;
+  }
+  EXPECT_GT(above, 250);
+  EXPECT_EQ(json_file("result/result.json")["inputs"]["mask"], "mask.png");
+  expect_complaint(inspect("--mask small.png"), "small.png has 300×180 pixels; --mask must have 320×180");
+  expect_complaint(inspect("--mask absent.png"), "absent.png");
+}
+
+TEST_F(InspectCommand, ExpectedHeightIsCompared) {
+  make_road();
+  const std::string calibrated = "--calibration road/calibration.yaml ";
+  const double height = 2.4;  // of scene demo
+  ASSERT_EQ(inspect(calibrated + "--height 2.5 --pitch 60").exit_code, 0);
+  EXPECT_NEAR(json_file("result/result.json")["camera_height_m"].get<double>(), height, 0.1);
+  EXPECT_EQ(json_file("result/result.json")["warnings"].size(), 0U);
+  ASSERT_EQ(inspect(calibrated + "--height 4").exit_code, 0);
+  const auto warnings = json_file("result/result.json")["warnings"];
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].get<std::string>().find("expected were 4 m"), std::string::npos) << warnings;
+  expect_complaint(inspect("--height 2"), "need a calibration");
+  expect_complaint(inspect(calibrated + "--pitch 100"), "road_model.pitch_deg is 100");
 }
 
 TEST_F(InspectCommand, ResultIsIndependentOfThreads) {

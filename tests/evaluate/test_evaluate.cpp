@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "roadstereo/io/image_file.hpp"
+#include "roadstereo/synth.hpp"
 #include "tests/cli/command_test.hpp"
 
 namespace {
@@ -211,6 +213,63 @@ TEST_F(SlowEvaluate, LambdaWritesRowPerRate) {
   EXPECT_NEAR(lambda["rows"][0]["lambda"], 0.01, 1e-12);
   EXPECT_NEAR(lambda["rows"][1]["lambda"], 1e4, 1e-6);
   EXPECT_EQ(lambda["published_optimum"], 10);
+}
+
+/// Writes a rendered scene with everything that a source of single scenes has.
+void write_scene(const fs::path& folder, const synth::Scene& scene) {
+  const synth::SyntheticPair pair = synth::render(scene);
+  fs::create_directories(folder);
+  const auto write = [&folder](const char* name, const std::vector<std::uint8_t>& bytes) {
+    std::ofstream(folder / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  };
+  Image<float> truth(pair.disparity.width(), pair.disparity.height());
+  Frame region{std::vector<std::uint8_t>(truth.pixels(), 0), truth.width(), truth.height()}, seen = region;
+  for (std::size_t i = 0; i < truth.pixels(); ++i) {
+    truth.row(0)[i] = static_cast<float>(pair.disparity.row(0)[i]);
+    region.bytes[i] = std::isnan(truth.row(0)[i]) ? 0 : 1;
+    seen.bytes[i] = pair.visible.row(0)[i];
+  }
+  write("left.png", io::encode_png(pair.left.view()));
+  write("right.png", io::encode_png(pair.right.view()));
+  write("disparity.tiff", io::encode_float_tiff(truth));
+  write("region.png", io::encode_png(region.view()));
+  write("occ.png", io::encode_png(seen.view()));
+}
+
+TEST_F(Evaluate, RobustnessFindsSourcesByContent) {
+  synth::Scene scene = synth::named_scene("demo");
+  scene.rig.focal_px /= 2;
+  scene.rig.width = 320;
+  scene.rig.height = 180;
+  write_scene(folder_ / "data/scenes/intact", scene);
+  scene.degradation.noise_grey = 100;
+  scene.road.texture_contrast = 0;
+  write_scene(folder_ / "data/scenes/noise", scene);
+  ASSERT_EQ(CommandTest::run("synth --scene demo --size 320x180 --frames 3 --output data/drive --quiet").exit_code, 0);
+  const Outcome outcome = run("robustness data --scenes 0 --json robustness.json --figure worst.png");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto document = json_file("robustness.json");
+  ASSERT_EQ(document["roads"].size(), 1U);
+  EXPECT_EQ(document["roads"][0]["source"], "data/scenes");
+  EXPECT_EQ(document["roads"][0]["frame_count"], 2);
+  EXPECT_EQ(document["roads"][0]["found_percent"], 50);
+  EXPECT_EQ(document["roads"][0]["worst_frame"], "noise");
+  ASSERT_EQ(document["disparities"].size(), 5U);  // methods
+  const auto frames = document["frames"]["data/scenes"];
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0]["status"], "found");
+  EXPECT_LT(frames[0]["plane_px"], 0.5);
+  EXPECT_EQ(frames[1]["status"], "none");
+  EXPECT_TRUE(frames[1]["plane_px"].is_null());
+  ASSERT_EQ(document["drives"].size(), 1U);
+  EXPECT_EQ(document["drives"][0]["frame_count"], 3);
+  EXPECT_NEAR(document["drives"][0]["tracked_percent"], 200.0 / 3, 1e-9);
+  EXPECT_EQ(document["drives"][0]["none_percent"], 0);
+  EXPECT_GE(io::read_frame((folder_ / "worst.png").string()).width, 640);
+  fs::create_directories(folder_ / "empty");
+  expect_complaint(run("robustness empty"), "empty: there are no labelled pairs");
+  expect_complaint(run("robustness absent"), "absent is not a folder");
 }
 
 // Without damage every solver finds the roll of a plane; the paper's mean error stands beside them.

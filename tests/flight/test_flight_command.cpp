@@ -6,7 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -143,6 +145,28 @@ class FlightCommand : public CommandTest {
 
   StereoCalibration rig_;
 };
+
+TEST_F(FlightCommand, MaskHoldsForEveryFrame) {
+  write_list(3);
+  Frame mask{std::vector<std::uint8_t>(std::size_t{256} * 144, 0), 256, 144};
+  std::fill_n(mask.bytes.begin(), mask.bytes.size() / 2, std::uint8_t{255});
+  write("mask.png", io::encode_png(mask.view()));
+  const std::string flight = "inspect flight.txt --calibration rig.yaml --output out --write disparity --mask ";
+  ASSERT_EQ(run(flight + "mask.png").exit_code, 0);
+  int maps = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out")) {
+    if (entry.path().extension() != ".tiff") continue;
+    const Image<float> disparity = io::read_disparity(entry.path().string());
+    EXPECT_TRUE(std::isnan(disparity(200, 71)));
+    EXPECT_FALSE(std::isnan(disparity(200, 100)));
+    ++maps;
+  }
+  EXPECT_EQ(maps, 3);
+  mask.height = 72;
+  mask.bytes.resize(mask.bytes.size() / 2);
+  write("mask.png", io::encode_png(mask.view()));
+  expect_complaint(run(flight + "mask.png --quiet"), "mask.png has 256×72 pixels");
+}
 
 TEST_F(FlightCommand, FolderGivesTablesReportAndPictures) {
   write("left/1.png", std::string("no picture"));

@@ -110,6 +110,86 @@ INSTANTIATE_TEST_SUITE_P(Presets, PipelinePreset,
                                          PresetFigures{"paper", {0.0675, 0, 0}, 0.00034, 0.174, 0.126}),
                          [](const auto& test) { return std::string(test.param.preset); });
 
+/// Masks the lower third.
+Image<std::uint8_t> lower_third(int width, int height) {
+  Image<std::uint8_t> mask(width, height, 0);
+  for (int v = 2 * height / 3; v < height; ++v) std::fill_n(mask.row(v), width, std::uint8_t{255});
+  return mask;
+}
+
+TEST(PipelineMask, MaskedPixelsHaveNeitherDisparityNorDamage) {
+  const synth::SyntheticPair pair = scene("demo");
+  const Image<std::uint8_t> mask = lower_third(pair.left.width, pair.left.height);
+  PipelineOptions options = preset("default");
+  options.engine = "cpu";
+  Pipeline pipeline(options, pair.calibration);
+  const auto damaged = [&pipeline](ImageView<const std::uint8_t> inside) {
+    const DamageMap damage = pipeline.find_damage();
+    int pixels = 0;
+    for (int v = 0; v < inside.height(); ++v) {
+      for (int u = 0; u < inside.width(); ++u) pixels += inside(u, v) != 0 && damage.ids(u, v) != 0;
+    }
+    return pixels;
+  };
+  pipeline.process(pair.left.view(), pair.right.view());
+  ASSERT_GT(damaged(mask), 0);
+  pipeline.reset();
+  pipeline.set_mask(mask);
+  for (const RoadStatus status : {RoadStatus::found, RoadStatus::tracked}) {
+    const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+    EXPECT_EQ(result.road.status, status);
+    std::size_t masked = 0, known = 0;
+    for (int v = 0; v < mask.height(); ++v) {
+      for (int u = 0; u < mask.width(); ++u) {
+        if (mask(u, v) == 0) {
+          known += !std::isnan(result.disparity(u, v));
+          continue;
+        }
+        masked += std::isnan(result.disparity(u, v)) && std::isnan(result.sigma(u, v)) &&
+                  std::isnan(result.transformed(u, v));
+      }
+    }
+    EXPECT_EQ(masked, static_cast<std::size_t>(std::count(mask.row(0), mask.row(0) + mask.pixels(), 255)));
+    EXPECT_GT(known, (mask.pixels() - masked) * 9 / 10);
+    EXPECT_EQ(damaged(mask), 0);
+    EXPECT_LT(std::abs(result.geometry.roll_rad - pair.roll_rad), 0.005);
+  }
+  pipeline.set_mask({});
+  pipeline.process(pair.left.view(), pair.right.view());
+  EXPECT_GT(damaged(mask), 0);
+}
+
+TEST(PipelineMask, OfAnotherSizeIsRejected) {
+  const synth::SyntheticPair pair = scene("demo");
+  PipelineOptions options = preset("fast");
+  options.engine = "cpu";
+  Pipeline pipeline(options);
+  pipeline.set_mask(lower_third(300, 200));
+  try {
+    pipeline.process(pair.left.view(), pair.right.view());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "the mask has 300×200 pixels; it must have 960×540 like the pair");
+  }
+}
+
+TEST(PipelinePrior, WarnsWhereRoadDisagrees) {
+  const synth::SyntheticPair pair = scene("uav");
+  const auto warnings = [&](double height_m) {
+    PipelineOptions options = preset("fast");
+    options.road_model.height_m = height_m;
+    Pipeline pipeline(options, pair.calibration);
+    const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+    EXPECT_EQ(result.road.status, RoadStatus::found);
+    return result.warnings;
+  };
+  const double height_m = synth::named_scene("uav").rig.camera_height_m;
+  EXPECT_TRUE(warnings(1.1 * height_m).empty());
+  const auto told = warnings(1.5 * height_m);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told.front().find("m above the road that was found"), std::string::npos) << told.front();
+}
+
 struct SceneFigures {
   const char* scene;
   Errors errors;

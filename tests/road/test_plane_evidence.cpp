@@ -4,11 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <utility>
 #include <vector>
 
+#include "road/masked_blocks.hpp"
 #include "road/plane_evidence.hpp"
+#include "road/rig_prior.hpp"
 #include "road/row_correlation.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/ground_plane.hpp"
 #include "roadstereo/road_model.hpp"
 #include "tests/core/every_target.hpp"
 #include "tests/stereo/textured_pair.hpp"
@@ -59,19 +66,112 @@ double max_difference(const DisparityPlane& plane, const Disparity& d, int left,
   return worst;
 }
 
-TEST(PlaneEvidence, FindsRoadBetweenObstacles) {
-  // House fronts and parked cars on either side: the road is the lower middle, a fifth of the picture.
-  constexpr int width = 400, height = 240;
-  const auto road = [](double u, double v) { return 0.2 * (v - 90) + 0.004 * (u - 200); };
-  const auto scene = [&](double u, double v) {
+std::array<double, 3> numbers(const DisparityPlane& plane) {
+  return {plane.a0, plane.a1, plane.a2};
+}
+
+/// House fronts and parked cars on either side: the road is the lower middle, a fifth of the picture.
+test::TexturedPair street(int width, int height, const std::function<double(double, double)>& road) {
+  return test::textured_pair(width, height, [&road](double u, double v) {
     const double horizon = 100;
     if (u > 130 && u < 290 && v > horizon + 20) return road(u, v);
     return std::max(u < 200 ? 26.0 : 22.0, road(u, v) + 1);
-  };
-  const auto pair = test::textured_pair(width, height, scene);
+  });
+}
+
+TEST(PlaneEvidence, FindsRoadBetweenObstacles) {
+  constexpr int width = 400, height = 240;
+  const auto road = [](double u, double v) { return 0.2 * (v - 90) + 0.004 * (u - 200); };
+  const auto pair = street(width, height, road);
   const RoadModelEstimate found = estimate_road_model(pair.reference, pair.target, std::nullopt, RoadModelOptions{});
   ASSERT_NE(found.status, RoadStatus::none) << found.reason;
   EXPECT_LT(max_difference(found.model, road, 130, 290, 120, height - 1), 1.0);
+}
+
+TEST(PlaneEvidence, MaskedPixelsTakeNoPart) {
+  constexpr int width = 400, height = 240, bonnet = 180;
+  const auto road = [](double u, double v) { return 4 + 0.1 * v - 0.004 * u; };
+  auto pair = test::textured_pair(width, height, road);
+  Image<std::uint8_t> mask(width, height, 0);
+  for (int v = bonnet; v < height; ++v) std::fill_n(mask.row(v), width, std::uint8_t{255});
+  const auto find = [&] {
+    return estimate_road_model(pair.reference, pair.target, std::nullopt, RoadModelOptions{}, 0, mask);
+  };
+  const RoadModelEstimate first = find();
+  ASSERT_NE(first.status, RoadStatus::none) << first.reason;
+  EXPECT_LT(max_difference(first.model, road, 0, width - 1, 0, bonnet), 0.3);
+  const auto track = [&] {
+    return verify_road_model(pair.reference, pair.target, {first.model, first.inlier_share}, std::nullopt,
+                             RoadModelOptions{}, 0, mask);
+  };
+  const RoadModelEstimate tracked = track();
+  // Whatever the masked pixels show, the road is the same to the bit.
+  for (int v = bonnet; v < height; ++v) {
+    for (int u = 0; u < width; ++u) pair.reference(u, v) = static_cast<std::int16_t>((u * 131 + v * 71) % grey_max);
+  }
+  EXPECT_EQ(numbers(find().model), numbers(first.model));
+  EXPECT_EQ(find().evidence, first.evidence);
+  EXPECT_EQ(numbers(track().model), numbers(tracked.model));
+}
+
+TEST(MaskedBlocks, AreThoseThatContainMaskedPixel) {
+  constexpr int width = 53, height = 41;
+  Image<std::uint8_t> mask(width, height, 0);
+  for (const auto& [u, v] : {std::pair{5, 7}, {30, 20}, {31, 20}, {52, 40}}) mask(u, v) = 255;
+  for (const int factor : {1, 2, 4}) {
+    const MaskedBlocks masked(mask, factor);
+    for (int v = 1; v + 1 < height / factor; ++v) {
+      for (int u = 2; u + 2 < width / factor; ++u) {
+        bool expected = false;
+        for (int y = (v - 1) * factor; y < (v + 2) * factor; ++y) {
+          for (int x = (u - 2) * factor; x < (u + 3) * factor; ++x) expected = expected || mask(x, y) != 0;
+        }
+        EXPECT_EQ(masked.contains(u, v, 2, 1), expected) << factor << ": " << u << ", " << v;
+      }
+    }
+  }
+  EXPECT_FALSE(MaskedBlocks().contains(5, 5, 2, 2));
+}
+
+TEST(RigPrior, HalvesWeightAtTolerance) {
+  const StereoCalibration rig{700, 320, 180, 0.5, 0, 640, 360};
+  // 1.5 m above a road 10° below the axis: d = baseline / height · (cos · (v − cy) + sin · f).
+  const double pitch = 10 * std::acos(-1.0) / 180;
+  const auto plane = [&](double height_m) {
+    const double scale = rig.baseline_m / height_m;
+    return DisparityPlane{scale * (std::sin(pitch) * rig.focal_px - std::cos(pitch) * rig.cy_px),
+                          scale * std::cos(pitch), 0};
+  };
+  RoadModelOptions options;
+  EXPECT_EQ(RigPrior(options, std::nullopt).weight(plane(1.5)), 1);
+  options.height_m = 1.5;
+  EXPECT_THROW(RigPrior(options, std::nullopt), Error);
+  EXPECT_NEAR(RigPrior(options, rig).weight(plane(1.5)), 1, 1e-9);
+  EXPECT_NEAR(RigPrior(options, rig).weight(plane(1.2 * 1.5)), 0.5, 1e-9);
+  EXPECT_EQ(RigPrior(options, rig).disagreement(plane(1.19 * 1.5)), "");
+  EXPECT_NE(RigPrior(options, rig).disagreement(plane(3)).find("3 m above the road"), std::string::npos);
+  options = {};
+  options.pitch_deg = 15;
+  EXPECT_NEAR(RigPrior(options, rig).weight(plane(1.5)), 0.5, 1e-9);
+  options.pitch_deg = 16;
+  EXPECT_NE(RigPrior(options, rig).disagreement(plane(1.5)).find("pitch"), std::string::npos);
+}
+
+TEST(RigPrior, OrdersPlanesOfLikeEvidence) {
+  constexpr int width = 400, height = 240, factor = 2, max_planes = 3;
+  const StereoCalibration rig{400, 200, 120, 0.3, 0, width, height};
+  const auto pair = street(width, height, [](double u, double v) { return 0.2 * (v - 90) + 0.004 * (u - 200); });
+  const CoarseMatches coarse = match_coarsely(pair.reference, pair.target, factor, 140, 0);
+  const TiltLimit limit(width, height, rig, 30);
+  RoadModelOptions options;
+  const auto planes = search_planes(coarse, limit, RigPrior(options, rig), max_planes, 0);
+  ASSERT_GE(planes.size(), 2U);
+  const GroundPlane second = ground_plane(planes[1].plane, rig);
+  options.height_m = second.height_m;
+  options.pitch_deg = second.pitch_rad * 180 / std::acos(-1.0);
+  const auto weighed = search_planes(coarse, limit, RigPrior(options, rig), max_planes, 0);
+  EXPECT_EQ(numbers(weighed.front().plane), numbers(planes[1].plane));
+  EXPECT_EQ(weighed.front().score, planes[1].score);
 }
 
 TEST(PlaneEvidence, FindsRoadInNoiseThatHidesBlocks) {
@@ -121,7 +221,8 @@ TEST(TrackedRoad, IsFoundAgainWhereItIsThirdOfPicture) {
       return u > 130 && u < 290 ? std::max(road, 0.5) : std::max(24.0, road + 8);
     };
   };
-  const auto before = test::textured_pair(width, height, scene(0)), now = test::textured_pair(width, height, scene(1.5));
+  const auto before = test::textured_pair(width, height, scene(0)),
+             now = test::textured_pair(width, height, scene(1.5));
   const RoadModelEstimate found =
       estimate_road_model(before.reference, before.target, std::nullopt, RoadModelOptions{});
   ASSERT_NE(found.status, RoadStatus::none) << found.reason;

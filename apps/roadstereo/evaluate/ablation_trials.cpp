@@ -41,7 +41,7 @@ void time_second_pass(Pipeline& pipeline, const StereoPair& pair, Trials& trials
 
 void run_kitti(const AblationOptions& options, std::vector<Trials>& trials) {
   for (const KittiFiles& files : find_kitti_frames(options.kitti, "")) {
-    const KittiFrame frame = read_kitti_frame(files);
+    const LabelledFrame frame = read_kitti_frame(files);
     if (!frame.road) fail(options.kitti, "/road: frame ", files.name, " has no road mask");
     for (std::size_t i = 0; i < trials.size(); ++i) {
       Pipeline pipeline = make_pipeline(ablation_variants()[i], {frame.pair}, options.methods);

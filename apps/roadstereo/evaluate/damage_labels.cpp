@@ -6,7 +6,7 @@
 #include <map>
 
 #include "evaluate/label_regions.hpp"
-#include "evaluate/mask_file.hpp"
+#include "mask_file.hpp"
 #include "evaluate/scan_frames.hpp"
 #include "map_source.hpp"
 #include "roadstereo/damage.hpp"

@@ -10,7 +10,7 @@ namespace roadstereo::cli {
 namespace {
 
 RoadResult score_frame(const KittiFiles& files, const std::string& preset_name) {
-  const KittiFrame frame = read_kitti_frame(files);
+  const LabelledFrame frame = read_kitti_frame(files);
   if (!frame.road) fail(files.left, ": the frame has no road mask");
   Pipeline pipeline(preset(preset_name), frame.pair.calibration);
   pipeline.process(frame.pair.left.view(), frame.pair.right.view());

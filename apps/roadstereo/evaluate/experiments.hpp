@@ -21,5 +21,6 @@ void add_damage_accuracy(CLI::App& evaluate);
 void add_scan(CLI::App& evaluate);
 void add_flight(CLI::App& evaluate);
 void add_runtime(CLI::App& evaluate);
+void add_robustness(CLI::App& evaluate);
 
 }  // namespace roadstereo::cli

@@ -32,7 +32,7 @@ Flatness measure_flatness(ImageView<const float> disparity, ImageView<const std:
 }
 
 FlatnessFrame measure_frame(const KittiFiles& files, const std::string& preset, const MethodSettings& methods) {
-  const KittiFrame frame = read_kitti_frame(files);
+  const LabelledFrame frame = read_kitti_frame(files);
   if (!frame.road) fail(files.name, ": the frame has no road mask; --road-masks gives the folder of the masks");
   require_size(*frame.road, frame.truth, files.road);
   const Image<float> matched = run_method(preset, MethodTask{frame.pair}, methods);

@@ -1,14 +1,12 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 
 #include "evaluate/common_pixels.hpp"
 #include "evaluate/experiments.hpp"
-#include "evaluate/kitti_sheet.hpp"
+#include "evaluate/labelled_sheet.hpp"
 #include "evaluate/methods.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/score_columns.hpp"
@@ -47,16 +45,6 @@ struct Regions {
   Region all_common{"All labelled pixels with a disparity of every method except BM", "all_common"};
 };
 
-/// Number of disparities for OpenCV's matchers: 128, as is usual for KITTI, or more if the ground truth needs them.
-int baseline_disparities(ImageView<const float> truth) {
-  constexpr int usual = 128;
-  double max_disparity = 0;
-  for (int v = 0; v < truth.height(); ++v) {
-    for (int u = 0; u < truth.width(); ++u) max_disparity = std::fmax(max_disparity, truth(u, v));
-  }
-  return std::max(usual, static_cast<int>(std::ceil(max_disparity)) + 1);
-}
-
 void add_scores(const std::string& frame, const std::vector<Image<float>>& maps, ImageView<const float> truth,
                 const std::optional<ImageView<const std::uint8_t>>& mask, Region& region) {
   region.frames.push_back(frame);
@@ -68,8 +56,8 @@ void add_scores(const std::string& frame, const std::vector<Image<float>>& maps,
 /// Adds the frame's scores to the regions and, when asked, a row to the sheet.
 void score_frame(const KittiFiles& files, const MethodSettings& methods, Regions& regions,
                  std::vector<std::vector<io::SheetCell>>* sheet) {
-  const KittiFrame frame = read_kitti_frame(files);
-  const std::vector<Image<float>> maps = run_methods({frame.pair, baseline_disparities(frame.truth)}, methods);
+  const LabelledFrame frame = read_kitti_frame(files);
+  const std::vector<Image<float>> maps = run_methods({frame.pair, frame.disparities}, methods);
   add_scores(files.name, maps, frame.truth, std::nullopt, regions.all);
   add_scores(files.name, maps, frame.truth, common_pixels(maps, std::nullopt).view(), regions.all_common);
   if (frame.road) {
@@ -78,7 +66,7 @@ void score_frame(const KittiFiles& files, const MethodSettings& methods, Regions
   }
   if (sheet != nullptr) {
     sheet->push_back(
-        kitti_sheet_row(files.name, frame, maps[method_index("default")], maps[method_index("SGBM")], "SGBM"));
+        labelled_sheet_row(files.name, frame, maps[method_index("default")], maps[method_index("SGBM")], "SGBM"));
   }
 }
 

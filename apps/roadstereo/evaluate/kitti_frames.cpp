@@ -4,7 +4,7 @@
 #include <array>
 #include <filesystem>
 
-#include "evaluate/mask_file.hpp"
+#include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
 
@@ -60,13 +60,15 @@ std::vector<KittiFiles> find_kitti_frames(const std::string& folder, const std::
   return frames;
 }
 
-KittiFrame read_kitti_frame(const KittiFiles& files) {
-  KittiFrame frame;
+LabelledFrame read_kitti_frame(const KittiFiles& files) {
+  LabelledFrame frame;
   PairFiles pair{files.left, files.right, {}};
   if (!files.calibration.empty()) pair.calibration.push_back(files.calibration);
   frame.pair = read_pair(pair);
   if (!frame.pair.calibration) frame.pair.calibration = kitti_calibration(frame.pair.left.width);
   frame.truth = io::read_disparity(files.truth);
+  constexpr int usual_disparities = 128;
+  frame.disparities = disparities_of(frame.truth, usual_disparities);
   if (!files.road.empty()) frame.road = read_mask(files.road);
   return frame;
 }

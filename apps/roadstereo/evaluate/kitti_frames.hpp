@@ -1,11 +1,9 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "pair_source.hpp"
+#include "evaluate/labelled_frame.hpp"
 
 namespace roadstereo::cli {
 
@@ -17,19 +15,12 @@ struct KittiFiles {
   std::string road;         ///< road mask; empty if there is none
 };
 
-/// Frame with ground truth.
-struct KittiFrame {
-  StereoPair pair;
-  Image<float> truth;                       ///< pixels; NaN where there is no lidar point
-  std::optional<Image<std::uint8_t>> road;  ///< not 0 on the road
-};
-
 /// Find the frames of `folder` that have a ground truth in disp_noc_0, sorted by name. Masks are read from
 /// `road_masks`, or from folder/road if that is empty. Throws Error naming the folder or the file that is missing.
 std::vector<KittiFiles> find_kitti_frames(const std::string& folder, const std::string& road_masks);
 
 /// Read one frame. Without a calibration file the intrinsics of the KITTI recording days are used; the width of the
 /// images identifies the day.
-KittiFrame read_kitti_frame(const KittiFiles& files);
+LabelledFrame read_kitti_frame(const KittiFiles& files);
 
 }  // namespace roadstereo::cli

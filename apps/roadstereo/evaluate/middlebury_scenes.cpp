@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "evaluate/mask_file.hpp"
+#include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
 

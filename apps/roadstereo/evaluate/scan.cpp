@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "evaluate/experiments.hpp"
-#include "evaluate/mask_file.hpp"
+#include "mask_file.hpp"
 #include "evaluate/methods.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/scan_frames.hpp"

@@ -7,7 +7,7 @@
 
 #include "evaluate/error_map.hpp"
 #include "evaluate/experiments.hpp"
-#include "evaluate/mask_file.hpp"
+#include "mask_file.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/score_columns.hpp"
 #include "roadstereo/error.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
@@ -24,6 +25,27 @@ FrameFile frame_file(const std::string& name) {
        "\"; it must be a comma-separated list of disparity, transformed, sheet, cloud and overlay");
 }
 
+PipelineOptions make_options(const FlightSettings& settings) {
+  PipelineOptions options = make_options(settings.processing);
+  if (settings.height_m) options.road_model.height_m = *settings.height_m;
+  if (settings.pitch_deg) options.road_model.pitch_deg = *settings.pitch_deg;
+  options.validate();
+  // The engine cuda takes no mask.
+  if (!settings.mask.empty() && options.engine == "auto") options.engine = "cpu";
+  return options;
+}
+
+Image<std::uint8_t> read_ignored(const FlightSettings& settings) {
+  constexpr int white = 255;
+  return settings.mask.empty() ? Image<std::uint8_t>() : read_mask(settings.mask, white);
+}
+
+void require_mask_size(const FlightSettings& settings, const Image<std::uint8_t>& mask, int width, int height) {
+  if (mask.empty() || (mask.width() == width && mask.height() == height)) return;
+  fail(settings.mask, " has ", mask.width(), "×", mask.height(), " pixels; --mask must have ", width, "×", height,
+       " like the rectified frames");
+}
+
 void FlightSettings::validate() const {
   if (from < 0) fail("--from is ", from, "; it must be at least 0");
   if (to && *to < from) fail("--to is ", *to, "; it must be at least --from, which is ", from);
@@ -34,7 +56,8 @@ void FlightSettings::validate() const {
 FlightPlan resolve(const FlightSettings& settings) {
   settings.validate();
   FlightPlan plan;
-  plan.options = make_options(settings.processing);
+  plan.options = make_options(settings);
+  plan.mask = read_ignored(settings);
   plan.find_white_level = !sets_white_level(settings.processing);
   plan.source = make_source_options(settings.source_settings);
   for (const std::string& name : settings.write) plan.write.push_back(frame_file(name));

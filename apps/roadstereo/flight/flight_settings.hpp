@@ -27,6 +27,7 @@ struct TrackSettings {
 struct FlightSettings {
   std::vector<std::string> source;  ///< one name, or left and right
   std::vector<std::string> calibration;
+  std::string mask;  ///< picture whose white pixels are left out; empty: none
   std::string output;
   ProcessingSettings processing;
   SourceSettings source_settings;
@@ -36,6 +37,8 @@ struct FlightSettings {
   std::int64_t every = 1;          ///< processes every N-th frame
   std::vector<std::string> write;  ///< names of FrameFile
   TrackSettings track;
+  std::optional<double> height_m;   ///< of the camera above the road, expected
+  std::optional<double> pitch_deg;  ///< of the camera, expected
   bool quiet = false;
   bool json = false;
 
@@ -43,9 +46,20 @@ struct FlightSettings {
   void validate() const;
 };
 
+/// Options of the pipeline, those of --height, --pitch and --mask included. Throws Error naming the option that is
+/// unknown or out of range.
+PipelineOptions make_options(const FlightSettings& settings);
+
+/// Reads --mask: 255 where the picture has 255; empty without --mask.
+Image<std::uint8_t> read_ignored(const FlightSettings& settings);
+
+/// Throws Error unless the mask is empty or has the size of the frames.
+void require_mask_size(const FlightSettings& settings, const Image<std::uint8_t>& mask, int width, int height);
+
 /// Parsed and checked options of a flight.
 struct FlightPlan {
   PipelineOptions options;
+  Image<std::uint8_t> mask;      ///< not 0 left out; empty: none
   bool find_white_level = true;  ///< determines it from the first valid pair of a 16-bit source
   io::SourceOptions source;
   std::vector<FrameFile> write;

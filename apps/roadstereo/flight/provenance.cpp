@@ -38,10 +38,13 @@ std::string digest(const std::vector<std::string>& files) {
 }  // namespace
 
 io::Provenance provenance(const FlightSettings& settings, const PipelineOptions& options) {
+  const std::vector<std::string> mask(settings.mask.empty() ? 0 : 1, settings.mask);
   io::Provenance entries{{"version", version},
                          {"source", joined(settings.source)},
                          {"calibration", joined(settings.calibration)},
                          {"content of the calibration", digest(settings.calibration)},
+                         {"--mask", settings.mask},
+                         {"content of the mask", digest(mask)},
                          {"--from", std::to_string(settings.from)},
                          {"--every", std::to_string(settings.every)},
                          {"--write", joined(settings.write)},

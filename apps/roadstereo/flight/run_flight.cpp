@@ -125,7 +125,10 @@ void FlightPipeline::match() {
     if (!pipeline && pair->error.empty()) {  // white level and size are known now
       PipelineOptions options = flight_.plan.options;
       if (flight_.plan.find_white_level) options.white_level = flight_.source.white_level();
+      const Image<std::uint8_t>& mask = flight_.plan.mask;
+      require_mask_size(settings_, mask, pair->left.width, pair->left.height);
       pipeline.emplace(options, flight_.source.calibration());
+      if (!mask.empty()) pipeline->set_mask(mask);
       warm_up(*pipeline, *pair);
       if (before) pipeline->restore(before->pipeline_state);
     }

@@ -1,4 +1,4 @@
-#include "evaluate/mask_file.hpp"
+#include "mask_file.hpp"
 
 #include <cstring>
 

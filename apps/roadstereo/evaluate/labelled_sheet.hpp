@@ -10,8 +10,8 @@ namespace roadstereo::cli {
 
 /// One row of the sheet as in the paper's figure: left image with the road in magenta, truth, our disparities, and the
 /// errors of ours and of a peer.
-std::vector<io::SheetCell> kitti_sheet_row(const std::string& name, const KittiFrame& frame,
-                                           ImageView<const float> ours, ImageView<const float> peer,
-                                           const std::string& peer_name);
+std::vector<io::SheetCell> labelled_sheet_row(const std::string& name, const LabelledFrame& frame,
+                                              ImageView<const float> ours, ImageView<const float> peer,
+                                              const std::string& peer_name);
 
 }  // namespace roadstereo::cli

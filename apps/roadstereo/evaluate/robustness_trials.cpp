@@ -1,0 +1,105 @@
+#include "evaluate/robustness_trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "evaluation/peer_matchers.hpp"
+#include "flight/rectified_source.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/frame_source.hpp"
+#include "settings.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+/// Largest difference of a plane to the robust fit to the truth.
+double plane_difference(const DisparityPlane& plane, const LabelledFrame& frame, int threads) {
+  const DisparityPlane truth =
+      estimate_roll(frame.truth, frame.road->view(), std::nullopt, 0, RollOptions{}, threads).plane;
+  double largest = 0;
+  for (int v = 0; v < frame.truth.height(); ++v) {
+    for (int u = 0; u < frame.truth.width(); ++u) {
+      if ((*frame.road)(u, v) == 0 || std::isnan(frame.truth(u, v))) continue;
+      largest = std::max(largest, std::abs(plane.disparity(u, v) - truth.disparity(u, v)));
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+const std::vector<std::string>& robustness_methods() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all{"default"};
+    all.insert(all.end(), io::peer_names().begin(), io::peer_names().end());
+    return all;
+  }();
+  return names;
+}
+
+const std::vector<double>& robustness_tolerances_px() {
+  static const std::vector<double> tolerances{0.5, 1, 2, 3};
+  return tolerances;
+}
+
+bool RobustnessTrial::worse_than(const RobustnessTrial& other) const {
+  const bool lost = status == RoadStatus::none, other_lost = other.status == RoadStatus::none;
+  if (lost != other_lost) return lost;
+  constexpr std::size_t one_pixel = 1;  // of robustness_tolerances_px
+  return scores.front().bad_or_missing_share[one_pixel] > other.scores.front().bad_or_missing_share[one_pixel];
+}
+
+RobustnessResult run_robustness_trial(const std::string& name, const LabelledFrame& frame,
+                                      const MethodSettings& settings) {
+  const MethodTask task{frame.pair, frame.disparities};
+  RobustnessResult result;
+  result.trial.frame = name;
+  result.trial.plane_px = std::numeric_limits<double>::infinity();
+  try {
+    Pipeline pipeline(method_options("default", task, settings), frame.pair.calibration);
+    const FrameResult& processed = pipeline.process(frame.pair.left.view(), frame.pair.right.view());
+    result.trial.status = processed.road.status;
+    if (processed.road.status != RoadStatus::none) {
+      result.trial.plane_px = plane_difference(processed.road.model, frame, settings.threads);
+    }
+    result.maps.push_back(processed.disparity);
+  } catch (const Error&) {  // the pair was rejected: every disparity is missing
+    result.maps.emplace_back(frame.truth.width(), frame.truth.height(), std::numeric_limits<float>::quiet_NaN());
+  }
+  for (const std::string& baseline : io::peer_names()) result.maps.push_back(run_method(baseline, task, settings));
+  for (const Image<float>& map : result.maps) {
+    result.trial.scores.push_back(score_disparity(map, frame.truth, frame.road->view(), robustness_tolerances_px()));
+  }
+  return result;
+}
+
+DriveCounts run_drive(const Drive& drive, const MethodSettings& settings) {
+  RectifiedSource source(io::open_source({drive.folder}), drive.calibration);
+  DriveCounts counts;
+  std::optional<Pipeline> pipeline;
+  while (const std::optional<io::SourcePair> pair = source.next()) {
+    ++counts.frames;
+    try {
+      if (!pair->error.empty()) fail(pair->error);
+      if (!pipeline) {
+        PipelineOptions options = preset("default");
+        options.threads = settings.threads;
+        options.white_level = source.white_level();
+        apply_settings(settings.settings, options);
+        pipeline.emplace(options, source.calibration());
+      }
+      const RoadStatus status = pipeline->process(pair->left.view(), pair->right.view()).road.status;
+      ++(status == RoadStatus::tracked ? counts.tracked : status == RoadStatus::none ? counts.none : counts.found);
+      counts.damages += static_cast<int>(pipeline->find_damage().damages.size());
+    } catch (const SystemError&) {
+      throw;
+    } catch (const Error&) {
+      ++counts.none;
+    }
+  }
+  return counts;
+}
+
+}  // namespace roadstereo::cli
