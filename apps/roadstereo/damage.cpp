@@ -62,7 +62,7 @@ void run(const Arguments& arguments) {
   const TransformedMap map = read_transformed_map(arguments.files);
   io::OutputFolder folder(arguments.output);
   const MapFiles& files = arguments.files;
-  for (const auto& inputs : {{files.transformed, files.image, files.disparity}, files.calibration}) {
+  for (const auto& inputs : {std::vector{files.transformed, files.image, files.disparity}, files.calibration}) {
     for (const std::string& input : inputs) folder.protect(input);
   }
   const DamageMap damage = find_in(map, arguments);

@@ -71,7 +71,7 @@ void inspect_flight(const FlightSettings& settings) {
   require_calibration(plan, source);
   require_frames(settings, source.source());
   FlightFolder folder(settings.output);
-  for (const auto& inputs : {settings.source, settings.calibration, {settings.track.file}}) {
+  for (const auto& inputs : {settings.source, settings.calibration, std::vector{settings.track.file}}) {
     for (const std::string& input : inputs) folder.protect(input);
   }
   io::FlightJournal journal = open_journal(settings, run.options, folder);
