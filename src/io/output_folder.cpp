@@ -125,9 +125,11 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   fs::create_directories(folder, error);
   if (!error && !fs::is_directory(folder)) error = std::make_error_code(std::errc::not_a_directory);
   if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) error = std::error_code(errno, std::generic_category());
-  if (!error) return remove_stale(folder);
-  remove_unfinished();
-  fail_folder(folder, error);
+  if (error) {
+    remove_unfinished();
+    fail_folder(folder, error);
+  }
+  remove_stale(folder);
 }
 
 OutputFolder::~OutputFolder() {

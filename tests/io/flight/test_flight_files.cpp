@@ -67,7 +67,7 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   frame.roll_rad = -0.1 / 3;
   frame.road = {1.0 / 3, 2.0 / 7, -1e-17};
   frame.warnings = {"a \"quoted\" word", "line\nend"};
-  frame.pipeline_state = {640, 360, DisparityPlane{1.0 / 3, 1e-300, 5}, 1.0 / 7, -0.3};
+  frame.pipeline_state = {640, 360, TrackedRoad{{1.0 / 3, 1e-300, 5}, 0.75}, 1.0 / 7, -0.3};
   const FlightFrame back = read_flight_frame(flight_frame_json(frame));
   EXPECT_EQ(back.index, 7);
   EXPECT_EQ(back.time_s, frame.time_s);
@@ -77,6 +77,7 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   EXPECT_TRUE(std::isnan(back.height_m));
   EXPECT_EQ(back.warnings, frame.warnings);
   EXPECT_EQ(back.pipeline_state.road->model.a1, 1e-300);
+  EXPECT_EQ(back.pipeline_state.road->inlier_share, 0.75);
   EXPECT_EQ(back.pipeline_state.row_offset_px, -0.3);
   ASSERT_EQ(back.damages.size(), 2U);
   EXPECT_EQ(back.damages[0].metrics->max_depth_m.value, 0.1 / 3);
