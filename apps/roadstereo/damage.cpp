@@ -61,6 +61,10 @@ void run(const Arguments& arguments) {
   make_options(arguments.settings);  // checked first
   const TransformedMap map = read_transformed_map(arguments.files);
   io::OutputFolder folder(arguments.output);
+  const MapFiles& files = arguments.files;
+  for (const auto& inputs : {std::vector{files.transformed, files.image, files.disparity}, files.calibration}) {
+    for (const std::string& input : inputs) folder.protect(input);
+  }
   const DamageMap damage = find_in(map, arguments);
   io::DamageReportInput report{damage};
   if (map.image) report.left = map.image->view();

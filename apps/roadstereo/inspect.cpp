@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "find_damage_or_warn.hpp"
+#include "flight/flight_folder.hpp"
 #include "inspect_flight.hpp"
 #include "inspection.hpp"
 #include "result_files.hpp"
@@ -14,6 +15,7 @@
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/frame_source.hpp"
 #include "roadstereo/io/output_folder.hpp"
+#include "stop_signals.hpp"
 #include "summary.hpp"
 
 namespace roadstereo::cli {
@@ -87,6 +89,9 @@ void reject_flight_options(const FlightSettings& settings) {
 
 void inspect_pair(const FlightSettings& settings) {
   reject_flight_options(settings);
+  if (is_flight_folder(settings.output)) {
+    fail(settings.output, ": this folder has the results of a recording; choose another one for a pair");
+  }
   Inspection inspection;
   inspection.options = make_options(settings);
   inspection.preset = settings.processing.preset;
@@ -98,11 +103,17 @@ void inspect_pair(const FlightSettings& settings) {
   if (!sets_white_level(settings.processing)) inspection.options.white_level = inspection.pair.white_level;
 
   io::OutputFolder folder(settings.output);  // fails early
+  for (const auto& inputs : {settings.source, settings.calibration}) {
+    for (const std::string& input : inputs) folder.protect(input);
+  }
   process(inspection);
+  auto stop = std::make_unique<StopSignals>();  // staged files do not stay
   add_result_files(inspection, folder);
   const std::string result = result_json(inspection);
   folder.add("result.json", result);
+  if (stop->wait(0)) throw Interrupted{"interrupted; nothing was written"};
   folder.commit();
+  stop.reset();
 
   if (settings.json) fmt::print("{}", result);
   if (!settings.json && !settings.quiet) fmt::print("{}", summary(inspection, folder.path()));

@@ -63,7 +63,6 @@ void require_frames(const FlightSettings& settings, const io::FrameSource& sourc
 
 void inspect_flight(const FlightSettings& settings) {
   const FlightPlan plan = resolve(settings);
-  auto stop = std::make_unique<StopSignals>();  // before any thread
   FlightRun run;
   run.options = plan.options;
   FlightResults results(settings.track);
@@ -72,12 +71,16 @@ void inspect_flight(const FlightSettings& settings) {
   require_calibration(plan, source);
   require_frames(settings, source.source());
   FlightFolder folder(settings.output);
+  for (const auto& inputs : {settings.source, settings.calibration, std::vector{settings.track.file}}) {
+    for (const std::string& input : inputs) folder.protect(input);
+  }
   io::FlightJournal journal = open_journal(settings, run.options, folder);
   journal.for_each([&](const io::FlightFrame& frame) { results.add(frame); });
   if (journal.last() && journal.last()->white_level > 0) source.set_white_level(journal.last()->white_level);
   run.resumed_at = journal.frames();
 
   Progress progress(frames_to_do(settings, source.source()), journal.frames(), settings.quiet);
+  auto stop = std::make_unique<StopSignals>();  // until here Ctrl-C ends the program
   Flight flight{source, folder, journal, results, plan, progress, *stop};
   run.complete = run_flight(settings, flight);
   stop.reset();  // the next Ctrl-C ends the program
@@ -94,7 +97,7 @@ void inspect_flight(const FlightSettings& settings) {
   progress.end();
   if (settings.json) fmt::print("{}", json);
   if (!settings.json && !settings.quiet) fmt::print("{}", flight_text(run, summary, folder));
-  if (!run.complete) throw Interrupted{};
+  if (!run.complete) throw Interrupted{"interrupted; continue with --resume"};
   if (summary.frames == 0) fail(settings.source[0], ": there is no frame between --from and --to");
   if (summary.good == 0) fail("none of the ", summary.frames, " frames could be matched: ", summary.reasons.front());
 }

@@ -4,10 +4,12 @@
 
 namespace roadstereo::cli {
 
-/// Thrown if Ctrl-C ended a flight; the results so far are written and the flight can be resumed.
-struct Interrupted {};
+/// Thrown if Ctrl-C ended a command.
+struct Interrupted {
+  const char* message;
+};
 
-/// Inspects a recording. Throws Interrupted, and Error if no frame could be matched.
+/// Inspects a recording. Throws Interrupted if it can be resumed, and Error if no frame could be matched.
 void inspect_flight(const FlightSettings& settings);
 
 }  // namespace roadstereo::cli

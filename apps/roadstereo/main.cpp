@@ -28,7 +28,7 @@ constexpr const char* footer =
     "  roadstereo inspect road/left.png road/right.png --calibration road/calibration.yaml --output out\n"
     "\n"
     "Exit codes: 0 success; 2 wrong usage or invalid input; 1 other errors, e.g. a full disk;\n"
-    "130 flight interrupted by Ctrl-C.";
+    "130 inspection interrupted by Ctrl-C.";
 
 /// Prints an error message in one line.
 int report_error(std::string message, int exit_code) {
@@ -114,8 +114,8 @@ int main(int argc, char** argv) {
     return report_error(error.what(), exit_failure);
   } catch (const roadstereo::Error& error) {
     return report_error(error.what(), exit_bad_input);
-  } catch (const roadstereo::cli::Interrupted&) {
-    return report_error("interrupted; continue with --resume", exit_interrupted);
+  } catch (const roadstereo::cli::Interrupted& interrupted) {
+    return report_error(interrupted.message, exit_interrupted);
   } catch (const std::bad_alloc&) {
     return report_error("out of memory", exit_failure);
   } catch (const std::exception& error) {

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <array>
 #include <csignal>
 
 namespace roadstereo::cli {
 
-/// Blocks Ctrl-C and similar signals and waits for them. Create it before any thread, so that all threads inherit the
-/// mask.
+/// Catches the first Ctrl-C or similar signal so that a program can finish its work; the second ends it. Signals that
+/// the caller of the program ignores (nohup) stay ignored. One at a time.
 class StopSignals {
  public:
   StopSignals();
@@ -15,12 +16,12 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// Waits up to that time, less than 1 s. Returns whether a signal has arrived.
+  /// Waits up to that time. Returns whether a signal has arrived since the construction.
   bool wait(double seconds) const;
 
  private:
-  sigset_t signals_{};
-  sigset_t before_{};
+  static constexpr std::array signals_ = {SIGINT, SIGTERM, SIGHUP};
+  std::array<struct sigaction, signals_.size()> before_{};
 };
 
 }  // namespace roadstereo::cli

@@ -1,6 +1,8 @@
 #include "roadstereo/io/calibration_file.hpp"
 
 #include <algorithm>
+#include <exception>
+#include <new>
 #include <string_view>
 
 #include "io/calibration_formats.hpp"
@@ -62,14 +64,11 @@ Format recognise(const std::string& text) {
   fail(file.path, ": this calibration describes both cameras; remove the second file, ", second_path);
 }
 
-}  // namespace
-
-CalibrationFile read_calibration(const std::string& path, const std::string& second_path) {
-  const CalibrationText file = read_text(path);
-  const Format format = recognise(file.text);
+CalibrationFile read_as(Format format, const CalibrationText& file, const std::string& second_path) {
   const bool has_second = !second_path.empty();
   if (format == Format::ros_camera_info) {
-    if (!has_second) fail(path, ": this is the camera_info of one camera; the file of the right camera is needed, too");
+    if (!has_second)
+      fail(file.path, ": this is the camera_info of one camera; the file of the right camera is needed, too");
     return read_ros_camera_info(file, read_text(second_path));
   }
   if (format == Format::opencv_stereo) {
@@ -78,7 +77,7 @@ CalibrationFile read_calibration(const std::string& path, const std::string& sec
     return read_opencv_stereo(file, &second);
   }
   if (format == Format::unknown) {
-    fail(path,
+    fail(file.path,
          ": unknown calibration format; supported are plain YAML (focal_px, cx_px, cy_px, baseline_m), "
          "OpenCV stereo, ROS camera_info, KITTI, Middlebury and K.txt");
   }
@@ -92,6 +91,21 @@ CalibrationFile read_calibration(const std::string& path, const std::string& sec
       return read_middlebury(file);
     default:
       return read_k_txt(file);
+  }
+}
+
+}  // namespace
+
+CalibrationFile read_calibration(const std::string& path, const std::string& second_path) {
+  const CalibrationText file = read_text(path);
+  try {
+    return read_as(recognise(file.text), file, second_path);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {  // of a parser
+    fail(path, ": invalid calibration: ", error.what());
   }
 }
 

@@ -1,97 +1,73 @@
 #include <algorithm>
 #include <initializer_list>
-#include <opencv2/core.hpp>
 
 #include "io/calibration_formats.hpp"
+#include "io/opencv_file.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
 namespace {
 
-/// Top-level nodes of one file, or of two files that complete each other.
+/// Top-level entries of one file, or of two files that complete each other.
 class Storage {
  public:
   Storage(const CalibrationText& file, const CalibrationText* second) : path_(file.path) {
-    open(file, files_[0]);
-    if (second != nullptr) open(*second, files_[1]);
+    entries_ = parse_opencv_file(file);
+    if (second != nullptr) entries_.merge(parse_opencv_file(*second));
   }
 
   const std::string& path() const { return path_; }
 
-  /// Returns the first existing node of `keys` and its name, or an empty node.
-  cv::FileNode find(std::initializer_list<const char*> keys, std::string& name) const {
-    for (const cv::FileStorage& file : files_) {
-      if (!file.isOpened()) continue;
-      for (const char* key : keys) {
-        const cv::FileNode node = file[key];
-        if (node.empty()) continue;
-        name = key;
-        return node;
-      }
+  /// Returns the first existing entry of `keys` and its name, or null.
+  const OpenCvEntry* find(std::initializer_list<const char*> keys, std::string& name) const {
+    for (const char* key : keys) {
+      const auto found = entries_.find(key);
+      if (found == entries_.end()) continue;
+      name = key;
+      return &found->second;
     }
-    return {};
+    return nullptr;
   }
 
  private:
-  static void open(const CalibrationText& file, cv::FileStorage& storage) {
-    std::string text = file.text;
-    const bool has_header = text.starts_with("%YAML") || text.find('<') == 0;
-    if (!has_header) text.insert(0, "%YAML:1.0\n---\n");
-    bool opened = false;
-    try {
-      opened = storage.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
-    } catch (const cv::Exception& error) {
-      fail(file.path, ": invalid OpenCV calibration: ", error.err);
-    }
-    if (!opened) fail(file.path, ": invalid OpenCV calibration");
-  }
-
   std::string path_;
-  std::array<cv::FileStorage, 2> files_;
+  OpenCvEntries entries_;
 };
 
-/// Limits the size of a matrix in a damaged file.
-void check_claimed_size(const Storage& storage, const std::string& key, const cv::FileNode& node) {
-  constexpr int max_side = 14;  // number of coefficients of the largest lens model
-  for (const char* side : {"rows", "cols"}) {
-    const cv::FileNode claimed = node[side];
-    if (claimed.isInt() && static_cast<int>(claimed) >= 0 && static_cast<int>(claimed) <= max_side) continue;
-    fail(storage.path(), ": ", key, " must be a matrix with at most ", max_side, " rows and columns");
-  }
+std::size_t matrix_side(const Storage& storage, const std::string& key, const std::string& text) {
+  constexpr double max_side = 14;  // number of coefficients of the largest lens model
+  const double side = text.empty() ? -1 : parse_number(storage.path(), key, text);
+  if (side >= 0 && side <= max_side) return static_cast<std::size_t>(side);
+  fail(storage.path(), ": ", key, " must be a matrix with at most ", max_side, " rows and columns");
 }
 
-std::vector<double> values_of(const Storage& storage, const std::string& key, const cv::FileNode& node) {
-  cv::Mat matrix;
-  if (node.isMap()) {
-    check_claimed_size(storage, key, node);
-    try {
-      matrix = node.mat();
-    } catch (const cv::Exception&) {
-      fail(storage.path(), ": ", key, " is not a matrix of numbers");
+std::vector<double> values_of(const Storage& storage, const std::string& key, const OpenCvEntry& entry) {
+  const bool is_matrix = entry.kind == OpenCvEntry::Kind::matrix;
+  if (!is_matrix && entry.kind != OpenCvEntry::Kind::list) {
+    fail(storage.path(), ": ", key, " must be a matrix or a list of numbers");
+  }
+  if (is_matrix) {
+    const std::size_t claimed = matrix_side(storage, key, entry.rows) * matrix_side(storage, key, entry.cols);
+    if (claimed != entry.words.size()) {
+      fail(storage.path(), ": ", key, " has ", entry.words.size(), " values; it must have rows times columns, ",
+           claimed);
     }
-    cv::Mat values;
-    matrix.reshape(1, 1).convertTo(values, CV_64F);
-    return {values.begin<double>(), values.end<double>()};
   }
   std::vector<double> values;
-  if (!node.isSeq()) fail(storage.path(), ": ", key, " must be a matrix or a list of numbers");
-  for (const cv::FileNode& item : node) {
-    if (!item.isInt() && !item.isReal()) fail(storage.path(), ": ", key, " must be a list of numbers");
-    values.push_back(static_cast<double>(item));
-  }
+  for (const std::string& word : entry.words) values.push_back(parse_number(storage.path(), key, word));
   return values;
 }
 
 template <std::size_t Count>
 std::array<double, Count> read_matrix(const Storage& storage, std::initializer_list<const char*> keys) {
   std::string key;
-  const cv::FileNode node = storage.find(keys, key);
-  if (node.empty()) {
+  const OpenCvEntry* entry = storage.find(keys, key);
+  if (entry == nullptr) {
     std::string other;
     if (keys.size() > 1) other.append(" (or ").append(*(keys.begin() + 1)).append(")");
     fail(storage.path(), ": ", *keys.begin(), other, " is missing");
   }
-  const std::vector<double> values = values_of(storage, key, node);
+  const std::vector<double> values = values_of(storage, key, *entry);
   if (values.size() != Count) {
     fail(storage.path(), ": ", key, " has ", values.size(), " values; it must have ", Count);
   }
@@ -102,26 +78,27 @@ std::array<double, Count> read_matrix(const Storage& storage, std::initializer_l
 
 std::vector<double> read_distortion(const Storage& storage, const char* key) {
   std::string name;
-  const cv::FileNode node = storage.find({key}, name);
-  return node.empty() ? std::vector<double>{} : values_of(storage, key, node);
+  const OpenCvEntry* entry = storage.find({key}, name);
+  return entry == nullptr ? std::vector<double>{} : values_of(storage, key, *entry);
 }
 
 int read_side(const Storage& storage, std::initializer_list<const char*> keys, std::size_t index) {
   std::string key;
-  const cv::FileNode node = storage.find(keys, key);
-  if (node.empty()) return 0;
-  const cv::FileNode item = node.isSeq() && node.size() == 2 ? node[static_cast<int>(index)] : node;
-  if (!item.isInt() && !item.isReal()) fail(storage.path(), ": ", key, " must be a number of pixels");
-  return parse_side(storage.path(), key, std::to_string(static_cast<double>(item)));
+  const OpenCvEntry* entry = storage.find(keys, key);
+  if (entry == nullptr) return 0;
+  if (entry->words.size() != 1 && entry->words.size() != 2) {
+    fail(storage.path(), ": ", key, " must be a number of pixels");
+  }
+  return parse_side(storage.path(), key, entry->words[std::min(index, entry->words.size() - 1)]);
 }
 
 bool read_fisheye(const Storage& storage) {
   std::string key;
-  const cv::FileNode node = storage.find({"fisheye", "distortion_model", "camera_model"}, key);
-  if (node.isInt()) return static_cast<int>(node) != 0;
-  if (!node.isString()) return false;
-  const auto model = static_cast<std::string>(node);
-  return model == "fisheye" || model == "equidistant" || model == "true";
+  const OpenCvEntry* entry = storage.find({"fisheye", "distortion_model", "camera_model"}, key);
+  if (entry == nullptr || entry->kind != OpenCvEntry::Kind::text) return false;
+  constexpr std::array<std::string_view, 6> names = {"1",           "true",        "fisheye",
+                                                     "equidistant", "\"fisheye\"", "\"equidistant\""};
+  return std::find(names.begin(), names.end(), entry->words[0]) != names.end();
 }
 
 StereoRig read_rig(const CalibrationText& file, const CalibrationText* second) {
@@ -142,11 +119,7 @@ StereoRig read_rig(const CalibrationText& file, const CalibrationText* second) {
 }  // namespace
 
 CalibrationFile read_opencv_stereo(const CalibrationText& file, const CalibrationText* second) {
-  try {
-    return describe_rig(read_rig(file, second), "OpenCV stereo", file.path);
-  } catch (const cv::Exception&) {  // parsed, but of another structure
-    fail(file.path, ": invalid OpenCV calibration");
-  }
+  return describe_rig(read_rig(file, second), "OpenCV stereo", file.path);
 }
 
 }  // namespace roadstereo::io

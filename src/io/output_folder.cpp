@@ -1,11 +1,15 @@
 #include "roadstereo/io/output_folder.hpp"
 
+#include <fcntl.h>
 #include <stdlib.h>  // mkdtemp is POSIX
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <system_error>
+#include <utility>
 
 #include "roadstereo/error.hpp"
 
@@ -52,19 +56,43 @@ void check_name(const std::string& name) {
   }
 }
 
+constexpr const char* staging_prefix = ".roadstereo-";
+
+/// Locks a staging folder. Returns the descriptor, or -1 if another process holds the lock.
+int lock_staging(const fs::path& staging) {
+  const int descriptor = ::open(staging.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0 || ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  ::close(descriptor);
+  return -1;
+}
+
+/// Removes the staging folders of processes that were killed: the locks of these are free.
+void remove_stale(const fs::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (!entry.path().filename().string().starts_with(staging_prefix)) continue;
+    const int lock = lock_staging(entry.path());
+    if (lock < 0) continue;
+    fs::remove_all(entry.path(), ignored);
+    ::close(lock);
+  }
+}
+
 /// Moves files with rollback.
 class Moves {
  public:
   explicit Moves(fs::path replaced) : replaced_(std::move(replaced)) {}
 
-  /// Moves `from` to `to`; an existing file is backed up.
+  /// Moves `from` to `to`; an existing file is backed up. At every moment `to` is the old file or the new one.
   void move(const fs::path& from, const fs::path& to) {
     Move done{from, to, {}};
     if (fs::is_directory(to)) throw fs::filesystem_error("", to, std::make_error_code(std::errc::is_a_directory));
     if (fs::exists(fs::symlink_status(to))) {
       done.aside = replaced_ / std::to_string(moves_.size());
       fs::create_directories(replaced_);
-      fs::rename(to, done.aside);
+      std::error_code no_links;
+      fs::create_hard_link(to, done.aside, no_links);
+      if (no_links) fs::copy(to, done.aside, fs::copy_options::copy_symlinks);
     }
     moves_.push_back(done);
     fs::rename(from, to);
@@ -74,8 +102,7 @@ class Moves {
     std::error_code ignored;
     for (; !moves_.empty(); moves_.pop_back()) {
       const Move& done = moves_.back();
-      fs::rename(done.to, done.from, ignored);
-      if (!done.aside.empty()) fs::rename(done.aside, done.to, ignored);
+      fs::rename(done.aside.empty() ? done.to : done.aside, done.aside.empty() ? done.from : done.to, ignored);
     }
   }
 
@@ -97,28 +124,55 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (!error && !fs::is_directory(folder)) error = std::make_error_code(std::errc::not_a_directory);
-  if (!error) {
-    std::string staging = (folder / ".roadstereo-XXXXXX").string();
-    if (::mkdtemp(staging.data()) == nullptr) error = std::error_code(errno, std::generic_category());
-    if (!error) staging_ = staging;
+  if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) error = std::error_code(errno, std::generic_category());
+  if (error) {
+    remove_unfinished();
+    fail_folder(folder, error);
   }
-  if (!error) return;
-  remove_unfinished();
-  fail_folder(folder, error);
+  remove_stale(folder);
 }
 
 OutputFolder::~OutputFolder() {
   remove_unfinished();
 }
 
-void OutputFolder::remove_unfinished() noexcept {
+void OutputFolder::stage() {
+  while (true) {
+    std::string staging = (folder_ / staging_prefix).string() + "XXXXXX";
+    if (::mkdtemp(staging.data()) == nullptr) fail_folder(folder_, {errno, std::generic_category()});
+    staging_ = staging;
+    lock_ = lock_staging(staging_);
+    if (fs::exists(staging_)) return;
+    if (lock_ >= 0) ::close(std::exchange(lock_, -1));  // another process has taken it for a stale one
+  }
+}
+
+void OutputFolder::unstage() noexcept {
   std::error_code ignored;
   if (!staging_.empty()) fs::remove_all(staging_, ignored);
+  staging_.clear();
+  if (lock_ >= 0) ::close(std::exchange(lock_, -1));
+}
+
+void OutputFolder::remove_unfinished() noexcept {
+  unstage();
+  std::error_code ignored;
   for (const fs::path& made : made_folders_) fs::remove(made, ignored);  // only when empty
+}
+
+void OutputFolder::protect(const fs::path& input) {
+  protected_.push_back(input);
 }
 
 void OutputFolder::add(const std::string& name, std::span<const std::uint8_t> bytes) {
   check_name(name);
+  std::error_code absent;
+  for (const fs::path& input : protected_) {
+    if (fs::equivalent(folder_ / name, input, absent)) {
+      fail((folder_ / name).string(), ": this input would be overwritten; choose another output folder");
+    }
+  }
+  if (staging_.empty()) stage();
   const fs::path staged = staging_ / "new" / name;
   std::error_code error;
   fs::create_directories(staged.parent_path(), error);
@@ -151,8 +205,7 @@ void OutputFolder::commit() {
     moves.take_back();
     fail_write(target, error.code().value());
   }
-  std::error_code ignored;
-  fs::remove_all(staging_ / "old", ignored);
+  unstage();
   names_.clear();
   made_folders_.clear();
 }

@@ -1,12 +1,52 @@
 #include "io/yaml_text.hpp"
 
+#include <yaml-cpp/eventhandler.h>
+
+#include <sstream>
+
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
+namespace {
+
+/// Limits the nesting of a file, by which the parser's recursion would grow.
+class DepthLimit final : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    enter(mark);
+  }
+  void OnSequenceEnd() override { --depth_; }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    enter(mark);
+  }
+  void OnMapEnd() override { --depth_; }
+
+ private:
+  void enter(const YAML::Mark& mark) {
+    constexpr int max_depth = 16;
+    if (++depth_ > max_depth) throw YAML::ParserException(mark, "lists and maps nested too deeply");
+  }
+
+  int depth_ = 0;
+};
+
+void check_depth(const std::string& text) {
+  std::istringstream stream(text);
+  DepthLimit limit;
+  YAML::Parser(stream).HandleNextDocument(limit);
+}
+
+}  // namespace
 
 YAML::Node load_yaml(const CalibrationText& file) {
   YAML::Node root;
   try {
+    check_depth(file.text);
     root = YAML::Load(file.text);
   } catch (const YAML::Exception& error) {
     fail(file.path, ": line ", error.mark.line + 1, ": invalid YAML: ", error.msg);

@@ -263,6 +263,35 @@ TEST_F(InspectCommand, RejectsUnwritableOutputFolder) {
   EXPECT_EQ(read_text(folder_ / "file"), "in the way");
 }
 
+TEST_F(InspectCommand, KeepsInputsInOutputFolder) {
+  make_road();
+  fs::copy(folder_ / "road/left.png", folder_ / "road/disparity.png");
+  fs::copy(folder_ / "road/right.png", folder_ / "road/overlay.png");
+  const std::string before = read_text(folder_ / "road/disparity.png");
+  const auto names = names_in(folder_ / "road");
+  expect_complaint(run("inspect road/disparity.png road/overlay.png --output road"), 2, "would be overwritten");
+  EXPECT_EQ(read_text(folder_ / "road/disparity.png"), before);
+  EXPECT_EQ(names_in(folder_ / "road"), names);
+  EXPECT_EQ(run("inspect road/left.png road/right.png --output road --quiet").exit_code, 0) << "other names";
+}
+
+TEST_F(InspectCommand, InterruptedLeavesNoFiles) {
+  make_road();
+  const auto before = names_in(folder_);
+  for (const char* delay : {"0.05", "0.1", "0.2", "0.3", "0.4", "0.5", "0.7", "1"}) {
+    for (const char* signal : {"INT", "TERM"}) {
+      // A child of a script ignores INT unless it is told not to.
+      run("inspect road/left.png road/right.png --output result --preset fast",
+          std::string("env --default-signal=INT timeout -s ") + signal + " " + delay);
+      const auto names = names_in(folder_);
+      if (names == before) continue;
+      EXPECT_EQ(names_in(folder_ / "result").count("result.json"), 1U) << "finished";
+      for (const std::string& name : names_in(folder_ / "result")) EXPECT_NE(name[0], '.') << name;
+      fs::remove_all(folder_ / "result");
+    }
+  }
+}
+
 TEST_F(InspectCommand, FullDiskLeavesNoFiles) {
   make_road();
   const auto before = names_in(folder_);

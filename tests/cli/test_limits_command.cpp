@@ -49,6 +49,16 @@ TEST_F(LimitsCommand, JsonMatchesClosedForm) {
   EXPECT_NEAR(h * h / 0.05 + h, 60 * std::numbers::sqrt2 / 2 / 0.25, 1e-6);
 }
 
+TEST_F(LimitsCommand, HostileCalibrationIsOneSentence) {
+  const std::string begin = "%YAML:1.0\n---\n";
+  write("deep.yaml", begin + "K1: " + std::string(40'000, '['));
+  write("hang.yaml", begin + " x:\\\nD0:-\nL");
+  write("length.yaml", std::string(" \xff:5\n :opencv-matrix"));
+  for (const std::string name : {"deep.yaml", "hang.yaml", "length.yaml"}) {
+    expect_complaint(CommandTest::run("limits --height 2 --calibration " + name, "ulimit -t 20; ulimit -s 256;"), name);
+  }
+}
+
 TEST_F(LimitsCommand, RejectsBadInput) {
   expect_complaint(run("--calibration rig.yaml --height 0"), "--height");
   expect_complaint(run("--calibration rig.yaml --height -2"), "--height");

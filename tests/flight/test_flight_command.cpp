@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -280,6 +281,54 @@ TEST_F(FlightCommand, CtrlCEndsAfterFramesInFlight) {
   for (const auto& entry : fs::directory_iterator(folder_ / "out")) {
     EXPECT_NE(entry.path().filename().string()[0], '.') << "left over: " << entry.path();
   }
+}
+
+TEST_F(FlightCommand, CtrlCEndsProgramThatWaitsForSource) {
+  ASSERT_EQ(::mkfifo((folder_ / "pipe.txt").c_str(), 0600), 0);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const pid_t child = start({"pipe.txt", "--output", "out"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    ::kill(child, signal);
+    const int status = end_of(child);
+    if (WIFEXITED(status)) EXPECT_EQ(WEXITSTATUS(status), 2) << "a pipe is not a list";
+    if (WIFSIGNALED(status)) EXPECT_EQ(WTERMSIG(status), signal);
+  }
+  const pid_t child = start({"flight.txt", "--calibration", "pipe.txt", "--output", "out"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  ::kill(child, SIGINT);
+  end_of(child);
+}
+
+TEST_F(FlightCommand, ResumesNamesThatAreNotUtf8) {
+  fs::create_directories(folder_ / "fl\xfcg/left");
+  fs::create_directories(folder_ / "fl\xfcg/right");
+  for (int i = 0; i < distinct_frames; ++i) {
+    for (const char* side : {"left", "right"}) {
+      fs::copy(folder_ / side / (std::to_string(i) + ".png"),
+               folder_ / "fl\xfcg" / side / ("\xff" + std::to_string(i) + ".png"));
+    }
+  }
+  const std::string command = "inspect fl\xfcg --output out --quiet ";
+  ASSERT_EQ(run(command + "--to 1").exit_code, 0);
+  const Outcome outcome = run(command + "--resume");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(rows("out/frames.csv").size(), 1U + distinct_frames);
+}
+
+TEST_F(FlightCommand, PairIsNotWrittenIntoFlight) {
+  write_list(3);
+  ASSERT_EQ(run("inspect flight.txt --output out --quiet").exit_code, 0);
+  const std::string report = read_text(folder_ / "out/report.html");
+  expect_complaint(run("inspect left/0.png right/0.png --output out --quiet"), "results of a recording");
+  EXPECT_EQ(read_text(folder_ / "out/report.html"), report);
+}
+
+TEST_F(FlightCommand, ListInOutputFolderIsKept) {
+  write_list(3);
+  write("frames.csv", read_text(folder_ / "flight.txt"));
+  const std::string list = read_text(folder_ / "frames.csv");
+  expect_complaint(run("inspect frames.csv --output . --quiet"), "would be overwritten");
+  EXPECT_EQ(read_text(folder_ / "frames.csv"), list);
 }
 
 TEST_F(FlightCommand, RejectsResumeOfOtherFlight) {

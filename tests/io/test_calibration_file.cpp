@@ -253,9 +253,47 @@ TEST_F(ReadCalibration, RejectsBadOpenCvStereo) {
   expect_refused(replaced(good, "T: ", "U: "), "T is missing");
   expect_refused(replaced(good, "500.", "3."), "the focal length is 3;");
   expect_refused(replaced(good, "0.8, -0.6", "0.8, -0.7"), "R is not a rotation");
-  expect_refused(replaced(good, "data: [ 500.", "data: [ [ 500."), "OpenCV calibration");
+  expect_refused(replaced(good, "data: [ 500.", "data: [ [ 500."), "invalid YAML");
   expect_refused("%YAML:1.0\n---\nK1: hello\n", "K1 must be a matrix");
   expect_refused("<?xml version=\"1.0\"?>\n<opencv_storage>\n<K1>", "");
+}
+
+TEST_F(ReadCalibration, ReadsOpenCvLists) {
+  const std::string lists =
+      "K1: [500, 0, 320, 0, 500, 240, 0, 0, 1]\nK2: [500, 0, 320, 0, 500, 240, 0, 0, 1]\nR: [1, 0, 0, 0, 1, 0, 0, 0, "
+      "1]\n"
+      "T: [-0.25, 0, 0]\nimageSize: [640, 480]\n";
+  for (const char* size : {"imageSize: [640, 480]", "imageSize: 640"}) {
+    const CalibrationFile file =
+        read_calibration(write("%YAML:1.0\n---\n" + replaced(lists, "imageSize: [640, 480]", size)));
+    ASSERT_TRUE(file.rectified) << size;
+    EXPECT_EQ(file.rectified->width, 640);
+    EXPECT_EQ(file.rectified->baseline_m, 0.25);
+  }
+  const CalibrationFile xml = read_calibration(
+      write("<opencv_storage><K1>500 0 320 0 500 240 0 0 1</K1><K2>500 0 320 0 500 240 0 0 1</K2>\n"
+            "<R>1 0 0 0 1 0 0 0 1</R><T>\n -0.25 0. 0.</T><imageSize>\n 640 480</imageSize></opencv_storage>"));
+  EXPECT_EQ(xml.rectified->height, 480);
+}
+
+/// A text of `part` repeated.
+std::string repeated(const std::string& part, int times) {
+  std::string text;
+  for (int i = 0; i < times; ++i) text += part;
+  return text;
+}
+
+TEST_F(ReadCalibration, RejectsHostileOpenCvFiles) {
+  constexpr int deep = 100'000;
+  expect_refused("%YAML:1.0\n---\nK1: " + repeated("[", deep), "");
+  expect_refused("%YAML:1.0\n---\nK1: " + repeated("{a: ", deep), "");
+  expect_refused("%YAML:1.0\n---\nK1: " + repeated("- ", deep), "");
+  expect_refused("%YAML:1.0\n---\n" + repeated("? ", deep), "");
+  expect_refused("{\"opencv-matrix\": " + repeated("[", deep), "");
+  expect_refused("<opencv_storage>" + repeated("<a>", deep), "invalid XML");
+  expect_refused("<opencv_storage>" + repeated("<a>", deep) + repeated("</a>", deep) + "</opencv_storage>", "K1");
+  expect_refused("%YAML:1.0\n---\n x:\\\nD0:-\nL", "");  // made cv::FileStorage read for ever
+  expect_refused(" \xff:5\n :opencv-matrix", "");        // made it throw std::length_error
 }
 
 /// Rotation about one axis (0 = x, 1 = y, 2 = z), row-major.

@@ -2,10 +2,14 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/output_folder.hpp"
@@ -95,6 +99,52 @@ TEST_F(OutputFolderFiles, FailedCommitIsRolledBack) {
   EXPECT_EQ(entries(root), 2);
 }
 
+TEST_F(OutputFolderFiles, KilledProcessLeavesWhatNextOneRemoves) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    OutputFolder folder(root);
+    folder.add("one.txt", std::string("text"));
+    ::raise(SIGKILL);
+  }
+  ::waitpid(child, nullptr, 0);
+  EXPECT_EQ(entries(root), 1);
+  OutputFolder running(root);
+  EXPECT_EQ(entries(root), 0);
+  running.add("one.txt", std::string("text"));
+  { OutputFolder other(root); }
+  running.commit();
+  EXPECT_EQ(text_of(root / "one.txt"), "text") << "that of a running process stays";
+}
+
+TEST_F(OutputFolderFiles, ReplacedFileIsNeverMissing) {
+  std::ofstream(root / "one.txt") << "old";
+  std::atomic<bool> done = false;
+  std::atomic<int> missing = 0;
+  std::thread watcher([&] {
+    while (!done) missing += fs::exists(root / "one.txt") ? 0 : 1;
+  });
+  for (int i = 0; i < 2000; ++i) {
+    OutputFolder folder(root);
+    folder.add("one.txt", std::to_string(i));
+    folder.commit();
+  }
+  done = true;
+  watcher.join();
+  EXPECT_EQ(missing, 0);
+  EXPECT_EQ(text_of(root / "one.txt"), "1999");
+}
+
+TEST_F(OutputFolderFiles, InputIsNotOverwritten) {
+  std::ofstream(root / "left.png") << "input";
+  OutputFolder folder(root);
+  folder.protect(root / "." / "left.png");
+  folder.protect("no such file");
+  folder.add("other.png", std::string("new"));
+  EXPECT_THROW(folder.add("left.png", std::string("new")), Error);
+  folder.commit();
+  EXPECT_EQ(text_of(root / "left.png"), "input");
+}
+
 TEST_F(OutputFolderFiles, ErrorNamesUnwritableFolder) {
   std::ofstream(root / "file") << "text";
   for (const fs::path& place : {root / "file", root / "file/below", fs::path("/proc/roadstereo")}) {
@@ -129,7 +179,7 @@ TEST_F(OutputFolderFiles, FailedWriteIsSystemError) {
   }
   EXPECT_THROW(folder.add(std::string(300, 'x'), std::string("text")), SystemError);
   folder.commit();
-  EXPECT_EQ(entries(root), 2);  // the file, and the staging folder until the end
+  EXPECT_EQ(entries(root), 1);
 }
 
 /// A limit on the size of files, which makes writes fail as a full disk does, as long as this lives.

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <fstream>
 #include <future>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -281,6 +282,7 @@ TEST(ServingThreads, NeverExceedLimit) {
       ++done;
     });
   }
+  threads.enqueue([] { throw std::bad_alloc(); });
   freed.set_value();
   threads.shutdown();
   EXPECT_EQ(done, 20) << "those that wait are served, too";

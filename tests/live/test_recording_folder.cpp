@@ -1,16 +1,23 @@
 // The files of a recording.
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <numeric>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "live/recording_folder.hpp"
 #include "roadstereo/error.hpp"
+#include "roadstereo/io/frame_source.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "tests/live/live_test.hpp"
 
@@ -52,6 +59,43 @@ TEST_F(RecordingFolderFiles, FailedPairLeavesNoFile) {
   EXPECT_THROW(folder.write({deep_frame(), deep_frame(), 2}), SystemError);
   EXPECT_EQ(files_in(folder_ / "rec"), (std::set<std::string>{"left/000000.png", "right", "times.txt"}));
   EXPECT_EQ(read_text(folder_ / "rec/times.txt"), "1.000000\n");
+}
+
+/// Counts the pairs of a recording. Fails if one that is not the last cannot be read.
+int readable_pairs(const std::filesystem::path& folder) {
+  const auto source = io::open_source({folder.string()});
+  int pairs = 0;
+  for (std::int64_t i = 0; i < source->size(); ++i) {
+    const auto pair = source->next();
+    EXPECT_TRUE(pair->error.empty() || i + 1 == *source->size()) << pair->error;
+    if (pair->error.empty()) ++pairs;
+  }
+  return pairs;
+}
+
+TEST_F(RecordingFolderFiles, KillLosesLastPairOnly) {
+  constexpr int kills = 200;
+  int unfinished = 0;
+  for (int i = 0; i < kills; ++i) {
+    const std::filesystem::path recording = folder_ / std::to_string(i);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      RecordingFolder folder(recording, {});
+      for (int pair = 0;; ++pair) folder.write({deep_frame(), deep_frame(), 0.1 * pair});
+    }
+    while (!std::filesystem::exists(recording / "times.txt") || read_text(recording / "times.txt").size() < 27) {
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(37 * i));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    const std::string times = read_text(recording / "times.txt");
+    const auto pairs = std::count(times.begin(), times.end(), '\n');
+    EXPECT_EQ(readable_pairs(recording), pairs);
+    unfinished += files_in(recording).size() > static_cast<std::size_t>(2 * pairs + 1) ? 1 : 0;
+    std::filesystem::remove_all(recording);
+  }
+  RecordProperty("killed_within_a_pair", unfinished);
+  EXPECT_GE(unfinished, 1);
 }
 
 TEST_F(RecordingFolderFiles, AreNotOverwritten) {

@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <iterator>
@@ -40,26 +41,19 @@ int lock_folder(const fs::path& folder) {
   fail(folder.parent_path().string(), ": another process is writing to this folder");
 }
 
-/// Staging folders of all runs.
-std::vector<fs::path> hidden_folders(const fs::path& folder) {
-  std::vector<fs::path> found;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (entry.path().filename().string().rfind(".roadstereo-", 0) == 0) found.push_back(entry.path());
-  }
-  return found;
-}
+/// What a flight writes besides the files of its frames.
+constexpr std::array flight_files = {"frames.csv",        "damages.csv",         "summary.json", "report.html",
+                                     "frames.geojson",    "damages.geojson",     "flight.gpkg",  "damages",
+                                     "flight/thumbnails", "flight/journal.jsonl"};
 
 }  // namespace
 
-FlightFolder::FlightFolder(const fs::path& folder) : before_(hidden_folders(folder)), files_(folder) {
+FlightFolder::FlightFolder(const fs::path& folder) : files_(folder) {
   const fs::path own = folder / "flight";
   std::error_code error;
   fs::create_directories(own, error);
   if (error) fail("cannot write to folder ", own.string(), ": ", error.message());
   lock_ = lock_folder(own);
-  // The lock is exclusive: older staging folders are left by killed runs.
-  for (const fs::path& stale : before_) fs::remove_all(stale, error);
 }
 
 FlightFolder::~FlightFolder() {
@@ -68,6 +62,15 @@ FlightFolder::~FlightFolder() {
 
 fs::path FlightFolder::journal() const {
   return path() / "flight" / "journal.jsonl";
+}
+
+void FlightFolder::protect(const fs::path& input) {
+  std::error_code absent;
+  for (const char* name : flight_files) {
+    if (!fs::equivalent(path() / name, input, absent)) continue;
+    fail(input.string(), ": this input would be overwritten; choose another output folder");
+  }
+  files_.protect(input);
 }
 
 void FlightFolder::remove_earlier_flight() {
@@ -79,8 +82,7 @@ void FlightFolder::remove_earlier_flight() {
     });
   } catch (const Error&) {  // an unreadable journal lists no files
   }
-  for (const char* name : {"frames.csv", "damages.csv", "summary.json", "report.html", "frames.geojson",
-                           "damages.geojson", "flight.gpkg", "damages", "flight/thumbnails", "flight/journal.jsonl"}) {
+  for (const char* name : flight_files) {
     fs::remove_all(path() / name, ignored);
   }
 }
@@ -94,6 +96,11 @@ void FlightFolder::write(const std::vector<StagedFile>& files) {
 std::vector<std::uint8_t> FlightFolder::read(const std::string& name) const {
   std::ifstream file(path() / name, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+bool is_flight_folder(const fs::path& folder) {
+  std::error_code absent;
+  return fs::exists(folder / "flight" / "journal.jsonl", absent);
 }
 
 std::optional<std::string> thumbnail_name(std::int64_t sequence) {

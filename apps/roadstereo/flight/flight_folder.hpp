@@ -15,8 +15,7 @@ namespace roadstereo::cli {
 /// Output folder of a flight, locked for exclusive writing.
 class FlightFolder {
  public:
-  /// Creates and locks the folder; removes staging folders left by killed runs. Throws Error if another process holds
-  /// the lock.
+  /// Creates and locks the folder. Throws Error if another process holds the lock.
   explicit FlightFolder(const std::filesystem::path& folder);
   FlightFolder(const FlightFolder&) = delete;
   FlightFolder& operator=(const FlightFolder&) = delete;
@@ -24,6 +23,9 @@ class FlightFolder {
 
   std::filesystem::path journal() const;
   const std::filesystem::path& path() const { return files_.path(); }
+
+  /// Names an input that must not be overwritten or removed. Throws Error if it is a file of an earlier flight here.
+  void protect(const std::filesystem::path& input);
 
   /// Removes the files of an earlier flight.
   void remove_earlier_flight();
@@ -36,9 +38,11 @@ class FlightFolder {
 
  private:
   int lock_ = -1;
-  std::vector<std::filesystem::path> before_;  ///< staging folders of earlier runs
   io::OutputFolder files_;
 };
+
+/// Returns whether the folder has the results of a flight, finished or not.
+bool is_flight_folder(const std::filesystem::path& folder);
 
 /// Returns the file name of a frame's thumbnail, or nullopt if the frame has none. A flight of any length has 17 to 32
 /// evenly spaced thumbnails.

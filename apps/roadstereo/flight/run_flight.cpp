@@ -93,7 +93,7 @@ void FlightPipeline::seek(io::FrameSource& source) const {
   if (!last) return source.skip(settings_.from);
   source.skip(last->index);
   const std::optional<io::SourcePair> again = source.next();
-  if (!again || again->name != last->name) {
+  if (!again || io::valid_utf8(again->name) != last->name) {
     fail(settings_.source[0], ": the source has changed since this flight was started: frame ", last->index, " was \"",
          last->name, "\" and is now ", again ? "\"" + again->name + "\"" : "missing", "; start again without --resume");
   }

@@ -66,13 +66,13 @@ void live(const Arguments& arguments, const NamedOpener& opener) {
   std::optional<ServeAddress> address;
   if (!arguments.serve.empty()) address = serve_address(arguments.serve);
   const io::SourceOptions source = make_source_options(arguments.source);
-  auto signals = std::make_unique<StopSignals>();
   LiveSession session(live_options(arguments), [&] { return opener(arguments.names, source); });
   std::unique_ptr<LiveServer> server;
   if (address) {
     server = std::make_unique<LiveServer>(*address, session.board());
     log_stderr("roadstereo: serving {} at {}\n", session.description(), server->url());
   }
+  auto signals = std::make_unique<StopSignals>();  // until here Ctrl-C ends the program
   const Clock::time_point start = Clock::now();
   session.start();
   watch(arguments, session, start, *signals);

@@ -1,51 +1,39 @@
 #include "live/live_server.hpp"
 
-#include <httplib.h>
-#include <sys/socket.h>
-
 #include <atomic>
 #include <charconv>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <optional>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "json_text.hpp"
 #include "live/access.hpp"
+#include "live/http_server.hpp"
 #include "live/page/page_files.hpp"
-#include "live/serving_threads.hpp"
 #include "live/status_json.hpp"
 #include "live/view_pictures.hpp"
-#include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
-using httplib::Request;
-using httplib::Response;
-
-constexpr std::size_t max_connections = 48;  // served at the same time
-constexpr int timeout_s = 2;                 // of idle clients
 constexpr double max_poll_s = 1;
 constexpr double shutdown_grace_s = 0.5;  // lets pages fetch the final state
 
-/// A port in use is an error, but not one in TIME_WAIT.
-void share_no_port(socket_t socket) {
-  const int yes = 1;
-  (void)setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
-}
-
-httplib::Headers safe_headers() {
-  return {{"Content-Security-Policy",
-           "default-src 'self'; img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
-          {"Cache-Control", "no-store"},
-          {"X-Content-Type-Options", "nosniff"},
-          {"Referrer-Policy", "no-referrer"},
-          {"Cross-Origin-Resource-Policy", "same-origin"}};
-}
+const std::vector<std::pair<std::string, std::string>> safe_headers = {
+    {"Content-Security-Policy",
+     "default-src 'self'; img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+    {"Cache-Control", "no-store"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cross-Origin-Resource-Policy", "same-origin"}};
 
 /// Returns a query parameter as integer of at least 0; 0 if it is missing; nullopt if it is invalid.
-std::optional<std::int64_t> number_of(const Request& request, const char* name) {
-  const std::string text = request.get_param_value(name);
+std::optional<std::int64_t> number_of(const HttpRequest& request, const char* name) {
+  const std::string_view text = request.parameter(name);
   if (text.empty()) return 0;
   std::int64_t number = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -63,142 +51,107 @@ void replace_all(std::string& text, const std::string& mark, const std::string& 
 
 struct LiveServer::State {
   State(const ServeAddress& where, LiveBoard& shown)
-      : address(where), board(shown), token(where.loopback() ? "" : random_token()) {}
+      : host(where.host),
+        board(shown),
+        token(where.loopback() ? "" : random_token()),
+        files{{"/", {"text/html; charset=utf-8", with_query(page_files::page)}},
+              {"/style.css", {"text/css; charset=utf-8", with_query(page_files::style)}},
+              {"/script.js", {"text/javascript; charset=utf-8", with_query(page_files::script)}},
+              {"/ramp.png", {"image/png", scale_ramp_png()}}},
+        server(
+            where, [this](const HttpRequest& request) { return admitted(request); },
+            [this](const HttpRequest& request) { return answer(request); }) {}
 
-  ServeAddress address;
+  struct File {
+    std::string type;
+    std::string content;
+  };
+
+  std::string host;
   LiveBoard& board;
   std::string token;
   std::string session = random_token();  // lets the page recognise another run
-  httplib::Server server;
   ViewPictures pictures;
-  std::string ramp = scale_ramp_png();
-  std::thread thread;
-  std::atomic<bool> ended = false;
-  std::atomic<double> last_poll_s = -HUGE_VAL;  // since `start`
+  std::map<std::string, File, std::less<>> files;
   const Clock::time_point start = Clock::now();
+  std::atomic<double> last_poll_s = -HUGE_VAL;  // since `start`
+  HttpServer server;                            // last: its threads use the others
 
-  bool admitted(const Request& request) const;
-  httplib::Server::HandlerResponse check(const Request& request, Response& response) const;
   std::string query() const { return token.empty() ? "" : "?token=" + token; }
-  void send_file(const std::string& path, std::string_view content, const char* type);
-  void send_state(const Request& request, Response& response);
-  void send_picture(const Request& request, Response& response,
-                    ViewPictures::Shared (ViewPictures::*make)(const SharedView&));
-  void route();
-  void listen();
+  std::string with_query(std::string_view text) const;
+  bool admitted(const HttpRequest& request) const;
+  HttpAnswer answer(const HttpRequest& request);
+  HttpAnswer content(const HttpRequest& request);
+  HttpAnswer state(const HttpRequest& request);
+  HttpAnswer picture(const HttpRequest& request, ViewPictures::Shared (ViewPictures::*make)(const SharedView&));
 };
 
-bool LiveServer::State::admitted(const Request& request) const {
-  if (token.empty()) return names_this_machine(request.get_header_value("Host"));
-  return equal_in_constant_time(request.get_param_value("token"), token);
+std::string LiveServer::State::with_query(std::string_view text) const {
+  std::string whole(text);
+  replace_all(whole, "{{query}}", query());
+  return whole;
 }
 
-httplib::Server::HandlerResponse LiveServer::State::check(const Request& request, Response& response) const {
-  using httplib::Server;
-  response.status = 403;
-  if (!admitted(request)) return Server::HandlerResponse::Handled;
-  response.status = 405;
-  if (request.method != "GET") return Server::HandlerResponse::Handled;
-  response.status = -1;
-  return Server::HandlerResponse::Unhandled;
+bool LiveServer::State::admitted(const HttpRequest& request) const {
+  if (token.empty()) return names_this_machine(request.host);
+  return equal_in_constant_time(request.parameter("token"), token);
 }
 
-void LiveServer::State::send_file(const std::string& path, std::string_view content, const char* type) {
-  std::string text(content);
-  replace_all(text, "{{query}}", query());
-  server.Get(path, [text, type](const Request&, Response& response) { response.set_content(text, type); });
+HttpAnswer LiveServer::State::answer(const HttpRequest& request) {
+  HttpAnswer answer = content(request);
+  answer.headers.insert(answer.headers.end(), safe_headers.begin(), safe_headers.end());
+  return answer;
 }
 
-void LiveServer::State::send_state(const Request& request, Response& response) {
+HttpAnswer LiveServer::State::content(const HttpRequest& request) {
+  if (request.method != "GET") return {405, "", "", {}};
+  const std::string_view path = request.path();
+  if (path == "/state") return state(request);
+  if (path == "/left.jpg") return picture(request, &ViewPictures::left);
+  if (path == "/transformed.jpg") return picture(request, &ViewPictures::transformed);
+  const auto file = files.find(path);
+  if (file == files.end()) return {404, "", "", {}};
+  return {200, file->second.type, file->second.content, {}};
+}
+
+HttpAnswer LiveServer::State::state(const HttpRequest& request) {
   const std::optional<std::int64_t> after = number_of(request, "after");
-  if (!after) {
-    response.status = 400;
-    return;
-  }
+  if (!after) return {400, "", "", {}};
   last_poll_s = seconds_between(start, Clock::now());
   nlohmann::ordered_json json = status_json(board.wait_for_news(*after, max_poll_s), board.max_age_s());
   json["session"] = session;
-  response.set_content(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), "application/json");
+  return {200, "application/json", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), {}};
 }
 
-void LiveServer::State::send_picture(const Request& request, Response& response,
-                                     ViewPictures::Shared (ViewPictures::*make)(const SharedView&)) {
+HttpAnswer LiveServer::State::picture(const HttpRequest& request,
+                                      ViewPictures::Shared (ViewPictures::*make)(const SharedView&)) {
   const std::optional<std::int64_t> number = number_of(request, "frame");
   const SharedView view = number ? board.view(*number) : nullptr;
-  if (!view) {
-    response.status = number ? 404 : 400;
-    return;
-  }
-  response.set_header("Frame", std::to_string(view->number));
+  if (!view) return {number ? 404 : 400, "", "", {}};
   const ViewPictures::Shared picture = (pictures.*make)(view);
-  response.set_header("Colour-Range", std::to_string(picture->half_range_px));
-  response.set_content(picture->jpeg, "image/jpeg");
-}
-
-void LiveServer::State::route() {
-  server.set_pre_routing_handler(
-      [this](const Request& request, Response& response) { return check(request, response); });
-  server.set_exception_handler([](const Request&, Response& response, const auto&) { response.status = 500; });
-  send_file("/", page_files::page, "text/html; charset=utf-8");
-  send_file("/style.css", page_files::style, "text/css; charset=utf-8");
-  send_file("/script.js", page_files::script, "text/javascript; charset=utf-8");
-  send_file("/ramp.png", ramp, "image/png");
-  server.Get("/state", [this](const Request& request, Response& response) { send_state(request, response); });
-  server.Get("/left\\.jpg", [this](const Request& request, Response& response) {
-    send_picture(request, response, &ViewPictures::left);
-  });
-  server.Get("/transformed\\.jpg", [this](const Request& request, Response& response) {
-    send_picture(request, response, &ViewPictures::transformed);
-  });
-}
-
-void LiveServer::State::listen() {
-  server.new_task_queue = [] { return new ServingThreads(max_connections); };
-  server.set_socket_options(share_no_port);
-  server.set_tcp_nodelay(true);
-  server.set_default_headers(safe_headers());
-  server.set_keep_alive_timeout(1);
-  server.set_keep_alive_max_count(100000);
-  server.set_read_timeout(timeout_s);
-  server.set_write_timeout(timeout_s);
-  server.set_payload_max_length(1024);
-  const int bound = address.port == 0 ? server.bind_to_any_port(address.host)
-                                      : (server.bind_to_port(address.host, address.port) ? address.port : -1);
-  if (bound < 0) {
-    fail("cannot listen on ", url_host(address.host), ":", address.port,
-         ": the port is in use or not allowed, or the address is not local; port 0 selects a free port");
-  }
-  address.port = bound;
-  thread = std::thread([this] {
-    server.listen_after_bind();
-    ended = true;
-  });
+  return {200,
+          "image/jpeg",
+          picture->jpeg,
+          {{"Frame", std::to_string(view->number)}, {"Colour-Range", std::to_string(picture->half_range_px)}}};
 }
 
 LiveServer::LiveServer(const ServeAddress& address, LiveBoard& board)
-    : state_(std::make_unique<State>(address, board)) {
-  state_->route();
-  state_->listen();
-}
+    : state_(std::make_unique<State>(address, board)) {}
 
 LiveServer::~LiveServer() {
   const bool watched = seconds_between(state_->start, Clock::now()) - state_->last_poll_s < 2 * max_poll_s;
   if (watched) std::this_thread::sleep_for(clock_span(shutdown_grace_s));
-  while (!state_->server.is_running() && !state_->ended)
-    std::this_thread::yield();  // a stop before the start has no effect
-  state_->server.stop();
-  state_->thread.join();
 }
 
 std::string LiveServer::url() const {
-  const std::string& host = state_->address.host;
+  const std::string& host = state_->host;
   const bool everywhere = host == "0.0.0.0" || host == "::";
   return "http://" + url_host(everywhere ? outside_address() : host) + ":" + std::to_string(port()) + "/" +
          state_->query();
 }
 
 int LiveServer::port() const {
-  return state_->address.port;
+  return state_->server.port();
 }
 
 const std::string& LiveServer::token() const {

@@ -1,10 +1,12 @@
 #include "live/serving_threads.hpp"
 
+#include <exception>
+
 #include "lower_priority.hpp"
 
 namespace roadstereo::cli {
 
-ServingThreads::Taken ServingThreads::enqueue(std::function<void()> task) {
+void ServingThreads::enqueue(std::function<void()> task) {
   const std::lock_guard lock(mutex_);
   tasks_.push_back(std::move(task));
   if (tasks_.size() > idle_ && threads_.size() < max_threads_) {
@@ -12,7 +14,6 @@ ServingThreads::Taken ServingThreads::enqueue(std::function<void()> task) {
   } else {
     changed_.notify_one();
   }
-  return static_cast<Taken>(true);
 }
 
 void ServingThreads::shutdown() {
@@ -35,7 +36,10 @@ void ServingThreads::serve() {
     const std::function<void()> task = std::move(tasks_.front());
     tasks_.pop_front();
     lock.unlock();
-    task();
+    try {
+      task();
+    } catch (const std::exception&) {  // e.g. no memory for an answer
+    }
     lock.lock();
   }
 }

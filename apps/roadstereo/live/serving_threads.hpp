@@ -1,28 +1,24 @@
 #pragma once
 
-#include <httplib.h>
-
 #include <condition_variable>
 #include <deque>
 #include <functional>
 #include <mutex>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace roadstereo::cli {
 
-/// Thread pool of the server: one low-priority thread per connection, created on demand up to a limit; further
-/// connections wait.
-class ServingThreads final : public httplib::TaskQueue {
+/// Thread pool of the server: low-priority threads, created on demand up to a limit; further tasks wait. An exception
+/// of a task is ignored.
+class ServingThreads {
  public:
   explicit ServingThreads(std::size_t max_threads) : max_threads_(max_threads) {}
 
-  /// Return type of the version of httplib: void, or bool (task accepted).
-  using Taken = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));
+  void enqueue(std::function<void()> task);
 
-  Taken enqueue(std::function<void()> task) override;
-  void shutdown() override;
+  /// Finishes all tasks and joins the threads. Call it before destruction.
+  void shutdown();
 
  private:
   void serve();

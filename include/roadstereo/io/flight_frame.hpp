@@ -47,6 +47,9 @@ struct FlightFrame {
   PipelineState pipeline_state;  ///< state of the pipeline after this frame
 };
 
+/// Returns the text as JSON files have it: every byte that is not UTF-8 replaced by U+FFFD.
+std::string valid_utf8(const std::string& text);
+
 /// Returns one line of JSON without a line end. Numbers are read back bit for bit.
 std::string flight_frame_json(const FlightFrame& frame);
 

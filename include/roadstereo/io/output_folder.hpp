@@ -9,7 +9,8 @@
 namespace roadstereo::io {
 
 /// Writes a set of files atomically: files are staged in a hidden folder inside the output folder and moved by
-/// `commit`. Uncommitted files, and the folders created for them, are removed on destruction.
+/// `commit`. Uncommitted files, and the folders created for them, are removed on destruction; those of a killed process
+/// by the next OutputFolder of the same path.
 class OutputFolder {
  public:
   /// Creates the folder if it is missing. Throws Error naming it if it cannot be created or written to.
@@ -18,7 +19,11 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Stages one file; `name` may contain folders. Throws SystemError naming the file if the write fails.
+  /// Names an input file that must not be overwritten.
+  void protect(const std::filesystem::path& input);
+
+  /// Stages one file; `name` may contain folders. Throws Error if it would overwrite a protected file, SystemError
+  /// naming the file if the write fails.
   void add(const std::string& name, std::span<const std::uint8_t> bytes);
   void add(const std::string& name, const std::string& text);
 
@@ -28,10 +33,14 @@ class OutputFolder {
   const std::filesystem::path& path() const { return folder_; }
 
  private:
+  void stage();
+  void unstage() noexcept;
   void remove_unfinished() noexcept;
 
   std::filesystem::path folder_;
-  std::filesystem::path staging_;
+  std::vector<std::filesystem::path> protected_;
+  std::filesystem::path staging_;  // empty without staged files
+  int lock_ = -1;                  // of the staging folder, as long as this process lives
   std::vector<std::string> names_;
   std::vector<std::filesystem::path> made_folders_;  // innermost first; empty after a commit
 };

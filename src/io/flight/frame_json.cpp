@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_frame.hpp"
@@ -174,10 +175,22 @@ Json Writer::written(const Value& value) {
   }
 }
 
+/// Reads an integer; a conversion of other numbers could overflow.
+template <class Integer>
+Integer integer_of(const Json& field) {
+  const bool is_signed = field.is_number_integer() && !field.is_number_unsigned();
+  const bool fits = is_signed ? std::in_range<Integer>(field.get<std::int64_t>())
+                              : field.is_number_unsigned() && std::in_range<Integer>(field.get<std::uint64_t>());
+  if (!fits) fail("this is not a frame record: ", field.dump(), " is not an integer in range");
+  return field.get<Integer>();
+}
+
 template <class Value>
 void Reader::read(const Json& field, Value& value) {
   if constexpr (std::is_enum_v<Value>) {
-    value = static_cast<Value>(field.get<int>());
+    value = static_cast<Value>(integer_of<int>(field));
+  } else if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
+    value = integer_of<Value>(field);
   } else if constexpr (is_plain<Value>) {
     value = field.get<Value>();
   } else if constexpr (is_optional<Value>::value) {
@@ -204,6 +217,11 @@ const char* name_of(FrameStatus status) {
       return "failed";
   }
   return "unknown";
+}
+
+std::string valid_utf8(const std::string& text) {
+  const std::string quoted = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return Json::parse(quoted).get<std::string>();
 }
 
 std::string flight_frame_json(const FlightFrame& frame) {

@@ -58,7 +58,7 @@ void require_same(const std::string& begun_with, const Provenance& provenance, c
   if (!begun.is_object()) fail(file.string(), ": this is not a flight journal; start again without --resume");
   for (const auto& [name, value] : provenance) {
     const std::string before = begun.contains(name) && begun[name].is_string() ? begun[name].get<std::string>() : "";
-    if (before == value) continue;
+    if (before == valid_utf8(value)) continue;
     fail(file.string(), ": this flight was started with ", name, " \"", before, "\", not \"", value,
          "\"; use the same, or start again without --resume");
   }

@@ -106,11 +106,16 @@ std::optional<fs::path> times_file(const fs::path& folder, const fs::path& left)
   return std::nullopt;
 }
 
-/// Assigns the times to the left images in order. A pair without a left image has none.
+/// Assigns the times to the left images in order. A pair without a left image has none; one without a time is unfinished.
 void set_times(std::vector<ImagePair>& pairs, const std::vector<double>& times) {
   auto time = times.begin();
   for (ImagePair& pair : pairs) {
-    if (!pair.left.empty()) pair.time_s = *time++;
+    if (pair.left.empty()) continue;
+    if (time != times.end()) {
+      pair.time_s = *time++;
+    } else if (pair.error.empty()) {
+      pair.error = "the recording ended before the time of this pair was written";
+    }
   }
 }
 

@@ -74,7 +74,7 @@ std::vector<double> read_times(const std::filesystem::path& file, std::size_t co
     }
     times.push_back(*time);
   }
-  if (times.size() != count) {
+  if (times.size() != count && times.size() + 1 != count) {
     fail(file.string(), " has ", times.size(), " times, but there are ", count, " left images");
   }
   return times;

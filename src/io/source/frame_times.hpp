@@ -12,7 +12,8 @@ namespace roadstereo::io {
 std::optional<double> time_of_name(const std::string& stem);
 
 /// Reads one time per line: seconds, or date and time of day (UTC, KITTI's timestamps.txt). Throws Error naming file
-/// and line if one is neither, or if their number is not `count`.
+/// and line if one is neither, or if their number is not `count`; one may be missing at the end, that of a recording
+/// which was killed while it wrote the last pair.
 std::vector<double> read_times(const std::filesystem::path& file, std::size_t count);
 
 }  // namespace roadstereo::io

@@ -89,6 +89,34 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   EXPECT_EQ(flight_frame_json(frame).find('\n'), std::string::npos) << "a line is a frame";
 }
 
+TEST(FlightFrameJson, RejectsIntegersOutOfRange) {
+  const std::string good = flight_frame_json(frame_of(7, {}));
+  const auto with = [&good](const std::string& key, const std::string& value) {
+    std::string json = good;
+    const std::size_t at = json.find("\"" + key + "\":") + key.size() + 3;
+    return json.replace(at, json.find(',', at) - at, value);
+  };
+  EXPECT_EQ(read_flight_frame(with("frame", "8")).index, 8);
+  for (const char* wrong : {"4444444444444444444444444444444444444444444444440", "4.4e48", "1.5", "9223372036854775808",
+                            "true", "\"8\"", "null"}) {
+    EXPECT_THROW(read_flight_frame(with("frame", wrong)), Error) << wrong;
+  }
+  for (const char* wrong : {"2147483648", "-2147483649", "0.5"}) {
+    EXPECT_THROW(read_flight_frame(with("status", wrong)), Error) << wrong;
+  }
+}
+
+TEST_F(FlightJournalFile, ResumesWithNamesThatAreNotUtf8) {
+  const Provenance provenance{{"source", "fl\xfcg"}};
+  { FlightJournal::begin(file_, provenance).append(frame_of(0, {})); }
+  EXPECT_EQ(FlightJournal::resume(file_, provenance).frames(), 1);
+  EXPECT_THROW(FlightJournal::resume(file_, {{"source", "flug"}}), Error);
+  EXPECT_EQ(valid_utf8("a\xff"
+                       "b\xc3\xbc"),
+            "a\xef\xbf\xbd"
+            "b\xc3\xbc");
+}
+
 TEST_F(FlightJournalFile, ResumesAfterCutLine) {
   const Provenance provenance{{"source", "a"}};
   {

@@ -236,11 +236,30 @@ TEST_F(OpenSource, ErrorNamesFileAndRemedy) {
   EXPECT_NE(complaint("pairs.txt", backwards).find("rate_hz is -1"), std::string::npos);
 }
 
+TEST_F(FolderSource, RecordingKilledInLastPairLosesThatOnly) {
+  for (const char* name : {"left/0.png", "right/0.png", "left/1.png", "right/1.png", "left/2.png"}) image(name, 1);
+  text("times.txt", "5\n6\n");
+  for (const bool right_written : {false, true}) {
+    if (right_written) image("right/2.png", 1);
+    const auto source = open_source({folder_.string()});
+    ASSERT_EQ(source->size(), 3);
+    for (const double time_s : {5.0, 6.0}) {
+      const auto pair = source->next();
+      EXPECT_EQ(pair->error, "");
+      EXPECT_EQ(pair->time_s, time_s);
+    }
+    EXPECT_NE(source->next()->error, "");
+  }
+}
+
 TEST_F(FolderSource, RejectsOtherNumberOfTimes) {
   image("left/1.png", 1);
   image("right/1.png", 1);
   text("times.txt", "1\n2\n");
   EXPECT_NE(complaint(".").find("has 2 times, but there are 1"), std::string::npos) << complaint(".");
+  for (const char* name : {"left/2.png", "right/2.png", "left/3.png", "right/3.png"}) image(name, 1);
+  text("times.txt", "1\n");
+  EXPECT_NE(complaint(".").find("has 1 times, but there are 3"), std::string::npos) << complaint(".");
   text("times.txt", "soon\n");
   EXPECT_NE(complaint(".").find("line 1: \"soon\""), std::string::npos) << complaint(".");
   SourceOptions ten_a_second;

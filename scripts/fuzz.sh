@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Feeds mutated inputs to a reader, under the address and undefined behaviour sanitizers.
+#   scripts/fuzz.sh [READER] [SECONDS]    READER: request, journal, calibration or all (default); 60 seconds each
+# With clang++ libFuzzer mutates the inputs of tests/fuzz/seeds; without, g++ builds a program that replays them. New
+# inputs are kept in build-fuzz/corpus, those that fail in build-fuzz.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+readers=(request journal calibration)
+reader=${1:-all}
+seconds=${2:-60}
+[ "$reader" = all ] || readers=("$reader")
+
+flags=(-std=c++20 -g -O1 -Iapps/roadstereo -Iinclude -Isrc -fno-sanitize-recover=all)
+if command -v clang++ >/dev/null; then
+  build=(clang++ "${flags[@]}" -fsanitize=fuzzer,address,undefined,float-cast-overflow)
+  main=()
+else
+  build=(g++ "${flags[@]}" -fsanitize=address,undefined,float-cast-overflow)
+  main=(tests/fuzz/replay.cpp)
+fi
+
+for name in "${readers[@]}"; do
+  case $name in
+    request) sources=(apps/roadstereo/live/request_head.cpp) libraries=() ;;
+    journal) sources=(src/io/flight/frame_json.cpp) libraries=() ;;
+    calibration)
+      sources=(src/io/calibration_*.cpp src/io/opencv_*.cpp src/io/plain_yaml.cpp src/io/yaml_text.cpp src/io/k_txt.cpp
+               src/io/*_calibration.cpp src/io/ros_camera_info.cpp src/io/camera_info.cpp src/io/file_bytes.cpp
+               src/core/calibration.cpp)
+      libraries=($(pkg-config --cflags --libs opencv4 yaml-cpp pugixml)) ;;
+    *) echo "usage: $0 [request|journal|calibration|all] [SECONDS]" >&2; exit 2 ;;
+  esac
+  corpus=build-fuzz/corpus/$name
+  mkdir -p "$corpus"
+  echo "fuzz_$name"
+  "${build[@]}" "tests/fuzz/fuzz_$name.cpp" "${main[@]}" "${sources[@]}" "${libraries[@]}" -o "build-fuzz/fuzz_$name"
+  if [ ${#main[@]} -gt 0 ]; then
+    "build-fuzz/fuzz_$name" "tests/fuzz/seeds/$name"
+  else
+    "build-fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=32768 -verbosity=0 \
+      -print_final_stats=1 -artifact_prefix=build-fuzz/ "$corpus" "tests/fuzz/seeds/$name"
+  fi
+done
