@@ -180,7 +180,7 @@ std::vector<double> measure_cells(const Pyramid& pair, int cell_v) {
 
 RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                    int threads) {
-  const int factor = coarse_factor(left.width());
+  const int factor = coarse_factor(left.width(), left.height());
   const Pyramid pair{left, right, factor, downsample(left, factor), downsample(right, factor)};
   std::vector<std::vector<double>> by_row(cells_down);
   parallel_for(cells_down, threads,
