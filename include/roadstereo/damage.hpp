@@ -59,8 +59,8 @@ struct DamageOptions {
   double max_height_m = 0.12;     ///< maximum height, metres, min_depth_m … 10; higher regions are kerbs or vehicles
   double min_area_m2 = 0.001;     ///< minimum area on the road's surface, m², 0 … 1e4; used when calibrated
   double min_area_share = 0.001;  ///< minimum area as a share of the image, 0 … 1; used without a calibration
-  double min_confidence = 0.5;    ///< of a damage, 0 … 1; regions below are candidates. 0: candidates are damages, too
-  bool protrusions = true;        ///< whether to find bumps, heave and debris too
+  double min_confidence = 0.5;  ///< of a damage, 0 … 1; regions below are candidates. 0: candidates are damages, too
+  bool protrusions = true;      ///< whether to find bumps, heave and debris too
 
   /// Throws Error naming the first option out of range.
   void validate() const;
@@ -114,13 +114,13 @@ struct Damage {
   int id = 0;  ///< value in `DamageMap::ids`, 1 … 65535
   DamageKind kind = DamageKind::depression;
   std::size_t pixels = 0;
-  double measured_share = 0;             ///< share of the pixels with a disparity, 0 … 1
-  std::array<double, 2> centroid_px{};   ///< (u, v)
-  std::array<int, 4> box_px{};           ///< bounding box, both ends inclusive: u0, v0, u1, v1
-  std::array<int, 2> deepest_px{};       ///< (u, v) of the maximum depth
-  Measurement max_depth_px;              ///< maximum |depth| in ℓ', pixels
-  double mean_depth_px = 0;              ///< mean |depth| over the pixels with a disparity
-  double confidence = 0;                 ///< that this is damage, 0 … 1: `DamageEvidence::confidence`
+  double measured_share = 0;            ///< share of the pixels with a disparity, 0 … 1
+  std::array<double, 2> centroid_px{};  ///< (u, v)
+  std::array<int, 4> box_px{};          ///< bounding box, both ends inclusive: u0, v0, u1, v1
+  std::array<int, 2> deepest_px{};      ///< (u, v) of the maximum depth
+  Measurement max_depth_px;             ///< maximum |depth| in ℓ', pixels
+  double mean_depth_px = 0;             ///< mean |depth| over the pixels with a disparity
+  double confidence = 0;                ///< that this is damage, 0 … 1: `DamageEvidence::confidence`
   DamageEvidence evidence;
   bool cut_by_border = false;            ///< touches the border of the image: it may continue outside
   std::optional<DamageMetrics> metrics;  ///< absent without a calibration
@@ -130,9 +130,9 @@ struct Damage {
 struct DamageMap {
   std::vector<Damage> damages;     ///< deepest first
   std::vector<Damage> candidates;  ///< not damages: unresolvable, or below min_confidence; deepest first, not in `ids`
-  Image<std::uint16_t> ids;     ///< id of the damage at each pixel; 0: none
-  Image<std::uint8_t> road;     ///< 255 in the road region, damage included; 0 outside
-  Image<float> surface;         ///< ℓ' of the undamaged road, pixels; extrapolated across damage and off the road
+  Image<std::uint16_t> ids;        ///< id of the damage at each pixel; 0: none
+  Image<std::uint8_t> road;        ///< 255 in the road region, damage included; 0 outside
+  Image<float> surface;            ///< ℓ' of the undamaged road, pixels; extrapolated across damage and off the road
   Image<float> depth;   ///< depth below the undamaged road, negative above it: metres along the road's normal if
                         ///< `metric`, else pixels of ℓ'. Interpolated in the holes of damages; NaN in other holes
   double noise_px = 0;  ///< robust standard deviation of the intact road around `surface`, per cell, pixels

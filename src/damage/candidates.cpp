@@ -30,9 +30,9 @@ struct SegmentationConstants {
   std::size_t max_hole_divisor = 4;  ///< holes up to 1/4 of the image are filled
 
   // Surroundings.
-  double margin_radii = 0.5;       ///< width of the band around the region
-  int min_margin_cells = 3;        ///< minimum width of that band
-  float max_hollow_sigmas = 10;    ///< maximum depth of a hollow around a pothole, which counts as road
+  double margin_radii = 0.5;     ///< width of the band around the region
+  int min_margin_cells = 3;      ///< minimum width of that band
+  float max_hollow_sigmas = 10;  ///< maximum depth of a hollow around a pothole, which counts as road
 };
 constexpr SegmentationConstants constants{};
 
@@ -268,7 +268,7 @@ void add_candidate(const SearchInput& input, const ConnectedComponent& core, Dam
   if (static_cast<float>(core.size) < constants.min_core_area_share * min_cells) return;
   Candidate candidate = segment(input, core, kind, images);
   if (candidate.size == 0 || static_cast<float>(candidate.size) < min_cells) return;
-    add_evidence(input, images, candidate);
+  add_evidence(input, images, candidate);
   if (candidate.evidence.confidence() < constants.min_confidence) return;
   assign(candidate, images.assigned);
   found.push_back(std::move(candidate));

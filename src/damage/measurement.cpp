@@ -123,8 +123,8 @@ void separate_candidates(const DamageOptions& options, DamageMap& result) {
   const std::vector<Damage> all = measured;
   for (Damage& damage : measured) {
     if (!is_within_limits(damage, options)) continue;
-    const bool is_damage = options.min_confidence == 0 ||
-                           (damage.confidence >= options.min_confidence && is_resolvable(damage));
+    const bool is_damage =
+        options.min_confidence == 0 || (damage.confidence >= options.min_confidence && is_resolvable(damage));
     if (!is_damage) {
       result.candidates.push_back(std::move(damage));
       continue;

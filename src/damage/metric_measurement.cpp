@@ -106,8 +106,7 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   const double road_disparity = geometry.road_disparity(u, v, maps.surface(u, v) + offset.value);
   const Point road = geometry.point(u, v, road_disparity);
   const Point deepest = geometry.point(u, v, road_disparity - signed_depth);
-  metrics.max_depth_m.value =
-      std::max(std::abs(geometry.depth_between(road, deepest)), metrics.mean_depth_m.value);
+  metrics.max_depth_m.value = std::max(std::abs(geometry.depth_between(road, deepest)), metrics.mean_depth_m.value);
   set_standard_errors(sums, offset, noise_px, sigma_px,
                       geometry.metres_per_pixel(deepest, road_disparity - signed_depth), metrics, damage);
 
@@ -122,7 +121,8 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   metrics.distance_m = std::hypot(metrics.centroid_m[0], metrics.centroid_m[1], metrics.centroid_m[2]);
   metrics.resolvable_depth_m = options.threshold_sigma * std::hypot(sigma_px, offset.std_error) * metres_per_pixel;
   const double diameter_std_error = 0.5 * metrics.diameter_m * metrics.area_m2.std_error / sums.area;
-  metrics.severity_probabilities = severity_probabilities(metrics.max_depth_m, {metrics.diameter_m, diameter_std_error});
+  metrics.severity_probabilities =
+      severity_probabilities(metrics.max_depth_m, {metrics.diameter_m, diameter_std_error});
   constexpr double min_std_errors = 3;
   metrics.severity = metrics.max_depth_m.value < min_std_errors * metrics.max_depth_m.std_error
                          ? Severity::unresolvable

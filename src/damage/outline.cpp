@@ -162,10 +162,10 @@ Outline find_outline(const DepthField& field, const ConnectedComponent& seeds, f
 
 void grow_over_gaps(const DepthField& field, const Image<std::uint8_t>& valid, float min_level, int window_radius,
                     BoxMask& region) {
-  constexpr int near_windows = 3;    // farther than the smeared depths of the wall
+  constexpr int near_windows = 3;  // farther than the smeared depths of the wall
   constexpr double band_radii = 1;
   constexpr double min_sigmas = 2.5;  // from the depths around
-  constexpr int max_windows = 4;     // growth
+  constexpr int max_windows = 4;      // growth
   const int columns = field.depth.width(), rows = field.depth.height();
   const RobustNormal around = depths_around(field, region, near_windows * window_radius, band_radii);
   const float min_depth = std::max(min_level, static_cast<float>(around.median + min_sigmas * around.sigma));

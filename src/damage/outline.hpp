@@ -40,9 +40,10 @@ struct Outline {
 Outline find_outline(const DepthField& field, const ConnectedComponent& seeds, float floor, float min_level,
                      bool metric);
 
-/// Grow a region over the allowed cells near gaps. Where matching failed on a ragged wall, the depth between the road and
-/// the floor is smeared: cells no farther than the radius of the support window from a cell that is not `valid` join
-/// the region if they are connected to it and deeper than 2.5 standard deviations of the surroundings and `min_level`.
+/// Grow a region over the allowed cells near gaps. Where matching failed on a ragged wall, the depth between the road
+/// and the floor is smeared: cells no farther than the radius of the support window from a cell that is not `valid`
+/// join the region if they are connected to it and deeper than 2.5 standard deviations of the surroundings and
+/// `min_level`.
 void grow_over_gaps(const DepthField& field, const Image<std::uint8_t>& valid, float min_level, int window_radius,
                     BoxMask& region);
 
