@@ -82,7 +82,10 @@ std::string picture_lines(const std::filesystem::path& folder) {
 }  // namespace
 
 std::string damage_text(const DamageMap& map) {
-  if (map.damages.empty()) return "none found";
+  const std::string candidates = map.candidates.empty() ? ""
+                                                        : fmt::format("; {} candidate{}", map.candidates.size(),
+                                                                      map.candidates.size() == 1 ? "" : "s");
+  if (map.damages.empty()) return "none found" + candidates;
   const auto depressions = std::count_if(map.damages.begin(), map.damages.end(),
                                          [](const Damage& one) { return one.kind == DamageKind::depression; });
   const auto protrusions = static_cast<std::ptrdiff_t>(map.damages.size()) - depressions;
@@ -92,11 +95,14 @@ std::string damage_text(const DamageMap& map) {
   if (deepest.metrics) {
     constexpr double mm = 1000;
     const DamageMetrics& metrics = *deepest.metrics;
-    return text + fmt::format("deepest {:.1f} ± {:.1f} mm, {:.0f} ± {:.0f} cm²", mm * metrics.max_depth_m.value,
-                              mm * metrics.max_depth_m.std_error, 1e4 * metrics.area_m2.value,
-                              1e4 * metrics.area_m2.std_error);
+    return text +
+           fmt::format("deepest {:.1f} ± {:.1f} mm, {:.0f} ± {:.0f} cm²", mm * metrics.max_depth_m.value,
+                       mm * metrics.max_depth_m.std_error, 1e4 * metrics.area_m2.value,
+                       1e4 * metrics.area_m2.std_error) +
+           candidates;
   }
-  return text + fmt::format("deepest {:.2f} ± {:.2f} px", deepest.max_depth_px.value, deepest.max_depth_px.std_error);
+  return text + fmt::format("deepest {:.2f} ± {:.2f} px", deepest.max_depth_px.value, deepest.max_depth_px.std_error) +
+         candidates;
 }
 
 std::vector<std::pair<std::string, std::string>> summary_properties(const Inspection& inspection) {

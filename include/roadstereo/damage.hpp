@@ -22,7 +22,8 @@ const char* name_of(DamageKind kind);
 /// Severity of a pothole by ASTM D6433, from its depth and mean diameter.
 enum class Severity {
   unknown,       ///< no calibration
-  unresolvable,  ///< shallower than the depth that the rig resolves at this distance
+  unresolvable,  ///< shallower than three standard errors of the depth
+  uncertain,     ///< no class has more than half of the probability
   minor,         ///< shallower than 13 mm or narrower than 100 mm: below the table of ASTM D6433
   low,
   medium,
@@ -34,6 +35,23 @@ const char* name_of(Severity severity);
 /// 200–450, > 450 mm. Smaller values, and NaN, give `minor`.
 Severity astm_severity(double depth_m, double diameter_m);
 
+/// A measured value with its standard error.
+struct Measurement {
+  double value = 0;
+  double std_error = 0;
+};
+
+/// Probability of each class of `astm_severity`, 0 … 1; they sum to 1.
+struct SeverityProbabilities {
+  double minor = 0, low = 0, medium = 0, high = 0;
+};
+
+/// Integrate the table of `astm_severity` over normal distributions of depth and mean diameter.
+SeverityProbabilities severity_probabilities(const Measurement& depth_m, const Measurement& diameter_m);
+
+/// The class of more than half of the probability; `uncertain` if there is none.
+Severity likely_severity(const SeverityProbabilities& probabilities);
+
 struct DamageOptions {
   double threshold_sigma = 5;     ///< minimum depth in standard deviations of the intact road, 1 … 100
   double min_depth_m = 0.005;     ///< minimum depth along the road's normal, metres, 0 … 10; used when calibrated
@@ -41,7 +59,8 @@ struct DamageOptions {
   double max_height_m = 0.12;     ///< maximum height, metres, min_depth_m … 10; higher regions are kerbs or vehicles
   double min_area_m2 = 0.001;     ///< minimum area on the road's surface, m², 0 … 1e4; used when calibrated
   double min_area_share = 0.001;  ///< minimum area as a share of the image, 0 … 1; used without a calibration
-  bool protrusions = true;        ///< whether to find bumps, heave and debris too
+  double min_confidence = 0.5;  ///< of a damage, 0 … 1; regions below are candidates. 0: candidates are damages, too
+  bool protrusions = true;      ///< whether to find bumps, heave and debris too
 
   /// Throws Error naming the first option out of range.
   void validate() const;
@@ -55,12 +74,6 @@ struct DamageInput {
   ImageView<const std::int16_t> grey;            ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
   std::optional<DisparityPlane> plane;           ///< the road's plane in ℓ; required for metric results
   std::optional<StereoCalibration> calibration;  ///< required for metric results
-};
-
-/// A measured value with its standard error.
-struct Measurement {
-  double value = 0;
-  double std_error = 0;
 };
 
 /// Metric properties of a damage. Depth is measured along the road's normal from the undamaged surface, interpolated
@@ -78,7 +91,22 @@ struct DamageMetrics {
   std::array<double, 2> road_centroid_m{};  ///< (x, y) of the centroid in the axes of `road_axes`
   double distance_m = 0;                    ///< from the left camera to the centroid
   double resolvable_depth_m = 0;            ///< smallest resolvable depth here: threshold_sigma standard errors
+  SeverityProbabilities severity_probabilities;
   Severity severity = Severity::unknown;
+};
+
+/// What distinguishes a damage from noise and from what is not road. No number decides alone.
+struct DamageEvidence {
+  /// Median depth inside minus that of the band around, in robust standard deviations of the band, at least of the
+  /// intact road
+  double contrast_sigmas = 0;
+  double significance = 0;  ///< contrast times the root of the number of independent samples: support windows inside
+  double steepness = 0;     ///< maximum of the mean slope on a contour, relative to a cone of the same area and depth
+  double road_share = 0;    ///< share of the band around that is road, 0 … 1
+  double border_share = 0;  ///< share of the outline that lies on the border of the image, 0 … 1
+
+  /// Probability that the region is damage, 0 … 1: logistic regression on the evidence (docs/method.md).
+  double confidence() const;
 };
 
 /// One damage: a connected component of the left image.
@@ -86,22 +114,25 @@ struct Damage {
   int id = 0;  ///< value in `DamageMap::ids`, 1 … 65535
   DamageKind kind = DamageKind::depression;
   std::size_t pixels = 0;
-  double measured_share = 0;             ///< share of the pixels with a disparity, 0 … 1
-  std::array<double, 2> centroid_px{};   ///< (u, v)
-  std::array<int, 4> box_px{};           ///< bounding box, both ends inclusive: u0, v0, u1, v1
-  std::array<int, 2> deepest_px{};       ///< (u, v) of the maximum depth
-  Measurement max_depth_px;              ///< maximum |depth| in ℓ', pixels
-  double mean_depth_px = 0;              ///< mean |depth| over the pixels with a disparity
+  double measured_share = 0;            ///< share of the pixels with a disparity, 0 … 1
+  std::array<double, 2> centroid_px{};  ///< (u, v)
+  std::array<int, 4> box_px{};          ///< bounding box, both ends inclusive: u0, v0, u1, v1
+  std::array<int, 2> deepest_px{};      ///< (u, v) of the maximum depth
+  Measurement max_depth_px;             ///< maximum |depth| in ℓ', pixels
+  double mean_depth_px = 0;             ///< mean |depth| over the pixels with a disparity
+  double confidence = 0;                ///< that this is damage, 0 … 1: `DamageEvidence::confidence`
+  DamageEvidence evidence;
   bool cut_by_border = false;            ///< touches the border of the image: it may continue outside
   std::optional<DamageMetrics> metrics;  ///< absent without a calibration
 };
 
 /// Damage of one frame. Images are W×H of the input.
 struct DamageMap {
-  std::vector<Damage> damages;  ///< deepest first
-  Image<std::uint16_t> ids;     ///< id of the damage at each pixel; 0: none
-  Image<std::uint8_t> road;     ///< 255 in the road region, damage included; 0 outside
-  Image<float> surface;         ///< ℓ' of the undamaged road, pixels; extrapolated across damage and off the road
+  std::vector<Damage> damages;     ///< deepest first
+  std::vector<Damage> candidates;  ///< not damages: unresolvable, or below min_confidence; deepest first, not in `ids`
+  Image<std::uint16_t> ids;        ///< id of the damage at each pixel; 0: none
+  Image<std::uint8_t> road;        ///< 255 in the road region, damage included; 0 outside
+  Image<float> surface;            ///< ℓ' of the undamaged road, pixels; extrapolated across damage and off the road
   Image<float> depth;   ///< depth below the undamaged road, negative above it: metres along the road's normal if
                         ///< `metric`, else pixels of ℓ'. Interpolated in the holes of damages; NaN in other holes
   double noise_px = 0;  ///< robust standard deviation of the intact road around `surface`, per cell, pixels

@@ -23,18 +23,16 @@ struct SegmentationConstants {
   // Extent of a region.
   float min_core_area_share = 0.1F;  ///< of the minimum area of a damage, for its core
   float min_level_sigmas = 2;        ///< minimum depth at the outline
-  double min_steepness = 2;          ///< without a calibration; 2 is the rim of a paraboloid (see `Outline`)
   float foot_sigmas = 0.5F;          ///< minimum depth at the foot of the wall
+  double min_confidence = 0.05;      ///< below it a region is no candidate
   int max_level_attempts = 8;        ///< maximum number of levels to separate touching damages
   float level_factor = 1.25F;        ///< between these levels
   std::size_t max_hole_divisor = 4;  ///< holes up to 1/4 of the image are filled
 
-  // Surroundings: kerbs, verges and vehicles are not surrounded by road.
-  double margin_radii = 0.5;       ///< width of the band around the region
-  int min_margin_cells = 3;        ///< minimum width of that band
-  float max_hollow_sigmas = 10;    ///< maximum depth of a hollow around a pothole, which counts as road
-  double min_road_share = 0.6;     ///< of the band that must be road
-  double max_border_share = 0.25;  ///< of the contour that may lie on the border of the image
+  // Surroundings.
+  double margin_radii = 0.5;     ///< width of the band around the region
+  int min_margin_cells = 3;      ///< minimum width of that band
+  float max_hollow_sigmas = 10;  ///< maximum depth of a hollow around a pothole, which counts as road
 };
 constexpr SegmentationConstants constants{};
 
@@ -153,6 +151,10 @@ bool extend_region(const SearchInput& input, SearchImages& images, Candidate& ca
   if (input.thresholds.metric()) {
     const float min_depth = constants.foot_sigmas * static_cast<float>(input.depth_cells.noise);
     grow_to_wall_foot(images.field(), candidate.level, min_depth, candidate.cells);
+  } else if (candidate.kind == DamageKind::depression) {
+    const float min_depth = constants.min_level_sigmas * static_cast<float>(input.depth_cells.noise);
+    grow_over_gaps(images.field(), input.depth_cells.valid, min_depth, input.image_edges.window_radius,
+                   candidate.cells);
   }
   fill_holes(candidate.cells.cells(), max_hole);
   if (!update_extent(candidate, images.assigned)) return false;
@@ -173,8 +175,8 @@ Candidate segment(const SearchInput& input, const ConnectedComponent& core, Dama
   if (floor > max_depth(core, kind, input.thresholds)) return candidate;
   const float min_level = constants.min_level_sigmas * static_cast<float>(input.depth_cells.noise);
   const Outline outline = find_outline(field, core, floor, min_level, metric);
-  if (!metric && outline.steepness < constants.min_steepness) return candidate;
   candidate.level = outline.level;
+  candidate.evidence.steepness = outline.steepness;
   for (int i = 0; i < constants.max_level_attempts; ++i, candidate.level *= constants.level_factor) {
     candidate.cells = flood_fill(field, core, candidate.level);
     if (candidate.box().empty()) break;
@@ -227,6 +229,28 @@ double road_share(const SearchInput& input, const Candidate& candidate, const Im
   return cells == 0 ? 1 : on_road / cells;
 }
 
+/// Measure what distinguishes a damage from noise and from what is not road.
+void add_evidence(const SearchInput& input, SearchImages& images, Candidate& candidate) {
+  constexpr int near_cells = 3;  // closer to the rim the depth is smoothed
+  constexpr double band_radii = 1;
+  std::vector<float> inside;
+  const CellBox& box = candidate.box();
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      if (candidate.cells(i, j)) inside.push_back(images.depth(i, j));
+    }
+  }
+  const RobustNormal damage = robust_normal(inside);
+  const RobustNormal around = depths_around(images.field(), candidate.cells, near_cells, band_radii);
+  const double window = input.image_edges.window_radius;
+  const double samples = std::max(1.0, static_cast<double>(candidate.size) / (std::numbers::pi * window * window));
+  DamageEvidence& evidence = candidate.evidence;
+  evidence.contrast_sigmas = (damage.median - around.median) / std::max(around.sigma, input.depth_cells.noise);
+  evidence.significance = evidence.contrast_sigmas * std::sqrt(samples);
+  evidence.road_share = road_share(input, candidate, images.assigned);
+  evidence.border_share = border_share(candidate.cells, input.road.width(), input.road.height());
+}
+
 /// Assign the cells of a candidate to its kind.
 void assign(const Candidate& candidate, Image<std::uint8_t>& assigned) {
   const CellBox& box = candidate.box();
@@ -244,8 +268,8 @@ void add_candidate(const SearchInput& input, const ConnectedComponent& core, Dam
   if (static_cast<float>(core.size) < constants.min_core_area_share * min_cells) return;
   Candidate candidate = segment(input, core, kind, images);
   if (candidate.size == 0 || static_cast<float>(candidate.size) < min_cells) return;
-  if (road_share(input, candidate, images.assigned) < constants.min_road_share) return;
-  if (border_share(candidate.cells, input.road.width(), input.road.height()) > constants.max_border_share) return;
+  add_evidence(input, images, candidate);
+  if (candidate.evidence.confidence() < constants.min_confidence) return;
   assign(candidate, images.assigned);
   found.push_back(std::move(candidate));
 }

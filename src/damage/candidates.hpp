@@ -21,12 +21,14 @@ struct Candidate {
   BoxMask cells;         ///< stored in its bounding box
   std::size_t size = 0;  ///< cells
   float level = 0;       ///< depth at the outline, pixels of ℓ'
+  DamageEvidence evidence;
 
   const CellBox& box() const { return cells.box(); }
 };
 
-/// Find candidates: connected components deeper than the thresholds (cores), extended to their outlines, that are
-/// surrounded by road. Depressions come first, each kind by decreasing size of the core. Regions do not overlap.
+/// Find candidates: connected components deeper than the thresholds (cores), extended to their outlines, with the
+/// evidence that they are damage. Depressions come first, each kind by decreasing size of the core. Regions do not
+/// overlap.
 std::vector<Candidate> find_candidates(const DepthCells& depth_cells, const Image<std::uint8_t>& road,
                                        const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions);
 

@@ -4,20 +4,13 @@
 #include <cmath>
 #include <vector>
 
-#include "core/order_statistics.hpp"
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
+#include "damage/robust_normal.hpp"
 
 namespace roadstereo {
 namespace {
-
-/// Robust statistics of grey levels, 1/16 grey level. Robust, since one wall of a dark hole may be sunlit.
-struct Tone {
-  double median = 0;
-  double sigma = 0;  ///< from the median absolute deviation
-  std::size_t cells = 0;
-};
 
 /// Values of the cells of a box.
 struct BoxMap {
@@ -27,8 +20,9 @@ struct BoxMap {
   float operator()(int i, int j) const { return values(i - box.first_column, j - box.first_row); }
 };
 
-/// Tone of the cells of `included` that are not in `excluded` (may be null).
-Tone tone_of(const BoxMap& grey, const BoxMask& included, const BoxMask* excluded) {
+/// Distribution of the cells of `included` that are not in `excluded` (may be null). Robust, since one wall of a dark
+/// hole may be sunlit.
+RobustNormal tone_of(const BoxMap& grey, const BoxMask& included, const BoxMask* excluded) {
   const CellBox& box = grey.box;
   std::vector<float> values;
   for (int j = box.first_row; j <= box.last_row; ++j) {
@@ -36,15 +30,7 @@ Tone tone_of(const BoxMap& grey, const BoxMask& included, const BoxMask* exclude
       if (included(i, j) && (excluded == nullptr || !(*excluded)(i, j))) values.push_back(grey(i, j));
     }
   }
-  if (values.empty()) return {};
-  const float median = upper_median(values);
-  for (float& value : values) value = std::abs(value - median);
-  return {median, gaussian_mad * upper_median(values), values.size()};
-}
-
-/// Decision threshold between two tones: the grey level at equal distance from both in standard deviations.
-double threshold_between(const Tone& one, const Tone& other) {
-  return (one.median * other.sigma + other.median * one.sigma) / (one.sigma + other.sigma);
+  return robust_normal(values);
 }
 
 /// Mean grey levels of the cells of a box, 1/16 grey level.
@@ -89,15 +75,15 @@ BoxMap smooth_grey_cells(const ImageEdges& image_edges, const CellBox& box, int 
 
 void refine_outline_by_image(const ImageEdges& image_edges, int columns, int rows, BoxMask& region) {
   constexpr double min_difference = 1.5;  // standard deviations
-  constexpr std::size_t min_cells = 30;
+  constexpr std::size_t min_samples = 30;
   const int radius = image_edges.window_radius;
   const CellBox around = region.box().grown(3 * radius, columns, rows);
   const BoxMap grey = smooth_grey_cells(image_edges, around, columns, rows);
   const BoxMask near = dilate(region, radius, around);
   const BoxMask far = dilate(region, 3 * radius, around);
-  const Tone inside = tone_of(grey, erode(region, 2, around), nullptr);
-  const Tone outside = tone_of(grey, far, &near);
-  if (inside.cells < min_cells || outside.cells < min_cells) return;
+  const RobustNormal inside = tone_of(grey, erode(region, 2, around), nullptr);
+  const RobustNormal outside = tone_of(grey, far, &near);
+  if (inside.samples < min_samples || outside.samples < min_samples) return;
   const double sigma = std::sqrt(0.5 * (inside.sigma * inside.sigma + outside.sigma * outside.sigma));
   if (std::abs(inside.median - outside.median) < min_difference * sigma || sigma == 0) return;
   const double threshold = threshold_between(inside, outside);

@@ -58,6 +58,8 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   Damage& damage = sums.damage;
   damage.id = static_cast<int>(k + 1);
   damage.kind = candidate.kind;
+  damage.evidence = candidate.evidence;
+  damage.confidence = candidate.evidence.confidence();
   const PixelBox box = pixel_box(candidate, segmentation.cells);
   for (int v = box.v0; v <= box.v1; ++v) {
     for (int u = box.u0; u <= box.u1; ++u) {
@@ -89,30 +91,52 @@ void relabel(const std::vector<Damage>& damages, const std::vector<std::uint16_t
   }
 }
 
-/// Remove damages shallower than three standard errors of their depth, and those without finite metric values, which
-/// extend beyond the road. Number the others by decreasing depth.
-void keep_significant(DamageMap& result) {
+double depth_of(const Damage& damage) {
+  return damage.metrics ? damage.metrics->max_depth_m.value : damage.max_depth_px.value;
+}
+
+/// Whether the values are finite and within the limits of the options. A damage that extends beyond the road has
+/// infinite values.
+bool is_within_limits(const Damage& damage, const DamageOptions& options) {
+  if (damage.pixels == 0) return false;
+  if (!damage.metrics) return true;
+  const double max_m = damage.kind == DamageKind::depression ? options.max_depth_m : options.max_height_m;
+  const double depth_m = damage.metrics->max_depth_m.value;
+  return std::isfinite(damage.metrics->area_m2.value) && depth_m >= options.min_depth_m && depth_m <= max_m;
+}
+
+/// Whether the depth is at least three of its standard errors.
+bool is_resolvable(const Damage& damage) {
   constexpr double min_std_errors = 3;
-  std::vector<Damage> kept;
-  for (const Damage& damage : result.damages) {
-    const bool finite =
-        !damage.metrics || std::isfinite(damage.metrics->max_depth_m.value + damage.metrics->area_m2.value);
-    if (damage.pixels > 0 && finite && damage.max_depth_px.value >= min_std_errors * damage.max_depth_px.std_error) {
-      kept.push_back(damage);
+  const Measurement& depth = damage.metrics ? damage.metrics->max_depth_m : damage.max_depth_px;
+  return depth.value >= min_std_errors * depth.std_error;
+}
+
+/// Separate damages from candidates, and number the damages by decreasing depth, then the candidates.
+void separate_candidates(const DamageOptions& options, DamageMap& result) {
+  std::vector<Damage> measured = std::move(result.damages);
+  result.damages.clear();
+  result.candidates.clear();
+  std::stable_sort(measured.begin(), measured.end(),
+                   [](const Damage& one, const Damage& other) { return depth_of(one) > depth_of(other); });
+  std::vector<std::uint16_t> new_id(measured.size() + 1, 0);
+  const std::vector<Damage> all = measured;
+  for (Damage& damage : measured) {
+    if (!is_within_limits(damage, options)) continue;
+    const bool is_damage =
+        options.min_confidence == 0 || (damage.confidence >= options.min_confidence && is_resolvable(damage));
+    if (!is_damage) {
+      result.candidates.push_back(std::move(damage));
+      continue;
     }
+    const std::size_t id = result.damages.size() + 1;
+    new_id[static_cast<std::size_t>(damage.id)] = static_cast<std::uint16_t>(id);
+    damage.id = static_cast<int>(id);
+    result.damages.push_back(std::move(damage));
   }
-  const auto depth_of = [](const Damage& damage) {
-    return damage.metrics ? damage.metrics->max_depth_m.value : damage.max_depth_px.value;
-  };
-  std::stable_sort(kept.begin(), kept.end(),
-                   [&](const Damage& one, const Damage& other) { return depth_of(one) > depth_of(other); });
-  std::vector<std::uint16_t> new_id(result.damages.size() + 1, 0);
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    new_id[static_cast<std::size_t>(kept[k].id)] = static_cast<std::uint16_t>(k + 1);
-    kept[k].id = static_cast<int>(k + 1);
-  }
-  relabel(result.damages, new_id, result.ids);
-  result.damages = std::move(kept);
+  int id = static_cast<int>(result.damages.size());
+  for (Damage& candidate : result.candidates) candidate.id = ++id;
+  relabel(all, new_id, result.ids);
 }
 
 }  // namespace
@@ -130,13 +154,15 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
     const auto [u, v] = damage.deepest_px;
     const double sigma_at_deepest = input.sigma.empty() ? result.noise_px : input.sigma(u, v);
     const double sigma = std::isfinite(sigma_at_deepest) ? sigma_at_deepest : result.noise_px;
-    damage.max_depth_px.value += sign_of(damage.kind) * offset.value;
+    damage.mean_depth_px = std::max(0.0, damage.mean_depth_px + sign_of(damage.kind) * offset.value);
+    damage.max_depth_px.value =
+        std::max(damage.max_depth_px.value + sign_of(damage.kind) * offset.value, damage.mean_depth_px);
     damage.max_depth_px.std_error = std::hypot(sigma, offset.std_error);
   }
   std::optional<FrameGeometry> geometry;
   if (result.metric) geometry.emplace(input);
   if (geometry) measure_in_metres(input, options, *geometry, offsets, result);
-  keep_significant(result);
+  separate_candidates(options, result);
   if (geometry) depth_to_metres(*geometry, threads, result);
 }
 

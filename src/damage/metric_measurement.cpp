@@ -106,7 +106,7 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   const double road_disparity = geometry.road_disparity(u, v, maps.surface(u, v) + offset.value);
   const Point road = geometry.point(u, v, road_disparity);
   const Point deepest = geometry.point(u, v, road_disparity - signed_depth);
-  metrics.max_depth_m.value = std::abs(geometry.depth_between(road, deepest));
+  metrics.max_depth_m.value = std::max(std::abs(geometry.depth_between(road, deepest)), metrics.mean_depth_m.value);
   set_standard_errors(sums, offset, noise_px, sigma_px,
                       geometry.metres_per_pixel(deepest, road_disparity - signed_depth), metrics, damage);
 
@@ -120,9 +120,13 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   metrics.road_centroid_m = {on_road[0], on_road[1]};
   metrics.distance_m = std::hypot(metrics.centroid_m[0], metrics.centroid_m[1], metrics.centroid_m[2]);
   metrics.resolvable_depth_m = options.threshold_sigma * std::hypot(sigma_px, offset.std_error) * metres_per_pixel;
-  metrics.severity = metrics.max_depth_m.value < metrics.resolvable_depth_m
+  const double diameter_std_error = 0.5 * metrics.diameter_m * metrics.area_m2.std_error / sums.area;
+  metrics.severity_probabilities =
+      severity_probabilities(metrics.max_depth_m, {metrics.diameter_m, diameter_std_error});
+  constexpr double min_std_errors = 3;
+  metrics.severity = metrics.max_depth_m.value < min_std_errors * metrics.max_depth_m.std_error
                          ? Severity::unresolvable
-                         : astm_severity(metrics.max_depth_m.value, metrics.diameter_m);
+                         : likely_severity(metrics.severity_probabilities);
   return metrics;
 }
 

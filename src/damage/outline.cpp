@@ -9,6 +9,7 @@
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
+#include "damage/robust_normal.hpp"
 
 namespace roadstereo {
 namespace {
@@ -16,6 +17,12 @@ namespace {
 /// Mean slope on the contour relative to that of a cone of the same area and of depth `floor`.
 double steepness_of(const ContourStatistics& contour, float floor) {
   return contour.slope * std::sqrt(contour.area / std::numbers::pi) / floor;
+}
+
+/// Number of cells of a region.
+std::size_t cell_count(const BoxMask& region) {
+  const std::uint8_t* const cells = region.cells().row(0);
+  return static_cast<std::size_t>(std::count_if(cells, cells + region.cells().pixels(), [](auto c) { return c != 0; }));
 }
 
 /// Box in which contours around the seeds are measured.
@@ -36,6 +43,20 @@ float median_around(const DepthField& field, const BoxMask& region, int near, in
     }
   }
   return depths.empty() ? 0 : upper_median(depths);
+}
+
+/// Depth halfway between the floor and the surroundings: the edge of a step that was smoothed. A wide hollow around a
+/// pothole belongs to the surroundings.
+float half_height(const DepthField& field, const ConnectedComponent& seeds, float floor, float min_level) {
+  constexpr int iterations = 2;
+  constexpr int near_cells = 3;  // closer to the rim the depth is smoothed
+  constexpr double band_radii = 0.3;
+  float level = std::max(min_level, 0.5F * floor);
+  for (int k = 0; k < iterations; ++k) {
+    const RobustNormal around = depths_around(field, flood_fill(field, seeds, level), near_cells, band_radii);
+    level = std::max(min_level, 0.5F * (floor + static_cast<float>(around.median)));
+  }
+  return level;
 }
 
 /// Add the allowed neighbours that are deeper than `min_depth`, `steps` times.
@@ -60,14 +81,36 @@ void grow_deeper(const DepthField& field, float min_depth, int steps, BoxMask& r
 
 }  // namespace
 
+RobustNormal depths_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii) {
+  constexpr int min_band_cells = 3;
+  const double radius = std::sqrt(static_cast<double>(cell_count(region)) / std::numbers::pi);
+  const int far_cells = near_cells + std::max(min_band_cells, static_cast<int>(band_radii * radius));
+  const CellBox wide = region.box().grown(far_cells, field.depth.width(), field.depth.height());
+  const BoxMask near = dilate(region, near_cells, wide);
+  const BoxMask far = dilate(region, far_cells, wide);
+  std::vector<float> around;
+  for (int j = wide.first_row; j <= wide.last_row; ++j) {
+    for (int i = wide.first_column; i <= wide.last_column; ++i) {
+      if (far(i, j) && !near(i, j) && field.allowed(i, j) != 0) around.push_back(field.depth(i, j));
+    }
+  }
+  return robust_normal(around);
+}
+
 float floor_depth(const DepthField& field, const ConnectedComponent& seeds) {
+  constexpr int iterations = 2;
   std::vector<float> depths;
   depths.reserve(seeds.size);
   for (const CellRun& run : seeds.runs) {
     const float* const row = field.depth.row(run.row);
     depths.insert(depths.end(), row + run.first, row + run.last + 1);
   }
-  return select_rank(depths, static_cast<std::ptrdiff_t>(depths.size() * 3 / 4));
+  float floor = nearest_quantile(depths, 0.75);
+  for (int k = 0; k < iterations; ++k) {
+    std::erase_if(depths, [floor](float depth) { return depth < 0.5F * floor; });
+    floor = nearest_quantile(depths, 0.75);
+  }
+  return floor;
 }
 
 BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, float level) {
@@ -102,7 +145,6 @@ Outline find_outline(const DepthField& field, const ConnectedComponent& seeds, f
   constexpr double wall_steepness = 3;  // of a wall; the rim of a paraboloid has 2
   constexpr double min_share = 0.9;     // of the maximum steepness, if that is below wall_steepness
   constexpr float max_level_share = 0.9F;
-  constexpr float min_non_metric_share = 0.6F;
   const float max_level = std::max(min_level, max_level_share * floor);
   std::array<float, contour_level_count> level{};
   for (std::size_t k = 0; k < contour_level_count; ++k) {
@@ -115,7 +157,35 @@ Outline find_outline(const DepthField& field, const ConnectedComponent& seeds, f
   const double max_steepness = steepness[k];
   const double min_steepness = std::min(wall_steepness, min_share * max_steepness);
   while (k > 0 && steepness[k - 1] >= min_steepness) --k;
-  return {metric ? level[k] : std::max(level[k], min_non_metric_share * floor), max_steepness};
+  return {metric ? level[k] : half_height(field, seeds, floor, min_level), max_steepness};
+}
+
+void grow_over_gaps(const DepthField& field, const Image<std::uint8_t>& valid, float min_level, int window_radius,
+                    BoxMask& region) {
+  constexpr int near_windows = 3;  // farther than the smeared depths of the wall
+  constexpr double band_radii = 1;
+  constexpr double min_sigmas = 2.5;  // from the depths around
+  constexpr int max_windows = 4;      // growth
+  const int columns = field.depth.width(), rows = field.depth.height();
+  const RobustNormal around = depths_around(field, region, near_windows * window_radius, band_radii);
+  const float min_depth = std::max(min_level, static_cast<float>(around.median + min_sigmas * around.sigma));
+  const CellBox wide = region.box().grown(max_windows * window_radius, columns, rows);
+  BoxMask gaps(wide);
+  for (int j = wide.first_row; j <= wide.last_row; ++j) {
+    for (int i = wide.first_column; i <= wide.last_column; ++i) gaps.set(i, j, valid(i, j) == 0);
+  }
+  const BoxMask near_gap = dilate(gaps, window_radius, wide);
+  std::vector<CellIndex> front = contour_cells(region, columns, rows);
+  region = region.cropped(wide);
+  while (!front.empty()) {
+    const CellIndex cell = front.back();
+    front.pop_back();
+    for_each_neighbour(cell.column, cell.row, columns, rows, [&](int i, int j) {
+      if (!near_gap(i, j) || region(i, j) || field.allowed(i, j) == 0 || field.depth(i, j) <= min_depth) return;
+      region.set(i, j);
+      front.push_back({i, j});
+    });
+  }
 }
 
 void grow_to_wall_foot(const DepthField& field, float level, float min_depth, BoxMask& region) {

@@ -2,6 +2,7 @@
 
 #include "damage/box_mask.hpp"
 #include "damage/connected_components.hpp"
+#include "damage/robust_normal.hpp"
 
 namespace roadstereo {
 
@@ -15,7 +16,12 @@ struct DepthField {
 /// Flood fill: the component of allowed cells deeper than `level` that contains `seeds`.
 BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, float level);
 
-/// Depth of the floor: 75th percentile of the depths of the seeds, robust against single outliers.
+/// Distribution of the depths of the allowed cells in a band around a region: farther than `near_cells`, as wide as
+/// `band_radii` times the radius √(area / π) of the region, at least 3 cells.
+RobustNormal depths_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii);
+
+/// Depth of the floor: 75th percentile of the depths of those seeds that are deeper than half of it, robust against
+/// single outliers and independent of how much of a hollow the seeds cover.
 float floor_depth(const DepthField& field, const ConnectedComponent& seeds);
 
 /// Outline of a damage.
@@ -30,9 +36,16 @@ struct Outline {
 /// hollow around a pothole belongs to the shape of the road; the wall belongs to the pothole. Starting at the steepest
 /// contour, the level descends as long as the mean slope is at least three times that of a cone of the same area and of
 /// depth `floor`, or 0.9 of the maximum if that is less. It does not fall below `min_level`. If `metric` is false, the
-/// depth of a hollow is not known in metres; the level is then at least 0.6 · `floor`, about halfway up the wall.
+/// depth of a hollow is not known in metres; the level is then halfway between the floor and the surroundings.
 Outline find_outline(const DepthField& field, const ConnectedComponent& seeds, float floor, float min_level,
                      bool metric);
+
+/// Grow a region over the allowed cells near gaps. Where matching failed on a ragged wall, the depth between the road
+/// and the floor is smeared: cells no farther than the radius of the support window from a cell that is not `valid`
+/// join the region if they are connected to it and deeper than 2.5 standard deviations of the surroundings and
+/// `min_level`.
+void grow_over_gaps(const DepthField& field, const Image<std::uint8_t>& valid, float min_level, int window_radius,
+                    BoxMask& region);
 
 /// Grow a region to the foot of its wall: over allowed cells that are deeper than the surroundings and than
 /// `min_depth`, at most as far as the wall, extrapolated with its mean slope, takes to reach the depth of the

@@ -19,6 +19,8 @@ inline Rgb damage_colour(DamageKind kind, Severity severity) {
       return {240, 190, 30};
     case Severity::minor:
       return {70, 170, 120};
+    case Severity::uncertain:
+      return {120, 130, 200};
     case Severity::unresolvable:
       return {150, 150, 155};
     case Severity::unknown:

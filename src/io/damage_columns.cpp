@@ -41,6 +41,17 @@ DamageValue metric_part(const Damage& damage) {
   return number(((*damage.metrics).*Member)[Index]);
 }
 
+template <auto Member>
+DamageValue probability(const Damage& damage) {
+  if (!damage.metrics) return std::monostate{};
+  return number(damage.metrics->severity_probabilities.*Member);
+}
+
+template <auto Member>
+DamageValue evidence(const Damage& damage) {
+  return number(damage.evidence.*Member);
+}
+
 template <auto Member, std::size_t Index>
 DamageValue pixel(const Damage& damage) {
   return static_cast<std::int64_t>((damage.*Member)[Index]);
@@ -58,7 +69,8 @@ struct AddCell {
 std::vector<DamageColumn> identity_columns() {
   return {{"id", [](const Damage& d) -> DamageValue { return std::int64_t{d.id}; }},
           {"kind", [](const Damage& d) -> DamageValue { return std::string(name_of(d.kind)); }},
-          {"severity", [](const Damage& d) -> DamageValue { return std::string(name_of(severity_of(d))); }}};
+          {"severity", [](const Damage& d) -> DamageValue { return std::string(name_of(severity_of(d))); }},
+          {"confidence", [](const Damage& d) { return number(d.confidence); }}};
 }
 
 std::vector<DamageColumn> metric_columns() {
@@ -85,7 +97,11 @@ std::vector<DamageColumn> metric_columns() {
           {"road_x_m", metric_part<&M::road_centroid_m, 0>},
           {"road_y_m", metric_part<&M::road_centroid_m, 1>},
           {"distance_m", metric<&M::distance_m>},
-          {"resolvable_depth_m", metric<&M::resolvable_depth_m>}};
+          {"resolvable_depth_m", metric<&M::resolvable_depth_m>},
+          {"p_minor", probability<&SeverityProbabilities::minor>},
+          {"p_low", probability<&SeverityProbabilities::low>},
+          {"p_medium", probability<&SeverityProbabilities::medium>},
+          {"p_high", probability<&SeverityProbabilities::high>}};
 }
 
 std::vector<DamageColumn> pixel_columns() {
@@ -102,6 +118,11 @@ std::vector<DamageColumn> pixel_columns() {
           {"max_depth_px", [](const Damage& d) { return number(d.max_depth_px.value); }},
           {"max_depth_px_stderr", [](const Damage& d) { return number(d.max_depth_px.std_error); }},
           {"mean_depth_px", [](const Damage& d) { return number(d.mean_depth_px); }},
+          {"contrast_sigmas", evidence<&DamageEvidence::contrast_sigmas>},
+          {"significance", evidence<&DamageEvidence::significance>},
+          {"steepness", evidence<&DamageEvidence::steepness>},
+          {"road_share", evidence<&DamageEvidence::road_share>},
+          {"border_share", evidence<&DamageEvidence::border_share>},
           {"cut_by_border", [](const Damage& d) -> DamageValue { return d.cut_by_border; }}};
 }
 

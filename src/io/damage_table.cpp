@@ -39,6 +39,8 @@ std::string damages_json(const DamageMap& map) {
   document["noise_px"] = finite(map.noise_px);
   document["damages"] = Json::array();
   for (const Damage& damage : map.damages) document["damages"].push_back(damage_json(damage));
+  document["candidates"] = Json::array();
+  for (const Damage& candidate : map.candidates) document["candidates"].push_back(damage_json(candidate));
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

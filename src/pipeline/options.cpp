@@ -134,6 +134,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("damage.max_height_m", o.damage.max_height_m, "what rises higher is a kerb or a vehicle, metres");
   visit("damage.min_area_m2", o.damage.min_area_m2, "smallest damage on the road, square metres");
   visit("damage.min_area_share", o.damage.min_area_share, "... and without a calibration, share of the image");
+  visit("damage.min_confidence", o.damage.min_confidence, "minimum confidence of a damage; less is a candidate");
   visit("damage.protrusions", o.damage.protrusions, "find bumps, heave and debris as well");
 }
 

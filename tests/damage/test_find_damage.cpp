@@ -359,7 +359,7 @@ TEST(FindDamage, UncalibratedMapHasNoMetrics) {
   EXPECT_NE(map.non_metric_reason.find("calibration"), std::string::npos) << map.non_metric_reason;
   ASSERT_EQ(map.damages.size(), 2U);
   for (const Damage& damage : map.damages) EXPECT_FALSE(damage.metrics);
-  // Outlines are drawn 0.6 of the way up the wall where nothing says how deep a hollow really is.
+  // Outlines are drawn halfway up the wall where nothing says how deep a hollow really is.
   const synth::SyntheticPair& pair = damaged().pair;
   Image<std::uint16_t> deep = pair.labels;
   double floor_px = 0;
@@ -371,7 +371,7 @@ TEST(FindDamage, UncalibratedMapHasNoMetrics) {
   }
   for (int v = 0; v < deep.height(); ++v) {
     for (int u = 0; u < deep.width(); ++u) {
-      if (deep(u, v) == 1 && depth_px(u, v) < 0.55 * floor_px) deep(u, v) = 0;
+      if (deep(u, v) == 1 && depth_px(u, v) < 0.5 * floor_px) deep(u, v) = 0;
     }
   }
   EXPECT_GE(f_score(map.ids, find(map, pair, 1)->id, deep, 1), 0.93);

@@ -60,6 +60,7 @@ TEST(FindDamage, RejectsOptionsOutOfRange) {
   for (const double value : {0.001, 11.0, nan}) refuse("max_height_m", &DamageOptions::max_height_m, value);
   for (const double value : {-1.0, 1e5, nan}) refuse("min_area_m2", &DamageOptions::min_area_m2, value);
   for (const double value : {-0.1, 1.1, nan}) refuse("min_area_share", &DamageOptions::min_area_share, value);
+  for (const double value : {-0.1, 1.1, nan}) refuse("min_confidence", &DamageOptions::min_confidence, value);
 }
 
 }  // namespace

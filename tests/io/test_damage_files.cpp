@@ -90,7 +90,8 @@ const std::set<std::string> metric_names{
     "area_m2",   "area_m2_stderr", "max_depth_m",  "max_depth_m_stderr",  "mean_depth_m",
     "volume_m3", "length_m",       "width_m",      "mean_depth_m_stderr", "volume_m3_stderr",
     "angle_deg", "diameter_m",     "centroid_x_m", "centroid_y_m",        "centroid_z_m",
-    "road_x_m",  "road_y_m",       "distance_m",   "resolvable_depth_m"};
+    "road_x_m",  "road_y_m",       "distance_m",   "resolvable_depth_m",  "p_minor",
+    "p_low",     "p_medium",       "p_high"};
 
 TEST(DamageTables, HoldEveryFigure) {
   const TrueDamage truth = damage_from_truth(road());

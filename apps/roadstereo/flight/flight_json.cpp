@@ -39,8 +39,8 @@ Json frames_json(const FlightSummary& summary) {
 Json damages_json(const FlightSummary& summary, const io::FlightInventory& inventory, bool metric) {
   std::int64_t depressions = 0;
   Json severities = Json::object();
-  for (const Severity severity :
-       {Severity::high, Severity::medium, Severity::low, Severity::minor, Severity::unresolvable}) {
+  for (const Severity severity : {Severity::high, Severity::medium, Severity::low, Severity::minor, Severity::uncertain,
+                                  Severity::unresolvable}) {
     severities[name_of(severity)] = 0;
   }
   for (const io::RoadDamage& damage : inventory.damages()) {

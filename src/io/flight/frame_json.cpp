@@ -83,6 +83,23 @@ void each_field(PipelineState& state, Visit& visit) {
 }
 
 template <class Visit>
+void each_field(SeverityProbabilities& probabilities, Visit& visit) {
+  visit("minor", probabilities.minor);
+  visit("low", probabilities.low);
+  visit("medium", probabilities.medium);
+  visit("high", probabilities.high);
+}
+
+template <class Visit>
+void each_field(DamageEvidence& evidence, Visit& visit) {
+  visit("contrast_sigmas", evidence.contrast_sigmas);
+  visit("significance", evidence.significance);
+  visit("steepness", evidence.steepness);
+  visit("road_share", evidence.road_share);
+  visit("border_share", evidence.border_share);
+}
+
+template <class Visit>
 void each_field(DamageMetrics& metrics, Visit& visit) {
   visit("area_m2", metrics.area_m2);
   visit("max_depth_m", metrics.max_depth_m);
@@ -96,6 +113,7 @@ void each_field(DamageMetrics& metrics, Visit& visit) {
   visit("road_centroid_m", metrics.road_centroid_m);
   visit("distance_m", metrics.distance_m);
   visit("resolvable_depth_m", metrics.resolvable_depth_m);
+  visit("severity_probabilities", metrics.severity_probabilities);
   visit("severity", metrics.severity);
 }
 
@@ -110,6 +128,8 @@ void each_field(Damage& damage, Visit& visit) {
   visit("deepest_px", damage.deepest_px);
   visit("max_depth_px", damage.max_depth_px);
   visit("mean_depth_px", damage.mean_depth_px);
+  visit("confidence", damage.confidence);
+  visit("evidence", damage.evidence);
   visit("cut_by_border", damage.cut_by_border);
   visit("metrics", damage.metrics);
 }

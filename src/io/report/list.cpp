@@ -30,6 +30,7 @@ std::vector<Column> metric_columns() {
   return {{"#", "", id_cell},
           {"Kind", "", kind_cell},
           {"Severity", "", severity_cell},
+          {"Confidence", "%", [](const D& d) { return fixed_cell(100 * d.confidence, 0); }},
           {"Max depth", "mm", [](const D& d) { return measured_cell(scaled(d.metrics->max_depth_m, mm)); }},
           {"Mean depth", "mm", [](const D& d) { return measured_cell(scaled(d.metrics->mean_depth_m, mm)); }},
           {"Area", "m²", [](const D& d) { return measured_cell(d.metrics->area_m2); }},
@@ -48,6 +49,7 @@ std::vector<Column> pixel_columns() {
   using D = Damage;
   return {{"#", "", id_cell},
           {"Kind", "", kind_cell},
+          {"Confidence", "%", [](const D& d) { return fixed_cell(100 * d.confidence, 0); }},
           {"Max change", "px", [](const D& d) { return measured_cell(d.max_depth_px); }},
           {"Mean change", "px", [](const D& d) { return plain_cell(d.mean_depth_px); }},
           {"Size", "px", [](const D& d) { return fixed_cell(static_cast<double>(d.pixels), 0); }},

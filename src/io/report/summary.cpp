@@ -15,8 +15,8 @@ namespace {
 constexpr double mm = 1000;      // in a metre
 constexpr double litres = 1000;  // in a cubic metre
 
-constexpr std::array<Severity, 5> known_severities{Severity::high, Severity::medium, Severity::low, Severity::minor,
-                                                   Severity::unresolvable};
+constexpr std::array<Severity, 6> known_severities{Severity::high,  Severity::medium,    Severity::low,
+                                                   Severity::minor, Severity::uncertain, Severity::unresolvable};
 
 std::string card(const std::string& name, const std::string& value, const std::string& more) {
   return "<div class=\"card\"><div class=\"name\">" + escaped(name) + "</div><div class=\"value\">" + escaped(value) +

@@ -1,0 +1,208 @@
+// Confidence, severity from values with errors, and maps of any scale, offset, orientation and resolution.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "roadstereo/damage.hpp"
+#include "tests/damage/damage_checks.hpp"
+#include "tests/damage/damage_scene.hpp"
+
+namespace roadstereo {
+namespace {
+
+TEST(SeverityProbabilities, FollowNormalDistribution) {
+  // 30 ± 5 mm: Φ(−1) = 0.158655 below 25 mm, Φ(−3.4) = 0.000337 below 13 mm.
+  const SeverityProbabilities p = severity_probabilities({0.030, 0.005}, {0.3, 0});
+  EXPECT_NEAR(p.minor, 0.000337, 1e-6);
+  EXPECT_NEAR(p.low, 0.158655 - 0.000337, 1e-6);
+  EXPECT_NEAR(p.medium, 0.841345, 1e-6);
+  EXPECT_NEAR(p.high, 0, 1e-6);
+  EXPECT_EQ(likely_severity(p), Severity::medium);
+  // Both axes at a limit: a quarter for each of the four cells around (25 mm, 200 mm): low, low, low, medium.
+  const SeverityProbabilities corner = severity_probabilities({0.025, 0.001}, {0.2, 0.01});
+  EXPECT_NEAR(corner.low, 0.75, 1e-6);
+  EXPECT_NEAR(corner.medium, 0.25, 1e-6);
+  // 50 ± 1 mm and 450 ± 10 mm: medium or high below 450 mm, high above.
+  const SeverityProbabilities wide = severity_probabilities({0.050, 0.001}, {0.45, 0.01});
+  EXPECT_NEAR(wide.medium, 0.5, 1e-6);
+  EXPECT_NEAR(wide.high, 0.5, 1e-6);
+  EXPECT_EQ(likely_severity({0.25, 0.25, 0.25, 0.25}), Severity::uncertain);
+}
+
+TEST(SeverityProbabilities, WithoutErrorIsTable) {
+  for (const double depth : {0.01, 0.02, 0.03, 0.06}) {
+    for (const double diameter : {0.05, 0.15, 0.3, 0.6}) {
+      const SeverityProbabilities p = severity_probabilities({depth, 0}, {diameter, 0});
+      EXPECT_EQ(likely_severity(p), astm_severity(depth, diameter)) << depth << " " << diameter;
+      EXPECT_DOUBLE_EQ(p.minor + p.low + p.medium + p.high, 1);
+    }
+  }
+}
+
+TEST(DamageEvidence, ConfidenceIsLogistic) {
+  // −10.5 + 2.2·ln 100 + 0.6·3 + 2.6 = 4.0314; 1 / (1 + e^−4.0314) = 0.98256
+  EXPECT_NEAR((DamageEvidence{20, 100, 3, 1, 0}.confidence()), 0.98256, 1e-5);
+  const DamageEvidence sound{10, 40, 3, 1, 0};
+  EXPECT_GT(sound.confidence(), (DamageEvidence{10, 39, 3, 1, 0}.confidence()));
+  EXPECT_GT(sound.confidence(), (DamageEvidence{10, 40, 2.9, 1, 0}.confidence()));
+  EXPECT_GT(sound.confidence(), (DamageEvidence{10, 40, 3, 0.9, 0}.confidence()));
+  EXPECT_GT(sound.confidence(), (DamageEvidence{10, 40, 3, 1, 0.1}.confidence()));
+}
+
+TEST(DamageEvidence, DeepCompactRegionIsNeverVetoed) {
+  EXPECT_GT((DamageEvidence{20, 150, 2.5, 0.3, 0}.confidence()), 0.9);
+  EXPECT_LT((DamageEvidence{2, 6, 2, 1, 0}.confidence()), 0.1) << "as shallow as its surroundings are rough";
+  EXPECT_LT((DamageEvidence{2, 8, 5, 0.1, 0}.confidence()), 0.1) << "beside the road";
+}
+
+/// Map without a calibration.
+DamageMap find_in(const Image<float>& transformed, const DamageOptions& options = {}) {
+  DamageInput input;
+  input.transformed = transformed;
+  return find_damage(input, options);
+}
+
+using Position = std::array<int, 2>;
+
+/// Map whose pixel (u, v) has the value at `source(u, v)`.
+Image<float> resampled(const Image<float>& map, int width, int height,
+                       const std::function<Position(int, int)>& source) {
+  Image<float> result(width, height);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const auto [from_u, from_v] = source(u, v);
+      result(u, v) = map(from_u, from_v);
+    }
+  }
+  return result;
+}
+
+/// F of all damages of `found` against those of `expected`, whose position (u, v) is `source(u, v)`.
+double overlap(const DamageMap& found, const DamageMap& expected, const std::function<Position(int, int)>& source) {
+  double both = 0, one = 0;
+  for (int v = 0; v < found.ids.height(); ++v) {
+    for (int u = 0; u < found.ids.width(); ++u) {
+      const auto [from_u, from_v] = source(u, v);
+      const bool here = found.ids(u, v) != 0, there = expected.ids(from_u, from_v) != 0;
+      both += here && there ? 2 : 0;
+      one += (here ? 1 : 0) + (there ? 1 : 0);
+    }
+  }
+  return both / one;
+}
+
+TEST(FindDamage, ScaleAndOffsetHaveNoEffect) {
+  const DamageMap map = find_in(damaged().transformed);
+  ASSERT_EQ(map.damages.size(), 2U);
+  for (const float scale : {0.1F, 0.5F, 2.0F, 10.0F}) {
+    Image<float> changed = damaged().transformed;
+    for (int v = 0; v < changed.height(); ++v) {
+      for (int u = 0; u < changed.width(); ++u) changed(u, v) = scale * changed(u, v) + 7;
+    }
+    const DamageMap other = find_in(changed);
+    ASSERT_EQ(other.damages.size(), 2U) << scale;
+    EXPECT_GE(overlap(other, map, [](int u, int v) { return Position{u, v}; }), 0.999) << scale;
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_NEAR(other.damages[k].confidence, map.damages[k].confidence, 0.01) << scale;
+    }
+  }
+}
+
+TEST(FindDamage, OrientationCropAndResolutionGiveSameRegions) {
+  const DamageMap map = find_in(damaged().transformed);
+  const auto check = [&](const char* name, int width, int height, const std::function<Position(int, int)>& source,
+                         double min_overlap) {
+    const DamageMap other = find_in(resampled(damaged().transformed, width, height, source));
+    EXPECT_EQ(other.damages.size(), map.damages.size()) << name;
+    EXPECT_GE(overlap(other, map, source), min_overlap) << name;
+  };
+  check(
+      "mirrored", 640, 360,
+      [](int u, int v) {
+        return Position{639 - u, v};
+      },
+      0.98);
+  check(
+      "upside down", 640, 360,
+      [](int u, int v) {
+        return Position{u, 359 - v};
+      },
+      0.98);
+  check(
+      "cropped", 600, 340,
+      [](int u, int v) {
+        return Position{u + 21, v + 11};
+      },
+      0.97);
+  check(
+      "half size", 320, 180,
+      [](int u, int v) {
+        return Position{2 * u, 2 * v};
+      },
+      0.95);
+}
+
+/// A hole of 24 noise deviations in which a third of the pixels has no value and the others scatter between the road
+/// and twice the depth, as where matching fails on its walls.
+TEST(FindDamage, RaggedHoleIsFoundToItsRim) {
+  constexpr int width = 640, height = 360, radius = 40;
+  const auto is_inside = [](int u, int v) { return std::hypot(u - 400.0, v - 210.0) <= radius; };
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> share(0, 1);
+  Image<float> map = with_noise(Image<float>(width, height, 30.0F), 1);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      if (!is_inside(u, v)) continue;
+      const float depth = 48 * share(random);
+      map(u, v) = share(random) < 1.0F / 3 ? std::numeric_limits<float>::quiet_NaN() : map(u, v) - depth;
+    }
+  }
+  const DamageMap found = find_in(map);
+  ASSERT_EQ(found.damages.size(), 1U);
+  EXPECT_GT(found.damages[0].confidence, 0.9);
+  double both = 0, one = 0;
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      both += found.ids(u, v) != 0 && is_inside(u, v) ? 2 : 0;
+      one += (found.ids(u, v) != 0 ? 1 : 0) + (is_inside(u, v) ? 1 : 0);
+    }
+  }
+  EXPECT_GE(both / one, 0.9);
+}
+
+TEST(FindDamage, CandidatesAreNotCounted) {
+  DamageOptions options;
+  options.min_confidence = 1;
+  const DamageMap none = find_damage(damaged().metric(), options);
+  EXPECT_TRUE(none.damages.empty());
+  ASSERT_EQ(none.candidates.size(), 2U);
+  EXPECT_EQ(none.ids, Image<std::uint16_t>(640, 360, 0));
+  EXPECT_GT(none.candidates[0].confidence, 0.9);
+  options.min_confidence = 0;
+  const DamageMap all = find_damage(damaged().metric(), options);
+  EXPECT_GE(all.damages.size(), 2U);
+  EXPECT_TRUE(all.candidates.empty());
+  for (const Damage& damage : all.damages)
+    EXPECT_LE(damage.metrics->mean_depth_m.value, damage.metrics->max_depth_m.value);
+}
+
+/// A depth below three of its standard errors is unresolvable, whatever its confidence.
+TEST(FindDamage, UnresolvableDepthIsCandidate) {
+  const Image<float> sigma(640, 360, 0.9F);  // the pothole is some 2.4 px deep
+  DamageInput input = damaged().metric();
+  input.sigma = sigma;
+  const DamageMap map = find_damage(input);
+  EXPECT_TRUE(map.damages.empty());
+  ASSERT_FALSE(map.candidates.empty());
+  for (const Damage& candidate : map.candidates) {
+    EXPECT_EQ(candidate.metrics->severity, Severity::unresolvable);
+    EXPECT_LT(candidate.metrics->max_depth_m.value, 3 * candidate.metrics->max_depth_m.std_error);
+  }
+}
+
+}  // namespace
+}  // namespace roadstereo
