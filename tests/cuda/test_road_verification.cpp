@@ -47,8 +47,8 @@ RoadModelEstimate verify_on_device(RoadVerification& verification, const Pair& p
   verification.run(left.view(), right.view(), {nullptr, {previous.a0, previous.a1, previous.a2}}, options.with_roll,
                    nullptr);
   ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
-  return assess_road_verification(verification.statistics(), {previous, last_share}, pair.left.width(), pair.left.height(),
-                                  pair.calibration, options);
+  return assess_road_verification(verification.statistics(), {previous, last_share}, pair.left.width(),
+                                  pair.left.height(), pair.calibration, options);
 }
 
 void expect_same(const RoadModelEstimate& device, const RoadModelEstimate& host, const Pair& pair) {

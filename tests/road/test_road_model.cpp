@@ -69,8 +69,8 @@ TEST(DisparityPlane, CarriesOverToNextFrame) {
       estimate_road_model(first.left, first.right, first.truth.calibration, RoadModelOptions{});
   ASSERT_TRUE(start.reliable);
   const Pair second = render_pair(synth::next_frame(scene("uav"), 1));
-  const RoadModelEstimate next =
-      verify_road_model(second.left, second.right, {start.model, start.inlier_share}, second.truth.calibration, RoadModelOptions{});
+  const RoadModelEstimate next = verify_road_model(second.left, second.right, {start.model, start.inlier_share},
+                                                   second.truth.calibration, RoadModelOptions{});
   EXPECT_TRUE(next.reliable) << next.reason;
   EXPECT_TRUE(next.tracked);
   EXPECT_LT(worst_difference(next.model, second.truth), 0.5);

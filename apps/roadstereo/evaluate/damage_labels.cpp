@@ -6,9 +6,9 @@
 #include <map>
 
 #include "evaluate/label_regions.hpp"
-#include "mask_file.hpp"
 #include "evaluate/scan_frames.hpp"
 #include "map_source.hpp"
+#include "mask_file.hpp"
 #include "roadstereo/damage.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"

@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "evaluate/experiments.hpp"
-#include "mask_file.hpp"
 #include "evaluate/methods.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/scan_frames.hpp"
@@ -15,6 +14,7 @@
 #include "evaluate/scan_sheet.hpp"
 #include "evaluate/table.hpp"
 #include "evaluation/picture_sheet.hpp"
+#include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {

@@ -7,9 +7,9 @@
 
 #include "evaluate/error_map.hpp"
 #include "evaluate/experiments.hpp"
-#include "mask_file.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/score_columns.hpp"
+#include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/io/pictures.hpp"

@@ -86,7 +86,8 @@ void FlightInventory::remember(const std::vector<Sighting>& sightings) {
 
 std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
   ++sequence_;
-  if (frame.status == FrameStatus::good && frame.road_status != RoadStatus::tracked) recent_.clear();  // tracking was lost
+  if (frame.status == FrameStatus::good && frame.road_status != RoadStatus::tracked)
+    recent_.clear();  // tracking was lost
   std::vector<std::int64_t> ids;
   std::vector<Sighting> sightings;
   for (const Damage& damage : frame.damages) {
