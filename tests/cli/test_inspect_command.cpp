@@ -277,17 +277,16 @@ TEST_F(InspectCommand, KeepsInputsInOutputFolder) {
 
 TEST_F(InspectCommand, InterruptedLeavesNoFiles) {
   make_road();
-  const auto before = names_in(folder_);
+  std::set<std::string> without_clouds = result_files;
+  for (const char* cloud : {"cloud.ply", "road_cloud.ply"}) without_clouds.erase(cloud);
   for (const char* delay : {"0.05", "0.1", "0.2", "0.3", "0.4", "0.5", "0.7", "1"}) {
     for (const char* signal : {"INT", "TERM"}) {
       // A child of a script ignores INT unless it is told not to.
       run("inspect road/left.png road/right.png --output result --preset fast",
           std::string("env --default-signal=INT timeout -s ") + signal + " " + delay);
-      const auto names = names_in(folder_);
-      if (names == before) continue;
-      EXPECT_EQ(names_in(folder_ / "result").count("result.json"), 1U) << "finished";
-      for (const std::string& name : names_in(folder_ / "result")) EXPECT_NE(name[0], '.') << name;
-      fs::remove_all(folder_ / "result");
+      const fs::path result = folder_ / "result";
+      if (fs::exists(result) && !fs::is_empty(result)) EXPECT_EQ(names_in(result), without_clouds) << "finished";
+      fs::remove_all(result);
     }
   }
 }
