@@ -106,7 +106,8 @@ std::optional<fs::path> times_file(const fs::path& folder, const fs::path& left)
   return std::nullopt;
 }
 
-/// Assigns the times to the left images in order. A pair without a left image has none; one without a time is unfinished.
+/// Assigns the times to the left images in order. A pair without a left image has none; one without a time is
+/// unfinished.
 void set_times(std::vector<ImagePair>& pairs, const std::vector<double>& times) {
   auto time = times.begin();
   for (ImagePair& pair : pairs) {
