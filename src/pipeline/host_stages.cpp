@@ -38,6 +38,8 @@ class HostStages final : public FrameStages {
  public:
   HostStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
       : options_(options),
+        sampled_(options.matcher),
+        samples_(effective_samples(options.matcher)),
         calibration_(calibration),
         threads_(resolve_threads(options.threads)),
         engine_(make_engine(options.engine, options.threads)) {
@@ -82,7 +84,7 @@ class HostStages final : public FrameStages {
 
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
     engine_->match(input, options, matched_);
-    return {matched_.disparity, matched_.variance, effective_samples(options)};
+    return {matched_.disparity, matched_.variance, samples_of(options)};
   }
 
   DisparityMaps restore_disparity(const ResidualMaps& residual, const PerspectiveShift& shift) override {
@@ -130,7 +132,18 @@ class HostStages final : public FrameStages {
     fail("only a pipeline with the engine cuda keeps its maps on a device");
   }
 
+  /// effective_samples, computed where the options have changed only.
+  double samples_of(const MatcherOptions& options) {
+    if (!(options == sampled_)) {
+      sampled_ = options;
+      samples_ = effective_samples(options);
+    }
+    return samples_;
+  }
+
   PipelineOptions options_;
+  MatcherOptions sampled_;
+  double samples_;
   std::optional<StereoCalibration> calibration_;
   int threads_;
   std::unique_ptr<StereoEngine> engine_;

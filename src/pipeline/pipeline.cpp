@@ -238,6 +238,7 @@ void Pipeline::State::download() {
 /// Sets the total time and the state that the next frame starts from.
 void Pipeline::State::end_frame() {
   result.ms.total = ms_since(begin);
+  result.mask = mask;
   carried.width = width;
   carried.height = height;
   carried.road.reset();
@@ -307,6 +308,27 @@ DamageMap find_damage(const FrameResult& frame, const std::optional<StereoCalibr
   return result;
 }
 
+namespace {
+
+/// Removes the ids of masked pixels, and damages that have half of their pixels or fewer left: what a damage has in a
+/// mask was interpolated.
+void remove_masked(const Image<std::uint8_t>& mask, DamageMap& map) {
+  std::vector<std::size_t> masked(map.damages.size() + 1);
+  for (int v = 0; v < mask.height(); ++v) {
+    for (int u = 0; u < mask.width(); ++u) {
+      if (mask(u, v) == 0 || map.ids(u, v) == 0) continue;
+      ++masked[map.ids(u, v)];
+      map.ids(u, v) = 0;
+    }
+  }
+  std::erase_if(map.damages, [&](const Damage& damage) {
+    const std::size_t pixels = damage.pixels - masked[static_cast<std::size_t>(damage.id)];
+    return 2 * pixels <= damage.pixels;
+  });
+}
+
+}  // namespace
+
 void find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
                  const DamageOptions& options, int threads, DamageMap& result) {
   if (frame.disparity.empty()) {
@@ -324,6 +346,7 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
   input.plane = frame.geometry.plane;
   input.calibration = calibration;
   find_damage(input, options, threads, result);
+  remove_masked(frame.mask, result);
 }
 
 const PipelineState& Pipeline::carried() const {

@@ -12,7 +12,6 @@
 #include "core/parallel.hpp"
 #include "road/block_alignment.hpp"
 #include "road/plane_fit.hpp"
-#include "road/road_search.hpp"
 #include "road/strip_correlation.hpp"
 
 namespace roadstereo {
@@ -176,11 +175,19 @@ std::vector<double> measure_cells(const Pyramid& pair, int cell_v) {
   return offsets;
 }
 
+/// Power of two that leaves between 120 and 240 columns: the search over all disparities fits into a strip.
+int alignment_factor(int width) {
+  constexpr int min_width = 120;
+  int factor = 1;
+  while (width / (2 * factor) >= min_width) factor *= 2;
+  return factor;
+}
+
 }  // namespace
 
 RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                    int threads) {
-  const int factor = coarse_factor(left.width(), left.height());
+  const int factor = alignment_factor(left.width());
   const Pyramid pair{left, right, factor, downsample(left, factor), downsample(right, factor)};
   std::vector<std::vector<double>> by_row(cells_down);
   parallel_for(cells_down, threads,

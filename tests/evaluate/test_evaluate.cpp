@@ -63,7 +63,7 @@ TEST_F(EvaluateScore, MatchesExampleByHand) {
   EXPECT_NEAR(score["e_p_or_missing_1px_percent"], 52.5, 1e-6);
   EXPECT_NEAR(score["e_p_or_missing_3px_percent"], 2.5, 1e-6);
   EXPECT_NE(outcome.out.find("1209 of 1240"), std::string::npos) << outcome.out;
-  EXPECT_GE(io::read_frame((folder_ / "score.png").string()).width, 640);
+  EXPECT_GT(io::read_frame((folder_ / "score.png").string()).width, 2 * 40);  // maps of 40 columns side by side
 }
 
 TEST_F(EvaluateScore, CountsMaskOnly) {

@@ -273,7 +273,7 @@ TEST(DamageReport, HasNoExternalReferences) {
   EXPECT_EQ(occurrences(html, "href=\""), occurrences(html, "href=\"data:") + occurrences(html, "href=\"#damage-"));
   EXPECT_EQ(occurrences(html, "<canvas"), 3U);
   EXPECT_EQ(occurrences(html, "class=\"damage\""), 3U);
-  EXPECT_EQ(occurrences(html, "aria-sort"), 15U + occurrences(html, "\"aria-sort\"") + 2U);  // heads; script; style
+  EXPECT_EQ(occurrences(html, "aria-sort"), 16U + occurrences(html, "\"aria-sort\"") + 2U);  // heads; script; style
 }
 
 TEST(DamageReport, ShowsFiguresWithStandardErrors) {

@@ -166,7 +166,7 @@ TEST(FlightTables, QuotesCommasAndLeavesUnknownEmpty) {
   frame.status = FrameStatus::rejected;
   frame.reason = "no \"right\" image";
   const std::string row = frames_csv_row(frame);
-  EXPECT_EQ(row.substr(0, 16), "3,\"a,b\",,rejected");
+  EXPECT_EQ(row.substr(0, 17), "3,\"a,b\",,rejected");
   EXPECT_NE(row.find("\"no \"\"right\"\" image\"\r\n"), std::string::npos) << row;
   const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
   EXPECT_EQ(commas(row), commas(frames_csv_names()) + 1);  // the one in the name
