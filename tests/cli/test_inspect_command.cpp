@@ -281,9 +281,10 @@ TEST_F(InspectCommand, InterruptedLeavesNoFiles) {
   for (const char* cloud : {"cloud.ply", "road_cloud.ply"}) without_clouds.erase(cloud);
   for (const char* delay : {"0.05", "0.1", "0.2", "0.3", "0.4", "0.5", "0.7", "1"}) {
     for (const char* signal : {"INT", "TERM"}) {
-      // A child of a script ignores INT unless it is told not to.
+      // A child of a script ignores INT unless it is told not to. Without --foreground `timeout` sends the signal
+      // twice.
       run("inspect road/left.png road/right.png --output result --preset fast",
-          std::string("env --default-signal=INT timeout -s ") + signal + " " + delay);
+          std::string("env --default-signal=INT timeout --foreground -s ") + signal + " " + delay);
       const fs::path result = folder_ / "result";
       if (fs::exists(result) && !fs::is_empty(result)) {
         EXPECT_EQ(names_in(result), without_clouds) << "finished";
