@@ -217,16 +217,16 @@ asio::awaitable<bool> HttpServer::State::serve_next(beast::tcp_stream& stream, b
     }
     if (refused) {
       // A value of its own: GCC 12 destroys temporaries of a co_await expression twice.
-      HttpAnswer answer;
-      answer.status = static_cast<int>(*refused);
-      const Response response = response_of(std::move(answer), false);
+      HttpAnswer refusal;
+      refusal.status = static_cast<int>(*refused);
+      const Response response = response_of(std::move(refusal), false);
       co_await write_last(stream, response);
       co_return false;
     }
   }
   const bool keep = head.keep_alive() && head.is_done();  // a body is not read
-  HttpAnswer answer = co_await answer_on_thread(head.request());
-  const Response response = response_of(std::move(answer), keep);
+  HttpAnswer made = co_await answer_on_thread(head.request());
+  const Response response = response_of(std::move(made), keep);
   stream.expires_after(clock_span(answer_timeout_s));
   if (keep) {
     co_await http::async_write(stream, response, use_awaitable);
