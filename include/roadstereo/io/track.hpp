@@ -55,8 +55,8 @@ class Track {
 };
 
 /// Reads a track; the format is recognised by content, not by name:
-///   GPX 1.0, 1.1   all trkpt with <time> (UTC if it has no zone), <ele>, and <course>, <heading> or <yaw>, also
-///                  within <extensions>; segments may be in any order
+///   GPX 1.0, 1.1   all trkpt with time (UTC if it has no zone), ele, and course, heading or yaw, also
+///                  within extensions; segments may be in any order
 ///   CSV            header line, then values; separated by commas, semicolons or tabs. Columns in any order:
 ///                  time, timestamp, time_s, time_utc, datetime, utc: Unix seconds, or ISO 8601 with a zone
 ///                  lat, latitude, lat_deg; lon, lng, long, longitude, lon_deg: degrees; both empty: no fix, skipped
