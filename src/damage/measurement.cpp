@@ -126,13 +126,13 @@ void separate_candidates(const DamageOptions& options, DamageMap& result) {
     const bool is_damage =
         options.min_confidence == 0 || (damage.confidence >= options.min_confidence && is_resolvable(damage));
     if (!is_damage) {
-      result.candidates.push_back(std::move(damage));
+      result.candidates.push_back(damage);
       continue;
     }
     const std::size_t id = result.damages.size() + 1;
     new_id[static_cast<std::size_t>(damage.id)] = static_cast<std::uint16_t>(id);
     damage.id = static_cast<int>(id);
-    result.damages.push_back(std::move(damage));
+    result.damages.push_back(damage);
   }
   int id = static_cast<int>(result.damages.size());
   for (Damage& candidate : result.candidates) candidate.id = ++id;
