@@ -188,7 +188,8 @@ TEST_F(DamageCommand, InspectWritesDamageAndClouds) {
   ASSERT_NE(line, std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("mm", line), std::string::npos) << outcome.out;
   const auto damages = nlohmann::json::parse(read_text(folder_ / "out" / "damages.json"));
-  EXPECT_GE(damages["damages"].size(), 3U);  // two potholes and a bump; cracks are narrow
+  EXPECT_GE(damages["damages"].size(), 2U);                                 // two potholes
+  EXPECT_GE(damages["damages"].size() + damages["candidates"].size(), 3U);  // and a bump; cracks are narrow
   const io::PointCloud cloud = io::read_ply((folder_ / "out" / "road_cloud.ply").string());
   ASSERT_GT(cloud.points.size(), 100'000U);
   std::vector<float> heights;
