@@ -38,6 +38,7 @@ PipelineOptions paper_preset() {
 PipelineOptions fast_preset() {
   PipelineOptions options;
   options.coarse_search.factor = 4;
+  options.matcher.adapt_support = false;  // its block is large already
   options.matcher.reject_range_boundary = true;
   options.matcher.occlusion_sigma_px = 0;
   options.matcher.block_radius = 5;

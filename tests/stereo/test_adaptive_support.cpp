@@ -36,8 +36,10 @@ TEST(AdaptiveSupport, LeavesOptionsWithoutNoiseOrKnowledge) {
   const MatcherOptions options;
   EXPECT_EQ(adapt_support(options, 0).block_radius, options.block_radius);
   EXPECT_EQ(adapt_support(options, 0.95).prior_weight, options.prior_weight);
-  const MatcherOptions paper = preset("paper").matcher;
-  EXPECT_EQ(adapt_support(paper, 0.3).block_radius, paper.block_radius);
+  for (const char* name : {"paper", "fast"}) {
+    const MatcherOptions fixed = preset(name).matcher;
+    EXPECT_EQ(adapt_support(fixed, 0.3).block_radius, fixed.block_radius) << name;
+  }
 }
 
 }  // namespace
