@@ -180,7 +180,7 @@ double longest_wait_s(int port, int requests) {
   return longest;
 }
 
-TEST(HttpServer, ViewerIsServedAmongStrangersThreads) {
+TEST(HttpServer, ViewerIsServedAmongStrangersThreadsSlow) {
   const Bench bench;
   std::vector<std::unique_ptr<RawClient>> strangers;
   for (int i = 0; i < 500; ++i) strangers.push_back(std::make_unique<RawClient>(bench.server.port()));
