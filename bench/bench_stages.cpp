@@ -37,7 +37,7 @@ struct Frame {
     to_grey(pair.left.view(), 0, left);
     to_grey(pair.right.view(), 0, right);
     road.model = pair.plane;
-    road.reliable = true;
+    road.status = RoadStatus::found;
     PerspectiveOptions options;
     options.disparities = disparities;
     shift = plan_perspective(road, pair.calibration, width, height, options);

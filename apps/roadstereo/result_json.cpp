@@ -50,10 +50,10 @@ Json estimate_json(const RoadModelEstimate& road) {
   estimate["evidence"] = json_number(road.evidence);
   estimate["inlier_share"] = json_number(road.inlier_share);
   estimate["correlation"] = json_number(road.correlation);
-  estimate["model"] = road.reliable ? model_json(road.model) : Json(nullptr);
+  estimate["model"] = road.has_road() ? model_json(road.model) : Json(nullptr);
   estimate["matches"] = road.matches;
   estimate["inliers"] = road.inliers;
-  estimate["residual_px"] = road.reliable ? json_number(road.residual_px) : Json(nullptr);
+  estimate["residual_px"] = road.has_road() ? json_number(road.residual_px) : Json(nullptr);
   return estimate;
 }
 

@@ -40,9 +40,7 @@ const char* name_of(RoadStatus status);
 struct RoadModelEstimate {
   DisparityPlane model;
   RoadStatus status = RoadStatus::none;
-  bool reliable = false;        ///< the status is not `none`: the pair is transformed by `model`
-  bool tracked = false;         ///< the last frame's model was tried
-  std::string reason;           ///< why there is no road; empty when reliable
+  std::string reason;           ///< why there is no road; empty when there is one
   double evidence = 0;          ///< mean evidence for the plane per pixel, about 0 … 2; 0 when tracked
   double inlier_share = 0;      ///< share of the textured samples below the horizon that the plane explains, 0 … 1
   double correlation = 0;       ///< 10th percentile of the NCC of blocks on the road, 0.3 … 1; 0 when unknown
@@ -52,6 +50,8 @@ struct RoadModelEstimate {
   double residual_p01_px = 0;   ///< 1st percentile of the residuals of the correspondences near the road, pixels
   double residual_p99_px = 0;   ///< 99th percentile of the same, pixels
   double max_disparity_px = 0;  ///< 99th percentile of all correspondences, for a search without a model
+
+  bool has_road() const { return status != RoadStatus::none; }
 };
 
 /// Finds the road from the images alone: the plane with the most evidence over all pixels of the downsampled pair, then
@@ -71,7 +71,7 @@ struct TrackedRoad {
   double correlation = 0;   ///< RoadModelEstimate::correlation; of the pair in which the road was found
 };
 
-/// Tracks the last frame's road: searches around `previous` and refits. `reliable` is false when the road explains far
+/// Tracks the last frame's road: searches around `previous` and refits. The status is `none` when the road explains far
 /// less of this pair than of the last one, or has moved farther than the search can see. `mask` as above.
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                     const TrackedRoad& previous, const std::optional<StereoCalibration>& calibration,

@@ -116,20 +116,20 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   if (carried.road) {
     result.road = stages->verify_road_model(pair, *carried.road);
     result.road.correlation = carried.road->correlation;
-    if (result.road.reliable) return;
+    if (result.road.has_road()) return;
     result.warnings.push_back(format_message("the road model was estimated anew: ", result.road.reason));
   }
   const GreyPair grey = stages->on_host(pair);
   result.road =
       roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, pair.mask);
-  if (!result.road.reliable) {
+  if (!result.road.has_road()) {
     result.warnings.push_back(format_message("no road was found (", result.road.reason,
                                              "): matched without perspective transformation over the full range"));
   } else if (result.road.status == RoadStatus::weak) {
     result.warnings.push_back(format_message("the road is weak: the evidence for it is ", result.road.evidence,
                                              " per pixel, less than ", options.road_model.weak_evidence));
   }
-  if (result.road.reliable) {
+  if (result.road.has_road()) {
     const std::string disagreement = RigPrior(options.road_model, calibration).disagreement(result.road.model);
     if (!disagreement.empty()) result.warnings.push_back(disagreement);
   }
@@ -204,7 +204,7 @@ void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
   // Of a pair without a road nothing is told but its disparities.
   constexpr double min_valid_share = 0.01, never = 2;
   const StageTimer timer(result.ms.roll);
-  const bool has_road = result.road.status != RoadStatus::none;
+  const bool has_road = result.road.has_road();
   const auto prior = has_road ? std::optional(result.road.model) : std::nullopt;
   const RollFit fit =
       stages->estimate_roll(disparity, prior, carried.roll_rad, has_road ? min_valid_share : never, result.shift);
@@ -242,7 +242,7 @@ void Pipeline::State::end_frame() {
   carried.width = width;
   carried.height = height;
   carried.road.reset();
-  if (result.road.reliable) {
+  if (result.road.has_road()) {
     carried.road = TrackedRoad{result.road.model, result.road.inlier_share, result.road.correlation};
   }
   carried.roll_rad = result.roll_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;

@@ -110,7 +110,7 @@ PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::opti
                                   int width, int height, const PerspectiveOptions& options) {
   PerspectiveShift shift;
   shift.whole_pixel = options.shift == ShiftPrecision::whole_pixel;
-  shift.enabled = options.enabled && road.reliable;
+  shift.enabled = options.enabled && road.has_road();
   if (!shift.enabled) {
     shift.disparities = options.disparities > 0 ? options.disparities : full_range(road, width);
     return shift;

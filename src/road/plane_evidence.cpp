@@ -252,32 +252,4 @@ ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const 
   return planes;
 }
 
-PlaneEvidence measure_evidence(const CoarseMatches& coarse, const DisparityPlane& plane) {
-  PlaneEvidence result;
-  const EvidenceGrid grid(coarse);
-  const double factor = coarse.factor;
-  double possible = 0, beyond = 0, pixels = 0;
-  for (int r = 0; r < grid.rows(); ++r) {
-    for (int c = 0; c < grid.columns(); ++c) {
-      const double u = to_full_resolution(grid.column(c), coarse.factor),
-                   v = to_full_resolution(grid.row(r), coarse.factor);
-      const double d = plane.disparity(u, v) / factor;
-      if (d <= 1 || d >= grid.disparities() - 1) continue;
-      const int whole = static_cast<int>(d);
-      const double share = d - whole;
-      const float *support = coarse.evidence.support(r, c), *below = coarse.evidence.beyond(r, c);
-      const double here = (1 - share) * support[whole] + share * support[whole + 1];
-      const double best = *std::max_element(support, support + grid.disparities());
-      result.support += std::max(0.0, here);
-      possible += std::max(0.0, best);
-      beyond += below[std::max(0, whole - 2)];
-      pixels += best > 0 ? 1 : 0;
-      result.score += here;
-    }
-  }
-  result.explained = possible > 0 ? result.support / possible : 0;
-  result.beyond = pixels > 0 ? beyond / (pixels * evidence_columns * evidence_rows) : 0;
-  return result;
-}
-
 }  // namespace roadstereo

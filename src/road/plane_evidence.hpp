@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 #include "core/scratch.hpp"
 #include "road/coarse_match.hpp"
 #include "road/rig_prior.hpp"
@@ -22,15 +20,5 @@ struct PlaneHypothesis {
 /// `max_planes`, and none of them nearly equal. `limit` rejects walls, `prior` weighs the score in that order.
 ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const TiltLimit& limit, const RigPrior& prior,
                                              int max_planes, int threads);
-
-/// How much of the picture a plane explains.
-struct PlaneEvidence {
-  double score = 0;      ///< as in the search
-  double explained = 0;  ///< support along the plane as a share of the best support of each cell that should see it
-  double beyond = 0;     ///< share of the evidence of those cells that lies beyond the plane
-  double support = 0;    ///< sum of the support along the plane, in well supported pixels of the downsampled image
-};
-
-PlaneEvidence measure_evidence(const CoarseMatches& coarse, const DisparityPlane& plane);
 
 }  // namespace roadstereo

@@ -1,7 +1,6 @@
 #include "road/plane_fit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -91,78 +90,55 @@ std::optional<DisparityPlane> plane_through(const DisparityPoint& a, const Dispa
 
 namespace {
 
-/// Points drawn to judge planes, in groups, and the most that those behind a group can add.
+/// Scores planes by points in groups, and stops where the rest cannot make one the best.
 class PreemptiveScorer {
  public:
-  PreemptiveScorer(PlaneScore votes, ScratchVector<DisparityPoint> points) : votes_(votes), points_(std::move(points)) {
-    double rest = 0;
-    for (std::size_t group = groups; group-- > 0;) {
-      rest_[group] = rest;
-      for (const DisparityPoint& p : of_group(group)) rest += votes_({&p, 1}, DisparityPlane{p.d, 0, 0});
-    }
-  }
+  PreemptiveScorer(ScratchVector<DisparityPoint> points, double tolerance_px)
+      : points_(std::move(points)), tolerance_px_(tolerance_px) {}
 
-  /// All votes for the plane; some smaller number than `least` when there cannot be as many.
-  double judge(const DisparityPlane& plane, double least) const {
-    double score = 0;
-    for (std::size_t group = 0; group < groups; ++group) {
-      score += votes_(of_group(group), plane);
-      if (score + rest_[group] < least) break;
+  /// Score of the plane; some number up to `least` when it cannot be higher.
+  double score(const DisparityPlane& plane, double least) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (i % group == 0 && sum + static_cast<double>(points_.size() - i) <= least) break;  // a point adds at most 1
+      const double x = (points_[i].d - plane.disparity(points_[i].u, points_[i].v)) / tolerance_px_;
+      sum += std::max(0.0, 1 - x * x);
     }
-    return score;
+    return sum;
   }
 
  private:
-  static constexpr std::size_t groups = 16;
+  static constexpr std::size_t group = 25;
 
-  std::span<const DisparityPoint> of_group(std::size_t group) const {
-    const std::size_t first = group * points_.size() / groups, last = (group + 1) * points_.size() / groups;
-    return std::span(points_).subspan(first, last - first);
-  }
-
-  PlaneScore votes_;
   ScratchVector<DisparityPoint> points_;
-  std::array<double, groups> rest_{};
+  double tolerance_px_;
 };
 
 }  // namespace
 
-std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, PlaneScore votes,
-                                           FunctionRef<bool(const DisparityPlane&)> possible) {
-  constexpr int trials = 300;
-  constexpr std::size_t voters = 400;
+std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, double tolerance_px) {
+  constexpr int iterations = 300;
+  constexpr std::size_t samples = 400;
   if (points.size() < 3) return std::nullopt;
   Sampler sampler;
   const auto draw = [&]() -> const DisparityPoint& { return points[sampler.below(points.size())]; };
   auto drawn = scratch_vector<DisparityPoint>();
-  drawn.reserve(voters);
-  for (std::size_t i = 0; i < voters; ++i) drawn.push_back(draw());
-  const PreemptiveScorer jury(votes, std::move(drawn));
+  drawn.reserve(samples);
+  for (std::size_t i = 0; i < samples; ++i) drawn.push_back(draw());
+  const PreemptiveScorer scorer(std::move(drawn), tolerance_px);
   std::optional<DisparityPlane> best;
   double best_score = 0;
-  for (int trial = 0; trial < trials; ++trial) {
+  for (int i = 0; i < iterations; ++i) {
     const DisparityPoint &a = draw(), &b = draw(), &c = draw();
     const auto plane = plane_through(a, b, c);
-    if (!plane || !possible(*plane)) continue;
-    const double score = jury.judge(*plane, best_score);
+    if (!plane) continue;
+    const double score = scorer.score(*plane, best_score);
     if (score > best_score) {
       best_score = score;
       best = plane;
     }
   }
   return best;
-}
-
-std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, double tolerance_px) {
-  const auto votes = [tolerance_px](std::span<const DisparityPoint> voters, const DisparityPlane& plane) {
-    double sum = 0;
-    for (const DisparityPoint& p : voters) {
-      const double x = (p.d - plane.disparity(p.u, p.v)) / tolerance_px;
-      sum += std::max(0.0, 1 - x * x);
-    }
-    return sum;
-  };
-  return ransac_plane(points, votes, [](const DisparityPlane&) { return true; });
 }
 
 }  // namespace roadstereo

@@ -3,7 +3,6 @@
 #include <optional>
 #include <span>
 
-#include "core/function_ref.hpp"
 #include "core/scratch.hpp"
 #include "road/raw_sums.hpp"
 #include "road/robust_weights.hpp"
@@ -64,16 +63,9 @@ struct IrlsPlaneFit {
 std::optional<IrlsPlaneFit> fit_plane_irls(std::span<const DisparityPoint> points, const DisparityPlane& start,
                                            double start_scale_px, bool with_roll, int max_iterations);
 
-/// What points say to a plane, added up: positive for, negative against. A point can say no more for a plane than for
-/// one that it lies on.
-using PlaneScore = FunctionRef<double(std::span<const DisparityPoint>, const DisparityPlane&)>;
-
-/// The plane through three of the points that gets the most votes of the others: a start that no outliers pull. Only
-/// planes that `possible` accepts are tried. Deterministic. Nothing when no plane has more votes for it than against.
-std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, PlaneScore votes,
-                                           FunctionRef<bool(const DisparityPlane&)> possible);
-
-/// The same where every point within `tolerance_px` votes for a plane and none against it.
+/// Preemptive RANSAC plane fit: the plane through three of the points that the others support most, each within
+/// `tolerance_px` by 1 − (residual / tolerance)²: a start that no outliers pull. Deterministic. Nothing when no three
+/// points span a plane.
 std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, double tolerance_px);
 
 /// The plane through three points; nothing when they lie on one line of the image.

@@ -19,6 +19,24 @@ struct RowCount {
   std::size_t near = 0;  ///< samples that match within a pixel of the plane
 };
 
+/// What rows of a search found, in order. `points` and `correlations` hold each row's behind room for as many as it can
+/// have.
+PlaneMatches gather(const ScratchVector<RowCount>& rows, const ScratchVector<DisparityPoint>& points,
+                    const ScratchVector<float>& correlations, int min_points) {
+  PlaneMatches matches;
+  matches.min_points = min_points;
+  const std::size_t points_of_row = points.size() / std::max<std::size_t>(rows.size(), 1);
+  const std::size_t correlations_of_row = correlations.size() / std::max<std::size_t>(rows.size(), 1);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const DisparityPoint* found = points.data() + r * points_of_row;
+    const float* near = correlations.data() + r * correlations_of_row;
+    matches.points.insert(matches.points.end(), found, found + rows[r].found);
+    matches.correlations.insert(matches.correlations.end(), near, near + rows[r].near);
+    matches.tried += rows[r].tried;
+  }
+  return matches;
+}
+
 /// The right image along the rows of a block, each column shifted by the plane. The plane is taken at the block's own
 /// columns: over the range of the search it is the same to a small part of a pixel.
 void sample_around(ImageView<const std::int16_t> right, const CorrelationBlock& block, int u, int v,
@@ -138,15 +156,7 @@ PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<con
       }
     }
   });
-  PlaneMatches matches;
-  matches.min_points = min_matches;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const std::size_t first = r * static_cast<std::size_t>(grid.columns);
-    matches.points.insert(matches.points.end(), points.data() + first, points.data() + first + rows[r].found);
-    matches.correlations.insert(matches.correlations.end(), near.data() + first, near.data() + first + rows[r].near);
-    matches.tried += rows[r].tried;
-  }
-  return matches;
+  return gather(rows, points, near, min_matches);
 }
 
 PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
@@ -189,16 +199,7 @@ PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageVi
       }
     }
   });
-  PlaneMatches matches;
-  matches.min_points = min_matches / 3;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const DisparityPoint* of_row = points.data() + r * static_cast<std::size_t>(cell_columns);
-    matches.points.insert(matches.points.end(), of_row, of_row + rows[r].found);
-    const float* of_cells = near.data() + r * static_cast<std::size_t>(cell * grid.columns);
-    matches.correlations.insert(matches.correlations.end(), of_cells, of_cells + rows[r].near);
-    matches.tried += rows[r].tried;
-  }
-  return matches;
+  return gather(rows, points, near, min_matches / 3);
 }
 
 }  // namespace roadstereo

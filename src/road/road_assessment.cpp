@@ -14,7 +14,7 @@ namespace {
 constexpr double min_share_of_last = 0.6;
 constexpr double min_share = 0.1;  ///< in any case
 
-/// Share of the textured places of the road that the model explains.
+/// Share of the textured samples of the road that the model explains.
 double inlier_share(const PlaneFitStatistics& evidence) {
   return evidence.tried > 0 ? static_cast<double>(evidence.inliers) / evidence.tried : 0;
 }
@@ -84,8 +84,7 @@ void assess_found_road(const PlaneFitStatistics& fit, double evidence, const Til
     estimate.reason =
         format_message("the evidence for a road is ", evidence, " per pixel, less than ", options.min_evidence);
   }
-  estimate.reliable = estimate.reason.empty();
-  if (estimate.reliable) {
+  if (estimate.reason.empty()) {
     estimate.status = evidence < options.weak_evidence ? RoadStatus::weak : RoadStatus::found;
   }
 }
@@ -95,7 +94,6 @@ RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const Pl
                                       const std::optional<StereoCalibration>& calibration,
                                       const RoadModelOptions& options) {
   RoadModelEstimate estimate;
-  estimate.tracked = true;
   estimate.matches = around.points;
   const TiltLimit limit(width, height, calibration, options.max_road_tilt_deg);
   estimate.reason = assess_plane_fit(close, limit, estimate);
@@ -111,7 +109,6 @@ RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const Pl
   } else if (moved > max_step_px(width)) {
     estimate.reason = format_message("the road has moved by ", moved, " px since the last frame");
   } else {
-    estimate.reliable = true;
     estimate.status = RoadStatus::tracked;
   }
   return estimate;

@@ -20,7 +20,7 @@
 namespace roadstereo {
 namespace {
 
-/// The same plane in the coordinates of the image shrunk by `factor`.
+/// The same plane in the coordinates of the image downsampled by `factor`.
 DisparityPlane downsample_plane(const DisparityPlane& plane, int factor) {
   const double centre = to_full_resolution(0, factor);
   return {plane.disparity(centre, centre) / factor, plane.a1, plane.a2};
@@ -50,16 +50,16 @@ struct Refinement {
   ScratchVector<DisparityPoint> points = scratch_vector<DisparityPoint>();  ///< full-size coordinates
 };
 
-/// The pair as the fine search sees it: at full size, or a large one shrunk.
+/// The pair as the fine search sees it: at full size, or a large one downsampled.
 class FinePair {
  public:
   FinePair(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, ImageView<const std::uint8_t> mask)
       : factor_(fine_factor(left.width())), masked_(mask, factor_) {
-    // At full size there is nothing to shrink, and nothing to copy.
+    // At full size there is nothing to downsample, and nothing to copy.
     const std::size_t size = factor_ > 1 ? left.pixels() / static_cast<std::size_t>(factor_ * factor_) : 0;
     pixels_.resize(2 * size);
-    left_ = shrunk(left, pixels_.data());
-    right_ = shrunk(right, pixels_.data() + size);
+    left_ = downsampled(left, pixels_.data());
+    right_ = downsampled(right, pixels_.data() + size);
   }
 
   ImageView<const std::int16_t> left() const { return left_; }
@@ -68,7 +68,7 @@ class FinePair {
   int factor() const { return factor_; }
 
  private:
-  ImageView<const std::int16_t> shrunk(ImageView<const std::int16_t> image, std::int16_t* pixels) const {
+  ImageView<const std::int16_t> downsampled(ImageView<const std::int16_t> image, std::int16_t* pixels) const {
     if (factor_ == 1) return image;
     const ImageView<std::int16_t> small(pixels, image.width() / factor_, image.height() / factor_);
     downsample(image, factor_, small);
@@ -115,7 +115,7 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneM
 }
 
 /// Whether exchanging the images explains them far better than the order they came in. Only asked when few pixels of
-/// the shrunk image matched.
+/// the downsampled image matched.
 bool look_swapped(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int factor,
                   double max_disparity_px, std::size_t matches, int threads, ImageView<const std::uint8_t> mask) {
   constexpr std::size_t usual_share = 5;  // a fifth of the pixels
@@ -183,15 +183,19 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   for (const PlaneHypothesis& hypothesis : planes) {
     // First wide, for the coarse plane is good to a pixel of the downsampled image at best; then close. By single
     // blocks, and where these find nothing by cells of them.
+    Refinement refinement;
     for (PlaneMatcher* match : {&match_along_plane, &match_cells_along_plane}) {
-      Refinement refinement = refine_road(fine, hypothesis.plane, *match, first_search, options.with_roll, threads);
+      refinement = refine_road(fine, hypothesis.plane, *match, first_search, options.with_roll, threads);
       if (refinement.evidence.found) {
         refinement = refine_road(fine, refinement.evidence.plane, *match, close_search, options.with_roll, threads);
       }
-      assess_found_road(refinement.evidence, hypothesis.score / coarse.pixels(), limit, options, estimate);
       if (refinement.evidence.found) break;
     }
-    if (estimate.reliable) break;
+    RoadModelEstimate assessed = estimate;
+    assess_found_road(refinement.evidence, hypothesis.score / coarse.pixels(), limit, options, assessed);
+    // Where none is a road, the reason is that of the plane with the most evidence.
+    if (assessed.has_road() || &hypothesis == &planes.front()) estimate = assessed;
+    if (assessed.has_road()) break;
   }
   measure_range(matches, estimate);
   return estimate;

@@ -78,9 +78,9 @@ TEST_P(CudaPreset, MatchesHostFrameByFrame) {
     const FrameResult& found = device.process(pair.left.view(), pair.right.view());
     SCOPED_TRACE("frame " + std::to_string(frame));
     EXPECT_EQ(found.grey, expected.grey);
-    EXPECT_EQ(found.road.reliable, expected.road.reliable);
-    EXPECT_EQ(found.road.tracked, expected.road.tracked);
-    EXPECT_EQ(found.road.tracked, frame > 0);
+    EXPECT_EQ(found.road.has_road(), expected.road.has_road());
+    EXPECT_EQ(found.road.status, expected.road.status);
+    EXPECT_EQ(found.road.status == RoadStatus::tracked, frame > 0);
     EXPECT_EQ(found.shift.disparities, expected.shift.disparities);
     for (const double v : {0.0, height - 1.0}) {
       EXPECT_NEAR(found.road.model.disparity(0, v), expected.road.model.disparity(0, v), 2e-3);

@@ -52,9 +52,9 @@ RoadModelEstimate verify_on_device(RoadVerification& verification, const Pair& p
 }
 
 void expect_same(const RoadModelEstimate& device, const RoadModelEstimate& host, const Pair& pair) {
-  EXPECT_EQ(device.reliable, host.reliable);
+  EXPECT_EQ(device.has_road(), host.has_road());
   EXPECT_EQ(device.reason, host.reason);
-  EXPECT_EQ(device.tracked, host.tracked);
+  EXPECT_EQ(device.status, host.status);
   EXPECT_EQ(device.matches, host.matches);
   EXPECT_NEAR(device.inliers, host.inliers, 1);
   EXPECT_NEAR(device.residual_px, host.residual_px, 1e-5);
@@ -85,7 +85,7 @@ TEST_F(CudaRoadVerification, FlightMatchesHost) {
   path.roll_period = path.pitch_period = path.climb_period = 40;
   DisparityPlane previous = render_pair(synth::flight_frame(scene, path, 0)).plane;
   expect_agreement(render_pair(synth::flight_frame(scene, path, 1)), previous);
-  EXPECT_TRUE(host_.reliable) << host_.reason;
+  EXPECT_TRUE(host_.has_road()) << host_.reason;
   previous = host_.model;
   RoadModelOptions strict;
   strict.with_roll = false;
@@ -100,7 +100,7 @@ TEST_F(CudaRoadVerification, JumpHasReasonOfHost) {
   const DisparityPlane previous = render_pair(scene).plane;
   scene.rig.camera_height_m *= 0.5;  // nothing of the road within the search
   expect_agreement(render_pair(scene), previous);
-  EXPECT_FALSE(host_.reliable);
+  EXPECT_FALSE(host_.has_road());
   scene.rig.camera_height_m *= 1.8;  // a little lower than at first: still within the search
   expect_agreement(render_pair(scene), previous);
   EXPECT_EQ(host_.status, RoadStatus::tracked) << host_.reason;
@@ -152,7 +152,7 @@ TEST_F(CudaRoadVerification, SmallAndLargeImagesMatchHost) {
   ASSERT_EQ(fine_factor(1921), 2);
   const Pair pair{large.reference, large.target, plane, std::nullopt};
   expect_agreement(pair, {11.6, 0.39, 0.002});
-  EXPECT_TRUE(host_.reliable) << host_.reason;
+  EXPECT_TRUE(host_.has_road()) << host_.reason;
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ struct Errors {
   std::vector<double> roll, before, after;  ///< ψ and the plane before and after matching
 
   void add(const FrameResult& result, const synth::SyntheticPair& pair) {
-    ASSERT_TRUE(result.road.reliable);
+    ASSERT_TRUE(result.road.has_road());
     ASSERT_TRUE(result.roll_found);
     roll.push_back(std::abs(result.geometry.roll_rad - pair.roll_rad));
     before.push_back(difference(result.road.model, pair.plane, pair));
@@ -63,7 +63,7 @@ TEST(CarryOver, IsAsGoodAsSingleFrames) {
     SCOPED_TRACE(frame);
     const synth::SyntheticPair pair = synth::render(synth::flight_frame(scene, path, frame));
     const FrameResult& result = carried.process(pair.left.view(), pair.right.view());
-    EXPECT_EQ(result.road.tracked, frame > 0);
+    EXPECT_EQ(result.road.status == RoadStatus::tracked, frame > 0);
     of_carried.add(result, pair);
     fresh.reset();
     of_fresh.add(fresh.process(pair.left.view(), pair.right.view()), pair);
@@ -95,8 +95,8 @@ TEST_P(CarryOverJump, IsDetectedInSameFrame) {
   Pipeline carried, fresh;
   carried.process(before.left.view(), before.right.view());
   const FrameResult& result = carried.process(after.left.view(), after.right.view());
-  EXPECT_FALSE(result.road.tracked);
-  EXPECT_TRUE(result.road.reliable);
+  EXPECT_NE(result.road.status, RoadStatus::tracked);
+  EXPECT_TRUE(result.road.has_road());
   ASSERT_FALSE(result.warnings.empty());
   EXPECT_NE(result.warnings.front().find("estimated anew"), std::string::npos);
   // Nothing of the frame before is left.
@@ -168,7 +168,7 @@ TEST(WarmUp, LeavesResultsUnchanged) {
   EXPECT_THROW(warm.warm_up(width + 1, height), Error);  // the calibration is of another size
   const FrameResult& result = warm.process(pair.left.view(), pair.right.view());
   const FrameResult& expected = cold.process(pair.left.view(), pair.right.view());
-  EXPECT_FALSE(result.road.tracked);
+  EXPECT_NE(result.road.status, RoadStatus::tracked);
   EXPECT_TRUE(result.warnings.empty());
   EXPECT_EQ(difference(result.geometry.plane, expected.geometry.plane, pair), 0);
   for (int v = 0; v < height; ++v) {
@@ -205,10 +205,10 @@ TEST(CarryOver, RestartsAfterFrameWithoutRoad) {
   const Frame left = picture(1), right = picture(99);  // two pictures that have nothing to do with each other
   Pipeline carried, fresh;
   carried.process(road.left.view(), road.right.view());
-  EXPECT_FALSE(carried.process(left.view(), right.view()).road.reliable);
+  EXPECT_FALSE(carried.process(left.view(), right.view()).road.has_road());
   const FrameResult& result = carried.process(road.left.view(), road.right.view());
-  EXPECT_FALSE(result.road.tracked);
-  EXPECT_TRUE(result.road.reliable);
+  EXPECT_NE(result.road.status, RoadStatus::tracked);
+  EXPECT_TRUE(result.road.has_road());
   const FrameResult& expected = fresh.process(road.left.view(), road.right.view());
   EXPECT_EQ(difference(result.geometry.plane, expected.geometry.plane, road), 0);
 }

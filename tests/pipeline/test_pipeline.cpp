@@ -73,7 +73,7 @@ TEST_P(PipelinePreset, MatchesRoadFromAir) {
   Pipeline pipeline(preset(GetParam().preset), pair.calibration);
   const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
   expect_measured(compare(result.disparity, pair), GetParam().errors);
-  EXPECT_TRUE(result.road.reliable);
+  EXPECT_TRUE(result.road.has_road());
   const double roll_error = std::abs(result.geometry.roll_rad - pair.roll_rad);
   RecordProperty("roll_rad", std::to_string(roll_error));
   RecordProperty("road_px", std::to_string(result.spread.sigma_road_px));
@@ -244,12 +244,12 @@ TEST(Pipeline, CarriesRoadModelOver) {
   for (int frame = 0; frame < 3; ++frame) {
     const synth::SyntheticPair pair = synth::render(synth::next_frame(s, frame));
     const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
-    EXPECT_EQ(result.road.tracked, frame > 0);
+    EXPECT_EQ(result.road.status == RoadStatus::tracked, frame > 0);
     EXPECT_NEAR(result.geometry.plane.disparity(320, 300), pair.plane.disparity(320, 300), 0.3);
   }
   pipeline.reset();
   const synth::SyntheticPair pair = synth::render(s);
-  EXPECT_FALSE(pipeline.process(pair.left.view(), pair.right.view()).road.tracked);
+  EXPECT_NE(pipeline.process(pair.left.view(), pair.right.view()).road.status, RoadStatus::tracked);
 }
 
 bool same_bits(const Image<float>& one, const Image<float>& other) {
@@ -267,7 +267,7 @@ TEST(Pipeline, CarriedStateResumesIdentically) {
   resumed.restore(whole.carried());
   const FrameResult& expected = whole.process(two.left.view(), two.right.view());
   const FrameResult& result = resumed.process(two.left.view(), two.right.view());
-  EXPECT_TRUE(result.road.tracked);
+  EXPECT_EQ(result.road.status, RoadStatus::tracked);
   EXPECT_TRUE(same_bits(result.disparity, expected.disparity));
   EXPECT_TRUE(same_bits(result.transformed, expected.transformed));
   EXPECT_EQ(result.geometry.roll_rad, expected.geometry.roll_rad);

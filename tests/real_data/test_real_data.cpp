@@ -125,7 +125,7 @@ TEST_P(KittiRealData, RoadModelMatchesGroundTruth) {
   const KittiFrame frame = read_kitti(*folder, GetParam().frame);
   Pipeline pipeline(preset("default"), kitti_calibration(frame.left.width));
   const FrameResult& result = pipeline.process(frame.left.view(), frame.right.view());
-  ASSERT_TRUE(result.road.reliable) << result.road.reason;
+  ASSERT_TRUE(result.road.has_road()) << result.road.reason;
   const ModelError before = model_error(result.road.model, frame.plane, frame.road);
   expect_at_most("before_mean_px", before.mean, GetParam().before.mean);
   expect_at_most("before_95_percent_px", before.worst_of_95_percent, GetParam().before.worst_of_95_percent);
@@ -183,7 +183,7 @@ TEST_P(PotholesRealData, RoadIsFlatAndPotholeLiesBelow) {
   const auto calibration = io::read_calibration((*folder / GetParam().calibration).string());
   Pipeline pipeline(preset("default"), calibration.rectified);
   const FrameResult& result = pipeline.process(left.view(), right.view());
-  ASSERT_TRUE(result.road.reliable) << result.road.reason;
+  ASSERT_TRUE(result.road.has_road()) << result.road.reason;
   EXPECT_TRUE(result.geometry.roll_observable);
   expect_at_most("missing", 1 - result.valid_share, GetParam().missing);
 

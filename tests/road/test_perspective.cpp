@@ -16,7 +16,7 @@ namespace {
 RoadModelEstimate reliable(const DisparityPlane& model, double lowest = -3, double highest = 2) {
   RoadModelEstimate estimate;
   estimate.model = model;
-  estimate.reliable = true;
+  estimate.status = RoadStatus::found;
   estimate.residual_p01_px = lowest;
   estimate.residual_p99_px = highest;
   return estimate;

@@ -54,7 +54,7 @@ TEST_P(RoadModelScene, IsWithinHalfPixelOfTruth) {
   for (const bool calibrated : {true, false}) {
     const auto calibration = calibrated ? std::optional(pair.truth.calibration) : std::nullopt;
     const RoadModelEstimate road = estimate_road_model(pair.left, pair.right, calibration, RoadModelOptions{});
-    ASSERT_TRUE(road.reliable) << road.reason;
+    ASSERT_TRUE(road.has_road()) << road.reason;
     EXPECT_LT(worst_difference(road.model, pair.truth), 0.5);
   }
 }
@@ -67,12 +67,12 @@ TEST(DisparityPlane, CarriesOverToNextFrame) {
   const Pair first = render_scene("uav");
   const RoadModelEstimate start =
       estimate_road_model(first.left, first.right, first.truth.calibration, RoadModelOptions{});
-  ASSERT_TRUE(start.reliable);
+  ASSERT_TRUE(start.has_road());
   const Pair second = render_pair(synth::next_frame(scene("uav"), 1));
   const RoadModelEstimate next = verify_road_model(second.left, second.right, {start.model, start.inlier_share},
                                                    second.truth.calibration, RoadModelOptions{});
-  EXPECT_TRUE(next.reliable) << next.reason;
-  EXPECT_TRUE(next.tracked);
+  EXPECT_TRUE(next.has_road()) << next.reason;
+  EXPECT_EQ(next.status, RoadStatus::tracked);
   EXPECT_LT(worst_difference(next.model, second.truth), 0.5);
 }
 
@@ -83,7 +83,7 @@ TEST(DisparityPlane, JumpIsUnreliable) {
   const Pair jumped = render_pair(lower);
   const RoadModelEstimate lost =
       verify_road_model(jumped.left, jumped.right, {before, 0.9}, jumped.truth.calibration, RoadModelOptions{});
-  EXPECT_FALSE(lost.reliable);
+  EXPECT_FALSE(lost.has_road());
   EXPECT_FALSE(lost.reason.empty());
 }
 
@@ -94,7 +94,7 @@ TEST(DisparityPlane, UnrelatedImagesAreUnreliable) {
   const auto b = test::textured_pair(
       320, 200, [](double, double) { return 0; }, 99);
   const RoadModelEstimate road = estimate_road_model(a.reference, b.reference, std::nullopt, RoadModelOptions{});
-  EXPECT_FALSE(road.reliable);
+  EXPECT_FALSE(road.has_road());
   EXPECT_FALSE(road.reason.empty());
 }
 
@@ -103,7 +103,7 @@ TEST(DisparityPlane, WithoutRollDependsOnRowAlone) {
   RoadModelOptions options;
   options.with_roll = false;
   const RoadModelEstimate road = estimate_road_model(pair.left, pair.right, pair.truth.calibration, options);
-  ASSERT_TRUE(road.reliable) << road.reason;
+  ASSERT_TRUE(road.has_road()) << road.reason;
   EXPECT_EQ(road.model.a2, 0);
 }
 

@@ -55,7 +55,7 @@ RoadError road_error(const DisparityPlane& plane, double roll_rad, const synth::
 StageErrors compare(const FrameResult& result, const synth::SyntheticPair& truth) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   StageErrors errors{{infinite, infinite}, {infinite, infinite}};
-  if (result.road.reliable) errors.before = road_error(result.road.model, roll_of(result.road.model), truth);
+  if (result.road.has_road()) errors.before = road_error(result.road.model, roll_of(result.road.model), truth);
   if (result.roll_found) errors.after = road_error(result.geometry.plane, result.geometry.roll_rad, truth);
   return errors;
 }
@@ -68,7 +68,7 @@ FlightTrial run_frame(const synth::SyntheticPair& pair, std::vector<Pipeline>& p
     frame.times_ms.push_back(time_ms([&] { result = &pipeline.process(pair.left.view(), pair.right.view()); }));
     frame.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     frame.tracked = compare(*result, pair);
-    frame.reestimated = !result->road.tracked;
+    frame.reestimated = result->road.status != RoadStatus::tracked;
     frame.reason = result->warnings.empty() ? "" : result->warnings.front();
   }
   fresh.reset();
