@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Builds with sanitizers and runs the tests.
 #   scripts/check_sanitizers.sh asan|asan-all|tsan [options of CMake]
-#   asan      address and undefined-behaviour sanitizer: the libraries, and the kernels, which run emulated
-#   asan-all  the same, and the commands
+#   asan      address and undefined-behaviour sanitizer: the libraries, and the kernels, which run emulated; without whole
+#             pipelines and pictures, whose stages are tested one by one
+#   asan-all  the same with them, and the commands
 #   tsan      thread sanitizer: what is about threads, recordings, cameras, and every kernel, whose threads are threads to it
 # Left out by label: slow, whose short siblings take the same ways through the code, real data and browsers.
 set -euo pipefail
@@ -10,8 +11,9 @@ cd "$(dirname "$0")/.."
 
 programs=(test_embedded test_cuda test_io test_live)
 with='.'
+without='^$'
 case ${1:-} in
-  asan) ;;
+  asan) without='^(.*/)?(CarryOver|CrossSection|CudaPipeline|CudaPreset|DamageReport|PipelinePreset|PipelineScene|RenderTruth)[.]' ;;
   asan-all) programs+=(test_flight test_cli) ;;
   tsan)
     programs=(test_embedded test_cuda test_live test_flight)
@@ -29,5 +31,6 @@ cmake --preset "$preset" "$@"
 cmake --build --preset "$preset" -j "$(nproc)" --target "${programs[@]}"
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp"
-./scripts/run_tests.sh "build-$preset" --label-regex "$with" --label-exclude '^(slow|real_data|browser)$'
+./scripts/run_tests.sh "build-$preset" --label-regex "$with" --label-exclude '^(slow|real_data|browser)$' \
+  --exclude-regex "$without"
 echo "Sanitizers: $preset is good."

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs clang-tidy with .clang-tidy. Needs the build folder of scripts/test.sh.
+# Runs clang-tidy with .clang-tidy.
 #   scripts/check_tidy.sh        the sources that a change touches
 #   scripts/check_tidy.sh --all  the library and the command line, with the analyzer
 # A change is what differs from the merge base with origin/main. Where HEAD is origin/main itself, as in a fresh clone, it
@@ -8,13 +8,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-if [ ! -f build/compile_commands.json ]; then
-  echo "build/compile_commands.json is missing: run scripts/test.sh first" >&2
-  exit 2
-fi
-# The compile commands come from GCC, whose precompiled headers clang does not read.
-mkdir -p build/tidy
-sed -E 's# (-Winvalid-pch )?-include [^ ]*cmake_pch\.hxx##' build/compile_commands.json >build/tidy/compile_commands.json
+# Each source by itself, and without precompiled headers, which clang does not read when they are GCC's.
+cmake -S . -B build/tidy -G Ninja -DCMAKE_BUILD_TYPE=Release -DROADSTEREO_CUDA=OFF -DCMAKE_UNITY_BUILD=OFF \
+  -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
 
 # Standard input: files, one a line. Only what this build compiles: there may be no CUDA, for example. Clang 14 does not
 # know the coroutines of GCC's library.

@@ -18,8 +18,10 @@ data=$(cached ROADSTEREO_DATA)
   missing+=(gstreamer)
 command -v chromedriver >/dev/null && /usr/bin/python3 -c 'import selenium' 2>/dev/null || missing+=(browser)
 gpus=$(nvidia-smi --list-gpus 2>/dev/null | grep -c '^GPU' || true)
-[ "$gpus" -ge 2 ] || missing+=(two_gpus)
-if [ "$gpus" -eq 0 ] && [ "$(cached ROADSTEREO_CUDA)" != EMULATED ]; then missing+=(cuda); fi
+if [ "$(cached ROADSTEREO_CUDA)" != EMULATED ]; then  # two GPUs are emulated
+  [ "$gpus" -ge 1 ] || missing+=(cuda)
+  [ "$gpus" -ge 2 ] || missing+=(two_gpus)
+fi
 IFS='|'
 expected=$(count "$@" --label-regex "^(${missing[*]:-none})\$")
 unset IFS

@@ -22,7 +22,7 @@
 namespace roadstereo::cli {
 namespace {
 
-struct Arguments {
+struct BenchmarkArguments {
   PairFiles files;
   std::string size = "640x360";
   int disparities = 32;
@@ -34,7 +34,7 @@ struct Arguments {
   std::string json;
 };
 
-StereoPair make_pair(const Arguments& arguments) {
+StereoPair make_pair(const BenchmarkArguments& arguments) {
   if (!arguments.files.left.empty()) return read_pair(arguments.files);
   const ImageSize size = parse_image_size(arguments.size);
   constexpr int largest = 8192;
@@ -63,7 +63,7 @@ std::size_t peak_memory_bytes() {
 }
 
 /// Runs the pipeline and OpenCV's matchers alternately for equal conditions; the first run of each is not counted.
-BenchmarkReport measure(const Arguments& arguments) {
+BenchmarkReport measure(const BenchmarkArguments& arguments) {
   const StereoPair pair = make_pair(arguments);
   PipelineOptions options = preset(arguments.preset);
   options.engine = arguments.engine;
@@ -125,7 +125,7 @@ void write_json(const std::string& path, const std::string& text) {
   if (!file) throw SystemError("cannot write " + path + ": the disk may be full");
 }
 
-void benchmark(const Arguments& arguments) {
+void benchmark(const BenchmarkArguments& arguments) {
   if (arguments.files.left.empty() != arguments.files.right.empty())
     fail("benchmark needs both LEFT and RIGHT, or neither");
   if (arguments.runs < 1 || arguments.runs > 100000) {
@@ -151,7 +151,7 @@ void add_benchmark(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("benchmark", "Measure the time of every stage, compared with OpenCV's matchers");
   command->footer(benchmark_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<BenchmarkArguments>();
   command->add_option("LEFT", arguments->files.left, "Left image");
   command->add_option("RIGHT", arguments->files.right, "Right image");
   command->add_option("--calibration", arguments->files.calibration, "Calibration file")

@@ -20,7 +20,7 @@
 namespace roadstereo::cli {
 namespace {
 
-struct Arguments {
+struct DamageArguments {
   MapFiles files;
   std::string output;
   std::vector<std::string> settings;
@@ -41,7 +41,7 @@ DamageOptions make_options(const std::vector<std::string>& settings) {
   return options.damage;
 }
 
-DamageMap find_in(const TransformedMap& map, const Arguments& arguments) {
+DamageMap find_in(const TransformedMap& map, const DamageArguments& arguments) {
   GreyImage grey;
   if (map.image) to_grey(map.image->view(), 0, grey);
   DamageInput input;
@@ -57,7 +57,7 @@ DamageMap find_in(const TransformedMap& map, const Arguments& arguments) {
   }
 }
 
-void run(const Arguments& arguments) {
+void run(const DamageArguments& arguments) {
   make_options(arguments.settings);  // checked first
   const TransformedMap map = read_transformed_map(arguments.files);
   io::OutputFolder folder(arguments.output);
@@ -96,7 +96,7 @@ Examples:
 void add_damage(CLI::App& app) {
   CLI::App* command = app.add_subcommand("damage", "Find and measure damage in a transformed disparity map");
   command->footer(damage_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<DamageArguments>();
   command
       ->add_option("TRANSFORMED", arguments->files.transformed,
                    "Transformed disparity: float TIFF, PFM, or 16-bit PNG of any scale (0 invalid)")

@@ -23,7 +23,7 @@ namespace roadstereo::cli {
 namespace {
 
 /// Command line of `inspect`.
-struct Arguments {
+struct InspectArguments {
   std::vector<std::string> names;  ///< SOURCE, or LEFT and RIGHT; further words are values of options
   FlightSettings settings;
 };
@@ -41,7 +41,7 @@ bool is_input(const std::string& word, const std::vector<std::string>& source) {
 
 /// Assigns further words to their options. An option takes one value only, so that it does not consume the names of the
 /// input: `b=2` after `--set a=1` and `right.yaml` after `--calibration left.yaml` are parsed as names.
-void assign_names(Arguments& arguments) {
+void assign_names(InspectArguments& arguments) {
   FlightSettings& settings = arguments.settings;
   settings.source.clear();
   for (const std::string& word : arguments.names) {
@@ -119,7 +119,7 @@ void inspect_pair(const FlightSettings& settings) {
   if (!settings.json && !settings.quiet) fmt::print("{}", summary(inspection, folder.path()));
 }
 
-void inspect(Arguments arguments) {
+void inspect(InspectArguments arguments) {
   assign_names(arguments);
   is_one_pair(arguments.settings) ? inspect_pair(arguments.settings) : inspect_flight(arguments.settings);
 }
@@ -152,7 +152,7 @@ Examples:
 
 )";
 
-void add_input_options(CLI::App& command, Arguments& arguments) {
+void add_input_options(CLI::App& command, InspectArguments& arguments) {
   command
       .add_option("SOURCE", arguments.names,
                   "A recording; or LEFT and RIGHT: two images of equal size (PNG, JPEG, TIFF, PGM or PPM; 8 or 16 bit)")
@@ -212,7 +212,7 @@ void add_inspect(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "inspect", "Compute disparity, roll, transformed disparity and damage of a stereo pair or a recording");
   command->footer(inspect_footer + settings_help());
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<InspectArguments>();
   add_input_options(*command, *arguments);
   add_output_options(*command, arguments->settings);
   add_flight_options(*command, arguments->settings);

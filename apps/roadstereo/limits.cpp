@@ -26,7 +26,7 @@ constexpr double to_radians = std::numbers::pi / 180;
 /// Depth classes of potholes in ASTM D6433, metres.
 constexpr std::array<double, 3> astm_depths_m{0.013, 0.025, 0.050};
 
-struct Arguments {
+struct LimitsArguments {
   std::vector<std::string> calibration;
   double height_m = 0;
   double pitch_deg = 90;
@@ -37,7 +37,7 @@ struct Arguments {
   std::string figure;
 };
 
-StereoCalibration read_rig(const Arguments& arguments) {
+StereoCalibration read_rig(const LimitsArguments& arguments) {
   const std::string& path = arguments.calibration.front();
   const io::CalibrationFile file =
       io::read_calibration(path, arguments.calibration.size() > 1 ? arguments.calibration[1] : "");
@@ -94,7 +94,7 @@ std::string resolvable_text(const ResolutionLimits& limits, double depth_m) {
       mm * depth_m, farthest->ahead_m, farthest->distance_m, farthest->row_px, from);
 }
 
-nlohmann::ordered_json limits_json(const Arguments& arguments, const ResolutionLimits& limits) {
+nlohmann::ordered_json limits_json(const LimitsArguments& arguments, const ResolutionLimits& limits) {
   nlohmann::ordered_json document = {{"height_m", arguments.height_m},
                                      {"pitch_deg", arguments.pitch_deg},
                                      {"sigma_px", arguments.resolution.sigma_px},
@@ -112,7 +112,7 @@ nlohmann::ordered_json limits_json(const Arguments& arguments, const ResolutionL
 }
 
 /// Plots depths over the distance on the road, with the depth classes of ASTM.
-Frame limits_figure(const Arguments& arguments, const ResolutionLimits& limits) {
+Frame limits_figure(const LimitsArguments& arguments, const ResolutionLimits& limits) {
   constexpr int points = 200;
   constexpr double max_mm = 1000;
   io::Curve step{"one pixel of disparity", {}, {}}, error{"one standard error", {}, {}},
@@ -139,7 +139,7 @@ Frame limits_figure(const Arguments& arguments, const ResolutionLimits& limits) 
   return io::draw_plot(panel, width, height);
 }
 
-void limits(Arguments arguments) {
+void limits(LimitsArguments arguments) {
   const CameraPose pose{arguments.height_m, arguments.pitch_deg * to_radians};
   const ResolutionLimits limits(read_rig(arguments), pose, arguments.resolution);
   if (!arguments.figure.empty()) write_figure(arguments.figure, limits_figure(arguments, limits));
@@ -168,7 +168,7 @@ Examples:
 void add_limits(CLI::App& app) {
   CLI::App* command = app.add_subcommand("limits", "Predict the smallest depth and area that a rig can resolve");
   command->footer(limits_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<LimitsArguments>();
   command
       ->add_option("--calibration", arguments->calibration, "Calibration of the rectified rig; repeat for a ROS pair")
       ->type_name("FILE")

@@ -24,7 +24,7 @@ constexpr double min_rate_hz = 0.001;
 constexpr double max_rate_hz = 100'000;
 
 /// Command line of `synth`.
-struct Arguments {
+struct SynthArguments {
   std::string output;
   SceneOptions scene;
   int frames = 1;
@@ -39,7 +39,7 @@ void list_scenes() {
   for (const std::string& name : synth::scene_names()) fmt::print("{}\n", name);
 }
 
-std::string made_text(const Arguments& arguments, const synth::Scene& scene, const io::OutputFolder& folder) {
+std::string made_text(const SynthArguments& arguments, const synth::Scene& scene, const io::OutputFolder& folder) {
   const std::string what = arguments.frames == 1 ? "one pair" : fmt::format("{} pairs", arguments.frames);
   return fmt::format("Rendered {} of scene {} ({}×{}) with ground truth to {}\n", what, scene.name, scene.rig.width,
                      scene.rig.height, folder.path().string());
@@ -48,7 +48,7 @@ std::string made_text(const Arguments& arguments, const synth::Scene& scene, con
 /// Scenes of the frames.
 class Frames {
  public:
-  Frames(synth::Scene first, const Arguments& arguments) : first_(std::move(first)) {
+  Frames(synth::Scene first, const SynthArguments& arguments) : first_(std::move(first)) {
     if (arguments.flight.empty()) return;
     path_ = parse_flight(arguments.flight);
     // Checks all frames first: the path of a flight may hit the ground.
@@ -65,7 +65,7 @@ class Frames {
   std::optional<synth::FlightPath> path_;
 };
 
-void make_frames(const Arguments& arguments) {
+void make_frames(const SynthArguments& arguments) {
   if (arguments.output.empty()) fail("synth needs --output DIR (see roadstereo synth --help)");
   if (arguments.frames < 1 || arguments.frames > max_frames) {
     fail("--frames is ", arguments.frames, "; it must be between 1 and ", max_frames);
@@ -104,7 +104,7 @@ Examples:
 void add_synth(CLI::App& app) {
   CLI::App* command = app.add_subcommand("synth", "Render stereo pairs of a road with exact ground truth");
   command->footer(flight_help() + "\n" + synth_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SynthArguments>();
   command->add_option("--output", arguments->output, "Output folder; created if missing")->type_name("DIR");
   add_scene_options(*command, arguments->scene);
   command->add_option("--frames", arguments->frames, "Number of pairs along the road")

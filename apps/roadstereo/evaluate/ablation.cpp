@@ -14,7 +14,7 @@
 namespace roadstereo::cli {
 namespace {
 
-struct Arguments {
+struct AblationArguments {
   AblationOptions options;
   std::string json;
 };
@@ -71,7 +71,7 @@ Table ablation_table(const std::string& title, bool with_kitti, const MakeCell& 
   return table;
 }
 
-void ablation(const Arguments& arguments) {
+void ablation(const AblationArguments& arguments) {
   const bool with_kitti = !arguments.options.kitti.empty();
   const std::vector<AblationResult> results = measure_ablation(arguments.options);
   const Table printed =
@@ -107,7 +107,7 @@ Example:
 void add_ablation(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("ablation", "Contribution of each component to accuracy and time");
   command->footer(ablation_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<AblationArguments>();
   command->add_option("--kitti", arguments->options.kitti, "Folder with the layout of KITTI Stereo 2015 and road masks")
       ->type_name("DIR");
   add_synth_sizes(*command, arguments->options.sizes);

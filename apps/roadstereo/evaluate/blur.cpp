@@ -13,12 +13,12 @@
 namespace roadstereo::cli {
 namespace {
 
-struct Arguments {
+struct BlurArguments {
   BlurOptions trials;
   std::string json;
 };
 
-constexpr const char* note =
+constexpr const char* blur_note =
     "Means over the directions, over the pixels that both cameras see. SGBM gets the pair as transformed by the "
     "default\n"
     "preset; without it SGBM has no disparity in the leftmost columns. The paper shows blurred frames but no "
@@ -57,20 +57,20 @@ nlohmann::ordered_json trials_json(const std::vector<BlurTrial>& trials) {
   return all;
 }
 
-void run(const Arguments& arguments) {
+void run(const BlurArguments& arguments) {
   const std::vector<BlurTrial> trials = run_blur_trials(arguments.trials);
   const Table table = make_table(trials, arguments.trials);
   if (!arguments.json.empty()) {
     write_report(arguments.json, {{"experiment", "blur"}, {"rows", table.json()}, {"trials", trials_json(trials)}});
   }
-  fmt::print("{}\n{}", table.text(), note);
+  fmt::print("{}\n{}", table.text(), blur_note);
 }
 
 }  // namespace
 
 void add_blur(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("blur", "Density and error against motion blur, on synthetic roads");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<BlurArguments>();
   BlurOptions& trials = arguments->trials;
   command->add_option("--scene", trials.scene, "Name of the scene")->type_name("NAME")->capture_default_str();
   command->add_option("--max-length", trials.max_px, "Maximum length of the motion")

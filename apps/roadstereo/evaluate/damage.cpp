@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct DamageArguments {
   std::string data;
   std::string preset = "default";
   int scenes = 60;
@@ -41,13 +41,13 @@ constexpr const char* scene_note =
     "error\n"
     "of the maximum depth at most 2 mm.\n";
 
-void print_and_write(const Arguments& arguments, const Table& table, const char* note) {
+void print_and_write(const DamageArguments& arguments, const Table& table, const char* note) {
   fmt::print("{}\n{}", table.text(), note);
   if (arguments.json.empty()) return;
   write_report(arguments.json, {{"experiment", "damage"}, {"preset", arguments.preset}, {"rows", table.json()}});
 }
 
-void score_synthetic(const Arguments& arguments) {
+void score_synthetic(const DamageArguments& arguments) {
   const SceneResults results =
       score_scenes(arguments.scenes, arguments.first_seed, arguments.degraded, arguments.preset);
   const Table detection = detection_table(results);
@@ -64,7 +64,7 @@ void score_synthetic(const Arguments& arguments) {
                                 {"measurement", measurement.json()}});
 }
 
-void run(const Arguments& arguments) {
+void run(const DamageArguments& arguments) {
   preset(arguments.preset);  // throws now if there is no such preset
   const fs::path root = arguments.data;
   if (arguments.data.empty()) {
@@ -86,7 +86,7 @@ void run(const Arguments& arguments) {
 void add_damage_accuracy(CLI::App& evaluate) {
   CLI::App* command =
       evaluate.add_subcommand("damage", "Detection and measurement of damage against labels or exact ground truth");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<DamageArguments>();
   command->add_option(
       "DIR", arguments->data,
       "Folder with disp_tg and label, with left, right and label, or of KITTI; if absent, synthetic roads");

@@ -18,7 +18,7 @@ namespace {
 constexpr double published_with_roll_px = 0.519;
 constexpr double published_without_roll_px = 0.861;
 
-struct Arguments {
+struct FlatnessArguments {
   std::string data;
   std::string road_masks;
   std::string preset = "default";
@@ -26,7 +26,7 @@ struct Arguments {
   std::string json;
 };
 
-constexpr const char* note =
+constexpr const char* flatness_note =
     "The road regions of the paper were drawn by hand; masks derived from the ground truth exclude what is not flat. "
     "All\n"
     "valid disparities of the mask count, mismatches included. Least squares minimises σ_d by definition; the robust\n"
@@ -64,7 +64,7 @@ Table make_table(const std::vector<FlatnessFrame>& frames) {
   return table;
 }
 
-void run(const Arguments& arguments) {
+void run(const FlatnessArguments& arguments) {
   preset(arguments.preset);  // throws now if there is no such preset
   std::vector<FlatnessFrame> frames;
   for (const KittiFiles& files : find_kitti_frames(arguments.data, arguments.road_masks)) {
@@ -74,7 +74,7 @@ void run(const Arguments& arguments) {
   if (!arguments.json.empty()) {
     write_report(arguments.json, {{"experiment", "flatness"}, {"preset", arguments.preset}, {"rows", table.json()}});
   }
-  fmt::print("{}\n{}", table.text(), note);
+  fmt::print("{}\n{}", table.text(), flatness_note);
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ void run(const Arguments& arguments) {
 void add_flatness(CLI::App& evaluate) {
   CLI::App* command =
       evaluate.add_subcommand("flatness", "σ_d of the transformed road with and without roll, on KITTI frames");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<FlatnessArguments>();
   command->add_option("DIR", arguments->data, "Folder with image_2, image_3 and disp_noc_0")->required();
   command
       ->add_option("--road-masks", arguments->road_masks,

@@ -19,12 +19,12 @@
 namespace roadstereo::cli {
 namespace {
 
-struct Arguments {
+struct FlightArguments {
   FlightOptions flight;
   std::string json;
 };
 
-constexpr const char* note =
+constexpr const char* flight_note =
     R"(plane: maximum difference from the true plane over the image; the true plane has no camber. independent: a pipeline
 that is reset before every frame. Times are those of the tracking pipeline, from frames in memory to the result. Each
 pass is a separate pipeline that has processed the same frames. CPU time is summed over all threads. Memory is allocated
@@ -145,7 +145,7 @@ std::string reestimated_text(const Frames& frames) {
   return text;
 }
 
-void run(const Arguments& arguments) {
+void run(const FlightArguments& arguments) {
   const Frames frames = run_flight_trials(arguments.flight);
   const Table accuracy = error_table(frames, arguments.flight);
   const Table times = time_table(frames, arguments.flight);
@@ -155,7 +155,7 @@ void run(const Arguments& arguments) {
                                   {"times", times.json()},
                                   {"frames", frames_json(frames)}});
   }
-  fmt::print("{}\n{}\n{}\n{}", accuracy.text(), reestimated_text(frames), times.text(), note);
+  fmt::print("{}\n{}\n{}\n{}", accuracy.text(), reestimated_text(frames), times.text(), flight_note);
 }
 
 }  // namespace
@@ -163,7 +163,7 @@ void run(const Arguments& arguments) {
 void add_flight(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand(
       "flight", "Tracking from frame to frame, against ground truth and against independent frames");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<FlightArguments>();
   FlightOptions& flight = arguments->flight;
   command->add_option("--scene", flight.scene, "Name of the scene at the start")
       ->type_name("NAME")

@@ -19,7 +19,7 @@ const std::vector<double>& tolerances_px() {
   return tolerances;
 }
 
-struct Arguments {
+struct KittiArguments {
   std::string folder, road_masks;
   MethodSettings methods;
   std::string json, figure;
@@ -133,7 +133,7 @@ nlohmann::ordered_json region_json(const Region& region) {
   return document;
 }
 
-void kitti(const Arguments& arguments) {
+void kitti(const KittiArguments& arguments) {
   const std::vector<KittiFiles> frames = find_kitti_frames(arguments.folder, arguments.road_masks);
   Regions regions;
   std::vector<std::vector<io::SheetCell>> sheet;
@@ -175,7 +175,7 @@ Example:
 void add_kitti(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("kitti", "Road disparities on KITTI Stereo 2015: Table 1 of the paper");
   command->footer(kitti_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<KittiArguments>();
   command->add_option("DIR", arguments->folder, "Folder of the frames")->required();
   command->add_option("--road-masks", arguments->road_masks, "Folder of road masks; default: DIR/road if present")
       ->type_name("DIR");

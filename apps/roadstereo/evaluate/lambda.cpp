@@ -17,7 +17,7 @@ namespace {
 
 constexpr double published_optimum = 10;
 
-struct Arguments {
+struct LambdaArguments {
   double min_lambda = 0.01;
   double max_lambda = 1e4;
   int count = 25;
@@ -34,7 +34,7 @@ struct Arguments {
   }
 };
 
-constexpr const char* note =
+constexpr const char* lambda_note =
     "The energy is normalised so that λ = 10 is a Newton step for a road without roll (docs/method.md). An optimum at "
     "10\n"
     "confirms this normalisation; the one of the paper is not published. From the second step on, eq. (28),\n"
@@ -56,7 +56,7 @@ Table make_table(const std::vector<LambdaTrial>& trials, std::size_t maps) {
   return table;
 }
 
-void run(const Arguments& arguments) {
+void run(const LambdaArguments& arguments) {
   arguments.validate();
   const std::vector<LambdaMap> maps = make_lambda_maps(arguments.threads);
   std::vector<LambdaTrial> trials;
@@ -72,7 +72,7 @@ void run(const Arguments& arguments) {
                                   {"published_optimum", published_optimum},
                                   {"rows", table.json()}});
   }
-  fmt::print("{}\nOptimum {:.3g}; the paper's is {}.\n{}", table.text(), optimum, published_optimum, note);
+  fmt::print("{}\nOptimum {:.3g}; the paper's is {}.\n{}", table.text(), optimum, published_optimum, lambda_note);
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ void run(const Arguments& arguments) {
 void add_lambda(CLI::App& evaluate) {
   CLI::App* command =
       evaluate.add_subcommand("lambda", "Iterations of the gradient descent on the roll angle against λ(0)");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<LambdaArguments>();
   command->add_option("--min-lambda", arguments->min_lambda, "Minimum λ(0)")->capture_default_str();
   command->add_option("--max-lambda", arguments->max_lambda, "Maximum λ(0)")->capture_default_str();
   command->add_option("--count", arguments->count, "Number of values, with equal ratios")->capture_default_str();

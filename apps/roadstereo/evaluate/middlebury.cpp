@@ -15,7 +15,7 @@
 namespace roadstereo::cli {
 namespace {
 
-struct Arguments {
+struct MiddleburyArguments {
   std::string folder;
   MethodSettings methods;
   std::string json, figure;
@@ -48,7 +48,7 @@ Table score_scene(const MiddleburyScene& scene, const MethodSettings& settings, 
   return table;
 }
 
-void middlebury(const Arguments& arguments) {
+void middlebury(const MiddleburyArguments& arguments) {
   nlohmann::ordered_json document;
   std::vector<std::vector<io::SheetCell>> sheet;
   for (const std::string& folder : find_middlebury_scenes(arguments.folder)) {
@@ -77,7 +77,7 @@ Example:
 void add_middlebury(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("middlebury", "General scenes of Middlebury v3, without a road");
   command->footer(middlebury_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<MiddleburyArguments>();
   command->add_option("DIR", arguments->folder, "Folder of a scene, or of scenes")->required();
   add_method_options(*command, arguments->methods);
   add_json_option(*command, arguments->json);

@@ -16,7 +16,7 @@
 namespace roadstereo::cli {
 namespace {
 
-struct Arguments {
+struct RobustnessArguments {
   std::vector<std::string> folders;
   int scenes = 10;
   MethodSettings methods;
@@ -135,7 +135,7 @@ nlohmann::ordered_json frames_json(const SourceTrials& source) {
   return frames;
 }
 
-void robustness(const Arguments& arguments) {
+void robustness(const RobustnessArguments& arguments) {
   if (arguments.scenes < 0 || arguments.scenes > 10000) {
     fail("--scenes is ", arguments.scenes, "; it must be between 0 and 10000");
   }
@@ -181,7 +181,7 @@ void add_robustness(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand(
       "robustness", "Share of roads found, and disparities of roads, on every kind of source at once");
   command->footer(robustness_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RobustnessArguments>();
   command->add_option("DIR", arguments->folders, "Folders of sources");
   command->add_option("--scenes", arguments->scenes, "Number of rendered random roads, and of streets")
       ->type_name("N")

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double published_mean_rad = 0.012;
 
-struct Arguments {
+struct RollArguments {
   RollTrialOptions trials;
   bool no_pairs = false;
   std::string json;
@@ -33,7 +33,7 @@ struct Arguments {
   }
 };
 
-constexpr const char* note =
+constexpr const char* roll_note =
     "Rows with camber: the road is not planar (1 cm lower 1.6 m beside its crown). The true roll is that of the "
     "tangent\n"
     "plane at the crown; the visible part of the road is not symmetric, which biases the best plane.\n";
@@ -61,7 +61,7 @@ nlohmann::ordered_json trials_json(const std::vector<RollErrors>& all) {
   return trials;
 }
 
-void run(const Arguments& arguments) {
+void run(const RollArguments& arguments) {
   arguments.validate();
   std::vector<RollErrors> all = run_exact_trials(arguments.trials);
   if (!arguments.no_pairs) {
@@ -71,14 +71,14 @@ void run(const Arguments& arguments) {
   if (!arguments.json.empty()) {
     write_report(arguments.json, {{"experiment", "roll"}, {"rows", table.json()}, {"trials", trials_json(all)}});
   }
-  fmt::print("{}\n{}", table.text(), note);
+  fmt::print("{}\n{}", table.text(), roll_note);
 }
 
 }  // namespace
 
 void add_roll(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("roll", "Error of the roll angle on synthetic roads with known roll");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RollArguments>();
   command->add_option("--max-roll", arguments->trials.max_roll_deg, "Maximum roll of exact maps, in both directions")
       ->type_name("DEG")
       ->capture_default_str();

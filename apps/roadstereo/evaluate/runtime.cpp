@@ -22,7 +22,7 @@ struct Published {
   double transform_ms = 1.541;
 };
 
-struct Arguments {
+struct RuntimeArguments {
   RuntimeOptions runtime;
   std::string json;
 };
@@ -63,7 +63,7 @@ Table make_table(const RuntimeReport& report) {
   return table;
 }
 
-constexpr const char* note =
+constexpr const char* runtime_note =
     "Times of complete frames with a tracked road model. OpenCV matches the transformed pair. All search D "
     "disparities;\n"
     "OpenCV rounds D up to a multiple of 16, and SGBM runs on one thread. Mde/s is W·H·D/t as in the paper, although "
@@ -73,7 +73,7 @@ constexpr const char* note =
     "of\n"
     "paper is gradient descent, as published.\n";
 
-void run(const Arguments& arguments) {
+void run(const RuntimeArguments& arguments) {
   const RuntimeReport report = time_methods(arguments.runtime);
   const Table table = make_table(report);
   if (!arguments.json.empty()) {
@@ -86,7 +86,7 @@ void run(const Arguments& arguments) {
                                   {"runs", arguments.runtime.runs},
                                   {"rows", table.json()}});
   }
-  fmt::print("{}\n{}", table.text(), note);
+  fmt::print("{}\n{}", table.text(), runtime_note);
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ void run(const Arguments& arguments) {
 void add_runtime(CLI::App& evaluate) {
   CLI::App* command =
       evaluate.add_subcommand("runtime", "Time per frame and Mde/s of every preset and of OpenCV's matchers");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RuntimeArguments>();
   command->add_option("--size", arguments->runtime.size, "Size of the synthetic frame; default: as in the paper")
       ->type_name("WxH")
       ->capture_default_str();

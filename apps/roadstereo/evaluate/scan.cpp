@@ -20,7 +20,7 @@
 namespace roadstereo::cli {
 namespace {
 
-struct Arguments {
+struct ScanArguments {
   std::vector<std::string> inputs;  ///< DIR; CLOUD and SCAN; LEFT and RIGHT
   std::vector<std::string> calibration;
   std::string label, scan;
@@ -33,7 +33,7 @@ struct Arguments {
   std::string json, figure;
 };
 
-RegistrationOptions registration_options(const Arguments& arguments) {
+RegistrationOptions registration_options(const ScanArguments& arguments) {
   RegistrationOptions options;
   options.last_step = arguments.robust ? LastStep::robust : LastStep::least_squares;
   return options;
@@ -113,7 +113,7 @@ constexpr const char* legend =
   the best distinct pose
 )";
 
-void print(const std::vector<Row>& rows, const Arguments& arguments) {
+void print(const std::vector<Row>& rows, const ScanArguments& arguments) {
   Table table{"Closest distance to the laser scan", columns(), {}};
   for (const Row& row : rows) table.rows.push_back(cells(row));
   const std::size_t methods = arguments.inputs.size() == 1 ? arguments.compared.size() : 0;
@@ -132,7 +132,7 @@ void check_extents(const Points& cloud, const PrincipalAxes& scan) {
        "(units: --cloud-unit-mm, --scan-unit-mm)");
 }
 
-void scan_cloud(const Arguments& arguments) {
+void scan_cloud(const ScanArguments& arguments) {
   const Points cloud = read_points(arguments.inputs[0], arguments.cloud_unit_mm);
   const ScanModel scan(read_points(arguments.inputs[1], arguments.scan_unit_mm));
   check_extents(cloud, scan.axes);
@@ -145,7 +145,7 @@ void scan_cloud(const Arguments& arguments) {
 }
 
 /// Run the methods on one pair. Adds their rows and, if `pictures` is not null, their distance maps.
-void scan_pair(const ScanFiles& files, const Arguments& arguments, std::vector<Row>& rows,
+void scan_pair(const ScanFiles& files, const ScanArguments& arguments, std::vector<Row>& rows,
                std::vector<io::SheetCell>* pictures) {
   const StereoPair pair = read_pair(files.pair);
   const Image<std::uint8_t> label = read_mask(files.label);
@@ -162,7 +162,7 @@ void scan_pair(const ScanFiles& files, const Arguments& arguments, std::vector<R
   }
 }
 
-void scan_pairs(const std::vector<ScanFiles>& frames, const Arguments& arguments) {
+void scan_pairs(const std::vector<ScanFiles>& frames, const ScanArguments& arguments) {
   for (const std::string& method : arguments.compared) {
     if (method_index(method) == method_names().size()) {
       fail("--methods contains \"", method, "\"; it must be one of ",
@@ -181,7 +181,7 @@ void scan_pairs(const std::vector<ScanFiles>& frames, const Arguments& arguments
   if (drawn) write_figure(arguments.figure, io::picture_sheet(sheet, cell_width));
 }
 
-void scan(const Arguments& arguments) {
+void scan(const ScanArguments& arguments) {
   const bool is_pair = !arguments.label.empty() || !arguments.scan.empty() || !arguments.calibration.empty();
   if (arguments.inputs.size() == 1) {
     if (is_pair)
@@ -211,7 +211,7 @@ Examples:
   roadstereo evaluate scan potholes --figure scan.png
   roadstereo evaluate scan cloud.ply scan.ply --labelled 25000)";
 
-void add_inputs(CLI::App& command, Arguments& arguments) {
+void add_inputs(CLI::App& command, ScanArguments& arguments) {
   command.add_option("INPUT", arguments.inputs, "DIR, or CLOUD SCAN, or LEFT RIGHT")->required()->expected(1, 2);
   command.add_option("--calibration", arguments.calibration, "Calibration of the pair")
       ->type_name("FILE")
@@ -235,7 +235,7 @@ void add_inputs(CLI::App& command, Arguments& arguments) {
 void add_scan(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("scan", "Potholes against laser scans of their casts");
   command->footer(scan_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ScanArguments>();
   add_inputs(*command, *arguments);
   command->add_option("--methods", arguments->compared, "Presets and OpenCV's matchers, separated by commas")
       ->delimiter(',')

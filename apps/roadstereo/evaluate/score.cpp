@@ -17,13 +17,13 @@
 namespace roadstereo::cli {
 namespace {
 
-struct Arguments {
+struct ScoreArguments {
   std::string map, truth, mask;
   std::vector<double> tolerances_px{1, 2, 3};
   std::string json, figure;
 };
 
-void score(const Arguments& arguments) {
+void score(const ScoreArguments& arguments) {
   const Image<float> map = io::read_disparity(arguments.map);
   const Image<float> truth = io::read_disparity(arguments.truth);
   Image<std::uint8_t> mask;
@@ -61,7 +61,7 @@ Example:
 void add_score(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("score", "Disparity map against ground truth");
   command->footer(score_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ScoreArguments>();
   command->add_option("MAP", arguments->map, "Disparity map")->required();
   command->add_option("TRUTH", arguments->truth, "Ground truth of the same size")->required();
   command->add_option("--mask", arguments->mask, "Image; only pixels that are not 0 count")->type_name("FILE");

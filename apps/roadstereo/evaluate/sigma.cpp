@@ -20,7 +20,7 @@ constexpr int bin_count = 10;
 constexpr double min_within_2 = 0.90;
 constexpr double max_within_2 = 0.97;
 
-struct Arguments {
+struct SigmaArguments {
   std::string preset = "default", sizes = "full";
   MethodSettings methods;
   std::string json;
@@ -36,7 +36,7 @@ void append(const std::vector<SigmaSample>& more, std::vector<SigmaSample>& all)
   all.insert(all.end(), more.begin(), more.end());
 }
 
-Samples match_group(const SynthGroup& group, const std::vector<synth::Scene>& scenes, const Arguments& arguments) {
+Samples match_group(const SynthGroup& group, const std::vector<synth::Scene>& scenes, const SigmaArguments& arguments) {
   Samples samples;
   for (const synth::Scene& scene : scenes) {
     const SynthCase test_case = make_synth_case(group, scene, arguments.methods.threads);
@@ -109,7 +109,7 @@ std::string goal_line(const SigmaCalibration& all) {
                      percent * max_within_2, percent * all.within_2, outcome);
 }
 
-void sigma(const Arguments& arguments) {
+void sigma(const SigmaArguments& arguments) {
   const std::vector<synth::Scene> scenes = synth_scenes(arguments.sizes == "small");
   Samples all;
   std::vector<SigmaGroup> groups;
@@ -145,7 +145,7 @@ Example:
 void add_sigma(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("sigma", "Standard errors of the disparities against their true errors");
   command->footer(sigma_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SigmaArguments>();
   command->add_option("--preset", arguments->preset, "Preset: default, fast or paper")
       ->type_name("NAME")
       ->capture_default_str();

@@ -15,7 +15,7 @@
 namespace roadstereo::cli {
 namespace {
 
-struct Arguments {
+struct SynthAccuracyArguments {
   std::string sizes = "full";
   MethodSettings methods;
   std::string json;
@@ -59,7 +59,7 @@ nlohmann::ordered_json phases_json(const std::vector<SubPixelBias>& biases) {
   return methods;
 }
 
-void synth_accuracy(const Arguments& arguments) {
+void synth_accuracy(const SynthAccuracyArguments& arguments) {
   const std::vector<synth::Scene> scenes = synth_scenes(arguments.sizes == "small");
   const SynthScores scores = score_synth(scenes, arguments.methods);
   const Table visible =
@@ -99,7 +99,7 @@ Example:
 void add_synth_accuracy(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand("synth", "Rendered roads with exact ground truth, clean and degraded");
   command->footer(synth_footer);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SynthAccuracyArguments>();
   add_synth_sizes(*command, arguments->sizes);
   add_method_options(*command, arguments->methods);
   add_json_option(*command, arguments->json);

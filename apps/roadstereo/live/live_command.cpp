@@ -20,7 +20,7 @@ namespace roadstereo::cli {
 namespace {
 
 /// Command line of `live`.
-struct Arguments {
+struct LiveCommandArguments {
   std::vector<std::string> names;
   std::vector<std::string> calibration;
   SourceSettings source;
@@ -34,7 +34,7 @@ struct Arguments {
   bool json = false;
 };
 
-LiveOptions live_options(const Arguments& arguments) {
+LiveOptions live_options(const LiveCommandArguments& arguments) {
   if (!std::isfinite(arguments.max_age_ms)) fail("--max-age is ", arguments.max_age_ms, "; it must be a finite number");
   if (!std::isfinite(arguments.seconds)) fail("--seconds is ", arguments.seconds, "; it must be a number");
   if (arguments.calibration.size() > 2) fail("--calibration needs one file, or two ROS camera_info files");
@@ -50,7 +50,7 @@ LiveOptions live_options(const Arguments& arguments) {
 }
 
 /// Runs until the end of the source, the frame or time limit, or a signal.
-void watch(const Arguments& arguments, LiveSession& session, Clock::time_point start, const StopSignals& signals) {
+void watch(const LiveCommandArguments& arguments, LiveSession& session, Clock::time_point start, const StopSignals& signals) {
   constexpr double period_s = 0.05;
   TerminalLine line;
   while (!session.finished()) {
@@ -62,7 +62,7 @@ void watch(const Arguments& arguments, LiveSession& session, Clock::time_point s
   }
 }
 
-void live(const Arguments& arguments, const NamedOpener& opener) {
+void live(const LiveCommandArguments& arguments, const NamedOpener& opener) {
   std::optional<ServeAddress> address;
   if (!arguments.serve.empty()) address = serve_address(arguments.serve);
   const io::SourceOptions source = make_source_options(arguments.source);
@@ -105,7 +105,7 @@ Examples:
 
 )";
 
-void add_options(CLI::App& command, Arguments& arguments) {
+void add_options(CLI::App& command, LiveCommandArguments& arguments) {
   command.add_option("SOURCE", arguments.names, "Camera, video, folder, list, bag or pipeline; or two: left and right")
       ->required()
       ->expected(1, 2);
@@ -131,7 +131,7 @@ void add_options(CLI::App& command, Arguments& arguments) {
 void add_live_command(CLI::App& app, const NamedOpener& opener) {
   CLI::App* command = app.add_subcommand("live", "Process a camera or a recording in real time");
   command->footer(footer + settings_help());
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<LiveCommandArguments>();
   add_options(*command, *arguments);
   add_source_options(*command, arguments->source);
   add_processing_options(*command, arguments->processing);
