@@ -50,7 +50,8 @@ LiveOptions live_options(const LiveCommandArguments& arguments) {
 }
 
 /// Runs until the end of the source, the frame or time limit, or a signal.
-void watch(const LiveCommandArguments& arguments, LiveSession& session, Clock::time_point start, const StopSignals& signals) {
+void watch(const LiveCommandArguments& arguments, LiveSession& session, Clock::time_point start,
+           const StopSignals& signals) {
   constexpr double period_s = 0.05;
   TerminalLine line;
   while (!session.finished()) {
