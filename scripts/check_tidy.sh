@@ -3,7 +3,7 @@
 #   scripts/check_tidy.sh        the sources that a change touches
 #   scripts/check_tidy.sh --all  the library and the command line, with the analyzer
 # A change is what differs from the merge base with origin/main. Where HEAD is origin/main itself, as in a fresh clone, it
-# is the last 20 commits. A changed header counts as the source of its name. Of a change of more than 24 sources the 24
+# is the last 20 commits. A changed header counts as the source of its name. Of a change of more than 10 sources the 10
 # that were changed last are looked at: scripts/check_all.sh looks at the rest.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -32,7 +32,7 @@ changed() {
   fi
   { git diff --name-only HEAD
     git log --format= --name-only "$base..HEAD"; } |
-    grep -E '^(src|apps)/.*\.[ch]pp$' | sed 's/\.hpp$/.cpp/' | awk '!seen[$0]++' | head -n 24 || true
+    grep -E '^(src|apps)/.*\.[ch]pp$' | sed 's/\.hpp$/.cpp/' | awk '!seen[$0]++' | head -n 10 || true
 }
 
 # The analyzer follows paths through the embedded library and takes a third of the time there; the sanitizers see what

@@ -57,8 +57,8 @@ class FrameStages {
   virtual RoadModelEstimate verify_road_model(const GreyPair& pair, const TrackedRoad& previous) = 0;
   /// transform_target, π_tar → π_tar': returns the pair to match, without search ranges and prior.
   virtual MatchInput transform_perspective(const GreyPair& pair, const PerspectiveShift& shift) = 0;
-  /// CoarseSearch: returns `pair` with search ranges and prior.
-  virtual MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift) = 0;
+  /// CoarseSearch with blocks of `block_radius`: returns `pair` with search ranges and prior.
+  virtual MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift, int block_radius) = 0;
   /// Section 3.2: cost, aggregation, winner-take-all, left-right check, sub-pixel disparity.
   virtual ResidualMaps match(const MatchInput& input, const MatcherOptions& options) = 0;
   /// restore_disparity: adds Δu − δp back.

@@ -71,12 +71,14 @@ class HostStages final : public FrameStages {
     return {pair.left, transformed_target_, first_column_.data(), shift.disparities, {}, {}};
   }
 
-  MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift) override {
+  MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift, int block_radius) override {
     MatchInput input = pair;
     const auto road = [&shift](double u, double v) {
       return shifted_road(shift, u, v, std::numeric_limits<double>::quiet_NaN());
     };
-    if (!coarse_search_ || !coarse_search_->find(pair, road)) return input;
+    if (!coarse_search_) return input;
+    coarse_search_->set_block_radius(block_radius);
+    if (!coarse_search_->find(pair, road)) return input;
     if (options_.narrow_search && coarse_search_->ranges() != nullptr) input.ranges = coarse_search_->ranges()->views();
     input.prior = coarse_search_->prior().view();
     return input;

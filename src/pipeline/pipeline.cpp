@@ -13,6 +13,7 @@
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/adaptive_support.hpp"
+#include "stereo/coarse/coarse_size.hpp"
 #if defined(ROADSTEREO_WITH_CUDA)
 #include "pipeline/cuda/device_stages.hpp"
 #endif
@@ -167,7 +168,11 @@ MatchInput Pipeline::State::transform_perspective(const GreyPair& pair) {
 
 MatchInput Pipeline::State::search_coarsely(const MatchInput& pair) {
   const StageTimer timer(result.ms.coarse);
-  return stages->search_coarsely(pair, result.shift);
+  const int radius = options.coarse_search.block_radius;
+  if (!options.matcher.adapt_support) return stages->search_coarsely(pair, result.shift, radius);
+  const double correlation =
+      downsampled_correlation(result.road.correlation, coarse_factor(options.coarse_search, pair.reference.width()));
+  return stages->search_coarsely(pair, result.shift, adapt_radius(radius, correlation));
 }
 
 /// Section 3.2. Masked pixels have no disparity. Without a road model the prior rests on its rows alone, and its

@@ -15,15 +15,26 @@ inline double support_scale(double correlation) {
   return std::sqrt(pixels(std::clamp(correlation, min_correlation, reference)) / pixels(reference));
 }
 
+/// Radius of a block of `radius` for a pair whose blocks on the road correlate with `correlation`; 0 is unknown.
+inline int adapt_radius(int radius, double correlation) {
+  constexpr int max_radius = 7;
+  if (correlation <= 0) return radius;
+  const int adapted = static_cast<int>(std::lround(support_scale(correlation) * radius));
+  return std::max(radius, std::min(adapted, max_radius));
+}
+
+/// Correlation after downsampling by `factor`, which averages white noise over factor² pixels; 0 stays unknown.
+inline double downsampled_correlation(double correlation, int factor) {
+  const double signal = factor * factor * correlation;
+  return signal / (signal + 1 - correlation);
+}
+
 /// The options for a pair whose blocks on the road correlate with `correlation` (RoadModelEstimate::correlation; 0 is
 /// unknown and leaves them): a larger block, and as much more weight of the prior as the costs are less certain.
 inline MatcherOptions adapt_support(MatcherOptions options, double correlation) {
-  constexpr int max_radius = 7;
   if (!options.adapt_support || correlation <= 0) return options;
-  const double scale = support_scale(correlation);
-  const int radius = static_cast<int>(std::lround(scale * options.block_radius));
-  options.block_radius = std::max(options.block_radius, std::min(radius, max_radius));
-  options.prior_weight = std::min(scale * options.prior_weight, 10.0);
+  options.block_radius = adapt_radius(options.block_radius, correlation);
+  options.prior_weight = std::min(support_scale(correlation) * options.prior_weight, 10.0);
   return options;
 }
 

@@ -32,6 +32,19 @@ TEST(AdaptiveSupport, GrowsBlockAndPriorOfNoisyPairs) {
   EXPECT_EQ(adapt_support(options, 0.3).block_radius, 9);  // never smaller
 }
 
+TEST(AdaptiveSupport, RadiusOfCoarseBlocks) {
+  EXPECT_EQ(adapt_radius(3, 0.95), 3);
+  EXPECT_EQ(adapt_radius(3, 0), 3);    // unknown
+  EXPECT_EQ(adapt_radius(3, 0.5), 5);  // 3 · √3 = 5.2
+  EXPECT_EQ(adapt_radius(3, 0.3), 7);  // 3 · √6 = 7.3
+}
+
+TEST(AdaptiveSupport, DownsamplingAveragesNoise) {
+  EXPECT_DOUBLE_EQ(downsampled_correlation(0.5, 2), 0.8);  // signal to noise 1, and 4 afterwards
+  EXPECT_DOUBLE_EQ(downsampled_correlation(0.9, 1), 0.9);
+  EXPECT_EQ(downsampled_correlation(0, 2), 0);
+}
+
 TEST(AdaptiveSupport, LeavesOptionsWithoutNoiseOrKnowledge) {
   const MatcherOptions options;
   EXPECT_EQ(adapt_support(options, 0).block_radius, options.block_radius);

@@ -71,8 +71,9 @@ class DeviceStages final : public FrameStages {
     return {pair.left, view(target_), first_column_.data(), shift.disparities, {}, {}};
   }
 
-  MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift) override {
+  MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift, int block_radius) override {
     MatchInput input = pair;
+    if (coarse_search_) coarse_search_->set_block_radius(block_radius);
     if (coarse_search_ && coarse_search_->find(pair, shift, stream())) {
       if (options_.narrow_search) input.ranges = coarse_search_->ranges();
       input.prior = coarse_search_->prior();

@@ -18,6 +18,9 @@ class CoarseSearch {
  public:
   CoarseSearch(const CoarseSearchOptions& options, int threads);
 
+  /// Radius of the blocks from now on, coarse pixels; at first that of the options.
+  void set_block_radius(int radius) { options_.block_radius = radius; }
+
   /// Computes the prior and, where that saves work, the ranges; both are valid until the next call. `road(u, v)` is the
   /// road's disparity at a pixel of the pair, NaN where unknown. Returns false when the image is too small.
   bool find(const MatchInput& input, FunctionRef<double(double, double)> road);

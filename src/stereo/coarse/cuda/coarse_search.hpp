@@ -25,6 +25,9 @@ class CudaCoarseSearch {
   explicit CudaCoarseSearch(const CoarseSearchOptions& options, std::ptrdiff_t max_numbers = usual_numbers)
       : options_(options), max_numbers_(max_numbers) {}
 
+  /// Radius of the blocks from now on, coarse pixels; at first that of the options.
+  void set_block_radius(int radius) { options_.block_radius = radius; }
+
   /// Enqueues the search of `input`, which lies in device memory. Returns false, without prior and ranges, when the
   /// image is too small.
   bool find(const MatchInput& input, const PerspectiveShift& shift, cudaStream_t stream);
