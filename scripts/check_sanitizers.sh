@@ -13,7 +13,7 @@ programs=(test_embedded test_cuda test_io test_live)
 with='.'
 without='^$'
 case ${1:-} in
-  asan) without='^(.*/)?(CarryOver|CrossSection|CudaPipeline|CudaPreset|DamageReport|PipelinePreset|PipelineScene|RenderTruth)[.]' ;;
+  asan) without='^(.*/)?(CarryOver|CrossSection|(Cuda)?Pipeline[A-Za-z]*|CudaPreset|DamageReport|RoadModelScene|RenderTruth)[.]' ;;
   asan-all) programs+=(test_flight test_cli) ;;
   tsan)
     programs=(test_embedded test_cuda test_live test_flight)

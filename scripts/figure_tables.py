@@ -300,6 +300,17 @@ SUMMARY = [
              [row["e_p_or_missing_0.5px_percent"] for row in rows_where(synth["visible"], method="default")],
              [best(rows_where(synth["visible"], group=group), "e_p_or_missing_0.5px_percent")
               for group in {row["group"] for row in synth["visible"]}]))),
+    (("robustness",), "Roads of another renderer, 20 scenes with noise, blur, JPEG, misaligned rows: roads found; wrong by more "
+     "than 0.5 px or missing; OpenCV's best",
+     lambda result: "{:.0f} %; {} %; {} %".format(
+         row_where(result["roads"], source="wider/synthetic")["found_percent"],
+         number(row_where(result["disparities"], source="wider/synthetic", method="default")
+                ["e_p_or_missing_0.5px_percent"], 1),
+         number(best(rows_where(result["disparities"], source="wider/synthetic"), "e_p_or_missing_0.5px_percent"), 1))),
+    (("robustness",), "Drive of 51 frames over an intact street: road found anew, none; false damages",
+     lambda result: (lambda row: "{:.0f} frame, {:.0f}; {:.0f}".format(
+         row["found_percent"] * row["frame_count"] / 100, row["none_percent"] * row["frame_count"] / 100,
+         row["damages"]))(row_where(result["drives"], drive="wider/odometry"))),
     (("sigma",), "Errors within two of the standard errors that come with the map, the same scenes",
      lambda sigma: number(row_where(sigma["groups"], group="all", where="visible")["within_2_sigma_percent"], 1) + " %"),
     (("damage_maps", "damage_pairs"),
