@@ -105,7 +105,7 @@ def synth_damage(result):
 
 @needs("robustness")
 def robustness(result):
-    table = [[row["source"], str(row["frame_count"]), number(row["found_percent"], 1), number(row["weak_percent"], 1),
+    table = [[row["source"], number(row["frame_count"], 0), number(row["found_percent"], 1), number(row["weak_percent"], 1),
               number(row["plane_px"], 2), row["worst_frame"]] for row in result["roads"]]
     return markdown(["source", "frames", "found %", "of these weak %", "plane px", "worst frame"], table)
 
@@ -123,8 +123,8 @@ def robustness_disparities(result):
 
 @needs("robustness")
 def robustness_drives(result):
-    table = [[row["drive"], str(row["frame_count"]), number(row["tracked_percent"], 1), number(row["found_percent"], 1),
-              number(row["none_percent"], 1), str(row["damages"])] for row in result["drives"]]
+    table = [[row["drive"], number(row["frame_count"], 0), number(row["tracked_percent"], 1), number(row["found_percent"], 1),
+              number(row["none_percent"], 1), number(row["damages"], 0)] for row in result["drives"]]
     return markdown(["drive", "frames", "tracked %", "found anew %", "none %", "damages"], table)
 
 
