@@ -69,6 +69,18 @@ struct FrameView {
   std::ptrdiff_t stride_bytes = 0;  ///< from one row to the next
   SampleType sample = SampleType::u8;
   ChannelOrder order = ChannelOrder::grey;
+
+  // Views of samples in memory of the caller. `stride_bytes` 0: no padding between rows.
+  static FrameView grey8(const std::uint8_t* data, int width, int height, std::ptrdiff_t stride_bytes = 0);
+  static FrameView grey16(const std::uint16_t* data, int width, int height, std::ptrdiff_t stride_bytes = 0);
+  static FrameView bgr8(const std::uint8_t* data, int width, int height, std::ptrdiff_t stride_bytes = 0);
+  static FrameView bgr16(const std::uint16_t* data, int width, int height, std::ptrdiff_t stride_bytes = 0);
+  static FrameView rgb8(const std::uint8_t* data, int width, int height, std::ptrdiff_t stride_bytes = 0);
+  static FrameView rgb16(const std::uint16_t* data, int width, int height, std::ptrdiff_t stride_bytes = 0);
+  static FrameView bgra8(const std::uint8_t* data, int width, int height, std::ptrdiff_t stride_bytes = 0);
+  static FrameView bgra16(const std::uint16_t* data, int width, int height, std::ptrdiff_t stride_bytes = 0);
+  static FrameView rgba8(const std::uint8_t* data, int width, int height, std::ptrdiff_t stride_bytes = 0);
+  static FrameView rgba16(const std::uint16_t* data, int width, int height, std::ptrdiff_t stride_bytes = 0);
 };
 
 /// Camera frame that owns its samples, without padding between rows.

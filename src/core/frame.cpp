@@ -65,17 +65,25 @@ int channel_count(ChannelOrder order) {
   return 1;
 }
 
-FrameView Frame::view() const {
-  const std::ptrdiff_t sample_bytes = sample == SampleType::u16 ? 2 : 1;
-  return {bytes.data(), width, height, sample_bytes * channel_count(order) * width, sample, order};
+namespace {
+
+std::ptrdiff_t bytes_per_sample(SampleType sample) {
+  return sample == SampleType::u16 ? 2 : 1;
 }
 
-namespace {
+std::ptrdiff_t bytes_per_row(int width, SampleType sample, ChannelOrder order) {
+  return bytes_per_sample(sample) * channel_count(order) * width;
+}
+
+FrameView view_of(const void* data, int width, int height, std::ptrdiff_t stride_bytes, SampleType sample,
+                  ChannelOrder order) {
+  return {data, width, height, stride_bytes == 0 ? bytes_per_row(width, sample, order) : stride_bytes, sample, order};
+}
 
 /// Samples of 16 bits are read as such, and rows do not overlap.
 void require_layout(const FrameView& frame) {
-  const std::ptrdiff_t sample_bytes = frame.sample == SampleType::u16 ? 2 : 1;
-  const std::ptrdiff_t row_bytes = sample_bytes * channel_count(frame.order) * frame.width;
+  const std::ptrdiff_t sample_bytes = bytes_per_sample(frame.sample);
+  const std::ptrdiff_t row_bytes = bytes_per_row(frame.width, frame.sample, frame.order);
   if (std::abs(frame.stride_bytes) < row_bytes) {
     fail("the image's rows are ", frame.stride_bytes, " bytes apart; ", frame.width, " pixels need ", row_bytes);
   }
@@ -86,6 +94,50 @@ void require_layout(const FrameView& frame) {
 }
 
 }  // namespace
+
+FrameView Frame::view() const {
+  return view_of(bytes.data(), width, height, 0, sample, order);
+}
+
+FrameView FrameView::grey8(const std::uint8_t* data, int width, int height, std::ptrdiff_t stride_bytes) {
+  return view_of(data, width, height, stride_bytes, SampleType::u8, ChannelOrder::grey);
+}
+
+FrameView FrameView::grey16(const std::uint16_t* data, int width, int height, std::ptrdiff_t stride_bytes) {
+  return view_of(data, width, height, stride_bytes, SampleType::u16, ChannelOrder::grey);
+}
+
+FrameView FrameView::bgr8(const std::uint8_t* data, int width, int height, std::ptrdiff_t stride_bytes) {
+  return view_of(data, width, height, stride_bytes, SampleType::u8, ChannelOrder::bgr);
+}
+
+FrameView FrameView::bgr16(const std::uint16_t* data, int width, int height, std::ptrdiff_t stride_bytes) {
+  return view_of(data, width, height, stride_bytes, SampleType::u16, ChannelOrder::bgr);
+}
+
+FrameView FrameView::rgb8(const std::uint8_t* data, int width, int height, std::ptrdiff_t stride_bytes) {
+  return view_of(data, width, height, stride_bytes, SampleType::u8, ChannelOrder::rgb);
+}
+
+FrameView FrameView::rgb16(const std::uint16_t* data, int width, int height, std::ptrdiff_t stride_bytes) {
+  return view_of(data, width, height, stride_bytes, SampleType::u16, ChannelOrder::rgb);
+}
+
+FrameView FrameView::bgra8(const std::uint8_t* data, int width, int height, std::ptrdiff_t stride_bytes) {
+  return view_of(data, width, height, stride_bytes, SampleType::u8, ChannelOrder::bgra);
+}
+
+FrameView FrameView::bgra16(const std::uint16_t* data, int width, int height, std::ptrdiff_t stride_bytes) {
+  return view_of(data, width, height, stride_bytes, SampleType::u16, ChannelOrder::bgra);
+}
+
+FrameView FrameView::rgba8(const std::uint8_t* data, int width, int height, std::ptrdiff_t stride_bytes) {
+  return view_of(data, width, height, stride_bytes, SampleType::u8, ChannelOrder::rgba);
+}
+
+FrameView FrameView::rgba16(const std::uint16_t* data, int width, int height, std::ptrdiff_t stride_bytes) {
+  return view_of(data, width, height, stride_bytes, SampleType::u16, ChannelOrder::rgba);
+}
 
 GreyWeights grey_weights(const FrameView& frame, double white_level) {
   if (frame.data == nullptr) fail("the image has no data");

@@ -53,6 +53,29 @@ TEST(Frame, SixteenBitsUseWhiteLevel) {
   EXPECT_EQ(grey(0, 0), grey_max);  // brighter than white is white
 }
 
+TEST(Frame, ViewsNameTheirLayout) {
+  const auto same = [](const FrameView& view, std::ptrdiff_t stride_bytes, SampleType sample, ChannelOrder order) {
+    return view.width == 36 && view.height == 40 && view.stride_bytes == stride_bytes && view.sample == sample &&
+           view.order == order;
+  };
+  const std::uint8_t bytes[1]{};
+  const std::uint16_t words[1]{};
+  using enum ChannelOrder;
+  EXPECT_EQ(FrameView::grey8(bytes, 36, 40).data, bytes);
+  EXPECT_TRUE(same(FrameView::grey8(bytes, 36, 40), 36, SampleType::u8, grey));
+  EXPECT_TRUE(same(FrameView::grey8(bytes, 36, 40, 50), 50, SampleType::u8, grey));
+  EXPECT_TRUE(same(FrameView::grey8(bytes, 36, 40, -50), -50, SampleType::u8, grey));
+  EXPECT_TRUE(same(FrameView::grey16(words, 36, 40), 72, SampleType::u16, grey));
+  EXPECT_TRUE(same(FrameView::bgr8(bytes, 36, 40), 108, SampleType::u8, bgr));
+  EXPECT_TRUE(same(FrameView::bgr16(words, 36, 40), 216, SampleType::u16, bgr));
+  EXPECT_TRUE(same(FrameView::rgb8(bytes, 36, 40), 108, SampleType::u8, rgb));
+  EXPECT_TRUE(same(FrameView::rgb16(words, 36, 40, 300), 300, SampleType::u16, rgb));
+  EXPECT_TRUE(same(FrameView::bgra8(bytes, 36, 40), 144, SampleType::u8, bgra));
+  EXPECT_TRUE(same(FrameView::bgra16(words, 36, 40), 288, SampleType::u16, bgra));
+  EXPECT_TRUE(same(FrameView::rgba8(bytes, 36, 40), 144, SampleType::u8, rgba));
+  EXPECT_TRUE(same(FrameView::rgba16(words, 36, 40), 288, SampleType::u16, rgba));
+}
+
 TEST(Frame, RejectsBadSizesAndLevels) {
   const std::vector<std::uint8_t> data(100 * 100);
   GreyImage grey;
