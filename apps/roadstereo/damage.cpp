@@ -111,7 +111,7 @@ void add_damage(CLI::App& app) {
       ->allow_extra_args(false)
       ->take_all();
   command->add_option("--output", arguments->output, "Output folder; created if missing")->type_name("DIR")->required();
-  command->add_option("--set", arguments->settings, "Set one option, e.g. damage.min_depth_m=0.01; repeatable")
+  command->add_option("--set", arguments->settings, "Set one option, see roadstereo options damage; repeatable")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->allow_extra_args(false)

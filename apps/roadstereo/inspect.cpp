@@ -126,31 +126,26 @@ void inspect(InspectArguments arguments) {
 
 constexpr const char* inspect_footer =
     R"(Output of a pair: disparity.tiff, sigma.tiff (standard error of the disparity, px) and transformed.tiff (32-bit float,
-NaN invalid), disparity.png (16 bit, value / 256 px, 0 invalid), disparity_color.png, sigma_color.png,
-transformed_color.png, sheet.png, result.json, damages.json, damages.csv, damage.png (16 bit, ids), overlay.png and
-report.html; with a calibration also cloud.ply (camera frame, m) and road_cloud.ply (the road is z = 0).
+NaN invalid), disparity.png (16 bit, value / 256 px, 0 invalid), colour maps, sheet.png, result.json, damages.json,
+damages.csv, damage.png (16 bit, ids), overlay.png and report.html; with a calibration also cloud.ply (camera frame, m)
+and road_cloud.ply (the road is z = 0).
 
 Output of a recording: frames.csv (one row per frame), damages.csv (one row per sighting), summary.json, report.html, an
 image of each damage in damages/, and the files selected with --write; with --track also frames.geojson,
-damages.geojson and flight.gpkg. No frame is dropped; the row of a frame without a result has the reason. Ctrl-C stops
-after the frames already read; --resume continues there, also after a kill.
+damages.geojson and flight.gpkg. Ctrl-C stops after the frames already read; --resume continues there, also after a kill.
 
-SOURCE is a folder (left/ right/, image_2/ image_3/, image_0/ image_1/, cam0/data cam1/data, or images named L… and R…;
-times from times.txt or EuRoC names), a list (.txt or .csv with lines "left right [seconds]"), a video with both views in
-one image, or a ROS 1 bag; or two folders or two videos, left and right.
+SOURCE is a folder (left/ right/, image_2/ image_3/, image_0/ image_1/, cam0/data cam1/data, or images named L… and R…),
+a list (.txt or .csv with lines "left right [seconds]"), a video with both views in one image, or a ROS 1 bag; or two
+folders or two videos, left and right.
 
-Calibration formats, recognised by content: plain YAML (focal_px, cx_px, cy_px, baseline_m, width, height),
-OpenCV stereo YAML or XML, ROS camera_info (two files, left then right), KITTI calib*.txt, Middlebury
-calib.txt, K.txt. Images of an unrectified rig are rectified first. Without a calibration there are no metric results.
+Calibration formats, recognised by content: plain YAML (focal_px, cx_px, cy_px, baseline_m, width, height), OpenCV stereo
+YAML or XML, ROS camera_info (two files, left then right), KITTI calib*.txt, Middlebury calib.txt, K.txt. Images of an
+unrectified rig are rectified first. Without a calibration there are no metric results.
 
 Examples:
   roadstereo inspect left.png right.png --calibration calibration.yaml --output out
   roadstereo inspect left.png right.png --output out --preset paper --set matcher.sigma_space=2
-  roadstereo inspect left.png right.png --calibration left.yaml --calibration right.yaml --output out
-  roadstereo inspect flight/ --calibration flight/calibration.yaml --output out
-  roadstereo inspect zed.mp4 --calibration zed.yaml --every 5 --write sheet --output out
-
-)";
+  roadstereo inspect flight/ --calibration left.yaml --calibration right.yaml --every 5 --write sheet --output out)";
 
 void add_input_options(CLI::App& command, InspectArguments& arguments) {
   command
@@ -211,7 +206,7 @@ void add_flight_options(CLI::App& command, FlightSettings& settings) {
 void add_inspect(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "inspect", "Compute disparity, roll, transformed disparity and damage of a stereo pair or a recording");
-  command->footer(inspect_footer + settings_help());
+  command->footer(inspect_footer);
   const auto arguments = std::make_shared<InspectArguments>();
   add_input_options(*command, *arguments);
   add_output_options(*command, arguments->settings);

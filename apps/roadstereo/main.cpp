@@ -15,6 +15,7 @@
 #include "log_stderr.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/version.hpp"
+#include "unknown_word.hpp"
 
 namespace {
 
@@ -58,11 +59,14 @@ int run(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& wanted) {  // --help, --version
     return app.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    return report_error(fmt::format("{} (see {})", error.what(), help_command(app)), exit_bad_input);
+    const std::string unknown = roadstereo::cli::unknown_word(app);
+    return report_error(fmt::format("{} (see {})", unknown.empty() ? error.what() : unknown, help_command(app)),
+                        exit_bad_input);
   }
 }
 
 void describe(CLI::App& app) {
+  app.name("roadstereo");
   app.description(
       "roadstereo: dense stereo matching for road inspection.\n"
       "Computes from a stereo pair of a road: a sub-pixel disparity map, the roll angle, the road model,\n"
@@ -75,6 +79,7 @@ void describe(CLI::App& app) {
   roadstereo::cli::add_damage(app);
   roadstereo::cli::add_synth(app);
   roadstereo::cli::add_limits(app);
+  roadstereo::cli::add_options(app);
   roadstereo::cli::add_engines(app);
   roadstereo::cli::add_benchmark(app);
 #ifdef ROADSTEREO_WITH_EVALUATE

@@ -1,12 +1,9 @@
 #include "processing_options.hpp"
 
-#include <fmt/core.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <thread>
 
-#include "roadstereo/options.hpp"
 #include "settings.hpp"
 
 namespace roadstereo::cli {
@@ -31,7 +28,7 @@ void add_processing_options(CLI::App& command, ProcessingSettings& processing) {
   command.add_option("--threads", processing.threads, "Worker threads; 0: all cores")
       ->type_name("N")
       ->capture_default_str();
-  command.add_option("--set", processing.settings, "Set one option; repeatable")
+  command.add_option("--set", processing.settings, "Set one option, see roadstereo options; repeatable")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->allow_extra_args(false)
@@ -55,14 +52,6 @@ bool sets_white_level(const ProcessingSettings& processing) {
 int used_threads(const PipelineOptions& options) {
   if (options.threads > 0) return options.threads;
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
-
-std::string settings_help() {
-  std::string text = "Keys of --set with the values of the default preset:\n";
-  for (const OptionText& option : list_options(preset("default"))) {
-    text += fmt::format("  {:<38} {:<12} {}\n", option.key, option.value, option.description);
-  }
-  return text;
 }
 
 }  // namespace roadstereo::cli

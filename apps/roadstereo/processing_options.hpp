@@ -30,7 +30,4 @@ bool sets_white_level(const ProcessingSettings& processing);
 /// Returns the number of worker threads.
 int used_threads(const PipelineOptions& options);
 
-/// Returns the help text of all keys of --set.
-std::string settings_help();
-
 }  // namespace roadstereo::cli

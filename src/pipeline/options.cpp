@@ -37,7 +37,7 @@ template <class Options, class Visitor>
 void visit_options(Options& o, Visitor visit) {
   visit("engine", o.engine, "engine by name, or auto");
   visit("threads", o.threads, "worker threads; 0 takes all cores");
-  visit("white_level", o.white_level, "sample value of white; 0 takes 255 or 65535 by the sample type");
+  visit("white_level", o.white_level, "sample value of white");
   visit("check_rows", o.check_rows, "measure whether the rows of the pair agree");
   visit("correct_rows", o.correct_rows, "undo the constant offset of the rows that check_rows measures");
   visit("narrow_search", o.narrow_search, "search each tile only near what the coarse search finds there");
@@ -57,7 +57,7 @@ void visit_options(Options& o, Visitor visit) {
         "expected pitch of the camera below the horizon, degrees (needs a calibration); -90: unknown");
 
   visit("perspective.enabled", o.perspective.enabled, "shift the rows of the target image by the road model");
-  visit("perspective.shift", o.perspective.shift, "whole_pixel or sub_pixel");
+  visit("perspective.shift", o.perspective.shift, "precision of that shift");
   visit("perspective.max_damage_depth_m", o.perspective.max_damage_depth_m,
         "deepest damage to be measured, metres (needs a calibration)");
   visit("perspective.max_bump_height_m", o.perspective.max_bump_height_m,
@@ -66,7 +66,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("perspective.delta_p_px", o.perspective.delta_p_px,
         "the road's disparity after the shift, pixels; negative derives it");
 
-  visit("coarse_search.factor", o.coarse_search.factor, "downsampling of the pair, 2, 4 or 8; 0 derives it");
+  visit("coarse_search.factor", o.coarse_search.factor, "downsampling of the pair");
   visit("coarse_search.block_radius", o.coarse_search.block_radius, "radius of its correlation block, coarse pixels");
   visit("coarse_search.ncc_noise_sigma", o.coarse_search.ncc_noise_sigma,
         "standard deviation of the noise in its correlation, 8-bit grey levels");
@@ -86,8 +86,8 @@ void visit_options(Options& o, Visitor visit) {
   visit("matcher.block_radius", o.matcher.block_radius, "radius of the correlation block, pixels");
   visit("matcher.aggregation_radius", o.matcher.aggregation_radius, "radius of the bilateral window, pixels; 0 is off");
   visit("matcher.aggregation_aspect", o.matcher.aggregation_aspect, "height of the bilateral window over its width");
-  visit("matcher.aggregation_step", o.matcher.aggregation_step, "distance between the window's taps, pixels: 1 or 2");
-  visit("matcher.aggregation_shape", o.matcher.aggregation_shape, "square or disc");
+  visit("matcher.aggregation_step", o.matcher.aggregation_step, "distance between the window's taps, pixels");
+  visit("matcher.aggregation_shape", o.matcher.aggregation_shape, "shape of the bilateral window");
   visit("matcher.sigma_space", o.matcher.sigma_space, "sigma 0 of the bilateral weights, pixels");
   visit("matcher.sigma_colour", o.matcher.sigma_colour, "sigma 1 of the bilateral weights, 8-bit grey levels");
   visit("matcher.ncc_noise_sigma", o.matcher.ncc_noise_sigma,
@@ -117,7 +117,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("refinement.min_sigma_px", o.refinement.min_sigma_px,
         "standard error of interpolation and calibration, pixels");
 
-  visit("roll.solver", o.roll.solver, "gradient_descent, closed_form or robust");
+  visit("roll.solver", o.roll.solver, "solver of the roll angle");
   visit("roll.initial_lambda", o.roll.initial_lambda, "first learning rate of the descent");
   visit("roll.roll_threshold_rad", o.roll.roll_threshold_rad, "step below which the descent has converged, radians");
   visit("roll.max_iterations", o.roll.max_iterations, "largest number of steps of a solver");
@@ -125,15 +125,15 @@ void visit_options(Options& o, Visitor visit) {
   visit("roll.max_roll_stderr_rad", o.roll.max_roll_stderr_rad,
         "the roll is observable below this standard error, radians");
   visit("roll.min_gradient_px", o.roll.min_gradient_px,
-        "... and when the road's disparity changes by this over the image, pixels");
+        "the roll is observable above this change of the road's disparity over the image, pixels");
 
   visit("damage.threshold_sigma", o.damage.threshold_sigma,
         "depth that counts as damage, standard deviations of the road");
-  visit("damage.min_depth_m", o.damage.min_depth_m, "... and metres, when calibrated");
+  visit("damage.min_depth_m", o.damage.min_depth_m, "depth that counts as damage, metres (needs a calibration)");
   visit("damage.max_depth_m", o.damage.max_depth_m, "what lies deeper is a ditch, metres");
   visit("damage.max_height_m", o.damage.max_height_m, "what rises higher is a kerb or a vehicle, metres");
-  visit("damage.min_area_m2", o.damage.min_area_m2, "smallest damage on the road, square metres");
-  visit("damage.min_area_share", o.damage.min_area_share, "... and without a calibration, share of the image");
+  visit("damage.min_area_m2", o.damage.min_area_m2, "smallest damage on the road, square metres (needs a calibration)");
+  visit("damage.min_area_share", o.damage.min_area_share, "smallest damage without a calibration, share of the image");
   visit("damage.min_confidence", o.damage.min_confidence, "minimum confidence of a damage; less is a candidate");
   visit("damage.protrusions", o.damage.protrusions, "find bumps, heave and debris as well");
 }

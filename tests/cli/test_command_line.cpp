@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "roadstereo/options.hpp"
@@ -25,11 +26,50 @@ TEST_F(CommandLine, HelpHasExamples) {
   }
 }
 
-TEST_F(CommandLine, InspectHelpNamesEveryOption) {
+TEST_F(CommandLine, InspectHelpFitsOnePage) {
   const Outcome help = run("inspect --help");
-  for (const auto& option : list_options(preset("default"))) {
-    EXPECT_NE(help.out.find(option.key), std::string::npos) << option.key;
+  EXPECT_EQ(help.out.rfind("Compute disparity", 0), 0U);
+  EXPECT_LE(std::count(help.out.begin(), help.out.end(), '\n'), 60);
+  EXPECT_NE(help.out.find("roadstereo options"), std::string::npos);
+}
+
+TEST_F(CommandLine, OptionsListsEveryKeyWithValueMeaningAndRange) {
+  const Outcome all = run("options");
+  EXPECT_EQ(all.exit_code, 0);
+  const auto list = nlohmann::json::parse(run("options --json --preset paper").out);
+  const auto options = list_options(preset("paper"));
+  ASSERT_EQ(list.size(), options.size());
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    EXPECT_NE(all.out.find(options[i].key + " "), std::string::npos) << options[i].key;
+    EXPECT_EQ(list[i]["key"], options[i].key);
+    EXPECT_EQ(list[i]["value"], options[i].value);
+    EXPECT_EQ(list[i]["description"], options[i].description);
+    if (options[i].key != "engine") {
+      EXPECT_NE(list[i]["range"], "") << options[i].key;
+    }
   }
+}
+
+TEST_F(CommandLine, OptionsOfOneGroupHaveTheirRanges) {
+  const Outcome matcher = run("options matcher");
+  EXPECT_EQ(matcher.exit_code, 0);
+  EXPECT_EQ(matcher.out.find("roll."), std::string::npos);
+  for (const char* part : {"pixels; between 1 and 10\n", "window; square or disc\n", "parabola; true or false\n"}) {
+    EXPECT_NE(matcher.out.find(part), std::string::npos) << part;
+  }
+  EXPECT_NE(run("options coarse_search").out.find("; 2, 4 or 8, or 0 to derive it\n"), std::string::npos);
+  expect_complaint(run("options matching"), "matching");
+  expect_complaint(run("options --preset best"), "best");
+}
+
+TEST_F(CommandLine, SuggestsNearestWord) {
+  expect_complaint(run("inspekt left.png right.png --output result"),
+                   "no command 'inspekt'; the nearest is 'inspect' (");
+  expect_complaint(run("inspect left.png right.png --outptu result"),
+                   "no option '--outptu'; the nearest is '--output' (");
+  expect_complaint(run("synth --output road --sceen=demo"), "no option '--sceen'; the nearest is '--scene' (");
+  expect_complaint(run("flatten"), "no command 'flatten' (");
+  expect_complaint(run("--verison"), "no option '--verison'; the nearest is '--version' (");
 }
 
 TEST_F(CommandLine, PrintsVersion) {

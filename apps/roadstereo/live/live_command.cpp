@@ -102,9 +102,7 @@ prints a summary.
 Examples:
   roadstereo live /dev/video0 --calibration rig.yaml --serve 8080
   roadstereo live flight.mp4 --calibration rig.yaml --loop --serve 0.0.0.0:8080
-  roadstereo live /dev/video0 --calibration rig.yaml --record flight1
-
-)";
+  roadstereo live /dev/video0 --calibration rig.yaml --record flight1)";
 
 void add_options(CLI::App& command, LiveCommandArguments& arguments) {
   command.add_option("SOURCE", arguments.names, "Camera, video, folder, list, bag or pipeline; or two: left and right")
@@ -131,7 +129,7 @@ void add_options(CLI::App& command, LiveCommandArguments& arguments) {
 
 void add_live_command(CLI::App& app, const NamedOpener& opener) {
   CLI::App* command = app.add_subcommand("live", "Process a camera or a recording in real time");
-  command->footer(footer + settings_help());
+  command->footer(footer);
   const auto arguments = std::make_shared<LiveCommandArguments>();
   add_options(*command, *arguments);
   add_source_options(*command, arguments->source);
