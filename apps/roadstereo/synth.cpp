@@ -10,6 +10,7 @@
 
 #include "commands.hpp"
 #include "flight_path.hpp"
+#include "progress.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/output_folder.hpp"
 #include "scene_options.hpp"
@@ -79,11 +80,15 @@ void make_frames(const SynthArguments& arguments) {
   io::OutputFolder folder(arguments.output);
   folder.add("calibration.yaml", plain_yaml(first.rig.calibration()));
   if (arguments.frames > 1) folder.add("times.txt", frame_times(arguments.frames, arguments.rate_hz));
+  const auto count = static_cast<std::size_t>(arguments.frames);
+  Progress progress = Progress::on_terminal(count, arguments.quiet || count == 1);
   for (int frame = 0; frame < arguments.frames; ++frame) {
     const synth::Scene scene = frames.scene(frame);
     const synth::SyntheticPair pair = synth::render(scene, arguments.threads);
     add_synthetic_pair(scene, pair, {frame, arguments.frames}, folder);
+    progress.frame_done();
   }
+  progress.end();
   folder.commit();
   if (!arguments.quiet) fmt::print("{}", made_text(arguments, first, folder));
 }

@@ -1,7 +1,10 @@
 // `synth` from outside: pictures, truth and flights.
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -46,6 +49,52 @@ TEST_F(SynthCommand, FollowsFlightPath) {
   const double jumped = json_file("flight/truth/000002.json")["rig"]["roll_deg"];
   EXPECT_NEAR(quarter - roll, 8, 1e-9);
   EXPECT_NEAR(jumped - roll, -3, 1e-9);
+}
+
+/// A terminal of which both ends are open here.
+class Terminal {
+ public:
+  Terminal() : master_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
+    grantpt(master_);
+    unlockpt(master_);
+    slave_ = open(name().c_str(), O_RDWR | O_NOCTTY);
+  }
+  ~Terminal() {
+    close(slave_);
+    close(master_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  std::string name() const { return ptsname(master_); }
+  /// What has been printed on it.
+  std::string text() const {
+    std::string all, part(1024, ' ');
+    for (ssize_t count = 0; (count = read(master_, part.data(), part.size())) > 0;) {
+      all.append(part, 0, static_cast<std::size_t>(count));
+    }
+    return all;
+  }
+
+ private:
+  int master_;
+  int slave_;
+};
+
+TEST_F(SynthCommand, ShowsProgressOnTerminalOnly) {
+  const std::string synth = "synth --scene flat --frames 3 --size 64x36 --output ";
+  EXPECT_EQ(run(synth + "file").err, "");
+  const auto on_terminal = [&](const std::string& arguments) {
+    const Terminal terminal;
+    const std::string command = "cd '" + folder_.string() + "' && '" ROADSTEREO_BINARY "' " + arguments +
+                                " >out.txt 2>'" + terminal.name() + "'";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return terminal.text();
+  };
+  const std::string shown = on_terminal(synth + "terminal");
+  EXPECT_NE(shown.find("[########################] 3 of 3 frames"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("0:00 left"), std::string::npos) << shown;
+  EXPECT_EQ(on_terminal(synth + "quiet --quiet"), "");
 }
 
 TEST_F(SynthCommand, RejectsBadFlightPath) {

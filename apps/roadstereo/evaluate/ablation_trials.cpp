@@ -7,6 +7,7 @@
 #include "evaluate/score_columns.hpp"
 #include "evaluate/synth_groups.hpp"
 #include "finite_values.hpp"
+#include "progress.hpp"
 #include "roadstereo/error.hpp"
 #include "settings.hpp"
 
@@ -40,7 +41,9 @@ void time_second_pass(Pipeline& pipeline, const StereoPair& pair, Trials& trials
 }
 
 void run_kitti(const AblationOptions& options, std::vector<Trials>& trials) {
-  for (const KittiFiles& files : find_kitti_frames(options.kitti, "")) {
+  const std::vector<KittiFiles> frames = find_kitti_frames(options.kitti, "");
+  Progress progress = Progress::on_terminal(frames.size());
+  for (const KittiFiles& files : frames) {
     const LabelledFrame frame = read_kitti_frame(files);
     if (!frame.road) fail(options.kitti, "/road: frame ", files.name, " has no road mask");
     for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -49,11 +52,13 @@ void run_kitti(const AblationOptions& options, std::vector<Trials>& trials) {
       trials[i].kitti.push_back(score_disparity(result.disparity, frame.truth, frame.road->view(), tolerances_px()));
       time_second_pass(pipeline, frame.pair, trials[i]);
     }
+    progress.frame_done();
   }
 }
 
 void run_rendered(const AblationOptions& options, std::vector<Trials>& trials) {
   const std::vector<synth::Scene> scenes = synth_scenes(options.sizes == "small");
+  Progress progress = Progress::on_terminal(synth_groups().size() * scenes.size());
   for (const SynthGroup& group : synth_groups()) {
     const bool clean = &group == &synth_groups().front();
     for (const synth::Scene& scene : scenes) {
@@ -67,6 +72,7 @@ void run_rendered(const AblationOptions& options, std::vector<Trials>& trials) {
         trials[i].damage.push_back(score_disparity(map, test_case.truth, test_case.damage.view(), tolerances_px()));
         if (clean && options.kitti.empty()) time_second_pass(pipeline, test_case.pair, trials[i]);
       }
+      progress.frame_done();
     }
   }
 }

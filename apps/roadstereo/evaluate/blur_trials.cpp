@@ -7,6 +7,7 @@
 #include "evaluate/roll_maps.hpp"
 #include "evaluation/disparity_score.hpp"
 #include "evaluation/peer_matchers.hpp"
+#include "progress.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "settings.hpp"
@@ -103,13 +104,16 @@ std::vector<double> blur_lengths(const BlurOptions& options) {
 std::vector<BlurTrial> run_blur_trials(const BlurOptions& options) {
   options.validate();
   std::vector<BlurTrial> all;
-  for (const double length : blur_lengths(options)) {
+  const std::vector<double> lengths = blur_lengths(options);
+  Progress progress = Progress::on_terminal(lengths.size() * options.directions_deg.size());
+  for (const double length : lengths) {
     for (const double direction : options.directions_deg) {
       for (BlurTrial& trial : run_pair(render_blurred(options, length, direction), options.methods)) {
         trial.length_px = length;
         trial.direction_deg = direction;
         all.push_back(std::move(trial));
       }
+      progress.frame_done();
     }
   }
   return all;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "finite_values.hpp"
+#include "progress.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
@@ -162,6 +163,7 @@ std::vector<Cell> quantity_row(const Quantity& quantity, const SceneResults& res
 SceneResults score_scenes(int scenes, std::uint64_t first_seed, bool degraded, const std::string& preset_name) {
   SceneResults results;
   results.scenes = scenes;
+  Progress progress = Progress::on_terminal(static_cast<std::size_t>(scenes));
   for (int k = 0; k < scenes; ++k) {
     const synth::Scene scene = synth::random_scene(first_seed + static_cast<std::uint64_t>(k), degraded);
     const synth::SyntheticPair pair = synth::render(scene);
@@ -177,6 +179,7 @@ SceneResults score_scenes(int scenes, std::uint64_t first_seed, bool degraded, c
     }
     results.found += map.damages.size();
     results.false_positives += count_false_positives(scene_case);
+    progress.frame_done();
   }
   return results;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "flight_path.hpp"
+#include "progress.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/synth.hpp"
 #include "scene_options.hpp"
@@ -98,8 +99,10 @@ std::vector<FlightTrial> run_flight_trials(const FlightOptions& options) {
   Pipeline fresh = make_pipeline(options, calibration);
   std::vector<FlightTrial> frames;
   frames.reserve(static_cast<std::size_t>(options.frames));
+  Progress progress = Progress::on_terminal(static_cast<std::size_t>(options.frames));
   for (int i = 0; i < options.frames; ++i) {
     frames.push_back(run_frame(synth::render(synth::flight_frame(first, path, i)), pipelines, fresh));
+    progress.frame_done();
   }
   return frames;
 }

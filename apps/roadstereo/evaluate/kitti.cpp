@@ -10,6 +10,7 @@
 #include "evaluate/methods.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/score_columns.hpp"
+#include "progress.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -138,10 +139,13 @@ void kitti(const KittiArguments& arguments) {
   Regions regions;
   std::vector<std::vector<io::SheetCell>> sheet;
   constexpr std::size_t max_sheet_rows = 4;
+  Progress progress = Progress::on_terminal(frames.size());
   for (const KittiFiles& files : frames) {
     const bool shown = !arguments.figure.empty() && sheet.size() < max_sheet_rows;
     score_frame(files, arguments.methods, regions, shown ? &sheet : nullptr);
+    progress.frame_done();
   }
+  progress.end();
   nlohmann::ordered_json document;
   for (const Region* region : {&regions.road, &regions.all}) {
     if (region->frames.empty()) continue;

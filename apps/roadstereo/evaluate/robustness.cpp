@@ -11,6 +11,7 @@
 #include "evaluate/report.hpp"
 #include "evaluate/robustness_trials.hpp"
 #include "evaluate/score_columns.hpp"
+#include "progress.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
@@ -31,12 +32,13 @@ struct SourceTrials {
   std::vector<io::SheetCell> worst_row;  ///< of the sheet; empty without --figure
 };
 
-SourceTrials run_source(const LabelledSource& source, const MethodSettings& methods, bool draw) {
+SourceTrials run_source(const LabelledSource& source, const MethodSettings& methods, bool draw, Progress& progress) {
   SourceTrials result{source.name, {}, 0, {}};
   for (std::size_t i = 0; i < source.frames.size(); ++i) {
     const LabelledFrame frame = source.read_labelled(i);
     const RobustnessResult run = run_robustness_trial(source.frames[i], frame, methods);
     result.trials.push_back(run.trial);
+    progress.frame_done();
     if (i > 0 && !run.trial.worse_than(result.trials[result.worst])) continue;
     result.worst = i;
     if (!draw) continue;
@@ -146,9 +148,13 @@ void robustness(const RobustnessArguments& arguments) {
   }
   if (found.labelled.empty() && found.drives.empty()) fail("there is no source: give DIR, or --scenes above 0");
   std::vector<SourceTrials> sources;
+  std::size_t frames = 0;
+  for (const LabelledSource& source : found.labelled) frames += source.frames.size();
+  Progress progress = Progress::on_terminal(frames);
   for (const LabelledSource& source : found.labelled) {
-    sources.push_back(run_source(source, arguments.methods, !arguments.figure.empty()));
+    sources.push_back(run_source(source, arguments.methods, !arguments.figure.empty(), progress));
   }
+  progress.end();
   const Table roads = road_table(sources), scores = score_table(sources),
               drives = drive_table(found.drives, arguments.methods);
   if (!sources.empty()) fmt::print("{}\n{}\n{}", roads.text(), scores.text(), score_legend());

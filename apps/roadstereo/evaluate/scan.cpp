@@ -15,6 +15,7 @@
 #include "evaluate/table.hpp"
 #include "evaluation/picture_sheet.hpp"
 #include "mask_file.hpp"
+#include "progress.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
@@ -172,10 +173,13 @@ void scan_pairs(const std::vector<ScanFiles>& frames, const ScanArguments& argum
   std::vector<Row> rows;
   std::vector<std::vector<io::SheetCell>> sheet;
   const bool drawn = !arguments.figure.empty();
+  Progress progress = Progress::on_terminal(frames.size(), frames.size() == 1);
   for (const ScanFiles& files : frames) {
     if (drawn) sheet.emplace_back();
     scan_pair(files, arguments, rows, drawn ? &sheet.back() : nullptr);
+    progress.frame_done();
   }
+  progress.end();
   print(rows, arguments);
   constexpr int cell_width = 480;
   if (drawn) write_figure(arguments.figure, io::picture_sheet(sheet, cell_width));

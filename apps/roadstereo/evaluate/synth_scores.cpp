@@ -2,6 +2,7 @@
 
 #include "evaluate/common_pixels.hpp"
 #include "evaluate/score_columns.hpp"
+#include "progress.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -27,7 +28,7 @@ class SceneScores {
 };
 
 void score_group(const SynthGroup& group, const std::vector<synth::Scene>& scenes, const MethodSettings& settings,
-                 bool clean, SynthScores& scores) {
+                 bool clean, SynthScores& scores, Progress& progress) {
   SceneScores visible, damage, common, common_damage;
   for (const synth::Scene& scene : scenes) {
     const SynthCase test_case = make_synth_case(group, scene, settings.threads);
@@ -39,6 +40,7 @@ void score_group(const SynthGroup& group, const std::vector<synth::Scene>& scene
     for (std::size_t i = 0; clean && i < maps.size(); ++i) {
       scores.biases[i].add(maps[i], test_case.truth, test_case.visible);
     }
+    progress.frame_done();
   }
   scores.visible.push_back(visible.means());
   scores.damage.push_back(damage.means());
@@ -56,8 +58,9 @@ const std::vector<double>& synth_tolerances_px() {
 SynthScores score_synth(const std::vector<synth::Scene>& scenes, const MethodSettings& settings) {
   SynthScores scores;
   scores.biases.resize(method_names().size());
+  Progress progress = Progress::on_terminal(synth_groups().size() * scenes.size());
   for (const SynthGroup& group : synth_groups()) {
-    score_group(group, scenes, settings, &group == &synth_groups().front(), scores);
+    score_group(group, scenes, settings, &group == &synth_groups().front(), scores, progress);
   }
   return scores;
 }

@@ -1,4 +1,4 @@
-#include "flight/progress.hpp"
+#include "progress.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -20,6 +20,14 @@ Progress::Progress(std::optional<std::int64_t> total, std::int64_t done, bool qu
       terminal_(::isatty(STDERR_FILENO) != 0),
       start_(Clock::now()),
       shown_(start_) {}
+
+Progress Progress::on_terminal(std::size_t total, bool quiet) {
+  return {static_cast<std::int64_t>(total), 0, quiet || ::isatty(STDERR_FILENO) == 0};
+}
+
+Progress::~Progress() {
+  end();
+}
 
 void Progress::end() {
   if (drawn_) log_stderr("\n");

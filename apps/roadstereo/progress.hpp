@@ -1,21 +1,26 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 
 namespace roadstereo::cli {
 
-/// Progress of a flight on standard error: a bar on a terminal, else a line every few seconds.
+/// Progress of a flight or an experiment on standard error: a bar with the time left on a terminal, else a line every
+/// few seconds.
 class Progress {
  public:
   /// `total` frames, `done` of them by an earlier run. Prints nothing if `quiet`.
   Progress(std::optional<std::int64_t> total, std::int64_t done, bool quiet);
+  /// Progress that is printed on a terminal only.
+  static Progress on_terminal(std::size_t total, bool quiet = false);
+  ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void frame_done(bool good);
+  void frame_done(bool good = true);
 
   /// Ends the current line.
   void end();
