@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "find_damage_or_warn.hpp"
 #include "flight/flight_folder.hpp"
+#include "given_disparity.hpp"
 #include "inspect_flight.hpp"
 #include "inspection.hpp"
 #include "result_files.hpp"
@@ -60,14 +61,21 @@ void assign_names(InspectArguments& arguments) {
 }
 
 bool is_one_pair(const FlightSettings& settings) {
-  return settings.source.size() == 2 && !io::is_recording(settings.source[0]);
+  if (!settings.disparity.empty() && io::is_recording(settings.source[0])) {
+    fail("--disparity is for one pair, LEFT and optionally RIGHT; ", settings.source[0], " is a recording");
+  }
+  return !settings.disparity.empty() || (settings.source.size() == 2 && !io::is_recording(settings.source[0]));
 }
 
-void process(Inspection& inspection) {
+void match(Inspection& inspection) {
   Pipeline pipeline(inspection.options, inspection.pair.calibration);
   if (!inspection.mask.empty()) pipeline.set_mask(inspection.mask);
   inspection.result = pipeline.process(inspection.pair.left.view(), inspection.pair.right.view());
   inspection.engine = pipeline.engine_name();
+}
+
+void process(Inspection& inspection) {
+  inspection.pair.disparity.empty() ? match(inspection) : use_given_disparity(inspection);
   inspection.threads = used_threads(inspection.options);
   inspection.warnings = inspection.result.warnings;
   find_damage_or_warn(inspection.result, inspection.pair.calibration, inspection.options.damage,
@@ -87,6 +95,14 @@ void reject_flight_options(const FlightSettings& settings) {
   if (!settings.track.file.empty()) reject("--track");
 }
 
+PairFiles pair_files(const FlightSettings& settings) {
+  const bool has_right = settings.source.size() > 1;
+  if (!has_right && (settings.height_m || settings.pitch_deg)) {
+    fail("--height and --pitch need RIGHT: they tell which plane of the pair is the road");
+  }
+  return {settings.source[0], has_right ? settings.source[1] : "", settings.calibration, settings.disparity};
+}
+
 void inspect_pair(const FlightSettings& settings) {
   reject_flight_options(settings);
   if (is_flight_folder(settings.output)) {
@@ -95,7 +111,7 @@ void inspect_pair(const FlightSettings& settings) {
   Inspection inspection;
   inspection.options = make_options(settings);
   inspection.preset = settings.processing.preset;
-  inspection.files = {settings.source[0], settings.source[1], settings.calibration};
+  inspection.files = pair_files(settings);
   inspection.pair = read_pair(inspection.files);
   inspection.mask_file = settings.mask;
   inspection.mask = read_ignored(settings);
@@ -103,7 +119,7 @@ void inspect_pair(const FlightSettings& settings) {
   if (!sets_white_level(settings.processing)) inspection.options.white_level = inspection.pair.white_level;
 
   io::OutputFolder folder(settings.output);  // fails early
-  for (const auto& inputs : {settings.source, settings.calibration}) {
+  for (const auto& inputs : {settings.source, settings.calibration, std::vector{settings.disparity}}) {
     for (const std::string& input : inputs) folder.protect(input);
   }
   process(inspection);
@@ -145,6 +161,7 @@ unrectified rig are rectified first. Without a calibration there are no metric r
 Examples:
   roadstereo inspect left.png right.png --calibration calibration.yaml --output out
   roadstereo inspect left.png right.png --output out --preset paper --set matcher.sigma_space=2
+  roadstereo inspect left.png --disparity map.tiff --calibration calibration.yaml --output out
   roadstereo inspect flight/ --calibration left.yaml --calibration right.yaml --every 5 --write sheet --output out)";
 
 void add_input_options(CLI::App& command, InspectArguments& arguments) {
@@ -153,6 +170,10 @@ void add_input_options(CLI::App& command, InspectArguments& arguments) {
                   "A recording; or LEFT and RIGHT: two images of equal size (PNG, JPEG, TIFF, PGM or PPM; 8 or 16 bit)")
       ->required();
   add_calibration_option(command, arguments.settings.calibration);
+  command
+      .add_option("--disparity", arguments.settings.disparity,
+                  "Disparity map of LEFT instead of matching (float TIFF, PFM, or PNG / 256); RIGHT is optional")
+      ->type_name("FILE");
   command
       .add_option("--mask", arguments.settings.mask,
                   "Image of the size of the rectified frames; its white pixels (255) are left out, e.g. a bonnet")

@@ -18,7 +18,7 @@ struct Inspection {
   Image<std::uint8_t> mask;  ///< not 0 left out; empty: none
   std::string preset;
   PipelineOptions options;
-  std::string engine;  ///< name of the engine used
+  std::string engine;  ///< name of the engine used; empty with a given disparity map
   int threads = 0;     ///< number of threads used
   FrameResult result;
   DamageMap damage;

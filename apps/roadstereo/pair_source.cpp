@@ -25,17 +25,30 @@ void rectify_pair(StereoPair& pair, const io::StereoRig& rig) {
   pair.rectified_here = true;
 }
 
+void read_disparity_map(const std::string& path, StereoPair& pair) {
+  pair.disparity = io::read_disparity(path);
+  if (pair.disparity.width() == pair.left.width && pair.disparity.height() == pair.left.height) return;
+  fail(path, " has ", pair.disparity.width(), "×", pair.disparity.height(), " pixels; it must have ", pair.left.width,
+       "×", pair.left.height, " like the left image");
+}
+
 void apply_calibration(StereoPair& pair, const std::vector<std::string>& paths) {
   const io::CalibrationFile file = io::read_calibration(paths[0], paths.size() > 1 ? paths[1] : "");
   pair.calibration_format = file.format;
   pair.calibration = file.rectified;
+  if (file.rig && !pair.disparity.empty()) {
+    fail(paths[0], ": the rig is not rectified; a disparity map needs the calibration of the rectified pair");
+  }
   if (file.rig) rectify_pair(pair, *file.rig);
   if (!pair.calibration) fail(paths[0], ": there is no stereo calibration in this file");
   pair.calibration->validate(pair.left.width, pair.left.height, paths[0]);
 }
 
-bool is_16_bit(const StereoPair& pair) {
-  return pair.left.sample == SampleType::u16 && pair.right.sample == SampleType::u16;
+/// White level of 16-bit images; 0 for others.
+double white_level_of(const StereoPair& pair) {
+  const Frame& other = pair.right.bytes.empty() ? pair.left : pair.right;
+  const bool wide = pair.left.sample == SampleType::u16 && other.sample == SampleType::u16;
+  return wide ? io::find_white_level(pair.left.view(), other.view()) : 0;
 }
 
 }  // namespace
@@ -43,9 +56,12 @@ bool is_16_bit(const StereoPair& pair) {
 StereoPair read_pair(const PairFiles& files) {
   StereoPair pair;
   pair.left = io::read_frame(files.left);
-  pair.right = io::read_frame(files.right);
-  require_equal_sizes(pair, files);
-  if (is_16_bit(pair)) pair.white_level = io::find_white_level(pair.left.view(), pair.right.view());
+  if (!files.right.empty()) {
+    pair.right = io::read_frame(files.right);
+    require_equal_sizes(pair, files);
+  }
+  if (!files.disparity.empty()) read_disparity_map(files.disparity, pair);
+  pair.white_level = white_level_of(pair);
   if (!files.calibration.empty()) apply_calibration(pair, files.calibration);
   return pair;
 }

@@ -29,6 +29,12 @@ void add_picture(io::OutputFolder& folder, const std::string& name, const Frame&
   folder.add(name, io::encode_png(picture.view()));
 }
 
+void add_sigma(ImageView<const float> sigma, io::OutputFolder& folder) {
+  folder.add("sigma.tiff", io::encode_float_tiff(sigma));
+  const io::ColourScale errors = io::percentile_scale(sigma, "standard error, px");
+  add_picture(folder, "sigma_color.png", io::colour_map(sigma, errors));
+}
+
 /// Adds the point cloud in the camera frame and in road axes.
 void add_clouds(const Inspection& inspection, io::OutputFolder& folder) {
   if (!inspection.pair.calibration) return;
@@ -53,9 +59,7 @@ void add_result_files(Inspection& inspection, io::OutputFolder& folder) {
   add_kitti_png(inspection, folder);
   const io::ColourScale spread = io::percentile_scale(result.disparity, "disparity, px");
   add_picture(folder, "disparity_color.png", io::colour_map(result.disparity, spread));
-  folder.add("sigma.tiff", io::encode_float_tiff(result.sigma));
-  const io::ColourScale errors = io::percentile_scale(result.sigma, "standard error, px");
-  add_picture(folder, "sigma_color.png", io::colour_map(result.sigma, errors));
+  if (!result.sigma.empty()) add_sigma(result.sigma, folder);
   const io::ColourScale around_road = io::transformed_scale(result.transformed, result.delta_t);
   add_picture(folder, "transformed_color.png", io::colour_map(result.transformed, around_road));
   const std::string title = std::filesystem::path(inspection.files.left).filename().string();

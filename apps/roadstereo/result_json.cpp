@@ -17,7 +17,8 @@ Json inputs_json(const PairFiles& files, const std::string& mask) {
   Json calibration = nullptr;
   if (!files.calibration.empty()) calibration = files.calibration;
   return {{"left", files.left},
-          {"right", files.right},
+          {"right", files.right.empty() ? Json(nullptr) : Json(files.right)},
+          {"disparity", files.disparity.empty() ? Json(nullptr) : Json(files.disparity)},
           {"calibration", calibration},
           {"mask", mask.empty() ? Json(nullptr) : Json(mask)}};
 }
@@ -116,7 +117,7 @@ std::string result_json(const Inspection& inspection) {
   document["size"] = {{"width", result.disparity.width()}, {"height", result.disparity.height()}};
   document["preset"] = inspection.preset;
   document["options"] = options_json(inspection.options);
-  document["engine"] = inspection.engine;
+  document["engine"] = inspection.engine.empty() ? Json(nullptr) : Json(inspection.engine);
   document["threads"] = inspection.threads;
   document["calibration"] = calibration_json(inspection.pair);
   add_geometry(document, result);

@@ -28,6 +28,7 @@ std::string pair_text(const Inspection& inspection) {
 }
 
 std::string engine_text(const Inspection& inspection) {
+  if (inspection.engine.empty()) return "none: the disparities are those of " + inspection.files.disparity;
   return fmt::format("{}, {} thread{}, preset {}, {} disparities", inspection.engine, inspection.threads,
                      inspection.threads == 1 ? "" : "s", inspection.preset, inspection.result.shift.disparities);
 }
@@ -65,16 +66,17 @@ std::string spread_text(const FrameResult& result) {
 }
 
 std::string time_text(const FrameResult& result) {
+  if (result.ms.match == 0) return fmt::format("{:.1f} ms without matching", result.ms.total);
   return fmt::format("{:.1f} ms ({:.0f} Mde/s), matching {:.1f} ms", result.ms.total, result.mde_per_s,
                      result.ms.match);
 }
 
-std::string picture_lines(const std::filesystem::path& folder) {
+std::string picture_lines(const std::filesystem::path& folder, bool has_sigma) {
   std::string lines = line("report", (folder / "report.html").string());
   lines += line("images", (folder / "overlay.png").string());
   lines += line("", (folder / "sheet.png").string());
   lines += line("", (folder / "disparity_color.png").string());
-  lines += line("", (folder / "sigma_color.png").string());
+  if (has_sigma) lines += line("", (folder / "sigma_color.png").string());
   lines += line("", (folder / "transformed_color.png").string());
   return lines;
 }
@@ -120,7 +122,9 @@ std::vector<std::pair<std::string, std::string>> summary_properties(const Inspec
 
 std::string summary(const Inspection& inspection, const std::filesystem::path& folder) {
   const FrameResult& result = inspection.result;
-  std::string text = fmt::format("roadstereo {}: {} + {}\n", version, inspection.files.left, inspection.files.right);
+  const PairFiles& files = inspection.files;
+  const std::string images = files.right.empty() ? files.left : files.left + " + " + files.right;
+  std::string text = fmt::format("roadstereo {}: {}\n", version, images);
   text += line("pair", pair_text(inspection));
   text += line("engine", engine_text(inspection));
   text += line("roll", roll_text(result));
@@ -131,7 +135,7 @@ std::string summary(const Inspection& inspection, const std::filesystem::path& f
   text += line("damage", damage_text(inspection.damage));
   text += line("time", time_text(result));
   for (const std::string& warning : inspection.warnings) text += line("warning", warning);
-  return text + picture_lines(folder);
+  return text + picture_lines(folder, !result.sigma.empty());
 }
 
 }  // namespace roadstereo::cli

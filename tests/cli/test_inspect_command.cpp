@@ -75,6 +75,53 @@ TEST_F(InspectCommand, ResultJsonHasEveryOptionAndFigure) {
   EXPECT_EQ(result["threads"], 2);
 }
 
+/// Roll, camera height and road of the truth, from the map of the truth itself.
+TEST_F(InspectCommand, GivenDisparityIsUsedInsteadOfMatching) {
+  make_road();
+  const auto truth = json_file("road/truth.json");
+  const auto expect_truth = [&](const std::string& arguments) {
+    const Outcome outcome = run("inspect " + arguments + " --calibration road/calibration.yaml --output result");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("the disparities are those of "), std::string::npos) << outcome.out;
+    const auto result = json_file("result/result.json");
+    EXPECT_NEAR(result["roll_rad"].get<double>(), truth["roll_rad"].get<double>(), 0.006) << "0.005 by camber";
+    EXPECT_NEAR(result["camera_height_m"].get<double>(), truth["rig"]["camera_height_m"].get<double>(), 0.01);
+    EXPECT_TRUE(result["engine"].is_null());
+    const auto damages = json_file("result/damages.json")["damages"];
+    EXPECT_GE(damages.size(), 2U) << "both potholes";
+    double deepest = 0;
+    for (const auto& damage : truth["damages"]) deepest = std::max(deepest, damage["depth_m"].get<double>());
+    ASSERT_FALSE(damages.empty());
+    EXPECT_NEAR(damages[0]["max_depth_m"].get<double>(), deepest, 0.005);
+  };
+  expect_truth("road/left.png --disparity road/truth_disparity.tiff");
+  std::set<std::string> files = result_files;
+  files.erase("sigma.tiff");
+  files.erase("sigma_color.png");
+  EXPECT_EQ(names_in(folder_ / "result"), files);
+  EXPECT_EQ(json_file("result/result.json")["inputs"]["disparity"], "road/truth_disparity.tiff");
+  EXPECT_TRUE(json_file("result/result.json")["inputs"]["right"].is_null());
+  expect_truth("road/left.png road/right.png --disparity road/truth_disparity.tiff");
+  write("truth.png", io::encode_kitti_png(io::read_disparity((folder_ / "road/truth_disparity.tiff").string())));
+  expect_truth("road/left.png --disparity truth.png");
+}
+
+TEST_F(InspectCommand, RejectsGivenDisparityThatDoesNotFit) {
+  make_road();
+  write("small.tiff", io::encode_float_tiff(Image<float>(64, 64, 1)));
+  expect_complaint(run("inspect road/left.png --disparity small.tiff --output out"),
+                   "64×64 pixels; it must have 320×180");
+  expect_complaint(run("inspect road --disparity small.tiff --output out"), "road is a recording");
+  expect_complaint(run("inspect road/left.png --disparity none.tiff --output out"), "none.tiff");
+  expect_complaint(run("inspect road/left.png --disparity road/truth_disparity.tiff --height 1 --calibration "
+                       "road/calibration.yaml --output out"),
+                   "need RIGHT");
+  write("empty.tiff", io::encode_float_tiff(Image<float>(320, 180, -1)));
+  const Outcome outcome = run("inspect road/left.png --disparity empty.tiff --output out");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("no road was found: "), std::string::npos) << outcome.out;
+}
+
 TEST_F(InspectCommand, WithoutCalibrationNothingIsMetric) {
   make_road();
   const Outcome outcome = inspect("");

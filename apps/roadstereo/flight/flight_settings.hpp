@@ -27,7 +27,8 @@ struct TrackSettings {
 struct FlightSettings {
   std::vector<std::string> source;  ///< one name, or left and right
   std::vector<std::string> calibration;
-  std::string mask;  ///< picture whose white pixels are left out; empty: none
+  std::string disparity;  ///< map of one pair that replaces matching; empty: none
+  std::string mask;       ///< picture whose white pixels are left out; empty: none
   std::string output;
   ProcessingSettings processing;
   SourceSettings source_settings;
