@@ -27,6 +27,7 @@ for name in "${readers[@]}"; do
     calibration)
       sources=(src/io/calibration_*.cpp src/io/opencv_*.cpp src/io/plain_yaml.cpp src/io/yaml_text.cpp src/io/k_txt.cpp
                src/io/*_calibration.cpp src/io/ros_camera_info.cpp src/io/camera_info.cpp src/io/file_bytes.cpp
+               src/io/kalibr_camchain.cpp src/io/rig_camera.cpp src/io/rigid_transform.cpp src/io/zed_conf.cpp
                src/core/calibration.cpp)
       libraries=($(pkg-config --cflags --libs opencv4 yaml-cpp pugixml)) ;;
     *) echo "usage: $0 [request|journal|calibration|all] [SECONDS]" >&2; exit 2 ;;

@@ -57,7 +57,7 @@ void assign_names(InspectArguments& arguments) {
            "\": inspect needs SOURCE, or LEFT and RIGHT (see roadstereo inspect --help)");
     }
   }
-  if (settings.calibration.size() > 2) fail("--calibration needs one file, or two ROS camera_info files");
+  if (settings.calibration.size() > 2) fail("--calibration needs one file, or two: left and right");
 }
 
 bool is_one_pair(const FlightSettings& settings) {
@@ -155,8 +155,9 @@ a list (.txt or .csv with lines "left right [seconds]"), a video with both views
 folders or two videos, left and right.
 
 Calibration formats, recognised by content: plain YAML (focal_px, cx_px, cy_px, baseline_m, width, height), OpenCV stereo
-YAML or XML, ROS camera_info (two files, left then right), KITTI calib*.txt, Middlebury calib.txt, K.txt. Images of an
-unrectified rig are rectified first. Without a calibration there are no metric results.
+YAML or XML, ROS camera_info and EuRoC sensor.yaml (two files, left then right), Kalibr camchain.yaml, ZED SN*.conf,
+DepthAI JSON, KITTI calib*.txt, Middlebury calib.txt, K.txt. Images of an unrectified rig are rectified first. Without a
+calibration there are no metric results.
 
 Examples:
   roadstereo inspect left.png right.png --calibration calibration.yaml --output out

@@ -15,7 +15,7 @@ struct MapFiles {
   std::string transformed;
   std::string image;
   std::string disparity;
-  std::vector<std::string> calibration;  ///< empty, one file, or two ROS camera_info files
+  std::vector<std::string> calibration;  ///< empty, one file, or two: left and right
 };
 
 /// A transformed map and its optional context.

@@ -33,7 +33,8 @@ void read_disparity_map(const std::string& path, StereoPair& pair) {
 }
 
 void apply_calibration(StereoPair& pair, const std::vector<std::string>& paths) {
-  const io::CalibrationFile file = io::read_calibration(paths[0], paths.size() > 1 ? paths[1] : "");
+  io::CalibrationFile file = io::read_calibration(paths[0], paths.size() > 1 ? paths[1] : "");
+  file.select_size(pair.left.width, pair.left.height, paths[0]);
   pair.calibration_format = file.format;
   pair.calibration = file.rectified;
   if (file.rig && !pair.disparity.empty()) {

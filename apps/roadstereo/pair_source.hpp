@@ -13,7 +13,7 @@ namespace roadstereo::cli {
 struct PairFiles {
   std::string left;
   std::string right;                     ///< empty only with a disparity map
-  std::vector<std::string> calibration;  ///< empty, one file, or left and right ROS camera_info
+  std::vector<std::string> calibration;  ///< empty, one file, or two: left and right
   std::string disparity{};               ///< map of the left image that replaces matching; empty: none
 };
 

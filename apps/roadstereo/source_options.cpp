@@ -7,7 +7,7 @@
 namespace roadstereo::cli {
 
 void add_calibration_option(CLI::App& command, std::vector<std::string>& calibration) {
-  command.add_option("--calibration", calibration, "Calibration file; repeat (left, right) for a ROS pair")
+  command.add_option("--calibration", calibration, "Calibration file; repeat (left, right) for a ROS or EuRoC pair")
       ->type_name("FILE")
       ->expected(1)
       ->allow_extra_args(false)

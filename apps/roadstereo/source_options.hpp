@@ -20,7 +20,7 @@ struct SourceSettings {
   std::string camera_size;  ///< "WxH" of the image with both views; empty: default
 };
 
-/// Adds --calibration: one file, or two ROS camera_info files.
+/// Adds --calibration: one file, or two, left and right.
 void add_calibration_option(CLI::App& command, std::vector<std::string>& calibration);
 
 void add_source_options(CLI::App& command, SourceSettings& choice);

@@ -14,7 +14,19 @@ namespace {
 
 constexpr std::size_t max_bytes = std::size_t{1} << 20U;
 
-enum class Format { plain_yaml, opencv_stereo, ros_camera_info, kitti, middlebury, k_txt, unknown };
+enum class Format {
+  plain_yaml,
+  opencv_stereo,
+  ros_camera_info,
+  kalibr,
+  euroc,
+  zed,
+  depthai,
+  kitti,
+  middlebury,
+  k_txt,
+  unknown
+};
 
 CalibrationText read_text(const std::string& path) {
   const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
@@ -45,13 +57,21 @@ bool is_k_txt(std::string_view text) {
   return words.size() >= 2 && contains(beginnings, words.front().substr(0, 1));
 }
 
+/// Whether it is a file of a calibration tool, or a message as `topic echo` prints it.
+bool is_camera_info(const std::vector<KeyLine>& colon) {
+  return has_any_key(colon, {"camera_matrix", "projection_matrix", "rectification_matrix"}) ||
+         (has_any_key(colon, {"distortion_model"}) && has_any_key(colon, {"p", "P"}));
+}
+
 Format recognise(const std::string& text) {
   const std::vector<KeyLine> colon = key_lines(text, ':');
   const std::vector<KeyLine> equals = key_lines(text, '=');
+  if (contains(text, "\"cameraData\"") && contains(text, "\"stereoRectificationData\"")) return Format::depthai;
+  if (has_any_key(colon, {"T_BS"})) return Format::euroc;
   if (is_opencv(text)) return Format::opencv_stereo;
-  if (has_any_key(colon, {"camera_matrix", "projection_matrix", "rectification_matrix"})) {
-    return Format::ros_camera_info;
-  }
+  if (has_any_key(colon, {"T_cn_cnm1"})) return Format::kalibr;
+  if (contains(text, "[LEFT_CAM_")) return Format::zed;
+  if (is_camera_info(colon)) return Format::ros_camera_info;
   if (has_any_key(colon, {"focal_px", "cx_px", "cy_px", "baseline_m"})) return Format::plain_yaml;
   if (has_any_key(colon, {"P0", "P1", "P2", "P3", "P_rect_00", "P_rect_01", "P_rect_02", "P_rect_03"})) {
     return Format::kitti;
@@ -66,10 +86,14 @@ Format recognise(const std::string& text) {
 
 CalibrationFile read_as(Format format, const CalibrationText& file, const std::string& second_path) {
   const bool has_second = !second_path.empty();
-  if (format == Format::ros_camera_info) {
-    if (!has_second)
-      fail(file.path, ": this is the camera_info of one camera; the file of the right camera is needed, too");
-    return read_ros_camera_info(file, read_text(second_path));
+  if (format == Format::ros_camera_info || format == Format::euroc) {
+    const bool is_ros = format == Format::ros_camera_info;
+    if (!has_second) {
+      fail(file.path, ": this is the ", is_ros ? "camera_info" : "sensor.yaml",
+           " of one camera; the file of the right camera is needed, too");
+    }
+    const CalibrationText second = read_text(second_path);
+    return is_ros ? read_ros_camera_info(file, second) : read_euroc_sensors(file, second);
   }
   if (format == Format::opencv_stereo) {
     if (!has_second) return read_opencv_stereo(file, nullptr);
@@ -79,12 +103,18 @@ CalibrationFile read_as(Format format, const CalibrationText& file, const std::s
   if (format == Format::unknown) {
     fail(file.path,
          ": unknown calibration format; supported are plain YAML (focal_px, cx_px, cy_px, baseline_m), "
-         "OpenCV stereo, ROS camera_info, KITTI, Middlebury and K.txt");
+         "OpenCV stereo, ROS camera_info, Kalibr, EuRoC, ZED, DepthAI, KITTI, Middlebury and K.txt");
   }
   if (has_second) fail_second(file, second_path);
   switch (format) {
     case Format::plain_yaml:
       return read_plain_yaml(file);
+    case Format::kalibr:
+      return read_kalibr_camchain(file);
+    case Format::zed:
+      return read_zed_conf(file);
+    case Format::depthai:
+      return read_depthai(file);
     case Format::kitti:
       return read_kitti(file);
     case Format::middlebury:
@@ -95,6 +125,20 @@ CalibrationFile read_as(Format format, const CalibrationText& file, const std::s
 }
 
 }  // namespace
+
+void CalibrationFile::select_size(int width, int height, const std::string& source) {
+  if (rigs.empty()) return;
+  std::string sizes;
+  for (const StereoRig& of_size : rigs) {
+    if (of_size.width == width && of_size.height == height) {
+      rig = of_size;
+      rigs.clear();
+      return;
+    }
+    sizes += (sizes.empty() ? "" : ", ") + std::to_string(of_size.width) + "×" + std::to_string(of_size.height);
+  }
+  fail(source, ": the images have ", width, "×", height, " pixels; the calibrations are for ", sizes);
+}
 
 CalibrationFile read_calibration(const std::string& path, const std::string& second_path) {
   const CalibrationText file = read_text(path);

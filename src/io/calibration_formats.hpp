@@ -20,6 +20,10 @@ CalibrationFile read_plain_yaml(const CalibrationText& file);
 /// `second`, if given, is another file of the same format with the keys missing in the first.
 CalibrationFile read_opencv_stereo(const CalibrationText& file, const CalibrationText* second);
 CalibrationFile read_ros_camera_info(const CalibrationText& left, const CalibrationText& right);
+CalibrationFile read_kalibr_camchain(const CalibrationText& file);
+CalibrationFile read_euroc_sensors(const CalibrationText& left, const CalibrationText& right);
+CalibrationFile read_zed_conf(const CalibrationText& file);
+CalibrationFile read_depthai(const CalibrationText& file);
 CalibrationFile read_kitti(const CalibrationText& file);
 CalibrationFile read_middlebury(const CalibrationText& file);
 CalibrationFile read_k_txt(const CalibrationText& file);

@@ -1,63 +1,19 @@
+// Calibrations of one line per value, of OpenCV and of ROS.
+
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
-#include "roadstereo/error.hpp"
-#include "roadstereo/io/calibration_file.hpp"
+#include "tests/io/calibration_test.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using namespace roadstereo;
 using namespace roadstereo::io;
-
-class ReadCalibration : public testing::Test {
- protected:
-  ReadCalibration() {
-    std::string name = (fs::temp_directory_path() / "roadstereo-calibration-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  ~ReadCalibration() override { fs::remove_all(folder_); }
-
-  std::string write(const std::string& text, const std::string& name = "calibration") const {
-    const fs::path path = folder_ / name;
-    std::ofstream(path, std::ios::binary) << text;
-    return path.string();
-  }
-  StereoCalibration rectified(const std::string& text) const { return read_calibration(write(text)).rectified.value(); }
-
-  /// Expects one sentence that names the file and says `part`.
-  void expect_refused(const std::string& text, const std::string& part) const {
-    expect_refused_file(write(text), part);
-  }
-  static void expect_refused_file(const std::string& path, const std::string& part, const std::string& second = "") {
-    testing::internal::CaptureStderr();
-    std::string message = "no error";
-    try {
-      read_calibration(path, second);
-    } catch (const Error& error) {
-      message = error.what();
-    }
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-    EXPECT_NE(message.find(second.empty() ? path : fs::path(path).parent_path().string()), std::string::npos)
-        << message;
-    EXPECT_NE(message.find(part), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  }
-
- private:
-  fs::path folder_;
-};
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
+using ReadCalibration = CalibrationTest;
 
 const std::string plain =
     "# a comment\nfocal_px: 1381.751\ncx_px: 1064.3\ncy_px: 572.5\nbaseline_m: 0.119438\nwidth: "

@@ -19,7 +19,8 @@ RectifiedSource::RectifiedSource(std::unique_ptr<io::FrameSource> source, const 
   if (!file_) return;
   format_ = file_->format;
   calibration_ = file_->rectified;
-  if (!file_->rectified && !file_->rig) fail(file_name_, ": there is no stereo calibration in this file");
+  if (!file_->rectified && !file_->rig && file_->rigs.empty())
+    fail(file_name_, ": there is no stereo calibration in this file");
   if (file_->rig && file_->rig->width > 0) {
     rectifier_.emplace(*file_->rig, file_->rig->width, file_->rig->height);
     calibration_ = rectifier_->calibration();
@@ -31,6 +32,7 @@ void RectifiedSource::prepare(const io::SourcePair& first) {
   if (!white_known_ && first.left.sample == SampleType::u16 && first.right.sample == SampleType::u16) {
     white_level_ = io::find_white_level(first.left.view(), first.right.view());
   }
+  if (file_) file_->select_size(first.left.width, first.left.height, file_name_);
   if (file_ && file_->rig && !rectifier_) {
     rectifier_.emplace(*file_->rig, first.left.width, first.left.height);
     calibration_ = rectifier_->calibration();

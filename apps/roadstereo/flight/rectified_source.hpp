@@ -15,7 +15,7 @@ namespace roadstereo::cli {
 /// A source whose pairs are rectified with its calibration.
 class RectifiedSource {
  public:
-  /// `calibration`: empty (then that of the source, if any), one file, or two ROS camera_info files. Throws Error
+  /// `calibration`: empty (then that of the source, if any), one file, or two, left and right. Throws Error
   /// naming a file that is not a calibration.
   RectifiedSource(std::unique_ptr<io::FrameSource> source, const std::vector<std::string>& calibration);
 

@@ -6,8 +6,8 @@
 #include "flight/flight_folder.hpp"
 #include "flight/flight_results.hpp"
 #include "flight/flight_settings.hpp"
-#include "progress.hpp"
 #include "flight/rectified_source.hpp"
+#include "progress.hpp"
 #include "roadstereo/io/flight_journal.hpp"
 #include "stop_signals.hpp"
 

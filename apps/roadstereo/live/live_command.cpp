@@ -37,7 +37,7 @@ struct LiveCommandArguments {
 LiveOptions live_options(const LiveCommandArguments& arguments) {
   if (!std::isfinite(arguments.max_age_ms)) fail("--max-age is ", arguments.max_age_ms, "; it must be a finite number");
   if (!std::isfinite(arguments.seconds)) fail("--seconds is ", arguments.seconds, "; it must be a number");
-  if (arguments.calibration.size() > 2) fail("--calibration needs one file, or two ROS camera_info files");
+  if (arguments.calibration.size() > 2) fail("--calibration needs one file, or two: left and right");
   LiveOptions options;
   options.processing.pipeline = make_options(arguments.processing);
   options.processing.find_white_level = !sets_white_level(arguments.processing);

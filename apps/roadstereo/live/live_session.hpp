@@ -18,7 +18,7 @@ namespace roadstereo::cli {
 struct LiveOptions {
   ProcessingOptions processing;
   CaptureOptions capture;
-  std::vector<std::string> calibration;  ///< empty, one file, or two ROS camera_info files
+  std::vector<std::string> calibration;  ///< empty, one file, or two: left and right
   double max_age_s = 0.5;                ///< older pairs are not processed, older views are stale
   std::string record;                    ///< folder; empty: no recording
 };

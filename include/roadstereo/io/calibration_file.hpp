@@ -22,17 +22,26 @@ struct StereoRig {
   int height = 0;
 };
 
-/// Contents of a calibration file: exactly one of `rectified` and `rig` is set.
+/// Contents of a calibration file: exactly one of `rectified`, `rig` and `rigs` is set.
 struct CalibrationFile {
   std::string format;                          ///< e.g. "plain YAML", "OpenCV stereo", "ROS camera_info", "KITTI P2/P3"
   std::optional<StereoCalibration> rectified;  ///< the images are already rectified
   std::optional<StereoRig> rig;                ///< the images must be rectified first
+  std::vector<StereoRig> rigs{};               ///< the same, one per size of the images: `select_size`
+
+  /// Makes the member of `rigs` of that size the `rig`; does nothing without `rigs`. Throws Error naming the sizes.
+  void select_size(int width, int height, const std::string& source);
 };
 
 /// Reads a calibration; the format is recognised by content, not by name:
 ///   plain YAML     focal_px, cx_px, cy_px, baseline_m, width, height
 ///   OpenCV stereo  YAML or XML with K1 D1 K2 D2 R T, or M1 D1 M2 D2 R T (T in metres)
-///   ROS            camera_info; `second_path` is the right camera's file
+///   ROS            camera_info, as calibration tools write it or `topic echo` prints it (ROS 1 and 2);
+///                  `second_path` is the right camera's file
+///   Kalibr         camchain.yaml with cam0 (left) and cam1: pinhole with radtan, equidistant or none
+///   EuRoC          sensor.yaml with T_BS; `second_path` is the right camera's file
+///   ZED            SN*.conf, one rig per resolution
+///   DepthAI        JSON of the calibration that is stored in the device
 ///   KITTI          calib*.txt with P0/P1 or P2/P3 (also P_rect_0N); P2/P3 wins when a file has both
 ///   Middlebury     calib.txt with cam0, cam1, doffs, baseline in millimetres
 ///   K.txt          nine values of K and the baseline in metres
