@@ -41,6 +41,7 @@ part ./scripts/check_figures.sh build/bin/roadstereo
 part cmake --build build --target docs
 part ./scripts/check_tidy.sh --all
 part ./scripts/check_install.sh
+part ./scripts/check_python.sh
 # Without precompiled headers: a source includes what it uses.
 part ./scripts/check_sanitizers.sh asan-all -DROADSTEREO_WERROR=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
 part ./scripts/check_sanitizers.sh tsan -DROADSTEREO_WERROR=ON

@@ -8,5 +8,5 @@ mode=(--dry-run --Werror)
 if [ "${1:-}" = --fix ]; then
   mode=(-i)
 fi
-find apps bench examples include src tests \( -name '*.[ch]pp' -o -name '*.cu' -o -path '*/emulated/*.h' \) -print0 | xargs -0 "$formatter" "${mode[@]}"
+find apps bench examples include python src tests \( -name '*.[ch]pp' -o -name '*.cu' -o -path '*/emulated/*.h' \) -print0 | xargs -0 "$formatter" "${mode[@]}"
 echo "Format: good."

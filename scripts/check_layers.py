@@ -30,7 +30,7 @@ def read_table(path):
         cells = [cell.strip() for cell in line.split("|")]
         if len(cells) != 5:
             continue
-        folder = re.fullmatch(r"`((?:include|src|apps|bench|examples)/[\w/]*)`", cells[1])
+        folder = re.fullmatch(r"`((?:include|src|apps|bench|examples|python)/[\w/]*)`", cells[1])
         if folder:
             rules[folder[1].rstrip("/")] = {name.rstrip("/") for name in re.findall(r"`([\w/]+)`", cells[3])}
     if not rules:
@@ -60,7 +60,7 @@ def resolve(source, name):
 
 def breaks(rules, used):
     """Every include that the table does not allow, as text."""
-    files = [file for top in ("include", "src", "apps", "bench", "examples") for file in (ROOT / top).rglob("*")]
+    files = [file for top in ("include", "src", "apps", "bench", "examples", "python") for file in (ROOT / top).rglob("*")]
     for file in sorted(file for file in files if file.suffix in SUFFIXES):
         source = pathlib.PurePosixPath(file.relative_to(ROOT).as_posix())
         folder = folder_of(source, rules)

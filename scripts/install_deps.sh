@@ -2,7 +2,7 @@
 # Installs with apt what the build needs and is missing, and says what that is. Debian 12, Ubuntu 22.04 or later.
 #   scripts/install_deps.sh               compiler, CMake, libraries
 #   scripts/install_deps.sh --checks      also what .ci/run needs
-#   scripts/install_deps.sh --all-checks  also what scripts/check_all.sh needs: browser, another architecture
+#   scripts/install_deps.sh --all-checks  also what scripts/check_all.sh needs: browser, another architecture, Python
 set -euo pipefail
 
 geographiclib=libgeographiclib-dev
@@ -18,7 +18,9 @@ case "${1:-}" in
   "") ;;
   --checks) packages+=("${checks[@]}") ;;
   --all-checks) packages+=("${checks[@]}" g++-aarch64-linux-gnu qemu-user googletest
-                           chromium chromium-driver python3-selenium) ;;
+                           chromium chromium-driver python3-selenium
+                           pybind11-dev python3-dev python3-numpy python3-matplotlib python3-pil mypy
+                           python3-build python3-setuptools python3-wheel python3-venv) ;;
   *) echo "usage: $0 [--checks|--all-checks]" >&2; exit 2 ;;
 esac
 

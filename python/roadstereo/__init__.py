@@ -1,0 +1,83 @@
+"""Dense stereo for road inspection: disparity, roll, transformed disparity and damage of stereo pairs.
+
+    pipeline = roadstereo.Pipeline("default", roadstereo.read_calibration("calibration.yaml"))
+    result = pipeline.process(left, right)
+    damage = roadstereo.find_damage(result)
+
+Images are numpy arrays (H, W), row-major; units are part of a name; NaN is invalid. docs/python.md is an introduction.
+"""
+
+from ._roadstereo import (
+    Calibration,
+    Damage,
+    DamageEvidence,
+    DamageMap,
+    DamageMetrics,
+    DisparityPlane,
+    Error,
+    FrameResult,
+    FrameSource,
+    GroundPlane,
+    Measurement,
+    PerspectiveShift,
+    Pipeline,
+    Rectifier,
+    RoadModelEstimate,
+    RoadResiduals,
+    RollEstimate,
+    RowAlignment,
+    SeverityProbabilities,
+    SourcePair,
+    StageTimes,
+    StereoRig,
+    __version__,
+    describe_options,
+    engine_names,
+    find_damage,
+    find_white_level,
+    open_source,
+    preset_names,
+    read_calibration,
+    read_disparity,
+    read_frame,
+)
+
+__all__ = [
+    "Calibration",
+    "Damage",
+    "DamageEvidence",
+    "DamageMap",
+    "DamageMetrics",
+    "DisparityPlane",
+    "Error",
+    "FrameResult",
+    "FrameSource",
+    "GroundPlane",
+    "Measurement",
+    "PerspectiveShift",
+    "Pipeline",
+    "Rectifier",
+    "RoadModelEstimate",
+    "RoadResiduals",
+    "RollEstimate",
+    "RowAlignment",
+    "SeverityProbabilities",
+    "SourcePair",
+    "StageTimes",
+    "StereoRig",
+    "__version__",
+    "describe_options",
+    "engine_names",
+    "find_damage",
+    "find_white_level",
+    "open_source",
+    "preset_names",
+    "read_calibration",
+    "read_disparity",
+    "read_frame",
+]
+
+for _name in __all__:
+    if isinstance(globals()[_name], type):
+        globals()[_name].__module__ = __name__
+del _name

@@ -1,0 +1,110 @@
+"""Successive pairs, masks, one pipeline in several threads; the module as a whole."""
+
+import inspect
+import subprocess
+import sys
+import threading
+import unittest
+
+import numpy as np
+from rendered_road import calibration, noise_pair, pair, run
+
+import roadstereo
+
+
+class Pairs(unittest.TestCase):
+    def test_road_is_tracked(self):
+        pipeline = roadstereo.Pipeline("default", calibration())
+        statuses = [pipeline.process(*pair()).road.status for _ in range(3)]
+        pipeline.reset()
+        statuses.append(pipeline.process(*pair()).road.status)
+        self.assertEqual(statuses, ["found", "tracked", "tracked", "found"])
+
+    def test_warm_up_leaves_result(self):
+        cold, warm = (roadstereo.Pipeline("default", calibration()) for _ in range(2))
+        warm.warm_up(320, 180)
+        self.assertEqual(cold.process(*pair()).disparity.tobytes(), warm.process(*pair()).disparity.tobytes())
+        with self.assertRaisesRegex(roadstereo.Error, "32×32"):
+            roadstereo.Pipeline().warm_up(8, 8)
+
+    def test_mask(self):
+        mask = np.zeros((180, 320), bool)
+        mask[150:, 100:220] = True
+        pipeline = roadstereo.Pipeline("default", calibration())
+        for given in (mask, mask.astype(np.uint8) * 255, np.asfortranarray(mask)):
+            pipeline.set_mask(given)
+            result = pipeline.process(*pair())
+            self.assertTrue(np.array_equal(result.mask != 0, mask))
+            self.assertTrue(np.isnan(result.disparity[mask]).all())
+        pipeline.set_mask(None)
+        result = pipeline.process(*pair())
+        self.assertIsNone(result.mask)
+        self.assertTrue(np.isfinite(result.disparity[mask]).any())
+
+    def test_bad_masks(self):
+        pipeline = roadstereo.Pipeline()
+        for mask in ([[1]], np.zeros((180, 320)), np.zeros((180, 320), np.uint16)):
+            with self.assertRaisesRegex(TypeError, "it must be None or a numpy array of bool or uint8"):
+                pipeline.set_mask(mask)
+        with self.assertRaisesRegex(roadstereo.Error, "^mask has 3 dimensions"):
+            pipeline.set_mask(np.zeros((180, 320, 1), bool))
+        pipeline.set_mask(np.ones((3, 4), bool))
+        with self.assertRaisesRegex(roadstereo.Error, "the mask has 4×3 pixels; it must have 320×180"):
+            pipeline.process(*pair())
+
+    def test_one_pipeline_in_several_threads(self):
+        pipeline = roadstereo.Pipeline("fast", calibration())
+        expected = {pipeline.process(*frames).disparity.tobytes() for frames in (noise_pair(), pair(), pair())}
+        found, errors = [], []
+
+        def work(frames):
+            try:
+                for _ in range(8):
+                    found.append(pipeline.process(*frames).road.status)
+                    pipeline.options, pipeline.engine_name
+            except roadstereo.Error as error:
+                errors.append(error)
+
+        threads = [threading.Thread(target=work, args=[frames]) for frames in (pair(), noise_pair(), pair())]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(errors, [])
+        self.assertEqual(sum(status != "none" for status in found), 16)
+        self.assertEqual(len(expected), 3)
+
+    def test_interpreter_runs_meanwhile(self):
+        frames = [np.kron(frame, np.ones((4, 4), np.uint8)) for frame in pair()]
+        pipeline = roadstereo.Pipeline("default", options={"perspective.enabled": False, "narrow_search": False})
+        ended, turns = threading.Event(), 0
+        worker = threading.Thread(target=lambda: (pipeline.process(*frames), ended.set()))
+        worker.start()
+        while not ended.wait(0.005):
+            turns += 1
+        worker.join()
+        self.assertGreater(turns, 3)
+
+
+class Module(unittest.TestCase):
+    def test_command_line(self):
+        self.assertEqual(run("--version"), f"roadstereo {roadstereo.__version__}\n")
+        wrong = subprocess.run([sys.executable, "-m", "roadstereo", "inspect"], capture_output=True, check=False)
+        self.assertEqual(wrong.returncode, 2)
+
+    def test_errors_are_runtime_errors(self):
+        self.assertTrue(issubclass(roadstereo.Error, RuntimeError))
+        self.assertEqual(f"{roadstereo.Error.__module__}.{roadstereo.Error.__name__}", "roadstereo.Error")
+
+    def test_everything_has_a_docstring(self):
+        for name in roadstereo.__all__:
+            value = getattr(roadstereo, name)
+            self.assertTrue(inspect.getdoc(value), name)
+            members = vars(value).items() if isinstance(value, type) else []
+            for member, function in members:
+                if not member.startswith("_"):
+                    self.assertTrue(inspect.getdoc(function), f"{name}.{member}")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Builds the Python package in the release tree, runs its tests, checks the types of the example, and tests the wheel in a
+# virtual environment of its own.
+#   scripts/check_python.sh [BUILD]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+build=$(realpath -m "${1:-build}")
+python=/usr/bin/python3  # Debian's, which has Debian's numpy
+[ -f "$build/CMakeCache.txt" ] || cmake --preset release -B "$build"
+cmake -B "$build" -DROADSTEREO_PYTHON=ON -DPython3_EXECUTABLE="$python" -DROADSTEREO_BUILD_TESTS=ON
+cmake --build "$build" -j "$(nproc)" --target roadstereo_python roadstereo_program
+ctest --test-dir "$build" --output-on-failure --label-regex '^python$' --no-tests=error
+
+export MYPY_CACHE_DIR=$build/mypy
+(cd python && mypy --strict examples roadstereo)
+
+ROADSTEREO_BUILD=$build "$python" -m build --wheel --no-isolation --outdir "$build/wheel" python
+rm -rf "$build/wheel/venv"
+"$python" -m venv --system-site-packages "$build/wheel/venv"
+"$build/wheel/venv/bin/pip" install --quiet --no-index "$build"/wheel/roadstereo-*.whl
+for test in python/tests/test_*.py; do
+  [ "$test" = python/tests/test_threads.py ] || (cd / && "$build/wheel/venv/bin/python" -B "$OLDPWD/$test")
+done
+echo "Python: good."
