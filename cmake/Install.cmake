@@ -2,7 +2,7 @@ include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/roadstereo)
 
-install(TARGETS roadstereo roadstereo_synth EXPORT roadstereoTargets)
+install(TARGETS roadstereo roadstereo_odometry roadstereo_synth EXPORT roadstereoTargets)
 if(ROADSTEREO_WITH_CUDA)
   install(TARGETS roadstereo_cuda EXPORT roadstereoTargets)
 endif()

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "roadstereo/calibration.hpp"
+#include "roadstereo/disparity_plane.hpp"
+#include "roadstereo/image_view.hpp"
+#include "roadstereo/trajectory.hpp"
+
+namespace roadstereo {
+
+struct FrameResult;
+
+struct OdometryOptions {
+  double min_correlation = 0.3;    ///< below it there is no link, 0 … 1
+  double weak_correlation = 0.5;   ///< below it a link is weak, 0 … 1
+  double min_overlap = 0.15;       ///< share of the view that a link needs, 0 … 1
+  double reference_overlap = 0.7;  ///< below it the frame becomes the reference of the next ones, 0 … 1
+  bool estimate_offset = true;     ///< estimate and undo an offset of the disparities at infinity
+
+  /// Throws Error naming the first option that is out of range.
+  void validate() const;
+};
+
+/// Quality of a link.
+enum class LinkStatus {
+  good,
+  weak,  ///< little texture agrees, or little overlaps: the covariance says how far it can be trusted
+};
+const char* name_of(LinkStatus status);
+
+/// Motion between the cameras of two frames.
+struct FrameLink {
+  int from = 0;  ///< index of the earlier frame
+  int to = 0;    ///< index of the later frame
+  LinkStatus status = LinkStatus::good;
+  std::array<double, 12> motion{1, 0, 0, 0, 0, 1,
+                                0, 0, 0, 0, 1, 0};  ///< 3×4, row-major, metres: points of camera `from`
+                                                    ///< to camera `to`
+  std::array<double, 36> covariance{};              ///< translation, then rotation vector, in the axes of camera `to`
+  double correlation = 0;                           ///< median NCC of patches of texture, −1 … 1
+  double overlap = 0;                               ///< share of the view of `from` that `to` sees, 0 … 1
+  double offset_px = 0;                             ///< disparity offset at infinity that was undone, pixels
+  double offset_sd_px = 0;                          ///< its standard error
+};
+
+/// Maps of one frame, W×H.
+struct OdometryFrame {
+  ImageView<const std::int16_t> grey;  ///< sixteenths of grey levels
+  ImageView<const float> disparity;    ///< pixels, NaN invalid
+  ImageView<const float> sigma;        ///< standard error of the disparity, pixels
+  bool has_road = false;
+  DisparityPlane road;  ///< unless `has_road` is false
+};
+
+/// Estimates the motion of a rig from frame to frame: direct alignment of grey levels and disparities. Every frame is
+/// aligned with a reference, an earlier frame that is kept as long as enough of its view is seen. Where the prediction
+/// from the last motion fails, the road planes of both frames are resampled to a metric grid and registered by phase
+/// correlation. A frame that cannot be linked starts a new piece. Not thread-safe.
+class Odometry {
+ public:
+  explicit Odometry(const StereoCalibration& calibration, const OdometryOptions& options = {});
+  ~Odometry();
+  Odometry(Odometry&&) noexcept;
+  Odometry& operator=(Odometry&&) noexcept;
+
+  /// Adds a frame, with an index above that of the last one. Returns its pose. Throws Error when the sizes differ or
+  /// the index does not grow.
+  const FramePose& add(int frame, const OdometryFrame& maps);
+  const FramePose& add(int frame, const FrameResult& result);
+
+  /// Links so far, one per frame that has one.
+  const std::vector<FrameLink>& links() const;
+
+  /// Poses so far, one per frame that was added.
+  const Trajectory& trajectory() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace roadstereo

@@ -1,0 +1,244 @@
+// Rendered frames whose poses and disparities are known.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "odometry/direct_alignment.hpp"
+#include "odometry/rigid_motion.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/odometry.hpp"
+#include "roadstereo/synth.hpp"
+#include "synth/camera.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// A rendered left image with its exact disparities.
+struct KnownFrame {
+  GreyImage grey;
+  Image<float> disparity;
+  Image<float> sigma;
+  DisparityPlane plane;
+  RigidMotion pose;  ///< camera to road
+
+  OdometryFrame maps() const { return {grey, disparity, sigma, true, plane}; }
+};
+
+RigidMotion pose_of(const synth::Rig& rig) {
+  const synth::Camera camera = synth::left_camera(rig);
+  const std::array axes{camera.right, camera.down, camera.forward};
+  RigidMotion pose;
+  for (std::size_t j = 0; j < 3; ++j) {
+    pose.rotation[0][j] = axes[j].x;
+    pose.rotation[1][j] = axes[j].y;
+    pose.rotation[2][j] = axes[j].z;
+  }
+  pose.translation = {camera.origin.x, camera.origin.y, camera.origin.z};
+  return pose;
+}
+
+KnownFrame known_frame(const synth::Scene& scene) {
+  const synth::SyntheticPair pair = synth::render(scene);
+  KnownFrame frame;
+  to_grey(pair.left.view(), 0, frame.grey);
+  frame.disparity.resize(pair.disparity.width(), pair.disparity.height());
+  std::transform(pair.disparity.row(0), pair.disparity.row(0) + pair.disparity.pixels(), frame.disparity.row(0),
+                 [](double d) { return static_cast<float>(d); });
+  frame.sigma.assign(frame.disparity.width(), frame.disparity.height(), 0.05F);
+  frame.plane = pair.plane;
+  frame.pose = pose_of(scene.rig);
+  return frame;
+}
+
+/// The scene with fewer pixels and one ray for each.
+synth::Scene smaller(const std::string& name, int divisor) {
+  synth::Scene scene = synth::named_scene(name);
+  scene.rig.width /= divisor;
+  scene.rig.height /= divisor;
+  scene.rig.focal_px /= divisor;
+  scene.supersampling = 1;
+  return scene;
+}
+
+/// Frames of a flight that moves, rolls, pitches and climbs.
+const std::vector<KnownFrame>& flight() {
+  static const std::vector<KnownFrame> frames = [] {
+    synth::FlightPath path;
+    path.roll_period = path.pitch_period = path.climb_period = 40;
+    std::vector<KnownFrame> rendered;
+    synth::Scene scene = smaller("uav", 2);
+    scene.degradation.noise_grey = 3;
+    for (int i = 0; i < 8; ++i) rendered.push_back(known_frame(synth::flight_frame(scene, path, i)));
+    return rendered;
+  }();
+  return frames;
+}
+
+RigidMotion motion_of(const std::array<double, 12>& matrix) {
+  RigidMotion motion;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) motion.rotation[i][j] = matrix[4 * i + j];
+    motion.translation[i] = matrix[4 * i + 3];
+  }
+  return motion;
+}
+
+/// Error of a pose against that of the first frame.
+Twist pose_error(const FramePose& pose, const KnownFrame& first, const KnownFrame& frame) {
+  return twist_of(inverse(motion_of(pose.camera_to_world)) * inverse(first.pose) * frame.pose);
+}
+
+double distance(const Twist& error) {
+  return std::hypot(error[0], error[1], error[2]);
+}
+
+double angle(const Twist& error) {
+  return std::hypot(error[3], error[4], error[5]);
+}
+
+TEST(Odometry, FollowsFlight) {
+  const std::vector<KnownFrame>& frames = flight();
+  Odometry odometry(smaller("uav", 2).rig.calibration());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const FramePose& pose = odometry.add(static_cast<int>(i), frames[i].maps());
+    EXPECT_EQ(pose.piece, 0);
+    const Twist error = pose_error(pose, frames[0], frames[i]);
+    // A pixel covers 12 mm of the road: 0.1 px is 1.2 mm, and 0.6 mrad.
+    EXPECT_LT(distance(error), 1.2e-3) << i;
+    EXPECT_LT(angle(error), 0.6e-3) << i;
+  }
+  ASSERT_EQ(odometry.links().size(), frames.size() - 1);
+  for (const FrameLink& link : odometry.links()) {
+    EXPECT_EQ(link.status, LinkStatus::good);
+    EXPECT_EQ(link.offset_px, 0);
+  }
+}
+
+TEST(Odometry, StandsStill) {
+  Odometry odometry(smaller("uav", 2).rig.calibration());
+  for (int i = 0; i < 3; ++i) {
+    const FramePose& pose = odometry.add(i, flight()[0].maps());
+    EXPECT_LT(distance(pose_error(pose, flight()[0], flight()[0])), 1e-6);
+  }
+}
+
+TEST(Odometry, CovarianceIsThatOfErrors) {
+  // The same view with other noise: whatever moves is error.
+  synth::Scene scene = smaller("uav", 2);
+  scene.degradation.noise_grey = 6;
+  const KnownFrame first = known_frame(scene);
+  Vector<6> chi_square{};
+  constexpr int trials = 6;
+  for (int i = 1; i <= trials; ++i) {
+    scene.degradation.noise_seed = static_cast<std::uint32_t>(1000 * i);
+    const KnownFrame second = known_frame(scene);
+    Odometry odometry(scene.rig.calibration());
+    odometry.add(0, first.maps());
+    const FramePose& pose = odometry.add(1, second.maps());
+    const Twist error = pose_error(pose, first, second);
+    for (std::size_t k = 0; k < 6; ++k) chi_square[k] += error[k] * error[k] / pose.covariance[7 * k];
+  }
+  for (std::size_t k = 0; k < 6; ++k) {  // mean 1, 99.9 % of χ² with 6 degrees of freedom
+    EXPECT_GT(chi_square[k] / trials, 0.06) << k;
+    EXPECT_LT(chi_square[k] / trials, 3.8) << k;
+    RecordProperty("chi_square_" + std::to_string(k), std::to_string(chi_square[k] / trials));
+  }
+}
+
+TEST(Odometry, FindsJumpByPhaseCorrelation) {
+  // Half of the view further, at once: no prediction helps.
+  Odometry odometry(smaller("uav", 2).rig.calibration());
+  synth::Scene scene = smaller("uav", 2);
+  const KnownFrame first = known_frame(scene);
+  scene.rig.y_m += 0.8;
+  scene.rig.x_m += 0.3;
+  const KnownFrame second = known_frame(scene);
+  odometry.add(0, first.maps());
+  const FramePose& pose = odometry.add(1, second.maps());
+  EXPECT_EQ(pose.piece, 0);
+  EXPECT_LT(distance(pose_error(pose, first, second)), 2e-3);
+}
+
+TEST(Odometry, CutStartsNewPiece) {
+  synth::Scene elsewhere = smaller("uav", 2);
+  elsewhere.road.seed = 99;
+  elsewhere.rig.y_m = 50;
+  const KnownFrame other = known_frame(elsewhere);
+  Odometry odometry(elsewhere.rig.calibration());
+  odometry.add(0, flight()[0].maps());
+  odometry.add(1, flight()[1].maps());
+  EXPECT_EQ(odometry.add(2, other.maps()).piece, 1);
+  // What follows is linked with the first piece again.
+  const FramePose& back = odometry.add(3, flight()[3].maps());
+  EXPECT_EQ(back.piece, 0);
+  EXPECT_LT(distance(pose_error(back, flight()[0], flight()[3])), 1.2e-3);
+  EXPECT_EQ(odometry.links().size(), 2U);
+}
+
+TEST(Odometry, BlurredFrameIsLinked) {
+  synth::Scene scene = smaller("uav", 2);
+  scene.rig.y_m = 0.1;
+  scene.degradation.motion_blur_px = 6;
+  const KnownFrame blurred = known_frame(scene);
+  Odometry odometry(scene.rig.calibration());
+  odometry.add(0, flight()[0].maps());
+  const FramePose& pose = odometry.add(1, blurred.maps());
+  EXPECT_EQ(pose.piece, 0);
+  EXPECT_LT(distance(pose_error(pose, flight()[0], blurred)), 6e-3);  // half a pixel
+}
+
+TEST(Odometry, OffsetAtInfinityIsUndone) {
+  // A street, 0.6 m a frame; the right camera is yawed so that disparities are 0.6 px short in the middle.
+  constexpr double offset_px = 0.6;
+  synth::Scene scene = smaller("street", 2);
+  const StereoCalibration calibration = scene.rig.calibration();
+  std::vector<KnownFrame> frames;
+  for (int i = 0; i < 5; ++i) {
+    scene.rig.y_m = 0.6 * i;
+    frames.push_back(known_frame(scene));
+    Image<float>& map = frames.back().disparity;
+    for (int v = 0; v < map.height(); ++v) {
+      for (int u = 0; u < map.width(); ++u) {
+        const double shape = offset_shape(calibration, u, double{map(u, v)});
+        map(u, v) -= static_cast<float>(offset_px * shape);
+      }
+    }
+  }
+  const auto last_error = [&](bool estimate) {
+    OdometryOptions options;
+    options.estimate_offset = estimate;
+    Odometry odometry(calibration, options);
+    for (std::size_t i = 0; i < frames.size(); ++i) odometry.add(static_cast<int>(i), frames[i].maps());
+    if (estimate) {
+      EXPECT_NEAR(odometry.links().back().offset_px, offset_px, 0.12);
+    }
+    return distance(pose_error(odometry.trajectory().frames.back(), frames.front(), frames.back()));
+  };
+  const double with = last_error(true), without = last_error(false);
+  RecordProperty("error_with_mm", std::to_string(1e3 * with));
+  RecordProperty("error_without_mm", std::to_string(1e3 * without));
+  EXPECT_LT(with, 0.1 * without);
+}
+
+TEST(Odometry, RejectsInvalidFrames) {
+  const KnownFrame& frame = flight()[0];
+  Odometry odometry(smaller("uav", 2).rig.calibration());
+  odometry.add(5, frame.maps());
+  EXPECT_THROW(odometry.add(5, frame.maps()), Error);
+  const Image<float> narrow(10, 10);
+  OdometryFrame odd = frame.maps();
+  odd.sigma = narrow;
+  EXPECT_THROW(odometry.add(6, odd), Error);
+  OdometryOptions options;
+  options.min_overlap = 1.5;
+  EXPECT_THROW(Odometry(smaller("uav", 2).rig.calibration(), options), Error);
+}
+
+}  // namespace
+}  // namespace roadstereo
