@@ -64,6 +64,18 @@ def kitti(result):
 
 
 @needs("kitti")
+def kitti_lane(result):
+    keys = [("density_percent", 1), ("e_r_px", 3), ("e_p_2px_percent", 3), ("e_p_3px_percent", 3)]
+    regions = [("road mask", "road"), ("lane", "lane"), ("lane without edges along the rows", "lane_without_edges")]
+    table = [[title, METHODS[name]] + [number(row_where(result[region]["mean"], method=name)[key], decimals)
+                                       for key, decimals in keys]
+             for title, region in regions for name in ("paper", "default", "3WAY")]
+    published = row_where(result["published"], method="paper (published)")
+    table.append(["regions drawn by hand", "paper, published"] + [number(published[key], 3) for key, _ in keys])
+    return markdown(["region", "", "density %", "e_r px", "e_p(2) %", "e_p(3) %"], table)
+
+
+@needs("kitti")
 def kitti_regions(result):
     regions = [("road, where every method but BM gives a disparity", "road_common"), ("all labelled pixels", "all"),
                ("all labelled, where every method but BM gives one", "all_common")]

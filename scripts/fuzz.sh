@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Feeds mutated inputs to a reader, under the address and undefined behaviour sanitizers.
-#   scripts/fuzz.sh [READER] [SECONDS]    READER: request, journal, calibration or all (default); 60 seconds each
+#   scripts/fuzz.sh [READER] [SECONDS]    READER: request, journal, calibration, bag, track or all (default); 60 seconds each
 # With clang++ libFuzzer mutates the inputs of tests/fuzz/seeds; without, g++ builds a program that replays them. New
 # inputs are kept in build-fuzz/corpus, those that fail in build-fuzz.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-readers=(request journal calibration)
+readers=(request journal calibration bag track)
 reader=${1:-all}
 seconds=${2:-60}
 [ "$reader" = all ] || readers=("$reader")
@@ -30,7 +30,17 @@ for name in "${readers[@]}"; do
                src/io/kalibr_camchain.cpp src/io/rig_camera.cpp src/io/rigid_transform.cpp src/io/zed_conf.cpp
                src/core/calibration.cpp)
       libraries=($(pkg-config --cflags --libs opencv4 yaml-cpp pugixml)) ;;
-    *) echo "usage: $0 [request|journal|calibration|all] [SECONDS]" >&2; exit 2 ;;
+    bag)
+      sources=(src/io/source/message_log.cpp src/io/source/mcap_*.cpp src/io/source/decompress.cpp
+               src/io/source/sqlite_log.cpp src/io/source/rosbag2_folder.cpp src/io/source/no_ros1_log.cpp
+               src/io/source/bag_message.cpp src/io/source/bag_topics.cpp src/io/yaml_text.cpp src/io/file_bytes.cpp
+               src/io/calibration_text.cpp src/io/frame_mat.cpp src/core/frame.cpp)
+      libraries=($(pkg-config --cflags --libs opencv4 yaml-cpp sqlite3 libzstd liblz4 zlib)) ;;
+    track)
+      sources=(src/io/geo/track_csv.cpp src/io/geo/track_nmea.cpp src/io/geo/track_srt.cpp src/io/geo/track_values.cpp
+               src/io/geo/utc_time.cpp src/io/calibration_text.cpp)
+      libraries=() ;;
+    *) echo "usage: $0 [request|journal|calibration|bag|track|all] [SECONDS]" >&2; exit 2 ;;
   esac
   corpus=build-fuzz/corpus/$name
   mkdir -p "$corpus"

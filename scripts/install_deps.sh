@@ -11,7 +11,7 @@ packages=(build-essential cmake ninja-build pkg-config
           libopencv-dev libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev zlib1g-dev
           libeigen3-dev libnanoflann-dev
           libgdal-dev libpugixml-dev "$geographiclib"
-          libgstreamer-plugins-base1.0-dev librosbag-storage-dev libboost-dev
+          libgstreamer-plugins-base1.0-dev librosbag-storage-dev libsqlite3-dev libzstd-dev liblz4-dev libboost-dev
           libcpp-httplib-dev libgtest-dev libbenchmark-dev)
 checks=(clang-format-14 clang-tidy doxygen python3 gdal-bin libsensor-msgs-dev gstreamer1.0-plugins-base)
 case "${1:-}" in

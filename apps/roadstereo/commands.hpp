@@ -13,6 +13,7 @@ void add_damage(CLI::App& app);
 void add_synth(CLI::App& app);
 void add_limits(CLI::App& app);
 void add_options(CLI::App& app);
+void add_completion(CLI::App& app);
 void add_engines(CLI::App& app);
 void add_benchmark(CLI::App& app);
 void add_evaluate(CLI::App& app);

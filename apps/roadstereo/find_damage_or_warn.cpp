@@ -14,7 +14,7 @@ bool find_damage_or_warn(const FrameResult& frame, const std::optional<StereoCal
     throw;
   } catch (const Error& error) {
     damage = make_empty_damage_map(frame.disparity.width(), frame.disparity.height(), "no road was found");
-    warnings.push_back(std::string("damage detection failed: ") + error.what());
+    warnings.push_back(std::string("no-damage: damage detection failed: ") + error.what());
     return false;
   }
 }

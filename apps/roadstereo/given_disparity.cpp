@@ -70,7 +70,7 @@ void fill_result(Inspection& inspection) {
     result.spread = measure_residuals(result.transformed, result.delta_t, options.threads);
   } else {
     result.transformed.assign(result.disparity.width(), result.disparity.height(), nan);
-    result.warnings.push_back("no road was found: " + result.road.reason);
+    result.warnings.push_back("no-road: no road was found: " + result.road.reason);
   }
 }
 

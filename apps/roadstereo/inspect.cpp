@@ -91,7 +91,6 @@ void reject_flight_options(const FlightSettings& settings) {
   if (settings.from != 0) reject("--from");
   if (settings.to) reject("--to");
   if (settings.every != 1) reject("--every");
-  if (!settings.write.empty()) reject("--write");
   if (!settings.track.file.empty()) reject("--track");
 }
 
@@ -124,7 +123,7 @@ void inspect_pair(const FlightSettings& settings) {
   }
   process(inspection);
   auto stop = std::make_unique<StopSignals>();  // staged files do not stay
-  add_result_files(inspection, folder);
+  add_result_files(settings.write, inspection, folder);
   const std::string result = result_json(inspection);
   folder.add("result.json", result);
   if (stop->wait(0)) throw Interrupted{"interrupted; nothing was written"};
@@ -144,15 +143,16 @@ constexpr const char* inspect_footer =
     R"(Output of a pair: disparity.tiff, sigma.tiff (standard error of the disparity, px) and transformed.tiff (32-bit float,
 NaN invalid), disparity.png (16 bit, value / 256 px, 0 invalid), colour maps, sheet.png, result.json, damages.json,
 damages.csv, damage.png (16 bit, ids), overlay.png and report.html; with a calibration also cloud.ply (camera frame, m)
-and road_cloud.ply (the road is z = 0).
+and road_cloud.ply (the road is z = 0). --write selects: disparity, sigma, transformed, sheet, cloud, damages, overlay,
+report. "files" of result.json says what each file is.
 
 Output of a recording: frames.csv (one row per frame), damages.csv (one row per sighting), summary.json, report.html, an
 image of each damage in damages/, and the files selected with --write; with --track also frames.geojson,
 damages.geojson and flight.gpkg. Ctrl-C stops after the frames already read; --resume continues there, also after a kill.
 
 SOURCE is a folder (left/ right/, image_2/ image_3/, image_0/ image_1/, cam0/data cam1/data, or images named L… and R…),
-a list (.txt or .csv with lines "left right [seconds]"), a video with both views in one image, or a ROS 1 bag; or two
-folders or two videos, left and right.
+a list (.txt or .csv with lines "left right [seconds]"), a video with both views in one image, or a ROS bag (.bag, .mcap,
+.db3 or the folder of rosbag2); or two folders or two videos, left and right.
 
 Calibration formats, recognised by content: plain YAML (focal_px, cx_px, cy_px, baseline_m, width, height), OpenCV stereo
 YAML or XML, ROS camera_info and EuRoC sensor.yaml (two files, left then right), Kalibr camchain.yaml, ZED SN*.conf,
@@ -197,8 +197,10 @@ void add_output_options(CLI::App& command, FlightSettings& settings) {
 
 void add_track_options(CLI::App& command, TrackSettings& track) {
   command
-      .add_option("--track", track.file,
-                  "GNSS track: GPX, or CSV with time,lat,lon[,alt,heading]; writes GIS files of frames and damages")
+      .add_option(
+          "--track", track.file,
+          "GNSS track: GPX, CSV with time,lat,lon[,alt,heading], NMEA, DJI SRT, PX4 CSV, or a ROS bag with NavSatFix; "
+          "writes GIS files of frames and damages")
       ->type_name("FILE");
   command
       .add_option("--track-offset", track.offset_s,
@@ -214,8 +216,10 @@ void add_flight_options(CLI::App& command, FlightSettings& settings) {
   command.add_option("--to", settings.to, "Last frame of the recording, inclusive")->type_name("N");
   command.add_option("--every", settings.every, "Process every N-th frame")->type_name("N");
   command
-      .add_option("--write", settings.write,
-                  "Files of every frame, comma-separated: disparity, transformed, sheet, cloud, overlay")
+      .add_option(
+          "--write", settings.write,
+          "Files, comma-separated. Of a pair: see below, default all; of every frame of a recording: disparity, "
+          "transformed, sheet, cloud, overlay, default none")
       ->type_name("LIST")
       ->delimiter(',')
       ->expected(1)

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pair_source.hpp"
@@ -22,8 +23,9 @@ struct Inspection {
   int threads = 0;     ///< number of threads used
   FrameResult result;
   DamageMap damage;
-  std::optional<GroundPlane> plane;   ///< metric; needs a calibration and a road
-  std::vector<std::string> warnings;  ///< of the pipeline and of the command
+  std::optional<GroundPlane> plane;                                  ///< metric; needs a calibration and a road
+  std::vector<std::string> warnings;                                 ///< of the pipeline and of the command
+  std::vector<std::pair<std::string, std::string>> files_written{};  ///< name, what it is
 };
 
 }  // namespace roadstereo::cli

@@ -81,6 +81,7 @@ void describe(CLI::App& app) {
   roadstereo::cli::add_limits(app);
   roadstereo::cli::add_options(app);
   roadstereo::cli::add_engines(app);
+  roadstereo::cli::add_completion(app);
   roadstereo::cli::add_benchmark(app);
 #ifdef ROADSTEREO_WITH_EVALUATE
   roadstereo::cli::add_evaluate(app);

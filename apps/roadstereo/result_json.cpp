@@ -6,6 +6,7 @@
 #include "json_text.hpp"
 #include "roadstereo/options.hpp"
 #include "roadstereo/version.hpp"
+#include "roadstereo/warning.hpp"
 
 namespace roadstereo::cli {
 
@@ -129,6 +130,9 @@ std::string result_json(const Inspection& inspection) {
   document["ms"] = times_json(result.ms);
   document["mde_per_s"] = json_number(result.mde_per_s);
   document["warnings"] = inspection.warnings;
+  document["warning_codes"] = Json::array();
+  for (const std::string& warning : inspection.warnings) document["warning_codes"].push_back(warning_code(warning));
+  for (const auto& [name, what] : inspection.files_written) document["files"][name] = what;
   return json_text(document);
 }
 

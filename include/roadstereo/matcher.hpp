@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -116,14 +117,20 @@ class StereoEngine {
 
 /// Entry of the registry of engines.
 struct EngineInfo {
-  std::string name;         ///< what `--engine` takes
-  std::string description;  ///< one line
-  bool exact = false;       ///< the double-precision oracle
-  std::unique_ptr<StereoEngine> (*make)(int threads) = nullptr;
+  std::string name;                                                ///< what `--engine` takes
+  std::string description;                                         ///< one line
+  bool exact = false;                                              ///< the double-precision oracle
+  std::function<std::unique_ptr<StereoEngine>(int threads)> make;  ///< for that many worker threads, at least 1
 };
 
-/// Engines of this build that this machine can run, fastest first.
+/// Engines of this build that this machine can run, fastest first, then those of register_engine.
 const std::vector<EngineInfo>& engines();
+
+/// Adds an engine of the caller's: `PipelineOptions::engine` then takes its name, while "auto" does not select it. The
+/// pipeline does with it what it does with its own: road model, shift, refinement by the variances, roll. Not
+/// thread-safe: call it before other threads use pipelines. Throws Error when the name is empty, "auto" or taken, or
+/// `make` is empty.
+void register_engine(EngineInfo engine);
 
 /// Known engine that is not in `engines()`.
 struct UnavailableEngine {

@@ -18,3 +18,4 @@
 #include "roadstereo/road_model.hpp"
 #include "roadstereo/roll.hpp"
 #include "roadstereo/version.hpp"
+#include "roadstereo/warning.hpp"

@@ -42,10 +42,6 @@ double median_magnitude(std::vector<double> errors) {
 
 }  // namespace
 
-double DisparityScore::density() const {
-  return labelled_pixels == 0 ? 0 : static_cast<double>(valid_pixels) / static_cast<double>(labelled_pixels);
-}
-
 DisparityScore score_disparity(ImageView<const float> disparity, ImageView<const float> truth,
                                const std::optional<ImageView<const std::uint8_t>>& mask,
                                std::span<const double> tolerances_px) {
@@ -56,6 +52,7 @@ DisparityScore score_disparity(ImageView<const float> disparity, ImageView<const
   score.valid_pixels = errors.size();
   const auto valid = static_cast<double>(errors.size());
   const auto labelled = static_cast<double>(score.labelled_pixels);
+  if (labelled > 0) score.density = valid / labelled;
   for (const double tolerance : tolerances_px) {
     if (!(tolerance >= 0)) fail("the tolerance is ", tolerance, " px; it must be at least 0");
     const auto bad = static_cast<double>(

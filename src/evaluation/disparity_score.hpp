@@ -14,6 +14,7 @@ namespace roadstereo {
 struct DisparityScore {
   std::size_t labelled_pixels = 0;  ///< pixels of the mask with a ground truth
   std::size_t valid_pixels = 0;     ///< labelled pixels with a disparity: m of the paper
+  double density = 0;               ///< share of the labelled pixels with a disparity, 0 … 1; 0 if none is labelled
   double rms_px = 0;                ///< e_r, pixels (eq. (34), e_rms)
   double mean_px = 0;               ///< mean signed error (map − truth), pixels
   double median_px = 0;             ///< median absolute error, pixels
@@ -21,9 +22,6 @@ struct DisparityScore {
   std::vector<double> bad_share;
   /// Pixels in error or without a disparity for each tolerance, as a share of the labelled pixels, 0 … 1.
   std::vector<double> bad_or_missing_share;
-
-  /// Share of the labelled pixels with a disparity, 0 … 1; 0 if no pixel is labelled.
-  double density() const;
 };
 
 /// Score a W×H disparity map, in pixels, against ground truth. NaN in the map is missing, NaN in the truth is

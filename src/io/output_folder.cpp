@@ -190,6 +190,10 @@ void OutputFolder::add(const std::string& name, const std::string& text) {
   add(name, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
+bool OutputFolder::has(const std::string& name) const {
+  return std::find(names_.begin(), names_.end(), name) != names_.end();
+}
+
 void OutputFolder::commit() {
   Moves moves(staging_ / "old");
   fs::path target = folder_;

@@ -118,21 +118,22 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
     result.road = stages->verify_road_model(pair, *carried.road);
     result.road.correlation = carried.road->correlation;
     if (result.road.has_road()) return;
-    result.warnings.push_back(format_message("the road model was estimated anew: ", result.road.reason));
+    result.warnings.push_back(format_message("road-anew: the road model was estimated anew: ", result.road.reason));
   }
   const GreyPair grey = stages->on_host(pair);
   result.road =
       roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, pair.mask);
   if (!result.road.has_road()) {
-    result.warnings.push_back(format_message("no road was found (", result.road.reason,
+    result.warnings.push_back(format_message("no-road: no road was found (", result.road.reason,
                                              "): matched without perspective transformation over the full range"));
   } else if (result.road.status == RoadStatus::weak) {
-    result.warnings.push_back(format_message("the road is weak: the evidence for it is ", result.road.evidence,
-                                             " per pixel, less than ", options.road_model.weak_evidence));
+    result.warnings.push_back(format_message("weak-road: the road is weak: the evidence for it is ",
+                                             result.road.evidence, " per pixel, less than ",
+                                             options.road_model.weak_evidence));
   }
   if (result.road.has_road()) {
     const std::string disagreement = RigPrior(options.road_model, calibration).disagreement(result.road.model);
-    if (!disagreement.empty()) result.warnings.push_back(disagreement);
+    if (!disagreement.empty()) result.warnings.push_back("unexpected-pose: " + disagreement);
   }
   if (options.check_rows) measure_rows(grey);
 }
@@ -152,7 +153,7 @@ void Pipeline::State::measure_rows(const GreyPair& grey) {
     carried.row_offset_px = result.rows.median_px;
   }
   if (std::abs(result.rows.median_px) > max_offset_px || result.rows.sigma_px > max_spread_px) {
-    result.warnings.push_back(format_message("the rows of the pair do not agree: vertical offset ",
+    result.warnings.push_back(format_message("rows-disagree: the rows of the pair do not agree: vertical offset ",
                                              result.rows.median_px, " px (median of ", result.rows.points,
                                              " points, spread ", result.rows.sigma_px, " px); rectify the pair"));
   }
@@ -217,7 +218,8 @@ void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
   result.roll_found = fit.geometry.has_value();
   result.geometry = fit.geometry.value_or(RollEstimate{});
   if (has_road && !result.roll_found) {
-    result.warnings.push_back(format_message("only ", 100 * result.valid_share, " % of the pixels have a disparity"));
+    result.warnings.push_back(
+        format_message("few-disparities: only ", 100 * result.valid_share, " % of the pixels have a disparity"));
   }
 }
 

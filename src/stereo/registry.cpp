@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "core/parallel.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/matcher.hpp"
@@ -38,8 +40,8 @@ Registry make_registry() {
   return registry;
 }
 
-const Registry& registry() {
-  static const Registry of_this_machine = make_registry();
+Registry& registry() {
+  static Registry of_this_machine = make_registry();
   return of_this_machine;
 }
 
@@ -47,6 +49,19 @@ const Registry& registry() {
 
 const std::vector<EngineInfo>& engines() {
   return registry().usable;
+}
+
+void register_engine(EngineInfo engine) {
+  const auto fail_name = [&](const char* reason) { fail("the engine '", engine.name, "' cannot be added: ", reason); };
+  if (engine.name.empty() || engine.name == "auto") fail_name("it needs a name other than auto");
+  if (!engine.make) fail_name("it has no function that makes it");
+  for (const EngineInfo& known : engines()) {
+    if (known.name == engine.name) fail_name("there is one of that name");
+  }
+  for (const UnavailableEngine& known : unavailable_engines()) {
+    if (known.name == engine.name) fail_name("the library has one of that name, which this machine cannot run");
+  }
+  registry().usable.push_back(std::move(engine));
 }
 
 const std::vector<UnavailableEngine>& unavailable_engines() {

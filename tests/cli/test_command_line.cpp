@@ -99,5 +99,23 @@ TEST_F(CommandLine, ListsEngines) {
   }
 }
 
+TEST_F(CommandLine, ShellCompletesCommandsAndOptions) {
+  const Outcome script = run("completion bash");
+  ASSERT_EQ(script.exit_code, 0) << script.err;
+  write("completion.bash", script.out);
+  const auto complete = [&](const std::string& words, int index) {
+    const std::string command = "cd '" + folder_.string() + "' && bash -c 'source completion.bash; COMP_WORDS=(" +
+                                words + "); COMP_CWORD=" + std::to_string(index) +
+                                "; _roadstereo; echo \"${COMPREPLY[@]}\"' > reply.txt";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return read_text(folder_ / "reply.txt");
+  };
+  EXPECT_EQ(complete("roadstereo insp", 1), "inspect\n");
+  EXPECT_EQ(complete("roadstereo inspect --outp", 2), "--output\n");
+  EXPECT_EQ(complete("roadstereo inspect flight --resu", 3), "--resume\n");
+  EXPECT_EQ(complete("roadstereo --vers", 1), "--version\n");
+  EXPECT_EQ(run("completion csh").exit_code, 2);
+}
+
 }  // namespace
 }  // namespace roadstereo

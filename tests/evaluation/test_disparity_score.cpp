@@ -34,7 +34,7 @@ TEST(DisparityScore, MatchesExampleByHand) {
   const DisparityScore score = score_disparity(example.map, example.truth, std::nullopt, tolerances);
   EXPECT_EQ(score.labelled_pixels, 5U);
   EXPECT_EQ(score.valid_pixels, 4U);
-  EXPECT_DOUBLE_EQ(score.density(), 0.8);
+  EXPECT_DOUBLE_EQ(score.density, 0.8);
   EXPECT_DOUBLE_EQ(score.rms_px, std::sqrt(14.0 / 4));
   EXPECT_DOUBLE_EQ(score.mean_px, 1.0);
   EXPECT_DOUBLE_EQ(score.median_px, 1.5);
@@ -67,7 +67,7 @@ TEST(DisparityScore, EmptyMapHasNoErrorButIsMissing) {
   EXPECT_TRUE(std::isnan(score.median_px));
   EXPECT_TRUE(std::isnan(score.bad_share[0]));
   EXPECT_DOUBLE_EQ(score.bad_or_missing_share[0], 1.0);
-  EXPECT_DOUBLE_EQ(score.density(), 0.0);
+  EXPECT_DOUBLE_EQ(score.density, 0.0);
 }
 
 TEST(DisparityScore, EmptyTruthHasNoFigures) {
@@ -76,7 +76,7 @@ TEST(DisparityScore, EmptyTruthHasNoFigures) {
   const std::array tolerances{1.0};
   const DisparityScore score = score_disparity(map, truth, std::nullopt, tolerances);
   EXPECT_EQ(score.labelled_pixels, 0U);
-  EXPECT_DOUBLE_EQ(score.density(), 0.0);
+  EXPECT_DOUBLE_EQ(score.density, 0.0);
   EXPECT_TRUE(std::isnan(score.bad_or_missing_share[0]));
 }
 

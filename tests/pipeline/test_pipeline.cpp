@@ -12,6 +12,7 @@
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
+#include "roadstereo/warning.hpp"
 
 namespace roadstereo {
 namespace {
@@ -317,6 +318,9 @@ TEST(Pipeline, WarnsAboutRowOffset) {
   EXPECT_NEAR(result.rows.median_px, 1.5, 0.15);
   ASSERT_FALSE(result.warnings.empty());
   EXPECT_NE(result.warnings.back().find("the rows of the pair do not agree"), std::string::npos);
+  EXPECT_EQ(warning_code(result.warnings.back()), "rows-disagree");
+  EXPECT_EQ(warning_code("A sentence: with a colon"), "");
+  EXPECT_EQ(warning_code("word"), "");
 }
 
 TEST(Pipeline, RowCorrectionHalvesError) {

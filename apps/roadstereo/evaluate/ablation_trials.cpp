@@ -92,7 +92,7 @@ AblationResult summarise(const Trials& trials) {
   result.kitti_density = result.kitti_rms_px = result.kitti_bad = result.kitti_bad_or_missing = nan;
   if (trials.kitti.empty()) return result;
   const DisparityScore kitti = mean_score(trials.kitti);
-  result.kitti_density = kitti.density();
+  result.kitti_density = kitti.density;
   result.kitti_rms_px = kitti.rms_px;
   result.kitti_bad = kitti.bad_share[above_2];
   result.kitti_bad_or_missing = kitti.bad_or_missing_share[above_2];

@@ -45,7 +45,7 @@ BlurTrial score(const BlurredPair& blurred, const Image<float>& disparity) {
   constexpr std::array tolerances_px{1.0};
   const DisparityScore score = score_disparity(disparity, blurred.truth, blurred.visible.view(), tolerances_px);
   BlurTrial trial;
-  trial.density = score.density();
+  trial.density = score.density;
   trial.rms_px = score.rms_px;
   trial.bad_or_missing = score.bad_or_missing_share.front();
   return trial;

@@ -14,7 +14,7 @@ Image<std::uint8_t> common_pixels(const std::vector<Image<float>>& maps,
     for (int u = 0; u < common.width(); ++u) {
       if (mask && (*mask)(u, v) == 0) common(u, v) = 0;
       for (std::size_t i = 0; i < maps.size(); ++i) {
-        if (names[i] != "BM" && std::isnan(maps[i](u, v))) common(u, v) = 0;
+        if ((i >= names.size() || names[i] != "BM") && std::isnan(maps[i](u, v))) common(u, v) = 0;
       }
     }
   }

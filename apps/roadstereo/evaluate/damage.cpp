@@ -9,6 +9,7 @@
 #include "evaluate/damage_roads.hpp"
 #include "evaluate/damage_scenes.hpp"
 #include "evaluate/experiments.hpp"
+#include "evaluate/pair_files.hpp"
 #include "evaluate/report.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
@@ -21,9 +22,9 @@ namespace fs = std::filesystem;
 struct DamageArguments {
   std::string data;
   std::string preset = "default";
-  int scenes = 60;
-  std::uint64_t first_seed = 1000;
-  bool degraded = false;
+  SceneSet set;
+  std::vector<GivenMaps> maps;
+  std::string pairs_folder;  ///< of --write-pairs
   std::string json;
 };
 
@@ -48,33 +49,47 @@ void print_and_write(const DamageArguments& arguments, const Table& table, const
 }
 
 void score_synthetic(const DamageArguments& arguments) {
-  const SceneResults results =
-      score_scenes(arguments.scenes, arguments.first_seed, arguments.degraded, arguments.preset);
+  const std::vector<SceneResults> results =
+      score_scenes(arguments.set, damage_methods(arguments.preset, arguments.maps));
   const Table detection = detection_table(results);
   const Table measurement = measurement_table(results);
-  fmt::print("{}\n{} regions on {} roads, {} false positives\n\n{}\n{}", detection.text(), results.found,
-             results.scenes, results.false_positives, measurement.text(), scene_note);
+  fmt::print("{}\n", detection.text());
+  nlohmann::ordered_json others;
+  for (const SceneResults& one : results) {
+    fmt::print("{}: {} regions on {} roads, {} false positives\n", one.method, one.found, one.scenes,
+               one.false_positives);
+    if (one.method == arguments.preset) continue;
+    others[one.method] = {{"regions", one.found}, {"false_positives", one.false_positives}};
+  }
+  fmt::print("\n{}\n{}", measurement.text(), scene_note);
   if (arguments.json.empty()) return;
-  write_report(arguments.json, {{"experiment", "damage"},
-                                {"preset", arguments.preset},
-                                {"scenes", results.scenes},
-                                {"regions", results.found},
-                                {"false_positives", results.false_positives},
-                                {"detection", detection.json()},
-                                {"measurement", measurement.json()}});
+  nlohmann::ordered_json document{{"experiment", "damage"},
+                                  {"preset", arguments.preset},
+                                  {"scenes", results.front().scenes},
+                                  {"regions", results.front().found},
+                                  {"false_positives", results.front().false_positives},
+                                  {"detection", detection.json()},
+                                  {"measurement", measurement.json()}};
+  if (!others.empty()) document["maps"] = others;
+  write_report(arguments.json, document);
 }
 
 void run(const DamageArguments& arguments) {
   preset(arguments.preset);  // throws now if there is no such preset
   const fs::path root = arguments.data;
-  if (arguments.data.empty()) {
+  const std::vector<DamageMethod> methods = damage_methods(arguments.preset, arguments.maps);
+  if (!arguments.pairs_folder.empty()) {
+    if (!arguments.data.empty()) fail("--write-pairs is for synthetic roads; it must not be given with DIR");
+    write_scene_pairs(arguments.set, arguments.pairs_folder);
+  } else if (arguments.data.empty()) {
     score_synthetic(arguments);
   } else if (fs::is_directory(root / "disp_tg")) {
+    if (!arguments.maps.empty()) fail("--maps is for pairs; it must not be given with transformed maps (disp_tg)");
     print_and_write(arguments, label_table(score_labelled_maps(arguments.data)), label_note);
   } else if (fs::is_directory(root / "label")) {
-    print_and_write(arguments, label_table(score_labelled_pairs(arguments.data, arguments.preset)), label_note);
+    print_and_write(arguments, label_table(score_labelled_pairs(arguments.data, methods)), label_note);
   } else if (fs::is_directory(root / "image_2")) {
-    print_and_write(arguments, road_table(score_intact_roads(arguments.data, arguments.preset)), road_note);
+    print_and_write(arguments, road_table(score_intact_roads(arguments.data, methods)), road_note);
   } else {
     fail(arguments.data,
          ": the folder must contain disp_tg (maps with labels), label (pairs with labels) or image_2 (KITTI)");
@@ -91,15 +106,21 @@ void add_damage_accuracy(CLI::App& evaluate) {
       "DIR", arguments->data,
       "Folder with disp_tg and label, with left, right and label, or of KITTI; if absent, synthetic roads");
   command->add_option("--preset", arguments->preset, "Preset for matching")->type_name("NAME")->capture_default_str();
-  command->add_option("--scenes", arguments->scenes, "Number of synthetic roads")
+  command->add_option("--scenes", arguments->set.scenes, "Number of synthetic roads")
       ->type_name("N")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  command->add_option("--seed", arguments->first_seed, "Seed of the first road")->type_name("N")->capture_default_str();
-  command->add_flag("--degraded", arguments->degraded, "Degrade the synthetic images: noise, blur, exposure");
+  command->add_option("--seed", arguments->set.first_seed, "Seed of the first road")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_flag("--degraded", arguments->set.degraded, "Degrade the synthetic images: noise, blur, exposure");
+  add_maps_option(*command, arguments->maps);
+  add_write_pairs_option(*command, arguments->pairs_folder);
   command->add_option("--json", arguments->json, "Also write the results to this file")->type_name("FILE");
   command->footer(
-      "Examples:\n  roadstereo evaluate damage potholes\n  roadstereo evaluate damage --scenes 20 --json damage.json");
+      "Examples:\n  roadstereo evaluate damage potholes\n  roadstereo evaluate damage --scenes 20 --json damage.json\n"
+      "  roadstereo evaluate damage --scenes 20 --write-pairs pairs    # match them, then\n"
+      "  roadstereo evaluate damage --scenes 20 --maps mine=my_maps");
   command->callback([arguments] { run(*arguments); });
 }
 

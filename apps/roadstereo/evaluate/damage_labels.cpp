@@ -100,18 +100,21 @@ std::vector<LabelResult> score_labelled_maps(const std::string& folder) {
     input.grey = grey;
     const std::string label = (root / "label" / path.filename()).string();
     results.push_back(score_frame(name, find_damage(input), read_mask(label), source.transformed, label));
+    results.back().method = "given map";
   }
   return results;
 }
 
-std::vector<LabelResult> score_labelled_pairs(const std::string& folder, const std::string& preset_name) {
+std::vector<LabelResult> score_labelled_pairs(const std::string& folder, const std::vector<DamageMethod>& methods) {
   std::vector<LabelResult> results;
-  for (const ScanFiles& files : find_scan_frames(folder)) {
-    const StereoPair pair = read_pair(files.pair);
-    Pipeline pipeline(preset(preset_name), pair.calibration);
-    const FrameResult& frame = pipeline.process(pair.left.view(), pair.right.view());
-    results.push_back(
-        score_frame(files.name, pipeline.find_damage(), read_mask(files.label), frame.disparity, files.label));
+  const std::vector<ScanFiles> frames = find_scan_frames(folder);
+  for (const DamageMethod& method : methods) {
+    for (const ScanFiles& files : frames) {
+      const StereoPair pair = read_pair(files.pair);
+      const FrameDamage found = find_damage_of(method, pair, files.name);
+      results.push_back(score_frame(files.name, found.map, read_mask(files.label), found.frame.disparity, files.label));
+      results.back().method = method.name;
+    }
   }
   return results;
 }
@@ -119,7 +122,8 @@ std::vector<LabelResult> score_labelled_pairs(const std::string& folder, const s
 Table label_table(const std::vector<LabelResult>& results) {
   constexpr double percent = 100;
   Table table{"Depressions against the labels",
-              {{"frame", "frame"},
+              {{"method", "method"},
+               {"frame", "frame"},
                {"precision", "precision"},
                {"recall", "recall"},
                {"F", "f"},
@@ -129,7 +133,8 @@ Table label_table(const std::vector<LabelResult>& results) {
                {"measured %", "measured_percent"}},
               {}};
   const auto row = [&](const LabelResult& one) -> std::vector<Cell> {
-    return {Cell(one.frame),
+    return {Cell(one.method),
+            Cell(one.frame),
             Cell(one.score.precision(), 3),
             Cell(one.score.recall(), 3),
             Cell(one.score.f(), 3),
@@ -139,16 +144,20 @@ Table label_table(const std::vector<LabelResult>& results) {
             Cell(percent * static_cast<double>(one.measured) / static_cast<double>(one.score.truth), 1)};
   };
   LabelResult all;
-  all.frame = "all pixels";
-  for (const LabelResult& one : results) {
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const LabelResult& one = results[i];
+    all.method = one.method;
+    all.frame = "all pixels";
     table.rows.push_back(row(one));
     all.score.add(one.score);
     all.labels += one.labels;
     all.found += one.found;
     all.false_positives += one.false_positives;
     all.measured += one.measured;
+    if (i + 1 < results.size() && results[i + 1].method == one.method) continue;
+    table.rows.push_back(row(all));
+    all = {};
   }
-  table.rows.push_back(row(all));
   return table;
 }
 

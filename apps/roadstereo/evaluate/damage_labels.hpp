@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/methods.hpp"
+#include "evaluate/damage_method.hpp"
 #include "evaluate/region_score.hpp"
 #include "evaluate/table.hpp"
 
@@ -11,7 +11,7 @@ namespace roadstereo::cli {
 
 /// Depressions of one frame compared with its labels.
 struct LabelResult {
-  std::string frame;
+  std::string method, frame;
   RegionScore score;                ///< pixels
   std::size_t labels = 0;           ///< connected components of the label
   std::size_t found = 0;            ///< labels that depressions cover by at least a third
@@ -23,10 +23,10 @@ struct LabelResult {
 /// file that is missing.
 std::vector<LabelResult> score_labelled_maps(const std::string& folder);
 
-/// Score stereo pairs with labels, in the layout of `find_scan_frames`.
-std::vector<LabelResult> score_labelled_pairs(const std::string& folder, const std::string& preset);
+/// Score stereo pairs with labels, in the layout of `find_scan_frames`, by every method.
+std::vector<LabelResult> score_labelled_pairs(const std::string& folder, const std::vector<DamageMethod>& methods);
 
-/// Table with one row per frame and one for all pixels.
+/// Table with one row per method and frame, and one per method for all pixels. Results are grouped by method.
 Table label_table(const std::vector<LabelResult>& results);
 
 }  // namespace roadstereo::cli

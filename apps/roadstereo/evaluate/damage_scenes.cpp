@@ -1,9 +1,12 @@
 #include "evaluate/damage_scenes.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "evaluate/pair_files.hpp"
 #include "finite_values.hpp"
 #include "progress.hpp"
 #include "roadstereo/pipeline.hpp"
@@ -40,7 +43,8 @@ std::map<int, Cover> covers_of(const SceneCase& scene) {
       ++cover.pixels;
       cover.disparity += scene.pair.disparity(u, v);
       if (u == 0 || v == 0 || u + 1 == labels.width() || v + 1 == labels.height()) cover.fully_visible = false;
-      if (!std::isnan(scene.frame.sigma(u, v))) cover.sigmas.push_back(scene.frame.sigma(u, v));
+      if (!scene.frame.sigma.empty() && !std::isnan(scene.frame.sigma(u, v)))
+        cover.sigmas.push_back(scene.frame.sigma(u, v));
       if (scene.map.ids(u, v) != 0) ++cover.found[scene.map.ids(u, v)];
     }
   }
@@ -150,7 +154,8 @@ std::vector<Cell> quantity_row(const Quantity& quantity, const SceneResults& res
     ++precise;
     precise_errors += std::abs(relative);
   }
-  return {Cell(quantity.name),
+  return {Cell(results.method),
+          Cell(quantity.name),
           Cell(count, 0),
           Cell(percent * within / count, 1),
           Cell(percent * median(errors), 1),
@@ -158,41 +163,7 @@ std::vector<Cell> quantity_row(const Quantity& quantity, const SceneResults& res
           Cell(percent * precise_errors / precise, 1)};
 }
 
-}  // namespace
-
-SceneResults score_scenes(int scenes, std::uint64_t first_seed, bool degraded, const std::string& preset_name) {
-  SceneResults results;
-  results.scenes = scenes;
-  Progress progress = Progress::on_terminal(static_cast<std::size_t>(scenes));
-  for (int k = 0; k < scenes; ++k) {
-    const synth::Scene scene = synth::random_scene(first_seed + static_cast<std::uint64_t>(k), degraded);
-    const synth::SyntheticPair pair = synth::render(scene);
-    Pipeline pipeline(preset(preset_name), pair.calibration);
-    const FrameResult& frame = pipeline.process(pair.left.view(), pair.right.view());
-    const DamageMap map = pipeline.find_damage();
-    const SceneCase scene_case{pair, frame, map};
-    const std::map<int, Cover> covers = covers_of(scene_case);
-    for (const synth::DamageTruth& truth : pair.damages) {
-      const auto cover = covers.find(truth.id);
-      if (cover == covers.end()) continue;  // out of view
-      results.damages.push_back(describe(scene.name, scene_case, truth, cover->second, scene.rig.camera_height_m));
-    }
-    results.found += map.damages.size();
-    results.false_positives += count_false_positives(scene_case);
-    progress.frame_done();
-  }
-  return results;
-}
-
-Table detection_table(const SceneResults& results) {
-  Table table{"Damage found",
-              {{"kind", "kind"},
-               {"in view", "in_view"},
-               {"found", "found"},
-               {"> 3 std. errors", "deeper_than_3_std_errors"},
-               {"found", "found_of_those"},
-               {"recall", "recall"}},
-              {}};
+void add_detection_rows(const SceneResults& results, Table& table) {
   double all = 0;
   double all_found = 0;
   for (const char* kind : {"pothole", "bump", "crack"}) {
@@ -208,27 +179,105 @@ Table detection_table(const SceneResults& results) {
       ++deep;
       deep_found += damage.found ? 1 : 0;
     }
-    table.rows.push_back({Cell(kind), Cell(in_view, 0), Cell(found, 0), Cell(deep, 0), Cell(deep_found, 0),
-                          Cell(deep > 0 ? deep_found / deep : std::nan(""), 3)});
+    table.rows.push_back({Cell(results.method), Cell(kind), Cell(in_view, 0), Cell(found, 0), Cell(deep, 0),
+                          Cell(deep_found, 0), Cell(deep > 0 ? deep_found / deep : std::nan(""), 3)});
     if (std::string(kind) == "crack") continue;
     all += deep;
     all_found += deep_found;
   }
-  table.rows.push_back({Cell("without cracks"), Cell(std::nan(""), 0), Cell(std::nan(""), 0), Cell(all, 0),
-                        Cell(all_found, 0), Cell(all_found / all, 3)});
+  table.rows.push_back({Cell(results.method), Cell("without cracks"), Cell(std::nan(""), 0), Cell(std::nan(""), 0),
+                        Cell(all, 0), Cell(all_found, 0), Cell(all_found / all, 3)});
+}
+
+/// A rendered scene and the name of its files.
+struct RenderedScene {
+  std::string frame;
+  synth::Scene scene;
+  synth::SyntheticPair pair;
+};
+
+RenderedScene render_scene(const SceneSet& set, int index) {
+  const std::uint64_t seed = set.first_seed + static_cast<std::uint64_t>(index);
+  RenderedScene rendered{fmt::format("{:06}", seed), synth::random_scene(seed, set.degraded), {}};
+  rendered.pair = synth::render(rendered.scene);
+  return rendered;
+}
+
+StereoPair pair_of(const synth::SyntheticPair& rendered) {
+  StereoPair pair;
+  pair.left = rendered.left;
+  pair.right = rendered.right;
+  pair.calibration = rendered.calibration;
+  return pair;
+}
+
+void add_scene(const RenderedScene& rendered, const DamageMethod& method, SceneResults& results) {
+  const FrameDamage found = find_damage_of(method, pair_of(rendered.pair), rendered.frame);
+  const SceneCase scene_case{rendered.pair, found.frame, found.map};
+  const std::map<int, Cover> covers = covers_of(scene_case);
+  for (const synth::DamageTruth& truth : rendered.pair.damages) {
+    const auto cover = covers.find(truth.id);
+    if (cover == covers.end()) continue;  // out of view
+    results.damages.push_back(
+        describe(rendered.scene.name, scene_case, truth, cover->second, rendered.scene.rig.camera_height_m));
+  }
+  results.found += found.map.damages.size();
+  results.false_positives += count_false_positives(scene_case);
+}
+
+}  // namespace
+
+std::vector<SceneResults> score_scenes(const SceneSet& set, const std::vector<DamageMethod>& methods) {
+  std::vector<SceneResults> all(methods.size());
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    all[i].method = methods[i].name;
+    all[i].scenes = set.scenes;
+  }
+  Progress progress = Progress::on_terminal(static_cast<std::size_t>(set.scenes));
+  for (int k = 0; k < set.scenes; ++k) {
+    const RenderedScene rendered = render_scene(set, k);
+    for (std::size_t i = 0; i < methods.size(); ++i) add_scene(rendered, methods[i], all[i]);
+    progress.frame_done();
+  }
+  return all;
+}
+
+void write_scene_pairs(const SceneSet& set, const std::string& folder) {
+  io::OutputFolder files(folder);
+  for (int k = 0; k < set.scenes; ++k) {
+    const RenderedScene rendered = render_scene(set, k);
+    add_pair(rendered.frame, pair_of(rendered.pair), files);
+  }
+  files.commit();
+}
+
+Table detection_table(const std::vector<SceneResults>& results) {
+  Table table{"Damage found",
+              {{"method", "method"},
+               {"kind", "kind"},
+               {"in view", "in_view"},
+               {"found", "found"},
+               {"> 3 std. errors", "deeper_than_3_std_errors"},
+               {"found", "found_of_those"},
+               {"recall", "recall"}},
+              {}};
+  for (const SceneResults& of_method : results) add_detection_rows(of_method, table);
   return table;
 }
 
-Table measurement_table(const SceneResults& results) {
+Table measurement_table(const std::vector<SceneResults>& results) {
   Table table{"Measured against the truth: found potholes and bumps that are fully visible and do not merge",
-              {{"quantity", "quantity"},
+              {{"method", "method"},
+               {"quantity", "quantity"},
                {"count", "count"},
                {"within 2 std. errors %", "within_2_std_errors_percent"},
                {"median error %", "median_error_percent"},
                {"precise", "precise"},
                {"mean |error| %", "mean_abs_error_percent"}},
               {}};
-  for (const Quantity& quantity : quantities) table.rows.push_back(quantity_row(quantity, results));
+  for (const SceneResults& of_method : results) {
+    for (const Quantity& quantity : quantities) table.rows.push_back(quantity_row(quantity, of_method));
+  }
   return table;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/damage_method.hpp"
 #include "evaluate/table.hpp"
 #include "roadstereo/damage.hpp"
 #include "roadstereo/synth.hpp"
@@ -25,19 +26,30 @@ struct SceneDamage {
 
 /// Damages and found regions of a set of scenes.
 struct SceneResults {
+  std::string method;
   std::vector<SceneDamage> damages;
   std::size_t found = 0;            ///< regions
   std::size_t false_positives = 0;  ///< regions of which less than a third is damage
   int scenes = 0;
 };
 
-/// Match random scenes, from `first_seed` on, with a preset and score the damage found.
-SceneResults score_scenes(int scenes, std::uint64_t first_seed, bool degraded, const std::string& preset);
+/// Random scenes, by seed.
+struct SceneSet {
+  int scenes = 60;
+  std::uint64_t first_seed = 1000;
+  bool degraded = false;  ///< noise, blur, exposure
+};
+
+/// Score the damage that every method finds in the scenes. The frame of given maps is the seed in six digits.
+std::vector<SceneResults> score_scenes(const SceneSet& set, const std::vector<DamageMethod>& methods);
+
+/// Write the pairs of the scenes, named by their seeds.
+void write_scene_pairs(const SceneSet& set, const std::string& folder);
 
 /// Table of recall by kind: of all damages, and of those deeper than three standard errors.
-Table detection_table(const SceneResults& results);
+Table detection_table(const std::vector<SceneResults>& results);
 
 /// Table of the errors of depth, area and volume.
-Table measurement_table(const SceneResults& results);
+Table measurement_table(const std::vector<SceneResults>& results);
 
 }  // namespace roadstereo::cli

@@ -21,6 +21,7 @@ void add_evaluate(CLI::App& app) {
   command->footer(evaluate_footer);
   command->require_subcommand(1);
   add_score(*command);
+  add_paper(*command);
   add_kitti(*command);
   add_middlebury(*command);
   add_synth_accuracy(*command);

@@ -7,6 +7,7 @@ class App;
 namespace roadstereo::cli {
 
 // Each function adds one experiment as a subcommand of `evaluate`.
+void add_paper(CLI::App& evaluate);
 void add_kitti(CLI::App& evaluate);
 void add_middlebury(CLI::App& evaluate);
 void add_score(CLI::App& evaluate);

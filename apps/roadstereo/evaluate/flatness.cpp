@@ -86,8 +86,8 @@ void add_flatness(CLI::App& evaluate) {
   command->add_option("DIR", arguments->data, "Folder with image_2, image_3 and disp_noc_0")->required();
   command
       ->add_option("--road-masks", arguments->road_masks,
-                   "Folder of road masks, named like the frames; default: DIR/road")
-      ->type_name("DIR");
+                   "Folder of road masks, named like the frames, or polygons in JSON; default: DIR/road")
+      ->type_name("DIR|FILE");
   command->add_option("--preset", arguments->preset, "Preset for matching")->type_name("NAME")->capture_default_str();
   add_method_options(*command, arguments->methods);
   command->footer("Example:\n  roadstereo evaluate flatness kitti2015 --json flatness.json");

@@ -31,11 +31,12 @@ pass is a separate pipeline that has processed the same frames. CPU time is summ
 and threads are started before the first frame, except with --cold.
 )";
 
-using Frames = std::vector<FlightTrial>;
+using FlightTrials = std::vector<FlightTrial>;
 using Stage = RoadError StageErrors::*;
 using Quantity = double RoadError::*;
 
-std::vector<double> errors(const Frames& frames, StageErrors FlightTrial::*start, Stage stage, Quantity quantity) {
+std::vector<double> errors(const FlightTrials& frames, StageErrors FlightTrial::*start, Stage stage,
+                           Quantity quantity) {
   std::vector<double> values;
   values.reserve(frames.size());
   for (const FlightTrial& frame : frames) {
@@ -50,7 +51,7 @@ double maximum(const std::vector<double>& values) {
 }
 
 /// Maximum excess of the error of a tracked frame over that of the same frame processed independently.
-double max_excess(const Frames& frames, Stage stage, Quantity quantity) {
+double max_excess(const FlightTrials& frames, Stage stage, Quantity quantity) {
   const std::vector<double> tracked = errors(frames, &FlightTrial::tracked, stage, quantity);
   const std::vector<double> fresh = errors(frames, &FlightTrial::fresh, stage, quantity);
   std::vector<double> excess;
@@ -58,7 +59,7 @@ double max_excess(const Frames& frames, Stage stage, Quantity quantity) {
   return maximum(excess);
 }
 
-Table error_table(const Frames& frames, const FlightOptions& options) {
+Table error_table(const FlightTrials& frames, const FlightOptions& options) {
   Table table{fmt::format("{} frames of scene {}, {}, flight {}, preset {}", frames.size(), options.scene, options.size,
                           options.flight, options.preset),
               {{"estimate", "estimate"},
@@ -88,7 +89,7 @@ Table error_table(const Frames& frames, const FlightOptions& options) {
   return table;
 }
 
-Table time_table(const Frames& frames, const FlightOptions& options) {
+Table time_table(const FlightTrials& frames, const FlightOptions& options) {
   Table table{fmt::format("Times, {} threads requested (0: all), {}", options.methods.threads, cpu_name()),
               {{"time", "time"},
                {"median ms", "median_ms"},
@@ -116,7 +117,7 @@ Table time_table(const Frames& frames, const FlightOptions& options) {
   return table;
 }
 
-nlohmann::ordered_json frames_json(const Frames& frames) {
+nlohmann::ordered_json frames_json(const FlightTrials& frames) {
   const auto result_json = [](const StageErrors& result) {
     return nlohmann::ordered_json{{"before_roll_rad", json_number(result.before.roll_rad)},
                                   {"before_plane_px", json_number(result.before.plane_px)},
@@ -137,7 +138,7 @@ nlohmann::ordered_json frames_json(const Frames& frames) {
 }
 
 /// List of the frames whose road model was re-estimated, with the reason.
-std::string reestimated_text(const Frames& frames) {
+std::string reestimated_text(const FlightTrials& frames) {
   std::string text = "Re-estimated:\n";
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (frames[i].reestimated) text += fmt::format("  frame {}{}\n", i, i == 0 ? "" : ": " + frames[i].reason);
@@ -146,7 +147,7 @@ std::string reestimated_text(const Frames& frames) {
 }
 
 void run(const FlightArguments& arguments) {
-  const Frames frames = run_flight_trials(arguments.flight);
+  const FlightTrials frames = run_flight_trials(arguments.flight);
   const Table accuracy = error_table(frames, arguments.flight);
   const Table times = time_table(frames, arguments.flight);
   if (!arguments.json.empty()) {

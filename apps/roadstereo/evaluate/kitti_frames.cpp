@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 
+#include "evaluate/road_polygons.hpp"
 #include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
@@ -36,27 +37,60 @@ std::optional<StereoCalibration> kitti_calibration(int width) {
   return std::nullopt;
 }
 
+/// Folders of a data set.
+struct Layout {
+  const char* left;
+  const char* right;
+  const char* truth;
+  const char* calibration;
+};
+constexpr std::array layouts{Layout{"image_2", "image_3", "disp_noc_0", "calib_cam_to_cam"},
+                             Layout{"colored_0", "colored_1", "disp_noc", "calib"},
+                             Layout{"image_0", "image_1", "disp_noc", "calib"}};
+
+Layout layout_of(const fs::path& root) {
+  for (const Layout& layout : layouts) {
+    if (fs::is_directory(root / layout.truth) && fs::is_directory(root / layout.left)) return layout;
+  }
+  for (const Layout& layout : layouts) {  // its images are missing
+    if (fs::is_directory(root / layout.truth)) return layout;
+  }
+  fail(root.string(),
+       ": the folder has neither disp_noc_0 nor disp_noc; it must have the layout of KITTI Stereo 2015 or 2012");
+}
+
+/// Frames without a mask or polygons stay without a road.
+void add_roads(const fs::path& root, const std::string& road_masks, std::vector<KittiFiles>& frames) {
+  if (fs::is_regular_file(road_masks)) {
+    auto polygons = read_road_polygons(road_masks);
+    for (KittiFiles& frame : frames) frame.polygons = std::move(polygons[frame.name]);
+    return;
+  }
+  if (!road_masks.empty() && !fs::is_directory(road_masks)) {
+    fail(road_masks, " is neither a folder of masks nor a JSON file of polygons");
+  }
+  const fs::path masks = road_masks.empty() ? root / "road" : fs::path(road_masks);
+  for (KittiFiles& frame : frames) frame.road = path_if_present(masks / (frame.name + ".png"));
+}
+
 }  // namespace
 
 std::vector<KittiFiles> find_kitti_frames(const std::string& folder, const std::string& road_masks) {
   const fs::path root = folder;
-  const fs::path truths = root / "disp_noc_0";
-  if (!fs::is_directory(truths))
-    fail(folder, ": the folder has no disp_noc_0; it must have the layout of KITTI Stereo 2015");
-  const fs::path masks = road_masks.empty() ? root / "road" : fs::path(road_masks);
-  if (!road_masks.empty() && !fs::is_directory(masks)) fail(road_masks, " is not a folder");
+  const Layout layout = layout_of(root);
+  const fs::path truths = root / layout.truth;
   std::vector<KittiFiles> frames;
   for (const auto& entry : fs::directory_iterator(truths)) {
     const fs::path file = entry.path().filename();
     if (file.extension() != ".png") continue;
     const std::string name = file.stem().string();
     const std::string number = name.substr(0, name.find('_'));
-    frames.push_back({name, require_file(root / "image_2" / file), require_file(root / "image_3" / file),
-                      entry.path().string(), path_if_present(root / "calib_cam_to_cam" / (number + ".txt")),
-                      path_if_present(masks / file)});
+    frames.push_back({name, require_file(root / layout.left / file), require_file(root / layout.right / file),
+                      entry.path().string(), path_if_present(root / layout.calibration / (number + ".txt")), ""});
   }
   if (frames.empty()) fail(truths.string(), ": the folder contains no PNG file");
   std::sort(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  add_roads(root, road_masks, frames);
   return frames;
 }
 
@@ -69,7 +103,11 @@ LabelledFrame read_kitti_frame(const KittiFiles& files) {
   frame.truth = io::read_disparity(files.truth);
   constexpr int usual_disparities = 128;
   frame.disparities = disparities_of(frame.truth, usual_disparities);
-  if (!files.road.empty()) frame.road = read_mask(files.road);
+  if (!files.polygons.empty()) {
+    frame.road = polygon_mask(files.polygons, frame.pair.left.width, frame.pair.left.height);
+  } else if (!files.road.empty()) {
+    frame.road = read_mask(files.road);
+  }
   return frame;
 }
 

@@ -4,19 +4,23 @@
 #include <vector>
 
 #include "evaluate/labelled_frame.hpp"
+#include "evaluation/polygon_mask.hpp"
 
 namespace roadstereo::cli {
 
-/// Files of one frame of KITTI Stereo 2015.
+/// Files of one frame of KITTI Stereo 2012 or 2015.
 struct KittiFiles {
   std::string name;  ///< e.g. "000003_10"
   std::string left, right, truth;
-  std::string calibration;  ///< empty if there is none
-  std::string road;         ///< road mask; empty if there is none
+  std::string calibration;          ///< empty if there is none
+  std::string road;                 ///< road mask; empty if there is none
+  std::vector<Polygon> polygons{};  ///< of the road, instead of a mask
 };
 
-/// Find the frames of `folder` that have a ground truth in disp_noc_0, sorted by name. Masks are read from
-/// `road_masks`, or from folder/road if that is empty. Throws Error naming the folder or the file that is missing.
+/// Find the frames of `folder` that have a ground truth, sorted by name: KITTI Stereo 2015 (image_2, image_3,
+/// disp_noc_0, calib_cam_to_cam) or 2012 (colored_0, colored_1, or image_0, image_1 in grey; disp_noc, calib). Masks
+/// are read from `road_masks`: a folder, or a JSON file of polygons (road_polygons.hpp); if it is empty, from
+/// folder/road. Throws Error naming the folder or the file that is missing.
 std::vector<KittiFiles> find_kitti_frames(const std::string& folder, const std::string& road_masks);
 
 /// Read one frame. Without a calibration file the intrinsics of the KITTI recording days are used; the width of the

@@ -8,10 +8,15 @@
 
 namespace roadstereo::cli {
 
+/// Disparity map of a method.
+struct NamedMap {
+  std::string method;
+  ImageView<const float> disparity;
+};
+
 /// One row of the sheet as in the paper's figure: left image with the road in magenta, truth, our disparities, and the
 /// errors of ours and of a peer.
 std::vector<io::SheetCell> labelled_sheet_row(const std::string& name, const LabelledFrame& frame,
-                                              ImageView<const float> ours, ImageView<const float> peer,
-                                              const std::string& peer_name);
+                                              const std::vector<NamedMap>& ours, const NamedMap& peer);
 
 }  // namespace roadstereo::cli

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 
 #include "evaluation/peer_matchers.hpp"
 #include "settings.hpp"
@@ -9,9 +10,17 @@
 namespace roadstereo::cli {
 namespace {
 
-Image<float> run_preset(const std::string& name, const MethodTask& task, const MethodSettings& settings) {
+constexpr std::array presets{"paper", "default", "fast"};
+
+struct PresetMap {
+  Image<float> disparity;
+  bool shifted = false;
+};
+
+PresetMap run_preset(const std::string& name, const MethodTask& task, const MethodSettings& settings) {
   Pipeline pipeline(method_options(name, task, settings), task.pair.calibration);
-  return pipeline.process(task.pair.left.view(), task.pair.right.view()).disparity;
+  const FrameResult& result = pipeline.process(task.pair.left.view(), task.pair.right.view());
+  return {result.disparity, result.shift.enabled};
 }
 
 Image<float> run_baseline(const std::string& name, const MethodTask& task) {
@@ -38,8 +47,14 @@ void add_method_options(CLI::App& command, MethodSettings& settings) {
 }
 
 std::vector<std::string> method_names() {
-  std::vector<std::string> names{"paper", "default", "fast"};
+  std::vector<std::string> names(presets.begin(), presets.end());
   names.insert(names.end(), io::peer_names().begin(), io::peer_names().end());
+  return names;
+}
+
+std::vector<std::string> method_names(const MethodSettings& settings) {
+  std::vector<std::string> names = method_names();
+  for (const GivenMaps& maps : settings.maps) names.push_back(maps.name);
   return names;
 }
 
@@ -62,14 +77,25 @@ PipelineOptions method_options(const std::string& preset_name, const MethodTask&
 
 Image<float> run_method(const std::string& name, const MethodTask& task, const MethodSettings& settings) {
   const auto& baselines = io::peer_names();
-  const bool is_baseline = std::find(baselines.begin(), baselines.end(), name) != baselines.end();
-  return is_baseline ? run_baseline(name, task) : run_preset(name, task, settings);
+  if (std::find(baselines.begin(), baselines.end(), name) != baselines.end()) return run_baseline(name, task);
+  for (const GivenMaps& maps : settings.maps) {
+    if (maps.name == name) return read_given_map(maps, task.frame, task.pair.left.width, task.pair.left.height);
+  }
+  return run_preset(name, task, settings).disparity;
 }
 
-std::vector<Image<float>> run_methods(const MethodTask& task, const MethodSettings& settings) {
-  std::vector<Image<float>> maps;
-  for (const std::string& name : method_names()) maps.push_back(run_method(name, task, settings));
-  return maps;
+MethodMaps run_methods(const MethodTask& task, const MethodSettings& settings) {
+  MethodMaps all;
+  for (const std::string& name : method_names(settings)) {
+    if (all.maps.size() >= presets.size()) {
+      all.maps.push_back(run_method(name, task, settings));
+      continue;
+    }
+    PresetMap preset_map = run_preset(name, task, settings);
+    all.maps.push_back(std::move(preset_map.disparity));
+    if (task.is_road && !preset_map.shifted) all.without_shift.push_back(name);
+  }
+  return all;
 }
 
 }  // namespace roadstereo::cli

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/given_maps.hpp"
 #include "pair_source.hpp"
 #include "roadstereo/pipeline.hpp"
 
@@ -16,6 +17,7 @@ namespace roadstereo::cli {
 struct MethodSettings {
   int threads = 0;
   std::vector<std::string> settings;  ///< KEY=VALUE
+  std::vector<GivenMaps> maps;        ///< compared, too
 };
 
 /// Adds --threads and --set.
@@ -23,6 +25,9 @@ void add_method_options(CLI::App& command, MethodSettings& settings);
 
 /// Names of the compared methods: the presets, then OpenCV's matchers.
 std::vector<std::string> method_names();
+
+/// The same, then the names of the given maps.
+std::vector<std::string> method_names(const MethodSettings& settings);
 
 /// Index of a method in method_names(); their number if there is none of that name.
 std::size_t method_index(const std::string& name);
@@ -32,6 +37,7 @@ struct MethodTask {
   const StereoPair& pair;
   int disparities = 128;  ///< for OpenCV's matchers, and for the presets if the pair shows no road
   bool is_road = true;    ///< false: no perspective transformation
+  std::string frame{};    ///< name of its files of given maps
 };
 
 /// Options of a preset for the pair, with those of the command line applied.
@@ -41,7 +47,11 @@ PipelineOptions method_options(const std::string& preset_name, const MethodTask&
 /// matcher of that name on the grey images.
 Image<float> run_method(const std::string& name, const MethodTask& task, const MethodSettings& settings);
 
-/// Disparities of every method, in the order of method_names().
-std::vector<Image<float>> run_methods(const MethodTask& task, const MethodSettings& settings);
+/// Disparities of every method.
+struct MethodMaps {
+  std::vector<Image<float>> maps;          ///< in the order of method_names(settings)
+  std::vector<std::string> without_shift;  ///< presets that did not transform the pair, since they found no road
+};
+MethodMaps run_methods(const MethodTask& task, const MethodSettings& settings);
 
 }  // namespace roadstereo::cli

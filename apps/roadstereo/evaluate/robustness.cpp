@@ -44,8 +44,8 @@ SourceTrials run_source(const LabelledSource& source, const MethodSettings& meth
     if (!draw) continue;
     const auto peer = static_cast<std::size_t>(
         std::find(robustness_methods().begin(), robustness_methods().end(), "HH4") - robustness_methods().begin());
-    result.worst_row =
-        labelled_sheet_row(source.name + ", " + run.trial.frame, frame, run.maps.front(), run.maps[peer], "HH4");
+    result.worst_row = labelled_sheet_row(source.name + ", " + run.trial.frame, frame, {{"default", run.maps.front()}},
+                                          {"HH4", run.maps[peer]});
   }
   return result;
 }

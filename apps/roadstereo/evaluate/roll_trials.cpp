@@ -97,12 +97,23 @@ void run_rotated_maps(const Condition& condition, Resampling resampling, const R
   trials.move_to(all);
 }
 
-RollErrors run_pairs(double road_camber, const RollTrialOptions& options) {
+std::string solver_name(RollSolver solver) {
+  for (const NamedSolver& named : roll_solvers()) {
+    if (named.solver == solver) return named.name;
+  }
+  return "";
+}
+
+/// Pairs of one kind of road, matched by a preset: its own roll, and that of the paper's solver on its maps.
+std::vector<RollErrors> run_pairs(const std::string& preset_name, double road_camber, const RollTrialOptions& options) {
   constexpr double noise_grey = 2;
-  PipelineOptions pipeline_options = preset("default");
+  PipelineOptions pipeline_options = preset(preset_name);
   pipeline_options.threads = options.methods.threads;
   apply_settings(options.methods.settings, pipeline_options);
-  RollErrors errors{road_camber > 0 ? "matched pair, damage, camber" : "matched pair, damage", "robust", {}, {}};
+  const std::string pairs = preset_name == "default" ? "matched pair" : "pair matched by " + preset_name;
+  const std::string maps = pairs + (road_camber > 0 ? ", damage, camber" : ", damage");
+  RollErrors own{maps, solver_name(pipeline_options.roll.solver), {}, {}};
+  RollErrors descent{maps, solver_name(RollSolver::gradient_descent), {}, {}};
   for (const RollView& view : views) {
     for (const double angle : symmetric_angles(options.max_matched_roll_deg, options.angles)) {
       synth::Scene scene = roll_scene(view, angle, true, road_camber);
@@ -111,11 +122,19 @@ RollErrors run_pairs(double road_camber, const RollTrialOptions& options) {
       const synth::SyntheticPair pair = synth::render(scene, options.methods.threads);
       Pipeline pipeline(pipeline_options, pair.calibration);
       const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
-      errors.roll_deg.push_back(angle);
-      errors.error_rad.push_back(result.geometry.roll_rad - pair.roll_rad);
+      own.roll_deg.push_back(angle);
+      own.error_rad.push_back(result.geometry.roll_rad - pair.roll_rad);
+      if (own.solver == descent.solver) continue;
+      RollOptions descent_options = pipeline_options.roll;
+      descent_options.solver = RollSolver::gradient_descent;
+      const RollEstimate estimate =
+          estimate_roll(result.disparity, std::nullopt, std::nullopt, 0, descent_options, options.methods.threads);
+      descent.roll_deg.push_back(angle);
+      descent.error_rad.push_back(estimate.roll_rad - pair.roll_rad);
     }
   }
-  return errors;
+  if (descent.roll_deg.empty()) return {own};
+  return {own, descent};
 }
 
 }  // namespace
@@ -150,7 +169,13 @@ std::vector<RollErrors> run_exact_trials(const RollTrialOptions& options) {
 }
 
 std::vector<RollErrors> run_matched_trials(const RollTrialOptions& options) {
-  return {run_pairs(0, options), run_pairs(camber, options)};
+  std::vector<RollErrors> all;
+  for (const char* name : {"default", "paper"}) {
+    for (const double road_camber : {0.0, camber}) {
+      for (RollErrors& errors : run_pairs(name, road_camber, options)) all.push_back(std::move(errors));
+    }
+  }
+  return all;
 }
 
 }  // namespace roadstereo::cli

@@ -36,7 +36,8 @@ const std::vector<NamedSolver>& roll_solvers();
 /// map without roll about the centre of the image.
 std::vector<RollErrors> run_exact_trials(const RollTrialOptions& options);
 
-/// Estimate the roll of rendered pairs with damage and noise by the default pipeline, on a flat and on a cambered road.
+/// Estimate the roll of rendered pairs with damage and noise, on a flat and on a cambered road: by the default preset,
+/// by the paper's solver on its disparities, and by the paper's preset.
 std::vector<RollErrors> run_matched_trials(const RollTrialOptions& options);
 
 }  // namespace roadstereo::cli

@@ -153,7 +153,7 @@ void scan_pair(const ScanFiles& files, const ScanArguments& arguments, std::vect
   const ScanModel scan(read_points(files.scan, arguments.scan_unit_mm));
   if (pictures != nullptr) pictures->push_back(pothole_picture(files.name, pair, label));
   for (const std::string& method : arguments.compared) {
-    const Image<float> map = run_method(method, {pair, arguments.disparities}, arguments.methods);
+    const Image<float> map = run_method(method, {pair, arguments.disparities, true, files.name}, arguments.methods);
     const LabelledPoints found = labelled_points(map, label, *pair.calibration);
     check_extents(found.points, scan.axes);
     const Registration registration = register_cloud(found.points, scan, registration_options(arguments));
@@ -163,13 +163,14 @@ void scan_pair(const ScanFiles& files, const ScanArguments& arguments, std::vect
   }
 }
 
-void scan_pairs(const std::vector<ScanFiles>& frames, const ScanArguments& arguments) {
+void scan_pairs(const std::vector<ScanFiles>& frames, ScanArguments arguments) {
   for (const std::string& method : arguments.compared) {
     if (method_index(method) == method_names().size()) {
       fail("--methods contains \"", method, "\"; it must be one of ",
            fmt::format("{}", fmt::join(method_names(), ", ")));
     }
   }
+  for (const GivenMaps& maps : arguments.methods.maps) arguments.compared.push_back(maps.name);
   std::vector<Row> rows;
   std::vector<std::vector<io::SheetCell>> sheet;
   const bool drawn = !arguments.figure.empty();
@@ -213,6 +214,7 @@ initial poses, then least squares, as for published accuracies (not with --robus
 
 Examples:
   roadstereo evaluate scan potholes --figure scan.png
+  roadstereo evaluate scan potholes --maps mine=my_maps    # my_maps/p1_01.png, 16 bit
   roadstereo evaluate scan cloud.ply scan.ply --labelled 25000)";
 
 void add_inputs(CLI::App& command, ScanArguments& arguments) {
@@ -251,6 +253,7 @@ void add_scan(CLI::App& evaluate) {
       ->capture_default_str();
   command->add_flag("--robust", arguments->robust, "Omit the final least-squares step of the registration");
   add_method_options(*command, arguments->methods);
+  add_maps_option(*command, arguments->methods.maps);
   add_json_option(*command, arguments->json);
   add_figure_option(*command, arguments->figure);
   command->callback([arguments] { scan(*arguments); });

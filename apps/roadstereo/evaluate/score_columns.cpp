@@ -45,7 +45,7 @@ std::vector<Cell> score_cells(const DisparityScore& score) {
   constexpr double percent = 100;
   std::vector<Cell> cells{{score.rms_px, 3}, {score.mean_px, 3}, {score.median_px, 3}};
   for (const double share : score.bad_share) cells.emplace_back(percent * share, 3);
-  cells.emplace_back(percent * score.density(), 2);
+  cells.emplace_back(percent * score.density, 2);
   for (const double share : score.bad_or_missing_share) cells.emplace_back(percent * share, 3);
   return cells;
 }
@@ -61,6 +61,7 @@ DisparityScore mean_score(const std::vector<DisparityScore>& scores) {
     mean.labelled_pixels += score.labelled_pixels;
     mean.valid_pixels += score.valid_pixels;
   }
+  mean.density = mean_of(scores, [](const DisparityScore& score) { return score.density; });
   mean.rms_px = mean_of(scores, [](const DisparityScore& score) { return score.rms_px; });
   mean.mean_px = mean_of(scores, [](const DisparityScore& score) { return score.mean_px; });
   mean.median_px = mean_of(scores, [](const DisparityScore& score) { return score.median_px; });

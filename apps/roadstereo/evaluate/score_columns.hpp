@@ -20,7 +20,7 @@ std::vector<Cell> score_cells(const DisparityScore& score);
 /// Explanation of the columns, printed below a table.
 std::string score_legend();
 
-/// Mean of every value over the scores where it is finite. Pixel counts are summed.
+/// Mean of every value over the scores where it is finite, the density included. Pixel counts are summed.
 DisparityScore mean_score(const std::vector<DisparityScore>& scores);
 
 }  // namespace roadstereo::cli

@@ -1,5 +1,7 @@
 #include "evaluate/synth_groups.hpp"
 
+#include <fmt/core.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -66,6 +68,12 @@ std::vector<synth::Scene> synth_scenes(bool small) {
     }
   }
   return scenes;
+}
+
+std::string synth_frame(const SynthGroup& group, std::size_t scene) {
+  std::string name = group.name;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return fmt::format("{}_{:02}", name, scene);
 }
 
 SynthCase make_synth_case(const SynthGroup& group, synth::Scene scene, int threads) {

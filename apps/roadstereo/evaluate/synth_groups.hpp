@@ -38,6 +38,9 @@ struct SynthCase {
   int disparities = 0;          ///< number of disparities that includes the maximum of the truth
 };
 
+/// Name of the files of a scene: the group's, with "_" for spaces, and the number of the scene.
+std::string synth_frame(const SynthGroup& group, std::size_t scene);
+
 /// Degrade and render a scene.
 SynthCase make_synth_case(const SynthGroup& group, synth::Scene scene, int threads);
 

@@ -30,9 +30,10 @@ class SceneScores {
 void score_group(const SynthGroup& group, const std::vector<synth::Scene>& scenes, const MethodSettings& settings,
                  bool clean, SynthScores& scores, Progress& progress) {
   SceneScores visible, damage, common, common_damage;
-  for (const synth::Scene& scene : scenes) {
-    const SynthCase test_case = make_synth_case(group, scene, settings.threads);
-    const std::vector<Image<float>> maps = run_methods({test_case.pair, test_case.disparities}, settings);
+  for (std::size_t scene = 0; scene < scenes.size(); ++scene) {
+    const SynthCase test_case = make_synth_case(group, scenes[scene], settings.threads);
+    const MethodTask task{test_case.pair, test_case.disparities, true, synth_frame(group, scene)};
+    const std::vector<Image<float>> maps = run_methods(task, settings).maps;
     visible.add(maps, test_case, test_case.visible);
     damage.add(maps, test_case, test_case.damage);
     common.add(maps, test_case, common_pixels(maps, test_case.visible.view()));
@@ -57,7 +58,7 @@ const std::vector<double>& synth_tolerances_px() {
 
 SynthScores score_synth(const std::vector<synth::Scene>& scenes, const MethodSettings& settings) {
   SynthScores scores;
-  scores.biases.resize(method_names().size());
+  scores.biases.resize(method_names(settings).size());
   Progress progress = Progress::on_terminal(synth_groups().size() * scenes.size());
   for (const SynthGroup& group : synth_groups()) {
     score_group(group, scenes, settings, &group == &synth_groups().front(), scores, progress);

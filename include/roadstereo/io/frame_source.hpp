@@ -83,6 +83,8 @@ class FrameSource {
 ///   GStreamer      a pipeline description, i.e. text with " ! "; if it has no appsink,
 ///                  " ! videoconvert ! appsink max-buffers=2 sync=false" is appended (live pipelines then drop frames)
 ///   .bag           ROS 1 bag with two image topics
+///   .mcap, .db3    bag of ROS 2 with two image topics (MCAP also of ROS 1), or the folder of rosbag2 around it;
+///                  unindexed and cut off MCAP files are read up to their end
 /// Throws Error if the source is none of these or cannot be opened.
 std::unique_ptr<FrameSource> open_source(const std::vector<std::string>& names, const SourceOptions& options = {});
 

@@ -27,6 +27,9 @@ class OutputFolder {
   void add(const std::string& name, std::span<const std::uint8_t> bytes);
   void add(const std::string& name, const std::string& text);
 
+  /// Returns whether a file of that name is staged.
+  bool has(const std::string& name) const;
+
   /// Moves all staged files into the output folder. Throws SystemError; the folder is then unchanged.
   void commit();
 

@@ -62,6 +62,11 @@ class Track {
 ///                  lat, latitude, lat_deg; lon, lng, long, longitude, lon_deg: degrees; both empty: no fix, skipped
 ///                  alt, altitude, ele, elevation, alt_m: metres, may be empty or missing
 ///                  heading, yaw, course, bearing, heading_deg: degrees, the first of these; may be empty or missing
+///                  time_utc_usec, lat, lon, alt of PX4's vehicle_gps_position, as ulog2csv writes it: microseconds,
+///                  1e-7 degrees, millimetres (or latitude_deg, longitude_deg, altitude_msl_m)
+///   NMEA 0183      RMC and GGA sentences; those with a wrong checksum or without a fix are left out
+///   SRT            subtitles of DJI drones; times are seconds since the start of the video
+///   bag            ROS 1, rosbag2 or MCAP with one topic of sensor_msgs/NavSatFix
 /// Throws Error naming the file, the line, the value and its limits; also if times decrease.
 Track read_track(const std::string& path, const TrackOptions& options = {});
 

@@ -11,9 +11,11 @@ namespace roadstereo::io {
 namespace {
 
 constexpr std::array time_names = {"time", "timestamp", "time_s", "time_utc", "datetime", "utc"};
-constexpr std::array lat_names = {"lat", "latitude", "lat_deg"};
-constexpr std::array lon_names = {"lon", "lng", "long", "longitude", "lon_deg"};
-constexpr std::array alt_names = {"alt", "altitude", "ele", "elevation", "alt_m"};
+constexpr std::array lat_names = {"lat", "latitude", "lat_deg", "latitude_deg"};
+constexpr std::array lon_names = {"lon", "lng", "long", "longitude", "lon_deg", "longitude_deg"};
+constexpr std::array alt_names = {"alt", "altitude", "ele", "elevation", "alt_m", "altitude_msl_m"};
+// PX4's vehicle_gps_position, as ulog2csv writes it: microseconds, 1e-7 degrees and millimetres, or degrees and metres.
+constexpr const char* px4_time = "time_utc_usec";
 constexpr std::array heading_names = {"heading", "yaw", "course", "bearing", "heading_deg"};
 
 std::string_view bare(std::string_view cell) {
@@ -72,6 +74,7 @@ struct Columns {
   Column time, lat, lon;
   std::optional<Column> alt, heading;
   std::size_t count = 0;
+  bool px4 = false;  ///< units of PX4's vehicle_gps_position
 };
 
 std::optional<Column> find_column(const std::vector<std::string_view>& header, std::span<const char* const> names) {
@@ -103,12 +106,28 @@ Columns find_columns(const std::string& where, const std::vector<std::string_vie
     }
     return *std::move(column);
   };
-  return {needed(time_names),
-          needed(lat_names),
-          needed(lon_names),
-          find_column(header, alt_names),
-          find_column(header, heading_names),
-          header.size()};
+  const std::optional<Column> px4 = find_column(header, std::array{px4_time});
+  return {px4 ? *px4 : needed(time_names),    needed(lat_names), needed(lon_names), find_column(header, alt_names),
+          find_column(header, heading_names), header.size(),     px4.has_value()};
+}
+
+/// A row of PX4's vehicle_gps_position. Integers are 1e-7 degrees and millimetres in the columns lat, lon, alt.
+std::optional<TrackPoint> read_px4_row(const std::string& where, const Columns& columns,
+                                       const std::vector<std::string_view>& cells) {
+  const auto number = [&](const Column& column) { return parse_number(where, column.name, cells[column.index]); };
+  const double microseconds = number(columns.time);
+  if (microseconds == 0) return std::nullopt;  // no fix yet
+  const bool whole = columns.lat.name == "lat";
+  const auto text = [](double value) { return std::to_string(value); };
+  TrackPoint point;
+  point.time_s = parse_any_time(where, columns.time.name, text(1e-6 * microseconds));
+  const double degrees = whole ? 1e-7 : 1;
+  point.lat_deg = degrees * number(columns.lat);
+  point.lon_deg = degrees * number(columns.lon);
+  parse_latitude(where, columns.lat.name, text(point.lat_deg));
+  parse_longitude(where, columns.lon.name, text(point.lon_deg));
+  if (columns.alt) point.alt_m = (whole ? 1e-3 : 1) * number(*columns.alt);
+  return point;
 }
 
 /// Returns nullopt if the receiver had no fix.
@@ -117,6 +136,7 @@ std::optional<TrackPoint> read_row(const std::string& where, const Columns& colu
   if (cells.size() != columns.count) {
     fail(where, ": the line has ", cells.size(), " cells; the header line has ", columns.count);
   }
+  if (columns.px4) return read_px4_row(where, columns, cells);
   if (cells[columns.lat.index].empty() && cells[columns.lon.index].empty()) return std::nullopt;
   TrackPoint point;
   point.time_s = parse_any_time(where, columns.time.name, cells[columns.time.index]);

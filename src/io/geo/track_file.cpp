@@ -2,6 +2,7 @@
 
 #include "io/file_bytes.hpp"
 #include "io/geo/track_formats.hpp"
+#include "io/source/message_log.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
@@ -12,7 +13,7 @@ constexpr std::size_t max_bytes = std::size_t{1} << 28U;  // a day at 10 Hz is a
 TrackText read_text(const std::string& path) {
   const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
   if (std::find(bytes.begin(), bytes.end(), std::uint8_t{0}) != bytes.end()) {
-    fail(path, ": this is not a text file; a track must be GPX or CSV");
+    fail(path, ": this is neither a text file nor a bag; a track must be GPX, CSV, NMEA, DJI's SRT or a bag");
   }
   std::string text(bytes.begin(), bytes.end());
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // byte order mark
@@ -21,8 +22,13 @@ TrackText read_text(const std::string& path) {
 
 std::vector<TrackLine> read_lines(const TrackText& file) {
   const std::size_t first = file.text.find_first_not_of(" \t\r\n");
-  const bool xml = first != std::string::npos && file.text[first] == '<';
-  return xml ? read_gpx(file) : read_track_csv(file);
+  if (first == std::string::npos) return read_track_csv(file);
+  const std::string_view text = std::string_view(file.text).substr(first);
+  if (text.front() == '<') return read_gpx(file);
+  if (text.front() == '$') return read_nmea(file);
+  constexpr std::size_t first_subtitle = 40;  // its number and its times
+  if (text.substr(0, first_subtitle).find(" --> ") != std::string_view::npos) return read_srt(file);
+  return read_track_csv(file);
 }
 
 void check_times(const std::string& path, const std::vector<TrackLine>& lines) {
@@ -43,7 +49,7 @@ void check_times(const std::string& path, const std::vector<TrackLine>& lines) {
 
 Track read_track(const std::string& path, const TrackOptions& options) {
   options.validate();
-  const std::vector<TrackLine> lines = read_lines(read_text(path));
+  const std::vector<TrackLine> lines = is_message_log(path) ? read_track_bag(path) : read_lines(read_text(path));
   check_times(path, lines);
   std::vector<TrackPoint> points;
   points.reserve(lines.size());

@@ -25,6 +25,12 @@ struct TrackLine {
 // file, the line and the value.
 std::vector<TrackLine> read_gpx(const TrackText& file);
 std::vector<TrackLine> read_track_csv(const TrackText& file);
+/// NMEA 0183: RMC and GGA sentences; those with a wrong checksum are left out.
+std::vector<TrackLine> read_nmea(const TrackText& file);
+/// Subtitles of a DJI drone. Times are those of the subtitles, since the start of the video.
+std::vector<TrackLine> read_srt(const TrackText& file);
+/// NavSatFix messages of a bag; `line` is the number of the message.
+std::vector<TrackLine> read_track_bag(const std::string& path);
 
 /// Returns "FILE: line N", the start of an error message.
 std::string name_line(const std::string& path, std::size_t line);

@@ -19,7 +19,16 @@ static_assert(std::endian::native == std::endian::little, "messages are read wit
 
 class MessageReader {
  public:
-  MessageReader(const std::string& source, std::span<const std::uint8_t> rest) : source_(source), rest_(rest) {}
+  MessageReader(const std::string& source, std::span<const std::uint8_t> message, MessageFormat format)
+      : source_(source), rest_(message), format_(format) {
+    if (format == MessageFormat::ros1) return;
+    const auto encapsulation = bytes(4);  // alignment counts from its end
+    if (encapsulation[0] != 0 || encapsulation[1] != 1) {
+      fail(source, ": the message is CDR of kind ", int{encapsulation[0]}, " ", int{encapsulation[1]},
+           "; only plain little-endian CDR, 0 1, is supported");
+    }
+    begin_ = rest_.data();
+  }
 
   std::span<const std::uint8_t> bytes(std::size_t count) {
     if (count > rest_.size()) fail(source_, ": the message is truncated");
@@ -29,23 +38,30 @@ class MessageReader {
   }
   template <class Value>
   Value value() {
+    align(sizeof(Value));
     Value value{};
     std::memcpy(&value, bytes(sizeof value).data(), sizeof value);
     return value;
   }
   template <class Value, int Count>
   void values(Value (&target)[Count]) {
+    align(sizeof(Value));
     std::memcpy(target, bytes(sizeof target).data(), sizeof target);
   }
   std::span<const std::uint8_t> list(std::size_t bytes_each = 1) {
-    return bytes(bytes_each * std::size_t{value<std::uint32_t>()});
+    const std::size_t count = value<std::uint32_t>();
+    if (count > 0) align(bytes_each);
+    return bytes(bytes_each * count);
   }
   std::string text() {
-    const auto letters = list();
+    auto letters = list();
+    if (format_ == MessageFormat::cdr && !letters.empty() && letters.back() == 0) {
+      letters = letters.first(letters.size() - 1);  // CDR counts the end of the string
+    }
     return {letters.begin(), letters.end()};
   }
   std::int64_t header() {
-    value<std::uint32_t>();  // sequence number
+    if (format_ == MessageFormat::ros1) value<std::uint32_t>();  // sequence number
     const std::int64_t seconds = value<std::uint32_t>();
     const std::int64_t nanoseconds = value<std::uint32_t>();
     text();  // frame_id
@@ -59,8 +75,16 @@ class MessageReader {
   }
 
  private:
+  void align(std::size_t size) {
+    if (format_ == MessageFormat::ros1) return;
+    const auto past = static_cast<std::size_t>(rest_.data() - begin_) % size;
+    if (past > 0) bytes(size - past);
+  }
+
   const std::string& source_;
   std::span<const std::uint8_t> rest_;
+  MessageFormat format_;
+  const std::uint8_t* begin_ = nullptr;
 };
 
 constexpr int no_mosaic = -1;
@@ -110,12 +134,12 @@ void swap_bytes(Frame& frame) {
 
 }  // namespace
 
-std::int64_t stamp_ns(const std::string& source, const std::vector<std::uint8_t>& message) {
-  return MessageReader(source, message).header();
+std::int64_t stamp_ns(const std::string& source, const std::vector<std::uint8_t>& message, MessageFormat format) {
+  return MessageReader(source, message, format).header();
 }
 
-Frame read_image(const std::string& source, const std::vector<std::uint8_t>& message) {
-  MessageReader reader(source, message);
+Frame read_image(const std::string& source, const std::vector<std::uint8_t>& message, MessageFormat format) {
+  MessageReader reader(source, message, format);
   reader.header();
   const int height = reader.side("height");
   const int width = reader.side("width");
@@ -138,16 +162,16 @@ Frame read_image(const std::string& source, const std::vector<std::uint8_t>& mes
   return frame_from(colours, encoding.order);
 }
 
-Frame read_compressed_image(const std::string& source, const std::vector<std::uint8_t>& message) {
-  MessageReader reader(source, message);
+Frame read_compressed_image(const std::string& source, const std::vector<std::uint8_t>& message, MessageFormat format) {
+  MessageReader reader(source, message, format);
   reader.header();
   reader.text();  // format: free text, not needed
   const auto data = reader.list();
   return decode_frame(source, {data.begin(), data.end()});
 }
 
-CameraInfo read_camera_info(const std::string& source, const std::vector<std::uint8_t>& message) {
-  MessageReader reader(source, message);
+CameraInfo read_camera_info(const std::string& source, const std::vector<std::uint8_t>& message, MessageFormat format) {
+  MessageReader reader(source, message, format);
   reader.header();
   CameraInfo camera;
   camera.source = source;
@@ -170,6 +194,19 @@ CameraInfo read_camera_info(const std::string& source, const std::vector<std::ui
          "images");
   }
   return camera;
+}
+
+SatelliteFix read_satellite_fix(const std::string& source, const std::vector<std::uint8_t>& message,
+                                MessageFormat format) {
+  MessageReader reader(source, message, format);
+  SatelliteFix fix;
+  fix.stamp_ns = reader.header();
+  fix.valid = reader.value<std::int8_t>() >= 0;  // STATUS_NO_FIX is -1
+  reader.value<std::uint16_t>();                 // kinds of satellites
+  fix.lat_deg = reader.value<double>();
+  fix.lon_deg = reader.value<double>();
+  fix.alt_m = reader.value<double>();
+  return fix;
 }
 
 }  // namespace roadstereo::io

@@ -64,6 +64,12 @@ std::vector<BagTopic> one_per_camera(const std::vector<BagTopic>& images) {
 
 }  // namespace
 
+std::string ros1_type(std::string type) {
+  constexpr std::string_view ros2_part = "/msg/";
+  const std::size_t at = type.find(ros2_part);
+  return at == std::string::npos ? type : type.replace(at, ros2_part.size(), "/");
+}
+
 bool is_image_topic(const BagTopic& topic) {
   if (topic.name.ends_with("/compressedDepth")) return false;
   return topic.type == "sensor_msgs/Image" || topic.type == "sensor_msgs/CompressedImage";

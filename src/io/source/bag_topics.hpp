@@ -1,16 +1,25 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace roadstereo::io {
 
+/// Serialisation of messages.
+enum class MessageFormat { ros1, cdr };
+
 /// A topic of a ROS bag.
 struct BagTopic {
   std::string name;  ///< "/stereo/left/image_raw"
-  std::string type;  ///< "sensor_msgs/Image"
+  std::string type;  ///< "sensor_msgs/Image", also of ROS 2
+  MessageFormat format = MessageFormat::ros1;
+  std::int64_t messages = 0;
 };
+
+/// Returns the name of a message type as ROS 1 spells it: "sensor_msgs/msg/Image" is "sensor_msgs/Image".
+std::string ros1_type(std::string type);
 
 /// Returns whether the topic has images: sensor_msgs/Image or sensor_msgs/CompressedImage.
 bool is_image_topic(const BagTopic& topic);

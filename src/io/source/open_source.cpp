@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/require_range.hpp"
+#include "io/source/message_log.hpp"
 #include "io/source/sources.hpp"
 #include "roadstereo/error.hpp"
 
@@ -26,6 +27,7 @@ bool is_one_of(const std::string& word, const std::array<const char*, N>& words)
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+constexpr std::array bag_extensions = {".bag", ".db3", ".mcap"};
 constexpr std::array list_extensions = {".txt", ".csv", ".lst"};
 constexpr std::array video_extensions = {".mp4",   ".avi", ".mkv",  ".mov",  ".m4v",  ".webm", ".ts",  ".mjpg",
                                          ".mjpeg", ".mpg", ".mpeg", ".h264", ".h265", ".hevc", ".y4m", ".wmv"};
@@ -34,10 +36,10 @@ std::optional<Kind> known_kind(const std::string& name) {
   if (name.find(" ! ") != std::string::npos) return Kind::gstreamer;
   if (name.rfind("/dev/", 0) == 0) return Kind::camera;
   std::error_code ignored;
-  if (fs::is_directory(name, ignored)) return Kind::folder;
+  if (fs::is_directory(name, ignored)) return is_message_log(name) ? Kind::bag : Kind::folder;
   if (!fs::exists(name, ignored)) return std::nullopt;
   const std::string extension = lower_extension(name);
-  if (extension == ".bag") return Kind::bag;
+  if (is_one_of(extension, bag_extensions)) return Kind::bag;
   if (is_one_of(extension, list_extensions)) return Kind::list;
   if (is_one_of(extension, video_extensions)) return Kind::video;
   return std::nullopt;
@@ -53,9 +55,10 @@ Kind kind_of(const std::string& name) {
   if (extension == ".svo" || extension == ".svo2") {
     fail(name, ": SVO files of ZED cameras need the ZED SDK; export them as side-by-side video first");
   }
-  fail(
-      name, ": unknown source type; supported are a folder, a list (.txt, .csv), a video (.mp4, .avi, .mkv, …), a ROS ",
-      "bag (.bag), a camera (/dev/video0) and a GStreamer pipeline; for a single pair give two images, left and right");
+  fail(name,
+       ": unknown source type; supported are a folder, a list (.txt, .csv), a video (.mp4, .avi, .mkv, …), a ROS ",
+       "bag (.bag, .db3, .mcap, or a folder of rosbag2), a camera (/dev/video0) and a GStreamer pipeline; for a single "
+       "pair give two images, left and right");
 }
 
 std::unique_ptr<FrameSource> open_one(const std::string& name, const SourceOptions& options) {

@@ -26,7 +26,7 @@ std::unique_ptr<FrameSource> open_camera(const std::string& device, const Source
 /// `next` returns nullopt at the end of the pipeline and throws Error if it fails.
 std::unique_ptr<FrameSource> open_gstreamer(const std::string& pipeline, const SourceOptions& options);
 
-/// ROS 1. Also throws Error if built without it.
+/// ROS 1, rosbag2, MCAP. Also throws Error if built without it.
 std::unique_ptr<FrameSource> open_bag(const std::string& file, const SourceOptions& options);
 
 }  // namespace roadstereo::io

@@ -363,6 +363,69 @@ TEST_F(TrackFile, ReadsCsvWithoutAltitudeAndHeading) {
   EXPECT_NEAR(turn_deg(0, read[0].heading_deg), 0, 1e-6) << "of the way";
 }
 
+TEST_F(TrackFile, ReadsNmea) {
+  const std::vector<TrackPoint> read = points(
+      "$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n"
+      "$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\n"
+      "$GPRMC,123520,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\n"  // a wrong checksum
+      "$GNRMC,123520.50,A,4807.0390,N,01131.0000,W,022.4,,230394,,,A*76\r\n"
+      "$GNGGA,123520.50,4807.0390,N,01131.0000,W,1,08,0.9,546.0,M,46.9,M,,*6C\r\n"
+      "$GPRMC,123521,V,,,,,,,230394,,*38\r\n");  // no fix
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_DOUBLE_EQ(read[0].time_s, 764426119);  // 1994-03-23T12:35:19Z
+  EXPECT_DOUBLE_EQ(read[1].time_s, 764426120.5);
+  EXPECT_NEAR(read[0].lat_deg, 48.1173, 1e-9);  // 7.038 minutes
+  EXPECT_NEAR(read[0].lon_deg, 11 + 31.0 / 60, 1e-9);
+  EXPECT_NEAR(read[1].lon_deg, -11 - 31.0 / 60, 1e-9);
+  EXPECT_DOUBLE_EQ(read[0].alt_m, 545.4);
+  EXPECT_DOUBLE_EQ(read[1].alt_m, 546.0);
+  EXPECT_DOUBLE_EQ(read[0].heading_deg, 84.4);
+  expect_refused("$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6B\n", "right checksum");
+}
+
+TEST_F(TrackFile, ReadsSubtitlesOfDrones) {
+  const std::vector<TrackPoint> read = points(
+      "1\n00:00:00,000 --> 00:00:00,033\n<font size=\"28\">SrtCnt : 1, DiffTime : 33ms\n2022-08-22 10:13:23.001\n"
+      "[iso : 100] [shutter : 1/500.0] [latitude: 48.137100] [longitude: 11.575400] [rel_alt: 1.300 abs_alt: 520.125] "
+      "</font>\n\n"
+      "2\n00:00:00,033 --> 00:00:00,066\n[latitude : 0.0] [longtitude : 0.0] [altitude: 0]\n\n"
+      "3\n00:01:02,345 --> 00:01:02,378\n[latitude : 48.1372] [longtitude : 11.5755] [altitude: 521.5]\n\n");
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_DOUBLE_EQ(read[0].time_s, 0);
+  EXPECT_DOUBLE_EQ(read[1].time_s, 62.345);
+  EXPECT_DOUBLE_EQ(read[0].lat_deg, 48.1371);
+  EXPECT_DOUBLE_EQ(read[1].lon_deg, 11.5755);
+  EXPECT_DOUBLE_EQ(read[0].alt_m, 520.125);
+  EXPECT_DOUBLE_EQ(read[1].alt_m, 521.5);
+  const std::vector<TrackPoint> older = points(
+      "1\n00:00:01,000 --> 00:00:02,000\nHOME(11.5000,48.1000) 2017.08.05 14:11:51\nGPS(11.5754,48.1371,19) "
+      "BAROMETER:25.2\nISO:100 Shutter:60\n\n"
+      "2\n00:00:02,000 --> 00:00:03,000\nGPS(11.5755, 48.1372,19) BAROMETER:25.3\n\n");
+  ASSERT_EQ(older.size(), 2U);
+  EXPECT_DOUBLE_EQ(older[0].lat_deg, 48.1371);
+  EXPECT_DOUBLE_EQ(older[1].lon_deg, 11.5755);
+  EXPECT_DOUBLE_EQ(older[1].alt_m, 25.3);
+  expect_refused("1\n00:00:01,000 --> 00:00:02,000\n[latitude: 148.1] [longitude: 11.5]\n",
+                 "line 3: latitude is 148.1");
+}
+
+TEST_F(TrackFile, ReadsPositionsOfPx4) {
+  const std::vector<TrackPoint> old_units = points(
+      "timestamp,time_utc_usec,lat,lon,alt,fix_type\n1000,0,0,0,0,0\n"
+      "2000,1714564800000000,481371000,115754000,520125,3\n3000,1714564800200000,481372000,115755000,520225,3\n");
+  ASSERT_EQ(old_units.size(), 2U);
+  EXPECT_DOUBLE_EQ(old_units[0].time_s, 1714564800);
+  EXPECT_NEAR(old_units[1].time_s, 1714564800.2, 1e-6);
+  EXPECT_DOUBLE_EQ(old_units[0].lat_deg, 48.1371);
+  EXPECT_DOUBLE_EQ(old_units[1].lon_deg, 11.5755);
+  EXPECT_DOUBLE_EQ(old_units[0].alt_m, 520.125);
+  const std::vector<TrackPoint> new_units = points(
+      "timestamp,time_utc_usec,latitude_deg,longitude_deg,altitude_msl_m\n"
+      "2000,1714564800000000,48.1371,11.5754,520.125\n3000,1714564800200000,48.1372,11.5755,520.225\n");
+  EXPECT_DOUBLE_EQ(new_units[1].lat_deg, 48.1372);
+  EXPECT_DOUBLE_EQ(new_units[1].alt_m, 520.225);
+}
+
 TEST_F(TrackFile, RejectsBadCsv) {
   expect_refused(replaced(csv, "50.0001", "-90.1"), "line 3: lat is -90.1; it must be between -90 and 90 degrees");
   expect_refused(replaced(csv, "8.0002", "200"), "line 4: lon is 200; it must be between -180 and 180 degrees");
@@ -385,7 +448,7 @@ TEST_F(TrackFile, RejectsBadCsv) {
                  "the track has 2 point(s) at one time; it must have at least two times");
   expect_refused("\n \n", "the file has no header line");
   expect_refused("", "the file is empty");
-  expect_refused(std::string("a\0b", 3), "not a text file");
+  expect_refused(std::string("a\0b", 3), "neither a text file nor a bag");
 }
 
 /// Whatever a file holds, it is a track or an Error.

@@ -1,0 +1,25 @@
+#include "evaluate/pair_files.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "roadstereo/io/image_file.hpp"
+#include "synth_files.hpp"
+
+namespace roadstereo::cli {
+
+void add_write_pairs_option(CLI::App& command, std::string& folder) {
+  command
+      .add_option(
+          "--write-pairs", folder,
+          "Write the rendered pairs, left/FRAME.png, right/FRAME.png and calibration/FRAME.yaml, for --maps, and "
+          "match nothing")
+      ->type_name("DIR");
+}
+
+void add_pair(const std::string& frame, const StereoPair& pair, io::OutputFolder& folder) {
+  folder.add("left/" + frame + ".png", io::encode_png(pair.left.view()));
+  folder.add("right/" + frame + ".png", io::encode_png(pair.right.view()));
+  if (pair.calibration) folder.add("calibration/" + frame + ".yaml", plain_yaml(*pair.calibration));
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,24 @@
+// Figures of the paper, drawn from our data.
+#pragma once
+
+#include <string>
+
+#include "evaluate/methods.hpp"
+#include "roadstereo/image.hpp"
+
+namespace roadstereo::cli {
+
+/// Figure of results: left images of rendered roads, disparities and transformed disparities of `paper`.
+Frame draw_results(const MethodSettings& methods);
+
+/// Figure of motion blur: blurred left images and the disparities of `paper`.
+Frame draw_motion_blur(const MethodSettings& methods);
+
+/// Figure of the roll angle: left image, disparities of a rolled camera, and the same rotated by the estimated roll.
+Frame draw_roll(const MethodSettings& methods);
+
+/// Figure of the transformed KITTI truth: left image with the road in magenta, truth, transformed truth of the road.
+/// `folder` as in find_kitti_frames; at most four frames.
+Frame draw_transformed_kitti(const std::string& folder, const MethodSettings& methods);
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,24 @@
+// Codes of warnings: stable words for programs, before the sentence for people.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+
+namespace roadstereo {
+
+/// Returns the code of a warning, the word before its first colon; empty if it has none. The codes are
+///   no-road          no road was found: neither roll nor metric values nor damage
+///   weak-road        there is little evidence for the road that was found
+///   road-anew        the last frame's road did not fit: it was searched anew
+///   unexpected-pose  height or pitch are not what was expected
+///   rows-disagree    the rows of the pair are shifted: it is not rectified
+///   few-disparities  too few pixels have a disparity
+///   no-damage        damage could not be searched
+///   values-lost      a file cannot hold all values
+constexpr std::string_view warning_code(std::string_view warning) {
+  const std::string_view word = warning.substr(0, std::min(warning.find(": "), warning.size()));
+  const auto allowed = [](char letter) { return (letter >= 'a' && letter <= 'z') || letter == '-'; };
+  return word.size() < warning.size() && std::all_of(word.begin(), word.end(), allowed) ? word : std::string_view();
+}
+
+}  // namespace roadstereo

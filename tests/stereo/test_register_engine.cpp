@@ -1,0 +1,57 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/pipeline.hpp"
+#include "roadstereo/synth.hpp"
+
+namespace {
+
+using namespace roadstereo;
+
+/// Finds the same disparity everywhere.
+class ConstantEngine final : public StereoEngine {
+ public:
+  void match(const MatchInput& input, const MatcherOptions& /*options*/, MatchMaps& maps) override {
+    const int width = input.reference.width();
+    const int height = input.reference.height();
+    maps.disparity.assign(width, height, 7.25F);
+    maps.winner.assign(width, height, 7);
+    maps.target_winner.assign(width, height, 7);
+    maps.variance.assign(width, height, 0.01F);
+  }
+};
+
+std::unique_ptr<StereoEngine> make_constant(int /*threads*/) {
+  return std::make_unique<ConstantEngine>();
+}
+
+TEST(RegisterEngine, PipelineUsesIt) {
+  const std::string first = resolve_engine_name("auto");
+  register_engine({"constant", "7.25 px everywhere", false, make_constant});
+  EXPECT_EQ(engines().back().name, "constant");
+  EXPECT_EQ(resolve_engine_name("auto"), first);
+  const synth::SyntheticPair pair = synth::render(synth::named_scene("demo"));
+  PipelineOptions options = preset("default");
+  options.engine = "constant";
+  options.refinement.radius = 0;
+  options.perspective.enabled = false;
+  options.perspective.disparities = 64;
+  Pipeline pipeline(options, pair.calibration);
+  EXPECT_EQ(pipeline.engine_name(), "constant");
+  const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+  EXPECT_EQ(result.disparity(100, 50), 7.25F);
+  EXPECT_EQ(result.disparity(result.disparity.width() - 1, result.disparity.height() - 1), 7.25F);
+  EXPECT_NEAR(result.sigma(100, 50), 0.1F, 0.1F);  // of the variance
+}
+
+TEST(RegisterEngine, RejectsNamesThatAreTaken) {
+  EXPECT_THROW(register_engine({"cpu", "", false, make_constant}), Error);
+  EXPECT_THROW(register_engine({"auto", "", false, make_constant}), Error);
+  EXPECT_THROW(register_engine({"", "", false, make_constant}), Error);
+  EXPECT_THROW(register_engine({"cuda", "", false, make_constant}), Error);
+  EXPECT_THROW(register_engine({"nothing", "", false, nullptr}), Error);
+}
+
+}  // namespace
