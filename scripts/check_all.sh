@@ -42,6 +42,7 @@ part cmake --build build --target docs
 part ./scripts/check_tidy.sh --all
 part ./scripts/check_install.sh
 part ./scripts/check_python.sh
+part ./scripts/make_packages.sh
 # Without precompiled headers: a source includes what it uses.
 part ./scripts/check_sanitizers.sh asan-all -DROADSTEREO_WERROR=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
 part ./scripts/check_sanitizers.sh tsan -DROADSTEREO_WERROR=ON
