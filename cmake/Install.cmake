@@ -3,13 +3,13 @@ include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/roadstereo)
 
-# A 0.x version is compatible with itself only.
+# A 0.x version is compatible with itself only. Objects of shared and static libraries are the same, for compiler caches.
 set(roadstereo_libraries roadstereo roadstereo_odometry roadstereo_synth)
 if(NOT ROADSTEREO_EMBEDDED_ONLY)
   list(APPEND roadstereo_libraries roadstereo_io)
 endif()
 set_target_properties(${roadstereo_libraries} PROPERTIES
-  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} DEFINE_SYMBOL "")
 
 # roadstereo_install(<export> <target>...): a library and what its users link.
 function(roadstereo_install export)

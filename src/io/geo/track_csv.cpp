@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "io/calibration_formats.hpp"
 #include "io/geo/track_formats.hpp"
 #include "roadstereo/error.hpp"
 

@@ -1,6 +1,7 @@
-#include <array>
+#include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include "io/calibration_formats.hpp"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <memory>
+#include <new>
 
 #include "roadstereo/error.hpp"
 

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <map>
 #include <set>
+#include <span>
 
 #include "io/source/mcap_records.hpp"
 #include "io/source/message_log.hpp"

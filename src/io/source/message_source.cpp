@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <sstream>
+#include <tuple>
+#include <utility>
 
 #include "io/source/bag_message.hpp"
 #include "io/source/bag_topics.hpp"

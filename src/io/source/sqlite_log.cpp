@@ -1,6 +1,5 @@
 #include <sqlite3.h>
 
-#include <filesystem>
 #include <map>
 
 #include "io/source/decompress.hpp"
