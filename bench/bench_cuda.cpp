@@ -1,6 +1,7 @@
-// The engine `cuda` on the GPU of this machine: the whole pipeline with images in device memory, its stages, its
-// largest kernels against what they must at least cost, and frames from host to host. Needs nothing but the library.
-//   bench_cuda [RUNS]
+// The engine `cuda` on the GPU of this machine: the whole pipeline with images in device memory, its stages and
+// kernels, what they must at least cost, frames from host to host, and libSGM where it is installed. Needs nothing but
+// the library.
+//   bench_cuda [RUNS] [--json FILE]
 
 #include <algorithm>
 #include <chrono>
@@ -14,14 +15,19 @@
 
 #include "core/cuda/device.hpp"
 #include "core/cuda/memory.hpp"
+#include "core/cuda/stream.hpp"
 #include "core/order_statistics.hpp"
+#include "cuda_report.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
 #include "stage_floors.hpp"
+#if defined(ROADSTEREO_WITH_LIBSGM)
+#include <libsgm.h>
+#endif
 
-namespace roadstereo {
+namespace roadstereo::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -33,10 +39,6 @@ double ms_since(Clock::time_point start) {
 double median(std::vector<double> values) {
   return values.empty() ? 0 : upper_median(values);
 }
-
-struct Size {
-  int width, height, disparities;
-};
 
 synth::SyntheticPair make_pair(const Size& size) {
   synth::Scene scene = synth::named_scene("uav");
@@ -51,9 +53,9 @@ synth::SyntheticPair make_pair(const Size& size) {
 class FrameOnDevice {
  public:
   explicit FrameOnDevice(const Frame& frame) : bytes_(frame.bytes.size()), view_(frame.view()) {
-    ROADSTEREO_CUDA(
-        cudaMemcpyAsync(bytes_.data(), frame.bytes.data(), frame.bytes.size(), cudaMemcpyHostToDevice, nullptr));
-    ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
+    const cuda::StreamView stream(nullptr);
+    stream.upload(bytes_.data(), frame.bytes.data(), frame.bytes.size());
+    stream.wait();
     view_.data = bytes_.data();
   }
   const FrameView& view() const { return view_; }
@@ -70,75 +72,70 @@ PipelineOptions options_of(const std::string& name, const Size& size) {
   return options;
 }
 
-/// Until memory is made, kernels are loaded, and an idle GPU has raised its clock.
-void warm_up(Pipeline& pipeline, const FrameView& left, const FrameView& right) {
+/// Calls `run` until memory is made, kernels are loaded, and an idle GPU has raised its clock.
+template <class Run>
+void warm_up(Run run) {
   constexpr int min_frames = 10;
   constexpr double min_ms = 300;
   const auto start = Clock::now();
-  for (int frame = 0; frame < min_frames || ms_since(start) < min_ms; ++frame) pipeline.process(left, right);
+  for (int frame = 0; frame < min_frames || ms_since(start) < min_ms; ++frame) run();
 }
 
-struct Goal {
-  Size size;
-  const char* preset;
-  double ms;  ///< 0: none
-};
+template <class Run>
+double median_ms(int runs, Run run) {
+  std::vector<double> ms;
+  for (int i = 0; i < runs; ++i) {
+    const auto start = Clock::now();
+    run();
+    ms.push_back(ms_since(start));
+  }
+  return median(ms);
+}
 
-/// Each stage by the device's clock, beside its floor where it has one that is no latency. That of matching is no floor
-/// where search ranges leave much out: its ratio may be below 1.
-void print_stages(const std::vector<StageTimes>& frames, const StageTimes& floors) {
-  const std::pair<const char*, double StageTimes::*> stages[] = {{"prepare", &StageTimes::prepare},
-                                                                 {"road model", &StageTimes::road_model},
-                                                                 {"perspective", &StageTimes::perspective},
-                                                                 {"coarse", &StageTimes::coarse},
-                                                                 {"match", &StageTimes::match},
-                                                                 {"refinement", &StageTimes::refinement},
-                                                                 {"road geometry", &StageTimes::roll},
-                                                                 {"transform", &StageTimes::transform}};
-  for (const auto& [name, member] : stages) {
+StageTimes median_of(const std::vector<StageTimes>& frames) {
+  StageTimes medians;
+  for (double StageTimes::*member :
+       {&StageTimes::prepare, &StageTimes::road_model, &StageTimes::perspective, &StageTimes::coarse,
+        &StageTimes::match, &StageTimes::refinement, &StageTimes::roll, &StageTimes::transform}) {
     std::vector<double> values;
     for (const StageTimes& times : frames) values.push_back(times.*member);
-    const double ms = median(values), floor = floors.*member;
-    std::printf("  %-14s %8.4f ms", name, ms);
-    if (floor > 0) std::printf("   floor %8.4f ms, ratio %5.1f", floor, ms / floor);
-    std::printf("\n");
+    medians.*member = median(values);
   }
+  return medians;
 }
 
-/// The whole pipeline on frames whose road model is known from the frame before.
-void time_pipeline(const Goal& goal, int runs) {
-  const synth::SyntheticPair pair = make_pair(goal.size);
+/// The whole pipeline on frames whose road model is known from the frame before. Total, stages and kernels are measured
+/// one after the other: events take time.
+PipelineTimes time_pipeline(const Size& size, const std::string& preset_name, double goal_ms, int runs) {
+  const synth::SyntheticPair pair = make_pair(size);
   const FrameOnDevice left(pair.left), right(pair.right);
-  Pipeline pipeline(options_of(goal.preset, goal.size), pair.calibration);
-  pipeline.set_device_options({.stream = nullptr, .download = false});
-  warm_up(pipeline, left.view(), right.view());
-  std::vector<double> ms;
+  Pipeline pipeline(options_of(preset_name, size), pair.calibration);
+  const auto process = [&]() -> const FrameResult& { return pipeline.process(left.view(), right.view()); };
+  PipelineTimes times;
+  times.size = size;
+  times.preset = preset_name;
+  times.goal_ms = goal_ms;
+  pipeline.set_device_options({.download = false});
+  warm_up(process);
+  times.ms = median_ms(runs, process);
+  pipeline.set_device_options({.download = false, .timing = DeviceTiming::stages});
   std::vector<StageTimes> stages;
-  for (int run = 0; run < runs; ++run) {
-    const auto start = Clock::now();
-    const FrameResult& result = pipeline.process(left.view(), right.view());
-    ms.push_back(ms_since(start));
-    stages.push_back(result.ms);
-  }
-  const double total = median(ms);
-  const double evaluations = 1e-6 * goal.size.width * goal.size.height * goal.size.disparities;
-  std::printf("%dx%d, D %d, %s: %.3f ms, %.0f Mde/s", goal.size.width, goal.size.height, goal.size.disparities,
-              goal.preset, total, evaluations / (total * 1e-3));
-  if (goal.ms > 0)
-    std::printf("; goal %.2f ms: %s (%.2f)", goal.ms, total <= goal.ms ? "reached" : "MISSED", total / goal.ms);
-  std::printf("\n");
-  const StageTimes floors = bench::stage_floors(pipeline.options(), goal.size.width, goal.size.height,
-                                                goal.size.disparities, bench::device_peak());
-  print_stages(stages, floors);
+  for (int run = 0; run < runs; ++run) stages.push_back(process().ms);
+  times.stages = median_of(stages);
+  times.floors = stage_floors(pipeline.options(), size.width, size.height, size.disparities, device_peak());
+  pipeline.set_device_options({.download = false, .timing = DeviceTiming::kernels});
+  for (int run = 0; run < 3; ++run) process();
+  times.profile = pipeline.device_profile();
+  return times;
 }
 
 /// Frames from host memory to host memory, by so many pipelines that each have a thread and a stream of their own.
-void count_frames(const Size& size, int pipelines, int runs) {
+Throughput count_frames(const Size& size, int pipelines, double goal, int runs) {
   const synth::SyntheticPair pair = make_pair(size);
   std::vector<Pipeline> all;
   for (int i = 0; i < pipelines; ++i) {
     all.emplace_back(options_of("default", size), pair.calibration);
-    warm_up(all.back(), pair.left.view(), pair.right.view());
+    warm_up([&] { all.back().process(pair.left.view(), pair.right.view()); });
   }
   std::vector<std::exception_ptr> failures(all.size());
   const auto start = Clock::now();
@@ -156,39 +153,81 @@ void count_frames(const Size& size, int pipelines, int runs) {
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);
   }
-  const double per_second = 1e3 * pipelines * runs / ms_since(start);
-  constexpr double goal = 1500;
-  std::printf("%dx%d host to host, %d pipeline%s: %7.0f frames/s  goal %.0f: %s\n", size.width, size.height, pipelines,
-              pipelines == 1 ? " " : "s", per_second, goal, per_second >= goal ? "reached" : "MISSED");
+  return {size, pipelines, 1e3 * pipelines * runs / ms_since(start), goal};
 }
 
-void run(int runs) {
+/// libSGM with its default parameters; it takes 64, 128 or 256 disparities, and frames of 8 bits without padding.
+std::vector<PeerTimes> time_libsgm([[maybe_unused]] const std::vector<Size>& sizes, [[maybe_unused]] int runs) {
+  std::vector<PeerTimes> peers;
+#if defined(ROADSTEREO_WITH_LIBSGM)
+  for (const Size& size : sizes) {
+    const synth::SyntheticPair pair = make_pair(size);
+    const FrameOnDevice left(pair.left), right(pair.right);
+    cuda::DeviceArray<std::uint16_t> disparity(static_cast<std::size_t>(size.width) *
+                                               static_cast<std::size_t>(size.height));
+    sgm::StereoSGM matcher(size.width, size.height, size.disparities, 8, 16, sgm::EXECUTE_INOUT_CUDA2CUDA);
+    const auto match = [&] {
+      matcher.execute(left.view().data, right.view().data, disparity.data());
+      ROADSTEREO_CUDA(cudaDeviceSynchronize());
+    };
+    warm_up(match);
+    peers.push_back({size, median_ms(runs, match)});
+  }
+#endif
+  return peers;
+}
+
+CudaReport run(int runs) {
   const cuda::Device device = cuda::find_device();
   if (!device.usable) fail("nothing to measure: ", device.reason);
-  const Size usual{640, 360, 32}, large{2079, 1040, 64};
+  const Size usual{640, 360, 32}, usual_64{640, 360, 64}, large{2079, 1040, 64};
+  struct Goal {
+    Size size;
+    const char* preset;
+    double ms;
+  };
+  CudaReport report;
+  report.device = device.name;
+  report.runs = runs;
   std::printf(
-      "%s\n\nThe whole pipeline, images in device memory, median of %d frames; the floor of matching is that of the "
-      "whole range:\n",
+      "%s\n\nThe whole pipeline, images in device memory, median of %d frames; goals are those of an H200, the "
+      "floor of matching is that of the whole range:\n",
       device.name.c_str(), runs);
-  for (const Goal& goal : {Goal{usual, "paper", 0.35}, Goal{usual, "default", 0.25}, Goal{usual, "fast", 0},
-                           Goal{large, "paper", 0}, Goal{large, "default", 3}, Goal{large, "fast", 0}}) {
-    time_pipeline(goal, runs);
+  for (const Goal& goal :
+       {Goal{usual, "paper", 0.35}, Goal{usual, "default", 0.20}, Goal{usual, "fast", 0}, Goal{usual_64, "default", 0},
+        Goal{large, "paper", 0}, Goal{large, "default", 1.5}, Goal{large, "fast", 0}}) {
+    report.pipelines.push_back(time_pipeline(goal.size, goal.preset, goal.ms, runs));
+    print(report.pipelines.back());
   }
   std::printf("\n");
-  for (const int pipelines : {1, 2, 3}) count_frames(usual, pipelines, runs);
+  for (const int pipelines : {1, 2, 3}) {
+    report.throughput.push_back(count_frames(usual, pipelines, pipelines == 2 ? 1500 : 0, runs));
+    print(report.throughput.back());
+  }
+  std::printf("\n");
+  report.peers = time_libsgm({usual_64, large}, runs);
+  for (const PeerTimes& peer : report.peers) print(peer, report.pipelines);
+  return report;
 }
 
 }  // namespace
-}  // namespace roadstereo
+}  // namespace roadstereo::bench
 
 int main(int argc, char** argv) {
   try {
-    const int runs = argc > 1 ? std::atoi(argv[1]) : 200;
-    if (runs < 1) {
-      std::fprintf(stderr, "bench_cuda: '%s' is no number of runs\n", argv[1]);
-      return 2;
+    int runs = 200;
+    std::string json;
+    for (int i = 1; i < argc; ++i) {
+      const std::string argument = argv[i];
+      if (argument == "--json" && i + 1 < argc) {
+        json = argv[++i];
+      } else if (runs = std::atoi(argv[i]); runs < 1) {
+        std::fprintf(stderr, "bench_cuda: '%s' is no number of runs\n", argv[i]);
+        return 2;
+      }
     }
-    roadstereo::run(runs);
+    const roadstereo::bench::CudaReport report = roadstereo::bench::run(runs);
+    if (!json.empty()) roadstereo::bench::write_json(report, json);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_cuda: %s\n", error.what());

@@ -19,7 +19,7 @@ data=$(cached ROADSTEREO_DATA)
 command -v chromedriver >/dev/null && /usr/bin/python3 -c 'import selenium' 2>/dev/null || missing+=(browser)
 gpus=$(nvidia-smi --list-gpus 2>/dev/null | grep -c '^GPU' || true)
 if [ "$(cached ROADSTEREO_CUDA)" != EMULATED ]; then  # two GPUs are emulated
-  [ "$gpus" -ge 1 ] || missing+=(cuda)
+  [ "$gpus" -ge 1 ] || missing+=(cuda engine_cuda)
   [ "$gpus" -ge 2 ] || missing+=(two_gpus)
 fi
 IFS='|'

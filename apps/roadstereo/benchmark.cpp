@@ -16,6 +16,7 @@
 #include "commands.hpp"
 #include "evaluation/peer_matchers.hpp"
 #include "image_size.hpp"
+#include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stopwatch.hpp"
 
@@ -73,6 +74,8 @@ BenchmarkReport measure(const BenchmarkArguments& arguments) {
   const auto before = allocations();
   reset_peak();
   Pipeline pipeline(options, pair.calibration);
+  const bool on_device = pipeline.engine_name() == "cuda";
+  if (on_device) pipeline.set_device_options({.timing = DeviceTiming::stages});
   const auto process = [&] { pipeline.process(pair.left.view(), pair.right.view()); };
   process();
   const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
@@ -86,9 +89,7 @@ BenchmarkReport measure(const BenchmarkArguments& arguments) {
   report.threads =
       arguments.threads > 0 ? arguments.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   report.cpu = cpu_name();
-  for (const EngineInfo& info : engines()) {
-    if (info.name == report.engine) report.target = info.description;
-  }
+  report.target = find_engine(report.engine).description;
   if (before) report.scratch_bytes = allocations()->peak_bytes - before->live_bytes;
 
   std::vector<io::PeerMatcher> baselines;
@@ -111,6 +112,15 @@ BenchmarkReport measure(const BenchmarkArguments& arguments) {
     add_stages(result.ms, report.stages);
     for (std::size_t i = 0; i < baselines.size(); ++i)
       report.baselines[i].ms.push_back(time_ms([&] { baselines[i].match(); }));
+  }
+  if (on_device) {
+    // The total without the time of the stages' events, and the kernels in a frame of their own.
+    pipeline.set_device_options({.timing = DeviceTiming::none});
+    report.total.ms.clear();
+    for (int run = 0; run < arguments.runs; ++run) report.total.ms.push_back(time_ms(process));
+    pipeline.set_device_options({.timing = DeviceTiming::kernels});
+    process();
+    report.device = pipeline.device_profile();
   }
   if (before) report.allocations = static_cast<double>(allocated) / arguments.runs;
   report.peak_memory_bytes = peak_memory_bytes();
@@ -139,6 +149,7 @@ void benchmark(const BenchmarkArguments& arguments) {
 constexpr const char* benchmark_footer =
     R"(Measures the time of every stage of the pipeline on frames whose road model is known from the previous frame,
 alternating with OpenCV's matchers on the same frames and disparities. Without LEFT and RIGHT a synthetic road is used.
+With the engine cuda it adds the kernels of a frame, with times and occupancy, launches, waits and bytes copied.
 
 Examples:
   roadstereo benchmark

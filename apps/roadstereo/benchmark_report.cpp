@@ -28,6 +28,38 @@ std::string timing_line(const Timing& timing) {
                      timing.slowest());
 }
 
+std::string device_text(const DeviceProfile& device) {
+  std::string text = fmt::format("\n  {:<18} {:>8} {:>9} {:>7} {:>7} {:>9} {:>9} {:>9} {:>9}\n", "kernel", "launches",
+                                 "ms", "blocks", "threads", "occupancy", "registers", "local B", "shared B");
+  for (const KernelProfile& kernel : device.kernels) {
+    text += fmt::format("  {:<18} {:>8} {:>9.4f} {:>7} {:>7} {:>9.2f} {:>9} {:>9} {:>9}\n", kernel.name,
+                        kernel.launches, kernel.ms, kernel.blocks, kernel.threads, kernel.occupancy, kernel.registers,
+                        kernel.local_bytes, kernel.shared_bytes);
+  }
+  return text + fmt::format("  {} launches, {} waits, {} bytes up, {} bytes down\n", device.launches, device.waits,
+                            device.bytes_up, device.bytes_down);
+}
+
+nlohmann::ordered_json device_json(const DeviceProfile& device) {
+  nlohmann::ordered_json document = {{"launches", device.launches},
+                                     {"waits", device.waits},
+                                     {"bytes_up", device.bytes_up},
+                                     {"bytes_down", device.bytes_down},
+                                     {"kernels", nlohmann::ordered_json::array()}};
+  for (const KernelProfile& kernel : device.kernels) {
+    document["kernels"].push_back({{"name", kernel.name},
+                                   {"launches", kernel.launches},
+                                   {"ms", kernel.ms},
+                                   {"blocks", kernel.blocks},
+                                   {"threads", kernel.threads},
+                                   {"occupancy", kernel.occupancy},
+                                   {"registers", kernel.registers},
+                                   {"local_bytes", kernel.local_bytes},
+                                   {"shared_bytes", kernel.shared_bytes}});
+  }
+  return document;
+}
+
 }  // namespace
 
 double Timing::median() const {
@@ -66,6 +98,7 @@ std::string report_text(const BenchmarkReport& report) {
   for (const Timing& peer : report.baselines) {
     text += timing_line(peer) + fmt::format("   {:.2f}\n", report.total.median() / peer.median());
   }
+  if (report.device) text += device_text(*report.device);
   text += "\n";
   if (report.allocations) text += fmt::format("  allocations per frame: {:.0f}\n", *report.allocations);
   if (report.scratch_bytes) {
@@ -97,6 +130,7 @@ std::string report_json(const BenchmarkReport& report) {
     entry["ratio"] = report.total.median() / peer.median();
     document["peers"].push_back(entry);
   }
+  if (report.device) document["device"] = device_json(*report.device);
   document["allocations_per_frame"] =
       report.allocations ? nlohmann::ordered_json(*report.allocations) : nlohmann::ordered_json();
   document["pipeline_memory_bytes"] =

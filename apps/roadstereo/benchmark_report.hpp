@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "roadstereo/device.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
@@ -29,6 +30,7 @@ struct BenchmarkReport {
   Timing first{"first frame", {}};  ///< road model estimated
   std::vector<Timing> baselines;
   std::optional<double> allocations;         ///< per frame
+  std::optional<DeviceProfile> device;       ///< of a frame of its own, with the engine cuda
   std::optional<std::size_t> scratch_bytes;  ///< maximum in use, minus the use before the pipeline was created
   std::size_t peak_memory_bytes = 0;         ///< of the whole process
 

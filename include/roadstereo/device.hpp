@@ -2,13 +2,24 @@
 
 #include <cstdint>
 
+#include "roadstereo/device_profile.hpp"
+
 struct CUstream_st;
 
 namespace roadstereo {
 
+/// What a device's clock measures. Each time costs the device about a microsecond.
+enum class DeviceTiming {
+  none,    ///< nothing: FrameResult::ms is the host's clock, on which a stage ends when it is enqueued
+  stages,  ///< FrameResult::ms of every stage
+  kernels  ///< stages, and every kernel for `Pipeline::device_profile`; kernels then never overlap
+};
+
 /// How a pipeline with the engine `cuda` shares a device with its caller (`Pipeline::set_device_options`). A pipeline
 /// belongs to the device that is current in the thread that makes it; `process` throws Error where another one is
-/// current. `process` is synchronous: all device work of the frame has completed on return.
+/// current. `process` is synchronous: all device work of the frame has completed on return, also when it throws. After
+/// an error of the device itself, such as an illegal address, CUDA takes no more work of the process: a new one is
+/// needed.
 struct DeviceOptions {
   /// The stream of all work: a cudaStream_t of the caller that outlives the pipeline, or its next set_device_options.
   /// Null: a stream of the pipeline. Frames in device memory must be complete, or be written in this stream.
@@ -16,6 +27,7 @@ struct DeviceOptions {
   /// Copy the maps to the host. False leaves the images of FrameResult empty: only `Pipeline::device_maps` has them,
   /// and `find_damage` throws Error.
   bool download = true;
+  DeviceTiming timing = DeviceTiming::none;  ///< of the frames from now on
 };
 
 /// The last frame's maps in device memory, rows without padding. They belong to the pipeline; work enqueued in its

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "roadstereo/grey_scale.hpp"
+#include "roadstereo/image_memory.hpp"
 #include "roadstereo/image_view.hpp"
 
 namespace roadstereo {
@@ -15,6 +16,8 @@ class Image {
  public:
   Image() = default;
   Image(int width, int height, T value = T{}) { assign(width, height, value); }
+  /// An empty image whose pixels will lie in `memory`, which outlives it.
+  explicit Image(ImageMemory& memory) : pixels_(ImageAllocator<T>(&memory)) {}
 
   /// Changes the size; equal sizes never allocate. Pixels are unspecified.
   void resize(int width, int height) {
@@ -33,6 +36,8 @@ class Image {
   int height() const { return height_; }
   std::size_t pixels() const { return pixels_.size(); }
   bool empty() const { return pixels_.empty(); }
+  /// The memory that it was made with; null: the heap.
+  const ImageMemory* memory() const { return pixels_.get_allocator().memory(); }
 
   T* row(int v) { return pixels_.data() + static_cast<std::ptrdiff_t>(v) * width_; }
   const T* row(int v) const { return pixels_.data() + static_cast<std::ptrdiff_t>(v) * width_; }
@@ -47,7 +52,7 @@ class Image {
   bool operator==(const Image&) const = default;
 
  private:
-  std::vector<T> pixels_;
+  std::vector<T, ImageAllocator<T>> pixels_;
   int width_ = 0;
   int height_ = 0;
 };

@@ -123,8 +123,13 @@ struct EngineInfo {
   std::function<std::unique_ptr<StereoEngine>(int threads)> make;  ///< for that many worker threads, at least 1
 };
 
-/// Engines of this build that this machine can run, fastest first, then those of register_engine.
+/// Engines of this build that this machine can run, fastest first, then those of register_engine. Where `cuda` is
+/// built, the first call looks for a GPU, which takes time and memory of it; so do "auto" and "cuda", but no other
+/// name.
 const std::vector<EngineInfo>& engines();
+
+/// The entry of the engine called `name`; "auto" takes the first of the registry. Throws like make_engine.
+const EngineInfo& find_engine(const std::string& name);
 
 /// Adds an engine of the caller's: `PipelineOptions::engine` then takes its name, while "auto" does not select it. The
 /// pipeline does with it what it does with its own: road model, shift, refinement by the variances, roll. Not

@@ -22,6 +22,7 @@ namespace roadstereo {
 
 struct DeviceOptions;
 struct DeviceMaps;
+struct DeviceProfile;
 
 struct PipelineOptions {
   std::string engine = "auto";  ///< a name from engines(), or "auto"
@@ -58,7 +59,7 @@ struct StageTimes {
   double roll = 0;        ///< roll and projection model
   double transform = 0;   ///< disparity transformation
   double download = 0;    ///< maps from a device to the host; about 0 with the engines of the host
-  double total = 0;       ///< on the host's clock; with the engine cuda the device times the other stages
+  double total = 0;       ///< on the host's clock; so are the other stages, unless DeviceOptions::timing is set
 };
 
 /// Result for one pair. All maps have the size of the images.
@@ -140,6 +141,9 @@ class Pipeline {
   /// Engine cuda: returns the last frame's maps in device memory. Throws Error for any other engine, or without a
   /// frame.
   DeviceMaps device_maps() const;
+  /// Engine cuda with DeviceTiming::kernels: returns the last frame's kernels with their times, launches, waits and
+  /// copies. Throws Error for any other engine or timing, or without a frame.
+  DeviceProfile device_profile() const;
 
   const PipelineOptions& options() const;
   const std::string& engine_name() const;

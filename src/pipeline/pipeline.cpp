@@ -80,6 +80,7 @@ struct Pipeline::State {
   void estimate_roll(ImageView<const float> disparity);
   void transform_disparity(ImageView<const float> disparity);
   void download();
+  void run_stages(const FrameView& left, const FrameView& right);
   void end_frame();
 };
 
@@ -237,6 +238,19 @@ void Pipeline::State::transform_disparity(ImageView<const float> disparity) {
   result.spread = road.spread;
 }
 
+void Pipeline::State::run_stages(const FrameView& left, const FrameView& right) {
+  const GreyPair pair = convert_to_grey(left, right);
+  estimate_road_model(pair);
+  const MatchInput transformed = transform_perspective(pair);
+  const MatchInput input = search_coarsely(transformed);
+  const ResidualMaps residual = match(input);
+  const DisparityMaps restored = restore_disparity(residual);
+  const ImageView<const float> disparity = refine(restored);
+  estimate_roll(disparity);
+  transform_disparity(disparity);
+  download();
+}
+
 void Pipeline::State::download() {
   const StageTimer timer(result.ms.download);
   stages->download(result);
@@ -276,16 +290,12 @@ const FrameResult& Pipeline::process(const FrameView& left, const FrameView& rig
   State& s = *state_;
   const ScratchScope scratch(s.memory);
   s.begin_frame(left, right);
-  const GreyPair pair = s.convert_to_grey(left, right);
-  s.estimate_road_model(pair);
-  const MatchInput transformed = s.transform_perspective(pair);
-  const MatchInput input = s.search_coarsely(transformed);
-  const ResidualMaps residual = s.match(input);
-  const DisparityMaps restored = s.restore_disparity(residual);
-  const ImageView<const float> disparity = s.refine(restored);
-  s.estimate_roll(disparity);
-  s.transform_disparity(disparity);
-  s.download();
+  try {
+    s.run_stages(left, right);
+  } catch (...) {
+    s.stages->abandon();
+    throw;
+  }
   s.end_frame();
   return s.result;
 }
@@ -380,6 +390,12 @@ DeviceMaps Pipeline::device_maps() const {
   const DeviceMaps maps = state_->stages->device_maps();
   if (!state_->has_maps) fail("no frame was processed yet, or the last one was refused or forgotten");
   return maps;
+}
+
+DeviceProfile Pipeline::device_profile() const {
+  DeviceProfile profile = state_->stages->device_profile();
+  if (!state_->has_maps) fail("no frame was processed yet, or the last one was refused or forgotten");
+  return profile;
 }
 
 void Pipeline::reset() {

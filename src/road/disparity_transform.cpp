@@ -17,8 +17,8 @@ constexpr int rows_per_band = 64;
 
 void subtract_road(ImageView<const float> disparity, const DisparityPlane& plane, int v, float* out) {
   const float* in = disparity.row(v);
-  const double at_row = road_at_row(plane.a0, plane.a1, v);
-  for (int u = 0; u < disparity.width(); ++u) out[u] = above_road(in[u], at_row, plane.a2, u);
+  const RowLine road = row_line(plane, v, 0);
+  for (int u = 0; u < disparity.width(); ++u) out[u] = above_road(in[u], road, u);
 }
 
 }  // namespace

@@ -67,8 +67,9 @@ std::optional<IrlsPlaneFit> fit_plane_irls(std::span<const DisparityPoint> point
     }
     const double scale = narrowed_scale(upper_median_magnitude(near), fit.scale_px);
     const DisparityPoint& far = points.back();
-    const bool settled = robust_fit_settled(plane->disparity(far.u, far.v) - fit.plane.disparity(far.u, far.v),
-                                            plane->a2 - fit.plane.a2, scale, fit.scale_px);
+    const bool settled =
+        robust_fit_settled(plane->disparity(far.u, far.v) - fit.plane.disparity(far.u, far.v), plane->a2 - fit.plane.a2,
+                           scale, fit.scale_px, static_cast<double>(near.size()));
     fit.plane = *plane;
     fit.scale_px = scale;
     if (settled) break;

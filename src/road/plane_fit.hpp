@@ -29,6 +29,8 @@ class PlaneSums {
   void add(const DisparityPoint& point, double weight = 1);
   void add(const PlaneSums& other);
 
+  DeviationSums deviations() const { return deviations_of(s_, origin_u_, origin_v_); }
+
   double weight() const { return s_.n; }
   double mean_u() const { return origin_u_ + s_.u / s_.n; }
   double mean_v() const { return origin_v_ + s_.v / s_.n; }

@@ -29,9 +29,14 @@ ROADSTEREO_HD inline double narrowed_scale(double median_magnitude, double scale
 }
 
 /// Whether a step that changed the plane by `by_px` at a far point and by `by_a2`, and the scale from one to another,
-/// was the last.
-ROADSTEREO_HD inline bool robust_fit_settled(double by_px, double by_a2, double scale, double last_scale) {
-  return std::fabs(by_px) < 1e-6 && std::fabs(by_a2) < 1e-9 && scale > last_scale * (1 - 1e-4);
+/// was the last: a fiftieth of the standard errors σ/√n that the noise of `points` residuals leaves, over a thousand
+/// columns for the slope.
+ROADSTEREO_HD inline bool robust_fit_settled(double by_px, double by_a2, double scale, double last_scale,
+                                             double points) {
+  constexpr double share2 = 0.02 * 0.02, columns2 = 1e6;
+  const double limit2 = share2 * scale * scale, narrowed = last_scale - scale;
+  return points > 0 && by_px * by_px * points < limit2 && by_a2 * by_a2 * columns2 * points < limit2 &&
+         narrowed * narrowed * points < share2 * last_scale * last_scale;
 }
 
 /// Window that the robust fit of a map begins with: wide enough for a start that is a pixel off, too narrow for kerbs.
@@ -60,8 +65,9 @@ ROADSTEREO_HD inline bool solve_slopes(const PlaneMoments& m, bool with_roll, do
   }
   const double determinant = m.uu * m.vv - m.uv * m.uv;
   if (determinant <= 1e-9 * m.n * m.n) return false;
-  a1 = (m.uu * m.vd - m.uv * m.ud) / determinant;
-  a2 = (m.vv * m.ud - m.uv * m.vd) / determinant;
+  const double inverse = 1 / determinant;
+  a1 = (m.uu * m.vd - m.uv * m.ud) * inverse;
+  a2 = (m.vv * m.ud - m.uv * m.vd) * inverse;
   return true;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "road/roll_energy.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -55,18 +54,24 @@ void fail_on_one_line() {
 }
 
 RollEstimate solve_from_sums(const PlaneSums& sums, double initial_roll_rad, const RollOptions& options) {
-  require_enough(sums.weight());
-  const std::optional<DisparityPlane> least_squares = sums.plane();
-  if (!least_squares) fail_on_one_line();
-  const RollEnergy energy(sums);
-  RollSolution solution{roll_of_plane(*least_squares), 1};
-  if (options.solver == RollSolver::gradient_descent) solution = descend_roll(energy, initial_roll_rad, options);
+  const DeviationSums deviations = sums.deviations();
+  return take_solved(solve_roll(deviations, roll_from_sums(initial_roll_rad, options)), deviations.n);
+}
+
+RollFromSums roll_from_sums(double initial_roll_rad, const RollOptions& options) {
+  return {options.solver == RollSolver::gradient_descent,
+          initial_roll_rad,
+          {options.initial_lambda, options.roll_threshold_rad, options.max_iterations}};
+}
+
+RollEstimate take_solved(const SolvedRoll& solved, double points) {
+  require_enough(points);
+  if (solved.found == 0) fail_on_one_line();
   RollEstimate geometry;
-  geometry.pixels = static_cast<std::size_t>(sums.weight());
-  geometry.roll_rad = solution.roll;
-  geometry.iterations = solution.iterations;
-  const double alpha1 = energy.alpha1(solution.roll);
-  geometry.plane = {energy.alpha0(solution.roll), alpha1 * std::cos(solution.roll), -alpha1 * std::sin(solution.roll)};
+  geometry.pixels = static_cast<std::size_t>(points);
+  geometry.roll_rad = solved.roll_rad;
+  geometry.iterations = solved.iterations;
+  geometry.plane = solved.plane;
   return geometry;
 }
 

@@ -3,20 +3,17 @@
 #include <cmath>
 
 #include "road/robust_weights.hpp"
+#include "road/row_shift.hpp"
 #include "roadstereo/host_device.hpp"
 #include "roadstereo/uncontracted.hpp"
 
 // The formulas of the transformed disparity and its spread, which are measured on the host and on the device.
 namespace roadstereo {
 
-/// The road's disparity at the first pixel of a row.
-ROADSTEREO_HD inline double road_at_row(double a0, double a1, int v) {
-  return a0 + uncontracted_product(a1, v);
-}
-
-/// ℓ(p) − α0 + α1 (u sin ψ − v cos ψ): height above (or depth below) the road, in pixels of disparity.
-ROADSTEREO_HD inline float above_road(float disparity, double at_row, double a2, int u) {
-  return static_cast<float>(disparity - (at_row + uncontracted_product(a2, u)));
+/// ℓ(p) − α0 + α1 (u sin ψ − v cos ψ): height above (or depth below) the road, in pixels of disparity, from the road's
+/// line in the row. In single precision, since small GPUs have hardly any other; the same bits on host and device.
+ROADSTEREO_HD inline float above_road(float disparity, const RowLine& road, int u) {
+  return disparity - road.offset - uncontracted_product(road.slope, static_cast<float>(u));
 }
 
 /// δt: the smallest whole number that makes every value positive, at least `least`; `smallest` is that of the heights,

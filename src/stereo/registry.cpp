@@ -1,3 +1,4 @@
+#include <cstddef>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -14,35 +15,53 @@ namespace roadstereo {
 
 namespace {
 
+constexpr const char* device_engine = "cuda";
+
 struct Registry {
   std::vector<EngineInfo> usable;  ///< best first
   std::vector<UnavailableEngine> absent;
+  std::size_t host_engines = 0;  ///< that are among the usable
 };
 
-Registry make_registry() {
+/// Those that need no device, best first.
+std::vector<EngineInfo> make_host_engines() {
+  std::vector<EngineInfo> engines{
+      {"cpu", "threads and SIMD (" + cpu_engine_target() + "), sliding sums, no cost volume", false, make_cpu_engine},
+      {"reference", "the paper's equations in double precision: slow, the oracle", true, make_reference_engine}};
+#if defined(ROADSTEREO_CUDA_EMULATED)
+  engines.push_back({device_engine, "CUDA's kernels emulated on the host: slow, for tests", false, make_cuda_engine});
+#endif
+  return engines;
+}
+
+/// With those of register_engine.
+std::vector<EngineInfo>& host_engines() {
+  static std::vector<EngineInfo> of_this_machine = make_host_engines();
+  return of_this_machine;
+}
+
+Registry find_device_engine() {
   Registry registry;
 #if defined(ROADSTEREO_WITH_CUDA) && !defined(ROADSTEREO_CUDA_EMULATED)
   if (const cuda::Device device = cuda::find_device(); device.usable) {
-    registry.usable.push_back({"cuda", "CUDA on " + device.name, false, make_cuda_engine});
+    registry.usable.push_back({device_engine, "CUDA on " + device.name, false, make_cuda_engine});
   } else {
-    registry.absent.push_back({"cuda", device.reason});
+    registry.absent.push_back({device_engine, device.reason});
   }
 #elif !defined(ROADSTEREO_WITH_CUDA)
-  registry.absent.push_back({"cuda", "this build was made without CUDA (CMake option ROADSTEREO_CUDA)"});
-#endif
-  registry.usable.push_back(
-      {"cpu", "threads and SIMD (" + cpu_engine_target() + "), sliding sums, no cost volume", false, make_cpu_engine});
-  registry.usable.push_back(
-      {"reference", "the paper's equations in double precision: slow, the oracle", true, make_reference_engine});
-#if defined(ROADSTEREO_CUDA_EMULATED)
-  registry.usable.push_back({"cuda", "CUDA's kernels emulated on the host: slow, for tests", false, make_cuda_engine});
+  registry.absent.push_back({device_engine, "this build was made without CUDA (CMake option ROADSTEREO_CUDA)"});
 #endif
   return registry;
 }
 
-Registry& registry() {
-  static Registry of_this_machine = make_registry();
-  return of_this_machine;
+/// Looks for a device, which makes a CUDA context of some hundred megabytes: only where one may be used.
+const Registry& registry() {
+  static Registry of_this_machine = find_device_engine();
+  Registry& all = of_this_machine;
+  for (; all.host_engines < host_engines().size(); ++all.host_engines) {
+    all.usable.push_back(host_engines()[all.host_engines]);
+  }
+  return all;
 }
 
 }  // namespace
@@ -55,22 +74,21 @@ void register_engine(EngineInfo engine) {
   const auto fail_name = [&](const char* reason) { fail("the engine '", engine.name, "' cannot be added: ", reason); };
   if (engine.name.empty() || engine.name == "auto") fail_name("it needs a name other than auto");
   if (!engine.make) fail_name("it has no function that makes it");
-  for (const EngineInfo& known : engines()) {
+  if (engine.name == device_engine) fail_name("the library has one of that name");
+  for (const EngineInfo& known : host_engines()) {
     if (known.name == engine.name) fail_name("there is one of that name");
   }
-  for (const UnavailableEngine& known : unavailable_engines()) {
-    if (known.name == engine.name) fail_name("the library has one of that name, which this machine cannot run");
-  }
-  registry().usable.push_back(std::move(engine));
+  host_engines().push_back(std::move(engine));
 }
 
 const std::vector<UnavailableEngine>& unavailable_engines() {
   return registry().absent;
 }
 
-namespace {
-
 const EngineInfo& find_engine(const std::string& name) {
+  for (const EngineInfo& info : host_engines()) {
+    if (info.name == name) return info;
+  }
   if (name == "auto") return engines().front();
   std::string known = "auto";
   for (const EngineInfo& info : engines()) {
@@ -82,8 +100,6 @@ const EngineInfo& find_engine(const std::string& name) {
   }
   fail("there is no engine called '", name, "'; this build has: ", known);
 }
-
-}  // namespace
 
 std::string resolve_engine_name(const std::string& name) {
   return find_engine(name).name;

@@ -21,6 +21,14 @@ class OnDevice : public testing::Test {
   }
 };
 
+/// Whether kernels are compiled by the host's compiler. Else a value at the edge of a threshold may be rounded to its
+/// other side: what is compared then is bounded, not equal.
+#if defined(ROADSTEREO_CUDA_EMULATED)
+inline constexpr bool kernels_round_as_host = true;
+#else
+inline constexpr bool kernels_round_as_host = false;
+#endif
+
 /// A stage that takes device memory as soon as it is made: it is made by its first use, which a skipped test has not.
 template <class Stage>
 class MadeOnUse {

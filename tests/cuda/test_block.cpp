@@ -1,84 +1,65 @@
-// What the threads of a block do together: sums, extremes and order statistics, against the host's.
+// What the threads of a warp and of a block do together: sums, extremes and order statistics, against the host's. All
+// fits rest on it.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 #include <vector>
 
-#include "core/cuda/block_reduce.hpp"
-#include "core/cuda/block_select.hpp"
-#include "core/cuda/launch.hpp"
+#include "tests/cuda/block_kernels.hpp"
+#include "tests/cuda/device_copy.hpp"
+#include "tests/cuda/device_test.hpp"
 #include "tests/stereo/textured_pair.hpp"
 
-namespace roadstereo::cuda {
+namespace roadstereo {
 namespace {
 
-template <int count>
-void sum_powers(int items, double* sums) {
-  double own[count] = {};
-  for (int i = static_cast<int>(threadIdx.x); i < items; i += static_cast<int>(blockDim.x)) {
-    for (int k = 0; k < count; ++k) own[k] += (k + 1) * i;
-  }
-  const double* totals = block_sums(own, shared_memory<double>());
-  // Again at once: nobody may still be reading the first.
-  const double* again = block_sums(own, shared_memory<double>());
-  for (int k = 0; k < count; ++k) {
-    if (threadIdx.x == static_cast<unsigned>(k)) sums[k] = (totals[k] + again[k]) / 2;
-  }
-}
+class CudaBlock : public test::OnDevice {};
 
-template <int count>
-void expect_sums(unsigned threads) {
+TEST_F(CudaBlock, SumsEveryNumberOfValuesAndWarps) {
   constexpr int items = 777;
-  std::vector<double> sums(count);
-  launch(sum_powers<count>, {1, threads, sums_scratch(count) * sizeof(double)}, nullptr, items, sums.data());
-  for (int k = 0; k < count; ++k) {
-    EXPECT_EQ(sums[static_cast<std::size_t>(k)], (k + 1) * items * (items - 1) / 2.0) << k << " of " << count;
-  }
-}
-
-TEST(CudaBlock, SumsEveryNumberOfValuesAndWarps) {
   for (const unsigned threads : {32U, 96U, 1024U}) {
-    expect_sums<1>(threads);
-    expect_sums<2>(threads);
-    expect_sums<3>(threads);
-    expect_sums<5>(threads);
-    expect_sums<6>(threads);
-    expect_sums<9>(threads);
-    expect_sums<10>(threads);
-    expect_sums<32>(threads);
+    for (const int count : {1, 2, 3, 5, 6, 9, 10, 32}) {
+      const auto size = static_cast<std::size_t>(count);
+      cuda::DeviceArray<double> on_device(size);
+      test::sum_multiples(count, threads, items, on_device.data());
+      const std::vector<double> sums = test::to_host(on_device.data(), size);
+      for (std::size_t k = 0; k < size; ++k) {
+        EXPECT_EQ(sums[k], static_cast<double>(k + 1) * items * (items - 1) / 2.0) << k << " of " << count;
+      }
+    }
   }
 }
 
-void extremes(const float* values, float* found) {
-  float* scratch = shared_memory<float>();
-  const float value = values[threadIdx.x];
-  const float least = block_best(value, Least{}, scratch);
-  const float greatest = block_best(value, Greatest{}, scratch);
-  if (threadIdx.x == 7) found[0] = least;
-  if (threadIdx.x == 8) found[1] = greatest;
-}
-
-TEST(CudaBlock, FindsMinimumAndMaximum) {
-  std::vector<float> values(160), found(2);
+TEST_F(CudaBlock, FindsMinimumAndMaximum) {
+  std::vector<float> values(160);
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = static_cast<float>(test::lattice(1, static_cast<std::int64_t>(i), 3)) - 0.5F;
-  launch(extremes, {1, 160, (warp_lanes + 1) * sizeof(float)}, nullptr, values.data(), found.data());
+  const auto in = test::to_device(values);
+  cuda::DeviceArray<float> out(2);
+  test::find_extremes(in.data(), 160, out.data());
+  const std::vector<float> found = test::to_host(out.data(), 2);
   EXPECT_EQ(found[0], *std::min_element(values.begin(), values.end()));
   EXPECT_EQ(found[1], *std::max_element(values.begin(), values.end()));
 }
 
-template <class RankOf>
-void select(const float* values, int count, RankOf rank_of, float* found, int* of) {
-  const auto key = [&](int i, std::uint32_t& out) {
-    out = key_of(values[i]);
-    return values[i] == values[i];
-  };
-  const SelectedKey selected = block_select(count, key, rank_of, *shared_memory<SelectScratch>());
-  if (threadIdx.x != 0) return;
-  *found = value_of(selected.key);
-  *of = selected.of;
+constexpr double shares[] = {-1, 0.0, 0.01, 0.3, 0.95, 1.0};
+
+/// The value of the rank, on the host.
+float expected_of(const std::vector<float>& values, double share) {
+  std::vector<float> sorted;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted), [](float v) { return !std::isnan(v); });
+  std::sort(sorted.begin(), sorted.end());
+  const double rank =
+      share < 0 ? static_cast<double>(sorted.size() / 2) : share * static_cast<double>(sorted.size() - 1);
+  return sorted[static_cast<std::size_t>(rank)];
+}
+
+int count_of(const std::vector<float>& values) {
+  return static_cast<int>(std::count_if(values.begin(), values.end(), [](float v) { return !std::isnan(v); }));
 }
 
 /// Values of both signs and many magnitudes, some equal, some missing.
@@ -92,35 +73,72 @@ std::vector<float> scattered(int count) {
   return values;
 }
 
-TEST(CudaBlock, SelectsExactOrderStatistics) {
+TEST_F(CudaBlock, SelectsExactOrderStatistics) {
+  cuda::DeviceArray<test::Selected> out(1);
   for (const int count : {1, 2, 33, 500, 3001}) {
     const std::vector<float> values = scattered(count);
-    std::vector<float> sorted;
-    std::copy_if(values.begin(), values.end(), std::back_inserter(sorted), [](float v) { return !std::isnan(v); });
-    std::sort(sorted.begin(), sorted.end());
-    for (const double share : {0.0, 0.01, 0.3, 0.95, 1.0}) {
-      float found = 0;
-      int of = 0;
-      launch(select<ShareRank>, {1, 128, sizeof(SelectScratch)}, nullptr, values.data(), count, ShareRank{share},
-             &found, &of);
-      ASSERT_EQ(of, static_cast<int>(sorted.size()));
-      EXPECT_EQ(found, sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))]);
+    const auto in = test::to_device(values);
+    for (const double share : shares) {
+      test::select_value(in.data(), count, 128, {share}, out.data());
+      const test::Selected selected = test::to_host(out.data(), 1).front();
+      ASSERT_EQ(selected.of, count_of(values));
+      EXPECT_EQ(selected.value, expected_of(values, share)) << share << " of " << count;
     }
-    float middle = 0;
-    int of = 0;
-    launch(select<MiddleRank>, {1, 128, sizeof(SelectScratch)}, nullptr, values.data(), count, MiddleRank{}, &middle,
-           &of);
-    EXPECT_EQ(middle, sorted[sorted.size() / 2]);
   }
 }
 
-TEST(CudaBlock, SelectsNothingOfNoValues) {
-  const std::vector<float> values(40, NAN);
-  float found = 0;
-  int of = -1;
-  launch(select<MiddleRank>, {1, 64, sizeof(SelectScratch)}, nullptr, values.data(), 40, MiddleRank{}, &found, &of);
-  EXPECT_EQ(of, 0);
+/// Whole numbers of two digits, whose first ones may have been counted by others.
+TEST_F(CudaBlock, SelectsNumbersWhoseFirstDigitsAreCounted) {
+  constexpr int count = 2000, bins = 2048;
+  std::vector<float> values;
+  std::vector<int> first_digits(bins);
+  for (int i = 0; i < count; ++i) {
+    const double chance = test::lattice(i, 3, 5);
+    values.push_back(chance < 0.1 ? NAN : static_cast<float>(std::floor((1 << 22) * chance * chance)));
+    if (chance >= 0.1) ++first_digits[static_cast<std::size_t>(values.back()) / bins];
+  }
+  const auto in = test::to_device(values);
+  const auto counted = test::to_device(first_digits);
+  cuda::DeviceArray<test::Selected> out(1);
+  for (const double share : shares) {
+    for (const int* known : {static_cast<const int*>(nullptr), counted.data()}) {
+      test::select_number(in.data(), count, 256, {share}, known, out.data());
+      const test::Selected selected = test::to_host(out.data(), 1).front();
+      EXPECT_EQ(selected.of, count_of(values));
+      EXPECT_EQ(selected.value, expected_of(values, share)) << share;
+    }
+  }
+}
+
+TEST_F(CudaBlock, SelectsNothingOfNoValues) {
+  const auto in = test::to_device(std::vector<float>(40, NAN));
+  cuda::DeviceArray<test::Selected> out(1);
+  test::select_value(in.data(), 40, 64, {}, out.data());
+  EXPECT_EQ(test::to_host(out.data(), 1).front().of, 0);
+}
+
+TEST_F(CudaBlock, BarrierMakesSharedMemoryVisible) {
+  std::vector<int> numbers(192);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  const auto in = test::to_device(numbers);
+  cuda::DeviceArray<int> out(192);
+  test::reverse_in_blocks(in.data(), 3, 64, out.data());
+  const std::vector<int> found = test::to_host(out.data(), 192);
+  for (int i = 0; i < 192; ++i) EXPECT_EQ(found[static_cast<std::size_t>(i)], i / 64 * 64 + 63 - i % 64);
+}
+
+TEST_F(CudaBlock, LanesOfWarpReduceAndVote) {
+  cuda::DeviceArray<test::WarpResults> out(64);
+  test::reduce_warps(out.data());
+  const std::vector<test::WarpResults> found = test::to_host(out.data(), 64);
+  for (std::size_t t = 0; t < 64; ++t) {
+    const bool second = t >= 32;
+    EXPECT_EQ(found[t].sum, 31 * 32 / 2 + (second ? 32 * 32 : 0));
+    EXPECT_EQ(found[t].votes, second ? 0x92492492U : 0x49249249U);  // multiples of 3 from 33 on, and from 0 on
+    EXPECT_EQ(found[t].least, second ? -38.5F : -6.5F);
+    EXPECT_EQ(found[t].largest, second ? -35 : -3);
+  }
 }
 
 }  // namespace
-}  // namespace roadstereo::cuda
+}  // namespace roadstereo

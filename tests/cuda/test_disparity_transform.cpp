@@ -10,6 +10,11 @@
 #include "tests/cuda/device_copy.hpp"
 #include "tests/cuda/device_test.hpp"
 #include "tests/stereo/textured_pair.hpp"
+#if defined(ROADSTEREO_CUDA_EMULATED)
+#include <stdexcept>
+
+#include "tests/cuda/emulated/run_kernel.hpp"
+#endif
 
 namespace roadstereo::cuda {
 namespace {
@@ -95,6 +100,19 @@ TEST_F(CudaDisparityTransform, EmptyMapStaysEmpty) {
   EXPECT_EQ(transform_->statistics().valid, 0);
   expect_agreement(damaged_road(33, 35), road, -1, 2);  // and leaves nothing behind
 }
+
+#if defined(ROADSTEREO_CUDA_EMULATED)
+TEST_F(CudaDisparityTransform, FailedLaunchLeavesNothingBehind) {
+  const Image<float> map = damaged_road(129, 47);
+  const test::DevicePlane<float> disparity(map.view()), transformed(129, 47);
+  for (const int launches : {0, 1}) {
+    emulated::fail_after(launches);
+    EXPECT_THROW(transform_->run(disparity.view(), {nullptr, road}, {-1, 2}, transformed.plane(), nullptr),
+                 std::runtime_error);
+    expect_agreement(map, road, -1, 2);
+  }
+}
+#endif
 
 TEST_F(CudaDisparityTransform, ExactRoadIsFlat) {
   Image<float> map(64, 48);

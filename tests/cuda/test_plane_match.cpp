@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/downsample.hpp"
@@ -42,13 +43,19 @@ Found search_on_device(const test::TexturedPair& pair, const DisparityPlane& pla
 }
 
 void expect_same(const Found& device, const PlaneMatches& host) {
-  EXPECT_EQ(device.tried, host.tried);
-  ASSERT_EQ(device.points.size(), host.points.size());
-  for (std::size_t i = 0; i < host.points.size(); ++i) {
-    EXPECT_EQ(device.points[i].u, host.points[i].u);
-    EXPECT_EQ(device.points[i].v, host.points[i].v);
-    EXPECT_NEAR(device.points[i].d, host.points[i].d, 5e-5);
+  // Places whose texture or correlation lies at its threshold.
+  const std::size_t max_missing = test::kernels_round_as_host ? 0 : 2;
+  EXPECT_LE(std::abs(device.tried - host.tried), static_cast<int>(max_missing));
+  std::size_t common = 0;
+  for (const DisparityPoint& point : host.points) {
+    const auto same = std::find_if(device.points.begin(), device.points.end(),
+                                   [&](const DisparityPoint& p) { return p.u == point.u && p.v == point.v; });
+    if (same == device.points.end()) continue;
+    ++common;
+    EXPECT_NEAR(same->d, point.d, 5e-5);
   }
+  EXPECT_LE(host.points.size() - common, max_missing);
+  EXPECT_LE(device.points.size() - common, max_missing);
 }
 
 test::TexturedPair textured_road(int width, int height) {

@@ -7,6 +7,7 @@
 #include "road/cuda/map_sums.hpp"
 #include "road/cuda/road_fit.hpp"
 #include "road/cuda/roll_assessment.hpp"
+#include "road/roll_assessment.hpp"
 #include "roadstereo/error.hpp"
 #include "tests/cuda/device_copy.hpp"
 #include "tests/cuda/device_test.hpp"
@@ -61,13 +62,10 @@ class CudaRoadFit : public test::OnDevice {
       wait();
       return finish_road_fit(fit_->statistics(), width, height, options);
     }
-    sums_->run(masked, nullptr);
+    sums_->run(masked, roll_from_sums(0, options), nullptr);
+    fit_->measure(masked, {sums_->plane(), {}}, nullptr);
     wait();
-    RollEstimate geometry = solve_map(sums_->sums(), width, height, 0, options);
-    fit_->measure(masked, {geometry.plane.a0, geometry.plane.a1, geometry.plane.a2}, nullptr);
-    wait();
-    finish_measured(fit_->statistics(), width, height, options, geometry);
-    return geometry;
+    return finish_solved(sums_->solved(), fit_->statistics(), width, height, options);
   }
 
   void expect_agreement(const Image<float>& map, const Mask& mask, const std::optional<DisparityPlane>& prior,
@@ -164,9 +162,9 @@ TEST_F(CudaRoadFit, SumsMatchClosedForm) {
   // d = 3 everywhere: the sums of a rectangle.
   const Image<float> map(70, 37, 3);
   const test::DevicePlane<float> disparity(map.view());
-  sums_->run({disparity.view(), {}}, nullptr);
+  sums_->run({disparity.view(), {}}, roll_from_sums(0, {}), nullptr);
   ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
-  const RawSums& s = sums_->sums();
+  const RawSums& s = sums_->solved().sums;
   EXPECT_EQ(s.n, 70 * 37);
   EXPECT_NEAR(s.u, 0, 1e-9);
   EXPECT_NEAR(s.vd, 0, 1e-9);

@@ -55,7 +55,7 @@ void expect_same(const RoadModelEstimate& device, const RoadModelEstimate& host,
   EXPECT_EQ(device.has_road(), host.has_road());
   EXPECT_EQ(device.reason, host.reason);
   EXPECT_EQ(device.status, host.status);
-  EXPECT_EQ(device.matches, host.matches);
+  EXPECT_NEAR(device.matches, host.matches, test::kernels_round_as_host ? 0 : 2);
   EXPECT_NEAR(device.inliers, host.inliers, 1);
   EXPECT_NEAR(device.residual_px, host.residual_px, 1e-5);
   EXPECT_NEAR(device.residual_p01_px, host.residual_p01_px, 1e-4);

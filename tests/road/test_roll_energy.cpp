@@ -6,11 +6,13 @@
 #include <numbers>
 #include <vector>
 
-#include "road/roll_energy.hpp"
+#include "road/roll_assessment.hpp"
 #include "tests/stereo/textured_pair.hpp"
 
 namespace roadstereo {
 namespace {
+
+const DescentOptions descent = roll_from_sums(0, RollOptions{}).descent;
 
 struct SmallMap {
   std::vector<DisparityPoint> points;
@@ -64,7 +66,7 @@ double gradient_by_matrices(const SmallMap& map, double psi) {
 
 TEST(RollEnergy, MatchesMatricesOfPaper) {
   const SmallMap map = small_map({5, 0.2, -0.03}, 1.0);
-  const RollEnergy energy(map.sums);
+  const RollEnergy energy(map.sums.deviations());
   for (double psi = -1.5; psi <= 1.5; psi += 0.25) {
     EXPECT_NEAR(energy.value(psi), energy_by_matrices(map, psi), 1e-8);
     EXPECT_NEAR(energy.gradient(psi), gradient_by_matrices(map, psi), 1e-8);
@@ -72,7 +74,7 @@ TEST(RollEnergy, MatchesMatricesOfPaper) {
 }
 
 TEST(RollEnergy, GradientIsNumericalDerivative) {
-  const RollEnergy energy(small_map({5, 0.2, -0.03}, 1.0).sums);
+  const RollEnergy energy(small_map({5, 0.2, -0.03}, 1.0).sums.deviations());
   for (double psi = -1.5; psi <= 1.5; psi += 0.25) {
     constexpr double h = 1e-5;
     EXPECT_NEAR(energy.gradient(psi), (energy.value(psi + h) - energy.value(psi - h)) / (2 * h), 1e-5);
@@ -87,7 +89,7 @@ TEST(RollDescent, ReachesClosedFormFromAnyStart) {
       const auto plane = map.sums.plane();
       ASSERT_TRUE(plane);
       for (const double start : {0.0, 0.1, -0.5, 1.4}) {
-        const RollSolution solution = descend_roll(RollEnergy(map.sums), start, RollOptions{});
+        const RollSolution solution = descend_roll(RollEnergy(map.sums.deviations()), start, descent);
         EXPECT_NEAR(wrap_roll(solution.roll - roll_of_plane(*plane)), 0, 1e-6) << roll << " " << noise << " " << start;
         EXPECT_LE(solution.iterations, 60);
       }
@@ -100,7 +102,7 @@ TEST(RollDescent, LeavesMaximumOfZeroGradient) {
   for (int v = 0; v < 20; ++v) {
     for (int u = 0; u < 30; ++u) symmetric.add({static_cast<double>(u), static_cast<double>(v), 3 + 0.25 * v});
   }
-  const RollSolution solution = descend_roll(RollEnergy(symmetric), std::numbers::pi / 2, RollOptions{});
+  const RollSolution solution = descend_roll(RollEnergy(symmetric.deviations()), std::numbers::pi / 2, descent);
   EXPECT_NEAR(solution.roll, 0, 1e-6);
 }
 
@@ -113,7 +115,7 @@ TEST(RollDescent, InitialLambdaIsIndependentOfMapSize) {
         sums.add({static_cast<double>(u), static_cast<double>(v), 3 + 0.25 * v - 0.002 * u});
       }
     }
-    const RollSolution solution = descend_roll(RollEnergy(sums), 0, RollOptions{});
+    const RollSolution solution = descend_roll(RollEnergy(sums.deviations()), 0, descent);
     EXPECT_NEAR(solution.roll, std::atan(0.002 / 0.25), 1e-6);
     EXPECT_LE(solution.iterations, 4);
   }

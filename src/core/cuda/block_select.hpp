@@ -5,17 +5,16 @@
 #include <cstdint>
 
 #include "core/cuda/block_reduce.hpp"
+#include "core/cuda/digit_counts.hpp"
 #include "core/cuda/unroll.hpp"
 
 // Radix select: order statistics of the keys of a block of threads. Every thread of the block calls these; blocks have
 // whole warps in one dimension.
 namespace roadstereo::cuda {
 
-/// Shared memory of block_select().
+/// Shared memory of block_select(); digits take its counts in turn.
 struct SelectScratch {
-  static constexpr int bins = 256;
-  static constexpr int digits = 4;
-  __align__(16) int counts[digits][bins];
+  DigitCounts counts[2];
   std::uint32_t prefix;
   int rank;
   int of;
@@ -27,7 +26,7 @@ struct SelectedKey {
   int of;
 };
 
-/// A float as a key of the same order; and back. NaN has no place.
+/// A float as a key of 32 bits of the same order; and back. NaN has no place.
 __device__ inline std::uint32_t key_of(float value) {
   const auto bits = static_cast<std::uint32_t>(__float_as_int(value));
   return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
@@ -35,6 +34,7 @@ __device__ inline std::uint32_t key_of(float value) {
 __device__ inline float value_of(std::uint32_t key) {
   return __int_as_float(static_cast<int>((key & 0x80000000U) != 0 ? key & 0x7FFFFFFFU : ~key));
 }
+inline constexpr int float_digits = 3;  ///< of such a key
 
 /// Ranks counted from the smallest, of `count` values in order: the upper median, and the value that `share` of the
 /// others lie below.
@@ -46,54 +46,85 @@ struct ShareRank {
   __device__ int operator()(int count) const { return static_cast<int>(share * (count - 1)); }
 };
 
-/// The first warp finds the bin of a digit that holds the key of the rank, and how many keys lie in the bins before it.
-template <class RankOf>
-__device__ void choose_bin(int digit, RankOf rank_of, SelectScratch& scratch) {
-  constexpr int of_lane = SelectScratch::bins / warp_lanes;
-  static_assert(of_lane == 8, "two vectors of four");
-  const int lane = static_cast<int>(threadIdx.x);
-  const auto* counts = reinterpret_cast<const int4*>(scratch.counts[digit]) + 2 * lane;
-  const int4 a = counts[0], b = counts[1];
-  const int own[of_lane] = {a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w};
-  int until = 0;
-  for (int i = 0; i < of_lane; ++i) until += own[i];
-  int below = -until;
+/// The sum of the values of a warp's lanes up to this one.
+__device__ inline int sum_until(int value) {
+  const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
   for (int by = 1; by < warp_lanes; by *= 2) {
-    const int before = __shfl_up_sync(whole_warp, until, static_cast<unsigned>(by));
-    if (lane >= by) until += before;
+    const int before = __shfl_up_sync(whole_warp, value, static_cast<unsigned>(by));
+    if (lane >= by) value += before;
   }
-  below += until;
-  const int all = __shfl_sync(whole_warp, until, warp_lanes - 1);
-  const int rank = digit == 0 ? rank_of(all) : scratch.rank;
-  __syncwarp();
-  if (digit == 0 && lane == 0) scratch.of = all;
-  if (rank < below || rank >= until) return;
-  int bin = of_lane * lane;
-  bool before = true;
-  for (int i = 0; i < of_lane; ++i) {
-    before = before && rank >= below + own[i];
-    if (before) below += own[i];
-    if (before) ++bin;
-  }
-  const std::uint32_t known = digit == 0 ? 0 : scratch.prefix;
-  scratch.prefix = known << 8 | static_cast<std::uint32_t>(bin);
-  scratch.rank = rank - below;
+  return value;
 }
 
-/// Returns the key of the rank `rank_of(number of keys)`: digit by digit from the highest, with two barriers each.
-/// `key_of_item(i, key)` returns whether item i of `count` has a key, and writes it; an item is always asked for by the
-/// same thread, which asks for `at_once` before it counts one, since memory takes long.
-template <int at_once = 4, class KeyOfItem, class RankOf>
-__device__ SelectedKey block_select(int count, KeyOfItem key_of_item, RankOf rank_of, SelectScratch& scratch) {
+/// The first warp finds the value of a digit that the key of the rank has, and how many keys have smaller ones.
+template <class RankOf>
+__device__ void choose_digit(bool first, const DigitCounts& counts, RankOf rank_of, SelectScratch& scratch) {
+  static_assert(DigitCounts::group == warp_lanes && DigitCounts::groups == 2 * warp_lanes);
+  const int lane = static_cast<int>(threadIdx.x);
+  const int low = counts.of_group[2 * lane], high = counts.of_group[2 * lane + 1];
+  const int until = sum_until(low + high), below = until - low - high;
+  const int all = __shfl_sync(whole_warp, until, warp_lanes - 1);
+  const int rank = first ? rank_of(all) : scratch.rank;
+  const std::uint32_t known = first ? 0 : scratch.prefix;
+  if (first && lane == 0) scratch.of = all;
+  const unsigned holders = __ballot_sync(whole_warp, rank >= below && rank < until);
+  if (holders == 0) return;
+  const int holder = __ffs(static_cast<int>(holders)) - 1;
+  const bool in_high = rank >= below + low;
+  const int group = __shfl_sync(whole_warp, 2 * lane + (in_high ? 1 : 0), holder);
+  const int below_group = __shfl_sync(whole_warp, in_high ? below + low : below, holder);
+  const int own = counts.of_bin[group * warp_lanes + lane];
+  const int end = below_group + sum_until(own);
+  __syncwarp();  // all lanes have read the rank
+  if (rank < end - own || rank >= end) return;
+  scratch.prefix = known << DigitCounts::bits | static_cast<std::uint32_t>(group * warp_lanes + lane);
+  scratch.rank = rank - (end - own);
+}
+
+__device__ inline void count_digit(std::uint32_t digit, DigitCounts& counts) {
+  atomicAdd(&counts.of_bin[digit], 1);
+  atomicAdd(&counts.of_group[digit / warp_lanes], 1);
+}
+
+__device__ inline void clear_counts(DigitCounts& counts) {
   const int thread = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
-  for (int i = thread; i < SelectScratch::digits * SelectScratch::bins; i += threads) {
-    scratch.counts[i / SelectScratch::bins][i % SelectScratch::bins] = 0;
+  for (int i = thread; i < DigitCounts::bins; i += threads) counts.of_bin[i] = 0;
+  for (int i = thread; i < DigitCounts::groups; i += threads) counts.of_group[i] = 0;
+}
+
+/// Takes the counts of all values of a digit from global memory.
+__device__ inline void load_counts(const int* of_bin, DigitCounts& counts) {
+  const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
+  for (int i = static_cast<int>(threadIdx.x); i < DigitCounts::bins; i += static_cast<int>(blockDim.x)) {
+    const int own = of_bin[i];
+    counts.of_bin[i] = own;
+    const int until = sum_until(own);
+    if (lane == warp_lanes - 1) counts.of_group[i / warp_lanes] = until;
   }
+}
+
+/// Returns the key of the rank `rank_of(number of keys)` of keys of `digits` digits: digit by digit from the highest,
+/// with two barriers each. `key_of_item(i, key)` returns whether item i of `count` has a key, and writes it; an item is
+/// always asked for by the same thread, which asks for `at_once` before it counts one, since memory takes long.
+/// Where the first digit was counted before, `known`, in global memory, has how many keys have each value of it.
+template <int digits, int at_once = 4, class KeyOfItem, class RankOf>
+__device__ SelectedKey block_select(int count, KeyOfItem key_of_item, RankOf rank_of, SelectScratch& scratch,
+                                    const int* known = nullptr) {
+  const int thread = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
+  if (known != nullptr) {
+    load_counts(known, scratch.counts[0]);
+  } else {
+    clear_counts(scratch.counts[0]);
+  }
+  clear_counts(scratch.counts[1]);
   __syncthreads();
   std::uint32_t prefix = 0;
-  for (int digit = 0; digit < SelectScratch::digits; ++digit) {
-    const int shift = 24 - 8 * digit;
-    for (int first = thread; first < count; first += at_once * threads) {
+  for (int digit = 0; digit < digits; ++digit) {
+    const int shift = DigitCounts::bits * (digits - 1 - digit);
+    const bool first_digit = digit == 0;
+    if (!first_digit && digit + 1 < digits) clear_counts(scratch.counts[(digit + 1) % 2]);
+    DigitCounts& counts = scratch.counts[digit % 2];
+    for (int first = thread; !(first_digit && known != nullptr) && first < count; first += at_once * threads) {
       std::uint32_t keys[at_once] = {};
       bool has[at_once];
       ROADSTEREO_UNROLL
@@ -103,14 +134,14 @@ __device__ SelectedKey block_select(int count, KeyOfItem key_of_item, RankOf ran
       }
       ROADSTEREO_UNROLL
       for (int k = 0; k < at_once; ++k) {
-        const bool counts = has[k] && first + k * threads < count;
-        if (counts && (digit == 0 || keys[k] >> (shift + 8) == prefix)) {
-          atomicAdd(&scratch.counts[digit][(keys[k] >> shift) & 255U], 1);
+        const bool counted = has[k] && first + k * threads < count;
+        if (counted && (first_digit || keys[k] >> (shift + DigitCounts::bits) == prefix)) {
+          count_digit((keys[k] >> shift) % DigitCounts::bins, counts);
         }
       }
     }
     __syncthreads();
-    if (thread < warp_lanes) choose_bin(digit, rank_of, scratch);
+    if (thread < warp_lanes) choose_digit(first_digit, counts, rank_of, scratch);
     __syncthreads();
     if (scratch.of == 0) return {0, 0};
     prefix = scratch.prefix;

@@ -10,10 +10,11 @@ void check(cudaError_t status, const char* call) {
   fail<SystemError>("CUDA: ", call, " failed: ", cudaGetErrorString(status), " (", cudaGetErrorName(status), ")");
 }
 
-void require_shared_memory(std::size_t bytes, int most) {
-  if (bytes <= static_cast<std::size_t>(most)) return;
-  fail("the engine cuda needs ", bytes, " bytes of shared memory for these options; a block of this GPU has at most ",
-       most, ": take a smaller window or fewer disparities");
+void require_shared_memory(std::size_t bytes) {
+  constexpr std::size_t most = std::size_t{48} << 10;
+  if (bytes <= most) return;
+  fail("the engine cuda needs ", bytes, " bytes of shared memory for these options; a block has at most ", most,
+       ": take a smaller window or fewer disparities");
 }
 
 }  // namespace roadstereo::cuda

@@ -9,8 +9,8 @@ namespace roadstereo::cuda {
 /// Throws SystemError with the text of CUDA unless `status` is success.
 void check(cudaError_t status, const char* call);
 
-/// Throws Error when a block needs more shared memory than the `most` bytes that the device has for one.
-void require_shared_memory(std::size_t bytes, int most);
+/// Throws Error when a block needs more shared memory than the 48 KB that every device has for one.
+void require_shared_memory(std::size_t bytes);
 
 }  // namespace roadstereo::cuda
 

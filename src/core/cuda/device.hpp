@@ -11,7 +11,6 @@ struct Device {
   std::string reason;  ///< why not, as a sentence; empty when usable
   int index = 0;
   int multiprocessors = 0;
-  int shared_bytes = 0;  ///< most shared memory of a block
 };
 
 /// Asks the driver for the current device, and whether this binary carries code for it.

@@ -29,30 +29,30 @@ __global__ void downsample_images(Shrinking first, Shrinking second, int factor)
   of.small(x, y) = static_cast<std::int16_t>(sum / (n * n));
 }
 
-void downsample_all(const Shrinking& first, const Shrinking& second, unsigned images, int factor, cudaStream_t stream) {
+void downsample_all(const Shrinking& first, const Shrinking& second, unsigned images, int factor, StreamView stream) {
   const LaunchShape shape{
       dim3(blocks_for(first.small.width(), block_columns), blocks_for(first.small.height(), block_rows), images),
       dim3(block_columns, block_rows)};
   switch (factor) {
     case 2:
-      return launch(downsample_images<2>, shape, stream, first, second, factor);
+      return launch("downsample_images", downsample_images<2>, shape, stream, first, second, factor);
     case 4:
-      return launch(downsample_images<4>, shape, stream, first, second, factor);
+      return launch("downsample_images", downsample_images<4>, shape, stream, first, second, factor);
     case 8:
-      return launch(downsample_images<8>, shape, stream, first, second, factor);
+      return launch("downsample_images", downsample_images<8>, shape, stream, first, second, factor);
     default:
-      return launch(downsample_images<0>, shape, stream, first, second, factor);
+      return launch("downsample_images", downsample_images<0>, shape, stream, first, second, factor);
   }
 }
 
 }  // namespace
 
-void downsample(ImageView<const std::int16_t> image, int factor, ImageView<std::int16_t> small, cudaStream_t stream) {
+void downsample(ImageView<const std::int16_t> image, int factor, ImageView<std::int16_t> small, StreamView stream) {
   downsample_all({image, small}, {image, small}, 1, factor, stream);
 }
 
 void downsample(ImageView<const std::int16_t> first, ImageView<const std::int16_t> second, int factor,
-                ImageView<std::int16_t> first_small, ImageView<std::int16_t> second_small, cudaStream_t stream) {
+                ImageView<std::int16_t> first_small, ImageView<std::int16_t> second_small, StreamView stream) {
   downsample_all({first, first_small}, {second, second_small}, 2, factor, stream);
 }
 

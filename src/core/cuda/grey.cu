@@ -1,8 +1,6 @@
 // Floor: a pixel of the pair is read once (2 to 16 bytes) and written once (4 bytes), with 2 to 8 operations: 1.4 MB
 // for 640×360 in 8-bit grey, half a microsecond of an H200's memory.
 
-#include <utility>
-
 #include "core/cuda/grey.hpp"
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
@@ -116,15 +114,11 @@ __global__ void pair_to_grey(GreyPair pair, int* votes, PairFindings* findings) 
 }  // namespace
 
 void PairToGrey::convert(const DeviceFrame& left_frame, const DeviceFrame& right_frame, ImageView<std::int16_t> left,
-                         ImageView<std::int16_t> right, cudaStream_t stream) {
+                         ImageView<std::int16_t> right, StreamView stream) {
   findings_.reserve(1);
-  if (votes_.capacity() == 0) {
-    DeviceArray<int> votes(vote_count);
-    ROADSTEREO_CUDA(cudaMemsetAsync(votes.data(), 0, vote_count * sizeof(int), stream));
-    votes_ = std::move(votes);  // none, unless they are cleared
-  }
+  reserve_cleared(votes_, vote_count, stream.get());
   const dim3 grid(blocks_for(left.width(), block_columns * columns_each), blocks_for(left.height(), block_rows));
-  launch(pair_to_grey, {grid, dim3(block_columns, block_rows), sizeof(int)}, stream,
+  launch("pair_to_grey", pair_to_grey, {grid, dim3(block_columns, block_rows), sizeof(int)}, stream,
          GreyPair{left_frame, right_frame, left, right}, votes_.data(), findings_.data());
 }
 

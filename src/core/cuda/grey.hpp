@@ -1,11 +1,10 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include <cstddef>
 #include <cstdint>
 
 #include "core/cuda/memory.hpp"
+#include "core/cuda/stream.hpp"
 #include "core/grey_level.hpp"
 #include "roadstereo/image_view.hpp"
 
@@ -33,7 +32,7 @@ class PairToGrey {
  public:
   /// `left` and `right` have the same size and receive the levels.
   void convert(const DeviceFrame& left_frame, const DeviceFrame& right_frame, ImageView<std::int16_t> left,
-               ImageView<std::int16_t> right, cudaStream_t stream);
+               ImageView<std::int16_t> right, StreamView stream);
 
   /// Of the last pair, on the host once the stream was waited for.
   const PairFindings& findings() const { return *findings_.data(); }

@@ -81,19 +81,13 @@ using DeviceArray = GrowingArray<T, DeviceMemory>;
 template <class T>
 using PinnedArray = GrowingArray<T, PinnedMemory>;
 
-/// A stream that waits for no other.
-class Stream {
- public:
-  Stream() { ROADSTEREO_CUDA(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking)); }
-  ~Stream() { static_cast<void>(cudaStreamDestroy(stream_)); }
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
-
-  cudaStream_t get() const { return stream_; }
-  void wait() const { ROADSTEREO_CUDA(cudaStreamSynchronize(stream_)); }
-
- private:
-  cudaStream_t stream_ = nullptr;
-};
+/// Room for `count` elements in memory whose bytes are 0 when it is made: none, unless they were cleared.
+template <class T>
+void reserve_cleared(DeviceArray<T>& array, std::size_t count, cudaStream_t stream) {
+  if (count <= array.capacity()) return;
+  DeviceArray<T> fresh(count);
+  ROADSTEREO_CUDA(cudaMemsetAsync(fresh.data(), 0, count * sizeof(T), stream));
+  array = std::move(fresh);
+}
 
 }  // namespace roadstereo::cuda

@@ -14,6 +14,7 @@
 #include "road/cuda/roll_assessment.hpp"
 #include "road/cuda/verification_assessment.hpp"
 #include "road/refinement/cuda/refinement_settings.hpp"
+#include "road/roll_assessment.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/cuda/coarse_search.hpp"
@@ -29,7 +30,8 @@ Device require_device() {
   return device;
 }
 
-/// The host waits for the device twice a frame: for the road, which it assesses, and for the end.
+/// The host waits for the device twice a frame: for the road, which it assesses, and for the end. CUDA graphs are not
+/// used: what they would save, the time between launches, cannot be told without a device.
 class DeviceStages final : public FrameStages {
  public:
   /// The device must be usable: members already take memory of it.
@@ -38,14 +40,24 @@ class DeviceStages final : public FrameStages {
       : options_(options), calibration_(calibration), device_(device.index), matcher_(device.multiprocessors) {
     if (options.narrow_search || options.matcher.prior_weight > 0) coarse_search_.emplace(options.coarse_search);
   }
+  /// Memory goes only when no kernel uses it any more. The stream may be the caller's.
+  ~DeviceStages() override { DeviceStages::abandon(); }
+  DeviceStages(const DeviceStages&) = delete;
+  DeviceStages& operator=(const DeviceStages&) = delete;
+
+  void abandon() noexcept override {
+    stream().settle();
+    maps_.settle();
+  }
 
   GreyPair convert_to_grey(const FrameView& left, const FrameView& right) override {
     require_current_device(device_);  // before memory is taken of another
-    clock_.mark(StageClock::begin, stream());
+    if (recorder_) recorder_->begin();
+    mark(StageClock::begin);
     const FrameUpload::Pair frames = upload_.upload(left, right, options_.white_level, stream());
     resize(left.width, left.height);
     to_grey_.convert(frames.left, frames.right, maps_.grey(), view(right_), stream());
-    clock_.mark(StageClock::converted, stream());
+    mark(StageClock::converted);
     return {maps_.grey(), view(right_)};
   }
 
@@ -53,7 +65,7 @@ class DeviceStages final : public FrameStages {
     copy_to_host(pair.left, left_on_host_);
     copy_to_host(pair.right, right_on_host_);
     wait_for_pair();
-    clock_.mark(StageClock::converted, stream());
+    mark(StageClock::converted);
     return {left_on_host_, right_on_host_};
   }
 
@@ -65,9 +77,9 @@ class DeviceStages final : public FrameStages {
   }
 
   MatchInput transform_perspective(const GreyPair& pair, const PerspectiveShift& shift) override {
-    clock_.mark(StageClock::road_known, stream());
+    mark(StageClock::road_known);
     transform_target(pair.right, shift, static_cast<float>(grey_max), view(target_), first_column_.data(), stream());
-    clock_.mark(StageClock::transformed_target, stream());
+    mark(StageClock::transformed_target);
     return {pair.left, view(target_), first_column_.data(), shift.disparities, {}, {}};
   }
 
@@ -78,13 +90,13 @@ class DeviceStages final : public FrameStages {
       if (options_.narrow_search) input.ranges = coarse_search_->ranges();
       input.prior = coarse_search_->prior();
     }
-    clock_.mark(StageClock::searched, stream());
+    mark(StageClock::searched);
     return input;
   }
 
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
     const DeviceMatchMaps& matched = matcher_.match(input, options, stream());
-    clock_.mark(StageClock::matched, stream());
+    mark(StageClock::matched);
     return {matched.disparity, matched.variance, effective_samples(options)};
   }
 
@@ -98,7 +110,8 @@ class DeviceStages final : public FrameStages {
     cuda::refine_disparities(maps.disparity, maps.variance, road,
                              refinement_settings(options_.refinement, maps.samples), maps_.disparity(), maps_.sigma(),
                              stream());
-    clock_.mark(StageClock::refined, stream());
+    mark(StageClock::refined);
+    if (download_) maps_.download_refined(stream());
     return maps_.disparity();
   }
 
@@ -113,6 +126,15 @@ class DeviceStages final : public FrameStages {
     wait();
     stream_ = use.stream != nullptr ? use.stream : own_stream_.get();
     download_ = use.download;
+    clock_.reset();
+    recorder_.reset();
+    if (use.timing != DeviceTiming::none) clock_.emplace();
+    if (use.timing == DeviceTiming::kernels) recorder_.emplace();
+  }
+
+  DeviceProfile device_profile() const override {
+    if (!recorder_) fail("only a pipeline with DeviceTiming::kernels knows its kernels");
+    return recorder_->profile();
   }
 
   DeviceMaps device_maps() const override {
@@ -126,8 +148,14 @@ class DeviceStages final : public FrameStages {
   }
 
  private:
-  cudaStream_t stream() const { return stream_; }
-  void wait() const { ROADSTEREO_CUDA(cudaStreamSynchronize(stream_)); }
+  StreamView stream() { return {stream_, recorder_ ? &*recorder_ : nullptr}; }
+  void wait() {
+    stream().wait();
+    complete_ = true;
+  }
+  void mark(StageClock::Mark at) {
+    if (clock_) clock_->mark(at, stream());
+  }
   ImageView<std::int16_t> view(DeviceArray<std::int16_t>& pixels) const {
     return ImageView(pixels.data(), width_, height_);
   }
@@ -154,14 +182,15 @@ class DeviceStages final : public FrameStages {
   template <class T>
   void copy_to_host(const ImageView<const T>& from, Image<T>& to) {
     to.resize(width_, height_);
-    ROADSTEREO_CUDA(cudaMemcpyAsync(to.row(0), from.data(), to.pixels() * sizeof(T), cudaMemcpyDeviceToHost, stream()));
+    stream().download(to.row(0), from.data(), to.pixels() * sizeof(T));
   }
 
   /// The end of the frame, around a plane that may still lie in device memory.
   void enqueue_transform(ImageView<const float> disparity, const PlaneSource& road, const PerspectiveShift& shift) {
     transform_.run(disparity, road, {options_.roll.delta_t_px, shift.delta_p}, maps_.transformed(), stream());
-    clock_.mark(StageClock::transformed, stream());
-    if (download_) maps_.download(stream());
+    mark(StageClock::transformed);
+    complete_ = false;
+    if (download_) maps_.download_transformed(stream());
   }
 
   RollEstimate fit_on_host(ImageView<const float> disparity);
@@ -187,40 +216,43 @@ class DeviceStages final : public FrameStages {
   RoadFit fit_;
   MapSums sums_;
   DisparityTransform transform_;
-  bool transformed_ = false;  ///< estimate_roll has enqueued the transformation
-  StageClock clock_;
+  bool transformed_ = false;         ///< estimate_roll has enqueued the transformation
+  bool complete_ = false;            ///< the host has waited for the transformed map
+  std::optional<StageClock> clock_;  ///< DeviceOptions::timing
+  std::optional<Recorder> recorder_;
 };
 
-/// The robust fit around a known road goes on into the transformation without the host. Other solvers come back to it
-/// for their plane; without a road before matching, the host searches for one.
+/// Goes on into the transformation without the host. Only the robust fit without a road before matching comes back to
+/// it: the host searches for a plane.
 RollFit DeviceStages::estimate_roll(ImageView<const float> disparity, const std::optional<DisparityPlane>& prior,
                                     double initial_roll_rad, double min_share, const PerspectiveShift& shift) {
   const RollOptions& options = options_.roll;
   const MaskedMap map{disparity, {}};
   const bool robust = options.solver == RollSolver::robust;
-  transformed_ = robust && prior.has_value();
-  if (transformed_) {
-    fit_.run(map, {nullptr, *prior}, options.max_iterations, stream());
-    clock_.mark(StageClock::fitted, stream());
-    enqueue_transform(disparity, {fit_.plane(), {}}, shift);
-  } else {
+  transformed_ = !robust || prior.has_value();
+  if (!transformed_) {
     // The transformation by no plane at all counts what is valid.
     transform_.run(disparity, {nullptr, {}}, {0, 0}, maps_.transformed(), stream());
-    if (!robust) sums_.run(map, stream());
+  } else if (robust) {
+    fit_.run(map, {nullptr, *prior}, options.max_iterations, stream());
+  } else {
+    sums_.run(map, roll_from_sums(initial_roll_rad, options), stream());
+    fit_.measure(map, {sums_.plane(), {}}, stream());
+  }
+  if (transformed_) {
+    mark(StageClock::fitted);
+    enqueue_transform(disparity, {robust ? fit_.plane() : sums_.plane(), {}}, shift);
   }
   wait();
   RollFit fit{static_cast<double>(transform_.statistics().valid) / (static_cast<double>(width_) * height_),
               std::nullopt};
   if (fit.valid_share < min_share) return fit;
-  if (transformed_) {
-    fit.geometry = finish_road_fit(fit_.statistics(), width_, height_, options);
-  } else if (robust) {
+  if (!transformed_) {
     fit.geometry = fit_on_host(disparity);
+  } else if (robust) {
+    fit.geometry = finish_road_fit(fit_.statistics(), width_, height_, options);
   } else {
-    fit.geometry = solve_map(sums_.sums(), width_, height_, initial_roll_rad, options);
-    fit_.measure(map, fit.geometry->plane, stream());
-    wait();
-    finish_measured(fit_.statistics(), width_, height_, options, *fit.geometry);
+    fit.geometry = finish_solved(sums_.solved(), fit_.statistics(), width_, height_, options);
   }
   return fit;
 }
@@ -234,7 +266,7 @@ RollEstimate DeviceStages::fit_on_host(ImageView<const float> disparity) {
 TransformedRoad DeviceStages::transform_disparity(ImageView<const float> disparity, const RollEstimate& geometry,
                                                   const PerspectiveShift& shift) {
   if (!transformed_) {
-    clock_.mark(StageClock::fitted, stream());
+    mark(StageClock::fitted);
     enqueue_transform(disparity, {nullptr, geometry.plane}, shift);
     wait();
   }
@@ -243,17 +275,18 @@ TransformedRoad DeviceStages::transform_disparity(ImageView<const float> dispari
 }
 
 void DeviceStages::invalidate_transformed() {
-  clock_.mark(StageClock::fitted, stream());
+  mark(StageClock::fitted);
   constexpr int every_bit = 0xFF;  // a NaN
   const std::size_t bytes = sizeof(float) * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-  ROADSTEREO_CUDA(cudaMemsetAsync(maps_.transformed().data(), every_bit, bytes, stream()));
-  clock_.mark(StageClock::transformed, stream());
-  if (download_) maps_.download(stream());
+  ROADSTEREO_CUDA(cudaMemsetAsync(maps_.transformed().data(), every_bit, bytes, stream_));
+  mark(StageClock::transformed);
+  complete_ = false;
+  if (download_) maps_.download_transformed(stream());
 }
 
 void DeviceStages::download(FrameResult& result) {
-  wait();
-  clock_.read(result.ms);
+  if (!complete_) wait();
+  if (clock_) clock_->read(result.ms);
   if (download_) {
     maps_.take(result);
   } else {

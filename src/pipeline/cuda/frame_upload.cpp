@@ -8,10 +8,19 @@
 namespace roadstereo::cuda {
 namespace {
 
+/// Throws Error for the memory of another GPU: what reads it there loses the context of the process.
 bool is_on_device(const FrameView& frame) {
   cudaPointerAttributes attributes{};
   ROADSTEREO_CUDA(cudaPointerGetAttributes(&attributes, frame.data));
-  return attributes.type == cudaMemoryTypeDevice || attributes.type == cudaMemoryTypeManaged;
+  if (attributes.type == cudaMemoryTypeManaged) return true;
+  if (attributes.type != cudaMemoryTypeDevice) return false;
+  int current = 0;
+  ROADSTEREO_CUDA(cudaGetDevice(&current));
+  if (attributes.device != current) {
+    fail("a frame lies in the memory of GPU ", attributes.device, " and the pipeline works on GPU ", current,
+         "; copy the frame there, or make the pipeline where GPU ", attributes.device, " is the current one");
+  }
+  return true;
 }
 
 std::size_t row_bytes(const FrameView& frame) {
@@ -37,7 +46,7 @@ void copy_rows(const FrameView& frame, unsigned char* to) {
 }  // namespace
 
 FrameUpload::Pair FrameUpload::upload(const FrameView& left, const FrameView& right, double white_level,
-                                      cudaStream_t stream) {
+                                      StreamView stream) {
   for (const FrameView* frame : {&left, &right}) static_cast<void>(grey_weights(*frame, white_level));  // refuses
   const bool left_there = is_on_device(left), right_there = is_on_device(right);
   if (left_there != right_there)
@@ -52,8 +61,7 @@ FrameUpload::Pair FrameUpload::upload(const FrameView& left, const FrameView& ri
   on_device_.reserve(right_at + right_bytes);
   copy_rows(left, on_host_.data());
   copy_rows(right, on_host_.data() + right_at);
-  ROADSTEREO_CUDA(
-      cudaMemcpyAsync(on_device_.data(), on_host_.data(), right_at + right_bytes, cudaMemcpyHostToDevice, stream));
+  stream.upload(on_device_.data(), on_host_.data(), right_at + right_bytes);
   return {packed_frame(left, on_device_.data(), white_level),
           packed_frame(right, on_device_.data() + right_at, white_level)};
 }

@@ -2,6 +2,7 @@
 
 #include "core/cuda/grey.hpp"
 #include "core/cuda/memory.hpp"
+#include "core/cuda/stream.hpp"
 #include "roadstereo/image.hpp"
 
 namespace roadstereo::cuda {
@@ -15,7 +16,7 @@ class FrameUpload {
 
   /// The frames have one size. Throws Error for what to_grey refuses. Device memory is read where it lies, until the
   /// stream was waited for; of host memory a copy is made at once.
-  Pair upload(const FrameView& left, const FrameView& right, double white_level, cudaStream_t stream);
+  Pair upload(const FrameView& left, const FrameView& right, double white_level, StreamView stream);
 
  private:
   PinnedArray<unsigned char> on_host_;

@@ -3,7 +3,8 @@
 #include <array>
 #include <cstddef>
 
-#include "core/cuda/memory.hpp"
+#include "core/cuda/event.hpp"
+#include "core/cuda/stream.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cuda {
@@ -24,7 +25,7 @@ class StageClock {
     marks
   };
 
-  void mark(Mark at, cudaStream_t stream) { ROADSTEREO_CUDA(cudaEventRecord(events_[at].get(), stream)); }
+  void mark(Mark at, StreamView stream) { events_[at].record(stream.get()); }
 
   /// Fills all times but `total`, which the host measures. The device must have passed every mark.
   void read(StageTimes& ms) const {
@@ -39,23 +40,7 @@ class StageClock {
   }
 
  private:
-  double between(Mark from, Mark to) const {
-    float ms = 0;
-    ROADSTEREO_CUDA(cudaEventElapsedTime(&ms, events_[from].get(), events_[to].get()));
-    return static_cast<double>(ms);
-  }
-
-  class Event {
-   public:
-    Event() { ROADSTEREO_CUDA(cudaEventCreate(&event_)); }
-    ~Event() { static_cast<void>(cudaEventDestroy(event_)); }
-    Event(const Event&) = delete;
-    Event& operator=(const Event&) = delete;
-    cudaEvent_t get() const { return event_; }
-
-   private:
-    cudaEvent_t event_ = nullptr;
-  };
+  double between(Mark from, Mark to) const { return events_[to].ms_since(events_[from]); }
 
   std::array<Event, marks> events_;
 };

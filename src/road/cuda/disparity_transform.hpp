@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
+#include "core/cuda/digit_counts.hpp"
 #include "core/cuda/memory.hpp"
+#include "core/cuda/stream.hpp"
 #include "road/cuda/fitted_plane.hpp"
 #include "roadstereo/image_view.hpp"
 
@@ -27,17 +27,25 @@ class DisparityTransform {
  public:
   /// Enqueues it. `transformed` has the size of `disparity`.
   void run(ImageView<const float> disparity, const PlaneSource& road, const TransformOffset& offset,
-           ImageView<float> transformed, cudaStream_t stream);
+           ImageView<float> transformed, StreamView stream);
 
   /// Once the stream was synchronised.
   const TransformStatistics& statistics() const { return *result_.data(); }
 
-  /// What the blocks of the first launch leave for those of the second; begins and ends as zeros but for the last two.
+  /// What the first launch leaves for the second.
+  struct Heights {
+    double delta_t;
+    float limit;  ///< of the residuals that are the road's
+    int valid;
+  };
+  /// What the blocks of a launch add up; begins and ends as zeros.
   struct State {
+    Heights found;                        ///< but for this
+    int first_digits[DigitCounts::bins];  ///< of the sample's residuals
     unsigned arrived;
     unsigned lowest;  ///< key of the lowest height, inverted
     int valid;
-    double delta_t, limit;
+    int unused;  ///< in place of padding
   };
 
  private:

@@ -17,8 +17,10 @@ struct FittedPlane {
   DisparityPlane plane;  ///< the start, when not found
   double scale_px;       ///< robust standard deviation of the inliers
   int iterations;
-  int found;   ///< 0: too few points stayed, or all on one line of the image
-  int points;  ///< that there were
+  int found;       ///< 0: too few points stayed, or all on one line of the image
+  int points;      ///< that there were
+  int unused = 0;  ///< no byte of what is copied as a whole is left unwritten
 };
+static_assert(sizeof(FittedPlane) == 4 * sizeof(double) + 4 * sizeof(int));
 
 }  // namespace roadstereo::cuda

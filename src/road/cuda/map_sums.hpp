@@ -1,27 +1,28 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include "core/cuda/memory.hpp"
+#include "core/cuda/stream.hpp"
 #include "road/cuda/road_fit.hpp"
-#include "road/raw_sums.hpp"
+#include "road/cuda/solved_map.hpp"
 
 namespace roadstereo::cuda {
 
-/// The ten sums over all disparities of a map, for the solvers that take all of them: one launch, added up in a fixed
-/// order. Coordinates are taken relative to the middle of the map, ((width − 1) / 2, (height − 1) / 2), as on the host.
+/// The ten sums over all disparities of a map and what the solvers that take all of them find from those: one launch,
+/// added up in whole numbers of 2⁻¹⁴ px. Coordinates are taken relative to the middle of the map,
+/// ((width − 1) / 2, (height − 1) / 2), as on the host.
 class MapSums {
  public:
   /// Enqueues it.
-  void run(const MaskedMap& map, cudaStream_t stream);
+  void run(const MaskedMap& map, const RollFromSums& how, StreamView stream);
 
-  /// Once the stream was synchronised.
-  const RawSums& sums() const { return *result_.data(); }
+  const DisparityPlane* plane() const { return &solved_.data()->roll.plane; }  ///< in device memory
+  const SolvedMap& solved() const { return *result_.data(); }                  ///< once the stream was synchronised
 
  private:
   DeviceArray<RawSums> rows_;
   DeviceArray<unsigned> arrived_;
-  PinnedArray<RawSums> result_{1};
+  DeviceArray<SolvedMap> solved_{1};
+  PinnedArray<SolvedMap> result_{1};
 };
 
 }  // namespace roadstereo::cuda

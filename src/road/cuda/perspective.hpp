@@ -1,9 +1,8 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include <cstdint>
 
+#include "core/cuda/stream.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/image_view.hpp"
 
@@ -13,10 +12,10 @@ namespace roadstereo::cuda {
 /// and by the rows' offset. `first_column[v]` becomes the first column of the transformed row that lies inside the
 /// target image. `white` is the highest grey level.
 void transform_target(ImageView<const std::int16_t> target, const PerspectiveShift& shift, float white,
-                      ImageView<std::int16_t> transformed, int* first_column, cudaStream_t stream);
+                      ImageView<std::int16_t> transformed, int* first_column, StreamView stream);
 
 /// restore_disparity of roadstereo/perspective.hpp on the device. `disparity` may be `residual`.
 void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, ImageView<float> disparity,
-                       cudaStream_t stream);
+                       StreamView stream);
 
 }  // namespace roadstereo::cuda

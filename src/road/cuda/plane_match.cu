@@ -205,11 +205,11 @@ __global__ void match_places(GuidedPair pair, SampleGrid grid, PlaneSource sourc
 }  // namespace
 
 void match_along_plane(const GuidedPair& pair, const SampleGrid& grid, const PlaneSource& plane, const int* needed,
-                       const GuidedSlots& slots, cudaStream_t stream) {
+                       const GuidedSlots& slots, StreamView stream) {
   if (grid.places() == 0) return;
   const LaunchShape shape{blocks_for(grid.places(), places_per_block), places_per_block * warp_lanes,
                           places_per_block * sizeof(PlaceMemory)};
-  launch(match_places, shape, stream, pair, grid, plane, needed, slots);
+  launch("match_places", match_places, shape, stream, pair, grid, plane, needed, slots);
 }
 
 }  // namespace roadstereo::cuda

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include <cstdint>
 
+#include "core/cuda/stream.hpp"
 #include "road/cuda/fitted_plane.hpp"
 #include "road/plane_search.hpp"
 #include "roadstereo/image_view.hpp"
@@ -29,6 +28,6 @@ struct GuidedSlots {
 /// match_along_plane() on the device, around a plane in full-size coordinates; a warp for each place. Where `needed`,
 /// in device memory, is 0, nothing is tried.
 void match_along_plane(const GuidedPair& pair, const SampleGrid& grid, const PlaneSource& plane, const int* needed,
-                       const GuidedSlots& slots, cudaStream_t stream);
+                       const GuidedSlots& slots, StreamView stream);
 
 }  // namespace roadstereo::cuda

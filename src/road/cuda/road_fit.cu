@@ -1,5 +1,5 @@
 // Floor: at most about 6000 disparities of the map, a sector of 32 bytes each: 0.2 MB; then that of robust_fit.hpp, and
-// 60 operations in double precision a point for the moments.
+// 40 operations a point for the moments, six of them in double precision.
 
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
@@ -96,30 +96,29 @@ struct CellRange {
 
 /// The means that the moments are taken about.
 struct Means {
-  double u, v;
+  float u, v;
 };
 
 /// Adds up the scores of a cell before they are squared; a thread for each cell, its points in the host's order.
-__device__ void sum_scores(const SampledMap& sampled, const DisparityPlane& plane, const Means& mean, FitState& state,
+__device__ void sum_scores(const SampledMap& sampled, const float* residuals, const Means& mean, FitState& state,
                            FitMoments& moments) {
   double own[3] = {};
   for (int cell = thread(); cell < cells_per_side * cells_per_side; cell += threads()) {
     const CellRange rows(sampled.sample, sampled.sample.rows, cell / cells_per_side, sampled.height);
     const CellRange columns(sampled.sample, sampled.sample.columns, cell % cells_per_side, sampled.width);
-    double along_u = 0, along_v = 0;
+    float along_u = 0, along_v = 0;
     for (int row = rows.first; row < rows.end; ++row) {
       for (int column = columns.first; column < columns.end; ++column) {
         const int i = row * sampled.sample.columns + column;
         if (!(sampled.weights[i] > 0)) continue;
-        const double u = sampled.u[i], v = sampled.v[i];
-        const double residual = sampled.weights[i] * (sampled.d[i] - plane.disparity(u, v));
-        along_u += residual * (u - mean.u);
-        along_v += residual * (v - mean.v);
+        const float residual = sampled.weights[i] * residuals[i];
+        along_u += residual * (sampled.u[i] - mean.u);
+        along_v += residual * (sampled.v[i] - mean.v);
       }
     }
-    own[0] += along_u * along_u;
-    own[1] += along_u * along_v;
-    own[2] += along_v * along_v;
+    own[0] += static_cast<double>(along_u) * along_u;
+    own[1] += static_cast<double>(along_u) * along_v;
+    own[2] += static_cast<double>(along_v) * along_v;
   }
   const double* sums = block_sums(own, state.scratch);
   moments.score_uu = sums[0];
@@ -127,22 +126,28 @@ __device__ void sum_scores(const SampledMap& sampled, const DisparityPlane& plan
   moments.score_vv = sums[2];
 }
 
-__device__ FitMoments fit_moments(const SampledMap& sampled, const DisparityPlane& plane, FitState& state) {
+/// `residuals`, in shared memory, receives those of all points. A thread adds up a few points in single precision.
+__device__ FitMoments fit_moments(const SampledMap& sampled, const DisparityPlane& plane, FitState& state,
+                                  float* residuals) {
   const double centre_u = sampled.width / 2.0, centre_v = sampled.height / 2.0;
-  double own[8] = {};
+  float of_thread[8] = {};
   for (int i = thread(); i < sampled.sample.count(); i += threads()) {
-    const double weight = sampled.weights[i];
+    const float weight = sampled.weights[i];
     if (!(weight > 0)) continue;
-    const double u = sampled.u[i] - centre_u, v = sampled.v[i] - centre_v;
-    const double residual = sampled.d[i] - plane.disparity(sampled.u[i], sampled.v[i]);
-    const double terms[8] = {1, u, v, residual, u * u, u * v, v * v, residual * residual};
-    for (int k = 0; k < 8; ++k) own[k] += weight * terms[k];
+    const float u = sampled.u[i] - static_cast<float>(centre_u), v = sampled.v[i] - static_cast<float>(centre_v);
+    const auto residual = static_cast<float>(sampled.d[i] - plane.disparity(sampled.u[i], sampled.v[i]));
+    residuals[i] = residual;
+    const float terms[8] = {1, u, v, residual, u * u, u * v, v * v, residual * residual};
+    for (int k = 0; k < 8; ++k) of_thread[k] += weight * terms[k];
   }
+  double own[8];
+  for (int k = 0; k < 8; ++k) own[k] = of_thread[k];
   const double* s = block_sums(own, state.scratch);
   const double mean_u = s[1] / s[0], mean_v = s[2] / s[0];
   FitMoments moments{
       s[0], s[4] - mean_u * s[1], s[5] - mean_u * s[2], s[6] - mean_v * s[2], s[7] - s[3] / s[0] * s[3], 0, 0, 0};
-  sum_scores(sampled, plane, {mean_u + centre_u, mean_v + centre_v}, state, moments);
+  sum_scores(sampled, residuals, {static_cast<float>(mean_u + centre_u), static_cast<float>(mean_v + centre_v)}, state,
+             moments);
   return moments;
 }
 
@@ -154,10 +159,10 @@ __global__ void __launch_bounds__(1024)
   const DisparityPlane start = source.get();
   RoadFitStatistics own{start, {start, 0, 0, 0, 0}, 0, 1, {}};
   take_sample(map, sampled);
+  auto* residuals = reinterpret_cast<float*>(&state + 1);
   if (max_iterations > 0) {
     const DevicePoints points{sampled.u, sampled.v, sampled.d, sampled.sample.count()};
     const RobustFit fit{0, true, max_iterations};
-    auto* residuals = reinterpret_cast<float*>(&state + 1);
     own.fit = BlockFit(points, fit, state, residuals, sampled.first, sampled.weights).run(start);
     own.plane = own.fit.plane;
     own.points = own.fit.points;
@@ -166,7 +171,7 @@ __global__ void __launch_bounds__(1024)
     own.points = count_all(sampled, state);
     if (max_iterations > 0) own.has_plane = fit_least_squares(sampled, state, own.plane) ? 1 : 0;
   }
-  if (own.has_plane != 0) own.moments = fit_moments(sampled, own.plane, state);
+  if (own.has_plane != 0) own.moments = fit_moments(sampled, own.plane, state, residuals);
   if (thread() != 0) return;
   *statistics = own;
   *result = own;  // not read back: it lies in the host's memory
@@ -174,15 +179,15 @@ __global__ void __launch_bounds__(1024)
 
 }  // namespace
 
-void RoadFit::run(const MaskedMap& map, const PlaneSource& prior, int max_iterations, cudaStream_t stream) {
+void RoadFit::run(const MaskedMap& map, const PlaneSource& prior, int max_iterations, StreamView stream) {
   enqueue(map, prior, max_iterations, stream);
 }
 
-void RoadFit::measure(const MaskedMap& map, const DisparityPlane& plane, cudaStream_t stream) {
-  enqueue(map, {nullptr, plane}, 0, stream);
+void RoadFit::measure(const MaskedMap& map, const PlaneSource& plane, StreamView stream) {
+  enqueue(map, plane, 0, stream);
 }
 
-void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, cudaStream_t stream) {
+void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, StreamView stream) {
   const int width = map.disparity.width(), height = map.disparity.height();
   const MapSample sample = map_sample(width, height);
   require_fit_points(sample.count());
@@ -190,8 +195,8 @@ void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_it
     of->reserve(static_cast<std::size_t>(sample.count()));
   }
   const SampledMap sampled{sample, width, height, u_.data(), v_.data(), d_.data(), first_.data(), weights_.data()};
-  launch(fit_map, {1, fit_threads(sample.count()), fit_shared_bytes(sample.count())}, stream, map, sampled, plane,
-         max_iterations, statistics_.data(), result_.data());
+  launch("fit_map", fit_map, {1, fit_threads(sample.count()), fit_shared_bytes(sample.count())}, stream, map, sampled,
+         plane, max_iterations, statistics_.data(), result_.data());
 }
 
 }  // namespace roadstereo::cuda

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include <cstdint>
 
 #include "core/cuda/memory.hpp"
+#include "core/cuda/stream.hpp"
 #include "road/cuda/road_fit_statistics.hpp"
 #include "road/cuda/robust_plane.hpp"
 #include "roadstereo/image_view.hpp"
@@ -19,19 +18,19 @@ struct MaskedMap {
 
 /// The device's part of estimate_roll(), one launch of one block; finish_road_fit() does the rest on the host.
 /// The robust solver needs a prior here: without one the host's function searches for a start, and must be called
-/// instead. The other solvers take the sums of MapSums, and come back with the plane for `measure`.
+/// instead. The other solvers are those of MapSums, whose plane `measure` takes.
 class RoadFit {
  public:
   /// Enqueues the robust fit from a prior.
-  void run(const MaskedMap& map, const PlaneSource& prior, int max_iterations, cudaStream_t stream);
-  /// Enqueues only what tells how well the map fits a plane that is known.
-  void measure(const MaskedMap& map, const DisparityPlane& plane, cudaStream_t stream);
+  void run(const MaskedMap& map, const PlaneSource& prior, int max_iterations, StreamView stream);
+  /// Enqueues only what tells how well the map fits a plane that was found elsewhere.
+  void measure(const MaskedMap& map, const PlaneSource& plane, StreamView stream);
 
   const DisparityPlane* plane() const { return &statistics_.data()->plane; }  ///< in device memory
   const RoadFitStatistics& statistics() const { return *result_.data(); }     ///< once the stream was synchronised
 
  private:
-  void enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, cudaStream_t stream);
+  void enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, StreamView stream);
 
   DeviceArray<float> u_, v_, d_, first_, weights_;
   DeviceArray<RoadFitStatistics> statistics_{1};

@@ -28,11 +28,11 @@ __device__ void count_inliers(const SearchMemory& search, FitState& state, Searc
     key = key_of(search.slots.v[i]);
     return search.weights[i] > 0;
   };
-  const SelectedKey lowest = block_select(search.count, row, ShareRank{row_p05}, state.select);
+  const SelectedKey lowest = block_select<float_digits>(search.count, row, ShareRank{row_p05}, state.select);
   statistics.inliers = lowest.of;
   statistics.found = lowest.of >= min_matches ? 1 : 0;
   if (statistics.found == 0) return;
-  const SelectedKey highest = block_select(search.count, row, ShareRank{row_p95}, state.select);
+  const SelectedKey highest = block_select<float_digits>(search.count, row, ShareRank{row_p95}, state.select);
   statistics.lowest_row = value_of(lowest.key);
   statistics.highest_row = value_of(highest.key);
 }
@@ -66,10 +66,10 @@ __device__ void measure_range(const SearchMemory& around, const DisparityPlane& 
     key = key_of(static_cast<float>(value));
     return near_road(value, expected);
   };
-  const SelectedKey lowest = block_select(around.count, residual, ShareRank{residual_p01}, state.select);
+  const SelectedKey lowest = block_select<float_digits>(around.count, residual, ShareRank{residual_p01}, state.select);
   statistics.near = lowest.of;
   if (lowest.of < min_matches) return;
-  const SelectedKey highest = block_select(around.count, residual, ShareRank{residual_p99}, state.select);
+  const SelectedKey highest = block_select<float_digits>(around.count, residual, ShareRank{residual_p99}, state.select);
   statistics.residual_p01_px = value_of(lowest.key);
   statistics.residual_p99_px = value_of(highest.key);
 }
@@ -99,7 +99,7 @@ SearchMemory RoadVerification::Search::memory(int places) {
 }
 
 GuidedPair RoadVerification::downsampled(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                         cudaStream_t stream) {
+                                         StreamView stream) {
   const int factor = fine_factor(left.width());
   if (factor == 1) return {left, right, 1};
   const int width = left.width() / factor, height = left.height() / factor;
@@ -112,7 +112,7 @@ GuidedPair RoadVerification::downsampled(ImageView<const std::int16_t> left, Ima
 }
 
 void RoadVerification::run(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                           const PlaneSource& previous, bool with_roll, cudaStream_t stream) {
+                           const PlaneSource& previous, bool with_roll, StreamView stream) {
   const GuidedPair pair = downsampled(left, right, stream);
   const auto grid = [&](const FineSearch& search) {
     return sample_grid(pair.left.width(), pair.left.height(), search.range_px, search.places);
@@ -122,10 +122,10 @@ void RoadVerification::run(ImageView<const std::int16_t> left, ImageView<const s
   const RobustFit fit{fine_fit_scale * pair.factor, with_roll, fine_fit_iterations};
   SearchStatistics* found_around = found_around_.data();
   match_along_plane(pair, first, previous, nullptr, around.slots, stream);
-  launch(fit_around, fit_shape(around.count), stream, around, previous, fit, found_around);
+  launch("fit_around", fit_around, fit_shape(around.count), stream, around, previous, fit, found_around);
   match_along_plane(pair, second, {&found_around->fit.plane, {}}, &found_around->found, close.slots, stream);
-  launch(fit_close, fit_shape(close.count > around.count ? close.count : around.count), stream, close, around, fit,
-         found_around, result_.data());
+  launch("fit_close", fit_close, fit_shape(close.count > around.count ? close.count : around.count), stream, close,
+         around, fit, found_around, result_.data());
 }
 
 }  // namespace roadstereo::cuda

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include <cstdint>
 
 #include "core/cuda/memory.hpp"
+#include "core/cuda/stream.hpp"
 #include "road/cuda/plane_match.hpp"
 #include "road/cuda/robust_plane.hpp"
 #include "road/cuda/verification_statistics.hpp"
@@ -26,7 +25,7 @@ class RoadVerification {
  public:
   /// Enqueues it. The images must stay until then.
   void run(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, const PlaneSource& previous,
-           bool with_roll, cudaStream_t stream);
+           bool with_roll, StreamView stream);
 
   /// Once the stream was synchronised.
   const VerificationStatistics& statistics() const { return *result_.data(); }
@@ -40,7 +39,7 @@ class RoadVerification {
     SearchMemory memory(int count);
   };
 
-  GuidedPair downsampled(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, cudaStream_t stream);
+  GuidedPair downsampled(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, StreamView stream);
 
   Search around_, close_;
   DeviceArray<std::int16_t> pixels_;

@@ -11,8 +11,8 @@
 // IRLS plane fit with Tukey's biweight in one block of threads.
 
 // Counted floor of an iteration, n points: 30·n single-precision operations and 5·16·n bytes of shared memory and
-// first-level cache for weights, sums and residuals, then 4 passes of the median over n keys. One block: what counts is
-// the way through its barriers, 14 an iteration.
+// first-level cache for weights, sums and residuals, then 2 passes of the median over n keys. One block: what counts is
+// the way through its barriers, 10 an iteration.
 //
 // The normal equations are those of the residuals: what they yield is the step of the plane, so that single precision
 // rounds the step and not the plane, and vanishes with it. Only the first residuals need double precision.
@@ -68,7 +68,7 @@ class BlockFit {
       update_residuals();
       const auto window = static_cast<float>(tukey * last_scale);
       const SelectedKey median = select_magnitude(window, false);
-      if (leader()) narrow(last, last_scale, magnitude_of(median, window));
+      if (leader()) narrow(last, last_scale, magnitude_of(median, window), median.of);
       __syncthreads();
       if (state_.settled != 0) break;
     }
@@ -131,37 +131,39 @@ class BlockFit {
     return start_scale_of(magnitude_of(select_magnitude(limit, true), limit));
   }
 
-  /// Magnitudes as keys, in steps of limit / magnitude_keys: the largest float below 2³².
-  static constexpr float magnitude_keys = 4294967040.0F;
+  /// Magnitudes as keys of two digits, in steps of limit / magnitude_keys: a millionth of the scale.
+  static constexpr std::uint32_t last_key = (1U << 2 * DigitCounts::bits) - 1;
+  static constexpr auto magnitude_keys = static_cast<float>(last_key);
 
   /// Median of the magnitudes below `limit`. With `all`, larger ones count as `limit`.
   __device__ SelectedKey select_magnitude(float limit, bool all) {
     const float per_key = magnitude_keys / limit;
     const auto key = [&](int i, std::uint32_t& out) {
       const float magnitude = fabsf(residuals_[i]);
-      out = magnitude < limit ? static_cast<std::uint32_t>(magnitude * per_key) : 0xFFFFFFFFU;
+      out = magnitude < limit ? static_cast<std::uint32_t>(magnitude * per_key) : last_key;
       return all ? magnitude == magnitude : magnitude < limit;
     };
-    return block_select(points_.count, key, MiddleRank{}, state_.select);
+    return block_select<2>(points_.count, key, MiddleRank{}, state_.select);
   }
   /// 0 of none.
   __device__ static double magnitude_of(const SelectedKey& median, float limit) {
-    return median.of > 0 ? static_cast<double>(median.key) / magnitude_keys * limit : 0;
+    constexpr double per_key = 1.0 / last_key;
+    return median.of > 0 ? median.key * per_key * limit : 0;
   }
 
   // One thread does what needs double precision, of which small GPUs have little, and leaves it to the others.
 
   __device__ void take_scale(double scale) {
     state_.scale = scale;
-    state_.per_window = static_cast<float>(1 / (tukey * scale));
+    state_.per_window = 1 / static_cast<float>(tukey * scale);
   }
 
   /// The scale after a step, and whether that was the last one; from the plane and the scale before it.
-  __device__ void narrow(const DisparityPlane& last, double last_scale, double median) {
+  __device__ void narrow(const DisparityPlane& last, double last_scale, double median, int points) {
     const double scale = narrowed_scale(median, last_scale);
     const DisparityPlane& now = state_.plane;
     const double by = now.disparity(state_.far_u, state_.far_v) - last.disparity(state_.far_u, state_.far_v);
-    state_.settled = robust_fit_settled(by, now.a2 - last.a2, scale, last_scale) ? 1 : 0;
+    state_.settled = robust_fit_settled(by, now.a2 - last.a2, scale, last_scale, points) ? 1 : 0;
     take_scale(scale);
   }
 
@@ -186,16 +188,18 @@ class BlockFit {
       ur += wu * residual;
       vr += wv * residual;
     }
-    const double own[9] = {n, su, sv, sr, uu, uv, vv, ur, vr};
-    const double* sums = block_sums(own, state_.scratch);
+    const float own[9] = {n, su, sv, sr, uu, uv, vv, ur, vr};
+    const float* sums = block_sums(own, reinterpret_cast<float*>(state_.scratch));
     if (leader()) solve(sums);
     __syncthreads();
   }
 
   /// The least-squares plane of the disparities, as a step from the last plane.
-  __device__ void solve(const double* s) {
-    const double n = s[0];
-    const double mean_u = s[1] / n, mean_v = s[2] / n, mean_r = s[3] / n;
+  __device__ void solve(const float* sums) {
+    double s[9];
+    for (int i = 0; i < 9; ++i) s[i] = sums[i];
+    const double n = s[0], inverse = 1 / n;
+    const double mean_u = s[1] * inverse, mean_v = s[2] * inverse, mean_r = s[3] * inverse;
     PlaneMoments m{n,
                    s[4] - mean_u * s[1],
                    s[5] - mean_u * s[2],

@@ -20,12 +20,12 @@ __global__ void __launch_bounds__(1024) fit_plane(DevicePoints points, PlaneSour
 }  // namespace
 
 void RobustPlaneFit::run(const DevicePoints& points, const PlaneSource& start, const RobustFit& fit,
-                         cudaStream_t stream) {
+                         StreamView stream) {
   require_fit_points(points.count);
   first_.reserve(static_cast<std::size_t>(points.count));
   weights_.reserve(static_cast<std::size_t>(points.count));
-  launch(fit_plane, {1, fit_threads(points.count), fit_shared_bytes(points.count)}, stream, points, start, fit,
-         first_.data(), weights_.data(), fitted_.data(), result_.data());
+  launch("fit_plane", fit_plane, {1, fit_threads(points.count), fit_shared_bytes(points.count)}, stream, points, start,
+         fit, first_.data(), weights_.data(), fitted_.data(), result_.data());
 }
 
 }  // namespace roadstereo::cuda

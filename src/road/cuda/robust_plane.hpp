@@ -1,8 +1,7 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include "core/cuda/memory.hpp"
+#include "core/cuda/stream.hpp"
 #include "road/cuda/fitted_plane.hpp"
 
 namespace roadstereo::cuda {
@@ -16,7 +15,7 @@ struct DevicePoints {
 };
 
 /// As many as a block works on in the shared memory that every device has.
-inline constexpr int max_fit_points = 8192;
+inline constexpr int max_fit_points = 7168;
 
 /// Throws Error when there are more.
 void require_fit_points(int count);
@@ -31,7 +30,7 @@ struct RobustFit {
 class RobustPlaneFit {
  public:
   /// Enqueues the fit of `points`. Throws Error when there are too many.
-  void run(const DevicePoints& points, const PlaneSource& start, const RobustFit& fit, cudaStream_t stream);
+  void run(const DevicePoints& points, const PlaneSource& start, const RobustFit& fit, StreamView stream);
 
   const FittedPlane* plane() const { return fitted_.data(); }  ///< in device memory
   const float* weights() const { return weights_.data(); }  ///< in device memory: Tukey weights, 0 for missing points

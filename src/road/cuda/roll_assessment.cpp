@@ -1,7 +1,6 @@
 #include "road/cuda/roll_assessment.hpp"
 
 #include "road/roll_assessment.hpp"
-#include "road/roll_energy.hpp"
 
 namespace roadstereo::cuda {
 
@@ -17,14 +16,11 @@ RollEstimate finish_road_fit(const RoadFitStatistics& statistics, int width, int
   return geometry;
 }
 
-RollEstimate solve_map(const RawSums& sums, int width, int height, double initial_roll_rad,
-                       const RollOptions& options) {
-  return solve_from_sums(PlaneSums((width - 1) / 2.0, (height - 1) / 2.0, sums), initial_roll_rad, options);
-}
-
-void finish_measured(const RoadFitStatistics& statistics, int width, int height, const RollOptions& options,
-                     RollEstimate& geometry) {
-  assess_roll(statistics.moments, width, height, options, geometry);
+RollEstimate finish_solved(const SolvedMap& solved, const RoadFitStatistics& measured, int width, int height,
+                           const RollOptions& options) {
+  RollEstimate geometry = take_solved(solved.roll, solved.sums.n);
+  assess_roll(measured.moments, width, height, options, geometry);
+  return geometry;
 }
 
 }  // namespace roadstereo::cuda

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "road/cuda/road_fit_statistics.hpp"
-#include "road/raw_sums.hpp"
+#include "road/cuda/solved_map.hpp"
 #include "roadstereo/roll.hpp"
 
 namespace roadstereo::cuda {
@@ -10,12 +10,8 @@ namespace roadstereo::cuda {
 /// of width × height pixels. Throws the same errors.
 RollEstimate finish_road_fit(const RoadFitStatistics& statistics, int width, int height, const RollOptions& options);
 
-/// The other solvers, from the sums of MapSums: plane, roll angle and iterations. Throws the same errors. The rest
-/// follows from RoadFit::measure of that plane.
-RollEstimate solve_map(const RawSums& sums, int width, int height, double initial_roll_rad, const RollOptions& options);
-
-/// Fills in the rest, from the statistics of RoadFit::measure.
-void finish_measured(const RoadFitStatistics& statistics, int width, int height, const RollOptions& options,
-                     RollEstimate& geometry);
+/// The same of the other solvers, from what MapSums has solved and RoadFit::measure has measured.
+RollEstimate finish_solved(const SolvedMap& solved, const RoadFitStatistics& measured, int width, int height,
+                           const RollOptions& options);
 
 }  // namespace roadstereo::cuda

@@ -33,9 +33,19 @@ __device__ ColumnSums sum_column(const ImageView<const std::int16_t>& image, int
   return column;
 }
 
-/// The sums over the columns of a tile and a radius around it, then those over its blocks.
+/// Of row v, as block_first_columns does.
+__device__ int first_column_of_blocks(const int* first, int v, int rows, int radius) {
+  int latest = 0;
+  for (int y = max(0, v - radius); first != nullptr && y <= min(rows - 1, v + radius); ++y) {
+    latest = max(latest, __ldg(first + y));
+  }
+  return latest;
+}
+
+/// The sums over the columns of a tile and a radius around it, then those over its blocks. The first tile of some rows
+/// also finds their first columns.
 __global__ void sum_tile(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int radius,
-                         float noise_variance, BlockSums sums) {
+                         float noise_variance, const int* first_column, BlockSums sums) {
   const int view = static_cast<int>(blockIdx.z);
   const ImageView<const std::int16_t> image = view == 0 ? left : right;
   // Parameters that are indexed would be copied to memory.
@@ -43,7 +53,10 @@ __global__ void sum_tile(ImageView<const std::int16_t> left, ImageView<const std
   const ImageView<BlockPart> sums_of_blocks = view == 0 ? sums.blocks[0] : sums.blocks[1];
   const int first_u = static_cast<int>(blockIdx.x) * tile_columns - radius;
   const int first_v = static_cast<int>(blockIdx.y) * tile_rows;
-  const int wide = tile_columns + 2 * radius;
+  const int wide = tile_columns + 2 * radius, row = first_v + static_cast<int>(threadIdx.x);
+  if (view == 0 && blockIdx.x == 0 && threadIdx.x < tile_rows && row < image.height()) {
+    sums.first_columns[row] = first_column_of_blocks(first_column, row, image.height(), radius);
+  }
   auto* columns = shared_memory<ColumnSums>();
   for (int i = static_cast<int>(threadIdx.x); i < wide * tile_rows; i += static_cast<int>(blockDim.x)) {
     const int u = first_u + i % wide, v = first_v + i / wide;
@@ -66,30 +79,15 @@ __global__ void sum_tile(ImageView<const std::int16_t> left, ImageView<const std
   sums_of_blocks(u, v) = block_part(sum, squares, rows * (2 * radius + 1), noise_variance);
 }
 
-__global__ void take_first_columns(const int* first, int rows, int radius, int* of_blocks) {
-  const int v = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (v >= rows) return;
-  int latest = 0;
-  for (int y = max(0, v - radius); first != nullptr && y <= min(rows - 1, v + radius); ++y) {
-    latest = max(latest, first[y]);
-  }
-  of_blocks[v] = latest;
-}
-
 }  // namespace
 
-void sum_blocks(const ImageView<const std::int16_t> (&images)[2], int block_radius, float noise_variance,
-                const BlockSums& sums, cudaStream_t stream) {
+void sum_blocks(const ImageView<const std::int16_t> (&images)[2], const int* first_column, int block_radius,
+                float noise_variance, const BlockSums& sums, StreamView stream) {
   const std::size_t shared =
       sizeof(ColumnSums) * static_cast<std::size_t>((tile_columns + 2 * block_radius) * tile_rows);
   const dim3 grid(blocks_for(images[0].width(), tile_columns), blocks_for(images[0].height(), tile_rows), 2);
-  launch(sum_tile, {grid, tile_columns * tile_rows, shared}, stream, images[0], images[1], block_radius, noise_variance,
-         sums);
-}
-
-void first_columns_of_blocks(const int* first, int rows, int block_radius, int* of_blocks, cudaStream_t stream) {
-  constexpr int threads = 128;
-  launch(take_first_columns, {blocks_for(rows, threads), threads}, stream, first, rows, block_radius, of_blocks);
+  launch("sum_tile", sum_tile, {grid, tile_columns * tile_rows, shared}, stream, images[0], images[1], block_radius,
+         noise_variance, first_column, sums);
 }
 
 }  // namespace roadstereo::cuda

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include <cstdint>
 
+#include "core/cuda/stream.hpp"
 #include "roadstereo/image_view.hpp"
 #include "stereo/block_correlation.hpp"
 
@@ -20,14 +19,12 @@ struct alignas(8) ColumnSums {
 struct BlockSums {
   ImageView<ColumnSums> columns[2];  ///< over the rows of a block, per column of each view
   ImageView<BlockPart> blocks[2];    ///< of the whole blocks; of no meaning where one leaves the image's columns
+  int* first_columns;  ///< for every row v the first target column that all rows of the block around v see
 };
 
-/// Fills `sums` for the two images of a pair.
-void sum_blocks(const ImageView<const std::int16_t> (&images)[2], int block_radius, float noise_variance,
-                const BlockSums& sums, cudaStream_t stream);
-
-/// For every row v the first target column that all rows of the block around v see, as block_first_columns does.
-/// `first` null: every row sees all.
-void first_columns_of_blocks(const int* first, int rows, int block_radius, int* of_blocks, cudaStream_t stream);
+/// Fills `sums` for the two images of a pair. `first_column` is that of every row of the target, null where every row
+/// sees all.
+void sum_blocks(const ImageView<const std::int16_t> (&images)[2], const int* first_column, int block_radius,
+                float noise_variance, const BlockSums& sums, StreamView stream);
 
 }  // namespace roadstereo::cuda

@@ -12,20 +12,31 @@ namespace {
 class CudaEngine final : public StereoEngine {
  public:
   explicit CudaEngine(const Device& device) : device_(device.index), matcher_(device.multiprocessors) {}
+  /// Memory goes only when no kernel uses it any more.
+  ~CudaEngine() override { stream().settle(); }
+  CudaEngine(const CudaEngine&) = delete;
+  CudaEngine& operator=(const CudaEngine&) = delete;
 
   void match(const MatchInput& input, const MatcherOptions& options, MatchMaps& maps) override {
     validate(input);
     options.validate();
     require_current_device(device_);
-    const DeviceMatchMaps& found = matcher_.match(upload(input), options, stream_.get());
-    download(found.disparity, maps.disparity);
-    download(found.variance, maps.variance);
-    download(found.winner, maps.winner);
-    download(found.target_winner, maps.target_winner);
-    stream_.wait();
+    try {
+      const DeviceMatchMaps& found = matcher_.match(upload(input), options, stream());
+      download(found.disparity, maps.disparity);
+      download(found.variance, maps.variance);
+      download(found.winner, maps.winner);
+      download(found.target_winner, maps.target_winner);
+    } catch (...) {
+      stream().settle();  // what copies still read or write is the caller's
+      throw;
+    }
+    stream().wait();
   }
 
  private:
+  StreamView stream() const { return stream_.get(); }
+
   /// The input in device memory.
   MatchInput upload(const MatchInput& input) {
     MatchInput there;
@@ -55,8 +66,7 @@ class CudaEngine final : public StereoEngine {
   template <class T>
   void download(const ImageView<T>& from, Image<T>& to) {
     to.resize(from.width(), from.height());
-    ROADSTEREO_CUDA(
-        cudaMemcpyAsync(to.row(0), from.data(), to.pixels() * sizeof(T), cudaMemcpyDeviceToHost, stream_.get()));
+    stream().download(to.row(0), from.data(), to.pixels() * sizeof(T));
   }
 
   int device_;

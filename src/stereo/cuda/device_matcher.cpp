@@ -11,10 +11,10 @@
 namespace roadstereo::cuda {
 
 /// The window's taps with their weights by distance, on both sides of the bus.
-void DeviceMatcher::use(const MatcherOptions& options, cudaStream_t stream) {
+void DeviceMatcher::use(const MatcherOptions& options, StreamView stream) {
   if (options_ == options) return;
-  options_.reset();                                // until all is made: memory may run out
-  ROADSTEREO_CUDA(cudaStreamSynchronize(stream));  // what still reads the taps of before
+  options_.reset();  // until all is made: memory may run out
+  stream.wait();     // what still reads the taps of before
   const std::vector<Tap> taps = trimmed_taps(options);
   taps_.reserve(taps.size());
   taps_on_device_.reserve(taps.size());
@@ -36,8 +36,7 @@ void DeviceMatcher::use(const MatcherOptions& options, cudaStream_t stream) {
   settings_.effective_samples = static_cast<float>(effective_samples(options));
   settings_.prior_weight = static_cast<float>(options.prior_weight);
   settings_.prior_truncation_px = static_cast<float>(options.prior_truncation_px);
-  ROADSTEREO_CUDA(cudaMemcpyAsync(taps_on_device_.data(), taps_.data(), taps.size() * sizeof(WindowTap),
-                                  cudaMemcpyHostToDevice, stream));
+  stream.upload(taps_on_device_.data(), taps_.data(), taps.size() * sizeof(WindowTap));
   options_ = options;
 }
 
@@ -50,6 +49,7 @@ void DeviceMatcher::reserve(int width, int height) {
     sums_.blocks[side] = ImageView(blocks_[side].data(), width, height);
   }
   first_columns_.reserve(static_cast<std::size_t>(height));
+  sums_.first_columns = first_columns_.data();
   offset_.reserve(pixels);
   disparity_.reserve(pixels);
   variance_.reserve(pixels);
@@ -79,8 +79,7 @@ ViewToMatch DeviceMatcher::view_of(const MatchInput& input, bool mirrored) const
   return view;
 }
 
-const DeviceMatchMaps& DeviceMatcher::match(const MatchInput& input, const MatcherOptions& options,
-                                            cudaStream_t stream) {
+const DeviceMatchMaps& DeviceMatcher::match(const MatchInput& input, const MatcherOptions& options, StreamView stream) {
   const int width = input.reference.width(), height = input.reference.height();
   use(options, stream);
   reserve(width, height);
@@ -89,8 +88,7 @@ const DeviceMatchMaps& DeviceMatcher::match(const MatchInput& input, const Match
 
   const ImageView<const std::int16_t> images[2]{input.reference, input.target};
   const ImageView offset(offset_.data(), width, height);
-  sum_blocks(images, options.block_radius, settings_.noise_variance, sums_, stream);
-  first_columns_of_blocks(input.first_column, height, options.block_radius, first_columns_.data(), stream);
+  sum_blocks(images, input.first_column, options.block_radius, settings_.noise_variance, sums_, stream);
   match_view(view_of(input, false), settings_, taps_.data(), plan, energies_.data(),
              {maps_.winner, offset, maps_.variance}, stream);
   if (options.match_both_views) {

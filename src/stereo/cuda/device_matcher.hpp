@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/cuda/memory.hpp"
+#include "core/cuda/stream.hpp"
 #include "roadstereo/image_view.hpp"
 #include "roadstereo/matcher.hpp"
 #include "stereo/cuda/match_view.hpp"
@@ -24,10 +25,10 @@ class DeviceMatcher {
   explicit DeviceMatcher(int multiprocessors) : multiprocessors_(multiprocessors) {}
 
   /// `input` lies in device memory; the options must be valid. The maps are valid until the next call.
-  const DeviceMatchMaps& match(const MatchInput& input, const MatcherOptions& options, cudaStream_t stream);
+  const DeviceMatchMaps& match(const MatchInput& input, const MatcherOptions& options, StreamView stream);
 
  private:
-  void use(const MatcherOptions& options, cudaStream_t stream);
+  void use(const MatcherOptions& options, StreamView stream);
   void reserve(int width, int height);
   ViewToMatch view_of(const MatchInput& input, bool mirrored) const;
 

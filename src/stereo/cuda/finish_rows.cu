@@ -66,10 +66,10 @@ __global__ void finish_row(ImageView<const std::int16_t> winner, ImageView<std::
 
 void finish_rows(ImageView<const std::int16_t> winner, ImageView<std::int16_t> target_winner,
                  ImageView<const float> offset, const FinishSettings& settings, bool project,
-                 ImageView<float> disparity, ImageView<float> variance, cudaStream_t stream) {
+                 ImageView<float> disparity, ImageView<float> variance, StreamView stream) {
   const std::size_t shared = sizeof(int) * static_cast<std::size_t>(winner.width());
-  launch(finish_row, {static_cast<unsigned>(winner.height()), threads, shared}, stream, winner, target_winner, offset,
-         settings, project, disparity, variance);
+  launch("finish_row", finish_row, {static_cast<unsigned>(winner.height()), threads, shared}, stream, winner,
+         target_winner, offset, settings, project, disparity, variance);
 }
 
 }  // namespace roadstereo::cuda

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include <cstdint>
 
+#include "core/cuda/stream.hpp"
 #include "roadstereo/image_view.hpp"
 #include "stereo/finish_disparity.hpp"
 
@@ -13,6 +12,6 @@ namespace roadstereo::cuda {
 /// of the reference, projected. `offset`: eq. (13), NaN without two neighbours. `variance` grows where the check fails.
 void finish_rows(ImageView<const std::int16_t> winner, ImageView<std::int16_t> target_winner,
                  ImageView<const float> offset, const FinishSettings& settings, bool project,
-                 ImageView<float> disparity, ImageView<float> variance, cudaStream_t stream);
+                 ImageView<float> disparity, ImageView<float> variance, StreamView stream);
 
 }  // namespace roadstereo::cuda

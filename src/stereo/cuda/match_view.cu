@@ -81,14 +81,14 @@ __global__ void __launch_bounds__(threads, max_taps <= taps_of_default ? 2 : 1)
 
 template <int max_taps>
 void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
-                  const ViewLaunch& plan, float* energies, const ViewWinners& winners, cudaStream_t stream) {
+                  const ViewLaunch& plan, float* energies, const ViewWinners& winners, StreamView stream) {
   const int columns = tile_columns + 2 * (settings.window_half_width + settings.block_radius);
   TapOffsets<max_taps> offsets{};
   for (int t = 0; max_taps > 0 && t < settings.tap_count; ++t) {
     offsets.bytes[t] = (taps_on_host[t].dv * columns + taps_on_host[t].du) * static_cast<int>(sizeof(int4));
   }
-  launch(match_tiles<max_taps>, {static_cast<unsigned>(plan.blocks), threads, plan.shared_bytes}, stream, view,
-         settings, offsets, energies, plan.energies_per_block, winners);
+  launch("match_tiles", match_tiles<max_taps>, {static_cast<unsigned>(plan.blocks), threads, plan.shared_bytes}, stream,
+         view, settings, offsets, energies, plan.energies_per_block, winners);
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height,
 }
 
 void match_view(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
-                const ViewLaunch& plan, float* energies, const ViewWinners& winners, cudaStream_t stream) {
+                const ViewLaunch& plan, float* energies, const ViewWinners& winners, StreamView stream) {
   if (settings.tap_count == 1) {
     launch_tiles<1>(view, settings, taps_on_host, plan, energies, winners, stream);
   } else if (settings.tap_count <= taps_of_default) {

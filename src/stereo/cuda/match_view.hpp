@@ -1,10 +1,9 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include <cstddef>
 #include <cstdint>
 
+#include "core/cuda/stream.hpp"
 #include "roadstereo/image_view.hpp"
 #include "roadstereo/search_range.hpp"
 #include "stereo/cuda/block_sums.hpp"
@@ -70,6 +69,6 @@ ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height,
 /// winner-take-all. Costs lie in shared memory, energies in a slice of `energies` that stays in the cache.
 /// `taps_on_host`: the settings' taps in host memory.
 void match_view(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
-                const ViewLaunch& plan, float* energies, const ViewWinners& winners, cudaStream_t stream);
+                const ViewLaunch& plan, float* energies, const ViewWinners& winners, StreamView stream);
 
 }  // namespace roadstereo::cuda

@@ -79,6 +79,9 @@ inline int __popc(unsigned bits) {
 inline int __ffs(int bits) {
   return __builtin_ffs(bits);
 }
+inline int __float2int_rn(float value) {
+  return static_cast<int>(std::lrint(value));
+}
 inline int __float_as_int(float value) {
   int bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
@@ -124,25 +127,35 @@ enum cudaMemcpyKind {
   cudaMemcpyDefault
 };
 enum cudaMemoryType { cudaMemoryTypeUnregistered, cudaMemoryTypeHost, cudaMemoryTypeDevice, cudaMemoryTypeManaged };
-enum cudaDeviceAttr { cudaDevAttrMaxSharedMemoryPerBlockOptin, cudaDevAttrMultiProcessorCount };
+enum cudaDeviceAttr { cudaDevAttrMaxThreadsPerMultiProcessor, cudaDevAttrMultiProcessorCount };
 struct cudaPointerAttributes {
   cudaMemoryType type;
+  int device;
 };
 struct cudaDeviceProp {
   char name[256];
   int major, minor, multiProcessorCount;
 };
 struct cudaFuncAttributes {
-  int maxThreadsPerBlock;
+  int numRegs;
+  std::size_t localSizeBytes, sharedSizeBytes;
 };
 using cudaStream_t = struct CUstream_st*;
 using cudaEvent_t = struct CUevent_st*;
 constexpr unsigned cudaStreamNonBlocking = 1;
 constexpr unsigned cudaHostAllocMapped = 2;
+constexpr unsigned cudaEventDefault = 0;
+constexpr unsigned cudaEventDisableTiming = 2;
 
 /// Every kernel is there.
 template <class Kernel>
-cudaError_t cudaFuncGetAttributes(cudaFuncAttributes*, Kernel*) {
+cudaError_t cudaFuncGetAttributes(cudaFuncAttributes* attributes, Kernel*) {
+  *attributes = {};
+  return cudaSuccess;
+}
+/// One block at a time.
+inline cudaError_t cudaOccupancyMaxActiveBlocksPerMultiprocessor(int* blocks, const void*, int, std::size_t) {
+  *blocks = 1;
   return cudaSuccess;
 }
 cudaError_t cudaGetDeviceCount(int* count);
@@ -167,8 +180,8 @@ cudaError_t cudaMemsetAsync(void* memory, int byte, std::size_t bytes, cudaStrea
 cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned flags);
 cudaError_t cudaStreamDestroy(cudaStream_t stream);
 cudaError_t cudaStreamSynchronize(cudaStream_t stream);
-cudaError_t cudaEventCreate(cudaEvent_t* event);
+cudaError_t cudaStreamWaitEvent(cudaStream_t stream, cudaEvent_t event, unsigned flags);
+cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned flags);
 cudaError_t cudaEventDestroy(cudaEvent_t event);
 cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t stream);
-cudaError_t cudaEventSynchronize(cudaEvent_t event);
 cudaError_t cudaEventElapsedTime(float* ms, cudaEvent_t first, cudaEvent_t last);

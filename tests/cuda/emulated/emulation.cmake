@@ -10,9 +10,15 @@ if(ROADSTEREO_HAS_FMA)
   set(ROADSTEREO_EMULATED_OPTIONS -mfma -ffp-contract=fast)
 endif()
 
-# roadstereo_emulate_kernels(<target> <kernel>...): the sources of a target that are CUDA's, as C++, and what runs them.
+# roadstereo_kernels_as_cxx(<kernel>...): sources of this folder that are CUDA's, as C++.
+function(roadstereo_kernels_as_cxx)
+  set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CXX SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON
+    COMPILE_OPTIONS "-xc++;-std=c++17;${ROADSTEREO_EMULATED_OPTIONS}")
+endfunction()
+
+# roadstereo_emulate_kernels(<target> <kernel>...): the same for the sources of a target, and what runs them.
 function(roadstereo_emulate_kernels target)
-  set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CXX COMPILE_OPTIONS "-xc++;-std=c++17;${ROADSTEREO_EMULATED_OPTIONS}")
+  roadstereo_kernels_as_cxx(${ARGN})
   set(run_kernel ${ROADSTEREO_EMULATION}/run_kernel.cpp)
   target_sources(${target} PRIVATE ${run_kernel} ${ROADSTEREO_EMULATION}/runtime.cpp)
   if(ROADSTEREO_SANITIZE MATCHES thread)

@@ -227,9 +227,19 @@ void run_block() {
   }
 }
 
+int& launches_until_failure() {
+  static thread_local int launches = -1;
+  return launches;
+}
+
 }  // namespace
 
+void fail_after(int launches) {
+  launches_until_failure() = launches;
+}
+
 void run_kernel(dim3 grid, dim3 size, std::size_t shared_bytes, const std::function<void()>& thread) {
+  if (launches_until_failure() >= 0 && launches_until_failure()-- == 0) throw std::runtime_error("a launch fails");
   Block& own = block();
   own.kernel = &thread;
   own.threads = std::size_t{size.x} * size.y * size.z;

@@ -19,6 +19,9 @@ void run_kernel(dim3 grid, dim3 block, std::size_t shared_bytes, const std::func
 /// Shared memory of the block that runs.
 void* shared_memory();
 
+/// Lets so many launches of this thread run, and the next one fail with std::runtime_error; negative: none fails.
+void fail_after(int launches);
+
 /// Calls of cudaMalloc and cudaHostAlloc so far, of the whole process.
 std::size_t allocations();
 

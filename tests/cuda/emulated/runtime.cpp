@@ -11,7 +11,8 @@
 
 struct CUstream_st {};
 struct CUevent_st {
-  std::chrono::steady_clock::time_point time;
+  std::chrono::steady_clock::time_point time{};
+  bool recorded = false;
 };
 
 namespace {
@@ -19,14 +20,14 @@ namespace {
 /// Which memory is whose: pointers are of the device, of pinned memory, or unknown.
 class Memory {
  public:
-  cudaError_t take(void** memory, std::size_t bytes, cudaMemoryType type) {
+  cudaError_t take(void** memory, std::size_t bytes, cudaPointerAttributes whose) {
     constexpr std::size_t most = std::size_t{1} << 34;
     *memory = bytes <= most ? std::malloc(bytes) : nullptr;
     if (*memory == nullptr) return cudaErrorMemoryAllocation;
     std::memset(*memory, 0xFF, bytes);
     const std::lock_guard lock(mutex_);
     ++count_;
-    blocks_[*memory] = {bytes, type};
+    blocks_[*memory] = {bytes, whose};
     return cudaSuccess;
   }
 
@@ -40,13 +41,14 @@ class Memory {
     return cudaSuccess;
   }
 
-  cudaMemoryType type_of(const void* pointer) {
+  cudaPointerAttributes attributes_of(const void* pointer) {
     const std::lock_guard lock(mutex_);
+    const cudaPointerAttributes unknown{cudaMemoryTypeUnregistered, 0};
     auto block = blocks_.upper_bound(pointer);
-    if (block == blocks_.begin()) return cudaMemoryTypeUnregistered;
+    if (block == blocks_.begin()) return unknown;
     --block;
     const auto distance = static_cast<const char*>(pointer) - static_cast<const char*>(block->first);
-    return static_cast<std::size_t>(distance) < block->second.bytes ? block->second.type : cudaMemoryTypeUnregistered;
+    return static_cast<std::size_t>(distance) < block->second.bytes ? block->second.whose : unknown;
   }
 
   std::size_t count() {
@@ -57,7 +59,7 @@ class Memory {
  private:
   struct Block {
     std::size_t bytes;
-    cudaMemoryType type;
+    cudaPointerAttributes whose;
   };
   std::mutex mutex_;
   std::map<const void*, Block> blocks_;
@@ -99,8 +101,7 @@ cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int) {
   return cudaSuccess;
 }
 cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int) {
-  constexpr int min_of_all_devices = 48 << 10;
-  *value = attribute == cudaDevAttrMaxSharedMemoryPerBlockOptin ? min_of_all_devices : 2;
+  *value = attribute == cudaDevAttrMaxThreadsPerMultiProcessor ? 1024 : 2;
   return cudaSuccess;
 }
 cudaError_t cudaDriverGetVersion(int* version) {
@@ -123,19 +124,19 @@ const char* cudaGetErrorName(cudaError_t error) {
                                             : "cudaErrorInvalidValue";
 }
 cudaError_t cudaMalloc(void** pointer, std::size_t bytes) {
-  return memory().take(pointer, bytes, cudaMemoryTypeDevice);
+  return memory().take(pointer, bytes, {cudaMemoryTypeDevice, current_device});
 }
 cudaError_t cudaFree(void* pointer) {
   return memory().give_back(pointer);
 }
 cudaError_t cudaHostAlloc(void** pointer, std::size_t bytes, unsigned) {
-  return memory().take(pointer, bytes, cudaMemoryTypeHost);
+  return memory().take(pointer, bytes, {cudaMemoryTypeHost, current_device});
 }
 cudaError_t cudaFreeHost(void* pointer) {
   return memory().give_back(pointer);
 }
 cudaError_t cudaPointerGetAttributes(cudaPointerAttributes* attributes, const void* pointer) {
-  attributes->type = memory().type_of(pointer);
+  *attributes = memory().attributes_of(pointer);
   return cudaSuccess;
 }
 cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind, cudaStream_t) {
@@ -164,7 +165,10 @@ cudaError_t cudaStreamDestroy(cudaStream_t stream) {
 cudaError_t cudaStreamSynchronize(cudaStream_t) {
   return cudaSuccess;
 }
-cudaError_t cudaEventCreate(cudaEvent_t* event) {
+cudaError_t cudaStreamWaitEvent(cudaStream_t, cudaEvent_t, unsigned) {
+  return cudaSuccess;
+}
+cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
   *event = new CUevent_st;
   return cudaSuccess;
 }
@@ -174,12 +178,11 @@ cudaError_t cudaEventDestroy(cudaEvent_t event) {
 }
 cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t) {
   event->time = std::chrono::steady_clock::now();
-  return cudaSuccess;
-}
-cudaError_t cudaEventSynchronize(cudaEvent_t) {
+  event->recorded = true;
   return cudaSuccess;
 }
 cudaError_t cudaEventElapsedTime(float* ms, cudaEvent_t first, cudaEvent_t last) {
+  if (!first->recorded || !last->recorded) return cudaErrorInvalidValue;
   *ms = std::chrono::duration<float, std::milli>(last->time - first->time).count();
   return cudaSuccess;
 }

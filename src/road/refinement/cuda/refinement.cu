@@ -166,7 +166,7 @@ std::size_t tile_bytes(int rows, int border) {
 
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
                         const RefinementSettings& settings, ImageView<float> refined, ImageView<float> sigma,
-                        cudaStream_t stream) {
+                        StreamView stream) {
   constexpr int rows_each = 2;
   const Maps maps{disparity, variance, road};
   const dim3 block(tile_columns, thread_rows);
@@ -175,10 +175,10 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
   };
   const std::size_t bytes = tile_bytes(rows_each * thread_rows, settings.radius);
   if (bytes <= max_shared_bytes) {
-    launch(refine_tiles<rows_each>, {grid(rows_each * thread_rows), block, bytes}, stream, maps, settings, refined,
-           sigma);
+    launch("refine_tiles", refine_tiles<rows_each>, {grid(rows_each * thread_rows), block, bytes}, stream, maps,
+           settings, refined, sigma);
   } else {
-    launch(refine_untiled, {grid(thread_rows), block}, stream, maps, settings, refined, sigma);
+    launch("refine_untiled", refine_untiled, {grid(thread_rows), block}, stream, maps, settings, refined, sigma);
   }
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
+#include "core/cuda/stream.hpp"
 #include "road/refinement/mean_settings.hpp"
 #include "road/refinement/measured.hpp"
 #include "road/row_shift.hpp"
@@ -21,6 +20,6 @@ struct RefinementSettings {
 /// Enqueues refine_disparities on the device (roadstereo/refinement.hpp).
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
                         const RefinementSettings& settings, ImageView<float> refined, ImageView<float> sigma,
-                        cudaStream_t stream);
+                        StreamView stream);
 
 }  // namespace roadstereo::cuda

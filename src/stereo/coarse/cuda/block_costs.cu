@@ -1,7 +1,8 @@
 // Floor: 4 bytes written a cost; with radius 3, a cost takes 7 products whose factors come from shared memory, and
 // about 20 operations for the correlation: 320×180 pixels of 24 disparities are 1.4 million costs, 5.5 MB, 60 million
 // operations. The block slides along the row, so that a column enters it once; the sums over each view's whole blocks
-// are made once for all disparities.
+// are made once for all disparities. The road's prior is added to a cost before it is written, as long as a warp holds
+// all costs of a pixel; of more than 32 disparities, it is added to what the warp has written before.
 
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
@@ -10,7 +11,7 @@
 #include "stereo/block_correlation.hpp"
 #include "stereo/coarse/coarse_column.hpp"
 #include "stereo/coarse/cuda/block_costs.hpp"
-#include "stereo/coarse/road_plausibility.hpp"
+#include "stereo/coarse/cuda/pixel_prior.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -18,6 +19,10 @@ namespace {
 constexpr int warps = 4;
 constexpr int columns_each = 22;  // of a warp: with the block's radius of 3 on both sides four times a block's width
 constexpr int segment = warps * columns_each;
+
+/// The width of a block, where the compiler knows it; 0 is any.
+template <int width>
+struct Known {};
 
 /// Sums of one column over the rows of a block.
 struct alignas(8) ColumnSums {
@@ -39,6 +44,9 @@ struct ViewColumns {
 /// A segment of a row as its block of threads sees it.
 struct Segment {
   ViewColumns own, other;
+  GradientSums* gradients;  ///< of the own columns
+  PixelPrior* priors;       ///< of the segment
+  RowLine* road;
   int width, first_visible;  ///< columns of the image; the first one of the target that counts
   int radius, rows;          ///< of the block; rows of it that lie in the image
   float noise_variance;
@@ -107,9 +115,10 @@ __device__ float cost_of(const Segment& of, int u, int d, int product) {
                           1.0F / static_cast<float>((last - first + 1) * of.rows));
 }
 
-/// Costs of one disparity along the columns begin … end − 1. The products of the block's columns lie in registers.
-template <int block>
-__device__ void slide_block(const Segment& of, int begin, int end, int d, float* cost, int pitch) {
+/// Tells `use(u, cost)` the costs of one disparity along the columns begin … end − 1. The products of the block's
+/// columns lie in registers.
+template <int block, class Use>
+__device__ void slide_block(const Segment& of, int begin, int end, int d, Use use, Known<block>) {
   constexpr int radius = block / 2;
   int columns[block] = {}, product = 0;
   for (int first = begin - radius; first < end + radius; first += block) {
@@ -119,20 +128,20 @@ __device__ void slide_block(const Segment& of, int begin, int end, int d, float*
       if (u >= end) break;
       columns[k] = column_product<block>(of, first + k, d);
       product += columns[k];
-      if (u >= begin) cost[(u - begin) * pitch] = cost_of(of, u, d, product);
+      if (u >= begin) use(u, cost_of(of, u, d, product));
       product -= columns[(k + 1) % block];
     }
   }
 }
 
 /// The same for blocks of any size: what leaves the block is computed again.
-template <>
-__device__ void slide_block<0>(const Segment& of, int begin, int end, int d, float* cost, int pitch) {
+template <class Use>
+__device__ void slide_block(const Segment& of, int begin, int end, int d, Use use, Known<0>) {
   int product = 0;
   for (int c = begin - of.radius; c < begin + of.radius; ++c) product += column_product<0>(of, c, d);
   for (int u = begin; u < end; ++u) {
     product += column_product<0>(of, u + of.radius, d);
-    cost[(u - begin) * pitch] = cost_of(of, u, d, product);
+    use(u, cost_of(of, u, d, product));
     product -= column_product<0>(of, u - of.radius, d);
   }
 }
@@ -161,16 +170,46 @@ __device__ Segment make_segment(int first, int radius, const CoarseVolume& costs
   of.other.parts = of.own.parts + of.own.count;
   of.own.sums = reinterpret_cast<ColumnSums*>(of.other.parts + of.other.count);
   of.other.sums = of.own.sums + of.own.count;
-  of.own.grey = reinterpret_cast<short*>(of.other.sums + of.other.count);
+  of.gradients = reinterpret_cast<GradientSums*>(of.other.sums + of.other.count);
+  of.priors = reinterpret_cast<PixelPrior*>(of.gradients + of.own.count);
+  of.road = reinterpret_cast<RowLine*>(of.priors + segment);
+  of.own.grey = reinterpret_cast<short*>(of.road + 1);
   of.other.grey = of.own.grey + (2 * radius + 1) * of.own.count;
   return of;
 }
 
+std::size_t shared_bytes(int radius, int disparities) {
+  const auto own = static_cast<std::size_t>(segment + 2 * radius),
+             both = 2 * own + static_cast<std::size_t>(disparities) - 1;
+  const std::size_t of_column =
+      sizeof(BlockPart) + sizeof(ColumnSums) + static_cast<std::size_t>(2 * radius + 1) * sizeof(short);
+  return both * of_column + own * sizeof(GradientSums) + segment * sizeof(PixelPrior) + sizeof(RowLine);
+}
+
+/// Loads what the costs of a segment need, and sums it.
 template <int known_block>
-__global__ void block_costs_of_segments(CoarsePair pair, int radius, float noise_variance, CoarseVolume costs,
+__device__ void prepare(const Segment& of, const CoarsePair& pair, const RoadPrior& prior, int first, int v) {
+  const int thread = static_cast<int>(threadIdx.x), first_row = v - of.radius;
+  load_columns<known_block>(of.own, pair.reference, 0, first_row, of.radius);
+  load_columns<known_block>(of.other, pair.target, of.first_visible, first_row, of.radius);
+  for (int i = thread; i < of.own.count; i += warps * warp_lanes) {
+    of.gradients[i] = column_gradients(pair.reference, of.own.first + i, v, of.radius);
+  }
+  if (thread == 0) *of.road = road_in_row(prior.shift, v, pair.factor);
+  __syncthreads();
+  fill_parts(of.own, of);
+  fill_parts(of.other, of);
+  for (int i = thread; i < segment; i += warps * warp_lanes) {
+    of.priors[i] = prior_of(of.gradients + i, prior, *of.road, pair.factor, first + i);
+  }
+  __syncthreads();
+}
+
+template <int known_block>
+__global__ void block_costs_of_segments(CoarsePair pair, float noise_variance, RoadPrior prior, CoarseVolume costs,
                                         int* first_seen) {
   const int v = costs.first_row + static_cast<int>(blockIdx.y), first = static_cast<int>(blockIdx.x) * segment;
-  const int first_row = v - radius, last_row = v + radius;
+  const int radius = prior.block_radius, first_row = v - radius, last_row = v + radius;
   const int inside = (last_row < pair.reference.height() ? last_row : pair.reference.height() - 1) -
                      (first_row > 0 ? first_row : 0) + 1;
   Segment of = make_segment(first, radius, costs);
@@ -181,31 +220,38 @@ __global__ void block_costs_of_segments(CoarsePair pair, int radius, float noise
   of.noise_variance = noise_variance;
   of.inverse_whole = 1.0F / static_cast<float>((2 * radius + 1) * inside);
   if (blockIdx.x == 0 && threadIdx.x == 0) first_seen[v] = of.first_visible;
-  load_columns<known_block>(of.own, pair.reference, 0, first_row, radius);
-  load_columns<known_block>(of.other, pair.target, of.first_visible, first_row, radius);
-  __syncthreads();
-  fill_parts(of.own, of);
-  fill_parts(of.other, of);
-  __syncthreads();
+  prepare<known_block>(of, pair, prior, first, v);
   const int begin = first + static_cast<int>(threadIdx.x) / warp_lanes * columns_each;
   const int end = begin + columns_each < costs.columns ? begin + columns_each : costs.columns;
   if (begin >= end) return;
-  for (int d = static_cast<int>(threadIdx.x) % warp_lanes; d < costs.disparities; d += warp_lanes) {
-    slide_block<known_block>(of, begin, end, d, costs.pixel(begin, v) + d, costs.pitch);
+  const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
+  const auto count = [&](int u) { return min(u - of.first_visible + 1, costs.disparities); };
+  if (costs.pitch == warp_lanes) {
+    // A lane for each disparity: what a pixel's prior needs of its costs, the warp holds.
+    slide_block(
+        of, begin, end, min(lane, costs.disparities - 1),
+        [&](int u, float cost) {
+          costs.pixel(u, v)[lane] = completed_cost(of.priors[u - first], prior, costs, cost, count(u));
+        },
+        Known<known_block>{});
+    return;
   }
+  for (int d = lane; d < costs.disparities; d += warp_lanes) {
+    slide_block(
+        of, begin, end, d, [&](int u, float cost) { costs.pixel(u, v)[d] = cost; }, Known<known_block>{});
+  }
+  __syncwarp();  // lanes read what others have written
+  for (int u = begin; u < end; ++u) complete_costs(of.priors[u - first], prior, costs, costs.pixel(u, v), count(u));
 }
 
 }  // namespace
 
-void block_costs(const CoarsePair& pair, int block_radius, float noise_variance, const CoarseVolume& costs,
-                 int* first_seen, cudaStream_t stream) {
-  const int own = segment + 2 * block_radius, both = 2 * own + costs.disparities - 1;
-  const std::size_t bytes_each =
-      sizeof(BlockPart) + sizeof(ColumnSums) + static_cast<std::size_t>(2 * block_radius + 1) * sizeof(short);
+void block_costs(const CoarsePair& pair, float noise_variance, const RoadPrior& prior, const CoarseVolume& costs,
+                 int* first_seen, StreamView stream) {
   const LaunchShape shape{dim3(blocks_for(costs.columns, segment), static_cast<unsigned>(costs.rows)),
-                          warps * warp_lanes, static_cast<std::size_t>(both) * bytes_each};
-  const auto kernel = block_radius == 3 ? block_costs_of_segments<7> : block_costs_of_segments<0>;
-  launch(kernel, shape, stream, pair, block_radius, noise_variance, costs, first_seen);
+                          warps * warp_lanes, shared_bytes(prior.block_radius, costs.disparities)};
+  const auto kernel = prior.block_radius == 3 ? block_costs_of_segments<7> : block_costs_of_segments<0>;
+  launch("block_costs", kernel, shape, stream, pair, noise_variance, prior, costs, first_seen);
 }
 
 }  // namespace roadstereo::cuda

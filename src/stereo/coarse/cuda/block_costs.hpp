@@ -1,14 +1,15 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
+#include "core/cuda/stream.hpp"
 #include "stereo/coarse/cuda/coarse_volume.hpp"
+#include "stereo/coarse/cuda/road_prior.hpp"
 
 namespace roadstereo::cuda {
 
-/// Fills the band's costs c(p, d) of eq. (8), of blocks with the radius given; a disparity without a counterpart costs
-/// `uncorrelated_cost`. `first_seen[v]` becomes the first target column that all rows of the block around v see.
-void block_costs(const CoarsePair& pair, int block_radius, float noise_variance, const CoarseVolume& costs,
-                 int* first_seen, cudaStream_t stream);
+/// Fills the band's costs: c(p, d) of eq. (8), of blocks with the prior's radius, plus the prior, and infinity behind
+/// the last disparity. A disparity without a counterpart costs `uncorrelated_cost`. `first_seen[v]` becomes the first
+/// target column that all rows of the block around v see.
+void block_costs(const CoarsePair& pair, float noise_variance, const RoadPrior& prior, const CoarseVolume& costs,
+                 int* first_seen, StreamView stream);
 
 }  // namespace roadstereo::cuda

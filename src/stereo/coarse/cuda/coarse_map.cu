@@ -57,9 +57,9 @@ __global__ void correct_row(ImageView<const float> along_rows, float factor, Ima
 
 }  // namespace
 
-void correct_rows(ImageView<const float> along_rows, int factor, ImageView<float> prior, cudaStream_t stream) {
+void correct_rows(ImageView<const float> along_rows, int factor, ImageView<float> prior, StreamView stream) {
   const std::size_t bytes = static_cast<std::size_t>(along_rows.width()) * (sizeof(float) + sizeof(int));
-  launch(correct_row, {static_cast<unsigned>(along_rows.height()), threads, bytes}, stream, along_rows,
+  launch("correct_row", correct_row, {static_cast<unsigned>(along_rows.height()), threads, bytes}, stream, along_rows,
          static_cast<float>(factor), prior);
 }
 

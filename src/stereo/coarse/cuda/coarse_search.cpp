@@ -32,7 +32,7 @@ RoadPrior road_prior(const CoarseSearchOptions& options, const PerspectiveShift&
 
 }  // namespace
 
-bool CudaCoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift, cudaStream_t stream) {
+bool CudaCoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift, StreamView stream) {
   ranges_ = {};
   width_ = height_ = 0;
   const int width = input.reference.width(), height = input.reference.height();
@@ -69,7 +69,7 @@ CoarseVolume CudaCoarseSearch::reserve(const MatchInput& input) {
   return shape;
 }
 
-CoarsePair CudaCoarseSearch::downsample_pair(const MatchInput& input, cudaStream_t stream) {
+CoarsePair CudaCoarseSearch::downsample_pair(const MatchInput& input, StreamView stream) {
   const auto reference = ImageView(reference_.data(), width_, height_);
   const auto target = ImageView(target_.data(), width_, height_);
   downsample(input.reference, input.target, factor_, reference, target, stream);
@@ -78,7 +78,7 @@ CoarsePair CudaCoarseSearch::downsample_pair(const MatchInput& input, cudaStream
 
 /// Optimises the scanlines of a band of rows, with the road as prior where texture is weak.
 void CudaCoarseSearch::match_band(const CoarsePair& pair, const PerspectiveShift& shift, const CoarseVolume& shape,
-                                  int first_row, cudaStream_t stream) {
+                                  int first_row, StreamView stream) {
   CoarseVolume costs = shape;
   costs.first_row = first_row;
   costs.rows = std::min(shape.rows, height_ - first_row);
@@ -87,13 +87,12 @@ void CudaCoarseSearch::match_band(const CoarsePair& pair, const PerspectiveShift
   forward.numbers = forward_.data();
   backward.numbers = backward_.data();
   const double noise = options_.ncc_noise_sigma * grey_scale;
-  block_costs(pair, options_.block_radius, static_cast<float>(noise * noise), costs, first_seen_.data(), stream);
-  add_road_prior(pair, road_prior(options_, shift), first_seen_.data(), costs, stream);
+  block_costs(pair, static_cast<float>(noise * noise), road_prior(options_, shift), costs, first_seen_.data(), stream);
   aggregate_scanlines(costs, {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)},
                       first_seen_.data(), forward, backward, ImageView(along_rows_.data(), width_, height_), stream);
 }
 
-void CudaCoarseSearch::find_ranges(const MatchInput& input, cudaStream_t stream) {
+void CudaCoarseSearch::find_ranges(const MatchInput& input, StreamView stream) {
   const CoarseTiles tiles = tiles_of_pair(input.reference.width(), input.reference.height(), factor_);
   find_tile_ranges(prior().disparity, factor_, input.disparities, tiles, reference_ranges_.data(),
                    target_ranges_.data(), stream);

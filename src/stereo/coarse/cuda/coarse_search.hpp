@@ -1,11 +1,10 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include <cstddef>
 #include <cstdint>
 
 #include "core/cuda/memory.hpp"
+#include "core/cuda/stream.hpp"
 #include "roadstereo/coarse_search.hpp"
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/perspective_shift.hpp"
@@ -30,7 +29,7 @@ class CudaCoarseSearch {
 
   /// Enqueues the search of `input`, which lies in device memory. Returns false, without prior and ranges, when the
   /// image is too small.
-  bool find(const MatchInput& input, const PerspectiveShift& shift, cudaStream_t stream);
+  bool find(const MatchInput& input, const PerspectiveShift& shift, StreamView stream);
 
   DisparityPriorView prior() const { return {ImageView<const float>(prior_.data(), width_, height_), factor_}; }
   /// Empty when there are too few disparities to save any.
@@ -38,10 +37,10 @@ class CudaCoarseSearch {
 
  private:
   CoarseVolume reserve(const MatchInput& input);
-  CoarsePair downsample_pair(const MatchInput& input, cudaStream_t stream);
+  CoarsePair downsample_pair(const MatchInput& input, StreamView stream);
   void match_band(const CoarsePair& pair, const PerspectiveShift& shift, const CoarseVolume& shape, int first_row,
-                  cudaStream_t stream);
-  void find_ranges(const MatchInput& input, cudaStream_t stream);
+                  StreamView stream);
+  void find_ranges(const MatchInput& input, StreamView stream);
 
   CoarseSearchOptions options_;
   std::ptrdiff_t max_numbers_;

@@ -155,12 +155,12 @@ int path_pitch(int disparities) {
 
 void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
                          const CoarseVolume& forward, const CoarseVolume& backward, ImageView<float> disparity,
-                         cudaStream_t stream) {
+                         StreamView stream) {
   const auto rows = static_cast<unsigned>(costs.rows);
-  launch(row_kernel(costs.disparities).kernel, {dim3(rows, 2), warp_lanes}, stream, costs, penalties, forward,
-         backward);
-  launch(take_winners, {dim3(blocks_for(costs.columns, winner_warps), rows), winner_warps * warp_lanes}, stream,
-         forward, backward, first_seen, disparity);
+  launch("aggregate_rows", row_kernel(costs.disparities).kernel, {dim3(rows, 2), warp_lanes}, stream, costs, penalties,
+         forward, backward);
+  launch("take_winners", take_winners, {dim3(blocks_for(costs.columns, winner_warps), rows), winner_warps * warp_lanes},
+         stream, forward, backward, first_seen, disparity);
 }
 
 }  // namespace roadstereo::cuda

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
+#include "core/cuda/stream.hpp"
 #include "roadstereo/image_view.hpp"
 #include "stereo/coarse/cuda/coarse_volume.hpp"
 
@@ -23,6 +22,6 @@ int path_pitch(int disparities);
 /// scratch memory of the size of `costs`.
 void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
                          const CoarseVolume& forward, const CoarseVolume& backward, ImageView<float> disparity,
-                         cudaStream_t stream);
+                         StreamView stream);
 
 }  // namespace roadstereo::cuda

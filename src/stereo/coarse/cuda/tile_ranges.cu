@@ -142,10 +142,11 @@ __global__ void range_of_tile(ImageView<const float> coarse, int factor, int dis
 }  // namespace
 
 void find_tile_ranges(ImageView<const float> coarse, int factor, int disparities, const CoarseTiles& tiles,
-                      SearchRange* reference, SearchRange* target, cudaStream_t stream) {
+                      SearchRange* reference, SearchRange* target, StreamView stream) {
   const std::size_t bytes = sizeof(Found) + static_cast<std::size_t>(disparities + factor) * sizeof(std::uint32_t);
   const dim3 grid(static_cast<unsigned>(tiles.across), static_cast<unsigned>(tiles.down), 2);
-  launch(range_of_tile, {grid, threads, bytes}, stream, coarse, factor, disparities, tiles, reference, target);
+  launch("range_of_tile", range_of_tile, {grid, threads, bytes}, stream, coarse, factor, disparities, tiles, reference,
+         target);
 }
 
 }  // namespace roadstereo::cuda

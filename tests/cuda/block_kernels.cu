@@ -1,0 +1,131 @@
+#include "core/cuda/block_reduce.hpp"
+#include "core/cuda/block_select.hpp"
+#include "core/cuda/launch.hpp"
+#include "core/cuda/warp.hpp"
+#include "tests/cuda/block_kernels.hpp"
+
+namespace roadstereo::test {
+namespace {
+
+using namespace cuda;  // NOLINT(google-build-using-namespace): what is tested
+
+template <int count>
+__global__ void sum_of_block(int items, double* sums) {
+  double own[count] = {};
+  for (int i = static_cast<int>(threadIdx.x); i < items; i += static_cast<int>(blockDim.x)) {
+    for (int k = 0; k < count; ++k) own[k] += (k + 1) * i;
+  }
+  const double* totals = block_sums(own, shared_memory<double>());
+  double first[count];
+  for (int k = 0; k < count; ++k) first[k] = totals[k];
+  // Again at once: nobody may still be reading the first.
+  const double* again = block_sums(own, shared_memory<double>());
+  for (int k = 0; k < count; ++k) {
+    if (threadIdx.x == static_cast<unsigned>(k)) sums[k] = (first[k] + again[k]) / 2;
+  }
+}
+
+template <int count>
+void launch_sum(unsigned threads, int items, double* sums) {
+  launch("sum_of_block", sum_of_block<count>, {1, threads, sums_scratch(count) * sizeof(double)}, nullptr, items, sums);
+}
+
+__global__ void extremes_of_block(const float* values, float* found) {
+  float* scratch = shared_memory<float>();
+  const float value = values[threadIdx.x];
+  const float least = block_best(value, Least{}, scratch);
+  const float greatest = block_best(value, Greatest{}, scratch);
+  if (threadIdx.x == 7) found[0] = least;
+  if (threadIdx.x == 8) found[1] = greatest;
+}
+
+struct RankOf {
+  Rank rank;
+  __device__ int operator()(int count) const {
+    return rank.share < 0 ? MiddleRank{}(count) : ShareRank{rank.share}(count);
+  }
+};
+
+__global__ void value_of_rank(const float* values, int count, RankOf rank, Selected* selected) {
+  const auto key = [&](int i, std::uint32_t& out) {
+    out = key_of(values[i]);
+    return values[i] == values[i];
+  };
+  const SelectedKey found = block_select<float_digits>(count, key, rank, *shared_memory<SelectScratch>());
+  if (threadIdx.x == 0) *selected = {value_of(found.key), found.of};
+}
+
+__global__ void number_of_rank(const float* values, int count, RankOf rank, const int* first_digits,
+                               Selected* selected) {
+  const auto key = [&](int i, std::uint32_t& out) {
+    out = static_cast<std::uint32_t>(values[i]);
+    return values[i] == values[i];
+  };
+  const SelectedKey found = block_select<2>(count, key, rank, *shared_memory<SelectScratch>(), first_digits);
+  if (threadIdx.x == 0) *selected = {static_cast<float>(found.key), found.of};
+}
+
+__global__ void reverse_block(const int* in, int* out) {
+  int* shared = shared_memory<int>();
+  const unsigned t = threadIdx.x, first = blockIdx.x * blockDim.x;
+  shared[t] = in[first + t];
+  __syncthreads();
+  out[first + t] = shared[blockDim.x - 1 - t];
+}
+
+__global__ void reduce_warp(WarpResults* results) {
+  const int number = static_cast<int>(threadIdx.x);
+  int sum = number;
+  for (int mask = warp_lanes / 2; mask > 0; mask /= 2) sum += __shfl_xor_sync(whole_warp, sum, mask);
+  results[number] = {sum, __ballot_sync(whole_warp, number % 3 == 0), warp_min(24.5F - static_cast<float>(number)),
+                     warp_max(-3 - number)};
+}
+
+}  // namespace
+
+void sum_multiples(int count, unsigned threads, int items, double* sums) {
+  switch (count) {
+    case 1:
+      return launch_sum<1>(threads, items, sums);
+    case 2:
+      return launch_sum<2>(threads, items, sums);
+    case 3:
+      return launch_sum<3>(threads, items, sums);
+    case 5:
+      return launch_sum<5>(threads, items, sums);
+    case 6:
+      return launch_sum<6>(threads, items, sums);
+    case 9:
+      return launch_sum<9>(threads, items, sums);
+    case 10:
+      return launch_sum<10>(threads, items, sums);
+    default:
+      return launch_sum<32>(threads, items, sums);
+  }
+}
+
+void find_extremes(const float* values, unsigned threads, float* found) {
+  launch("extremes_of_block", extremes_of_block, {1, threads, (warp_lanes + 1) * sizeof(float)}, nullptr, values,
+         found);
+}
+
+void select_value(const float* values, int count, unsigned threads, Rank rank, Selected* selected) {
+  launch("value_of_rank", value_of_rank, {1, threads, sizeof(SelectScratch)}, nullptr, values, count, RankOf{rank},
+         selected);
+}
+
+void select_number(const float* values, int count, unsigned threads, Rank rank, const int* first_digits,
+                   Selected* selected) {
+  launch("number_of_rank", number_of_rank, {1, threads, sizeof(SelectScratch)}, nullptr, values, count, RankOf{rank},
+         first_digits, selected);
+}
+
+void reverse_in_blocks(const int* in, unsigned blocks, unsigned threads, int* out) {
+  launch("reverse_block", reverse_block, {blocks, threads, threads * sizeof(int)}, nullptr, in, out);
+}
+
+void reduce_warps(WarpResults* results) {
+  launch("reduce_warp", reduce_warp, {1, 2 * warp_lanes}, nullptr, results);
+}
+
+}  // namespace roadstereo::test
