@@ -7,6 +7,7 @@
 
 #include "core/parallel.hpp"
 #include "pipeline/pair_checks.hpp"
+#include "road/refinement/refinement_maps.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/coarse_search.hpp"
@@ -95,8 +96,10 @@ class HostStages final : public FrameStages {
   }
 
   ImageView<const float> refine(const DisparityMaps& maps, const DisparityPlane& road) override {
-    refine_disparities(maps.disparity, maps.variance, road, maps.samples, options_.refinement, threads_, disparity_,
-                       sigma_);
+    // Nothing else needs these two maps now.
+    const RefinementMaps between{matched_.disparity, transformed_};
+    refine_disparities(maps.disparity, maps.variance, road, maps.samples, options_.refinement, threads_, between,
+                       disparity_, sigma_);
     return disparity_;
   }
 

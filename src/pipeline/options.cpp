@@ -106,7 +106,8 @@ void visit_options(Options& o, Visitor visit) {
   visit("matcher.reject_range_boundary", o.matcher.reject_range_boundary,
         "a winner at the end of its range is invalid");
 
-  visit("refinement.radius", o.refinement.radius, "radius of the averaged neighbours, pixels; 0 is off");
+  visit("refinement.passes", o.refinement.passes, "passes, each over twice the window of the last one");
+  visit("refinement.radius", o.refinement.radius, "radius of the first pass's neighbours, pixels; 0 is off");
   visit("refinement.step", o.refinement.step, "distance between those neighbours, pixels");
   visit("refinement.truncation_sigmas", o.refinement.truncation_sigmas,
         "difference at which a neighbour has no weight, joint standard errors");

@@ -57,8 +57,19 @@ void expect_as_on_host(int width, int height, const PerspectiveShift& shift, con
   refine_disparities(full, maps.variance, shift.road, support, options, 1, refined, sigma);
   const test::DevicePlane<float> disparity(full), variance(maps.variance);
   const test::DevicePlane<float> device_refined(width, height), device_sigma(width, height);
-  cuda::refine_disparities(disparity.view(), variance.view(), shift.road, cuda::refinement_settings(options, support),
-                           device_refined.plane(), device_sigma.plane(), nullptr);
+  const test::DevicePlane<float> between_disparity(width, height), between_variance(width, height);
+  if (pass_count(options) == 1) {
+    cuda::refine_disparities(disparity.view(), variance.view(), shift.road,
+                             cuda::refinement_settings(options, 0, support), device_refined.plane(),
+                             device_sigma.plane(), nullptr);
+  } else {
+    cuda::refine_disparities(disparity.view(), variance.view(), shift.road,
+                             cuda::refinement_settings(options, 0, support), between_disparity.plane(),
+                             between_variance.plane(), nullptr);
+    cuda::refine_disparities(between_disparity.view(), between_variance.view(), shift.road,
+                             cuda::refinement_settings(options, 1, support), device_refined.plane(),
+                             device_sigma.plane(), nullptr);
+  }
   expect_equal(device_refined.on_host(), refined);
   expect_equal(device_sigma.on_host(), sigma);
 }
@@ -73,9 +84,10 @@ TEST_F(CudaRefinement, MatchesHost) {
 
 TEST_F(CudaRefinement, EveryWindowSizeMatchesHost) {
   const PerspectiveShift shift{{12, 0.31, -0.07}, 6, 32};
-  for (const RefinementOptions& options : {RefinementOptions{.radius = 0}, RefinementOptions{.radius = 1, .step = 1},
-                                           RefinementOptions{.radius = 10, .step = 4, .truncation_sigmas = 3},
-                                           RefinementOptions{.radius = 32, .step = 16}}) {
+  for (const RefinementOptions& options :
+       {RefinementOptions{.radius = 0}, RefinementOptions{.passes = 1, .radius = 1, .step = 1},
+        RefinementOptions{.radius = 10, .step = 4, .truncation_sigmas = 3},
+        RefinementOptions{.radius = 32, .step = 16}}) {
     SCOPED_TRACE(options.radius);
     expect_as_on_host(33, 35, shift, options);
   }

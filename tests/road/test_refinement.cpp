@@ -37,7 +37,7 @@ int taps(int i, int n, const RefinementOptions& options) {
 
 TEST(Refinement, ConstantMapKeepsValueWithErrorOfMean) {
   constexpr double variance = 0.01;
-  const RefinementOptions options{.radius = 8, .step = 4};
+  const RefinementOptions options{.passes = 1, .radius = 8, .step = 4};
   const Image<float> constant(width, height, 7.25F), of_all(width, height, static_cast<float>(variance));
   const Refined refined = refine(constant, of_all, no_road, options);
   // Every tap has the precision of one disparity, of which the share step² / support is its own; the theory's variances
@@ -48,14 +48,29 @@ TEST(Refinement, ConstantMapKeepsValueWithErrorOfMean) {
     for (int u = 0; u < width; ++u) {
       const double count = taps(u, width, options) * taps(v, height, options);
       ASSERT_EQ(refined.disparity(u, v), 7.25F);
-      ASSERT_NEAR(refined.sigma(u, v), std::sqrt(1.7 * single / std::max(1.0, count * share)), 1e-5);
+      ASSERT_NEAR(refined.sigma(u, v), std::sqrt(2.1 * single / std::max(1.0, count * share)), 1e-5);
     }
   }
 }
 
+// The second pass averages neighbours 8 px apart, each of which rests on the support and the first window, (5·4)²
+// pixels.
+TEST(Refinement, SecondPassKeepsValueWithErrorOfMean) {
+  constexpr double variance = 0.01;
+  const RefinementOptions options{.passes = 2, .radius = 8, .step = 4};
+  const Image<float> constant(width, height, 7.25F), of_all(width, height, static_cast<float>(variance));
+  const Refined refined = refine(constant, of_all, no_road, options);
+  const double least = options.min_sigma_px * options.min_sigma_px;
+  const double first = (variance + least) / std::max(1.0, 25 * 16.0 / support);
+  const double second = (first + least) / std::max(1.0, 25 * 64.0 / (support + 400));
+  EXPECT_EQ(refined.disparity(40, 30), 7.25F);
+  EXPECT_NEAR(refined.sigma(40, 30), std::sqrt(2.1 * second), 1e-5);
+}
+
 TEST(Refinement, WeightsNeighboursByPrecision) {
   // Columns of variance 0.04 and 0.16 in turn, whose disparities differ by far less than their errors.
-  const RefinementOptions options{.radius = 1, .step = 1, .truncation_sigmas = 100, .max_agreement_sigma_px = 10};
+  const RefinementOptions options{
+      .passes = 1, .radius = 1, .step = 1, .truncation_sigmas = 100, .max_agreement_sigma_px = 10};
   Image<float> disparity(width, height), variance(width, height);
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
@@ -73,7 +88,7 @@ TEST(Refinement, WeightsNeighboursByPrecision) {
 TEST(Refinement, UnknownErrorIsTakenFromAgreeingNeighbours) {
   Image<float> disparity(width, height, 5.0F), variance(width, height, 0.01F);
   disparity(40, 30) = 5.05F;
-  disparity(20, 30) = 6.5F;  // five joint errors away: σ is taken as 0.3 px at most, and the pixel keeps its own
+  disparity(20, 30) = 7.5F;  // four joint errors away: σ is taken as 0.6 px at most, and the pixel keeps its own
   variance(40, 30) = variance(20, 30) = std::numeric_limits<float>::infinity();
   const Refined refined = refine(disparity, variance);
   EXPECT_NEAR(refined.disparity(40, 30), 5.0, 1e-3);
@@ -107,7 +122,7 @@ TEST(Refinement, ReducesNoise) {
 
 TEST(Refinement, NanStaysNanWithoutWeight) {
   Image<float> disparity(width, height, 3.0F), variance(width, height, 0.01F);
-  const RefinementOptions options{.radius = 4, .step = 4};
+  const RefinementOptions options{.passes = 1, .radius = 4, .step = 4};
   disparity(40, 30) = disparity(41, 30) = nan;
   variance(40, 30) = nan;
   const Refined refined = refine(disparity, variance, no_road, options);
@@ -117,8 +132,8 @@ TEST(Refinement, NanStaysNanWithoutWeight) {
   }
   const double single = 0.01 + options.min_sigma_px * options.min_sigma_px;
   EXPECT_EQ(refined.disparity(44, 34), 3.0F);
-  EXPECT_NEAR(refined.sigma(44, 34), std::sqrt(1.7 * single / (8 * 0.16)), 1e-5);
-  EXPECT_NEAR(refined.sigma(46, 34), std::sqrt(1.7 * single / (9 * 0.16)), 1e-5);
+  EXPECT_NEAR(refined.sigma(44, 34), std::sqrt(2.1 * single / (8 * 0.16)), 1e-5);
+  EXPECT_NEAR(refined.sigma(46, 34), std::sqrt(2.1 * single / (9 * 0.16)), 1e-5);
 }
 
 /// The disparities of smooth noise around a road, some of them missing.
@@ -151,7 +166,7 @@ TEST(Refinement, RadiusZeroIsIdentity) {
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
       if (!std::isnan(map(u, v))) {
-        ASSERT_NEAR(refined.sigma(u, v), std::sqrt(1.7 * single), 1e-5);
+        ASSERT_NEAR(refined.sigma(u, v), std::sqrt(2.1 * single), 1e-5);
       }
     }
   }

@@ -107,9 +107,20 @@ class DeviceStages final : public FrameStages {
   }
 
   ImageView<const float> refine(const DisparityMaps& maps, const DisparityPlane& road) override {
-    cuda::refine_disparities(maps.disparity, maps.variance, road,
-                             refinement_settings(options_.refinement, maps.samples), maps_.disparity(), maps_.sigma(),
-                             stream());
+    const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    const ImageView<float> between_disparity(between_.data(), width_, height_);
+    const ImageView<float> between_variance(between_.data() + pixels, width_, height_);
+    DisparityMaps from = maps;
+    const int passes = pass_count(options_.refinement);
+    for (int k = 0; k < passes; ++k) {
+      const bool to_result = (passes - 1 - k) % 2 == 0;
+      const ImageView<float> refined = to_result ? maps_.disparity() : between_disparity;
+      const ImageView<float> error = to_result ? maps_.sigma() : between_variance;
+      cuda::refine_disparities(from.disparity, from.variance, road,
+                               refinement_settings(options_.refinement, k, maps.samples), refined, error, stream());
+      from.disparity = refined;
+      from.variance = error;
+    }
     mark(StageClock::refined);
     if (download_) maps_.download_refined(stream());
     return maps_.disparity();
@@ -168,6 +179,7 @@ class DeviceStages final : public FrameStages {
     right_.reserve(pixels);
     target_.reserve(pixels);
     first_column_.reserve(static_cast<std::size_t>(height));
+    between_.reserve(2 * pixels);
   }
 
   /// Waits for the device. Throws Error where the grey levels cannot be those of a pair.
@@ -208,6 +220,7 @@ class DeviceStages final : public FrameStages {
   FrameMaps maps_;
   DeviceArray<std::int16_t> right_, target_;
   DeviceArray<int> first_column_;
+  DeviceArray<float> between_;  ///< disparities and variances between two passes of the refinement
   GreyImage left_on_host_, right_on_host_;
   Image<float> disparity_on_host_;
   RoadVerification verification_;

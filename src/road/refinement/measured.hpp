@@ -38,18 +38,20 @@ ROADSTEREO_HD inline MeasuredHeight measured(float disparity, float variance, fl
           known ? spread : unknown.variance};
 }
 
-/// A refined disparity and its standard error; NaN where it is no measurement.
+/// A refined disparity and its standard error, both NaN where it is no measurement; between passes its variance,
+/// pixels².
 struct RefinedPixel {
   float disparity;
-  float sigma;
+  float error;
 };
 
 /// Refined disparity from the mean height above the road and its precision.
-ROADSTEREO_HD inline RefinedPixel refined_pixel(float disparity, float mean, float precision, float road, float worst,
-                                                float nan) {
+ROADSTEREO_HD inline RefinedPixel refined_pixel(float disparity, float mean, float precision, float road, bool is_last,
+                                                float worst, float nan) {
   // Theoretical variances are too small by this factor: the colour weights leave fewer effective samples, and sampling
   // and the slant of a surface are no noise. Measured on synthetic roads (docs/accuracy.md).
-  constexpr float variance_scale = 1.7F;
+  constexpr float variance_scale = 2.1F;
+  if (!is_last) return {disparity == disparity ? mean + road : nan, 1 / precision};
   const float error = sqrtf(variance_scale / precision);
   const bool known = disparity == disparity && error <= worst;
   return {known ? mean + road : nan, known ? error : nan};

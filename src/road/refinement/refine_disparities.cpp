@@ -5,6 +5,7 @@
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
 #include "core/scratch.hpp"
+#include "road/refinement/refinement_maps.hpp"
 #include "road/refinement/settings.hpp"
 #include "road/refinement/weighted_mean.hpp"
 #include "road/row_shift.hpp"
@@ -75,30 +76,50 @@ class BandRows {
 };
 
 /// Refines row v of a band.
-void refine_row(const Maps& maps, const BandRows& rows, const MeanSettings& settings, int radius, int v, float* mean,
-                float* precision, float* refined, float* sigma) {
+void refine_row(const Maps& maps, const BandRows& rows, const RefinementPass& pass, int v, float* mean,
+                float* precision, float* refined, float* error) {
   std::array<WindowLine, max_lines> lines;
   std::size_t count = 0;
-  for (int dv = -radius; dv <= radius; dv += maps.options.step) {
-    if (rows.holds(v + dv)) lines[count++] = {rows.row(v + dv), -radius, maps.options.step};
+  for (int dv = -pass.radius; dv <= pass.radius; dv += pass.step) {
+    if (rows.holds(v + dv)) lines[count++] = {rows.row(v + dv), -pass.radius, pass.step};
   }
   const int width = maps.disparity.width();
-  weighted_mean(rows.row(v), {lines.data(), count}, settings, width, mean, precision);
+  weighted_mean(rows.row(v), {lines.data(), count}, pass.mean, width, mean, precision);
   const RowLine road = row_line(maps.road, v, 0);
   const float* disparity = maps.disparity.row(v);
   const auto worst = static_cast<float>(maps.options.max_sigma_px);
   for (int u = 0; u < width; ++u) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     const RefinedPixel pixel =
-        refined_pixel(disparity[u], mean[u], precision[u], road.at(static_cast<float>(u)), worst, nan);
+        refined_pixel(disparity[u], mean[u], precision[u], road.at(static_cast<float>(u)), pass.is_last, worst, nan);
     refined[u] = pixel.disparity;
-    sigma[u] = pixel.sigma;
+    error[u] = pixel.error;
   }
+}
+
+void run_pass(const Maps& maps, const RefinementPass& pass, int threads, Image<float>& refined, Image<float>& error) {
+  const int width = maps.disparity.width(), height = maps.disparity.height();
+  refined.resize(width, height);
+  error.resize(width, height);
+  const std::size_t band_numbers = BandRows::numbers(width, pass.radius);
+  const int row_numbers = width + lanes;
+  const std::size_t numbers = band_numbers + 2 * static_cast<std::size_t>(row_numbers);
+  auto scratch = scratch_vector<float>(numbers * static_cast<std::size_t>(resolve_threads(threads)));
+  parallel_rows(height, rows_per_band, threads, [&](int first, int last, int worker) {
+    float* own = scratch.data() + numbers * static_cast<std::size_t>(worker);
+    float* mean = own + band_numbers;
+    BandRows rows(maps, pass.radius);
+    rows.fill(first, last, own);
+    for (int v = first; v < last; ++v) {
+      refine_row(maps, rows, pass, v, mean, mean + row_numbers, refined.row(v), error.row(v));
+    }
+  });
 }
 
 }  // namespace
 
 void RefinementOptions::validate() const {
+  require_range("refinement", "passes", passes, 1, 3);
   require_range("refinement", "radius", radius, 0, 32);
   require_range("refinement", "step", step, 1, 16);
   require_range("refinement", "truncation_sigmas", truncation_sigmas, 0.5, 100.0);
@@ -110,30 +131,30 @@ void RefinementOptions::validate() const {
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
                         double effective_samples, const RefinementOptions& options, int threads, Image<float>& refined,
                         Image<float>& sigma) {
+  Image<float> between_disparity, between_variance;
+  refine_disparities(disparity, variance, road, effective_samples, options, threads,
+                     {between_disparity, between_variance}, refined, sigma);
+}
+
+void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
+                        double effective_samples, const RefinementOptions& options, int threads,
+                        const RefinementMaps& between, Image<float>& refined, Image<float>& sigma) {
   options.validate();
-  const int width = disparity.width(), height = disparity.height();
-  if (variance.width() != width || variance.height() != height) {
-    fail("the disparity map has ", width, "×", height, " pixels and its variance ", variance.width(), "×",
-         variance.height(), "; they must be equal");
+  if (variance.width() != disparity.width() || variance.height() != disparity.height()) {
+    fail("the disparity map has ", disparity.width(), "×", disparity.height(), " pixels and its variance ",
+         variance.width(), "×", variance.height(), "; they must be equal");
   }
-  refined.resize(width, height);
-  sigma.resize(width, height);
-  const Maps maps{disparity, variance, road, options};
-  const int radius = window_radius(options);
-  const MeanSettings settings = mean_settings(options, effective_samples);
-  const std::size_t band_numbers = BandRows::numbers(width, radius);
-  const int row_numbers = width + lanes;
-  const std::size_t numbers = band_numbers + 2 * static_cast<std::size_t>(row_numbers);
-  auto scratch = scratch_vector<float>(numbers * static_cast<std::size_t>(resolve_threads(threads)));
-  parallel_rows(height, rows_per_band, threads, [&](int first, int last, int worker) {
-    float* own = scratch.data() + numbers * static_cast<std::size_t>(worker);
-    float* mean = own + band_numbers;
-    BandRows rows(maps, radius);
-    rows.fill(first, last, own);
-    for (int v = first; v < last; ++v) {
-      refine_row(maps, rows, settings, radius, v, mean, mean + row_numbers, refined.row(v), sigma.row(v));
-    }
-  });
+  Maps maps{disparity, variance, road, options};
+  const int passes = pass_count(options);
+  for (int k = 0; k < passes; ++k) {
+    const RefinementPass pass = refinement_pass(options, k, effective_samples);
+    const bool to_result = (passes - 1 - k) % 2 == 0;
+    Image<float>& out = to_result ? refined : between.disparity;
+    Image<float>& error = to_result ? sigma : between.variance;
+    run_pass(maps, pass, threads, out, error);
+    maps.disparity = out.view();
+    maps.variance = error.view();
+  }
 }
 
 }  // namespace roadstereo

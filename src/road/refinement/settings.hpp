@@ -1,24 +1,30 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
-#include "road/refinement/mean_settings.hpp"
 #include "road/refinement/measured.hpp"
+#include "road/refinement/refinement_pass.hpp"
 #include "roadstereo/refinement.hpp"
 
 // Converts RefinementOptions to the parameters of the kernels.
 
 namespace roadstereo {
 
-/// Distance of the window's outermost neighbours from its centre, pixels.
-inline int window_radius(const RefinementOptions& options) {
-  return options.radius / options.step * options.step;
+inline int pass_count(const RefinementOptions& options) {
+  return options.radius < options.step ? 1 : options.passes;
 }
 
-/// `effective_samples`: number of pixels that one disparity rests on.
-inline MeanSettings mean_settings(const RefinementOptions& options, double effective_samples) {
-  return {static_cast<float>(options.truncation_sigmas * options.truncation_sigmas),
-          static_cast<float>(std::min(1.0, options.step * options.step / effective_samples))};
+/// Pass `index` of `pass_count`. `effective_samples`: number of pixels that one disparity rests on before the first.
+inline RefinementPass refinement_pass(const RefinementOptions& options, int index, double effective_samples) {
+  const int neighbours = 2 * (options.radius / options.step) + 1;  // along each side
+  double samples = effective_samples;
+  for (int k = 0; k < index; ++k) samples += std::pow(neighbours * (options.step << k), 2);
+  const int step = options.step << index;
+  return {options.radius / options.step * step, step,
+          MeanSettings{static_cast<float>(options.truncation_sigmas * options.truncation_sigmas),
+                       static_cast<float>(std::min(1.0, step * step / samples))},
+          index + 1 == pass_count(options)};
 }
 
 inline VarianceBounds variance_bounds(const RefinementOptions& options) {

@@ -18,21 +18,30 @@ void weighted_mean(const MeasuredRow& centre, std::span<const WindowLine> window
   for (int u = 0; u < width; u += static_cast<int>(hn::Lanes(d))) {
     const auto value = hn::LoadU(d, centre.value + u);
     const auto variance = hn::LoadU(d, centre.variance + u);
-    auto weights = zero, away = zero;
+    auto weights = zero, away = zero, squares = zero, expected = zero;
     for (const WindowLine& line : window) {
       for (int k = line.first; k <= -line.first; k += line.step) {
         const auto difference = hn::Sub(hn::LoadU(d, line.row.value + u + k), value);
         const auto joint = hn::Mul(reach2, hn::Add(hn::LoadU(d, line.row.variance + u + k), variance));
         const auto agreement = hn::Max(zero, hn::Sub(one, hn::Div(hn::Mul(difference, difference), joint)));
-        const auto weight = hn::Mul(hn::Mul(agreement, agreement), hn::LoadU(d, line.row.precision + u + k));
+        const auto share = hn::Mul(agreement, agreement);
+        const auto other_precision = hn::LoadU(d, line.row.precision + u + k);
+        const auto weight = hn::Mul(share, other_precision);
+        const auto weighted = hn::Mul(weight, difference);
         weights = hn::Add(weights, weight);
-        away = hn::MulAdd(weight, difference, away);
+        away = hn::Add(away, weighted);
+        squares = hn::MulAdd(weighted, difference, squares);
+        expected = hn::Add(expected, hn::IfThenElseZero(hn::Gt(other_precision, zero), share));
       }
     }
     const auto some = hn::Gt(weights, zero);
-    hn::StoreU(hn::Add(value, hn::IfThenElseZero(some, hn::Div(away, weights))), d, mean + u);
-    hn::StoreU(hn::Max(hn::LoadU(d, centre.precision + u), hn::Mul(weights, hn::Set(d, settings.share))), d,
-               precision + u);
+    const auto shift = hn::IfThenElseZero(some, hn::Div(away, weights));
+    hn::StoreU(hn::Add(value, shift), d, mean + u);
+    // Scatter of the neighbours beyond their variances, of a surface that is not level there, adds to the variance.
+    const auto scatter = hn::IfThenElseZero(some, hn::Div(hn::Sub(squares, expected), weights));
+    const auto excess = hn::Max(zero, hn::NegMulAdd(shift, shift, scatter));
+    const auto averaged = hn::Max(hn::LoadU(d, centre.precision + u), hn::Mul(weights, hn::Set(d, settings.share)));
+    hn::StoreU(hn::Div(averaged, hn::MulAdd(averaged, excess, one)), d, precision + u);
   }
 }
 

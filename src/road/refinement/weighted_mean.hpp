@@ -21,8 +21,8 @@ struct WindowLine {
 };
 
 /// mean[u], precision[u] for u in [0, width): the mean of the window's neighbours q of u, weighted by their precision
-/// and by (1 − (value(q) − value(u))² / (reach² (variance(q) + variance(u))))², 0 beyond reach; and its precision.
-/// Writes whole vectors: up to 16 elements behind `width`.
+/// and by (1 − (value(q) − value(u))² / (reach² (variance(q) + variance(u))))², 0 beyond reach; and its precision, less
+/// for neighbours that scatter by more than their variances. Writes whole vectors: up to 16 elements behind `width`.
 void weighted_mean(const MeasuredRow& centre, std::span<const WindowLine> window, const MeanSettings& settings,
                    int width, float* mean, float* precision);
 

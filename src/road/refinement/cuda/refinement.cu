@@ -1,6 +1,6 @@
-// Floor: 16 bytes a pixel, and of each of its 25 neighbours (radius 8, step 4) 12 bytes of shared memory and 14
-// operations: 3.7 MB and 80 million operations for 640×360. A tile of 32×16 pixels reads its border of 8 too: three
-// times its pixels.
+// Floor: 16 bytes a pixel, and of each of its 25 neighbours (radius 8, step 4) 12 bytes of shared memory and 18
+// operations: 3.7 MB and 104 million operations for 640×360, for each of two passes. A tile of 32×16 pixels reads its
+// border of 8 too, of 16 in the second pass: three and eight times its pixels.
 
 #include <cmath>
 
@@ -109,29 +109,37 @@ __device__ RefinedPixel refine_pixel(const Maps& maps, const Pixels& pixels, con
                                      int v) {
   const float disparity = __ldg(&maps.disparity(u, v));  // loaded while the window is summed
   const MeasuredHeight centre = pixels(u, v);
-  float weights = 0, away = 0;
-  for (int dv = -settings.radius; dv <= settings.radius; dv += settings.step) {
-    for (int du = -settings.radius; du <= settings.radius; du += settings.step) {
+  float weights = 0, away = 0, squares = 0, expected = 0;
+  for (int dv = -settings.pass.radius; dv <= settings.pass.radius; dv += settings.pass.step) {
+    for (int du = -settings.pass.radius; du <= settings.pass.radius; du += settings.pass.step) {
       const MeasuredHeight other = pixels(u + du, v + dv);
       const float difference = other.value - centre.value;
-      const float joint = settings.mean.reach2 * (other.variance + centre.variance);
+      const float joint = settings.pass.mean.reach2 * (other.variance + centre.variance);
       const float agreement = fmaxf(0.0F, 1 - quotient(difference * difference, joint));
-      const float weight = agreement * agreement * other.precision;
+      const float share = agreement * agreement;
+      const float weight = share * other.precision;
+      const float weighted = weight * difference;
       weights += weight;
-      away += weight * difference;
+      away += weighted;
+      squares += weighted * difference;
+      expected += other.precision > 0 ? share : 0;
     }
   }
-  const float mean = centre.value + (weights > 0 ? away / weights : 0);
-  const float precision = fmaxf(centre.precision, weights * settings.mean.share);
+  const float shift = weights > 0 ? away / weights : 0;
+  const float mean = centre.value + shift;
+  const float scatter = weights > 0 ? (squares - expected) / weights : 0;
+  const float excess = fmaxf(0.0F, scatter - shift * shift);
+  const float averaged = fmaxf(centre.precision, weights * settings.pass.mean.share);
+  const float precision = averaged / (averaged * excess + 1);
   const float road = pixels.road(v).at(static_cast<float>(u));
-  return refined_pixel(disparity, mean, precision, road, settings.worst_sigma, nanf(""));
+  return refined_pixel(disparity, mean, precision, road, settings.pass.is_last, settings.worst_sigma, nanf(""));
 }
 
 template <int rows_each>
-__global__ void refine_tiles(Maps maps, RefinementSettings settings, ImageView<float> refined, ImageView<float> sigma) {
+__global__ void refine_tiles(Maps maps, RefinementSettings settings, ImageView<float> refined, ImageView<float> error) {
   const int left = static_cast<int>(blockIdx.x) * tile_columns;
   const int top = static_cast<int>(blockIdx.y) * thread_rows * rows_each;
-  const int border = settings.radius;
+  const int border = settings.pass.radius;
   const int rows = thread_rows * rows_each + 2 * border;
   auto* lines = shared_memory<RowLine>();
   const Tile tile{lines, reinterpret_cast<float*>(lines + rows), left - border, top - border, tile_columns + 2 * border,
@@ -143,18 +151,18 @@ __global__ void refine_tiles(Maps maps, RefinementSettings settings, ImageView<f
     if (u >= refined.width() || v >= refined.height()) continue;
     const RefinedPixel pixel = refine_pixel(maps, tile, settings, u, v);
     refined(u, v) = pixel.disparity;
-    sigma(u, v) = pixel.sigma;
+    error(u, v) = pixel.error;
   }
 }
 
 __global__ void refine_untiled(Maps maps, RefinementSettings settings, ImageView<float> refined,
-                               ImageView<float> sigma) {
+                               ImageView<float> error) {
   const int u = static_cast<int>(blockIdx.x * tile_columns + threadIdx.x);
   const int v = static_cast<int>(blockIdx.y * thread_rows + threadIdx.y);
   if (u >= refined.width() || v >= refined.height()) return;
   const RefinedPixel pixel = refine_pixel(maps, Untiled{maps, settings.bounds}, settings, u, v);
   refined(u, v) = pixel.disparity;
-  sigma(u, v) = pixel.sigma;
+  error(u, v) = pixel.error;
 }
 
 std::size_t tile_bytes(int rows, int border) {
@@ -165,7 +173,7 @@ std::size_t tile_bytes(int rows, int border) {
 }  // namespace
 
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
-                        const RefinementSettings& settings, ImageView<float> refined, ImageView<float> sigma,
+                        const RefinementSettings& settings, ImageView<float> refined, ImageView<float> error,
                         StreamView stream) {
   constexpr int rows_each = 2;
   const Maps maps{disparity, variance, road};
@@ -173,12 +181,12 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
   const auto grid = [&](int rows) {
     return dim3(blocks_for(refined.width(), tile_columns), blocks_for(refined.height(), rows));
   };
-  const std::size_t bytes = tile_bytes(rows_each * thread_rows, settings.radius);
+  const std::size_t bytes = tile_bytes(rows_each * thread_rows, settings.pass.radius);
   if (bytes <= max_shared_bytes) {
     launch("refine_tiles", refine_tiles<rows_each>, {grid(rows_each * thread_rows), block, bytes}, stream, maps,
-           settings, refined, sigma);
+           settings, refined, error);
   } else {
-    launch("refine_untiled", refine_untiled, {grid(thread_rows), block}, stream, maps, settings, refined, sigma);
+    launch("refine_untiled", refine_untiled, {grid(thread_rows), block}, stream, maps, settings, refined, error);
   }
 }
 

@@ -5,10 +5,10 @@
 
 namespace roadstereo::cuda {
 
-/// The options, which must be valid, as the kernel takes them. `effective_samples` is the number of pixels that one
-/// disparity rests on.
-inline RefinementSettings refinement_settings(const RefinementOptions& options, double effective_samples) {
-  return {window_radius(options), options.step, mean_settings(options, effective_samples), variance_bounds(options),
+/// Pass `index` of the options, which must be valid, as the kernel takes it. `effective_samples` is the number of
+/// pixels that one disparity rests on before the first pass.
+inline RefinementSettings refinement_settings(const RefinementOptions& options, int index, double effective_samples) {
+  return {refinement_pass(options, index, effective_samples), variance_bounds(options),
           static_cast<float>(options.max_sigma_px)};
 }
 

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "road/refinement/mean_settings.hpp"
+
+namespace roadstereo {
+
+/// One pass over a map.
+struct RefinementPass {
+  int radius = 8;  ///< distance of the window's outermost neighbours from its centre, pixels: a multiple of `step`
+  int step = 4;    ///< pixels
+  MeanSettings mean;
+  bool is_last = true;  ///< writes standard errors and leaves out what is no measurement; else variances
+};
+
+}  // namespace roadstereo
