@@ -32,7 +32,7 @@ struct RollOptions {
 /// Roll angle and projection model of the road: d = α0 + α1·y(ψ), y(ψ) = v cos ψ − u sin ψ (eqs. (19) and (20)).
 struct RollEstimate {
   double roll_rad = 0;           ///< ψ in (−π/2, π/2]
-  double roll_stderr_rad = 0;    ///< its standard error, from the residuals of image cells (neighbours are correlated)
+  double roll_stderr_rad = 0;    ///< its standard error, from the residuals of image cells, and the road's camber
   bool roll_observable = false;  ///< false when the camera looks straight down: d hardly changes over the image
   double alpha0 = 0;             ///< pixels
   double alpha1 = 0;             ///< pixels per pixel

@@ -47,6 +47,7 @@ struct FitMoments {
   double uu, uv, vv;                    ///< weighted sums of products of deviations
   double residuals;                     ///< the same of the residuals' squares
   double score_uu, score_uv, score_vv;  ///< sums over the cells of products of their scores
+  double bend, bend_variance;           ///< bend.hpp: pixels per pixel², and its variance
 };
 
 }  // namespace roadstereo

@@ -7,6 +7,7 @@
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
+#include "road/bend.hpp"
 #include "road/plane_fit.hpp"
 #include "road/roll_assessment.hpp"
 #include "road/roll_energy.hpp"
@@ -61,28 +62,61 @@ ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, const
   return points;
 }
 
+BendFit fit_bend(std::span<const DisparityPoint> points, std::span<const double> weights, const DisparityPlane& plane,
+                 const PlaneSums& sums) {
+  const LevelDirection level(plane);
+  BendSums bend{sums.weight(), sums.uu(), sums.uv(), sums.vv(), 0, 0, 0, 0, 0, 0, 0, 0};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double du = points[i].u - sums.mean_u(), dv = points[i].v - sums.mean_v();
+    const double s = level.along(du, dv);
+    const double weight = weights.empty() ? 1 : weights[i];
+    const double p = weight * s * s;
+    const double r = weight * (points[i].d - plane.disparity(points[i].u, points[i].v));
+    bend.p += p;
+    bend.pu += p * du;
+    bend.pv += p * dv;
+    bend.pp += p * s * s;
+    bend.r += r;
+    bend.ru += r * du;
+    bend.rv += r * dv;
+    bend.rp += r * s * s;
+  }
+  return BendFit(bend);
+}
+
 /// Adds up the scores of all points of a cell before they are squared. Without weights all count as 1.
 void sum_scores(std::span<const DisparityPoint> points, std::span<const double> weights, const DisparityPlane& plane,
                 int width, int height, FitMoments& moments) {
   PlaneSums sums(width / 2.0, height / 2.0);
   for (std::size_t i = 0; i < points.size(); ++i) sums.add(points[i], weights.empty() ? 1 : weights[i]);
+  const LevelDirection level(plane);
+  const BendFit bend = fit_bend(points, weights, plane, sums);
   struct Score {
-    double u = 0, v = 0;
+    double u = 0, v = 0, bend = 0;
   };
   auto cells = scratch_vector<Score>(static_cast<std::size_t>(cells_per_side) * cells_per_side);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const DisparityPoint& p = points[i];
-    const double residual = (weights.empty() ? 1 : weights[i]) * (p.d - plane.disparity(p.u, p.v));
+    const double weight = weights.empty() ? 1 : weights[i];
+    const double du = p.u - sums.mean_u(), dv = p.v - sums.mean_v();
+    const double residual = p.d - plane.disparity(p.u, p.v);
+    const double rest = bend.rest(level.along(du, dv), du, dv);
     const auto column = static_cast<std::size_t>(cell_of(p.u, width));
     const auto row = static_cast<std::size_t>(cell_of(p.v, height));
-    cells[row * cells_per_side + column].u += residual * (p.u - sums.mean_u());
-    cells[row * cells_per_side + column].v += residual * (p.v - sums.mean_v());
+    Score& cell = cells[row * cells_per_side + column];
+    cell.u += weight * residual * du;
+    cell.v += weight * residual * dv;
+    cell.bend += weight * (residual - bend.bend * rest) * rest;
   }
+  double bend_scores = 0;
   for (const Score& cell : cells) {
     moments.score_uu += cell.u * cell.u;
     moments.score_uv += cell.u * cell.v;
     moments.score_vv += cell.v * cell.v;
+    bend_scores += cell.bend * cell.bend;
   }
+  moments.bend = bend.bend;
+  moments.bend_variance = bend.normal > 0 ? bend_scores / (bend.normal * bend.normal) : 0;
   moments.uu = sums.uu();
   moments.uv = sums.uv();
   moments.vv = sums.vv();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "road/bend.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -22,15 +23,25 @@ SlopeCovariance slope_covariance(const FitMoments& m) {
   return {left_vu * iuv + left_vv * ivv, left_vu * iuu + left_vv * iuv, left_uu * iuu + left_uv * iuv};
 }
 
-/// Standard error of ψ = atan(−a2 / a1).
-double roll_standard_error(const SlopeCovariance& covariance, const DisparityPlane& plane) {
+/// Variance of the slope along the lines of equal disparity over a road that bends across its direction: at s from the
+/// centre of the points its slope is 2·bend·s, and which s has the roll of the road is not known. What three standard
+/// errors of the bend explain is noise, which the covariance of the slopes has already.
+double bend_slope_variance(const FitMoments& m, const DisparityPlane& plane) {
+  const LevelDirection level(plane);
+  const double s2 = (level.u * level.u * m.uu + 2 * level.u * level.v * m.uv + level.v * level.v * m.vv) / m.n;
+  return 4 * s2 * std::max(0.0, m.bend * m.bend - 9 * m.bend_variance);
+}
+
+/// Standard error of ψ = atan(−a2 / a1): that of the slopes, and the bend of the road.
+double roll_standard_error(const FitMoments& moments, const DisparityPlane& plane) {
+  const SlopeCovariance covariance = slope_covariance(moments);
   const double square = plane.a1 * plane.a1 + plane.a2 * plane.a2;
   if (square == 0) return HUGE_VAL;
   const double by_a1 = plane.a2 / square;
   const double by_a2 = -plane.a1 / square;
   const double variance =
       by_a1 * by_a1 * covariance.a1_a1 + 2 * by_a1 * by_a2 * covariance.a1_a2 + by_a2 * by_a2 * covariance.a2_a2;
-  return std::sqrt(std::max(variance, 0.0));
+  return std::sqrt(std::max(variance, 0.0) + bend_slope_variance(moments, plane) / square);
 }
 
 /// Whether the road's disparity changes enough over the map for its direction to mean a roll angle.
@@ -79,7 +90,7 @@ void assess_roll(const FitMoments& moments, int width, int height, const RollOpt
   geometry.alpha0 = geometry.plane.a0;
   geometry.alpha1 = geometry.plane.a1 * std::cos(geometry.roll_rad) - geometry.plane.a2 * std::sin(geometry.roll_rad);
   geometry.residual_px = std::sqrt(std::max(moments.residuals / moments.n, 0.0));
-  geometry.roll_stderr_rad = roll_standard_error(slope_covariance(moments), geometry.plane);
+  geometry.roll_stderr_rad = roll_standard_error(moments, geometry.plane);
   geometry.roll_observable = observable(geometry, width, height, options);
 }
 

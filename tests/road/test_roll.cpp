@@ -160,6 +160,26 @@ TEST(RollEstimate, StandardErrorCoversCorrelatedNoise) {
   EXPECT_LT(claimed / trials, 1.6 * scatter);
 }
 
+// A road with a bend across its direction has one slope at each place. Wherever its crown lies in view or beside it,
+// the roll at the crown is within two standard errors; the noise alone would claim a fiftieth of that.
+TEST(RollEstimate, StandardErrorCoversCamber) {
+  for (const double crown : {60.0, 160.0, 240.0}) {
+    Image<float> map = road_map(0.03, 20, 0.15);
+    for (int v = 0; v < 180; ++v) {
+      for (int u = 0; u < 320; ++u) {
+        const double noise = test::lattice(u, v, 7) - 0.5;
+        map(u, v) += static_cast<float>(-2e-5 * (u - crown) * (u - crown) + 0.2 * noise);
+      }
+    }
+    for (const RollSolver solver : {RollSolver::closed_form, RollSolver::robust}) {
+      const RollEstimate g = estimate_roll(map, std::nullopt, std::nullopt, 0, with(solver));
+      EXPECT_LT(std::abs(g.roll_rad - 0.03), 2 * g.roll_stderr_rad) << "crown at " << crown;
+      // The slope bends by 2·2e-5 a pixel; over 320 columns its standard deviation is that times 320/√12.
+      EXPECT_NEAR(g.roll_stderr_rad, 2 * 2e-5 * 320 / std::sqrt(12.0) / 0.15, 2e-3);
+    }
+  }
+}
+
 TEST(TransformDisparity, RoadIsFlatAndDamageKeepsDepth) {
   Image<float> map = road_map(0.1, 25, 0.2);
   map(160, 90) -= 3;

@@ -3,6 +3,7 @@
 
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
+#include "road/bend.hpp"
 #include "road/cuda/road_fit.hpp"
 #include "road/cuda/robust_fit.hpp"
 #include "road/map_sample.hpp"
@@ -99,31 +100,58 @@ struct Means {
   float u, v;
 };
 
+/// Fits the bend of the residuals; `moments` has the sums of the plane.
+__device__ BendFit fit_bend(const SampledMap& sampled, const LevelDirection& level, const float* residuals,
+                            const Means& mean, const FitMoments& moments, FitState& state) {
+  const auto level_u = static_cast<float>(level.u), level_v = static_cast<float>(level.v);
+  float of_thread[8] = {};
+  for (int i = thread(); i < sampled.sample.count(); i += threads()) {
+    const float weight = sampled.weights[i];
+    if (!(weight > 0)) continue;
+    const float du = sampled.u[i] - mean.u, dv = sampled.v[i] - mean.v;
+    const float s = level_u * du + level_v * dv;
+    const float p = weight * s * s, r = weight * residuals[i];
+    const float terms[8] = {p, p * du, p * dv, p * s * s, r, r * du, r * dv, r * s * s};
+    for (int k = 0; k < 8; ++k) of_thread[k] += terms[k];
+  }
+  double own[8];
+  for (int k = 0; k < 8; ++k) own[k] = of_thread[k];
+  const double* t = block_sums(own, state.scratch);
+  return BendFit({moments.n, moments.uu, moments.uv, moments.vv, t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7]});
+}
+
 /// Adds up the scores of a cell before they are squared; a thread for each cell, its points in the host's order.
-__device__ void sum_scores(const SampledMap& sampled, const float* residuals, const Means& mean, FitState& state,
-                           FitMoments& moments) {
-  double own[3] = {};
+__device__ void sum_scores(const SampledMap& sampled, const DisparityPlane& plane, const float* residuals,
+                           const Means& mean, FitState& state, FitMoments& moments) {
+  const LevelDirection level(plane);
+  const BendFit bend = fit_bend(sampled, level, residuals, mean, moments, state);
+  double own[4] = {};
   for (int cell = thread(); cell < cells_per_side * cells_per_side; cell += threads()) {
     const CellRange rows(sampled.sample, sampled.sample.rows, cell / cells_per_side, sampled.height);
     const CellRange columns(sampled.sample, sampled.sample.columns, cell % cells_per_side, sampled.width);
-    float along_u = 0, along_v = 0;
+    float along_u = 0, along_v = 0, along_bend = 0;
     for (int row = rows.first; row < rows.end; ++row) {
       for (int column = columns.first; column < columns.end; ++column) {
         const int i = row * sampled.sample.columns + column;
         if (!(sampled.weights[i] > 0)) continue;
-        const float residual = sampled.weights[i] * residuals[i];
-        along_u += residual * (sampled.u[i] - mean.u);
-        along_v += residual * (sampled.v[i] - mean.v);
+        const float weight = sampled.weights[i], du = sampled.u[i] - mean.u, dv = sampled.v[i] - mean.v;
+        const double rest = bend.rest(level.along(du, dv), du, dv);
+        along_u += weight * residuals[i] * du;
+        along_v += weight * residuals[i] * dv;
+        along_bend += weight * static_cast<float>((residuals[i] - bend.bend * rest) * rest);
       }
     }
     own[0] += static_cast<double>(along_u) * along_u;
     own[1] += static_cast<double>(along_u) * along_v;
     own[2] += static_cast<double>(along_v) * along_v;
+    own[3] += static_cast<double>(along_bend) * along_bend;
   }
   const double* sums = block_sums(own, state.scratch);
   moments.score_uu = sums[0];
   moments.score_uv = sums[1];
   moments.score_vv = sums[2];
+  moments.bend = bend.bend;
+  moments.bend_variance = bend.normal > 0 ? sums[3] / (bend.normal * bend.normal) : 0;
 }
 
 /// `residuals`, in shared memory, receives those of all points. A thread adds up a few points in single precision.
@@ -145,9 +173,9 @@ __device__ FitMoments fit_moments(const SampledMap& sampled, const DisparityPlan
   const double* s = block_sums(own, state.scratch);
   const double mean_u = s[1] / s[0], mean_v = s[2] / s[0];
   FitMoments moments{
-      s[0], s[4] - mean_u * s[1], s[5] - mean_u * s[2], s[6] - mean_v * s[2], s[7] - s[3] / s[0] * s[3], 0, 0, 0};
-  sum_scores(sampled, residuals, {static_cast<float>(mean_u + centre_u), static_cast<float>(mean_v + centre_v)}, state,
-             moments);
+      s[0], s[4] - mean_u * s[1], s[5] - mean_u * s[2], s[6] - mean_v * s[2], s[7] - s[3] / s[0] * s[3], 0, 0, 0, 0, 0};
+  sum_scores(sampled, plane, residuals, {static_cast<float>(mean_u + centre_u), static_cast<float>(mean_v + centre_v)},
+             state, moments);
   return moments;
 }
 
