@@ -22,7 +22,7 @@ const char* name_of(DamageKind kind);
 /// Severity of a pothole by ASTM D6433, from its depth and mean diameter.
 enum class Severity {
   unknown,       ///< no calibration
-  unresolvable,  ///< shallower than three standard errors of the depth
+  unresolvable,  ///< neither the largest nor the mean depth is three standard errors
   uncertain,     ///< no class has more than half of the probability
   minor,         ///< shallower than 13 mm or narrower than 100 mm: below the table of ASTM D6433
   low,
@@ -39,6 +39,9 @@ Severity astm_severity(double depth_m, double diameter_m);
 struct Measurement {
   double value = 0;
   double std_error = 0;
+
+  /// Whether the value is at least three standard errors.
+  bool is_resolved() const { return value >= 3 * std_error; }
 };
 
 /// Probability of each class of `astm_severity`, 0 … 1; they sum to 1.

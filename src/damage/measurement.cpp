@@ -31,23 +31,43 @@ void add_pixel(const DamageInput& input, const DamageMap& maps, int u, int v, Pi
   sums.depth += std::abs(maps.depth(u, v));
 }
 
-/// Find the maximum of the smoothed depth cells, which is robust against single wrong pixels.
-void find_deepest(const Segmentation& segmentation, const Candidate& candidate, Damage& damage) {
+/// Root mean square of the standard errors of the pixels of a cell; `noise` where there are none, without measurement.
+double cell_sigma(const DamageInput& input, const Cells& cells, int i, int j, double noise) {
+  if (input.sigma.empty()) return noise;
+  double sum = 0;
+  int count = 0;
+  for (int v = j * cells.factor; v < std::min((j + 1) * cells.factor, cells.image_height); ++v) {
+    for (int u = i * cells.factor; u < std::min((i + 1) * cells.factor, cells.image_width); ++u) {
+      const double sigma = input.sigma(u, v);
+      if (!std::isfinite(sigma)) continue;
+      sum += sigma * sigma;
+      ++count;
+    }
+  }
+  return count > 0 ? std::sqrt(sum / count) : noise;
+}
+
+/// Find the smoothed depth cell that is deepest for certain: the one with the largest depth less its standard error, so
+/// that what is measured badly is not the deepest because of that.
+void find_deepest(const DamageInput& input, const Segmentation& segmentation, const Candidate& candidate,
+                  Damage& damage) {
   const float sign = sign_of(candidate.kind);
-  float max_depth = 0;
+  double max_bound = -HUGE_VAL;
   const CellBox& box = candidate.box();
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
       const float depth = sign * segmentation.depth_cells.depth(i, j);
-      if (!candidate.cells(i, j) || segmentation.depth_cells.valid(i, j) == 0 || depth <= max_depth) continue;
-      max_depth = depth;
-      // The centre of a cell that the border clips may lie outside the image.
+      if (!candidate.cells(i, j) || segmentation.depth_cells.valid(i, j) == 0 || depth <= 0) continue;
       const Cells& cells = segmentation.cells;
+      const double sigma = cell_sigma(input, cells, i, j, segmentation.depth_cells.noise);
+      if (static_cast<double>(depth) - sigma <= max_bound) continue;
+      max_bound = static_cast<double>(depth) - sigma;
+      damage.max_depth_px = {depth, sigma};
+      // The centre of a cell that the border clips may lie outside the image.
       damage.deepest_px = {std::min(static_cast<int>(cells.middle(i)), cells.image_width - 1),
                            std::min(static_cast<int>(cells.middle(j)), cells.image_height - 1)};
     }
   }
-  damage.max_depth_px.value = max_depth;
 }
 
 /// Measure candidate `k` in pixels.
@@ -72,7 +92,7 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
     damage.measured_share = static_cast<double>(sums.measured) / pixels;
     damage.mean_depth_px = sums.measured > 0 ? sums.depth / static_cast<double>(sums.measured) : 0;
   }
-  find_deepest(segmentation, candidate, damage);
+  find_deepest(input, segmentation, candidate, damage);
   return damage;
 }
 
@@ -107,9 +127,8 @@ bool is_within_limits(const Damage& damage, const DamageOptions& options) {
 
 /// Whether the depth is at least three of its standard errors.
 bool is_resolvable(const Damage& damage) {
-  constexpr double min_std_errors = 3;
-  const Measurement& depth = damage.metrics ? damage.metrics->max_depth_m : damage.max_depth_px;
-  return depth.value >= min_std_errors * depth.std_error;
+  if (damage.metrics) return damage.metrics->severity != Severity::unresolvable;
+  return damage.max_depth_px.is_resolved();
 }
 
 /// Separate damages from candidates, and number the damages by decreasing depth, then the candidates.
@@ -151,13 +170,10 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
     const SurfaceOffset offset =
         offsets.emplace_back(estimate_surface_offset(segmentation, segmentation.candidates[k]));
     Damage& damage = result.damages.emplace_back(measure_in_pixels(input, segmentation, k, result));
-    const auto [u, v] = damage.deepest_px;
-    const double sigma_at_deepest = input.sigma.empty() ? result.noise_px : input.sigma(u, v);
-    const double sigma = std::isfinite(sigma_at_deepest) ? sigma_at_deepest : result.noise_px;
     damage.mean_depth_px = std::max(0.0, damage.mean_depth_px + sign_of(damage.kind) * offset.value);
     damage.max_depth_px.value =
         std::max(damage.max_depth_px.value + sign_of(damage.kind) * offset.value, damage.mean_depth_px);
-    damage.max_depth_px.std_error = std::hypot(sigma, offset.std_error);
+    damage.max_depth_px.std_error = std::hypot(damage.max_depth_px.std_error, offset.std_error);
   }
   std::optional<FrameGeometry> geometry;
   if (result.metric) geometry.emplace(input);

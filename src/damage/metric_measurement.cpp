@@ -123,10 +123,10 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   const double diameter_std_error = 0.5 * metrics.diameter_m * metrics.area_m2.std_error / sums.area;
   metrics.severity_probabilities =
       severity_probabilities(metrics.max_depth_m, {metrics.diameter_m, diameter_std_error});
-  constexpr double min_std_errors = 3;
-  metrics.severity = metrics.max_depth_m.value < min_std_errors * metrics.max_depth_m.std_error
-                         ? Severity::unresolvable
-                         : likely_severity(metrics.severity_probabilities);
+  // The mean is a lower bound of the maximum, with a smaller standard error.
+  metrics.severity = metrics.max_depth_m.is_resolved() || metrics.mean_depth_m.is_resolved()
+                         ? likely_severity(metrics.severity_probabilities)
+                         : Severity::unresolvable;
   return metrics;
 }
 

@@ -191,10 +191,16 @@ TEST(FindDamage, CandidatesAreNotCounted) {
     EXPECT_LE(damage.metrics->mean_depth_m.value, damage.metrics->max_depth_m.value);
 }
 
-/// A depth below three of its standard errors is unresolvable, whatever its confidence.
+/// A depth of which neither the maximum nor the mean is three of its standard errors is unresolvable, whatever its
+/// confidence.
 TEST(FindDamage, UnresolvableDepthIsCandidate) {
-  const Image<float> sigma(640, 360, 0.99F);  // the pothole is 2.9 px deep
+  const Image<float> sigma(640, 360, 0.99F);
+  Image<float> shallow = damaged().transformed;  // the pothole is 2.9 px deep; so it is 0.48 px
+  for (int v = 0; v < shallow.height(); ++v) {
+    for (int u = 0; u < shallow.width(); ++u) shallow(u, v) /= 6;
+  }
   DamageInput input = damaged().metric();
+  input.transformed = shallow;
   input.sigma = sigma;
   const DamageMap map = find_damage(input);
   EXPECT_TRUE(map.damages.empty());
@@ -202,6 +208,7 @@ TEST(FindDamage, UnresolvableDepthIsCandidate) {
   for (const Damage& candidate : map.candidates) {
     EXPECT_EQ(candidate.metrics->severity, Severity::unresolvable);
     EXPECT_LT(candidate.metrics->max_depth_m.value, 3 * candidate.metrics->max_depth_m.std_error);
+    EXPECT_LT(candidate.metrics->mean_depth_m.value, 3 * candidate.metrics->mean_depth_m.std_error);
   }
 }
 
