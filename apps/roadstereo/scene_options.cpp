@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "image_size.hpp"
+#include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
 
@@ -21,8 +22,12 @@ void override_with(const std::optional<double>& given, double& value) {
 }
 
 synth::Scene base_scene(const SceneOptions& options) {
+  if (options.name == "random") return synth::random_wide_scene(options.seed.value_or(1));
+  if (options.seed && !options.name.empty()) {
+    fail("--seed does not go with --scene ", options.name, "; it goes with --scene random or alone");
+  }
   if (options.seed) return synth::random_scene(*options.seed, options.degraded);
-  return synth::named_scene(options.name);
+  return synth::named_scene(options.name.empty() ? "demo" : options.name);
 }
 
 void add_rig_options(CLI::App& command, SceneOptions& options) {
@@ -45,10 +50,9 @@ void add_degradation_options(CLI::App& command, SceneOptions& options) {
 }  // namespace
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {
-  CLI::Option* name =
-      command.add_option("--scene", options.name, "Named scene, see --list")->type_name("NAME")->capture_default_str();
-  CLI::Option* seed =
-      command.add_option("--seed", options.seed, "Seed of a random scene")->type_name("N")->excludes(name);
+  command.add_option("--scene", options.name, "Named scene, see --list; random: anything; default: demo")
+      ->type_name("NAME");
+  CLI::Option* seed = command.add_option("--seed", options.seed, "Seed of a random scene")->type_name("N");
   command.add_flag("--degraded", options.degraded, "Add random image degradation")->needs(seed);
   add_rig_options(command, options);
   add_degradation_options(command, options);

@@ -14,8 +14,8 @@ namespace roadstereo::cli {
 
 /// Command line options of the scene; absent ones keep the value of the scene.
 struct SceneOptions {
-  std::string name = "demo";
-  std::optional<std::uint64_t> seed;  ///< a random scene instead of the named one
+  std::string name;                   ///< empty: "demo", or a plain random road when there is a seed
+  std::optional<std::uint64_t> seed;  ///< of a random scene
   bool degraded = false;              ///< random image degradation
   std::optional<std::string> size;    ///< "WxH"
   std::optional<double> camera_height_m;

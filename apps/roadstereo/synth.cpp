@@ -95,12 +95,17 @@ void make_frames(const SynthArguments& arguments) {
 
 constexpr const char* synth_footer =
     R"(Writes left.png, right.png, calibration.yaml, truth_disparity.tiff (32-bit float, NaN above the horizon),
-truth_visible.png (255: visible in both cameras), truth_labels.png (16 bit, damage ids) and truth.json (plane,
-roll, rig, damages) to the output folder. With several frames left/000000.png etc. and times.txt (seconds, one
-line per frame).
+truth_visible.png (255: visible in both cameras), truth_labels.png (16 bit, damage ids), truth_road.png (255: carriageway)
+and truth.json (plane, roll, rig, damages) to the output folder. With several frames left/000000.png etc. and times.txt
+(seconds, one line per frame).
+
+--scene random draws streets with parked cars and house fronts, hills, kerbs, verges, shade, water, paint in the sun,
+snow, a bonnet, and what cameras do: photon noise, defocus, motion, JPEG, bad rectification. --seed N draws one of them;
+without --scene it draws a plain road.
 
 Examples:
   roadstereo synth --scene demo --output road
+  roadstereo synth --scene random --seed 7 --output street
   roadstereo synth --seed 7 --degraded --frames 10 --output drive
   roadstereo synth --frames 300 --flight roll=6,pitch=4,climb=0.5,jump=150 --output flight)";
 

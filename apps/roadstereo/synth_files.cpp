@@ -31,11 +31,16 @@ std::string FrameNumber::path(const std::string& name, const std::string& extens
 
 void add_synthetic_pair(const synth::Scene& scene, const synth::SyntheticPair& pair, const FrameNumber& number,
                         io::OutputFolder& folder) {
-  folder.add(number.path("left", ".png"), io::encode_png(pair.left.view()));
-  folder.add(number.path("right", ".png"), io::encode_png(pair.right.view()));
+  const int quality = scene.degradation.jpeg_quality;
+  const auto recorded = [quality](const Frame& image) {
+    return quality > 0 ? io::with_jpeg_loss(image, quality) : image;
+  };
+  folder.add(number.path("left", ".png"), io::encode_png(recorded(pair.left).view()));
+  folder.add(number.path("right", ".png"), io::encode_png(recorded(pair.right).view()));
   folder.add(number.path("truth_disparity", ".tiff"), io::encode_float_tiff(to_float(pair.disparity)));
   folder.add(number.path("truth_visible", ".png"), io::encode_png(grey_view(pair.visible)));
   folder.add(number.path("truth_labels", ".png"), io::encode_label_png(pair.labels));
+  folder.add(number.path("truth_road", ".png"), io::encode_png(grey_view(pair.road)));
   folder.add(number.path("truth", ".json"), truth_json(scene, pair));
 }
 

@@ -28,7 +28,12 @@ Json degradation_json(const synth::Degradation& wear) {
           {"motion_blur_angle_deg", json_number(wear.motion_blur_angle_deg)},
           {"gain_difference", json_number(wear.gain_difference)},
           {"exposure", json_number(wear.exposure)},
-          {"row_offset_px", json_number(wear.row_offset_px)}};
+          {"row_offset_px", json_number(wear.row_offset_px)},
+          {"row_rotation_deg", json_number(wear.row_rotation_deg)},
+          {"full_well_electrons", json_number(wear.full_well_electrons)},
+          {"snowflakes", wear.snowflakes},
+          {"bonnet_share", json_number(wear.bonnet_share)},
+          {"jpeg_quality", wear.jpeg_quality}};
 }
 
 Json damage_json(const synth::DamageTruth& damage) {

@@ -37,6 +37,7 @@ struct Blob {
   double irregularity = 0.2;  ///< relative variation of the radius and of the floor, 0 … 0.5
   double wall_share = 0.25;   ///< share of the radius that the wall takes, 0.02 … 1
   std::uint32_t seed = 1;     ///< of the outline and the floor
+  bool is_damage = true;      ///< false for scenery, such as bushes: no label and no truth
 };
 
 /// Crack: a groove with a V-shaped profile along a polyline.
@@ -55,26 +56,50 @@ struct Kerb {
   double width_m = 0.02;   ///< of the slanted face, 0.001 … 10
 };
 
+/// Box that stands on the road, upright: a part of a parked car, a house front, a traffic island.
+struct Box {
+  double x_m = 3, y_m = 10;          ///< centre on the road
+  double width_m = 1.8;              ///< along X, 0.01 … 1000
+  double length_m = 4.2;             ///< along Y, 0.01 … 1000
+  double bottom_m = 0, top_m = 1.4;  ///< heights above Z = 0, −100 … 100
+  double grey = 112;                 ///< mean brightness, 8-bit grey levels, 0 … 1000
+  double texture_contrast = 0.3;     ///< relative to ordinary asphalt, 0 … 4
+  double panel_m = 0;                ///< size of dark panels, such as windows; 0: none
+  std::uint32_t seed = 1;
+};
+
 /// Shape, texture and damage of a road.
 struct Road {
-  double camber = 0.0;            ///< Z = −camber · X², 1/m, −0.1 … 0.1
+  double camber = 0.0;            ///< Z = −camber · X² − crest · Y², 1/m, −0.1 … 0.1
+  double crest = 0.0;             ///< 1/m, −0.1 … 0.1; above 0: the top of a hill, below 0: a dip
   double texture_contrast = 1.0;  ///< relative to ordinary asphalt, 0 … 4; 0.1 is almost textureless
   bool lane_marking = true;       ///< whether there are white dashes at X = −1.5 m and an edge line at X = −5 m
+  double paint_grey = 205;        ///< brightness of the lane marking, 8-bit grey levels, 0 … 1000; clips above 255
+  double shade = 0;               ///< share of the light that shadows of trees take, 0 … 0.95
+  double wet_share = 0;           ///< share of the road under a film of water that mirrors the sky, 0 … 1
+  double verge_left_m = -5.4;     ///< X of the left edge of the road, −1e5 … 1e5; earth and grass beyond
+  double verge_right_m = 1e5;     ///< X of the right edge of the road
   std::vector<Blob> blobs;
   std::vector<Crack> cracks;
   std::vector<Kerb> kerbs;
+  std::vector<Box> boxes;
   std::uint32_t seed = 1;
 };
 
 /// Image degradation by the cameras.
 struct Degradation {
   double noise_grey = 0;             ///< standard deviation of the noise, 8-bit grey levels, 0 … 100
+  double full_well_electrons = 0;    ///< electrons at white, for the photon noise, 0 … 1e6; 0: none
   double blur_px = 0;                ///< standard deviation of a Gaussian blur, pixels, 0 … 50
   double motion_blur_px = 0;         ///< length of a linear motion blur, pixels, 0 … 200
   double motion_blur_angle_deg = 0;  ///< direction of the motion, from the rows, −360 … 360
   double gain_difference = 0;        ///< the right image is scaled by 1 + gain_difference, −0.95 … 10
   double exposure = 1;               ///< scale of both images before they are clipped at white, 0.01 … 100
   double row_offset_px = 0;          ///< vertical rectification error: shifts the right image down, −100 … 100
+  double row_rotation_deg = 0;       ///< rotates the right image clockwise about its centre, −10 … 10
+  int snowflakes = 0;                ///< white dots, each in one image only, 0 … 100000
+  double bonnet_share = 0;           ///< share of the rows that a bonnet hides in the middle column, 0 … 0.9
+  int jpeg_quality = 0;              ///< of the recorded images, 0 … 100; 0: lossless. Not applied by render()
   std::uint32_t noise_seed = 1;
 };
 
@@ -108,7 +133,8 @@ struct SyntheticPair {
   Image<double> disparity;      ///< exact, pixels; NaN for sky: above the horizon, or road farther than 1 km
   Image<std::uint8_t> visible;  ///< 255 where the right camera sees the point, too
   Image<std::uint16_t> labels;  ///< id of the damage at the pixel; 0: none
-  DisparityPlane plane;         ///< exact plane of the road in disparity space, without camber and damage
+  Image<std::uint8_t> road;     ///< 255 on the carriageway, damage included; 0 on kerbs, verges, boxes and the bonnet
+  DisparityPlane plane;         ///< exact plane Z = 0 in disparity space: the road without camber, crest and damage
   double roll_rad = 0;          ///< ψ of that plane as in the paper; 0 if the camera looks straight down
   std::vector<DamageTruth> damages;
 };
@@ -125,6 +151,11 @@ Scene named_scene(const std::string& name);
 
 /// Draw a random scene: rig, road, damage and, if `degraded`, image degradation. The same seed gives the same scene.
 Scene random_scene(std::uint64_t seed, bool degraded = false);
+
+/// Draw a random scene of a wider kind: streets with parked cars and house fronts, hills, kerbs, verges, islands,
+/// shade, wet and saturated patches, snow, a bonnet, photon noise, defocus, motion and bad rectification. The same seed
+/// gives the same scene.
+Scene random_wide_scene(std::uint64_t seed);
 
 /// Frame `frame` of a short flight: the rig is `frame` steps of `step_m` further along the road and sways slightly. The
 /// road and its damage do not move. Frame 0 is the scene itself. Throws Error if `frame` is negative or `step_m` is not

@@ -49,10 +49,14 @@ Camera left_camera(const Rig& rig) {
   return camera;
 }
 
-Camera right_camera(const Rig& rig, double row_offset_px) {
+Camera right_camera(const Rig& rig, const Degradation& degradation) {
   Camera camera = left_camera(rig);
   camera.origin = camera.origin + camera.right * rig.baseline_m;
-  camera.cy_px += row_offset_px;
+  camera.cy_px += degradation.row_offset_px;
+  const SineCosine turn = sine_cosine(degradation.row_rotation_deg);
+  const Vec3 right = camera.right;
+  camera.right = right * turn.cosine + camera.down * -turn.sine;
+  camera.down = right * turn.sine + camera.down * turn.cosine;
   return camera;
 }
 

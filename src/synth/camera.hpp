@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "roadstereo/road_model.hpp"
 #include "roadstereo/synth.hpp"
 
@@ -36,12 +38,20 @@ struct Camera {
   Ray ray(double u, double v) const {
     return {origin, forward + right * ((u - cx_px) / focal_px) + down * ((v - cy_px) / focal_px)};
   }
+
+  /// Pixel (u, v) of a point in front of the camera.
+  std::array<double, 2> project(const Vec3& point) const {
+    const Vec3 to{point.x - origin.x, point.y - origin.y, point.z - origin.z};
+    const auto along = [&to](const Vec3& axis) { return axis.x * to.x + axis.y * to.y + axis.z * to.z; };
+    const double scale = focal_px / along(forward);
+    return {cx_px + scale * along(right), cy_px + scale * along(down)};
+  }
 };
 
 Camera left_camera(const Rig& rig);
 
-/// Right camera, with its image shifted down by `row_offset_px`.
-Camera right_camera(const Rig& rig, double row_offset_px);
+/// Right camera, with its image shifted down and rotated by the errors of the rectification.
+Camera right_camera(const Rig& rig, const Degradation& degradation = {});
 
 /// Plane Z = 0 in the disparity space of the left camera.
 DisparityPlane road_disparity_plane(const Rig& rig);

@@ -136,6 +136,10 @@ std::vector<DamageTruth> measure_damages(const HeightField& field, const Road& r
     truths[index] =
         index < road.blobs.size() ? measure_blob(field, i + 1, road.blobs[index]) : measure_crack(field, i + 1);
   });
+  std::erase_if(truths, [&road](const DamageTruth& truth) {
+    const auto index = static_cast<std::size_t>(truth.id - 1);
+    return index < road.blobs.size() && !road.blobs[index].is_damage;
+  });
   return truths;
 }
 

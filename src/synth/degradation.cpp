@@ -80,8 +80,13 @@ void motion_blur(const Image<float>& in, double length, double angle_deg, int th
   });
 }
 
-/// Scale, add Gaussian noise, clip and quantise to 8 bits.
-Frame quantise(const Image<float>& irradiance, double scale, double noise_grey, std::uint64_t noise_key, int threads) {
+/// Scale, add Gaussian noise of `noise_grey` and of the photons, clip and quantise to 8 bits.
+Frame quantise(const Image<float>& irradiance, double scale, const Degradation& degradation, std::uint64_t noise_key,
+               int threads) {
+  // Of n electrons the variance is n: in grey levels, white / full well times the signal.
+  constexpr double white = 255;
+  const double photon_variance = degradation.full_well_electrons > 0 ? white / degradation.full_well_electrons : 0;
+  const double read_variance = degradation.noise_grey * degradation.noise_grey;
   Frame frame;
   frame.width = irradiance.width();
   frame.height = irradiance.height();
@@ -92,7 +97,8 @@ Frame quantise(const Image<float>& irradiance, double scale, double noise_grey, 
         const auto pixel =
             static_cast<std::size_t>(v) * static_cast<std::size_t>(irradiance.width()) + static_cast<std::size_t>(u);
         double grey = static_cast<double>(irradiance(u, v)) * scale;
-        if (noise_grey > 0) grey += noise_grey * normal_value(mix64(noise_key) + pixel);
+        const double variance = read_variance + photon_variance * std::max(0.0, grey);
+        if (variance > 0) grey += std::sqrt(variance) * normal_value(mix64(noise_key) + pixel);
         frame.bytes[pixel] = static_cast<std::uint8_t>(std::clamp(grey + 0.5, 0.0, 255.0));
       }
     }
@@ -114,7 +120,7 @@ Frame simulate_camera(Image<float>& irradiance, const Degradation& degradation, 
     motion_blur(irradiance, degradation.motion_blur_px, degradation.motion_blur_angle_deg, threads, scratch);
     std::swap(irradiance, scratch);
   }
-  return quantise(irradiance, gain * degradation.exposure, degradation.noise_grey, noise_key, threads);
+  return quantise(irradiance, gain * degradation.exposure, degradation, noise_key, threads);
 }
 
 }  // namespace roadstereo::synth

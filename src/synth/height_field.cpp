@@ -49,6 +49,13 @@ bool AxisAlignedBox::clip(const Ray& ray, double& enter, double& leave) const {
          clip_axis(lower.x, upper.x, ray.origin.x, ray.direction.x, enter, leave);
 }
 
+AxisAlignedBox bounds_of(const Box& box) {
+  AxisAlignedBox bounds;
+  bounds.lower = {box.x_m - box.width_m / 2, box.y_m - box.length_m / 2, box.bottom_m};
+  bounds.upper = {box.x_m + box.width_m / 2, box.y_m + box.length_m / 2, box.top_m};
+  return bounds;
+}
+
 BlobShape::BlobShape(const Blob& blob) : blob_(blob), roughness_(0.8 * blob.irregularity) {
   // Harmonics start with the second: the first would only shift the centre.
   RandomSequence random(blob.seed);
@@ -157,7 +164,7 @@ DamageSample CrackShape::sample(double x, double y) const {
   return {-crack_.depth_m * share, 1 - 0.8 * smooth_step(1.5 * share), true};
 }
 
-HeightField::HeightField(const Road& road) : camber_(road.camber) {
+HeightField::HeightField(const Road& road) : camber_(road.camber), crest_(road.crest) {
   add_strips(road.kerbs);
   blobs_.reserve(road.blobs.size());
   cracks_.reserve(road.cracks.size());
@@ -214,8 +221,10 @@ AxisAlignedBox HeightField::box_over(const AxisAlignedBox& ground, double min_of
   double max_height = -no_hit;
   const auto consider = [&](double x) {
     if (x < ground.lower.x || x > ground.upper.x) return;
-    min_height = std::min(min_height, undamaged(x));
-    max_height = std::max(max_height, undamaged(x));
+    for (const double y : {ground.lower.y, ground.upper.y, std::clamp(0.0, ground.lower.y, ground.upper.y)}) {
+      min_height = std::min(min_height, undamaged(x, y));
+      max_height = std::max(max_height, undamaged(x, y));
+    }
   };
   consider(ground.lower.x);
   consider(ground.upper.x);
@@ -240,11 +249,11 @@ double HeightField::kerb_rise(double x) const {
   return strip.slope == 0 ? strip.rise : strip.rise + strip.slope * (x - strip.x);
 }
 
-double HeightField::undamaged(double x) const {
-  return kerb_rise(x) - camber_ * x * x;
+double HeightField::undamaged(double x, double y) const {
+  return kerb_rise(x) - camber_ * x * x - crest_ * y * y;
 }
 
-double HeightField::undamaged_slope(double x) const {
+double HeightField::undamaged_slope_x(double x) const {
   return strip_at(x).slope - 2 * camber_ * x;
 }
 
@@ -272,9 +281,9 @@ double HeightField::strip_hit(const Strip& strip, const Ray& ray, double from, d
   const Vec3& o = ray.origin;
   const Vec3& d = ray.direction;
   const double edge = std::isfinite(strip.x) ? strip.x : 0;
-  const double a = camber_ * d.x * d.x;
-  const double b = d.z + 2 * camber_ * o.x * d.x - strip.slope * d.x;
-  const double c = o.z + camber_ * o.x * o.x - strip.rise - strip.slope * (o.x - edge);
+  const double a = camber_ * d.x * d.x + crest_ * d.y * d.y;
+  const double b = d.z + 2 * (camber_ * o.x * d.x + crest_ * o.y * d.y) - strip.slope * d.x;
+  const double c = o.z + camber_ * o.x * o.x + crest_ * o.y * o.y - strip.rise - strip.slope * (o.x - edge);
   return first_root(a, b, c, from, to);
 }
 

@@ -22,6 +22,8 @@ struct AxisAlignedBox {
   bool clip(const Ray& ray, double& enter, double& leave) const;
 };
 
+AxisAlignedBox bounds_of(const Box& box);
+
 /// Effect of damage on the road at a point.
 struct DamageSample {
   double offset = 0;    ///< height above the undamaged surface, metres
@@ -89,16 +91,17 @@ class HeightField {
   HeightField(const HeightField&) = delete;  // pieces point to members
   HeightField& operator=(const HeightField&) = delete;
 
-  /// Height of the undamaged road: camber and kerbs. It depends on x only.
-  double undamaged(double x) const;
-  double undamaged_slope(double x) const;
+  /// Height of the undamaged road: camber, crest and kerbs.
+  double undamaged(double x, double y) const;
+  double undamaged_slope_x(double x) const;
+  double undamaged_slope_y(double y) const { return -2 * crest_ * y; }
   /// Sum of the heights of the kerbs left of x: arc length of the surface in excess of x, for the texture.
   double kerb_rise(double x) const;
 
   /// Combined effect of all damages.
   DamageSample damage(double x, double y) const;
-  double height(double x, double y) const { return undamaged(x) + damage(x, y).offset; }
-  /// Id of the damage at a point, 1 + index in `pieces`; the first of several that overlap; 0: none.
+  double height(double x, double y) const { return undamaged(x, y) + damage(x, y).offset; }
+  /// Id of the damage at a point, 1 + index in `pieces`; the first of several that overlap; 0: none. Scenery has an id.
   int damage_id(double x, double y) const;
 
   const std::vector<Piece>& pieces() const { return pieces_; }
@@ -108,7 +111,7 @@ class HeightField {
   double undamaged_hit(const Ray& ray, double from) const;
 
  private:
-  /// Strip of the road between two kerb edges: Z = −camber·X² + rise + slope·(X − x).
+  /// Strip of the road between two kerb edges: Z = −camber·X² − crest·Y² + rise + slope·(X − x).
   struct Strip {
     double x;    ///< left edge
     double end;  ///< right edge
@@ -125,6 +128,7 @@ class HeightField {
   void add_crack(const CrackShape& shape);
 
   double camber_ = 0;
+  double crest_ = 0;
   std::vector<Strip> strips_;
   std::vector<BlobShape> blobs_;
   std::vector<CrackShape> cracks_;

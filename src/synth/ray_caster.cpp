@@ -5,6 +5,10 @@
 
 namespace roadstereo::synth {
 
+RayCaster::RayCaster(const HeightField& field, const std::vector<Box>& boxes) : field_(field), boxes_(boxes) {
+  for (const Box& box : boxes) box_bounds_.push_back(bounds_of(box));
+}
+
 void RayCaster::collect_spans(const Ray& ray) {
   active_.clear();
   spans_.clear();
@@ -38,7 +42,7 @@ DamageSample RayCaster::damage_near_last_ray(double x, double y) const {
 
 double RayCaster::clearance(const Ray& ray, double depth) const {
   const Vec3 point = ray.at(depth);
-  return point.z - field_.undamaged(point.x) - damage_near_last_ray(point.x, point.y).offset;
+  return point.z - field_.undamaged(point.x, point.y) - damage_near_last_ray(point.x, point.y).offset;
 }
 
 double RayCaster::find_root(const Ray& ray, double above, double below, double tolerance) const {
@@ -87,21 +91,31 @@ double RayCaster::march(const Ray& ray, const Span& span, double tolerance) cons
 }
 
 Hit RayCaster::first_hit(const Ray& ray, double tolerance) {
+  Hit hit = road_hit(ray, tolerance);
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    double enter = 0;
+    double leave = hit.depth;
+    if (box_bounds_[i].clip(ray, enter, leave) && enter < hit.depth) hit = {enter, false, &boxes_[i]};
+  }
+  return hit;
+}
+
+Hit RayCaster::road_hit(const Ray& ray, double tolerance) {
   double undamaged = field_.undamaged_hit(ray, 0);
   double enter = 0;
   double leave = no_hit;
-  if (field_.pieces().empty() || !field_.damage_box().clip(ray, enter, leave)) return {undamaged, false};
+  if (field_.pieces().empty() || !field_.damage_box().clip(ray, enter, leave)) return {undamaged, false, nullptr};
   collect_spans(ray);
   for (std::size_t i = 0; i < spans_.size();) {
     Span span = spans_[i++];
-    if (undamaged < span.enter) return {undamaged, false};
+    if (undamaged < span.enter) return {undamaged, false, nullptr};
     while (i < spans_.size() && spans_[i].enter <= span.leave) span.leave = std::max(span.leave, spans_[i++].leave);
     const double depth = march(ray, span, tolerance);
-    if (depth < no_hit) return {depth, true};
+    if (depth < no_hit) return {depth, true, nullptr};
     // Inside the span damage replaces the undamaged road: search behind it.
     if (undamaged <= span.leave) undamaged = field_.undamaged_hit(ray, span.leave);
   }
-  return {undamaged, false};
+  return {undamaged, false, nullptr};
 }
 
 }  // namespace roadstereo::synth

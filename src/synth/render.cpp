@@ -7,6 +7,7 @@
 #include "synth/damage_truth.hpp"
 #include "synth/degradation.hpp"
 #include "synth/hash.hpp"
+#include "synth/lens_cover.hpp"
 #include "synth/ray_caster.hpp"
 #include "synth/texture.hpp"
 
@@ -26,8 +27,13 @@ constexpr double same_point_tolerance = 1e-7;
 /// Renderer of one camera. Owns a ray caster; use one per thread.
 class View {
  public:
-  View(const HeightField& field, const Texture& texture, const Camera& camera, double midpoint_offset_m)
-      : field_(field), texture_(texture), camera_(camera), footprints_(camera, midpoint_offset_m), caster_(field) {}
+  View(const Road& road, const HeightField& field, const Texture& texture, const Camera& camera,
+       double midpoint_offset_m)
+      : field_(field),
+        texture_(texture),
+        camera_(camera),
+        footprints_(camera, midpoint_offset_m),
+        caster_(field, road.boxes) {}
 
   /// Irradiance of a pixel: the mean over samples × samples rays, 8-bit grey levels.
   float pixel(int u, int v, int samples) {
@@ -46,13 +52,19 @@ class View {
     const Ray ray = camera_.ray(u, v);
     const Hit hit = caster_.first_hit(ray, image_tolerance);
     if (hit.depth > max_depth_m) return sky_grey(ray.direction);
-    const Footprint footprint = footprints_.at(hit.depth, u, v);
     const Vec3 position = ray.at(hit.depth);
-    SurfacePoint point{position.x, position.y, 0, 1, field_.undamaged_slope(position.x), 0};
-    if (hit.near_damage) add_damage(footprint, point);
+    const double lit = hit.box ? texture_.box_grey(*hit.box, position, hit.depth / camera_.focal_px)
+                               : road_grey(hit, position, footprints_.at(hit.depth, u, v), ray.direction);
+    const double grey = lit * texture_.shade(position.x, position.y);
     const double haze = 1 - std::exp(-hit.depth / haze_m);
-    const double grey = texture_.grey(point, footprint);
     return grey + haze * (sky_grey({0, 1, 0}) - grey);
+  }
+
+  double road_grey(const Hit& hit, const Vec3& position, const Footprint& footprint, const Vec3& direction) const {
+    SurfacePoint point{
+        position.x, position.y, 0, 1, field_.undamaged_slope_x(position.x), field_.undamaged_slope_y(position.y)};
+    if (hit.near_damage) add_damage(footprint, point);
+    return texture_.wet_grey(texture_.grey(point, footprint), position, direction);
   }
 
   void add_damage(const Footprint& footprint, SurfacePoint& point) const {
@@ -79,7 +91,7 @@ Image<float> render_irradiance(const Scene& scene, const HeightField& field, con
                                const Camera& camera, double midpoint_offset_m, int threads) {
   Image<float> irradiance(scene.rig.width, scene.rig.height);
   parallel_rows(scene.rig.height, rows_per_band, threads, [&](int first, int last, int) {
-    View view(field, texture, camera, midpoint_offset_m);
+    View view(scene.road, field, texture, camera, midpoint_offset_m);
     for (int v = first; v < last; ++v) {
       for (int u = 0; u < scene.rig.width; ++u) irradiance(u, v) = view.pixel(u, v, scene.supersampling);
     }
@@ -91,35 +103,43 @@ Image<float> render_irradiance(const Scene& scene, const HeightField& field, con
 class TruthRenderer {
  public:
   TruthRenderer(const Scene& scene, const HeightField& field)
-      : rig_(scene.rig),
-        row_offset_(scene.degradation.row_offset_px),
+      : scene_(scene),
         field_(field),
-        caster_(field),
+        caster_(field, scene.road.boxes),
         left_(left_camera(scene.rig)),
-        right_(right_camera(scene.rig, scene.degradation.row_offset_px)) {}
+        right_(right_camera(scene.rig, scene.degradation)) {
+    for (const Kerb& kerb : scene.road.kerbs) right_edge_m_ = std::min(right_edge_m_, kerb.x_m);
+  }
 
-  /// Set disparity, visibility and label of a pixel.
+  /// Set disparity, visibility, label and road of a pixel.
   void render_pixel(int u, int v, SyntheticPair& pair) {
+    if (is_bonnet(scene_, 0, u, v)) return;
     const Ray ray = left_.ray(u, v);
     const Hit hit = caster_.first_hit(ray, 0);
     if (hit.depth > max_depth_m) return;
-    const double disparity = rig_.focal_px * rig_.baseline_m / hit.depth;
-    pair.disparity(u, v) = disparity;
-    if (hit.near_damage) {
-      const Vec3 point = ray.at(hit.depth);
-      pair.labels(u, v) = static_cast<std::uint16_t>(field_.damage_id(point.x, point.y));
-    }
-    pair.visible(u, v) = is_visible_from_right(u - disparity, v + row_offset_, hit.depth) ? 255 : 0;
+    const Vec3 point = ray.at(hit.depth);
+    pair.disparity(u, v) = scene_.rig.focal_px * scene_.rig.baseline_m / hit.depth;
+    const int id = hit.near_damage ? field_.damage_id(point.x, point.y) : 0;
+    const bool is_scenery = id > 0 && static_cast<std::size_t>(id) <= scene_.road.blobs.size() &&
+                            !scene_.road.blobs[static_cast<std::size_t>(id - 1)].is_damage;
+    if (!is_scenery) pair.labels(u, v) = static_cast<std::uint16_t>(id);
+    pair.visible(u, v) = is_visible_from_right(point, hit.depth) ? 255 : 0;
+    const bool on_road = hit.box == nullptr && !is_scenery && point.x >= scene_.road.verge_left_m &&
+                         point.x <= std::min(scene_.road.verge_right_m, right_edge_m_);
+    pair.road(u, v) = on_road ? 255 : 0;
   }
 
  private:
-  bool is_visible_from_right(double u, double v, double depth) {
-    if (u < 0 || u > rig_.width - 1 || v < 0 || v > rig_.height - 1) return false;
+  bool is_visible_from_right(const Vec3& point, double depth) {
+    const auto [u, v] = right_.project(point);
+    if (u < 0 || u > scene_.rig.width - 1 || v < 0 || v > scene_.rig.height - 1 || is_bonnet(scene_, 1, u, v)) {
+      return false;
+    }
     return caster_.first_hit(right_.ray(u, v), 0).depth >= depth * (1 - same_point_tolerance);
   }
 
-  Rig rig_;
-  double row_offset_;
+  const Scene& scene_;
+  double right_edge_m_ = no_hit;
   const HeightField& field_;
   RayCaster caster_;
   Camera left_;
@@ -132,6 +152,7 @@ void render_truth(const Scene& scene, const HeightField& field, int threads, Syn
   pair.disparity.assign(width, height, std::numeric_limits<double>::quiet_NaN());
   pair.visible.assign(width, height, 0);
   pair.labels.assign(width, height, 0);
+  pair.road.assign(width, height, 0);
   parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {
     TruthRenderer renderer(scene, field);
     for (int v = first; v < last; ++v) {
@@ -157,9 +178,11 @@ SyntheticPair render(const Scene& scene, int threads) {
   render_truth(scene, field, threads, pair);
   const double half_baseline_m = scene.rig.baseline_m / 2;
   const Camera left = left_camera(scene.rig);
-  const Camera right = right_camera(scene.rig, degradation.row_offset_px);
+  const Camera right = right_camera(scene.rig, degradation);
   Image<float> left_light = render_irradiance(scene, field, texture, left, half_baseline_m, threads);
   Image<float> right_light = render_irradiance(scene, field, texture, right, -half_baseline_m, threads);
+  cover_lens(scene, 0, left_light);
+  cover_lens(scene, 1, right_light);
   pair.left = simulate_camera(left_light, degradation, 1, noise_key, threads);
   pair.right = simulate_camera(right_light, degradation, 1 + degradation.gain_difference, ~noise_key, threads);
   return pair;

@@ -11,15 +11,11 @@ namespace roadstereo::synth {
 namespace {
 
 constexpr double road_grey = 112;
-constexpr double paint_grey = 205;
 
 /// Brightness of other ground, relative to the road.
 constexpr double pavement_tone = 1.2;
 constexpr double kerbstone_tone = 1.5;
 constexpr double verge_tone = 0.72;
-
-/// Left edge of the road, metres; beyond it are earth and grass.
-constexpr double verge_x = -5.4;
 
 /// Direction to the sun: to the left, in front of the camera, elevation 45°.
 constexpr Vec3 to_sun{-0.5, 0.5, 0.70710678118654752};
@@ -61,6 +57,11 @@ Texture::Texture(const Road& road, const HeightField& field)
     : field_(field),
       contrast_(road.texture_contrast),
       lane_marking_(road.lane_marking),
+      paint_grey_(road.paint_grey),
+      shade_(road.shade),
+      wet_share_(road.wet_share),
+      verge_left_m_(road.verge_left_m),
+      verge_right_m_(road.verge_right_m),
       kerb_x_(no_hit),
       seed_(mix32(road.seed + 0x51ed270bu)) {
   for (const Kerb& kerb : road.kerbs) kerb_x_ = std::min(kerb_x_, kerb.x_m);
@@ -171,7 +172,7 @@ double Texture::verge(double x, double y, const Footprint& footprint) const {
   // The edge of the asphalt is irregular.
   const double raggedness = 0.12 * gradient_noise(y / 0.7, 0.5, seed_ + 78u) / gradient_noise_sigma;
   const double width = std::max(0.04, 1.5 * footprint.x);
-  return smooth_step((verge_x + raggedness - x) / width + 0.5);
+  return smooth_step((std::max(verge_left_m_ - x, x - verge_right_m_) + raggedness) / width + 0.5);
 }
 
 double Texture::paint(double x, double y, const Footprint& footprint) const {
@@ -206,9 +207,56 @@ double Texture::grey(const SurfacePoint& point, const Footprint& footprint) cons
     // There is no paint inside damage.
     const double share = paint(x, point.y, footprint) * smooth_step((point.light - 0.6) / 0.4) *
                          std::clamp(0.85 + 1.5 * contrast_ * grain, 0.2, 1.0);
-    grey += share * (paint_grey * (1 + 0.4 * contrast_ * grain) - grey);
+    grey += share * (paint_grey_ * (1 + 0.4 * contrast_ * grain) - grey);
   }
   return grey * point.light * lambert(point.slope_x, point.slope_y);
+}
+
+double Texture::box_grey(const Box& box, const Vec3& point, double pixel_m) const {
+  const AxisAlignedBox bounds = bounds_of(box);
+  // The face that the point is nearest to, with two coordinates along it.
+  const double to_top = std::abs(point.z - bounds.upper.z);
+  const double to_side = std::min(std::abs(point.x - bounds.lower.x), std::abs(point.x - bounds.upper.x));
+  const double to_front = std::min(std::abs(point.y - bounds.lower.y), std::abs(point.y - bounds.upper.y));
+  const double nearest = std::min({to_top, to_side, to_front});
+  double across = point.x, along = point.y, light = 1;
+  if (nearest == to_side) {
+    across = point.z;
+    light = point.x < box.x_m ? 0.9 : 0.55;
+  } else if (nearest == to_front) {
+    along = point.z;
+    light = 0.7;
+  }
+  const double grain = octaves(across, along, 0, pixel_m, seed_ ^ box.seed);
+  double base = 1;
+  if (box.panel_m > 0) {
+    const double share = bar(distance_to_multiple(across, box.panel_m), 0.3 * box.panel_m, pixel_m) *
+                         bar(distance_to_multiple(along, box.panel_m), 0.3 * box.panel_m, pixel_m);
+    base -= 0.65 * share * resolved(box.panel_m, pixel_m);
+  }
+  return box.grey * base * light * std::max(0.15, 1 + box.texture_contrast * grain);
+}
+
+double Texture::shade(double x, double y) const {
+  if (shade_ == 0) return 1;
+  const double crowns =
+      gradient_noise(x / 3.1, y / 3.1, seed_ + 79u) + 0.6 * gradient_noise(x / 0.5, y / 0.5, seed_ + 80u);
+  return 1 - shade_ * smooth_step(crowns / (0.5 * gradient_noise_sigma) + 0.5);
+}
+
+double Texture::wet_grey(double grey, const Vec3& point, const Vec3& direction) const {
+  if (wet_share_ == 0) return grey;
+  const double film = gradient_noise(point.x / 1.3, point.y / 2.1, seed_ + 81u) / gradient_noise_sigma;
+  // Logistic approximation of the quantile of the normal distribution.
+  const double level = wet_share_ < 1 ? std::log(wet_share_ / (1 - wet_share_)) / 1.702 : 10;
+  const double wet = smooth_step(2 * (level - film) + 0.5);
+  const double length = std::sqrt(direction.x * direction.x + direction.y * direction.y + direction.z * direction.z);
+  // Schlick's approximation of the reflectance of water, and a mirrored world of clouds and houses.
+  const double mirrored = 0.02 + 0.98 * std::pow(1 + direction.z / length, 5);
+  const double world =
+      170 * (1 + 0.35 * gradient_noise(14 * direction.x / length, 14 * direction.z / length, seed_ + 82u) /
+                     gradient_noise_sigma);
+  return grey * (1 - 0.4 * wet) + wet * std::min(1.0, 4 * mirrored) * std::max(0.0, world);
 }
 
 double sky_grey(const Vec3& direction) {

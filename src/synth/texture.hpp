@@ -20,8 +20,14 @@ struct SurfacePoint {
 class Texture {
  public:
   Texture(const Road& road, const HeightField& field);
-  /// Brightness at exposure 1, 8-bit grey levels.
+  /// Brightness of the road at exposure 1, 8-bit grey levels, without shade and water.
   double grey(const SurfacePoint& point, const Footprint& footprint) const;
+  /// Brightness of a point on a face of a box, in pixels of `pixel_m`.
+  double box_grey(const Box& box, const Vec3& point, double pixel_m) const;
+  /// Share of the sun's light that the shadows of trees leave at a point.
+  double shade(double x, double y) const;
+  /// `grey` as seen through a film of water that mirrors the sky, for a line of sight.
+  double wet_grey(double grey, const Vec3& point, const Vec3& direction) const;
 
  private:
   double aggregate(double x, double y, double z, const Footprint& footprint) const;
@@ -35,6 +41,11 @@ class Texture {
   const HeightField& field_;
   double contrast_;
   bool lane_marking_;
+  double paint_grey_;
+  double shade_;
+  double wet_share_;
+  double verge_left_m_;
+  double verge_right_m_;
   double kerb_x_;
   std::uint32_t seed_;
 };

@@ -68,12 +68,35 @@ void check_kerbs(const std::vector<Kerb>& kerbs) {
   }
 }
 
+void check_boxes(const std::vector<Box>& boxes) {
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Box& box = boxes[i];
+    const auto name = [&](const char* field) { return member("box", i, field); };
+    require_in_range(name("x_m"), box.x_m, -max_coordinate_m, max_coordinate_m);
+    require_in_range(name("y_m"), box.y_m, -max_coordinate_m, max_coordinate_m);
+    require_in_range(name("width_m"), box.width_m, 0.01, 1000);
+    require_in_range(name("length_m"), box.length_m, 0.01, 1000);
+    require_in_range(name("bottom_m"), box.bottom_m, -100, 100);
+    require_in_range(name("top_m"), box.top_m, box.bottom_m, 100);
+    require_in_range(name("grey"), box.grey, 0, 1000);
+    require_in_range(name("texture_contrast"), box.texture_contrast, 0, 4);
+    require_in_range(name("panel_m"), box.panel_m, 0, 100);
+  }
+}
+
 void check_road(const Road& road) {
   require_in_range("camber", road.camber, -0.1, 0.1);
+  require_in_range("crest", road.crest, -0.1, 0.1);
+  require_in_range("paint_grey", road.paint_grey, 0, 1000);
+  require_in_range("shade", road.shade, 0, 0.95);
+  require_in_range("wet_share", road.wet_share, 0, 1);
+  require_in_range("verge_left_m", road.verge_left_m, -max_coordinate_m, max_coordinate_m);
+  require_in_range("verge_right_m", road.verge_right_m, -max_coordinate_m, max_coordinate_m);
   require_in_range("texture_contrast", road.texture_contrast, 0, 4);
   check_blobs(road.blobs);
   check_cracks(road.cracks);
   check_kerbs(road.kerbs);
+  check_boxes(road.boxes);
   constexpr std::size_t max_damages = std::numeric_limits<std::uint16_t>::max();
   if (road.blobs.size() + road.cracks.size() > max_damages) {
     fail("the road has ", road.blobs.size() + road.cracks.size(), " damages; it must have at most ", max_damages);
@@ -88,16 +111,27 @@ void check_degradation(const Degradation& degradation) {
   require_in_range("gain_difference", degradation.gain_difference, -0.95, 10);
   require_in_range("exposure", degradation.exposure, 0.01, 100);
   require_in_range("row_offset_px", degradation.row_offset_px, -100, 100);
+  require_in_range("row_rotation_deg", degradation.row_rotation_deg, -10, 10);
+  require_in_range("full_well_electrons", degradation.full_well_electrons, 0, 1e6);
+  require_in_range("snowflakes", degradation.snowflakes, 0, 100000);
+  require_in_range("bonnet_share", degradation.bonnet_share, 0, 0.9);
+  require_in_range("jpeg_quality", degradation.jpeg_quality, 0, 100);
 }
 
 /// Throws Error if a camera is below the surface or less than 2 cm above it.
 void check_clearance(const Rig& rig, const Road& road) {
   constexpr double min_clearance_m = 0.02;
   const HeightField field(road);
-  for (const Camera& camera : {left_camera(rig), right_camera(rig, 0)}) {
-    const double surface = std::max(field.undamaged(camera.origin.x), field.height(camera.origin.x, camera.origin.y));
-    if (camera.origin.z - surface < min_clearance_m) {
-      fail("camera_height_m is ", rig.camera_height_m, ": a camera is ", camera.origin.z - surface,
+  for (const Camera& camera : {left_camera(rig), right_camera(rig)}) {
+    const auto [x, y, z] = camera.origin;
+    double surface = std::max(field.undamaged(x, y), field.height(x, y));
+    for (const Box& box : road.boxes) {
+      const AxisAlignedBox bounds = bounds_of(box);
+      const bool is_above = x >= bounds.lower.x && x <= bounds.upper.x && y >= bounds.lower.y && y <= bounds.upper.y;
+      if (is_above) surface = std::max(surface, bounds.upper.z);
+    }
+    if (z - surface < min_clearance_m) {
+      fail("camera_height_m is ", rig.camera_height_m, ": a camera is ", z - surface,
            " m above the surface below it; it must be at least ", min_clearance_m, " m");
     }
   }

@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "roadstereo/io/image_file.hpp"
 #include "roadstereo/synth.hpp"
 
 namespace roadstereo::cli {
@@ -81,6 +82,25 @@ LabelledFrame render_street(std::uint64_t seed, int threads) {
   return frame;
 }
 
+LabelledFrame render_wide(std::uint64_t seed, int threads) {
+  const synth::Scene scene = synth::random_wide_scene(seed);
+  synth::SyntheticPair rendered = synth::render(scene, threads);
+  const int quality = scene.degradation.jpeg_quality;
+  LabelledFrame frame;
+  frame.pair.left = quality > 0 ? io::with_jpeg_loss(rendered.left, quality) : std::move(rendered.left);
+  frame.pair.right = quality > 0 ? io::with_jpeg_loss(rendered.right, quality) : std::move(rendered.right);
+  frame.pair.calibration = rendered.calibration;
+  frame.truth.resize(rendered.disparity.width(), rendered.disparity.height());
+  std::transform(rendered.disparity.row(0), rendered.disparity.row(0) + rendered.disparity.pixels(), frame.truth.row(0),
+                 [](double disparity) { return static_cast<float>(disparity); });
+  frame.disparities = disparities_of(frame.truth, 0);
+  frame.road = std::move(rendered.road);
+  for (std::size_t i = 0; i < frame.road->pixels(); ++i) {
+    if (rendered.visible.row(0)[i] == 0) frame.road->row(0)[i] = 0;
+  }
+  return frame;
+}
+
 LabelledSource make_source(const char* name, int count, int threads, LabelledFrame (*render)(std::uint64_t, int)) {
   LabelledSource source{name, {}, [render, threads](std::size_t frame) { return render(frame + 1, threads); }};
   for (int seed = 1; seed <= count; ++seed) source.frames.push_back(fmt::format("seed {}", seed));
@@ -95,6 +115,10 @@ LabelledSource rendered_roads(int count, int threads) {
 
 LabelledSource rendered_streets(int count, int threads) {
   return make_source("own streets", count, threads, render_street);
+}
+
+LabelledSource rendered_wide_scenes(int count, int threads) {
+  return make_source("own wide scenes", count, threads, render_wide);
 }
 
 }  // namespace roadstereo::cli

@@ -11,4 +11,7 @@ LabelledSource rendered_roads(int count, int threads);
 /// is noisy, out of focus or of low contrast.
 LabelledSource rendered_streets(int count, int threads);
 
+/// Random scenes of the widest kind (synth::random_wide_scene), likewise, with their JPEG loss.
+LabelledSource rendered_wide_scenes(int count, int threads);
+
 }  // namespace roadstereo::cli

@@ -145,6 +145,7 @@ void robustness(const RobustnessArguments& arguments) {
   if (arguments.scenes > 0) {
     found.labelled.push_back(rendered_roads(arguments.scenes, arguments.methods.threads));
     found.labelled.push_back(rendered_streets(arguments.scenes, arguments.methods.threads));
+    found.labelled.push_back(rendered_wide_scenes(arguments.scenes, arguments.methods.threads));
   }
   if (found.labelled.empty() && found.drives.empty()) fail("there is no source: give DIR, or --scenes above 0");
   std::vector<SourceTrials> sources;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "evaluation/jpeg_loss.hpp"
+#include "roadstereo/io/image_file.hpp"
 
 namespace roadstereo::cli {
 namespace {

@@ -31,4 +31,7 @@ std::vector<std::uint8_t> encode_kitti_png(ImageView<const float> disparity);
 /// Encodes an 8-bit frame (grey or colour) as PNG.
 std::vector<std::uint8_t> encode_png(const FrameView& frame);
 
+/// Encodes an 8-bit frame as JPEG, `quality` 1 … 100, and decodes it. Throws Error for another quality or depth.
+Frame with_jpeg_loss(const Frame& frame, int quality);
+
 }  // namespace roadstereo::io

@@ -1,9 +1,8 @@
-#include "evaluation/jpeg_loss.hpp"
-
 #include <opencv2/imgcodecs.hpp>
 
 #include "io/frame_mat.hpp"
 #include "roadstereo/error.hpp"
+#include "roadstereo/io/image_file.hpp"
 
 namespace roadstereo::io {
 
