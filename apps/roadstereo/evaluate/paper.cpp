@@ -224,7 +224,8 @@ PaperPage make_page(const PaperArguments& arguments) {
        "roadstereo evaluate paper",
        {},
        "results.png",
-       "The 11368 pairs and the data sets of damage of the paper were not at hand: roads are rendered."});
+       "The 11368 pairs and the data sets of damage of the paper were not at hand: roads are rendered. The lines along "
+       "the rows are those of whole-pixel shifts."});
   if (arguments.kitti.empty()) {
     page.parts.push_back({"Table 1, σ_d and figures of KITTI", "", {}, "", "Left out: no folder of KITTI was given."});
   } else {
