@@ -46,6 +46,8 @@ EXPERIMENTS = {
     "scan": "evaluate scan {data}/potholes",
     "flight": "evaluate flight",
     "flight_jumps": "evaluate flight --flight jump=100,jump=200",
+    "odometry_drive": "evaluate odometry {data}/wider/odometry",
+    "odometry_flight": "evaluate odometry --flight loop=300",
     "robustness": "evaluate robustness {data}/kitti2015 {data}/wider --scenes 20",
     "ablation": "evaluate ablation --kitti {data}/kitti2015 --sizes small",
 }
@@ -63,7 +65,7 @@ LEFT_OUT = {"trials", "frames", "bins", "damage_bins", "times", "common", "commo
 SHARES = re.compile(r"(density|completeness|covered|measured|within_\w*)_percent$|_percent_within$")
 SHARES_OF_ONE = {"precision", "recall", "f", "iou"}
 ERRORS = re.compile(r"^(e_r|e_p|median_error_px|rms|p\d+_mm|median_mm|false_|ripple|gradient_descent_px|closed_form_px"
-                    r"|robust_px|mean_abs_error|mean_rad|max_rad|roll_\w+_rad|plane_)")
+                    r"|robust_px|translation_percent|rotation_deg_per_m|ate_percent|link_|mean_abs_error|mean_rad|max_rad|roll_\w+_rad|plane_)")
 
 
 def real_data():

@@ -92,6 +92,7 @@ void reject_flight_options(const FlightSettings& settings) {
   if (settings.to) reject("--to");
   if (settings.every != 1) reject("--every");
   if (!settings.track.file.empty()) reject("--track");
+  if (settings.trajectory) reject("--trajectory");
 }
 
 PairFiles pair_files(const FlightSettings& settings) {
@@ -211,6 +212,9 @@ void add_track_options(CLI::App& command, TrackSettings& track) {
 }
 
 void add_flight_options(CLI::App& command, FlightSettings& settings) {
+  command.add_flag(
+      "--trajectory", settings.trajectory,
+      "Estimate the motion from frame to frame: trajectory_kitti.txt, trajectory.tum, trajectory.csv, links.csv");
   command.add_flag("--resume", settings.resume, "Continue the flight in the output folder");
   command.add_option("--from", settings.from, "First frame of the recording, from 0")->type_name("N");
   command.add_option("--to", settings.to, "Last frame of the recording, inclusive")->type_name("N");

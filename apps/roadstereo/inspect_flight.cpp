@@ -45,12 +45,13 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   return text + fmt::format("  report    {}\n", (folder.path() / "report.html").string());
 }
 
-/// Clouds are metric. The calibration may be that of a bag.
-void require_calibration(const FlightPlan& plan, const RectifiedSource& source) {
+/// Clouds and trajectories are metric. The calibration may be that of a bag.
+void require_calibration(const FlightPlan& plan, bool trajectory, const RectifiedSource& source) {
   const bool cloud = std::find(plan.write.begin(), plan.write.end(), FrameFile::cloud) != plan.write.end();
   if (cloud && source.calibration_format().empty()) {
     fail("--write cloud needs --calibration");
   }
+  if (trajectory && source.calibration_format().empty()) fail("--trajectory needs --calibration");
 }
 
 /// Called before an earlier flight is removed.
@@ -68,7 +69,7 @@ void inspect_flight(const FlightSettings& settings) {
   FlightResults results(settings.track);
   RectifiedSource source(io::open_source(settings.source, plan.source), settings.calibration);
   if (source.source().live()) fail(settings.source[0], ": cameras are not supported by inspect; use roadstereo live");
-  require_calibration(plan, source);
+  require_calibration(plan, settings.trajectory, source);
   require_frames(settings, source.source());
   FlightFolder folder(settings.output);
   for (const auto& inputs : {settings.source, settings.calibration, std::vector{settings.track.file}}) {
@@ -81,7 +82,8 @@ void inspect_flight(const FlightSettings& settings) {
 
   Progress progress(frames_to_do(settings, source.source()), journal.frames(), settings.quiet);
   auto stop = std::make_unique<StopSignals>();  // until here Ctrl-C ends the program
-  Flight flight{source, folder, journal, results, plan, progress, *stop};
+  std::optional<FlightTrajectory> trajectory;
+  Flight flight{source, folder, journal, results, trajectory, plan, progress, *stop};
   run.complete = run_flight(settings, flight);
   stop.reset();  // the next Ctrl-C ends the program
   if (journal.last() && journal.last()->white_level > 0) run.options.white_level = journal.last()->white_level;
@@ -92,11 +94,15 @@ void inspect_flight(const FlightSettings& settings) {
   run.engine = resolve_engine_name(run.options.engine);
   run.threads = used_threads(run.options);
 
+  if (trajectory) folder.write(trajectory->files());
   const std::string json = results.write(settings, run, folder);
   const FlightSummary& summary = results.summary();
   progress.end();
   if (settings.json) fmt::print("{}", json);
-  if (!settings.json && !settings.quiet) fmt::print("{}", flight_text(run, summary, folder));
+  if (!settings.json && !settings.quiet) {
+    fmt::print("{}", flight_text(run, summary, folder));
+    if (trajectory) fmt::print("  path      {}\n", trajectory->summary());
+  }
   if (!run.complete) throw Interrupted{"interrupted; continue with --resume"};
   if (summary.frames == 0) fail(settings.source[0], ": there is no frame between --from and --to");
   if (summary.good == 0) fail("none of the ", summary.frames, " frames could be matched: ", summary.reasons.front());

@@ -21,12 +21,15 @@ struct Rig {
   double camera_height_m = 2.0;  ///< above the plane of the road, 0.05 … 500
   double pitch_deg = 60;         ///< of the optical axis below the horizon, 0 … 90; 90 looks straight down
   double roll_deg = 0;           ///< about the optical axis, −60 … 60; positive rotates the image clockwise
+  double yaw_deg = 0;            ///< of the rig about the vertical, −360 … 360; 90 looks to the left, along −X
   double x_m = 0;                ///< position of the left camera on the road, −1e5 … 1e5
   double y_m = 0;
 
   /// Throws Error naming the first value out of range.
   void validate() const;
   StereoCalibration calibration() const;
+  /// Pose of the left camera: 3×4, row-major, from the camera frame (x right, y down, z forward) to the road frame.
+  std::array<double, 12> camera_to_road() const;
 };
 
 /// Pothole or bump with an irregular outline and a steep wall.
@@ -162,9 +165,9 @@ Scene random_wide_scene(std::uint64_t seed);
 /// finite.
 Scene next_frame(const Scene& scene, int frame, double step_m = 0.1);
 
-/// Flight of a rig along the road, relative to its pose in the scene. Roll and pitch are sine waves; the height rises
-/// from that of the scene and returns. Periods are in frames. Each frame in `jumps` toggles an additional offset of the
-/// pose: the first jump adds it, the second removes it, and so on.
+/// Flight of a rig along the road or in a circle, relative to its pose in the scene. Roll and pitch are sine waves; the
+/// height rises from that of the scene and returns. Periods are in frames. Each frame in `jumps` toggles an additional
+/// offset of the pose: the first jump adds it, the second removes it, and so on.
 struct FlightPath {
   double roll_deg = 6;        ///< amplitude, 0 … 45
   double roll_period = 100;   ///< 2 … 1e6
@@ -173,6 +176,7 @@ struct FlightPath {
   double climb_m = 0.5;       ///< maximum height above that of the scene, 0 … 100
   double climb_period = 170;  ///< 2 … 1e6
   double step_m = 0.1;        ///< along the road per frame, −10 … 10
+  double loop_period = 0;     ///< frames after which the rig, on a circle to the right, is back; 0: straight; 2 … 1e6
   std::vector<int> jumps;     ///< frames, ≥ 1, without duplicates
   double jump_roll_deg = 5;   ///< offset of the roll, −45 … 45
   double jump_pitch_deg = 4;  ///< offset of the pitch, −45 … 45

@@ -25,6 +25,7 @@ struct Equation {
   std::array<double, unknowns> row{};
   double residual = 0;
   double variance = 0;  ///< known part
+  double total_variance = 0;
   double weight = 0;
   int cell = 0;
 };
@@ -169,8 +170,29 @@ void weigh_grey(std::vector<Equation>& equations, double& noise, std::vector<dou
     noise = std::max(gaussian_mad * upper_median_magnitude(scratch), min_noise);
   }
   for (Equation& e : equations) {
-    const double variance = noise * noise + e.variance;
-    e.weight = tukey(e.residual / std::sqrt(variance)) / variance;
+    e.total_variance = noise * noise + e.variance;
+    e.weight = tukey(e.residual / std::sqrt(e.total_variance)) / e.total_variance;
+  }
+}
+
+/// Lowers the weights of cells whose residuals are larger than those of most cells: something moves there, or is seen
+/// by one frame only. A single residual cannot tell, since a wrong grey level may fit by chance.
+void weigh_cells(std::vector<Equation>& equations, std::vector<double>& squares, std::vector<double>& scratch) {
+  constexpr double usual_spread = 1.5;  // of the mean squares of cells that fit
+  std::vector<double> counts(squares.size(), 0);
+  std::fill(squares.begin(), squares.end(), 0.0);
+  for (const Equation& e : equations) {
+    squares[static_cast<std::size_t>(e.cell)] += e.residual * e.residual / e.total_variance;
+    counts[static_cast<std::size_t>(e.cell)] += 1;
+  }
+  scratch.clear();
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    if (counts[i] > 0) scratch.push_back(squares[i] /= counts[i]);
+  }
+  const double limit = usual_spread * upper_median(scratch);
+  for (Equation& e : equations) {
+    const double ratio = limit / std::max(squares[static_cast<std::size_t>(e.cell)], limit);
+    e.weight *= ratio * ratio;
   }
 }
 
@@ -181,8 +203,8 @@ void weigh_disparities(std::vector<Equation>& equations, std::vector<double>& sc
   constexpr double min_factor = 0.5;
   const double factor = std::max(gaussian_mad * upper_median_magnitude(scratch), min_factor);
   for (Equation& e : equations) {
-    const double variance = factor * factor * e.variance;
-    e.weight = tukey(e.residual / std::sqrt(variance)) / variance;
+    e.total_variance = factor * factor * e.variance;
+    e.weight = tukey(e.residual / std::sqrt(e.total_variance)) / e.total_variance;
   }
 }
 
@@ -262,9 +284,11 @@ class Aligner {
  private:
   void weigh(double& noise) {
     weigh_grey(equations_.grey, noise, scratch_);
+    weigh_cells(equations_.grey, sums_, scratch_);
     divide_weights(equations_.grey, correlation_factor(equations_.grey, sums_));
     if (equations_.disparity.empty()) return;
     weigh_disparities(equations_.disparity, scratch_);
+    weigh_cells(equations_.disparity, sums_, scratch_);
     divide_weights(equations_.disparity, correlation_factor(equations_.disparity, sums_));
   }
 

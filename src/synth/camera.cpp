@@ -33,16 +33,26 @@ StereoCalibration Rig::calibration() const {
   return calibration;
 }
 
+std::array<double, 12> Rig::camera_to_road() const {
+  const Camera camera = left_camera(*this);
+  const Vec3 &x = camera.right, &y = camera.down, &z = camera.forward, &origin = camera.origin;
+  return {x.x, y.x, z.x, origin.x, x.y, y.y, z.y, origin.y, x.z, y.z, z.z, origin.z};
+}
+
 Camera left_camera(const Rig& rig) {
   const SineCosine pitch = sine_cosine(rig.pitch_deg);
   const SineCosine roll = sine_cosine(rig.roll_deg);
-  const Vec3 level_right{1, 0, 0};
-  const Vec3 level_down{0, -pitch.sine, -pitch.cosine};
+  const SineCosine yaw = sine_cosine(rig.yaw_deg);
+  const auto turned = [&](double right, double ahead, double up) {
+    return Vec3{yaw.cosine * right - yaw.sine * ahead, yaw.sine * right + yaw.cosine * ahead, up};
+  };
+  const Vec3 level_right = turned(1, 0, 0);
+  const Vec3 level_down = turned(0, -pitch.sine, -pitch.cosine);
   Camera camera;
   camera.origin = {rig.x_m, rig.y_m, rig.camera_height_m};
   camera.right = level_right * roll.cosine + level_down * -roll.sine;
   camera.down = level_right * roll.sine + level_down * roll.cosine;
-  camera.forward = {0, pitch.cosine, -pitch.sine};
+  camera.forward = turned(0, pitch.cosine, -pitch.sine);
   camera.focal_px = rig.focal_px;
   camera.cx_px = (rig.width - 1) / 2.0;
   camera.cy_px = (rig.height - 1) / 2.0;

@@ -22,6 +22,15 @@ double sine_wave(double frame, double period) {
   return std::sin(2 * std::numbers::pi * frame / period);
 }
 
+/// Moves the rig on a circle to the right whose circumference is the length of all steps, always looking ahead.
+void circle(const FlightPath& path, double frame, Rig& rig) {
+  const double turn = 2 * std::numbers::pi * frame / path.loop_period;
+  const double radius_m = path.loop_period * path.step_m / (2 * std::numbers::pi);
+  rig.x_m += radius_m * (1 - std::cos(turn));
+  rig.y_m += radius_m * std::sin(turn);
+  rig.yaw_deg = std::remainder(rig.yaw_deg - turn * 180 / std::numbers::pi, 360.0);
+}
+
 }  // namespace
 
 void FlightPath::validate() const {
@@ -33,6 +42,7 @@ void FlightPath::validate() const {
   require_in_range("climb_m", climb_m, 0, max_climb_m);
   require_in_range("climb_period", climb_period, min_period, max_period);
   require_in_range("step_m", step_m, -10, 10);
+  if (loop_period != 0) require_in_range("loop_period", loop_period, min_period, max_period);
   require_in_range("jump_roll_deg", jump_roll_deg, -max_deg, max_deg);
   require_in_range("jump_pitch_deg", jump_pitch_deg, -max_deg, max_deg);
   require_in_range("jump_climb_m", jump_climb_m, -max_climb_m, max_climb_m);
@@ -52,7 +62,9 @@ Scene flight_frame(const Scene& scene, const FlightPath& path, int frame) {
   const double is_offset = jumps % 2 != 0 ? 1 : 0;
   Scene next = scene;
   Rig& rig = next.rig;
-  rig.y_m += t * path.step_m + static_cast<double>(jumps) * path.jump_step_m;
+  rig.y_m += static_cast<double>(jumps) * path.jump_step_m;
+  if (path.loop_period == 0) rig.y_m += t * path.step_m;
+  if (path.loop_period != 0) circle(path, t, rig);
   rig.camera_height_m += path.climb_m * raised_cosine(t, path.climb_period) + is_offset * path.jump_climb_m;
   rig.roll_deg += path.roll_deg * sine_wave(t, path.roll_period) + is_offset * path.jump_roll_deg;
   rig.pitch_deg += path.pitch_deg * sine_wave(t, path.pitch_period) + is_offset * path.jump_pitch_deg;

@@ -147,6 +147,7 @@ void Rig::validate() const {
   require_in_range("camera_height_m", camera_height_m, 0.05, 500);
   require_in_range("pitch_deg", pitch_deg, 0, 90);
   require_in_range("roll_deg", roll_deg, -60, 60);
+  require_in_range("yaw_deg", yaw_deg, -360, 360);
   require_in_range("x_m", x_m, -max_coordinate_m, max_coordinate_m);
   require_in_range("y_m", y_m, -max_coordinate_m, max_coordinate_m);
 }

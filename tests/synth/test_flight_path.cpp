@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 
+#include "roadstereo/error.hpp"
 #include "tests/synth/rendered_scenes.hpp"
 
 namespace roadstereo::synth {
@@ -52,6 +55,28 @@ TEST(FlightPath, RollsPitchesAndClimbs) {
   const Rig half = flight_frame(scene, path, 20).rig;
   EXPECT_NEAR(half.roll_deg, scene.rig.roll_deg, 1e-9);
   EXPECT_NEAR(half.camera_height_m, scene.rig.camera_height_m + 0.5, 1e-9);
+}
+
+TEST(FlightPath, LoopCloses) {
+  const Scene scene = small_scene("uav");
+  FlightPath path;
+  path.roll_deg = path.pitch_deg = path.climb_m = 0;
+  path.step_m = 0.1;
+  path.loop_period = 40;
+  const double radius = 40 * 0.1 / (2 * std::numbers::pi);
+  const Rig quarter = flight_frame(scene, path, 10).rig;
+  EXPECT_NEAR(quarter.x_m, scene.rig.x_m + radius, 1e-9);
+  EXPECT_NEAR(quarter.y_m, scene.rig.y_m + radius, 1e-9);
+  EXPECT_NEAR(quarter.yaw_deg, -90, 1e-9);
+  const std::array<double, 12> pose = quarter.camera_to_road();
+  EXPECT_GT(pose[2], 0.4);  // looks along X
+  EXPECT_NEAR(pose[6], 0, 1e-12);
+  const Rig again = flight_frame(scene, path, 40).rig;
+  EXPECT_NEAR(again.x_m, scene.rig.x_m, 1e-9);
+  EXPECT_NEAR(again.y_m, scene.rig.y_m, 1e-9);
+  EXPECT_NEAR(std::remainder(again.yaw_deg, 360), 0, 1e-9);
+  path.loop_period = 1;
+  EXPECT_THROW(path.validate(), Error);
 }
 
 TEST(FlightPath, JumpsAndReturns) {

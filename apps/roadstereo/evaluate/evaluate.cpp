@@ -35,6 +35,7 @@ void add_evaluate(CLI::App& app) {
   add_scan(*command);
   add_flight(*command);
   add_runtime(*command);
+  add_odometry(*command);
   add_robustness(*command);
 }
 

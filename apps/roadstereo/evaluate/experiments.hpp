@@ -22,6 +22,7 @@ void add_damage_accuracy(CLI::App& evaluate);
 void add_scan(CLI::App& evaluate);
 void add_flight(CLI::App& evaluate);
 void add_runtime(CLI::App& evaluate);
+void add_odometry(CLI::App& evaluate);
 void add_robustness(CLI::App& evaluate);
 
 }  // namespace roadstereo::cli

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "flight/flight_trajectory.hpp"
 #include "flight/frame_files.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_journal.hpp"
@@ -85,6 +86,7 @@ void FlightFolder::remove_earlier_flight() {
   for (const char* name : flight_files) {
     fs::remove_all(path() / name, ignored);
   }
+  for (const std::string& name : trajectory_file_names()) fs::remove(path() / name, ignored);
 }
 
 void FlightFolder::write(const std::vector<StagedFile>& files) {

@@ -50,6 +50,7 @@ void FlightSettings::validate() const {
   if (from < 0) fail("--from is ", from, "; it must be at least 0");
   if (to && *to < from) fail("--to is ", *to, "; it must be at least --from, which is ", from);
   if (!std::isfinite(track.offset_s)) fail("--track-offset is ", track.offset_s, "; it must be a number of seconds");
+  if (trajectory && resume) fail("--trajectory cannot be resumed; start again without --resume");
   if (every < 1) fail("--every is ", every, "; it must be at least 1");
 }
 

@@ -31,6 +31,7 @@ class FlightPipeline {
   void seek(io::FrameSource& source) const;
   void read();
   void match();
+  void add_to_trajectory(const FlightJob& job);
   void finish();
   void commit_frame(FlightJob& job);
   void add_pictures(FlightJob& job, const std::vector<std::int64_t>& road_damages);
@@ -136,12 +137,23 @@ void FlightPipeline::match() {
     (*job)->pair = std::move(*pair);
     if (pipeline) {
       match_frame(*pipeline, flight_.source.calibration(), **job);
+      add_to_trajectory(**job);
     } else {
       record_rejected(before, **job);
     }
     if (!matched_.put(std::move(*job))) break;
   }
   matched_.close();
+}
+
+void FlightPipeline::add_to_trajectory(const FlightJob& job) {
+  if (!settings_.trajectory || job.frame.status != io::FrameStatus::good) return;
+  if (!flight_.trajectory) {
+    const std::optional<StereoCalibration>& calibration = flight_.source.calibration();
+    if (!calibration) fail("--trajectory needs --calibration");
+    flight_.trajectory.emplace(*calibration);
+  }
+  flight_.trajectory->add(job.frame, job.result);
 }
 
 void FlightPipeline::finish() {

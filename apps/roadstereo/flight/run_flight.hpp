@@ -6,6 +6,7 @@
 #include "flight/flight_folder.hpp"
 #include "flight/flight_results.hpp"
 #include "flight/flight_settings.hpp"
+#include "flight/flight_trajectory.hpp"
 #include "flight/rectified_source.hpp"
 #include "progress.hpp"
 #include "roadstereo/io/flight_journal.hpp"
@@ -19,6 +20,7 @@ struct Flight {
   FlightFolder& folder;
   io::FlightJournal& journal;
   FlightResults& results;  ///< of the frames in the journal
+  std::optional<FlightTrajectory>& trajectory;  ///< with --trajectory, from the first matched frame on
   const FlightPlan& plan;
   Progress& progress;
   const StopSignals& stop;

@@ -1,0 +1,212 @@
+#include "evaluate/odometry_trials.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "evaluation/peer_odometry.hpp"
+#include "finite_values.hpp"
+#include "flight/rectified_source.hpp"
+#include "flight_path.hpp"
+#include "progress.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/trajectory_file.hpp"
+#include "roadstereo/synth.hpp"
+#include "scene_options.hpp"
+#include "settings.hpp"
+#include "stopwatch.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+/// Rectified pair with the true pose of its left camera.
+struct PosedPair {
+  Frame left;
+  Frame right;
+  Pose pose{};
+};
+
+/// Pairs one after the other.
+struct PosedPairs {
+  StereoCalibration calibration;
+  std::size_t frames = 0;
+  std::function<PosedPair()> next;
+};
+
+Eigen::Isometry3d isometry(const Pose& pose) {
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 4; ++j) result(i, j) = pose[static_cast<std::size_t>(4 * i + j)];
+  }
+  return result;
+}
+
+Pose pose_of(const Eigen::Isometry3d& motion) {
+  Pose pose{};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 4; ++j) pose[static_cast<std::size_t>(4 * i + j)] = motion(i, j);
+  }
+  return pose;
+}
+
+PosedPairs rendered_pairs(const OdometryTrialOptions& options) {
+  SceneOptions scene;
+  scene.name = options.scene;
+  scene.size = options.size;
+  synth::Scene first = make_scene(scene);
+  first.supersampling = options.supersampling;
+  first.degradation.noise_grey = options.noise_grey;
+  first.validate();
+  const synth::FlightPath path = parse_flight(options.flight);
+  for (int i = 0; i < options.frames; ++i) synth::flight_frame(first, path, i);  // throws before anything is rendered
+  PosedPairs pairs;
+  pairs.calibration = first.rig.calibration();
+  pairs.frames = static_cast<std::size_t>(options.frames);
+  pairs.next = [first, path, i = 0]() mutable {
+    const synth::Scene posed = synth::flight_frame(first, path, i++);
+    synth::SyntheticPair pair = synth::render(posed);
+    return PosedPair{std::move(pair.left), std::move(pair.right), posed.rig.camera_to_road()};
+  };
+  return pairs;
+}
+
+PosedPairs recorded_pairs(const OdometryTrialOptions& options) {
+  const std::filesystem::path folder(options.folder);
+  std::vector<Pose> poses;
+  for (const FramePose& pose : io::read_trajectory((folder / "poses.txt").string()).frames) {
+    if (pose.frame != static_cast<int>(poses.size()))
+      fail(options.folder, ": poses.txt has no pose of frame ", poses.size());
+    poses.push_back(pose.camera_to_world);
+  }
+  const std::vector<std::string> calibration =
+      options.calibration.empty() ? std::vector{(folder / "calibration.yaml").string()} : options.calibration;
+  const auto source = std::make_shared<RectifiedSource>(io::open_source({options.folder}), calibration);
+  PosedPairs pairs;
+  pairs.frames = poses.size();
+  pairs.next = [source, poses, i = std::size_t{0}]() mutable {
+    std::optional<io::SourcePair> pair = source->next();
+    if (!pair) fail("the recording has ", i, " pairs and ", poses.size(), " poses");
+    if (!pair->error.empty()) fail(pair->name, ": ", pair->error);
+    return PosedPair{std::move(pair->left), std::move(pair->right), poses[i++]};
+  };
+  if (!source->calibration()) fail(calibration.front(), ": the calibration must have the size of the images");
+  pairs.calibration = *source->calibration();
+  return pairs;
+}
+
+/// RMS displacement of pixels of the later frame, when its points are moved by the error of a link.
+double link_error_px(const Eigen::Isometry3d& error, const Image<float>& disparity, const StereoCalibration& rig) {
+  constexpr int step = 16;
+  double squares = 0;
+  int count = 0;
+  for (int v = step / 2; v < disparity.height(); v += step) {
+    for (int u = step / 2; u < disparity.width(); u += step) {
+      const double d = double{disparity(u, v)};
+      if (!(d + rig.disparity_offset_px > 0)) continue;
+      const std::array<double, 3> point = rig.point_m(u, v, d);
+      const Eigen::Vector3d moved = error * Eigen::Vector3d(point[0], point[1], point[2]);
+      const double du = rig.focal_px * moved.x() / moved.z() + rig.cx_px - u;
+      const double dv = rig.focal_px * moved.y() / moved.z() + rig.cy_px - v;
+      squares += du * du + dv * dv;
+      ++count;
+    }
+  }
+  return count > 0 ? std::sqrt(squares / count) : NAN;
+}
+
+/// Poses and errors of links of one method.
+struct Track {
+  std::vector<Pose> poses;
+  std::vector<double> errors_px;
+  std::vector<double> times_ms;
+  std::size_t lost = 0;
+};
+
+OdometryTrial trial_of(const std::string& method, const Track& track, const std::vector<Pose>& truth) {
+  OdometryTrial trial;
+  trial.method = method;
+  trial.score = score_trajectory(truth, track.poses);
+  trial.link_errors_px = track.errors_px;
+  trial.lost = track.lost;
+  trial.median_ms = median(track.times_ms);
+  return trial;
+}
+
+/// Adds the pose and the error of the last link of this library.
+void add_own(Odometry& odometry, int frame, const FrameResult& result, const std::vector<Pose>& truth,
+             const StereoCalibration& rig, Track& track) {
+  const std::size_t links = odometry.links().size();
+  track.times_ms.push_back(time_ms([&] { odometry.add(frame, result); }));
+  track.poses.push_back(odometry.trajectory().frames.back().camera_to_world);
+  if (odometry.links().size() == links) {
+    track.lost += frame > 0 ? 1 : 0;
+    return;
+  }
+  const FrameLink& link = odometry.links().back();
+  const Eigen::Isometry3d from = isometry(truth[static_cast<std::size_t>(link.from)]);
+  const Eigen::Isometry3d to = isometry(truth[static_cast<std::size_t>(link.to)]);
+  track.errors_px.push_back(
+      link_error_px(isometry(link.motion) * (to.inverse() * from).inverse(), result.disparity, rig));
+}
+
+/// The same for the peer; without a motion the camera stands still.
+void add_peer(io::OpticalFlowOdometry& odometry, int frame, const FrameResult& result, const std::vector<Pose>& truth,
+              const StereoCalibration& rig, Track& track) {
+  std::optional<std::array<double, 12>> found;
+  track.times_ms.push_back(time_ms([&] { found = odometry.add(result.grey, result.disparity); }));
+  if (frame == 0) return track.poses.push_back(pose_of(Eigen::Isometry3d::Identity()));
+  const Eigen::Isometry3d motion = found ? isometry(*found) : Eigen::Isometry3d::Identity();
+  track.lost += found ? 0 : 1;
+  track.poses.push_back(pose_of(isometry(track.poses.back()) * motion.inverse()));
+  const Eigen::Isometry3d from = isometry(truth[truth.size() - 2]), to = isometry(truth.back());
+  track.errors_px.push_back(link_error_px(motion * (to.inverse() * from).inverse(), result.disparity, rig));
+}
+
+void summarise_offsets(const std::vector<FrameLink>& links, OdometryTrials& trials) {
+  std::vector<double> offsets;
+  for (const FrameLink& link : links) {
+    if (link.offset_px != 0) offsets.push_back(link.offset_px);
+  }
+  trials.links = links.size();
+  trials.with_offset = offsets.size();
+  trials.offset_px = offsets.empty() ? 0 : median(offsets);
+}
+
+}  // namespace
+
+void OdometryTrialOptions::validate() const {
+  if (frames < 3 || frames > 100000) fail("--frames is ", frames, "; it must be between 3 and 100000");
+}
+
+OdometryTrials run_odometry_trials(const OdometryTrialOptions& options) {
+  options.validate();
+  PosedPairs pairs = options.folder.empty() ? rendered_pairs(options) : recorded_pairs(options);
+  PipelineOptions pipeline_options = preset(options.preset);
+  pipeline_options.threads = options.methods.threads;
+  apply_settings(options.methods.settings, pipeline_options);
+  Pipeline pipeline(pipeline_options, pairs.calibration);
+  Odometry odometry(pairs.calibration);
+  io::OpticalFlowOdometry peer(pairs.calibration);
+  Track own, other;
+  std::vector<Pose> truth;
+  std::vector<double> matching_ms;
+  Progress progress = Progress::on_terminal(pairs.frames);
+  for (std::size_t i = 0; i < pairs.frames; ++i) {
+    const PosedPair pair = pairs.next();
+    truth.push_back(pair.pose);
+    const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+    matching_ms.push_back(result.ms.total);
+    add_own(odometry, static_cast<int>(i), result, truth, pairs.calibration, own);
+    add_peer(peer, static_cast<int>(i), result, truth, pairs.calibration, other);
+    progress.frame_done();
+  }
+  OdometryTrials trials;
+  trials.methods = {trial_of("roadstereo", own, truth), trial_of("optical flow, PnP", other, truth)};
+  trials.matching_ms = median(matching_ms);
+  summarise_offsets(odometry.links(), trials);
+  return trials;
+}
+
+}  // namespace roadstereo::cli

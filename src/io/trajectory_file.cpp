@@ -1,0 +1,145 @@
+#include "roadstereo/io/trajectory_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+/// Largest difference of RᵀR from the identity.
+double rotation_error(const std::array<double, 12>& pose) {
+  double error = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      double product = 0;
+      for (std::size_t k = 0; k < 3; ++k) product += pose[4 * k + i] * pose[4 * k + j];
+      error = std::max(error, std::abs(product - (i == j ? 1 : 0)));
+    }
+  }
+  return error;
+}
+
+/// With as many digits as read back the same number.
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end};
+}
+
+/// Unit quaternion (x, y, z, w), w ≥ 0 (Shepperd's method).
+std::array<double, 4> quaternion(const std::array<double, 12>& m) {
+  const double trace = m[0] + m[5] + m[10];
+  const std::array<double, 4> squares{m[0] - m[5] - m[10], m[5] - m[0] - m[10], m[10] - m[0] - m[5], trace};
+  const auto largest = static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
+  const double root = std::sqrt(1 + squares[largest]);
+  const double x = m[9] - m[6], y = m[2] - m[8], z = m[4] - m[1];
+  const double xy = m[1] + m[4], xz = m[2] + m[8], yz = m[6] + m[9];
+  std::array<double, 4> q{};
+  switch (largest) {
+    case 0:
+      q = {root * root, xy, xz, x};
+      break;
+    case 1:
+      q = {xy, root * root, yz, y};
+      break;
+    case 2:
+      q = {xz, yz, root * root, z};
+      break;
+    default:
+      q = {x, y, z, root * root};
+  }
+  const double scale = (q[3] < 0 ? -0.5 : 0.5) / root;
+  for (double& value : q) value *= scale;
+  return q;
+}
+
+}  // namespace
+
+Trajectory read_trajectory(const std::string& path) {
+  constexpr double max_rotation_error = 1e-3;
+  std::ifstream file(path);
+  if (!file) fail(path, ": this trajectory cannot be read");
+  Trajectory trajectory;
+  std::string line;
+  for (int row = 0; std::getline(file, line); ++row) {
+    std::istringstream words(line);
+    std::vector<double> numbers;
+    bool missing = false;
+    for (std::string word; words >> word;) {
+      std::size_t used = 0;
+      double value = 0;
+      try {
+        value = std::stod(word, &used);
+      } catch (const std::exception&) {
+        used = 0;
+      }
+      if (used != word.size()) fail(path, ", line ", row + 1, ": \"", word, "\" is no number");
+      missing = missing || !std::isfinite(value);
+      numbers.push_back(value);
+    }
+    if (numbers.empty() && file.peek() == EOF) break;
+    if (numbers.size() != 12) {
+      fail(path, ", line ", row + 1, " has ", numbers.size(),
+           " numbers; a pose has 12, the 3×4 matrix from the camera to the world");
+    }
+    if (missing) continue;
+    FramePose pose;
+    pose.frame = row;
+    std::copy(numbers.begin(), numbers.end(), pose.camera_to_world.begin());
+    if (rotation_error(pose.camera_to_world) > max_rotation_error) {
+      fail(path, ", line ", row + 1, ": the first three columns are no rotation");
+    }
+    trajectory.frames.push_back(pose);
+  }
+  if (trajectory.frames.empty()) fail(path, ": there is no pose in this file");
+  return trajectory;
+}
+
+std::string kitti_trajectory(const Trajectory& trajectory, int piece) {
+  std::string text;
+  int line = 0;
+  const auto add = [&](const std::array<double, 12>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) text += (i > 0 ? " " : "") + number_text(values[i]);
+    text += '\n';
+    ++line;
+  };
+  std::array<double, 12> unknown{};
+  unknown.fill(std::numeric_limits<double>::quiet_NaN());
+  for (const FramePose& pose : trajectory.frames) {
+    while (line < pose.frame) add(unknown);
+    add(pose.piece == piece ? pose.camera_to_world : unknown);
+  }
+  return text;
+}
+
+std::string tum_trajectory(const Trajectory& trajectory, int piece, const std::vector<double>& times_s) {
+  std::string text = "# time x y z qx qy qz qw: seconds, metres, camera to world\n";
+  for (std::size_t i = 0; i < trajectory.frames.size(); ++i) {
+    const FramePose& pose = trajectory.frames[i];
+    if (pose.piece != piece) continue;
+    const std::array<double, 12>& m = pose.camera_to_world;
+    text += number_text(i < times_s.size() && std::isfinite(times_s[i]) ? times_s[i] : pose.frame);
+    for (const double value : {m[3], m[7], m[11]}) text += ' ' + number_text(value);
+    for (const double value : quaternion(m)) text += ' ' + number_text(value);
+    text += '\n';
+  }
+  return text;
+}
+
+int longest_piece(const Trajectory& trajectory) {
+  std::map<int, int> frames;
+  for (const FramePose& pose : trajectory.frames) ++frames[pose.piece];
+  const auto longest =
+      std::max_element(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return longest == frames.end() ? 0 : longest->first;
+}
+
+}  // namespace roadstereo::io
