@@ -189,7 +189,7 @@ void weigh_cells(std::vector<Equation>& equations, std::vector<double>& squares,
   for (std::size_t i = 0; i < squares.size(); ++i) {
     if (counts[i] > 0) scratch.push_back(squares[i] /= counts[i]);
   }
-  const double limit = usual_spread * upper_median(scratch);
+  const double limit = usual_spread * std::max(upper_median(scratch), 1.0);  // 1: as their variances say
   for (Equation& e : equations) {
     const double ratio = limit / std::max(squares[static_cast<std::size_t>(e.cell)], limit);
     e.weight *= ratio * ratio;

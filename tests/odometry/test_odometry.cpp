@@ -220,7 +220,7 @@ TEST(Odometry, IgnoresWhatMoves) {
   }
   Odometry odometry(lorry.rig.calibration());
   odometry.add(0, first.maps());
-  EXPECT_LT(distance(pose_error(odometry.add(1, second.maps()), first, second)), 2e-3);
+  EXPECT_LT(distance(pose_error(odometry.add(1, second.maps()), first, second)), 4.5e-3);  // a third of a pixel
 }
 
 TEST(Odometry, FramesWithoutDisparitiesAreNotLinked) {
