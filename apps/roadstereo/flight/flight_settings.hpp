@@ -38,7 +38,7 @@ struct FlightSettings {
   std::int64_t every = 1;          ///< processes every N-th frame
   std::vector<std::string> write;  ///< names of FrameFile
   TrackSettings track;
-  bool trajectory = false;  ///< estimates the motion from frame to frame
+  bool trajectory = false;          ///< estimates the motion from frame to frame
   std::optional<double> height_m;   ///< of the camera above the road, expected
   std::optional<double> pitch_deg;  ///< of the camera, expected
   bool quiet = false;

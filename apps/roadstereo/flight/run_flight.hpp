@@ -19,7 +19,7 @@ struct Flight {
   RectifiedSource& source;
   FlightFolder& folder;
   io::FlightJournal& journal;
-  FlightResults& results;  ///< of the frames in the journal
+  FlightResults& results;                       ///< of the frames in the journal
   std::optional<FlightTrajectory>& trajectory;  ///< with --trajectory, from the first matched frame on
   const FlightPlan& plan;
   Progress& progress;
