@@ -21,7 +21,7 @@ TEST_F(SynthCommand, WritesImagesAndTruth) {
   make_road();
   const std::set<std::string> expected = {
       "left.png",          "right.png",        "calibration.yaml", "truth_disparity.tiff",
-      "truth_visible.png", "truth_labels.png", "truth.json"};
+      "truth_visible.png", "truth_labels.png", "truth_road.png",   "truth.json"};
   EXPECT_EQ(names_in(folder_ / "road"), expected);
   const auto truth = json_file("road/truth.json");
   EXPECT_TRUE(truth["plane"]["a1"].is_number());
