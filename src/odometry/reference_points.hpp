@@ -27,7 +27,7 @@ struct TexturePatch {
   static constexpr int radius = 5;
   static constexpr int side = 2 * radius + 1;
   ReferencePoint point;
-  std::array<float, side * side> grey{};
+  std::array<float, std::size_t{side} * side> grey{};
   /// Structure tensor: sums of the products of the gradients, of trace 1. Small across what the patch cannot locate.
   double uu = 0, uv = 0, vv = 0;
 };

@@ -1,6 +1,5 @@
 #include "evaluate/odometry_trials.hpp"
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -35,19 +34,9 @@ struct PosedPairs {
   std::function<PosedPair()> next;
 };
 
-Eigen::Isometry3d isometry(const Pose& pose) {
-  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 4; ++j) result(i, j) = pose[static_cast<std::size_t>(4 * i + j)];
-  }
-  return result;
-}
-
 Pose pose_of(const Eigen::Isometry3d& motion) {
   Pose pose{};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 4; ++j) pose[static_cast<std::size_t>(4 * i + j)] = motion(i, j);
-  }
+  Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(pose.data()) = motion.matrix().topRows<3>();
   return pose;
 }
 

@@ -1,20 +1,17 @@
 #include "evaluate/trajectory_score.hpp"
 
-#include <Eigen/Geometry>
 #include <numbers>
 
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
-namespace {
-
 Eigen::Isometry3d isometry(const Pose& pose) {
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 4; ++j) result(i, j) = pose[static_cast<std::size_t>(4 * i + j)];
-  }
+  result.matrix().topRows<3>() = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(pose.data());
   return result;
 }
+
+namespace {
 
 std::vector<Eigen::Isometry3d> isometries(const std::vector<Pose>& poses) {
   std::vector<Eigen::Isometry3d> result;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <vector>
 
@@ -7,6 +8,9 @@ namespace roadstereo::cli {
 
 /// Camera to world, 3×4, row-major, metres.
 using Pose = std::array<double, 12>;
+
+/// Returns the pose as a rigid transform.
+Eigen::Isometry3d isometry(const Pose& pose);
 
 /// Errors of a trajectory against the truth.
 struct TrajectoryScore {
