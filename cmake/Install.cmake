@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/roadstereo)
 
 # A 0.x version is compatible with itself only. Objects of shared and static libraries are the same, for compiler caches.
-set(roadstereo_libraries roadstereo roadstereo_odometry roadstereo_synth)
+set(roadstereo_libraries roadstereo roadstereo_mapping roadstereo_odometry roadstereo_synth)
 if(NOT ROADSTEREO_EMBEDDED_ONLY)
   list(APPEND roadstereo_libraries roadstereo_io)
 endif()
@@ -17,7 +17,7 @@ function(roadstereo_install export)
           LIBRARY COMPONENT library NAMELINK_COMPONENT development
           ARCHIVE COMPONENT development)
 endfunction()
-roadstereo_install(roadstereoTargets roadstereo roadstereo_odometry roadstereo_synth)
+roadstereo_install(roadstereoTargets roadstereo roadstereo_mapping roadstereo_odometry roadstereo_synth)
 if(ROADSTEREO_WITH_CUDA AND NOT BUILD_SHARED_LIBS)
   roadstereo_install(roadstereoTargets roadstereo_cuda)
 endif()

@@ -8,6 +8,7 @@
 #include "core/parallel.hpp"
 #include "damage/morphology.hpp"
 #include "damage/oriented_box.hpp"
+#include "damage/smoothing_error.hpp"
 
 namespace roadstereo {
 namespace {
@@ -68,25 +69,25 @@ MetricSums sum_pixels(const DamageInput& input, const FrameGeometry& geometry, c
 /// fifth of the window's radius.
 void set_standard_errors(const MetricSums& sums, const SurfaceOffset& offset, double noise_px, double sigma_px,
                          double deepest_m_per_px, DamageMetrics& metrics, Damage& damage) {
-  constexpr double window_radius_px = 10;     // block radius + aggregation radius
   constexpr double sub_pixel_bias_px = 0.03;  // of the parabola (docs/accuracy.md)
   constexpr double mean_factor = 0.3;         // error of the mean depth, relative to that of one pixel
   constexpr double outline_factor = 0.2;      // error of the outline, relative to the radius of the window
   const double radius_px = std::sqrt(static_cast<double>(damage.pixels) / std::numbers::pi);
-  const double smoothing = window_radius_px / radius_px * (1 + window_radius_px / radius_px);
+  const SmoothingError smoothing(static_cast<double>(damage.pixels));
   const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
   const double surface_px = std::hypot(offset.std_error, sub_pixel_bias_px);
 
   damage.max_depth_px.std_error = std::hypot(damage.max_depth_px.std_error, sub_pixel_bias_px);
   metrics.max_depth_m.std_error =
-      std::hypot(damage.max_depth_px.std_error * deepest_m_per_px, 0.2 * smoothing * metrics.max_depth_m.value);
+      std::hypot(damage.max_depth_px.std_error * deepest_m_per_px, smoothing.max_depth(metrics.max_depth_m.value));
   // The foot of a gentle wall is located to the distance over which it rises by two standard deviations.
   const double foot_px =
       radius_px * std::min(1.0, 2 * std::hypot(noise_px, offset.std_error) / damage.max_depth_px.value);
-  metrics.area_m2.std_error = sums.perimeter * std::hypot(outline_factor * window_radius_px, foot_px) * pixel_m;
+  metrics.area_m2.std_error =
+      sums.perimeter * std::hypot(outline_factor * SmoothingError::window_radius_px, foot_px) * pixel_m;
   const double mean_m = std::hypot(surface_px, mean_factor * sigma_px) * sums.metres_per_pixel / sums.area;
-  metrics.mean_depth_m.std_error = std::hypot(mean_m, 0.5 * smoothing * metrics.mean_depth_m.value);
-  metrics.volume_m3.std_error = std::hypot(sums.area * mean_m, 0.25 * smoothing * metrics.volume_m3.value);
+  metrics.mean_depth_m.std_error = std::hypot(mean_m, smoothing.mean_depth(metrics.mean_depth_m.value));
+  metrics.volume_m3.std_error = std::hypot(sums.area * mean_m, smoothing.volume(metrics.volume_m3.value));
 }
 
 /// Compute the metric properties of one damage.

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "roadstereo/damage.hpp"
+#include "roadstereo/road_map.hpp"
+
+namespace roadstereo {
+
+/// Cells of a map, sorted by row, then by column.
+using MapCells = std::vector<std::array<std::int32_t, 2>>;
+
+/// Damage at a position of a map.
+struct MapDamage {
+  Damage damage;                 ///< `metrics` in metres; pixels are those of the source
+  std::array<double, 2> at_m{};  ///< (x, y) of the centroid in the map
+  double length_angle_rad = 0;   ///< from the map's x axis to the longer side, positive towards y
+  MapCells footprint;            ///< cells of `footprint_m` that it covers
+};
+
+/// Side of the cells of footprints, metres.
+inline constexpr double footprint_m = 0.02;
+
+/// Finds damage in the heights of the map, in overlapping windows: heights above the window's plane, seen by a virtual
+/// rig that looks straight down and whose pixels are the cells, are searched by `find_damage`. The virtual rig sees the
+/// median standard error of the window as 0.1 px. Damage that a window cuts is taken from the next one.
+std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& options);
+
+/// Returns the damages of a frame at their positions in the map. `found` is the result of `find_damage`.
+std::vector<MapDamage> locate_damage(const DamageMap& found, const DisparityPlane& road,
+                                     const StereoCalibration& calibration, const RigidTransform& camera_to_map);
+
+}  // namespace roadstereo

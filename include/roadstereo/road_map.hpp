@@ -1,0 +1,119 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "roadstereo/calibration.hpp"
+#include "roadstereo/disparity_plane.hpp"
+#include "roadstereo/image.hpp"
+
+namespace roadstereo {
+
+/// Rigid transformation: 3×4, row-major, metres.
+using RigidTransform = std::array<double, 12>;
+
+/// Returns the product: `second` applied after `first`.
+RigidTransform compose(const RigidTransform& second, const RigidTransform& first);
+/// Returns the inverse.
+RigidTransform inverse(const RigidTransform& transform);
+
+/// Rectangle of cells of a map. Cell (i, j) covers i … i + 1 times j … j + 1 cell sizes along x and y.
+struct MapBox {
+  int i0 = 0, j0 = 0;  ///< first column and row
+  int columns = 0, rows = 0;
+
+  bool empty() const { return columns <= 0 || rows <= 0; }
+};
+
+/// Cells of a part of a map as images, north up: pixel (u, v) is cell (i0 + u, j0 + rows − 1 − v).
+struct MapRaster {
+  MapBox box;
+  Image<float> height;                        ///< metres above z = 0; NaN: no measurement
+  Image<float> sigma;                         ///< standard error of `height`, metres; NaN likewise
+  Image<std::array<std::uint8_t, 3>> colour;  ///< red, green, blue; black where `views` is 0
+  Image<std::uint16_t> views;                 ///< frames that agree on the height
+};
+
+struct RoadMapOptions {
+  double cell_m = 0.01;      ///< side of a cell, 0.0005 … 10
+  int tile_cells = 128;      ///< side of a tile, cells, 16 … 1024
+  int max_tiles = 192;       ///< in memory, at least 4; the others are on disk
+  double max_above_m = 0.4;  ///< points higher above the frame's road are vehicles or walls, 0 … 100
+  double max_below_m = 0.4;  ///< points deeper below it are no road, 0 … 100
+  double max_footprint_cells =
+      10;                  ///< pixels that cover more of the road along the line of sight are left out, 1 … 1000
+  double gate_sigmas = 4;  ///< larger differences are other surfaces, 1 … 100
+  /// Share of the variance of a height that all frames have in common, 0 … 1: it does not shrink. Measured on rendered
+  /// roads (docs/mapping.md): what the support window smooths, it smooths in every frame.
+  double common_share = 0.1;
+  int threads = 0;  ///< 0: all cores
+
+  /// Throws Error naming the first option out of range.
+  void validate() const;
+};
+
+/// What one frame says of the road. Views are W×H.
+struct MapFrame {
+  ImageView<const float> disparity;  ///< ℓ, pixels; NaN invalid
+  ImageView<const float> sigma;      ///< standard error of ℓ, pixels
+  FrameView image;                   ///< left image
+  double white_level = 0;            ///< sample value of white, as in to_grey
+  DisparityPlane road;               ///< plane of the road in ℓ
+  StereoCalibration calibration;
+  RigidTransform camera_to_map{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+};
+
+/// 2.5-D map of a road: height, its standard error and colour in square cells, z up. Frames are fused cell by cell with
+/// inverse variances. The standard errors are scaled by the spread of the heights, and count the correlation of
+/// successive frames, both of which the map measures. A cell keeps two surfaces, the one that more frames agree on and
+/// its rival, so that what moves does not stay. Tiles of cells are kept on disk, the least recently used first: memory
+/// is bounded.
+///
+/// The height of a cell in a frame is found by fixed-point iteration: the point of the surface on the line of sight
+/// through the cell's centre, until the line meets the surface in the cell. Cells that the camera does not see do not
+/// converge and get no height. The result does not depend on the number of threads.
+class RoadMap {
+ public:
+  /// Keeps its tiles in `folder`, which it creates, and removes. Throws Error for options out of range, and if the
+  /// folder cannot be written to.
+  RoadMap(const std::filesystem::path& folder, const RoadMapOptions& options);
+  ~RoadMap();
+  RoadMap(RoadMap&&) noexcept;
+  RoadMap& operator=(RoadMap&&) noexcept;
+
+  /// Fuses a frame. Returns the number of cells that it measures. Throws Error for an image without a size in common
+  /// with the disparities, SystemError if a tile cannot be written.
+  std::size_t add(const MapFrame& frame);
+
+  /// Returns the smallest box with all tiles; empty without any.
+  MapBox bounds() const;
+
+  /// Reads cells; those outside the map are empty.
+  MapRaster read(const MapBox& box) const;
+
+  const RoadMapOptions& options() const;
+  /// Returns how many successive frames count as one independent measurement of a cell, at least 1: (1 + r)/(1 − r) of
+  /// the correlation r of the errors of successive frames, which the map measures.
+  double view_factor() const;
+  /// Returns the number of tiles, in memory and on disk.
+  std::size_t tiles() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Returns a cell size for a camera over a road, metres: the geometric mean of the ground sampling distances in the
+/// nearest quarter of the road in view, rounded down to 1, 2 or 5 times a power of ten.
+double suggested_cell_m(const DisparityPlane& road, const StereoCalibration& calibration);
+
+/// Returns the transformation from a camera to axes on its road: origin at the foot of the camera, x to its right, y
+/// ahead, z up (`road_axes`).
+RigidTransform camera_to_road(const DisparityPlane& road, const StereoCalibration& calibration);
+
+}  // namespace roadstereo

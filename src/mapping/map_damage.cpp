@@ -1,0 +1,206 @@
+#include "roadstereo/map_damage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/order_statistics.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/roll.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr double median_sigma_px = 0.1;  ///< of the map, seen by the virtual rig
+constexpr double road_px = 64;           ///< disparity of the window's plane
+constexpr double delta_t_px = 10;        ///< transformed disparity of the window's plane
+
+void make_unique(MapCells& cells) {
+  std::sort(cells.begin(), cells.end(),
+            [](const auto& a, const auto& b) { return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0]; });
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+}
+
+std::array<std::int32_t, 2> footprint_cell(double x, double y) {
+  return {static_cast<std::int32_t>(std::floor(x / footprint_m)),
+          static_cast<std::int32_t>(std::floor(y / footprint_m))};
+}
+
+/// A part of the map as a rig that looks straight down sees it.
+struct WindowView {
+  MapRaster raster;
+  DamageInput input;
+  Image<float> transformed, disparity, sigma;
+};
+
+double median_sigma(const Image<float>& sigma) {
+  std::vector<float> values;
+  const float* const first = sigma.row(0);
+  std::copy_if(first, first + sigma.pixels(), std::back_inserter(values), [](float s) { return std::isfinite(s); });
+  return values.empty() ? 0 : static_cast<double>(upper_median(values));
+}
+
+/// Virtual rig: cell = Z/f, and `scale` pixels of disparity per metre of height, f·b/Z².
+StereoCalibration virtual_rig(int side, double cell_m, double scale) {
+  constexpr double max_baseline_m = 9, min_baseline_m = 0.01, max_focal_widths = 40, min_focal_widths = 0.5;
+  StereoCalibration rig;
+  rig.width = rig.height = side;
+  rig.cx_px = rig.cy_px = 0.5 * (side - 1);
+  rig.focal_px =
+      std::clamp(max_baseline_m / (scale * cell_m * cell_m), min_focal_widths * side, max_focal_widths * side);
+  rig.baseline_m = std::clamp(scale * rig.focal_px * cell_m * cell_m, min_baseline_m, max_baseline_m);
+  rig.disparity_offset_px = rig.baseline_m / cell_m - road_px;  // f·b/Z of the plane, Z = f·cell
+  return rig;
+}
+
+/// Nothing if the window shows too little road.
+bool make_view(const RoadMap& map, const MapBox& box, WindowView& view) {
+  constexpr std::size_t min_share = 50;  // of the window: one in so many cells
+  view.raster = map.read(box);
+  const MapRaster& raster = view.raster;
+  const float* const heights = raster.height.row(0);
+  const auto valid = static_cast<std::size_t>(
+      std::count_if(heights, heights + raster.height.pixels(), [](float height) { return std::isfinite(height); }));
+  if (valid * min_share < raster.height.pixels()) return false;
+  const double scale = median_sigma_px / median_sigma(raster.sigma);
+  const StereoCalibration rig = virtual_rig(box.columns, map.options().cell_m, scale);
+  Image<float> scaled(box.columns, box.rows);
+  std::transform(heights, heights + raster.height.pixels(), scaled.row(0),
+                 [&](float height) { return static_cast<float>(height * scale); });
+  DisparityPlane plane;
+  try {
+    plane = estimate_roll(scaled, std::nullopt, std::nullopt, 0, {}, map.options().threads).plane;
+  } catch (const Error&) {  // all cells lie on one line
+    return false;
+  }
+  const double z = rig.focal_px * map.options().cell_m;
+  view.transformed.resize(box.columns, box.rows);
+  view.disparity.resize(box.columns, box.rows);
+  view.sigma.resize(box.columns, box.rows);
+  for (int v = 0; v < box.rows; ++v) {
+    for (int u = 0; u < box.columns; ++u) {
+      const double height = raster.height(u, v) - plane.disparity(u, v) / scale;
+      const double disparity = rig.focal_px * rig.baseline_m / (z - height) - rig.disparity_offset_px;
+      view.disparity(u, v) = static_cast<float>(disparity);
+      view.transformed(u, v) = static_cast<float>(disparity - road_px + delta_t_px);
+      view.sigma(u, v) = static_cast<float>(raster.sigma(u, v) * scale);
+    }
+  }
+  view.input.transformed = view.transformed;
+  view.input.disparity = view.disparity;
+  view.input.sigma = view.sigma;
+  view.input.plane = DisparityPlane{road_px, 0, 0};
+  view.input.calibration = rig;
+  return true;
+}
+
+MapDamage map_damage(const Damage& damage, const DamageMap& found, const MapBox& box, double cell_m) {
+  MapDamage result;
+  result.damage = damage;
+  const auto x = [&](double u) { return (box.i0 + u + 0.5) * cell_m; };
+  const auto y = [&](double v) { return (box.j0 + box.rows - v - 0.5) * cell_m; };
+  result.at_m = {x(damage.centroid_px[0]), y(damage.centroid_px[1])};
+  result.length_angle_rad = damage.metrics->angle_rad;
+  for (int v = damage.box_px[1]; v <= damage.box_px[3]; ++v) {
+    for (int u = damage.box_px[0]; u <= damage.box_px[2]; ++u) {
+      if (found.ids(u, v) == damage.id) result.footprint.push_back(footprint_cell(x(u), y(v)));
+    }
+  }
+  make_unique(result.footprint);
+  return result;
+}
+
+/// Whether two damages of one kind share a footprint cell.
+bool overlap(const MapDamage& one, const MapDamage& other) {
+  if (one.damage.kind != other.damage.kind) return false;
+  const auto less = [](const auto& a, const auto& b) { return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0]; };
+  auto a = one.footprint.begin(), b = other.footprint.begin();
+  while (a != one.footprint.end() && b != other.footprint.end()) {
+    if (less(*a, *b)) {
+      ++a;
+    } else if (less(*b, *a)) {
+      ++b;
+    } else {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Takes of two findings in overlapping windows the one that is not cut, or else the larger.
+void add_finding(MapDamage finding, std::vector<MapDamage>& findings) {
+  for (MapDamage& known : findings) {
+    if (!overlap(known, finding)) continue;
+    const bool better = known.damage.cut_by_border != finding.damage.cut_by_border
+                            ? known.damage.cut_by_border
+                            : finding.footprint.size() > known.footprint.size();
+    if (better) known = std::move(finding);
+    return;
+  }
+  findings.push_back(std::move(finding));
+}
+
+}  // namespace
+
+std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& options) {
+  constexpr int min_side = 1024;
+  constexpr double min_side_m = 4;
+  const double cell_m = map.options().cell_m;
+  const int side = std::max(min_side, static_cast<int>(std::ceil(min_side_m / cell_m / 2)) * 2);
+  const MapBox bounds = map.bounds();
+  std::vector<MapDamage> findings;
+  WindowView view;
+  DamageMap found;
+  for (int j = bounds.j0 - side / 4; j < bounds.j0 + bounds.rows - side / 4; j += side / 2) {
+    for (int i = bounds.i0 - side / 4; i < bounds.i0 + bounds.columns - side / 4; i += side / 2) {
+      const MapBox box{i, j, side, side};
+      if (!make_view(map, box, view)) continue;
+      try {
+        find_damage(view.input, options, map.options().threads, found);
+      } catch (const Error&) {  // too little of it lies on one surface
+        continue;
+      }
+      for (const Damage& damage : found.damages) {
+        if (damage.metrics) add_finding(map_damage(damage, found, box, cell_m), findings);
+      }
+    }
+  }
+  return findings;
+}
+
+std::vector<MapDamage> locate_damage(const DamageMap& found, const DisparityPlane& road,
+                                     const StereoCalibration& calibration, const RigidTransform& camera_to_map) {
+  const auto in_map = [&](double u, double v) {
+    const std::array<double, 3> p = calibration.point_m(u, v, road.disparity(u, v));
+    const RigidTransform& t = camera_to_map;
+    return std::array<double, 2>{t[0] * p[0] + t[1] * p[1] + t[2] * p[2] + t[3],
+                                 t[4] * p[0] + t[5] * p[1] + t[6] * p[2] + t[7]};
+  };
+  const RoadAxes axes = road_axes(ground_plane(road, calibration));
+  const RigidTransform& t = camera_to_map;
+  // The road's x axis in the map.
+  const double axis_x = t[0] * axes.x[0] + t[1] * axes.x[1] + t[2] * axes.x[2];
+  const double axis_y = t[4] * axes.x[0] + t[5] * axes.x[1] + t[6] * axes.x[2];
+  std::vector<MapDamage> located;
+  for (const Damage& damage : found.damages) {
+    if (!damage.metrics) continue;
+    MapDamage result;
+    result.damage = damage;
+    const std::array<double, 3>& p = damage.metrics->centroid_m;
+    result.at_m = {t[0] * p[0] + t[1] * p[1] + t[2] * p[2] + t[3], t[4] * p[0] + t[5] * p[1] + t[6] * p[2] + t[7]};
+    result.length_angle_rad = damage.metrics->angle_rad + std::atan2(axis_y, axis_x);
+    for (int v = damage.box_px[1]; v <= damage.box_px[3]; ++v) {
+      for (int u = damage.box_px[0]; u <= damage.box_px[2]; ++u) {
+        if (found.ids(u, v) != damage.id) continue;
+        const std::array<double, 2> at = in_map(u, v);
+        result.footprint.push_back(footprint_cell(at[0], at[1]));
+      }
+    }
+    make_unique(result.footprint);
+    located.push_back(std::move(result));
+  }
+  return located;
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,252 @@
+#include "roadstereo/map_inventory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "core/order_statistics.hpp"
+#include "damage/smoothing_error.hpp"
+
+namespace roadstereo {
+namespace {
+
+bool cell_less(const std::array<std::int32_t, 2>& a, const std::array<std::int32_t, 2>& b) {
+  return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
+}
+
+/// Share of the smaller of two footprints that both cover.
+double overlap_share(const MapCells& one, const MapCells& other) {
+  if (one.empty() || other.empty()) return 0;
+  const auto above = [](const MapCells& a, const MapCells& b) { return a.back()[1] < b.front()[1]; };
+  if (above(one, other) || above(other, one)) return 0;
+  std::size_t common = 0;
+  for (auto a = one.begin(), b = other.begin(); a != one.end() && b != other.end();) {
+    if (cell_less(*a, *b)) {
+      ++a;
+    } else if (cell_less(*b, *a)) {
+      ++b;
+    } else {
+      ++common;
+      ++a;
+      ++b;
+    }
+  }
+  return static_cast<double>(common) / static_cast<double>(std::min(one.size(), other.size()));
+}
+
+void add_cells(const MapCells& more, MapCells& cells) {
+  MapCells all;
+  std::set_union(cells.begin(), cells.end(), more.begin(), more.end(), std::back_inserter(all), cell_less);
+  cells = std::move(all);
+}
+
+/// Findings of one damage.
+struct Group {
+  DamageKind kind = DamageKind::depression;
+  MapCells footprint;  ///< of the confident ones, or of the first
+  const MapDamage* in_map = nullptr;
+  std::vector<const DamageSighting*> sightings;
+};
+
+/// Returns the group with the largest overlap, or null.
+Group* group_of(const MapDamage& found, std::vector<Group>& groups) {
+  constexpr double min_share = 0.2;
+  Group* best = nullptr;
+  double max_share = min_share;
+  for (Group& group : groups) {
+    if (group.kind != found.damage.kind) continue;
+    const double share = overlap_share(group.footprint, found.footprint);
+    if (share < max_share) continue;
+    max_share = share;
+    best = &group;
+  }
+  return best;
+}
+
+Group& join_group(const MapDamage& found, double min_confidence, std::vector<Group>& groups) {
+  Group* known = group_of(found, groups);
+  if (known == nullptr) {
+    Group fresh;
+    fresh.kind = found.damage.kind;
+    fresh.footprint = found.footprint;
+    return groups.emplace_back(std::move(fresh));
+  }
+  if (found.damage.confidence >= min_confidence) add_cells(found.footprint, known->footprint);
+  return *known;
+}
+
+void move_into(Group& from, Group& into) {
+  add_cells(from.footprint, into.footprint);
+  if (into.in_map == nullptr) into.in_map = from.in_map;
+  into.sightings.insert(into.sightings.end(), from.sightings.begin(), from.sightings.end());
+}
+
+/// Joins groups that have grown together: parts of one damage that later findings connect.
+void join_grown(std::vector<Group>& groups) {
+  constexpr double min_share = 0.5;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    for (std::size_t k = i + 1; k < groups.size();) {
+      if (groups[i].kind == groups[k].kind && overlap_share(groups[i].footprint, groups[k].footprint) >= min_share) {
+        move_into(groups[k], groups[i]);
+        groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(k));
+        k = i + 1;
+      } else {
+        ++k;
+      }
+    }
+  }
+}
+
+/// The map first, since its noise is least, then whole sightings before cut ones; the most confident first.
+std::vector<Group> group_findings(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
+                                  double min_confidence) {
+  const auto rank = [](const MapDamage& found) {
+    return std::tuple(found.damage.cut_by_border, -found.damage.confidence);
+  };
+  std::vector<const MapDamage*> findings;
+  for (const MapDamage& found : in_map) findings.push_back(&found);
+  std::stable_sort(findings.begin(), findings.end(), [&](auto* a, auto* b) { return rank(*a) < rank(*b); });
+  std::vector<const DamageSighting*> ordered;
+  for (const DamageSighting& sighting : sightings) ordered.push_back(&sighting);
+  std::stable_sort(ordered.begin(), ordered.end(), [&](auto* a, auto* b) { return rank(a->found) < rank(b->found); });
+  std::vector<Group> groups;
+  for (const MapDamage* found : findings) {
+    Group& group = join_group(*found, min_confidence, groups);
+    if (group.in_map == nullptr) group.in_map = found;
+  }
+  for (const DamageSighting* sighting : ordered) {
+    join_group(sighting->found, min_confidence, groups).sightings.push_back(sighting);
+  }
+  join_grown(groups);
+  return groups;
+}
+
+/// A figure of one sighting. `common` is the part of its standard error that all sightings share.
+struct Figure {
+  Measurement measured;
+  double common = 0;
+};
+
+/// Mean with inverse variances; the common part of the errors does not shrink.
+Measurement fuse(const std::vector<Figure>& figures, double view_factor) {
+  constexpr double min_share = 0.05;  // of the variance, for the part that shrinks
+  double weight = 0, sum = 0, common = 0;
+  for (const Figure& figure : figures) {
+    const double variance = figure.measured.std_error * figure.measured.std_error;
+    const double own = std::max(variance - figure.common * figure.common, min_share * variance);
+    weight += 1 / own;
+    sum += figure.measured.value / own;
+    common += figure.common * figure.common / own;
+  }
+  const auto n = static_cast<double>(figures.size());
+  return {sum / weight, std::sqrt(common / weight + std::min(n, view_factor) / weight)};
+}
+
+double logit(double p) {
+  constexpr double smallest = 1e-6;
+  const double clamped = std::clamp(p, smallest, 1 - smallest);
+  return std::log(clamped / (1 - clamped));
+}
+
+/// Confidence of agreeing frames: the mean of the log-odds, and what the root of the number of independent views adds
+/// to the log of the significance. A frame that measures the place without a finding counts as the least confident one.
+double joint_confidence(const Group& group, int views, double view_factor) {
+  constexpr double least_confidence = 0.05, per_log_significance = 2.15;
+  std::set<std::pair<int, int>> frames;
+  double sum = 0;
+  for (const DamageSighting* sighting : group.sightings) {
+    if (frames.insert({sighting->pass, sighting->frame}).second) sum += logit(sighting->found.damage.confidence);
+  }
+  const auto seen = static_cast<double>(frames.size());
+  const double all = std::max(seen, static_cast<double>(views));
+  const double mean = (sum + (all - seen) * logit(least_confidence)) / all;
+  const double independent = std::max(1.0, seen / view_factor);
+  return 1 / (1 + std::exp(-(mean + per_log_significance * 0.5 * std::log(independent))));
+}
+
+/// Median number of frames that measure the cells of a footprint.
+int views_of(const MapCells& footprint, const RoadMap& map) {
+  constexpr std::size_t max_samples = 50;
+  const double per_cell = footprint_m / map.options().cell_m;
+  std::vector<double> views;
+  const std::size_t step = std::max<std::size_t>(1, footprint.size() / max_samples);
+  for (std::size_t k = 0; k < footprint.size(); k += step) {
+    const auto cell = [&](int index) { return static_cast<int>(std::floor((index + 0.5) * per_cell)); };
+    views.push_back(map.read({cell(footprint[k][0]), cell(footprint[k][1]), 1, 1}).views(0, 0));
+  }
+  return views.empty() ? 0 : static_cast<int>(upper_median(views));
+}
+
+/// Best finding of a group: of the map, else the sighting that is whole and has the smallest error.
+const MapDamage& best_of(const Group& group) {
+  if (group.in_map != nullptr) return *group.in_map;
+  const auto best = std::min_element(group.sightings.begin(), group.sightings.end(), [](auto* a, auto* b) {
+    const Damage &one = a->found.damage, &other = b->found.damage;
+    return std::tuple(one.cut_by_border, one.metrics->max_depth_m.std_error) <
+           std::tuple(other.cut_by_border, other.metrics->max_depth_m.std_error);
+  });
+  return (*best)->found;
+}
+
+RoadDamageRecord record_of(const Group& group, const RoadMap& map) {
+  const double view_factor = map.view_factor();
+  RoadDamageRecord record;
+  record.best = best_of(group);
+  record.best.footprint = group.footprint;
+  record.found_in_map = group.in_map != nullptr;
+  record.views = views_of(group.footprint, map);
+  std::set<std::pair<int, int>> frames;
+  std::set<int> passes;
+  std::vector<Figure> depth, mean_depth, area, volume;
+  for (const DamageSighting* sighting : group.sightings) {
+    frames.insert({sighting->pass, sighting->frame});
+    passes.insert(sighting->pass);
+    const Damage& damage = sighting->found.damage;
+    if (damage.cut_by_border) continue;
+    const DamageMetrics& m = *damage.metrics;
+    const SmoothingError smoothing(static_cast<double>(damage.pixels));
+    depth.push_back({m.max_depth_m, smoothing.max_depth(m.max_depth_m.value)});
+    mean_depth.push_back({m.mean_depth_m, smoothing.mean_depth(m.mean_depth_m.value)});
+    volume.push_back({m.volume_m3, smoothing.volume(m.volume_m3.value)});
+    area.push_back({m.area_m2, m.area_m2.std_error / std::numbers::sqrt2});
+  }
+  record.sightings = static_cast<int>(frames.size());
+  record.passes = static_cast<int>(passes.size());
+  const DamageMetrics& best = *record.best.damage.metrics;
+  const bool whole = !depth.empty();
+  record.max_depth_m = whole ? fuse(depth, view_factor) : best.max_depth_m;
+  record.mean_depth_m = whole ? fuse(mean_depth, view_factor) : best.mean_depth_m;
+  record.area_m2 = whole ? fuse(area, view_factor) : best.area_m2;
+  record.volume_m3 = whole ? fuse(volume, view_factor) : best.volume_m3;
+  record.confidence = group.sightings.empty() ? 0 : joint_confidence(group, record.views, view_factor);
+  if (group.in_map != nullptr) record.confidence = std::max(record.confidence, group.in_map->damage.confidence);
+  const double diameter = 2 * std::sqrt(record.area_m2.value / std::numbers::pi);
+  record.severity_probabilities = severity_probabilities(
+      record.max_depth_m, {diameter, 0.5 * diameter * record.area_m2.std_error / record.area_m2.value});
+  record.severity = likely_severity(record.severity_probabilities);
+  return record;
+}
+
+}  // namespace
+
+std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
+                                          const RoadMap& map, const DamageOptions& options) {
+  constexpr double min_std_errors = 3;
+  std::vector<RoadDamageRecord> records;
+  for (const Group& group : group_findings(sightings, in_map, options.min_confidence)) {
+    RoadDamageRecord record = record_of(group, map);
+    const bool resolvable = record.max_depth_m.value >= min_std_errors * record.max_depth_m.std_error;
+    if (record.confidence >= options.min_confidence && resolvable) records.push_back(std::move(record));
+  }
+  std::stable_sort(records.begin(), records.end(),
+                   [](const auto& a, const auto& b) { return a.max_depth_m.value > b.max_depth_m.value; });
+  int id = 0;
+  for (RoadDamageRecord& record : records) record.id = ++id;
+  return records;
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,99 @@
+// Findings of one damage over frames and passes.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "roadstereo/map_inventory.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Finding on a square of `side` footprint cells at (column, row).
+MapDamage finding(int column, int row, int side, double depth_m, double std_error_m, double confidence) {
+  MapDamage found;
+  found.damage.kind = DamageKind::depression;
+  found.damage.pixels = 40'000;  // 113 px radius: the window smooths little
+  found.damage.confidence = confidence;
+  DamageMetrics metrics;
+  metrics.max_depth_m = {depth_m, std_error_m};
+  metrics.mean_depth_m = {0.5 * depth_m, 0.5 * std_error_m};
+  metrics.area_m2 = {0.1, 0.01};
+  metrics.volume_m3 = {0.002, 0.0002};
+  found.damage.metrics = metrics;
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) found.footprint.push_back({column + i, row + j});
+  }
+  found.at_m = {(column + 0.5 * side) * footprint_m, (row + 0.5 * side) * footprint_m};
+  return found;
+}
+
+/// An empty map: no frame measures the places, so that views are the sightings.
+class JoinDamage : public testing::Test {
+ protected:
+  RoadMap map_{std::filesystem::temp_directory_path() / ("roadstereo_inventory_map" + std::to_string(::getpid())), {}};
+};
+
+TEST_F(JoinDamage, SightingsOfTwoPassesAreOneDamage) {
+  std::vector<DamageSighting> sightings;
+  for (int frame = 0; frame < 4; ++frame) sightings.push_back({0, frame, finding(10, 20, 10, 0.05, 0.006, 0.9)});
+  for (int frame = 0; frame < 4; ++frame) sightings.push_back({1, frame, finding(12, 19, 10, 0.05, 0.006, 0.9)});
+  sightings.push_back({1, 3, finding(40, 20, 10, 0.03, 0.003, 0.9)});  // another one
+  const std::vector<RoadDamageRecord> records = join_damage(sightings, {}, map_, {});
+  ASSERT_EQ(records.size(), 2U);
+  EXPECT_EQ(records[0].sightings, 8);
+  EXPECT_EQ(records[0].passes, 2);
+  EXPECT_EQ(records[1].sightings, 1);
+  EXPECT_NEAR(records[1].best.at_m[0], 0.9, 1e-9);
+}
+
+// Inverse variances: (0.04/0.004² + 0.052/0.008²)/(1/0.004² + 1/0.008²) = 0.0424. The map has no frames yet: its factor
+// is that of r = 1/3, so that two views are worth one.
+TEST_F(JoinDamage, FiguresAreWeightedWithInverseVariances) {
+  const std::vector<DamageSighting> sightings{{0, 0, finding(0, 0, 10, 0.04, 0.004, 0.9)},
+                                              {0, 1, finding(0, 0, 10, 0.052, 0.008, 0.9)}};
+  const std::vector<RoadDamageRecord> records = join_damage(sightings, {}, map_, {});
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_NEAR(records[0].max_depth_m.value, 0.0424, 3e-4);
+  EXPECT_NEAR(records[0].max_depth_m.std_error, std::sqrt(2 / (1 / 16e-6 + 1 / 64e-6)), 3e-4);
+}
+
+TEST_F(JoinDamage, AgreementRaisesConfidenceAndShrinksError) {
+  std::vector<DamageSighting> sightings{{0, 0, finding(0, 0, 10, 0.03, 0.008, 0.4)}};
+  EXPECT_TRUE(join_damage(sightings, {}, map_, {}).empty());
+  for (int frame = 1; frame < 16; ++frame) sightings.push_back({0, frame, finding(0, 0, 10, 0.03, 0.008, 0.4)});
+  const std::vector<RoadDamageRecord> records = join_damage(sightings, {}, map_, {});
+  ASSERT_EQ(records.size(), 1U);
+  // log-odds of 0.4, and 2.15 · ln √(16/2)
+  EXPECT_NEAR(records[0].confidence, 1 / (1 + std::exp(-(std::log(0.4 / 0.6) + 2.15 * std::log(std::sqrt(8.0))))),
+              1e-6);
+  EXPECT_LT(records[0].max_depth_m.std_error, 0.0035);
+}
+
+TEST_F(JoinDamage, DamageOfTheMapAloneIsKept) {
+  const std::vector<MapDamage> in_map{finding(0, 0, 10, 0.012, 0.002, 0.8)};
+  const std::vector<RoadDamageRecord> records = join_damage({}, in_map, map_, {});
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_TRUE(records[0].found_in_map);
+  EXPECT_EQ(records[0].sightings, 0);
+  EXPECT_EQ(records[0].max_depth_m.value, 0.012);
+}
+
+// A crack that no frame shows whole: the map measures it, its two parts are sightings.
+TEST_F(JoinDamage, PartsOfOneDamageAreOneRecord) {
+  MapDamage whole = finding(0, 0, 20, 0.02, 0.002, 0.9), left = finding(0, 0, 8, 0.02, 0.004, 0.7),
+            right = finding(12, 12, 8, 0.02, 0.004, 0.7);
+  left.damage.cut_by_border = right.damage.cut_by_border = true;
+  const std::vector<RoadDamageRecord> records =
+      join_damage(std::vector<DamageSighting>{{0, 0, left}, {0, 5, right}}, std::vector{whole}, map_, {});
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_EQ(records[0].sightings, 2);
+  EXPECT_EQ(records[0].max_depth_m.std_error, 0.002);
+}
+
+}  // namespace
+}  // namespace roadstereo

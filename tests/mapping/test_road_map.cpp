@@ -1,0 +1,265 @@
+// Maps of exact disparities: known heights come back, noise shrinks, what moves does not stay, memory is bounded.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/map_damage.hpp"
+#include "roadstereo/road_map.hpp"
+#include "roadstereo/road_relief.hpp"
+
+namespace roadstereo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int width = 160, height = 120;
+
+StereoCalibration rig() {
+  StereoCalibration calibration;
+  calibration.focal_px = 120;
+  calibration.cx_px = 79.5;
+  calibration.cy_px = 59.5;
+  calibration.baseline_m = 0.2;
+  calibration.width = width;
+  calibration.height = height;
+  return calibration;
+}
+
+/// Camera `up_m` above z = 0 that looks straight down; the upper border of the image is at +y.
+RigidTransform looking_down(double x, double y, double up_m) {
+  return {1, 0, 0, x, 0, -1, 0, y, 0, 0, -1, up_m};
+}
+
+/// Road with a round step of `depth_m` around a point.
+struct Step {
+  double x = 0, y = 0, radius_m = 0.2, depth_m = 0;
+  double height(double at_x, double at_y) const { return std::hypot(at_x - x, at_y - y) < radius_m ? -depth_m : 0; }
+};
+
+/// Frame of a road with exact disparities, plus noise.
+struct TestFrame {
+  // Bilinear interpolation between pixels with independent noise takes 5/9 of the variance, on average.
+  Image<float> disparity{width, height}, sigma{width, height, 0.1F * 2 / 3};
+  std::vector<std::uint8_t> grey = std::vector<std::uint8_t>(width * height, 100);
+  MapFrame frame;
+
+  TestFrame(const RigidTransform& pose, const Step& step, double noise_px, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, 1);
+    const StereoCalibration calibration = rig();
+    const double up = pose[11], fb = calibration.focal_px * calibration.baseline_m;
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        double z = up;  // the wall of the step is not seen from above: fixed-point iteration along the ray
+        for (int i = 0; i < 20; ++i) {
+          z = up - step.height(pose[3] + (u - calibration.cx_px) / calibration.focal_px * z,
+                               pose[7] - (v - calibration.cy_px) / calibration.focal_px * z);
+        }
+        disparity(u, v) = static_cast<float>(fb / z + noise_px * noise(random));
+      }
+    }
+    frame.disparity = disparity;
+    frame.sigma = sigma;
+    frame.image = FrameView::grey8(grey.data(), width, height);
+    frame.road = {fb / up, 0, 0};
+    frame.calibration = calibration;
+    frame.camera_to_map = pose;
+  }
+};
+
+class RoadMapTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              (std::string("roadstereo_map_") + testing::UnitTest::GetInstance()->current_test_info()->name() +
+               std::to_string(::getpid()));
+  }
+  RoadMapOptions options() const {
+    RoadMapOptions options;
+    options.cell_m = 0.01;
+    options.tile_cells = 32;
+    options.threads = 1;
+    options.common_share = 0;
+    return options;
+  }
+  fs::path folder_;
+};
+
+TEST(RigidTransform, InverseUndoesTransform) {
+  const RigidTransform pose = compose(looking_down(1, -2, 3), {0, -1, 0, 4, 0.6, 0, -0.8, 5, 0.8, 0, 0.6, 6});
+  const RigidTransform identity = compose(inverse(pose), pose);
+  const RigidTransform expected{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  for (std::size_t k = 0; k < identity.size(); ++k) EXPECT_NEAR(identity[k], expected[k], 1e-12) << k;
+}
+
+TEST_F(RoadMapTest, ExactDisparitiesGiveExactHeights) {
+  const Step step{0.1, 0.05, 0.2, 0.05};
+  RoadMap map(folder_, options());
+  for (const double x : {-0.1, 0.0, 0.15}) {
+    const TestFrame view(looking_down(x, 0.5 * x, 2 + x), step, 0, 1);
+    EXPECT_GT(map.add(view.frame), 10'000U);
+  }
+  const MapRaster raster = map.read({-50, -40, 100, 80});
+  for (int v = 0; v < 80; ++v) {
+    for (int u = 0; u < 100; ++u) {
+      const double x = (-50 + u + 0.5) * 0.01, y = (-40 + 79 - v + 0.5) * 0.01;
+      if (std::abs(std::hypot(x - step.x, y - step.y) - step.radius_m) < 0.04) continue;  // the edge, two pixels wide
+      ASSERT_NEAR(raster.height(u, v), step.height(x, y), 1e-4) << x << ", " << y;
+    }
+  }
+}
+
+// Independent noise of n frames: the error of a cell is that of one divided by √n, and the standard error says so.
+TEST_F(RoadMapTest, StandardErrorIsThatOfTheMean) {
+  constexpr int frames = 40;
+  RoadMap map(folder_, options());
+  for (int i = 0; i < frames; ++i) {
+    map.add(TestFrame(looking_down(0.01 * i, 0.013 * i, 2), {}, 0.1, static_cast<unsigned>(i + 1)).frame);
+  }
+  const MapRaster raster = map.read({-20, -20, 60, 60});
+  double squares = 0, predicted = 0;
+  for (int v = 0; v < 60; ++v) {
+    for (int u = 0; u < 60; ++u) {
+      squares += raster.height(u, v) * raster.height(u, v);
+      predicted += raster.sigma(u, v) * raster.sigma(u, v);
+      EXPECT_GE(raster.views(u, v), frames - 2);
+    }
+  }
+  // 0.1 px are 0.1·Z²/(f·b) = 16.7 mm.
+  const double single = 0.1 * 4 / (120 * 0.2) * 2.0 / 3, expected = single / std::sqrt(frames);
+  EXPECT_NEAR(std::sqrt(squares / 3600), expected, 0.15 * expected);
+  EXPECT_NEAR(std::sqrt(squares / predicted), 1, 0.2);
+  EXPECT_LT(map.view_factor(), 1.2);
+}
+
+// Errors of a first-order autoregression with r = 0.5: (1 + r)/(1 − r) = 3 frames are worth one.
+TEST_F(RoadMapTest, MeasuresCorrelationOfSuccessiveFrames) {
+  constexpr double r = 0.5, noise_px = 0.02;  // little: at the borders larger noise moves the pixel of a cell
+  RoadMap map(folder_, options());
+  std::mt19937 random(5);
+  std::normal_distribution<double> fresh(0, noise_px);
+  Image<float> error(width, height, 0);
+  for (int i = 0; i < 60; ++i) {
+    TestFrame view(looking_down(0, 0, 2), {}, 0, 1);
+    view.sigma.assign(width, height, static_cast<float>(noise_px * 2 / 3));
+    for (std::size_t k = 0; k < error.pixels(); ++k) {
+      float& e = error.row(0)[k];
+      e = static_cast<float>(i == 0 ? fresh(random) : r * e + std::sqrt(1 - r * r) * fresh(random));
+      view.disparity.row(0)[k] += e;
+    }
+    map.add(view.frame);
+  }
+  EXPECT_NEAR(map.view_factor(), 3, 0.3);
+  const MapRaster raster = map.read({-50, -40, 100, 80});
+  double squares = 0, predicted = 0;
+  for (std::size_t k = 0; k < raster.height.pixels(); ++k) {
+    squares += raster.height.row(0)[k] * raster.height.row(0)[k];
+    predicted += raster.sigma.row(0)[k] * raster.sigma.row(0)[k];
+  }
+  EXPECT_NEAR(std::sqrt(squares / predicted), 1, 0.1);
+}
+
+// A box passes: it is there in the first frames over a cell, and gone in the others.
+TEST_F(RoadMapTest, WhatMovesDoesNotStay) {
+  RoadMap map(folder_, options());
+  for (int i = 0; i < 7; ++i) {
+    const Step box{0, 0, 0.15, i < 3 ? -0.2 : 0.0};
+    map.add(TestFrame(looking_down(0, 0, 2), box, 0.02, static_cast<unsigned>(i + 1)).frame);
+  }
+  const MapRaster raster = map.read({-5, -5, 10, 10});
+  for (int v = 0; v < 10; ++v) {
+    for (int u = 0; u < 10; ++u) EXPECT_NEAR(raster.height(u, v), 0, 0.01);
+  }
+}
+
+TEST_F(RoadMapTest, TilesOnDiskChangeNothing) {
+  RoadMapOptions few = options(), many = options();
+  few.max_tiles = 4;
+  RoadMap small(folder_ / "few", few), large(folder_ / "many", many);
+  for (int i = 0; i < 3; ++i) {
+    const TestFrame view(looking_down(0.2 * i, 0, 2), {0.1, 0, 0.1, 0.04}, 0.05, static_cast<unsigned>(i + 1));
+    small.add(view.frame);
+    large.add(view.frame);
+  }
+  ASSERT_GT(large.tiles(), 20U);
+  EXPECT_EQ(small.tiles(), large.tiles());
+  const MapRaster a = small.read(small.bounds()), b = large.read(large.bounds());
+  EXPECT_EQ(a.views, b.views);
+  for (std::size_t k = 0; k < a.height.pixels(); ++k) {
+    const float one = a.height.row(0)[k], other = b.height.row(0)[k];
+    EXPECT_TRUE(one == other || (std::isnan(one) && std::isnan(other)));
+  }
+  EXPECT_FALSE(fs::is_empty(folder_ / "few"));
+}
+
+// The road is inclined by 5 %; the relief is that of the step alone.
+TEST_F(RoadMapTest, ReliefIsHeightAboveInclinedRoad) {
+  const Step step{0.1, 0.05, 0.2, 0.05};
+  RoadMap map(folder_, options());
+  const double slope = std::atan(0.05);
+  const RigidTransform tilt{std::cos(slope), 0, -std::sin(slope), 0, 0, 1, 0, 0,
+                            std::sin(slope), 0, std::cos(slope),  0};
+  for (const double x : {-0.1, 0.0, 0.15}) {
+    TestFrame view(looking_down(x, 0, 2), step, 0, 1);
+    view.frame.camera_to_map = compose(tilt, view.frame.camera_to_map);
+    map.add(view.frame);
+  }
+  const MapRaster heights = map.read({-50, -40, 100, 80});
+  const MapRaster relief = read_relief(map, {-50, -40, 100, 80});
+  EXPECT_NEAR(heights.height(95, 40) - heights.height(0, 40), 0.95 * 0.05, 0.002);
+  for (int v = 0; v < 80; ++v) {
+    for (int u = 0; u < 100; ++u) {
+      const double x = (-50 + u + 0.5) * 0.01, y = (-40 + 79 - v + 0.5) * 0.01;
+      if (std::abs(std::hypot(x - step.x, y - step.y) - step.radius_m) < 0.04) continue;
+      ASSERT_NEAR(relief.height(u, v), step.height(x, y), 1e-3) << x << ", " << y;
+    }
+  }
+}
+
+TEST_F(RoadMapTest, RemovesItsFolder) {
+  { const RoadMap map(folder_, options()); }
+  EXPECT_FALSE(fs::exists(folder_));
+}
+
+TEST_F(RoadMapTest, RejectsWrongSizesAndPoses) {
+  RoadMap map(folder_, options());
+  TestFrame view(looking_down(0, 0, 2), {}, 0, 1);
+  view.frame.camera_to_map = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 2};  // looks along y, as the axes of a camera lie
+  EXPECT_THROW(map.add(view.frame), Error);
+  TestFrame other(looking_down(0, 0, 2), {}, 0, 1);
+  const Image<float> small(10, 10, 0.1F);
+  other.frame.sigma = small;
+  EXPECT_THROW(map.add(other.frame), Error);
+  RoadMapOptions wrong = options();
+  wrong.cell_m = 0;
+  EXPECT_THROW(RoadMap(folder_, wrong), Error);
+}
+
+TEST_F(RoadMapTest, DamageThatNoFrameResolvesIsFoundInMap) {
+  const Step step{0.1, 0.05, 0.25, 0.012};
+  RoadMap map(folder_, options());
+  for (int i = 0; i < 30; ++i) {
+    map.add(TestFrame(looking_down(0.01 * i - 0.15, 0.003 * i, 2), step, 0.1, static_cast<unsigned>(i + 1)).frame);
+  }
+  RoadMap single(folder_ / "single", options());
+  single.add(TestFrame(looking_down(0, 0, 2), step, 0.1, 1).frame);
+  EXPECT_TRUE(find_map_damage(single, {}).empty());
+  const std::vector<MapDamage> found = find_map_damage(map, {});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].at_m[0], step.x, 0.02);
+  EXPECT_NEAR(found[0].at_m[1], step.y, 0.02);
+  EXPECT_NEAR(found[0].damage.metrics->max_depth_m.value, step.depth_m, 0.003);
+  const Measurement& area = found[0].damage.metrics->area_m2;
+  EXPECT_NEAR(area.value, 3.1416 * 0.25 * 0.25, 2 * area.std_error);
+  EXPECT_NEAR(static_cast<double>(found[0].footprint.size()) * footprint_m * footprint_m, area.value, 0.03);
+}
+
+}  // namespace
+}  // namespace roadstereo
