@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "flight_path.hpp"
@@ -81,13 +83,16 @@ void make_frames(const SynthArguments& arguments) {
   folder.add("calibration.yaml", plain_yaml(first.rig.calibration()));
   if (arguments.frames > 1) folder.add("times.txt", frame_times(arguments.frames, arguments.rate_hz));
   const auto count = static_cast<std::size_t>(arguments.frames);
+  std::vector<std::array<double, 12>> poses;
   Progress progress = Progress::on_terminal(count, arguments.quiet || count == 1);
   for (int frame = 0; frame < arguments.frames; ++frame) {
     const synth::Scene scene = frames.scene(frame);
     const synth::SyntheticPair pair = synth::render(scene, arguments.threads);
     add_synthetic_pair(scene, pair, {frame, arguments.frames}, folder);
+    poses.push_back(scene.rig.camera_to_road());
     progress.frame_done();
   }
+  if (arguments.frames > 1) folder.add("trajectory_kitti.txt", true_trajectory(poses));
   progress.end();
   folder.commit();
   if (!arguments.quiet) fmt::print("{}", made_text(arguments, first, folder));
@@ -96,8 +101,8 @@ void make_frames(const SynthArguments& arguments) {
 constexpr const char* synth_footer =
     R"(Writes left.png, right.png, calibration.yaml, truth_disparity.tiff (32-bit float, NaN above the horizon),
 truth_visible.png (255: visible in both cameras), truth_labels.png (16 bit, damage ids), truth_road.png (255: carriageway)
-and truth.json (plane, roll, rig, damages) to the output folder. With several frames left/000000.png etc. and times.txt
-(seconds, one line per frame).
+and truth.json (plane, roll, rig, damages) to the output folder. With several frames left/000000.png etc., times.txt
+(seconds, one line per frame) and trajectory_kitti.txt (true poses, camera to first camera, a 3×4 row per frame).
 
 --scene random draws streets with parked cars and house fronts, hills, kerbs, verges, shade, water, paint in the sun,
 snow, a bonnet, and what cameras do: photon noise, defocus, motion, JPEG, bad rectification. --seed N draws one of them;

@@ -52,6 +52,24 @@ std::string plain_yaml(const StereoCalibration& calibration) {
       calibration.height);
 }
 
+std::string true_trajectory(const std::vector<std::array<double, 12>>& camera_to_road) {
+  std::string text;
+  for (const std::array<double, 12>& pose : camera_to_road) {
+    const std::array<double, 12>& first = camera_to_road.front();
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t column = 0; column < 4; ++column) {
+        double value = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double origin = column == 3 ? first[4 * k + 3] : 0;
+          value += first[4 * k + row] * (pose[4 * k + column] - origin);
+        }
+        text += fmt::format("{:.12g}{}", value, row == 2 && column == 3 ? '\n' : ' ');
+      }
+    }
+  }
+  return text;
+}
+
 std::string frame_times(int frames, double rate_hz) {
   std::string text;
   for (int frame = 0; frame < frames; ++frame) text += fmt::format("{:.6f}\n", frame / rate_hz);

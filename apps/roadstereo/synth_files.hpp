@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "roadstereo/io/output_folder.hpp"
 #include "roadstereo/synth.hpp"
@@ -22,6 +24,9 @@ void add_synthetic_pair(const synth::Scene& scene, const synth::SyntheticPair& p
 
 /// Returns a calibration as plain YAML.
 std::string plain_yaml(const StereoCalibration& calibration);
+
+/// Returns the true trajectory as KITTI has it: a 3×4 pose per line, from the camera of the frame to that of the first.
+std::string true_trajectory(const std::vector<std::array<double, 12>>& camera_to_road);
 
 /// Returns the times of the frames in seconds, one per line, starting at 0.
 std::string frame_times(int frames, double rate_hz);

@@ -16,9 +16,12 @@ Json rig_json(const synth::Rig& rig) {
           {"height", rig.height},
           {"focal_px", json_number(rig.focal_px)},
           {"baseline_m", json_number(rig.baseline_m)},
+          {"x_m", json_number(rig.x_m)},
+          {"y_m", json_number(rig.y_m)},
           {"camera_height_m", json_number(rig.camera_height_m)},
           {"pitch_deg", json_number(rig.pitch_deg)},
-          {"roll_deg", json_number(rig.roll_deg)}};
+          {"roll_deg", json_number(rig.roll_deg)},
+          {"yaw_deg", json_number(rig.yaw_deg)}};
 }
 
 Json degradation_json(const synth::Degradation& wear) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "roadstereo/error.hpp"
 #include "tests/synth/rendered_scenes.hpp"
@@ -77,6 +78,25 @@ TEST(FlightPath, LoopCloses) {
   EXPECT_NEAR(std::remainder(again.yaw_deg, 360), 0, 1e-9);
   path.loop_period = 1;
   EXPECT_THROW(path.validate(), Error);
+}
+
+TEST(Rig, PoseMapsTrueDisparitiesToRoad) {
+  Scene scene = small_scene("uav");
+  scene.rig.roll_deg = 3;
+  scene.rig.x_m = 0.4;
+  for (const double yaw : {0.0, 90.0, 180.0, -30.0}) {
+    scene.rig.yaw_deg = yaw;
+    const SyntheticPair pair = render(scene);
+    const std::array<double, 12> pose = scene.rig.camera_to_road();
+    for (const auto [u, v] : {std::pair{5, 9}, std::pair{80, 60}, std::pair{150, 80}}) {
+      const std::array<double, 3> p = pair.calibration.point_m(u, v, pair.plane.disparity(u, v));
+      EXPECT_NEAR(pose[8] * p[0] + pose[9] * p[1] + pose[10] * p[2] + pose[11], 0, 1e-9) << yaw;
+    }
+    const double angle = yaw * std::numbers::pi / 180;
+    const std::array<double, 2> ahead{pose[2], pose[6]};  // the optical axis
+    EXPECT_NEAR(ahead[0] * std::cos(angle) + ahead[1] * std::sin(angle), 0, 1e-9);
+    EXPECT_GT(-ahead[0] * std::sin(angle) + ahead[1] * std::cos(angle), 0.1);
+  }
 }
 
 TEST(FlightPath, JumpsAndReturns) {
