@@ -10,6 +10,7 @@ namespace roadstereo::cli {
 void add_inspect(CLI::App& app);
 void add_live(CLI::App& app);
 void add_damage(CLI::App& app);
+void add_map(CLI::App& app);
 void add_synth(CLI::App& app);
 void add_limits(CLI::App& app);
 void add_options(CLI::App& app);

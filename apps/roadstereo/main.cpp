@@ -77,6 +77,7 @@ void describe(CLI::App& app) {
   roadstereo::cli::add_inspect(app);
   roadstereo::cli::add_live(app);
   roadstereo::cli::add_damage(app);
+  roadstereo::cli::add_map(app);
   roadstereo::cli::add_synth(app);
   roadstereo::cli::add_limits(app);
   roadstereo::cli::add_options(app);

@@ -37,6 +37,7 @@ void add_evaluate(CLI::App& app) {
   add_runtime(*command);
   add_odometry(*command);
   add_robustness(*command);
+  add_map_accuracy(*command);
 }
 
 }  // namespace roadstereo::cli

@@ -24,5 +24,6 @@ void add_flight(CLI::App& evaluate);
 void add_runtime(CLI::App& evaluate);
 void add_odometry(CLI::App& evaluate);
 void add_robustness(CLI::App& evaluate);
+void add_map_accuracy(CLI::App& evaluate);
 
 }  // namespace roadstereo::cli

@@ -1,0 +1,226 @@
+#include "map/map_results.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "json_text.hpp"
+#include "roadstereo/version.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A number for CSV, empty if it is unknown.
+std::string csv(double value, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "";
+}
+
+Json measurement_json(const Measurement& measured) {
+  return {{"value", json_number(measured.value)}, {"std_error", json_number(measured.std_error)}};
+}
+
+std::array<double, 2> in_crs(const BuiltMap& built, const std::array<double, 2>& at_m) {
+  return {built.origin_m[0] + at_m[0], built.origin_m[1] + at_m[1]};
+}
+
+std::string damages_csv(const BuiltMap& built, const std::vector<RoadDamageRecord>& damages) {
+  std::string text =
+      "id,kind,x_m,y_m,max_depth_m,max_depth_stderr_m,mean_depth_m,mean_depth_stderr_m,area_m2,area_stderr_m2,"
+      "volume_m3,volume_stderr_m3,length_m,width_m,angle_deg,severity,confidence,sightings,passes,views,found_in_"
+      "map\r\n";
+  constexpr double degrees = 180 / 3.14159265358979323846;
+  for (const RoadDamageRecord& damage : damages) {
+    const std::array<double, 2> at = in_crs(built, damage.best.at_m);
+    const DamageMetrics& metrics = *damage.best.damage.metrics;
+    text += fmt::format("{},{},{},{},", damage.id, name_of(damage.best.damage.kind), csv(at[0], 3), csv(at[1], 3));
+    for (const Measurement& measured : {damage.max_depth_m, damage.mean_depth_m, damage.area_m2, damage.volume_m3}) {
+      text += fmt::format("{},{},", csv(measured.value, 6), csv(measured.std_error, 6));
+    }
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{}\r\n", csv(metrics.length_m, 4), csv(metrics.width_m, 4),
+                    csv(damage.best.length_angle_rad * degrees, 1), name_of(damage.severity), csv(damage.confidence, 3),
+                    damage.sightings, damage.passes, damage.views, damage.found_in_map ? 1 : 0);
+  }
+  return text;
+}
+
+std::string sightings_csv(const BuiltMap& built) {
+  std::string text =
+      "recording,frame,kind,x_m,y_m,max_depth_m,max_depth_stderr_m,mean_depth_m,mean_depth_stderr_m,area_m2,"
+      "area_stderr_m2,confidence,cut_by_border\r\n";
+  for (const DamageSighting& sighting : built.sightings) {
+    const Damage& damage = sighting.found.damage;
+    const DamageMetrics& metrics = *damage.metrics;
+    const std::array<double, 2> at = in_crs(built, sighting.found.at_m);
+    text += fmt::format("{},{},{},{},{},", sighting.pass, sighting.frame, name_of(damage.kind), csv(at[0], 3),
+                        csv(at[1], 3));
+    for (const Measurement& measured : {metrics.max_depth_m, metrics.mean_depth_m, metrics.area_m2}) {
+      text += fmt::format("{},{},", csv(measured.value, 6), csv(measured.std_error, 6));
+    }
+    text += fmt::format("{},{}\r\n", csv(damage.confidence, 3), damage.cut_by_border ? 1 : 0);
+  }
+  return text;
+}
+
+std::string transverse_csv(const BuiltMap& built, const std::vector<LaneProfiles>& lanes) {
+  std::string text =
+      "path,station_m,x_m,y_m,width_m,rut_depth_m,rut_depth_stderr_m,rut_noise_floor_m,rut_resolvable,cross_slope,"
+      "cross_slope_stderr\r\n";
+  for (std::size_t path = 0; path < lanes.size(); ++path) {
+    for (const TransverseProfile& profile : lanes[path].transverse) {
+      const std::array<double, 2> at = in_crs(built, profile.at_m);
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\r\n", path, csv(profile.station_m, 3), csv(at[0], 3),
+                          csv(at[1], 3), csv(profile.width_m, 2), csv(profile.rut_depth_m.value, 5),
+                          csv(profile.rut_depth_m.std_error, 5), csv(profile.rut_noise_floor_m, 5),
+                          profile.rut_resolvable ? 1 : 0, csv(profile.cross_slope.value, 5),
+                          csv(profile.cross_slope.std_error, 5));
+    }
+  }
+  return text;
+}
+
+std::string longitudinal_csv(const BuiltMap& built, const std::vector<LaneProfiles>& lanes) {
+  std::string text = "path,offset_m,station_m,x_m,y_m,height_m,height_stderr_m\r\n";
+  for (std::size_t path = 0; path < lanes.size(); ++path) {
+    for (const LongitudinalPoint& point : lanes[path].longitudinal) {
+      const std::array<double, 2> at = in_crs(built, point.at_m);
+      text +=
+          fmt::format("{},{},{},{},{},{},{}\r\n", path, csv(point.offset_m, 3), csv(point.station_m, 3), csv(at[0], 3),
+                      csv(at[1], 3), csv(built.origin_m[2] + point.height_m, 5), csv(point.sigma_m, 5));
+    }
+  }
+  return text;
+}
+
+std::string roughness_csv(const std::vector<LaneProfiles>& lanes) {
+  std::string text = "path,offset_m,start_m,length_m,index_m_km,noise_floor_m_km,resolvable\r\n";
+  for (std::size_t path = 0; path < lanes.size(); ++path) {
+    for (const RoughnessSection& section : lanes[path].sections) {
+      text += fmt::format("{},{},{},{},{},{},{}\r\n", path, csv(section.offset_m, 3), csv(section.start_m, 2),
+                          csv(section.length_m, 2), csv(section.index_m_km, 3), csv(section.noise_floor_m_km, 3),
+                          section.resolvable ? 1 : 0);
+    }
+  }
+  return text;
+}
+
+Json damage_json(const BuiltMap& built, const RoadDamageRecord& damage) {
+  const std::array<double, 2> at = in_crs(built, damage.best.at_m);
+  return {{"id", damage.id},
+          {"kind", name_of(damage.best.damage.kind)},
+          {"x_m", json_number(at[0])},
+          {"y_m", json_number(at[1])},
+          {"max_depth_m", measurement_json(damage.max_depth_m)},
+          {"mean_depth_m", measurement_json(damage.mean_depth_m)},
+          {"area_m2", measurement_json(damage.area_m2)},
+          {"volume_m3", measurement_json(damage.volume_m3)},
+          {"severity", name_of(damage.severity)},
+          {"confidence", json_number(damage.confidence)},
+          {"sightings", damage.sightings},
+          {"recordings", damage.passes},
+          {"views", damage.views},
+          {"found_in_map", damage.found_in_map}};
+}
+
+/// Median rut depth and floor of all transverse profiles, and how many are resolvable.
+std::string rut_text(const std::vector<LaneProfiles>& lanes) {
+  std::vector<double> ruts, floors;
+  std::size_t resolvable = 0;
+  for (const LaneProfiles& lane : lanes) {
+    for (const TransverseProfile& profile : lane.transverse) {
+      ruts.push_back(profile.rut_depth_m.value);
+      floors.push_back(profile.rut_noise_floor_m);
+      resolvable += profile.rut_resolvable ? 1 : 0;
+    }
+  }
+  if (ruts.empty()) return "  ruts      the mapped road is too narrow\n";
+  const auto median = [](std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  constexpr double mm = 1000;
+  return fmt::format("  ruts      {} profiles, median {:.1f} mm; noise alone makes {:.1f} mm; resolvable in {}\n",
+                     ruts.size(), mm * median(ruts), mm * median(floors), resolvable);
+}
+
+std::string roughness_text(const std::vector<LaneProfiles>& lanes) {
+  std::string text;
+  for (const LaneProfiles& lane : lanes) {
+    for (const RoughnessSection& section : lane.sections) {
+      text += fmt::format("  roughness {:+.2f} m beside the path, {:.0f}–{:.0f} m: ", section.offset_m, section.start_m,
+                          section.start_m + section.length_m);
+      text += section.resolvable
+                  ? fmt::format("{:.2f} m/km (noise floor {:.2f})\n", section.index_m_km, section.noise_floor_m_km)
+                  : fmt::format("not resolvable with this rig, noise floor {:.2f} m/km\n", section.noise_floor_m_km);
+    }
+  }
+  return text.empty() ? "  roughness no profile is 11.5 m long\n" : text;
+}
+
+}  // namespace
+
+MapResults measure_map(const BuiltMap& built) {
+  MapResults results;
+  DamageOptions options = built.damage;
+  options.min_confidence = 0;
+  const std::vector<MapDamage> in_map = find_map_damage(*built.map, options);
+  results.damages = join_damage(built.sightings, in_map, *built.map, built.damage);
+  for (const auto& path : built.paths) results.lanes.push_back(measure_lane(*built.map, path, {}));
+  return results;
+}
+
+void add_map_tables(const MapSettings& /*settings*/, const BuiltMap& built, const MapResults& results,
+                    io::OutputFolder& folder) {
+  folder.add("damages.csv", damages_csv(built, results.damages));
+  folder.add("sightings.csv", sightings_csv(built));
+  folder.add("transverse.csv", transverse_csv(built, results.lanes));
+  folder.add("longitudinal.csv", longitudinal_csv(built, results.lanes));
+  folder.add("roughness.csv", roughness_csv(results.lanes));
+}
+
+std::string map_json(const MapSettings& settings, const BuiltMap& built, const MapResults& results) {
+  const MapBox bounds = built.map->bounds();
+  const double cell_m = built.map->options().cell_m;
+  Json document = {{"version", version},
+                   {"crs", settings.crs},
+                   {"frames", built.frames},
+                   {"mapped", built.mapped},
+                   {"cell_m", json_number(cell_m)},
+                   {"west_m", json_number(built.origin_m[0] + bounds.i0 * cell_m)},
+                   {"south_m", json_number(built.origin_m[1] + bounds.j0 * cell_m)},
+                   {"width_m", json_number(bounds.columns * cell_m)},
+                   {"length_m", json_number(bounds.rows * cell_m)},
+                   {"frames_per_independent_view", json_number(built.map->view_factor())}};
+  document["reasons"] = built.reasons;
+  document["damages"] = Json::array();
+  for (const RoadDamageRecord& damage : results.damages) document["damages"].push_back(damage_json(built, damage));
+  return json_text(document);
+}
+
+std::string map_text(const MapSettings& settings, const BuiltMap& built, const MapResults& results) {
+  const MapBox bounds = built.map->bounds();
+  const double cell_m = built.map->options().cell_m;
+  std::string text = fmt::format("roadstereo {}: map of {} recordings\n", version, settings.trajectory.size());
+  text += fmt::format("  frames    {} with a pose, {} mapped\n", built.frames, built.mapped);
+  text += fmt::format("  map       {:.1f} × {:.1f} m, cells of {:g} mm\n", bounds.columns * cell_m,
+                      bounds.rows * cell_m, 1000 * cell_m);
+  text += fmt::format("  damage    {} damages from {} sightings\n", results.damages.size(), built.sightings.size());
+  constexpr double mm = 1000;
+  for (const RoadDamageRecord& damage : results.damages) {
+    const std::array<double, 2> at = in_crs(built, damage.best.at_m);
+    text += fmt::format(
+        "    {:>3} {:<10} at {:.2f}, {:.2f} m: {:.1f} ± {:.1f} mm, {:.3f} ± {:.3f} m², {} sightings, {:.2f}\n",
+        damage.id, name_of(damage.best.damage.kind), at[0], at[1], mm * damage.max_depth_m.value,
+        mm * damage.max_depth_m.std_error, damage.area_m2.value, damage.area_m2.std_error, damage.sightings,
+        damage.confidence);
+  }
+  text += rut_text(results.lanes) + roughness_text(results.lanes);
+  for (const std::string& reason : built.reasons) text += fmt::format("  no result {}\n", reason);
+  return text + fmt::format("  output    {}\n", settings.output);
+}
+
+}  // namespace roadstereo::cli

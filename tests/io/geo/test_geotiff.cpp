@@ -1,0 +1,137 @@
+// Rasters of maps, read back with GDAL.
+
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/geotiff.hpp"
+#include "roadstereo/io/map_points.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr MapBox bounds{-300, 40, 1100, 700};  // more than one tile of a raster, in both directions
+
+double height_at(int i, int j) {
+  return 0.001 * i - 0.002 * j;
+}
+
+/// Cells of a map without the ones left of column −200.
+MapRaster read_cells(const MapBox& box) {
+  MapRaster raster;
+  raster.box = box;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  raster.height.assign(box.columns, box.rows, nan);
+  raster.sigma.assign(box.columns, box.rows, nan);
+  raster.colour.assign(box.columns, box.rows, {0, 0, 0});
+  raster.views.assign(box.columns, box.rows, 0);
+  for (int v = 0; v < box.rows; ++v) {
+    for (int u = 0; u < box.columns; ++u) {
+      const int i = box.i0 + u, j = box.j0 + box.rows - 1 - v;
+      if (i < -200) continue;
+      raster.height(u, v) = static_cast<float>(height_at(i, j));
+      raster.sigma(u, v) = 0.003F;
+      raster.colour(u, v) = {200, 100, 50};
+      raster.views(u, v) = static_cast<std::uint16_t>(j);
+    }
+  }
+  return raster;
+}
+
+class GeoTiffTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              (std::string("roadstereo_tiff_") + testing::UnitTest::GetInstance()->current_test_info()->name() +
+               std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    GDALAllRegister();
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  GDALDatasetUniquePtr written(MapLayer layer, const MapReference& reference) const {
+    const std::string file = (folder_ / "map.tif").string();
+    write_geotiff(file, layer, bounds, reference, read_cells);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);  // no scratch file
+    return GDALDatasetUniquePtr(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(GeoTiffTest, HeightsLieWhereTheirCellsAre) {
+  const auto dataset = written(MapLayer::height, {0.02, 500000, 5400000, 100, "EPSG:32632"});
+  ASSERT_NE(dataset, nullptr);
+  EXPECT_STREQ(dataset->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE"), "COG");
+  std::array<double, 6> transform{};
+  ASSERT_EQ(dataset->GetGeoTransform(transform.data()), CE_None);
+  const std::array<double, 6> expected{500000 - 300 * 0.02, 0.02, 0, 5400000 + 740 * 0.02, 0, -0.02};
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(transform[k], expected[k], 1e-6);
+  ASSERT_NE(dataset->GetSpatialRef(), nullptr);
+  EXPECT_EQ(dataset->GetSpatialRef()->GetUTMZone(), 32);
+  EXPECT_GE(dataset->GetRasterBand(1)->GetOverviewCount(), 1);
+  std::vector<float> row(bounds.columns);
+  for (const int v : {0, 511, 512, 699}) {
+    ASSERT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Read, 0, v, bounds.columns, 1, row.data(), bounds.columns, 1,
+                                                  GDT_Float32, 0, 0, nullptr),
+              CE_None);
+    const int j = 40 + 699 - v;
+    EXPECT_TRUE(std::isnan(row[99]));
+    for (const int u : {100, 511, 512, 1099})
+      EXPECT_NEAR(row[static_cast<std::size_t>(u)], 100 + height_at(u - 300, j), 1e-4);
+  }
+}
+
+TEST_F(GeoTiffTest, OrthophotoHasColoursAndMask) {
+  const auto dataset = written(MapLayer::orthophoto, {0.02, 0, 0, 0, ""});
+  ASSERT_NE(dataset, nullptr);
+  ASSERT_GE(dataset->GetRasterCount(), 3);
+  std::array<std::uint8_t, 3> pixel{};
+  ASSERT_EQ(dataset->RasterIO(GF_Read, 700, 300, 1, 1, pixel.data(), 1, 1, GDT_Byte, 3, nullptr, 0, 0, 0, nullptr),
+            CE_None);
+  EXPECT_NEAR(pixel[0], 200, 3);  // JPEG
+  EXPECT_NEAR(pixel[1], 100, 3);
+  EXPECT_NEAR(pixel[2], 50, 3);
+  const auto mask = [&](int u) {
+    std::uint8_t value = 77;
+    EXPECT_EQ(dataset->GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Read, u, 300, 1, 1, &value, 1, 1, GDT_Byte, 0, 0,
+                                                                 nullptr),
+              CE_None);
+    return value;
+  };
+  EXPECT_EQ(mask(20), 0);
+  EXPECT_EQ(mask(700), 255);
+  ASSERT_NE(dataset->GetSpatialRef(), nullptr);
+  EXPECT_TRUE(dataset->GetSpatialRef()->IsLocal());
+  EXPECT_NEAR(dataset->GetSpatialRef()->GetLinearUnits(), 1, 1e-12);
+}
+
+TEST_F(GeoTiffTest, RejectsEmptyMapsAndUnknownCoordinateSystems) {
+  const std::string file = (folder_ / "map.tif").string();
+  EXPECT_THROW(write_geotiff(file, MapLayer::height, {}, {0.02, 0, 0, 0, ""}, read_cells), Error);
+  EXPECT_THROW(write_geotiff(file, MapLayer::height, bounds, {0.02, 0, 0, 0, "EPSG:nonsense"}, read_cells), Error);
+  EXPECT_THROW(write_geotiff(folder_ / "none" / "map.tif", MapLayer::height, bounds, {0.02, 0, 0, 0, ""}, read_cells),
+               SystemError);
+}
+
+TEST_F(GeoTiffTest, PointsHaveHeaderAndOneRecordPerCell) {
+  write_map_points(folder_ / "points.ply", bounds, {0.02, 0, 0, 0, ""}, read_cells);
+  constexpr std::size_t record = 3 * 8 + 4 + 3, points = 1000 * 700;
+  const auto size = fs::file_size(folder_ / "points.ply");
+  EXPECT_GT(size, points * record + 100);
+  EXPECT_LT(size, points * record + 300);
+}
+
+}  // namespace
+}  // namespace roadstereo::io
