@@ -230,7 +230,8 @@ void MapTrialOptions::validate() const {
 MapTrials run_map_trials(const MapTrialOptions& options) {
   options.validate();
   MapTrials trials;
-  Progress progress = Progress::on_terminal(static_cast<std::size_t>(options.roads * options.frames * passes));
+  Progress progress = Progress::on_terminal(static_cast<std::size_t>(options.roads) *
+                                            static_cast<std::size_t>(options.frames) * passes);
   for (int road = 0; road < options.roads; ++road) RoadTrial(options, road, progress).finish(trials);
   progress.end();
   return trials;
