@@ -159,7 +159,7 @@ std::optional<CellMeasurement> FrameProjection::measure(double x, double y) cons
     const double change = std::hypot((*next)[0] - u, (*next)[1] - v);
     pixel = next;
     if (change > tolerance_px) continue;
-    const float sigma = frame_.sigma(static_cast<int>(u + 0.5), static_cast<int>(v + 0.5));
+    const float sigma = frame_.sigma(static_cast<int>(std::lround(u)), static_cast<int>(std::lround(v)));
     if (!std::isfinite(sigma) || sigma <= 0) return std::nullopt;
     // A disparity that is larger by δ moves the point by δ / (d + doffs) of the way to the camera.
     const double climb = frame_.camera_to_map[11] - z;

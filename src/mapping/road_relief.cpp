@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -72,15 +73,17 @@ float reference_at(const NodeGrid& grid, int column, int row) {
         neighbours.push_back({x, y, grid.height(i, j), 0});
     }
   }
-  const double possible = 3.14159 * radius_m * radius_m / (node_m * node_m);
+  const double possible = std::numbers::pi * radius_m * radius_m / (node_m * node_m);
   if (static_cast<double>(neighbours.size()) < possible / 5) return nan;
   std::vector<double> heights;
+  heights.reserve(neighbours.size());
   for (const Neighbour& n : neighbours) heights.push_back(n.z);
   const double median = upper_median(heights);
   for (Neighbour& n : neighbours) n.residual = n.z - median;
   double height = median;
   for (int k = 0; k < iterations; ++k) {
     std::vector<double> magnitudes;
+    magnitudes.reserve(neighbours.size());
     for (const Neighbour& n : neighbours) magnitudes.push_back(std::abs(n.residual));
     const double limit = tukey * std::max(gaussian_mad * upper_median(magnitudes), min_scale_m);
     Matrix<3> matrix{};

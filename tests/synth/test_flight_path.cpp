@@ -88,7 +88,7 @@ TEST(Rig, PoseMapsTrueDisparitiesToRoad) {
     scene.rig.yaw_deg = yaw;
     const SyntheticPair pair = render(scene);
     const std::array<double, 12> pose = scene.rig.camera_to_road();
-    for (const auto [u, v] : {std::pair{5, 9}, std::pair{80, 60}, std::pair{150, 80}}) {
+    for (const auto& [u, v] : {std::pair{5, 9}, std::pair{80, 60}, std::pair{150, 80}}) {
       const std::array<double, 3> p = pair.calibration.point_m(u, v, pair.plane.disparity(u, v));
       EXPECT_NEAR(pose[8] * p[0] + pose[9] * p[1] + pose[10] * p[2] + pose[11], 0, 1e-9) << yaw;
     }
