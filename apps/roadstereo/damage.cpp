@@ -10,9 +10,12 @@
 
 #include "commands.hpp"
 #include "map_source.hpp"
+#include "processing_options.hpp"
+#include "report_head.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/damage_files.hpp"
 #include "roadstereo/io/output_folder.hpp"
+#include "roadstereo/io/severity_file.hpp"
 #include "roadstereo/options.hpp"
 #include "settings.hpp"
 #include "summary.hpp"
@@ -24,12 +27,14 @@ struct DamageArguments {
   MapFiles files;
   std::string output;
   std::vector<std::string> settings;
+  std::string severity = "d6433";
+  ReportHead head;
   int threads = 0;
   bool quiet = false;
 };
 
 /// Throws Error for options of other stages.
-DamageOptions make_options(const std::vector<std::string>& settings) {
+DamageOptions make_options(const std::vector<std::string>& settings, const std::string& severity) {
   PipelineOptions options;
   for (const std::string& setting : settings) {
     const std::string key = split_setting(setting).first;
@@ -37,6 +42,7 @@ DamageOptions make_options(const std::vector<std::string>& settings) {
       fail("\"", key, "\" has no effect here; damage accepts keys that start with damage.");
   }
   apply_settings(settings, options);
+  options.damage.severity = io::read_severity_scheme(severity);
   options.damage.validate();
   return options.damage;
 }
@@ -51,14 +57,14 @@ DamageMap find_in(const TransformedMap& map, const DamageArguments& arguments) {
   input.plane = map.plane;
   input.calibration = map.calibration;
   try {
-    return find_damage(input, make_options(arguments.settings), arguments.threads);
+    return find_damage(input, make_options(arguments.settings, arguments.severity), arguments.threads);
   } catch (const Error& error) {
     fail(arguments.files.transformed, ": ", error.what());
   }
 }
 
 void run(const DamageArguments& arguments) {
-  make_options(arguments.settings);  // checked first
+  make_options(arguments.settings, arguments.severity);  // checked first
   const TransformedMap map = read_transformed_map(arguments.files);
   io::OutputFolder folder(arguments.output);
   const MapFiles& files = arguments.files;
@@ -71,7 +77,9 @@ void run(const DamageArguments& arguments) {
   if (map.disparity) report.disparity = *map.disparity;
   report.transformed = map.transformed;
   report.calibration = map.calibration;
-  report.title = std::filesystem::path(arguments.files.transformed).filename().string();
+  report.title = title_of(arguments.head, std::filesystem::path(arguments.files.transformed).filename().string());
+  report.head = head_lines(arguments.head);
+  report.severity = make_options(arguments.settings, arguments.severity).severity;
   report.properties = {{"Transformed map", fmt::format("{}×{} px", map.transformed.width(), map.transformed.height())}};
   io::add_damage_files(folder, report);
   folder.commit();
@@ -116,6 +124,8 @@ void add_damage(CLI::App& app) {
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
+  add_severity_option(*command, arguments->severity);
+  add_head_options(*command, arguments->head);
   command->add_option("--threads", arguments->threads, "Worker threads; 0: all cores")
       ->type_name("N")
       ->capture_default_str();

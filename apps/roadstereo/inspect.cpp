@@ -93,6 +93,7 @@ void reject_flight_options(const FlightSettings& settings) {
   if (settings.every != 1) reject("--every");
   if (!settings.track.file.empty()) reject("--track");
   if (settings.trajectory) reject("--trajectory");
+  if (settings.candidates) reject("--candidates");
 }
 
 PairFiles pair_files(const FlightSettings& settings) {
@@ -113,6 +114,7 @@ void inspect_pair(const FlightSettings& settings) {
   inspection.preset = settings.processing.preset;
   inspection.files = pair_files(settings);
   inspection.pair = read_pair(inspection.files);
+  inspection.head = settings.head;
   inspection.mask_file = settings.mask;
   inspection.mask = read_ignored(settings);
   require_mask_size(settings, inspection.mask, inspection.pair.left.width, inspection.pair.left.height);
@@ -147,9 +149,10 @@ damages.csv, damage.png (16 bit, ids), overlay.png and report.html; with a calib
 and road_cloud.ply (the road is z = 0). --write selects: disparity, sigma, transformed, sheet, cloud, damages, overlay,
 report. "files" of result.json says what each file is.
 
-Output of a recording: frames.csv (one row per frame), damages.csv (one row per sighting), summary.json, report.html, an
-image of each damage in damages/, and the files selected with --write; with --track also frames.geojson,
-damages.geojson and flight.gpkg. Ctrl-C stops after the frames already read; --resume continues there, also after a kill.
+Output of a recording: damages.csv (one row per damage of the road, worst first), candidates.csv, sightings.csv (one row
+per damage and frame), frames.csv, summary.json, report.html, an image of each damage in damages/, and the files selected
+with --write; with --track also segments.csv (every 20 m), flight.gpkg and the same layers as GeoJSON: damages, sightings,
+frames and footprints. Ctrl-C stops after the frames already read; --resume continues there, also after a kill.
 
 SOURCE is a folder (left/ right/, image_2/ image_3/, image_0/ image_1/, cam0/data cam1/data, or images named L… and R…),
 a list (.txt or .csv with lines "left right [seconds]"), a video with both views in one image, or a ROS bag (.bag, .mcap,
@@ -196,7 +199,7 @@ void add_output_options(CLI::App& command, FlightSettings& settings) {
   command.add_flag("--json", settings.json, "Print result.json (recordings: summary.json) instead of the summary");
 }
 
-void add_track_options(CLI::App& command, TrackSettings& track) {
+void add_track_options(CLI::App& command, TrackSettings& track, bool& candidates) {
   command
       .add_option(
           "--track", track.file,
@@ -207,6 +210,7 @@ void add_track_options(CLI::App& command, TrackSettings& track) {
       .add_option("--track-offset", track.offset_s,
                   "Seconds added to the times of the frames, e.g. the start since 1970 if a recording counts from 0")
       ->type_name("S");
+  command.add_flag("--candidates", candidates, "Add a layer of candidates to the GIS files");
   command.add_option("--mount-yaw", track.mount_yaw_deg, "Yaw of the camera relative to the heading, clockwise")
       ->type_name("DEG");
 }
@@ -240,8 +244,9 @@ void add_inspect(CLI::App& app) {
   const auto arguments = std::make_shared<InspectArguments>();
   add_input_options(*command, *arguments);
   add_output_options(*command, arguments->settings);
+  add_head_options(*command, arguments->settings.head);
   add_flight_options(*command, arguments->settings);
-  add_track_options(*command, arguments->settings.track);
+  add_track_options(*command, arguments->settings.track, arguments->settings.candidates);
   add_source_options(*command, arguments->settings.source_settings);
   add_processing_options(*command, arguments->settings.processing);
   command->callback([arguments] { inspect(*arguments); });

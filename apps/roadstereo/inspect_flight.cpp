@@ -36,7 +36,8 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   std::string text = fmt::format("roadstereo {}: {}\n", version, run.source);
   text += fmt::format("  frames    {} ({} rejected, {} failed), road re-estimated in {}\n", summary.frames,
                       summary.rejected, summary.failed, summary.road_estimated);
-  text += fmt::format("  damage    {} damages in {} sightings\n", summary.damages, summary.sightings);
+  text += fmt::format("  damage    {} damages in {} sightings, {} candidates\n", summary.damages, summary.sightings,
+                      summary.candidates);
   if (summary.located)
     text += fmt::format("  track     {} of {} frames have a position\n", *summary.located, summary.frames);
   if (!summary.no_position_reason.empty()) text += fmt::format("            {}\n", summary.no_position_reason);

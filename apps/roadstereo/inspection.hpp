@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pair_source.hpp"
+#include "report_head.hpp"
 #include "roadstereo/ground_plane.hpp"
 #include "roadstereo/pipeline.hpp"
 
@@ -14,6 +15,7 @@ namespace roadstereo::cli {
 /// One inspected pair: inputs, settings and results.
 struct Inspection {
   PairFiles files;
+  ReportHead head;
   StereoPair pair;
   std::string mask_file;     ///< empty: none
   Image<std::uint8_t> mask;  ///< not 0 left out; empty: none

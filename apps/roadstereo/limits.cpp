@@ -28,6 +28,7 @@ constexpr std::array<double, 3> astm_depths_m{0.013, 0.025, 0.050};
 
 struct LimitsArguments {
   std::vector<std::string> calibration;
+  std::optional<double> focal_px, baseline_m;  ///< instead of a calibration
   double height_m = 0;
   double pitch_deg = 90;
   std::string size;
@@ -37,24 +38,35 @@ struct LimitsArguments {
   std::string figure;
 };
 
-StereoCalibration read_rig(const LimitsArguments& arguments) {
+StereoCalibration read_file(const LimitsArguments& arguments) {
   const std::string& path = arguments.calibration.front();
   const io::CalibrationFile file =
       io::read_calibration(path, arguments.calibration.size() > 1 ? arguments.calibration[1] : "");
   if (!file.rectified) fail(path, ": the rig is not rectified; use the calibration of the rectified pair");
-  StereoCalibration calibration = *file.rectified;
+  return *file.rectified;
+}
+
+/// The rig of the file, or of --focal-px and --baseline-m with the principal point in the middle of the image.
+StereoCalibration read_rig(const LimitsArguments& arguments) {
+  const bool from_file = !arguments.calibration.empty();
+  const std::string name = from_file ? arguments.calibration.front() : "the rig of --focal-px";
+  StereoCalibration calibration = from_file ? read_file(arguments) : StereoCalibration{};
   if (!arguments.size.empty()) {
     const ImageSize size = parse_image_size(arguments.size);
-    calibration.validate(size.width, size.height, path);
+    if (from_file) calibration.validate(size.width, size.height, name);
     calibration.width = size.width;
     calibration.height = size.height;
   }
-  if (calibration.width < 1) fail(path, " has no image size; set it with --size WIDTHxHEIGHT");
+  if (calibration.width < 1) fail(name, " has no image size; set it with --size WIDTHxHEIGHT");
+  if (from_file) return calibration;
+  calibration.focal_px = *arguments.focal_px;
+  calibration.baseline_m = *arguments.baseline_m;
+  calibration.cx_px = 0.5 * (calibration.width - 1);
+  calibration.cy_px = 0.5 * (calibration.height - 1);
   return calibration;
 }
 
 Table row_table(const ResolutionLimits& limits, int rows) {
-  constexpr double cm2 = 1e4;
   Table table{"",
               {{"row", "row_px"},
                {"ahead m", "ahead_m"},
@@ -62,8 +74,9 @@ Table row_table(const ResolutionLimits& limits, int rows) {
                {"disparity px", "disparity_px"},
                {"1 px mm", "step_mm"},
                {"1 sigma mm", "std_error_mm"},
-               {"resolvable mm", "resolvable_depth_mm"},
-               {"area cm2", "resolvable_area_cm2"},
+               {"pothole mm", "resolvable_depth_mm"},
+               {"wide mm", "resolvable_width_mm"},
+               {"rut mm", "resolvable_rut_mm"},
                {"GSD across mm", "gsd_across_mm"},
                {"along mm", "gsd_along_mm"},
                {"swath m", "swath_m"}},
@@ -72,8 +85,10 @@ Table row_table(const ResolutionLimits& limits, int rows) {
     const auto finite = [](double value) { return std::isfinite(value) ? value : std::nan(""); };
     table.rows.push_back({Cell(row.row_px, 0), Cell(row.ahead_m, 2), Cell(row.distance_m, 2), Cell(row.disparity_px, 1),
                           Cell(finite(mm * row.step_m), 1), Cell(mm * row.std_error_m, 2),
-                          Cell(finite(mm * row.resolvable_depth_m), 1), Cell(cm2 * row.resolvable_area_m2, 1),
-                          Cell(mm * row.gsd_across_m, 2), Cell(mm * row.gsd_along_m, 2), Cell(row.swath_m, 2)});
+                          Cell(finite(mm * row.resolvable_depth_m), 1),
+                          Cell(mm * 2 * std::sqrt(row.resolvable_area_m2 / std::numbers::pi), 0),
+                          Cell(finite(mm * row.resolvable_rut_m), 1), Cell(mm * row.gsd_across_m, 2),
+                          Cell(mm * row.gsd_along_m, 2), Cell(row.swath_m, 2)});
   }
   return table;
 }
@@ -97,7 +112,7 @@ std::string resolvable_text(const ResolutionLimits& limits, double depth_m) {
 nlohmann::ordered_json limits_json(const LimitsArguments& arguments, const ResolutionLimits& limits) {
   nlohmann::ordered_json document = {{"height_m", arguments.height_m},
                                      {"pitch_deg", arguments.pitch_deg},
-                                     {"sigma_px", arguments.resolution.sigma_px},
+                                     {"noise_px", arguments.resolution.noise_px},
                                      {"threshold_sigma", arguments.resolution.threshold_sigma},
                                      {"rows", row_table(limits, arguments.rows).json()}};
   document["astm"] = nlohmann::ordered_json::array();
@@ -150,18 +165,22 @@ void limits(LimitsArguments arguments) {
   fmt::print("{}\n", row_table(limits, arguments.rows).text());
   for (const double depth : astm_depths_m) fmt::print("{}\n", resolvable_text(limits, depth));
   fmt::print(
-      "Depths along the road normal. Resolvable: {:g} standard errors of {:g} px; area: the matching window, at least "
-      "{:g} cm2;\nswath: visible in both cameras.\n",
-      arguments.resolution.threshold_sigma, arguments.resolution.sigma_px, 1e4 * arguments.resolution.min_area_m2);
+      "Depths along the road normal, of potholes at least \"wide\", and the mean over ruts {:g} m wide and {:g} m "
+      "long:\n"
+      "{:g} standard errors of the noise of {:g} px and the sub-pixel bias of {:g} px. Swath: visible in both "
+      "cameras.\n",
+      arguments.resolution.rut_width_m, arguments.resolution.rut_length_m, arguments.resolution.threshold_sigma,
+      arguments.resolution.noise_px, sub_pixel_bias_px);
 }
 
 constexpr const char* limits_footer =
-    R"(Predicts the resolvable depth and area of a rig per image row, from the nearest to the farthest, to plan a flight or
+    R"(Predicts the resolvable potholes and ruts of a rig per image row, from the nearest to the farthest, to plan a flight or
 a mount. Assumes a planar road and no roll. A decrease of the disparity D by one pixel is a depth of height / (D - 1).
 
 Examples:
   roadstereo limits --calibration calibration.yaml --height 2
-  roadstereo limits --calibration calibration.yaml --height 1.6 --pitch 35 --sigma-px 0.05 --figure limits.png)";
+  roadstereo limits --focal-px 700 --baseline-m 0.063 --size 1280x720 --height 2.5
+  roadstereo limits --calibration calibration.yaml --height 1.6 --pitch 35 --noise-px 0.05 --figure limits.png)";
 
 }  // namespace
 
@@ -169,13 +188,22 @@ void add_limits(CLI::App& app) {
   CLI::App* command = app.add_subcommand("limits", "Predict the smallest depth and area that a rig can resolve");
   command->footer(limits_footer);
   const auto arguments = std::make_shared<LimitsArguments>();
-  command
-      ->add_option("--calibration", arguments->calibration, "Calibration of the rectified rig; repeat for a ROS pair")
+  auto* const rig = command->add_option_group("rig");
+  rig->add_option("--calibration", arguments->calibration, "Calibration of the rectified rig; repeat for a ROS pair")
       ->type_name("FILE")
-      ->required()
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
+  auto* const focal = rig->add_option("--focal-px", arguments->focal_px,
+                                      "Focal length, px, instead of a calibration; with --baseline-m and --size")
+                          ->type_name("PX")
+                          ->check(CLI::Range(1.0, 1e6));
+  rig->require_option(1);
+  auto* const baseline = command->add_option("--baseline-m", arguments->baseline_m, "Distance between the cameras, m")
+                             ->type_name("M")
+                             ->check(CLI::Range(0.001, 100.0))
+                             ->needs(focal);
+  focal->needs(baseline);
   command->add_option("--height", arguments->height_m, "Height of the camera above the road, m")
       ->type_name("M")
       ->required()
@@ -185,9 +213,9 @@ void add_limits(CLI::App& app) {
       ->check(CLI::Range(-90.0, 90.0))
       ->capture_default_str();
   command
-      ->add_option("--sigma-px", arguments->resolution.sigma_px,
-                   "Standard error of a disparity, px; see sigma.tiff of inspect")
-      ->check(CLI::Range(0.001, 10.0))
+      ->add_option("--noise-px", arguments->resolution.noise_px,
+                   "Noise of the intact road, px; noise_px in damages.json of inspect")
+      ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
   command->add_option("--threshold", arguments->resolution.threshold_sigma, "Resolvable depth in standard errors")
       ->check(CLI::Range(0.1, 100.0))

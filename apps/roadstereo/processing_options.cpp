@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "roadstereo/io/severity_file.hpp"
 #include "settings.hpp"
 
 namespace roadstereo::cli {
@@ -17,6 +18,12 @@ std::string joined_presets() {
 }
 
 }  // namespace
+
+void add_severity_option(CLI::App& command, std::string& severity) {
+  command.add_option("--severity", severity, "Tables of severities: d6433 (ASTM D6433), or a YAML file")
+      ->type_name("d6433|FILE")
+      ->capture_default_str();
+}
 
 void add_processing_options(CLI::App& command, ProcessingSettings& processing) {
   command.add_option("--preset", processing.preset, "Preset of the options: " + joined_presets())
@@ -33,6 +40,7 @@ void add_processing_options(CLI::App& command, ProcessingSettings& processing) {
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
+  add_severity_option(command, processing.severity);
 }
 
 PipelineOptions make_options(const ProcessingSettings& processing) {
@@ -40,6 +48,7 @@ PipelineOptions make_options(const ProcessingSettings& processing) {
   options.engine = processing.engine;
   options.threads = processing.threads;
   apply_settings(processing.settings, options);
+  options.damage.severity = io::read_severity_scheme(processing.severity);
   options.validate();
   return options;
 }

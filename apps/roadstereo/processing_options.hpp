@@ -17,7 +17,11 @@ struct ProcessingSettings {
   std::string engine = "auto";
   int threads = 0;
   std::vector<std::string> settings;  ///< "key=value"
+  std::string severity = "d6433";     ///< or a file of severities
 };
+
+/// Adds --severity.
+void add_severity_option(CLI::App& command, std::string& severity);
 
 void add_processing_options(CLI::App& command, ProcessingSettings& processing);
 

@@ -101,7 +101,9 @@ void add_report(Inspection& inspection, io::OutputFolder& folder) {
   report.disparity = inspection.result.disparity;
   report.transformed = inspection.result.transformed;
   report.calibration = inspection.pair.calibration;
-  report.title = title_of(inspection);
+  report.title = title_of(inspection.head, title_of(inspection));
+  report.head = head_lines(inspection.head);
+  report.severity = inspection.options.damage.severity;
   report.properties = summary_properties(inspection);
   report.sheet = sheet_of(inspection);
   folder.add("report.html", io::damage_report(report));

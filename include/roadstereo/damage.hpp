@@ -10,50 +10,16 @@
 #include "roadstereo/ground_plane.hpp"
 #include "roadstereo/image.hpp"
 #include "roadstereo/road_model.hpp"
+#include "roadstereo/severity.hpp"
 
 namespace roadstereo {
 
+/// Side of the road's surface; `Distress` tells what it is.
 enum class DamageKind {
-  depression,  ///< pothole, settlement, wide crack
-  protrusion   ///< bump, heave, debris
+  depression,  ///< below: pothole, settlement, rut, wide crack
+  protrusion   ///< above: bump, heave, debris
 };
 const char* name_of(DamageKind kind);
-
-/// Severity of a pothole by ASTM D6433, from its depth and mean diameter.
-enum class Severity {
-  unknown,       ///< no calibration
-  unresolvable,  ///< neither the largest nor the mean depth is three standard errors
-  uncertain,     ///< no class has more than half of the probability
-  minor,         ///< shallower than 13 mm or narrower than 100 mm: below the table of ASTM D6433
-  low,
-  medium,
-  high
-};
-const char* name_of(Severity severity);
-
-/// Look up the severity of a pothole in the table of ASTM D6433: depth 13–25, 25–50, > 50 mm by mean diameter 100–200,
-/// 200–450, > 450 mm. Smaller values, and NaN, give `minor`.
-Severity astm_severity(double depth_m, double diameter_m);
-
-/// A measured value with its standard error.
-struct Measurement {
-  double value = 0;
-  double std_error = 0;
-
-  /// Whether the value is at least three standard errors.
-  bool is_resolved() const { return value >= 3 * std_error; }
-};
-
-/// Probability of each class of `astm_severity`, 0 … 1; they sum to 1.
-struct SeverityProbabilities {
-  double minor = 0, low = 0, medium = 0, high = 0;
-};
-
-/// Integrate the table of `astm_severity` over normal distributions of depth and mean diameter.
-SeverityProbabilities severity_probabilities(const Measurement& depth_m, const Measurement& diameter_m);
-
-/// The class of more than half of the probability; `uncertain` if there is none.
-Severity likely_severity(const SeverityProbabilities& probabilities);
 
 struct DamageOptions {
   double threshold_sigma = 5;     ///< minimum depth in standard deviations of the intact road, 1 … 100
@@ -64,6 +30,7 @@ struct DamageOptions {
   double min_area_share = 0.001;  ///< minimum area as a share of the image, 0 … 1; used without a calibration
   double min_confidence = 0.5;  ///< of a damage, 0 … 1; regions below are candidates. 0: candidates are damages, too
   bool protrusions = true;      ///< whether to find bumps, heave and debris too
+  SeverityScheme severity = astm_d6433();  ///< tables of severities
 
   /// Throws Error naming the first option out of range.
   void validate() const;
@@ -90,13 +57,27 @@ struct DamageMetrics {
   double width_m = 0;     ///< shorter side of that rectangle
   double angle_rad = 0;   ///< from the road's x axis to the longer side, positive towards y, −π/2 … π/2
   double diameter_m = 0;  ///< diameter of the circle of equal area
-  std::array<double, 3> centroid_m{};       ///< on the undamaged surface, camera frame
-  std::array<double, 2> road_centroid_m{};  ///< (x, y) of the centroid in the axes of `road_axes`
-  double distance_m = 0;                    ///< from the left camera to the centroid
-  double resolvable_depth_m = 0;            ///< smallest resolvable depth here: threshold_sigma standard errors
-  SeverityProbabilities severity_probabilities;
+  /// Mean slope of the wall between a quarter and three quarters of the maximum depth. The support window flattens
+  /// walls: a lower bound.
+  double wall_slope = 0;
+  std::vector<std::array<double, 2>> outline_m;  ///< (x, y), `road_axes`; counterclockwise, not closed
+  std::array<double, 3> centroid_m{};            ///< on the undamaged surface, camera frame
+  std::array<double, 2> road_centroid_m{};       ///< (x, y) of the centroid in the axes of `road_axes`
+  double distance_m = 0;                         ///< from the left camera to the centroid
+  double resolvable_depth_m = 0;                 ///< smallest resolvable depth here: threshold_sigma standard errors
+  Distress distress = Distress::unknown;
+  double quantity = 0;  ///< in `unit`, as the table of the distress counts
+  DistressUnit unit = DistressUnit::count;
+  SeverityProbabilities severity_probabilities;  ///< all 0 if the scheme has no classes for the distress
   Severity severity = Severity::unknown;
 };
+
+/// Say by which figures the distress was decided: slope of the wall, elongation, direction.
+std::string distress_reason(const DamageMetrics& metrics);
+
+/// Return the severity in words: a class, a range such as "medium–high" where no class has more than half of the
+/// probability, "unresolvable", or "not graded" without a table and where the area is known worse than ±50 %.
+std::string severity_text(const DamageMetrics& metrics);
 
 /// What distinguishes a damage from noise and from what is not road. No number decides alone.
 struct DamageEvidence {

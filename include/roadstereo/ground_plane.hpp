@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "roadstereo/calibration.hpp"
 #include "roadstereo/road_model.hpp"
@@ -30,5 +31,10 @@ struct RoadAxes {
 
 /// Returns the axes: x is the camera's x axis projected onto the plane, z opposite to its normal, y = z × x.
 RoadAxes road_axes(const GroundPlane& plane);
+
+/// Returns the corners (x, y) of the road in view in the axes of `road_axes`, counterclockwise from the lower left one
+/// of the image: down to the last row, up to the row in which a pixel covers 1 m of the road. Empty if no row shows it.
+std::vector<std::array<double, 2>> road_footprint(const DisparityPlane& model, const StereoCalibration& calibration,
+                                                  int width, int height);
 
 }  // namespace roadstereo

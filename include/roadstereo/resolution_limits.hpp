@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -19,13 +20,24 @@ struct CameraPose {
   void validate() const;
 };
 
+/// Systematic error of the parabola, which averaging does not remove, pixels (docs/accuracy.md).
+inline constexpr double sub_pixel_bias_px = 0.03;
+
+/// Return the smallest resolvable change of disparity, pixels: `threshold_sigma` standard errors, of `noise_px` and
+/// `sub_pixel_bias_px`. `inspect` and `limits` both use it.
+inline double resolvable_change_px(double noise_px, double threshold_sigma) {
+  return threshold_sigma * std::hypot(noise_px, sub_pixel_bias_px);
+}
+
 struct ResolutionOptions {
-  /// Standard error of a disparity, pixels, 0.001 … 10. 0.1 px is the root mean square error of the default preset on
-  /// rendered damage with ordinary texture (docs/accuracy.md); `sigma.tiff` gives it for an image.
-  double sigma_px = 0.1;
+  /// Standard deviation of the intact road in the transformed map, pixels, 0 … 10: `noise_px` of damages.json. 0.025 px
+  /// is ordinary asphalt in focus.
+  double noise_px = 0.025;
   double threshold_sigma = DamageOptions{}.threshold_sigma;  ///< resolvable depth in standard errors, 0.1 … 100
   double min_area_m2 = DamageOptions{}.min_area_m2;          ///< minimum area of the segmentation, m², 0 … 100
-  MatcherOptions matcher;                                    ///< its support window bounds the resolvable area
+  double rut_width_m = 0.3;  ///< of the floor of a rut, 0.01 … 10; its depth is the mean over this width
+  double rut_length_m = 1;   ///< and this length, 0.01 … 100
+  MatcherOptions matcher;    ///< its support window bounds the resolvable area
 
   /// Throws Error naming the first option out of range.
   void validate() const;
@@ -39,11 +51,12 @@ struct RowResolution {
   double disparity_px = 0;        ///< of the road
   double step_m = 0;              ///< depth that lowers the disparity by one pixel; infinity if there is none
   double std_error_m = 0;         ///< depth of one standard error of the disparity
-  double resolvable_depth_m = 0;  ///< depth of threshold_sigma standard errors; infinity if there is none
+  double resolvable_depth_m = 0;  ///< depth of `resolvable_change_px`, of a pothole; infinity if there is none
+  double resolvable_rut_m = 0;    ///< mean depth of a rut, whose floor averages over many support windows
   double gsd_across_m = 0;        ///< ground sampling distance along the row, metres per pixel
   double gsd_along_m = 0;         ///< ground sampling distance along the column, metres per pixel
   double swath_m = 0;             ///< width of the road in view of both cameras; 0 if the road is too close
-  double resolvable_area_m2 = 0;  ///< smallest resolvable area
+  double resolvable_area_m2 = 0;  ///< smallest resolvable area, of a pothole
 };
 
 /// Depth and area that a rig resolves on a planar road from a height and a pitch.
@@ -54,7 +67,7 @@ struct RowResolution {
 /// straight down and small δ this is Z²·δ / (f·b). A pixel covers Z/f of the road along the row and Z²/(h·f) along the
 /// column. The resolvable area is that of the support window of a disparity, an ellipse of 2(R + r) + 1 columns and
 /// 2(aspect·R + r) + 1 rows (block radius r, aggregation radius R): π/4 · columns · rows · across · along, at least
-/// min_area_m2.
+/// min_area_m2. The noise of the mean over a rut is that of a disparity over the root of the number of support windows.
 class ResolutionLimits {
  public:
   /// Throws Error for options out of range, for a calibration without a size, and if no row of the image shows the

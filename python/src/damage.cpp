@@ -41,15 +41,24 @@ void bind_metrics(py::module_& module) {
       .field("width_m", &Metrics::width_m, "Shorter side of that rectangle.")
       .field("angle_rad", &Metrics::angle_rad, "Direction of the longer side, −π/2 … π/2, from the road's x axis.")
       .field("diameter_m", &Metrics::diameter_m, "Diameter of the circle of equal area.")
+      .field("wall_slope", &Metrics::wall_slope, "Mean slope of the wall, rise over run; a lower bound.")
+      .field("outline_m", &Metrics::outline_m, "Outline [[x, y], …] on the road, counterclockwise, not closed.")
+      .field(
+          "distress", [](const Metrics& metrics) { return name_of(metrics.distress); },
+          "'pothole', 'depression', 'rut', 'crack', 'bump', 'debris', 'kerb step' or 'unknown'.")
+      .field("quantity", &Metrics::quantity, "Amount in `unit`, as the standard counts the distress.")
+      .field(
+          "unit", [](const Metrics& metrics) { return name_of(metrics.unit); }, "'count', 'm2' or 'm'.")
       .field("centroid_m", &Metrics::centroid_m, "[x, y, z] on the undamaged surface, camera frame.")
       .field("road_centroid_m", &Metrics::road_centroid_m,
              "[x, y] on the road: x to the camera's right, y forward from its foot.")
       .field("distance_m", &Metrics::distance_m, "From the left camera to the centroid.")
       .field("resolvable_depth_m", &Metrics::resolvable_depth_m, "Smallest resolvable depth here.")
-      .field("severity_probabilities", &Metrics::severity_probabilities, "Of depressions; see ASTM D6433.")
+      .field("severity_probabilities", &Metrics::severity_probabilities, "All 0 if the distress has no classes.")
       .field(
           "severity", [](const Metrics& metrics) { return name_of(metrics.severity); },
-          "'minor', 'low', 'medium', 'high', 'uncertain', 'unresolvable' or 'unknown'.");
+          "'minor', 'low', 'medium', 'high', 'uncertain', 'unresolvable' or 'unknown'.")
+      .field("severity_range", &severity_text, "In words: 'medium', 'medium–high', 'not graded', 'unresolvable'.");
 }
 
 void bind_one_damage(py::module_& module) {

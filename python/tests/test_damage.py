@@ -23,7 +23,8 @@ def columns(damage):
         row[name] = getattr(damage, name)
     for name in ("contrast_sigmas", "significance", "steepness", "road_share", "border_share"):
         row[name] = getattr(evidence, name)
-    for name in ("length_m", "width_m", "diameter_m", "distance_m", "resolvable_depth_m"):
+    for name in ("length_m", "width_m", "diameter_m", "distance_m", "resolvable_depth_m", "wall_slope", "quantity",
+                 "distress", "unit", "severity_range"):
         row[name] = getattr(metrics, name)
     for name in ("minor", "low", "medium", "high"):
         row[f"p_{name}"] = getattr(metrics.severity_probabilities, name)

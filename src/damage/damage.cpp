@@ -68,6 +68,7 @@ void DamageOptions::validate() const {
   require_range("damage", "min_area_m2", min_area_m2, 0.0, 1e4);
   require_range("damage", "min_area_share", min_area_share, 0.0, 1.0);
   require_range("damage", "min_confidence", min_confidence, 0.0, 1.0);
+  severity.validate();
 }
 
 DamageMap make_empty_damage_map(int width, int height, const std::string& reason) {

@@ -19,6 +19,11 @@ class FrameGeometry {
     return disparity_plane_.disparity(u, v) + surface - delta_t_;
   }
   Point point(int u, int v, double disparity) const { return calibration_.point_m(u, v, disparity); }
+  /// (x, y) where the line of sight of (u, v) meets the road's plane, in the axes of `road_axes`.
+  std::array<double, 2> road_position(double u, double v) const {
+    const Point on_road = axes_.to_road(calibration_.point_m(u, v, disparity_plane_.disparity(u, v)));
+    return {on_road[0], on_road[1]};
+  }
   /// Area of the road in one pixel, m², where its line of sight meets the road at `road`: Z³ / (f²·n·P).
   double pixel_area(const Point& road) const;
   /// Depth along the road's normal from `road` to `measured`, two points of one line of sight.

@@ -6,9 +6,12 @@
 
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
+#include "damage/distress.hpp"
 #include "damage/morphology.hpp"
 #include "damage/oriented_box.hpp"
+#include "damage/road_outline.hpp"
 #include "damage/smoothing_error.hpp"
+#include "roadstereo/resolution_limits.hpp"
 
 namespace roadstereo {
 namespace {
@@ -24,6 +27,8 @@ struct MetricSums {
   std::size_t sigma_pixels = 0;            ///< pixels with a standard error
   std::vector<std::array<double, 2>> rim;  ///< points on the road
   double perimeter = 0;                    ///< metres
+  double quarter_m2 = 0;                   ///< area deeper than a quarter of the maximum depth
+  double three_quarters_m2 = 0;            ///< area deeper than three quarters of it
 };
 
 /// Whether the pixel has a 4-neighbour outside its damage.
@@ -38,6 +43,7 @@ MetricSums sum_pixels(const DamageInput& input, const FrameGeometry& geometry, c
                       const Damage& damage, double offset) {
   MetricSums sums;
   const double f = geometry.focal_px();
+  const double max_depth = sign_of(damage.kind) * damage.max_depth_px.value;
   for (int v = damage.box_px[1]; v <= damage.box_px[3]; ++v) {
     for (int u = damage.box_px[0]; u <= damage.box_px[2]; ++u) {
       if (maps.ids(u, v) != damage.id) continue;
@@ -46,7 +52,10 @@ MetricSums sum_pixels(const DamageInput& input, const FrameGeometry& geometry, c
       const Point road = geometry.point(u, v, road_disparity);
       const Point point = geometry.point(u, v, disparity);
       const double area = geometry.pixel_area(road);
+      const double depth_share = (maps.depth(u, v) + offset) / max_depth;
       sums.area += area;
+      if (depth_share > 0.25) sums.quarter_m2 += area;
+      if (depth_share > 0.75) sums.three_quarters_m2 += area;
       sums.volume += (point[2] * point[2] * point[2] - road[2] * road[2] * road[2]) / (3 * f * f);
       for (std::size_t k = 0; k < 3; ++k) sums.centroid[k] += area * road[k];
       sums.metres_per_pixel += area * geometry.metres_per_pixel(point, disparity);
@@ -63,15 +72,35 @@ MetricSums sum_pixels(const DamageInput& input, const FrameGeometry& geometry, c
   return sums;
 }
 
+/// Mean slope of the wall: half of the depth over the mean distance between the contours at a quarter and three
+/// quarters of it, the area between them over the mean of their perimeters, taken as those of ellipses.
+double wall_slope(const MetricSums& sums, const DamageMetrics& metrics) {
+  const double aspect = metrics.width_m > 0 ? metrics.length_m / metrics.width_m : 1;
+  const double perimeter_per_root_area = std::sqrt(2 * std::numbers::pi * (aspect * aspect + 1) / aspect);
+  const double mean_perimeter =
+      0.5 * perimeter_per_root_area * (std::sqrt(sums.quarter_m2) + std::sqrt(sums.three_quarters_m2));
+  const double run = (sums.quarter_m2 - sums.three_quarters_m2) / mean_perimeter;
+  return 0.5 * metrics.max_depth_m.value / std::max(run, std::sqrt(sums.area) * 1e-3);
+}
+
+/// Corners of the outline on the road.
+std::vector<std::array<double, 2>> outline_on_road(const FrameGeometry& geometry, const DamageMap& maps,
+                                                   const Damage& damage) {
+  constexpr double tolerance_px = 1;
+  std::vector<std::array<double, 2>> outline = trace_outline(maps.ids, damage, tolerance_px);
+  std::reverse(outline.begin(), outline.end());  // counterclockwise seen from above
+  for (std::array<double, 2>& corner : outline) corner = geometry.road_position(corner[0], corner[1]);
+  return outline;
+}
+
 /// Set the standard errors. They combine the errors of the disparity, of the undamaged surface, of the smoothing by the
 /// support window of matching, and of the outline. The constants of the last two were measured on synthetic roads
 /// (docs/accuracy.md): a hollow of the size of the window loses part of its depth, and the outline is accurate to a
 /// fifth of the window's radius.
 void set_standard_errors(const MetricSums& sums, const SurfaceOffset& offset, double noise_px, double sigma_px,
                          double deepest_m_per_px, DamageMetrics& metrics, Damage& damage) {
-  constexpr double sub_pixel_bias_px = 0.03;  // of the parabola (docs/accuracy.md)
-  constexpr double mean_factor = 0.3;         // error of the mean depth, relative to that of one pixel
-  constexpr double outline_factor = 0.2;      // error of the outline, relative to the radius of the window
+  constexpr double mean_factor = 0.3;     // error of the mean depth, relative to that of one pixel
+  constexpr double outline_factor = 0.2;  // error of the outline, relative to the radius of the window
   const double radius_px = std::sqrt(static_cast<double>(damage.pixels) / std::numbers::pi);
   const SmoothingError smoothing(static_cast<double>(damage.pixels));
   const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
@@ -120,14 +149,13 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   const Point on_road = geometry.axes().to_road(metrics.centroid_m);
   metrics.road_centroid_m = {on_road[0], on_road[1]};
   metrics.distance_m = std::hypot(metrics.centroid_m[0], metrics.centroid_m[1], metrics.centroid_m[2]);
-  metrics.resolvable_depth_m = options.threshold_sigma * std::hypot(sigma_px, offset.std_error) * metres_per_pixel;
-  const double diameter_std_error = 0.5 * metrics.diameter_m * metrics.area_m2.std_error / sums.area;
-  metrics.severity_probabilities =
-      severity_probabilities(metrics.max_depth_m, {metrics.diameter_m, diameter_std_error});
-  // The mean is a lower bound of the maximum, with a smaller standard error.
-  metrics.severity = metrics.max_depth_m.is_resolved() || metrics.mean_depth_m.is_resolved()
-                         ? likely_severity(metrics.severity_probabilities)
-                         : Severity::unresolvable;
+  metrics.resolvable_depth_m =
+      resolvable_change_px(std::hypot(noise_px, offset.std_error), options.threshold_sigma) * metres_per_pixel;
+  metrics.wall_slope = wall_slope(sums, metrics);
+  metrics.outline_m = outline_on_road(geometry, maps, damage);
+  const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
+  metrics.distress = classify_distress(damage, metrics, SmoothingError::window_radius_px * pixel_m, maps.ids.width());
+  grade(options.severity, metrics);
   return metrics;
 }
 

@@ -31,9 +31,11 @@ void CameraPose::validate() const {
 }
 
 void ResolutionOptions::validate() const {
-  require_range("resolution", "sigma_px", sigma_px, 0.001, 10.0);
+  require_range("resolution", "noise_px", noise_px, 0.0, 10.0);
   require_range("resolution", "threshold_sigma", threshold_sigma, 0.1, 100.0);
   require_range("resolution", "min_area_m2", min_area_m2, 0.0, 100.0);
+  require_range("resolution", "rut_width_m", rut_width_m, 0.01, 10.0);
+  require_range("resolution", "rut_length_m", rut_length_m, 0.01, 100.0);
   matcher.validate();
 }
 
@@ -79,13 +81,16 @@ RowResolution ResolutionLimits::at_row(double v) const {
   row.distance_m = z * std::hypot(1.0, tangent);
   row.disparity_px = road_disparity(v) - calibration_.disparity_offset_px;
   row.step_m = depth_m(v, 1);
-  row.std_error_m = pose_.height_m * options_.sigma_px / road_disparity(v);
-  row.resolvable_depth_m = depth_m(v, options_.threshold_sigma * options_.sigma_px);
+  row.std_error_m = pose_.height_m * std::hypot(options_.noise_px, sub_pixel_bias_px) / road_disparity(v);
+  row.resolvable_depth_m = depth_m(v, resolvable_change_px(options_.noise_px, options_.threshold_sigma));
   row.gsd_across_m = z / f;
   row.gsd_along_m = z * z / (pose_.height_m * f);
   row.swath_m = std::clamp(calibration_.width - row.disparity_px, 0.0, double(calibration_.width)) * row.gsd_across_m;
-  row.resolvable_area_m2 =
-      std::max(options_.min_area_m2, window_pixels(options_.matcher) * row.gsd_across_m * row.gsd_along_m);
+  const double window_m2 = window_pixels(options_.matcher) * row.gsd_across_m * row.gsd_along_m;
+  row.resolvable_area_m2 = std::max(options_.min_area_m2, window_m2);
+  const double windows = std::max(1.0, options_.rut_width_m * options_.rut_length_m / window_m2);
+  row.resolvable_rut_m =
+      depth_m(v, resolvable_change_px(options_.noise_px / std::sqrt(windows), options_.threshold_sigma));
   return row;
 }
 
@@ -98,7 +103,7 @@ std::vector<RowResolution> ResolutionLimits::rows(int count) const {
 }
 
 std::optional<RowResolution> ResolutionLimits::farthest(double depth_m) const {
-  const double change = options_.threshold_sigma * options_.sigma_px;
+  const double change = resolvable_change_px(options_.noise_px, options_.threshold_sigma);
   const auto is_resolved = [&](double v) { return this->depth_m(v, change) <= depth_m; };
   // Bisection: disparities do not increase from the last row to the first.
   double near = last_row(), far = first_row_;
@@ -114,7 +119,7 @@ std::optional<RowResolution> ResolutionLimits::farthest(double depth_m) const {
 
 double ResolutionLimits::max_camera_height_m(double depth_m) const {
   // h·δ / (D − δ) = depth with D = f·b·slant / h: h² / depth + h = f·b·slant / δ
-  const double change = options_.threshold_sigma * options_.sigma_px;
+  const double change = resolvable_change_px(options_.noise_px, options_.threshold_sigma);
   const double right =
       calibration_.focal_px * calibration_.baseline_m * slant((calibration_.height - 1) / 2.0) / change;
   return right > 0 ? depth_m / 2 * (std::sqrt(1 + 4 * right / depth_m) - 1) : 0;

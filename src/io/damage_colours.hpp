@@ -33,4 +33,8 @@ inline Severity severity_of(const Damage& damage) {
   return damage.metrics ? damage.metrics->severity : Severity::unknown;
 }
 
+inline Distress distress_of(const Damage& damage) {
+  return damage.metrics ? damage.metrics->distress : Distress::unknown;
+}
+
 }  // namespace roadstereo::io

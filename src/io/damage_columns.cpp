@@ -69,6 +69,7 @@ struct AddCell {
 std::vector<DamageColumn> identity_columns() {
   return {{"id", [](const Damage& d) -> DamageValue { return std::int64_t{d.id}; }},
           {"kind", [](const Damage& d) -> DamageValue { return std::string(name_of(d.kind)); }},
+          {"distress", [](const Damage& d) -> DamageValue { return std::string(name_of(distress_of(d))); }},
           {"severity", [](const Damage& d) -> DamageValue { return std::string(name_of(severity_of(d))); }},
           {"confidence", [](const Damage& d) { return number(d.confidence); }}};
 }
@@ -91,6 +92,13 @@ std::vector<DamageColumn> metric_columns() {
              return number(d.metrics->angle_rad * 180 / std::numbers::pi);
            }},
           {"diameter_m", metric<&M::diameter_m>},
+          {"wall_slope", metric<&M::wall_slope>},
+          {"quantity", metric<&M::quantity>},
+          {"unit",
+           [](const Damage& d) -> DamageValue {
+             if (!d.metrics) return std::monostate{};
+             return std::string(name_of(d.metrics->unit));
+           }},
           {"centroid_x_m", metric_part<&M::centroid_m, 0>},
           {"centroid_y_m", metric_part<&M::centroid_m, 1>},
           {"centroid_z_m", metric_part<&M::centroid_m, 2>},
@@ -98,6 +106,11 @@ std::vector<DamageColumn> metric_columns() {
           {"road_y_m", metric_part<&M::road_centroid_m, 1>},
           {"distance_m", metric<&M::distance_m>},
           {"resolvable_depth_m", metric<&M::resolvable_depth_m>},
+          {"severity_range",
+           [](const Damage& d) -> DamageValue {
+             if (!d.metrics) return std::monostate{};
+             return severity_text(*d.metrics);
+           }},
           {"p_minor", probability<&SeverityProbabilities::minor>},
           {"p_low", probability<&SeverityProbabilities::low>},
           {"p_medium", probability<&SeverityProbabilities::medium>},

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/order_statistics.hpp"
+#include "damage/distress.hpp"
 #include "damage/smoothing_error.hpp"
 
 namespace roadstereo {
@@ -192,7 +193,7 @@ const MapDamage& best_of(const Group& group) {
   return (*best)->found;
 }
 
-RoadDamageRecord record_of(const Group& group, const RoadMap& map) {
+RoadDamageRecord record_of(const Group& group, const RoadMap& map, const SeverityScheme& severity) {
   const double view_factor = map.view_factor();
   RoadDamageRecord record;
   record.best = best_of(group);
@@ -224,10 +225,14 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map) {
   record.volume_m3 = whole ? fuse(volume, view_factor) : best.volume_m3;
   record.confidence = group.sightings.empty() ? 0 : joint_confidence(group, record.views, view_factor);
   if (group.in_map != nullptr) record.confidence = std::max(record.confidence, group.in_map->damage.confidence);
-  const double diameter = 2 * std::sqrt(record.area_m2.value / std::numbers::pi);
-  record.severity_probabilities = severity_probabilities(
-      record.max_depth_m, {diameter, 0.5 * diameter * record.area_m2.std_error / record.area_m2.value});
-  record.severity = likely_severity(record.severity_probabilities);
+  DamageMetrics fused = best;
+  fused.max_depth_m = record.max_depth_m;
+  fused.mean_depth_m = record.mean_depth_m;
+  fused.area_m2 = record.area_m2;
+  fused.diameter_m = 2 * std::sqrt(record.area_m2.value / std::numbers::pi);
+  grade(severity, fused);
+  record.severity_probabilities = fused.severity_probabilities;
+  record.severity = fused.severity;
   return record;
 }
 
@@ -238,7 +243,7 @@ std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sighti
   constexpr double min_std_errors = 3;
   std::vector<RoadDamageRecord> records;
   for (const Group& group : group_findings(sightings, in_map, options.min_confidence)) {
-    RoadDamageRecord record = record_of(group, map);
+    RoadDamageRecord record = record_of(group, map, options.severity);
     const bool resolvable = record.max_depth_m.value >= min_std_errors * record.max_depth_m.std_error;
     if (record.confidence >= options.min_confidence && resolvable) records.push_back(std::move(record));
   }

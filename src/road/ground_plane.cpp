@@ -35,4 +35,27 @@ RoadAxes road_axes(const GroundPlane& plane) {
   return frame;
 }
 
+std::vector<std::array<double, 2>> road_footprint(const DisparityPlane& model, const StereoCalibration& calibration,
+                                                  int width, int height) {
+  constexpr double max_gsd_m = 1;  // along the road: Z² / (h·f)
+  const GroundPlane plane = ground_plane(model, calibration);
+  const RoadAxes axes = road_axes(plane);
+  const double max_z = std::sqrt(max_gsd_m * plane.height_m * calibration.focal_px);
+  const double min_disparity = calibration.focal_px * calibration.baseline_m / max_z - calibration.disparity_offset_px;
+  const int last = height - 1;
+  const auto first_row = [&](int u) {
+    int v = 0;
+    while (v <= last && model.disparity(u, v) < min_disparity) ++v;
+    return v;
+  };
+  const int left = first_row(0), right = first_row(width - 1);
+  if (left >= last || right >= last) return {};
+  std::vector<std::array<double, 2>> corners;
+  for (const auto& [u, v] : {std::array{0, last}, {width - 1, last}, {width - 1, right}, {0, left}}) {
+    const auto on_road = axes.to_road(calibration.point_m(u, v, model.disparity(u, v)));
+    corners.push_back({on_road[0], on_road[1]});
+  }
+  return corners;
+}
+
 }  // namespace roadstereo

@@ -6,6 +6,7 @@ REPORT_SAMPLES is the program that writes them. Exits with 77 (skipped) where Ch
 import base64
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -55,13 +56,14 @@ class Report(unittest.TestCase):
         return [url for url in urls if not url.startswith("data:") and not url.endswith("/report.html")], urls
 
     def column(self, title):
-        """The heads of the table and the place of the one with that title."""
-        heads = self.browser.find_elements(By.CSS_SELECTOR, "table.sortable th")
+        """The heads of the first table and the place of the one with that title."""
+        heads = self.browser.find_element(By.CSS_SELECTOR, "table.sortable").find_elements(By.TAG_NAME, "th")
         titles = [head.text.split("\n")[0].strip() for head in heads]
         return heads[titles.index(title)], titles.index(title)
 
     def cells(self, place):
-        rows = self.browser.find_elements(By.CSS_SELECTOR, "table.sortable tbody tr")
+        rows = self.browser.find_element(By.CSS_SELECTOR, "table.sortable").find_elements(
+            By.CSS_SELECTOR, "tbody tr")
         return [row.find_elements(By.TAG_NAME, "td")[place] for row in rows]
 
     def numbers(self, place):
@@ -71,7 +73,7 @@ class Report(unittest.TestCase):
         return self.browser.execute_script("return arguments[0].toDataURL()", canvas)
 
     def test_opens_without_errors_and_without_the_network(self):
-        for name in ("none", "one", "many", "uncalibrated", "no_image"):
+        for name in ("none", "one", "many", "uncalibrated", "no_image", "flight"):
             with self.subTest(name):
                 self.open(name)
                 self.assertEqual(self.errors(), [])
@@ -86,12 +88,71 @@ class Report(unittest.TestCase):
         for width in (1280, 390):
             self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                          {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 500})
-            for name in ("none", "many", "uncalibrated"):
+            for name in ("none", "many", "uncalibrated", "flight"):
                 with self.subTest(name=name, width=width):
                     self.open(name)
                     wide = self.browser.execute_script("return document.documentElement.scrollWidth")
                     self.assertLessEqual(wide, width)
         self.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+    def show(self, width, height, media):
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                     {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500})
+        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": media})
+
+    def show_as_before(self):
+        self.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+    def test_phone_shows_depth_without_scrolling(self):
+        self.show(390, 844, "screen")
+        self.addCleanup(self.show_as_before)
+        for name in ("many", "flight"):
+            with self.subTest(name):
+                self.open(name)
+                head, place = self.column("Depth")
+                for part in [head] + self.cells(place):
+                    self.assertLessEqual(part.rect["x"] + part.rect["width"], 390)
+                self.assertRegex(self.cells(place)[0].text, r"^[\d.]+\s±\s[\d.]+$")
+                for number in self.browser.find_elements(By.CSS_SELECTOR, ".road-map text, .map text"):
+                    self.assertGreaterEqual(number.rect["height"], 8)
+
+    def test_page_of_a4_loses_nothing(self):
+        """186 mm of text: 703 CSS pixels. Nothing is cut off in tables, figures and cards, and signs stay."""
+        self.show(703, 1000, "print")
+        self.addCleanup(self.show_as_before)
+        for name in ("many", "flight"):
+            with self.subTest(name):
+                self.open(name)
+                wide = self.browser.execute_script("""
+                    return [...document.querySelectorAll("table, td, dd, .card .value, .card .more, h3, figcaption")]
+                      .filter((part) => part.getBoundingClientRect().right > 703.5 ||
+                              part.scrollWidth > part.clientWidth + 1 && part.clientWidth > 0)
+                      .map((part) => part.textContent.trim().slice(0, 60))""")
+                self.assertEqual(wide, [])
+                pdf = FOLDER / (name + ".pdf")
+                pdf.write_bytes(base64.b64decode(self.browser.execute_cdp_cmd("Page.printToPDF", {
+                    "printBackground": True, "preferCSSPageSize": True})["data"]))
+                shown = self.browser.execute_script("return document.querySelector('main').innerText")
+                if shutil.which("pdftotext"):
+                    printed = subprocess.run(["pdftotext", "-layout", pdf, "-"], check=True, capture_output=True,
+                                             text=True).stdout
+                    for sign in ("m²", "±", "°" if name == "flight" else "×"):
+                        self.assertGreaterEqual(printed.count(sign), shown.count(sign), sign)
+
+    def test_recording_shows_map_and_details(self):
+        self.open("flight")
+        links = self.browser.find_elements(By.CSS_SELECTOR, ".road-map a")
+        self.assertEqual(len(links), 11)
+        for link in links:
+            target = self.browser.execute_script("return arguments[0].href.baseVal", link)
+            self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, "section" + target)), 1, target)
+        self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, ".relief canvas")), 11)
+        self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, "#segments tbody tr")), 4)
+        self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, "#candidates tbody tr")), 1)
+        first = self.browser.find_element(By.ID, "summary").text
+        for word in ("disparity", "Mde/s", "a1", "px"):
+            self.assertNotIn(word, first)
 
     def test_title_is_text(self):
         self.open("one")
@@ -113,10 +174,10 @@ class Report(unittest.TestCase):
 
     def test_keyboard_sorts_words(self):
         self.open("many")
-        head, place = self.column("Kind")
+        head, place = self.column("Distress")
         head.find_element(By.TAG_NAME, "button").send_keys(Keys.ENTER)
         words = [cell.text for cell in self.cells(place)]
-        self.assertEqual(words, ["depression"] * 10 + ["protrusion"] * 2)
+        self.assertEqual(words, ["bump"] * 2 + ["crack"] + ["pothole"] * 9)
         head.find_element(By.TAG_NAME, "button").send_keys(Keys.SPACE)
         self.assertEqual([cell.text for cell in self.cells(place)], words[::-1])
         others = [other.get_attribute("aria-sort")

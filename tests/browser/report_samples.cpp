@@ -1,5 +1,5 @@
 // Writes the files of made-up damage for the tests that open reports in a browser: report_samples FOLDER makes the
-// folders none, one, many, uncalibrated and no_image in it.
+// folders none, one, many, uncalibrated, no_image and flight in it.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -8,6 +8,8 @@
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/damage_files.hpp"
+#include "roadstereo/io/flight_pictures.hpp"
+#include "roadstereo/io/flight_report.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/io/pictures.hpp"
 #include "tests/damage/damage_from_truth.hpp"
@@ -85,6 +87,7 @@ void write_sample(const std::filesystem::path& folder, const synth::SyntheticPai
                       {"looking", "62.0° below the horizon"},
                       {"noise", "0.050 px"},
                       {"preset", "default"}};
+  input.head = {{"Road", "B 27"}, {"Operator", "Müller"}};
   if (with_image) input.left = pair.left.view();
   if (calibrated) {
     input.disparity = truth.disparity;
@@ -96,6 +99,56 @@ void write_sample(const std::filesystem::path& folder, const synth::SyntheticPai
   }
   io::OutputFolder output(folder);
   io::add_damage_files(output, input);
+  output.commit();
+}
+
+/// A recording of 70 m along a curve, with the damages of one pair, of which the last is a candidate.
+void write_flight(const std::filesystem::path& folder, const synth::SyntheticPair& pair) {
+  TrueDamage truth = damage_from_truth(pair, true);
+  wear(truth);
+  io::DamageReportInput pictures{truth.map};
+  pictures.left = pair.left.view();
+  pictures.disparity = truth.disparity;
+  pictures.calibration = pair.calibration;
+  io::FlightReportInput input;
+  input.title = "flight <sample>";
+  input.head = {{"Road", "B 27, km 3.4 to 3.5"}, {"Operator", "Müller & Söhne"}, {"Recorded", "2026-05-01 12:00 UTC"}};
+  input.properties = {{"Roll", "0.12 ° (median; -0.40 … 0.52)"}, {"Engine", "cpu, 8 threads"}};
+  input.metric = true;
+  input.curves.in_seconds = true;
+  std::vector<io::GeoFrame> frames(141);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double way = 0.5 * static_cast<double>(i);
+    frames[i].station_m = way;
+    frames[i].roll_rad = 0.004 * std::sin(way / 9);
+    frames[i].height_m = 2.6 + 0.05 * std::cos(way / 7);
+    input.track_deg.push_back({9.05 + way / 80000, 48.52 + 6e-5 * std::sin(way / 30)});
+    input.curves.time.push_back(0.1 * static_cast<double>(i));
+    input.curves.roll_deg.push_back(57.3 * frames[i].roll_rad);
+    input.curves.height_m.push_back(frames[i].height_m);
+    input.curves.sigma_d_px.push_back(0.06 + 0.01 * std::sin(way));
+  }
+  std::vector<io::RoadDamage> damages;
+  for (const Damage& damage : truth.map.damages) {
+    io::RoadDamage& known = damages.emplace_back();
+    known.id = static_cast<std::int64_t>(damages.size());
+    known.best = damage;
+    known.best.confidence = 0.93;
+    known.sightings = 4;
+    known.frame_name = "000" + std::to_string(10 * damage.id) + ".png";
+    known.station_m = 5.6 * damage.id;
+    const auto& place = input.track_deg[static_cast<std::size_t>(2 * known.station_m)];
+    known.position = io::GeoPosition{place[1], place[0], 100, 0};
+  }
+  damages.back().candidate = true;
+  for (const io::RoadDamage& known : io::worst_first(damages, false)) {
+    input.damages.push_back({known, io::road_damage_section(pictures, known.best, known.id)});
+  }
+  input.candidates = io::worst_first(damages, true);
+  input.segments = io::road_segments(frames, damages);
+  input.thumbnails = {{"0", io::frame_thumbnail(pair.left.view(), truth.map)}};
+  io::OutputFolder output(folder);
+  output.add("report.html", io::flight_report(input));
   output.commit();
 }
 
@@ -116,6 +169,7 @@ int main(int argc, char** argv) {
     write_sample(folder / "many", many, true, true);
     write_sample(folder / "uncalibrated", many, false, true);
     write_sample(folder / "no_image", one, false, false);
+    write_flight(folder / "flight", many);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -116,6 +116,31 @@ TEST_F(DamageCommand, DisparityAndCalibrationMakeFiguresMetric) {
   }
 }
 
+/// The pothole of 60 mm is "high" by its diameter in ASTM D6433, "low" between 40 and 100 mm of the file.
+TEST_F(DamageCommand, SeverityFileReplacesTables) {
+  write_damaged();
+  const std::string map = "map.tiff --disparity disparity.tiff --calibration rig.yaml --severity ";
+  const auto standard = damages_of(map + "d6433")["damages"][0];
+  EXPECT_EQ(standard["distress"], "pothole");
+  EXPECT_EQ(standard["severity"],
+            astm_severity(standard["max_depth_m"], standard["diameter_m"]) == Severity::high ? "high" : "medium");
+  write("own.yaml", std::string("name: own\npothole: {unit: m2, depth_mm: [40, 100], severity: [low, high]}\n"));
+  const auto own = damages_of(map + "own.yaml")["damages"][0];
+  EXPECT_EQ(own["severity"], "low");
+  EXPECT_EQ(own["unit"], "m2");
+  EXPECT_EQ(own["quantity"], own["area_m2"]);
+  const auto fails = [&](const std::string& text, const std::string& part) {
+    write("own.yaml", text);
+    expect_complaint(run("damage " + map + "own.yaml --output out"), part);
+  };
+  fails("hole: {unit: m2}\n", "hole");
+  fails("pothole: {unit: feet}\n", "feet");
+  fails("pothole: {unit: m2, depth_mm: [40, 30], severity: [low, high]}\n", "ascend");
+  fails("pothole: {unit: m2, depth_mm: [40], severity: [severe]}\n", "severe");
+  fails("pothole: {unit: m2, depth_mm: deep}\n", "depth_mm");
+  fails("[", "own.yaml");
+}
+
 TEST_F(DamageCommand, IntactRoadSucceeds) {
   const ExactMaps intact(intact_scene());
   write("map.tiff", io::encode_float_tiff(intact.transformed));

@@ -35,7 +35,7 @@ TEST_F(LimitsCommand, PrintsTableAndDrawsFigure) {
 
 TEST_F(LimitsCommand, JsonMatchesClosedForm) {
   const Outcome outcome =
-      run("--calibration K.txt --size 640x360 --height 3 --pitch 45 --sigma-px 0.05 --rows 3 --json");
+      run("--calibration K.txt --size 640x360 --height 3 --pitch 45 --noise-px 0.04 --rows 3 --json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto document = nlohmann::json::parse(outcome.out);
   ASSERT_EQ(document["rows"].size(), 3U);
@@ -47,6 +47,16 @@ TEST_F(LimitsCommand, JsonMatchesClosedForm) {
   // h²/0.05 + h = 60 · sin 45° / 0.25
   const double h = document["astm"][2]["up_to_height_m"];
   EXPECT_NEAR(h * h / 0.05 + h, 60 * std::numbers::sqrt2 / 2 / 0.25, 1e-6);
+}
+
+TEST_F(LimitsCommand, FocalLengthAndBaselineAreARig) {
+  const Outcome file = run("--calibration K.txt --size 640x360 --height 2 --json");
+  const Outcome rig = run("--focal-px 500 --baseline-m 0.12 --size 640x360 --height 2 --json");
+  ASSERT_EQ(rig.exit_code, 0) << rig.err;
+  EXPECT_EQ(rig.out, file.out);
+  expect_complaint(run("--focal-px 500 --size 640x360 --height 2"), "--baseline-m");
+  expect_complaint(run("--focal-px 500 --baseline-m 0.12 --height 2"), "--size");
+  expect_complaint(run("--calibration K.txt --focal-px 500 --baseline-m 0.12 --size 640x360 --height 2"), "--focal-px");
 }
 
 TEST_F(LimitsCommand, HostileCalibrationIsOneSentence) {
@@ -64,7 +74,7 @@ TEST_F(LimitsCommand, RejectsBadInput) {
   expect_complaint(run("--calibration rig.yaml --height -2"), "--height");
   expect_complaint(run("--calibration rig.yaml --height 2 --pitch 91"), "--pitch");
   expect_complaint(run("--calibration rig.yaml --height 2 --pitch -45"), "not in view");
-  expect_complaint(run("--calibration rig.yaml --height 2 --sigma-px 0"), "--sigma-px");
+  expect_complaint(run("--calibration rig.yaml --height 2 --noise-px -1"), "--noise-px");
   expect_complaint(run("--calibration none.yaml --height 2"), "none.yaml");
   expect_complaint(run("--calibration K.txt --height 2"), "--size");
   expect_complaint(run("--calibration rig.yaml --height 2 --size 64"), "64");

@@ -94,6 +94,11 @@ inline DamageMetrics metrics_of(const synth::SyntheticPair& pair, const synth::D
   metrics.road_centroid_m = {on_road[0], on_road[1]};
   metrics.distance_m = std::hypot(metrics.centroid_m[0], metrics.centroid_m[1], metrics.centroid_m[2]);
   metrics.resolvable_depth_m = 0.006;
+  metrics.wall_slope = 1;
+  metrics.distress = known.kind == "bump"    ? Distress::bump
+                     : known.kind == "crack" ? Distress::crack
+                                             : Distress::pothole;
+  metrics.quantity = 1;
   metrics.severity = known.depth_m < metrics.resolvable_depth_m ? Severity::unresolvable
                                                                 : astm_severity(known.depth_m, metrics.diameter_m);
   return metrics;

@@ -14,20 +14,24 @@
 namespace roadstereo {
 namespace {
 
+SeverityTable potholes() {
+  return *astm_d6433().find(Distress::pothole);
+}
+
 TEST(SeverityProbabilities, FollowNormalDistribution) {
   // 30 ± 5 mm: Φ(−1) = 0.158655 below 25 mm, Φ(−3.4) = 0.000337 below 13 mm.
-  const SeverityProbabilities p = severity_probabilities({0.030, 0.005}, {0.3, 0});
+  const SeverityProbabilities p = severity_probabilities(potholes(), {0.030, 0.005}, {0.3, 0});
   EXPECT_NEAR(p.minor, 0.000337, 1e-6);
   EXPECT_NEAR(p.low, 0.158655 - 0.000337, 1e-6);
   EXPECT_NEAR(p.medium, 0.841345, 1e-6);
   EXPECT_NEAR(p.high, 0, 1e-6);
   EXPECT_EQ(likely_severity(p), Severity::medium);
   // Both axes at a limit: a quarter for each of the four cells around (25 mm, 200 mm): low, low, low, medium.
-  const SeverityProbabilities corner = severity_probabilities({0.025, 0.001}, {0.2, 0.01});
+  const SeverityProbabilities corner = severity_probabilities(potholes(), {0.025, 0.001}, {0.2, 0.01});
   EXPECT_NEAR(corner.low, 0.75, 1e-6);
   EXPECT_NEAR(corner.medium, 0.25, 1e-6);
   // 50 ± 1 mm and 450 ± 10 mm: medium or high below 450 mm, high above.
-  const SeverityProbabilities wide = severity_probabilities({0.050, 0.001}, {0.45, 0.01});
+  const SeverityProbabilities wide = severity_probabilities(potholes(), {0.050, 0.001}, {0.45, 0.01});
   EXPECT_NEAR(wide.medium, 0.5, 1e-6);
   EXPECT_NEAR(wide.high, 0.5, 1e-6);
   EXPECT_EQ(likely_severity({0.25, 0.25, 0.25, 0.25}), Severity::uncertain);
@@ -36,7 +40,7 @@ TEST(SeverityProbabilities, FollowNormalDistribution) {
 TEST(SeverityProbabilities, WithoutErrorIsTable) {
   for (const double depth : {0.01, 0.02, 0.03, 0.06}) {
     for (const double diameter : {0.05, 0.15, 0.3, 0.6}) {
-      const SeverityProbabilities p = severity_probabilities({depth, 0}, {diameter, 0});
+      const SeverityProbabilities p = severity_probabilities(potholes(), {depth, 0}, {diameter, 0});
       EXPECT_EQ(likely_severity(p), astm_severity(depth, diameter)) << depth << " " << diameter;
       EXPECT_DOUBLE_EQ(p.minor + p.low + p.medium + p.high, 1);
     }

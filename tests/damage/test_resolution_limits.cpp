@@ -9,6 +9,7 @@
 #include "roadstereo/ground_plane.hpp"
 #include "roadstereo/resolution_limits.hpp"
 #include "roadstereo/synth.hpp"
+#include "tests/damage/damage_scene.hpp"
 
 namespace roadstereo {
 namespace {
@@ -28,12 +29,15 @@ StereoCalibration example_rig() {
 
 /// f·b = 60 px·m: from 2 m the road is at 30 px; one pixel is Z²/(f·b) of depth but for the next order.
 TEST(ResolutionLimits, NadirMatchesClosedForm) {
-  const ResolutionLimits limits(example_rig(), {2.0, 90 * degree});
+  ResolutionOptions options;
+  options.noise_px = 0.04;
+  const ResolutionLimits limits(example_rig(), {2.0, 90 * degree}, options);
   for (const RowResolution& row : limits.rows(5)) {
     EXPECT_NEAR(row.disparity_px, 30, 1e-9);
     EXPECT_NEAR(row.step_m, 2.0 / 29, 1e-12);
-    EXPECT_NEAR(row.std_error_m, 2 * 2 / 60.0 * 0.1, 1e-12);
-    EXPECT_NEAR(row.resolvable_depth_m, 2 * 0.5 / 29.5, 1e-12);
+    // √(0.04² + 0.03²) px = 0.05 px; five of them 0.25 px.
+    EXPECT_NEAR(row.std_error_m, 2 * 2 / 60.0 * 0.05, 1e-12);
+    EXPECT_NEAR(row.resolvable_depth_m, 2 * 0.25 / 29.75, 1e-12);
     EXPECT_NEAR(row.gsd_across_m, 2.0 / 500, 1e-12);
     EXPECT_NEAR(row.gsd_along_m, 2.0 / 500, 1e-12);
     EXPECT_NEAR(row.swath_m, 610 * 2.0 / 500, 1e-9);
@@ -42,6 +46,33 @@ TEST(ResolutionLimits, NadirMatchesClosedForm) {
   }
   EXPECT_NEAR(limits.depth_m(100, 1e-4), 4 / 60.0 * 1e-4, 1e-9);
   EXPECT_TRUE(std::isinf(limits.depth_m(100, 30)));
+}
+
+/// A rut of 0.6 m × 3 m covers 1.8 m² / (π/4·21·13·(4 mm)²) = 524.7 windows: noise of 0.6/√524.7 = 0.02619 px, with the
+/// bias 0.03982 px, five of which are 0.1991 px.
+TEST(ResolutionLimits, RutAveragesNoiseButNotBias) {
+  ResolutionOptions options;
+  options.noise_px = 0.6;
+  options.rut_width_m = 0.6;
+  options.rut_length_m = 3;
+  const RowResolution row = ResolutionLimits(example_rig(), {2.0, 90 * degree}, options).at_row(100);
+  EXPECT_NEAR(row.resolvable_rut_m, 2 * 0.1991 / (30 - 0.1991), 1e-5);
+  EXPECT_NEAR(row.resolvable_depth_m, 2 * 3.003748 / (30 - 3.003748), 1e-5);
+}
+
+/// The figure of a damage is that of the same rig, pose and noise.
+TEST(ResolutionLimits, IsThatOfFindDamage) {
+  const ExactMaps& maps = damaged();
+  const DamageMap found = find_damage(maps.metric());
+  ResolutionOptions options;
+  options.noise_px = found.noise_px;
+  const synth::Rig rig = damaged_scene().rig;
+  const ResolutionLimits limits(maps.pair.calibration, {rig.camera_height_m, rig.pitch_deg * degree}, options);
+  ASSERT_EQ(found.damages.size(), 2U);
+  for (const Damage& damage : found.damages) {
+    const double predicted = limits.at_row(damage.centroid_px[1]).resolvable_depth_m;
+    EXPECT_NEAR(damage.metrics->resolvable_depth_m, predicted, 0.2 * predicted);
+  }
 }
 
 TEST(ResolutionLimits, AreaIsAtLeastMinimumOfSegmentation) {
@@ -60,7 +91,7 @@ TEST(ResolutionLimits, FortyFiveDegreesMatchesClosedForm) {
   EXPECT_NEAR(row.distance_m, z, 1e-12);
   EXPECT_NEAR(row.ahead_m, 3, 1e-12);
   EXPECT_NEAR(row.disparity_px, 60 / z - 7, 1e-12);
-  EXPECT_NEAR(row.std_error_m, z * z / 60 * 0.1 / std::numbers::sqrt2, 1e-12);
+  EXPECT_NEAR(row.std_error_m, z * z / 60 * std::hypot(0.025, 0.03) / std::numbers::sqrt2, 1e-12);
   EXPECT_NEAR(row.gsd_across_m, z / 500, 1e-12);
   const double difference = limits.at_row(179).ahead_m - limits.at_row(180).ahead_m;
   EXPECT_NEAR(row.gsd_along_m, difference, 1e-5 * difference);
@@ -125,7 +156,7 @@ TEST(ResolutionLimits, RejectsBadInput) {
   EXPECT_THROW(ResolutionLimits(rig, {2, -30 * degree}), Error);  // the sky alone
   EXPECT_NO_THROW(ResolutionLimits(rig, {2, -10 * degree}));      // road in the lower rows
   ResolutionOptions options;
-  options.sigma_px = 0;
+  options.noise_px = -1;
   EXPECT_THROW(ResolutionLimits(rig, {2, 1}, options), Error);
   StereoCalibration sizeless = rig;
   sizeless.width = sizeless.height = 0;

@@ -186,7 +186,9 @@ TEST_F(FlightCommand, FolderGivesTablesReportAndPictures) {
   EXPECT_EQ(summary["frames"]["rejected"], 1);
   EXPECT_TRUE(summary["run"]["complete"].get<bool>());
   EXPECT_NEAR(summary["height_m"]["median"].get<double>(), synth::named_scene("uav").rig.camera_height_m, 0.3);
-  EXPECT_EQ(summary["damages"]["sightings"], rows("out/damages.csv").size() - 1);
+  EXPECT_EQ(summary["damages"]["sightings"], rows("out/sightings.csv").size() - 1);
+  EXPECT_EQ(summary["damages"]["total"], rows("out/damages.csv").size() - 1);
+  EXPECT_EQ(summary["damages"]["candidates"], rows("out/candidates.csv").size() - 1);
   EXPECT_GT(fs::file_size(folder_ / "out/report.html"), 10000U);
   for (const int i : {0, 2, 3}) {
     EXPECT_EQ(
@@ -227,7 +229,7 @@ TEST_F(FlightCommand, ResumesAfterCutJournal) {
     // As a kill leaves it: some frames done, half a line of the next, its file there already, a staging folder.
     fs::remove_all(folder_ / "cut");
     fs::copy(folder_ / "whole", folder_ / "cut", fs::copy_options::recursive);
-    for (const char* result : {"frames.csv", "damages.csv", "summary.json", "report.html"}) {
+    for (const char* result : {"frames.csv", "damages.csv", "sightings.csv", "summary.json", "report.html"}) {
       fs::remove(folder_ / "cut" / result);
     }
     std::string text;

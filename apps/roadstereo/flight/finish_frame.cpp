@@ -14,6 +14,7 @@ void record_damage(const std::optional<StereoCalibration>& calibration, const Da
     job.frame.noise_px = job.damage.noise_px;
   }
   job.frame.damages = job.damage.damages;
+  job.frame.candidates = job.damage.candidates;
 }
 
 }  // namespace

@@ -43,9 +43,12 @@ int lock_folder(const fs::path& folder) {
 }
 
 /// What a flight writes besides the files of its frames.
-constexpr std::array flight_files = {"frames.csv",        "damages.csv",         "summary.json", "report.html",
-                                     "frames.geojson",    "damages.geojson",     "flight.gpkg",  "damages",
-                                     "flight/thumbnails", "flight/journal.jsonl"};
+constexpr std::array flight_files = {
+    "frames.csv",          "damages.csv",     "candidates.csv",    "sightings.csv",
+    "segments.csv",        "summary.json",    "report.html",       "frames.geojson",
+    "footprints.geojson",  "damages.geojson", "sightings.geojson", "candidates.geojson",
+    "flight.gpkg",         "damages",         "flight/thumbnails", "flight/sections",
+    "flight/journal.jsonl"};
 
 }  // namespace
 
@@ -116,6 +119,10 @@ bool is_shown(std::int64_t sequence, std::int64_t frames) {
 
 std::string damage_picture_name(std::int64_t road_damage) {
   return fmt::format("damages/{:05}.jpg", road_damage);
+}
+
+std::string damage_section_name(std::int64_t road_damage) {
+  return fmt::format("flight/sections/{:05}.html", road_damage);
 }
 
 }  // namespace roadstereo::cli

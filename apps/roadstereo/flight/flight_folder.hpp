@@ -54,4 +54,7 @@ bool is_shown(std::int64_t sequence, std::int64_t frames);
 /// Returns the file name of the image of a road damage.
 std::string damage_picture_name(std::int64_t road_damage);
 
+/// Returns the file name of the section of a road damage in the report.
+std::string damage_section_name(std::int64_t road_damage);
+
 }  // namespace roadstereo::cli

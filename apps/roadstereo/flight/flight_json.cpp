@@ -36,24 +36,27 @@ Json frames_json(const FlightSummary& summary) {
           {"reasons", summary.reasons}};
 }
 
-Json damages_json(const FlightSummary& summary, const io::FlightInventory& inventory, bool metric) {
+Json damages_json(const FlightSummary& summary, const std::vector<io::RoadDamage>& damages, bool metric) {
   std::int64_t depressions = 0;
-  Json severities = Json::object();
-  for (const Severity severity : {Severity::high, Severity::medium, Severity::low, Severity::minor, Severity::uncertain,
-                                  Severity::unresolvable}) {
+  Json severities = Json::object(), distresses = Json::object();
+  for (const Severity severity :
+       {Severity::high, Severity::medium, Severity::low, Severity::minor, Severity::uncertain, Severity::unknown}) {
     severities[name_of(severity)] = 0;
   }
-  for (const io::RoadDamage& damage : inventory.damages()) {
+  const auto count = [](Json& counts, const char* name) { counts[name] = counts.value(name, std::int64_t{0}) + 1; };
+  for (const io::RoadDamage& damage : damages) {
     depressions += damage.best.kind == DamageKind::depression ? 1 : 0;
     if (!damage.best.metrics) continue;
-    Json& count = severities[name_of(damage.best.metrics->severity)];
-    count = count.get<std::int64_t>() + 1;
+    count(severities, name_of(damage.best.metrics->severity));
+    count(distresses, name_of(damage.best.metrics->distress));
   }
-  const auto all = static_cast<std::int64_t>(inventory.damages().size());
+  const auto all = static_cast<std::int64_t>(damages.size());
   return {{"total", all},
           {"depressions", depressions},
           {"protrusions", all - depressions},
+          {"candidates", summary.candidates},
           {"sightings", summary.sightings},
+          {"by_distress", metric ? distresses : Json(nullptr)},
           {"by_severity", metric ? severities : Json(nullptr)}};
 }
 
@@ -68,7 +71,7 @@ Json run_json(const FlightRun& run) {
 }  // namespace
 
 std::string flight_json(const FlightSettings& settings, const FlightRun& run, const FlightSummary& summary,
-                        const io::FlightInventory& inventory) {
+                        const std::vector<io::RoadDamage>& damages) {
   Json document = {{"version", version}, {"source", settings.source}, {"source_kind", run.source}};
   document["calibration"] = settings.calibration.empty() ? Json(nullptr) : Json(settings.calibration);
   document["calibration_format"] = run.calibration_format.empty() ? Json(nullptr) : Json(run.calibration_format);
@@ -81,7 +84,7 @@ std::string flight_json(const FlightSettings& settings, const FlightRun& run, co
   document["frames"] = frames_json(summary);
   document["first_time_s"] = json_number(summary.first_time_s);
   document["last_time_s"] = json_number(summary.last_time_s);
-  document["damages"] = damages_json(summary, inventory, !run.calibration_format.empty());
+  document["damages"] = damages_json(summary, damages, !run.calibration_format.empty());
   document["roll_deg"] = range_json(summary.curves.roll_deg);
   document["height_m"] = range_json(summary.curves.height_m);
   document["sigma_d_px"] = range_json(summary.curves.sigma_d_px);

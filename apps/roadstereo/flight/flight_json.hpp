@@ -6,8 +6,8 @@
 
 namespace roadstereo::cli {
 
-/// Returns the content of summary.json. Unknown values are null.
+/// Returns the content of summary.json; `damages` are those of the road without candidates. Unknown values are null.
 std::string flight_json(const FlightSettings& settings, const FlightRun& run, const FlightSummary& summary,
-                        const io::FlightInventory& inventory);
+                        const std::vector<io::RoadDamage>& damages);
 
 }  // namespace roadstereo::cli

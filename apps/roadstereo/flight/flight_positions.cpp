@@ -24,28 +24,59 @@ std::optional<io::GeoPosition> position_of(const Damage& damage, const std::opti
   return io::offset_position(*camera, right_m, forward_m, -height_m);
 }
 
+/// Returns longitudes and latitudes of a polygon on the road; empty if the heading is unknown.
+std::vector<std::array<double, 2>> on_earth(const std::vector<std::array<double, 2>>& corners_m,
+                                            const std::optional<io::GeoPosition>& camera) {
+  std::vector<std::array<double, 2>> corners_deg;
+  if (!camera) return corners_deg;
+  for (const auto& [right_m, forward_m] : corners_m) {
+    const std::optional<io::GeoPosition> corner = io::offset_position(*camera, right_m, forward_m);
+    if (!corner) return {};
+    corners_deg.push_back({corner->lon_deg, corner->lat_deg});
+  }
+  return corners_deg;
+}
+
 }  // namespace
 
 FlightPositions::FlightPositions(const TrackSettings& settings)
     : offset_s_(settings.offset_s), track_(io::read_track(settings.file, options_of(settings))) {}
 
-void FlightPositions::add(const io::FlightFrame& frame) {
+void FlightPositions::add(const io::FlightFrame& frame, const std::vector<std::int64_t>& road_damages) {
   io::GeoFrame geo;
   geo.index = frame.index;
   geo.name = frame.name;
   geo.time_s = frame.time_s + offset_s_;
   if (std::isfinite(geo.time_s)) geo.position = io::position_at(track_, geo.time_s);
+  if (geo.position) {
+    if (last_) station_m_ += io::distance_m(*last_, *geo.position);
+    geo.station_m = station_m_;
+    last_ = geo.position;
+    ++located_;
+  }
+  geo.footprint_deg = on_earth(frame.footprint_m, geo.position);
   geo.roll_rad = frame.roll_rad;
   geo.height_m = frame.height_m;
   geo.sigma_d_px = frame.sigma_d_px;
   geo.valid_share = frame.valid_share;
   geo.damages = static_cast<int>(frame.damages.size());
   geo.status = name_of(frame.status);
-  located_ += geo.position ? 1 : 0;
-  for (const Damage& damage : frame.damages) {
-    damages_.push_back({geo.index, geo.name, geo.time_s, damage, position_of(damage, geo.position, frame.height_m)});
+  for (std::size_t i = 0; i < frame.damages.size(); ++i) {
+    sightings_.push_back({road_damages[i], geo.index, geo.name, geo.time_s, frame.damages[i],
+                          position_of(frame.damages[i], geo.position, frame.height_m)});
   }
   frames_.push_back(std::move(geo));
+}
+
+void FlightPositions::locate(io::RoadDamage& damage) const {
+  const auto frame = std::lower_bound(frames_.begin(), frames_.end(), damage.frame,
+                                      [](const io::GeoFrame& one, std::int64_t index) { return one.index < index; });
+  if (frame == frames_.end() || frame->index != damage.frame || !frame->position) return;
+  damage.time_s = frame->time_s;
+  damage.station_m = frame->station_m;
+  damage.position = position_of(damage.best, frame->position, frame->height_m);
+  if (!damage.best.metrics) return;
+  damage.outline_deg = on_earth(damage.best.metrics->outline_m, frame->position);
 }
 
 std::string FlightPositions::no_position_reason() const {
@@ -63,10 +94,11 @@ std::string FlightPositions::no_position_reason() const {
       last, track_.points().front().time_s, track_.points().back().time_s);
 }
 
-std::vector<StagedFile> FlightPositions::files() const {
-  return {text_file("frames.geojson", io::frames_geojson(frames_)),
-          text_file("damages.geojson", io::damages_geojson(damages_)),
-          {"flight.gpkg", io::geopackage(frames_, damages_, track_)}};
+std::vector<StagedFile> FlightPositions::files(std::span<const io::RoadDamage> damages, bool with_candidates) const {
+  const io::GeoLayers layers{frames_, sightings_, damages, with_candidates};
+  std::vector<StagedFile> files{{"flight.gpkg", io::geopackage(layers, track_)}};
+  for (const io::NamedText& file : io::geojson_files(layers)) files.push_back(text_file(file.name, file.text));
+  return files;
 }
 
 }  // namespace roadstereo::cli

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,23 +19,31 @@ class FlightPositions {
   /// Reads the track. Throws Error naming its file and line.
   explicit FlightPositions(const TrackSettings& settings);
 
-  /// Adds the next frame. It has no position if its time is outside the track.
-  void add(const io::FlightFrame& frame);
+  /// Adds the next frame, whose damages are those of the road with these ids. It has no position if its time is outside
+  /// the track.
+  void add(const io::FlightFrame& frame, const std::vector<std::int64_t>& road_damages);
 
   std::size_t located() const { return located_; }  ///< number of frames with a position
 
   /// Returns the reason if no frame has a position, with the times of frames and track, else "".
   std::string no_position_reason() const;
 
-  /// Returns frames.geojson, damages.geojson and flight.gpkg.
-  std::vector<StagedFile> files() const;
+  /// Sets position, outline and station of a damage from its best frame, if that has a position.
+  void locate(io::RoadDamage& damage) const;
+
+  const std::vector<io::GeoFrame>& frames() const { return frames_; }
+
+  /// Returns the GeoJSON files and flight.gpkg.
+  std::vector<StagedFile> files(std::span<const io::RoadDamage> damages, bool with_candidates) const;
 
  private:
   double offset_s_;
   io::Track track_;
   std::vector<io::GeoFrame> frames_;
-  std::vector<io::GeoDamage> damages_;
+  std::vector<io::GeoSighting> sightings_;
   std::size_t located_ = 0;
+  double station_m_ = 0;  ///< of the last frame with a position
+  std::optional<io::GeoPosition> last_;
 };
 
 }  // namespace roadstereo::cli

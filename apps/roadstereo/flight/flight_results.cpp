@@ -1,13 +1,16 @@
 #include "flight/flight_results.hpp"
 
-#include <fmt/core.h>
+#include <fmt/chrono.h>
 
+#include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 
 #include "finite_values.hpp"
 #include "flight/flight_json.hpp"
 #include "roadstereo/io/flight_tables.hpp"
+#include "roadstereo/io/road_segments.hpp"
 
 namespace roadstereo::cli {
 
@@ -32,10 +35,9 @@ std::string frames_text(const FlightSummary& summary) {
   return text;
 }
 
-std::vector<std::pair<std::string, std::string>> properties_of(const FlightRun& run, const FlightSummary& summary,
-                                                               const io::FlightInventory& inventory) {
+std::vector<std::pair<std::string, std::string>> properties_of(const FlightRun& run, const FlightSummary& summary) {
   std::vector<std::pair<std::string, std::string>> properties{{"Source", run.source}, {"Frames", frames_text(summary)}};
-  properties.emplace_back("Damages", fmt::format("{} in {} sightings", inventory.damages().size(), summary.sightings));
+  properties.emplace_back("Damages", fmt::format("{} in {} sightings", summary.damages, summary.sightings));
   properties.emplace_back("Roll", range_text(summary.curves.roll_deg, "°", 2));
   if (!run.calibration_format.empty()) {
     properties.emplace_back("Height above the road", range_text(summary.curves.height_m, "m", 3));
@@ -72,17 +74,43 @@ std::string caption_of(const io::FlightFrame& frame) {
   return fmt::format("{} · {} damage{}", frame.name, damages, damages == 1 ? "" : "s");
 }
 
-std::vector<io::PicturedDamage> worst_of(const io::FlightInventory& inventory, const FlightFolder& folder) {
-  constexpr std::size_t max_worst = 100;
-  std::vector<io::PicturedDamage> worst;
-  for (io::RoadDamage& damage : inventory.worst(max_worst)) {
-    std::vector<std::uint8_t> jpeg = folder.read(damage_picture_name(damage.id));
-    worst.push_back({std::move(damage), std::move(jpeg)});
+std::vector<io::ReportedDamage> reported(const std::vector<io::RoadDamage>& damages, const FlightFolder& folder) {
+  constexpr std::size_t max_sections = 30;
+  std::vector<io::ReportedDamage> worst;
+  for (io::RoadDamage& damage : io::worst_first(damages, false)) {
+    std::vector<std::uint8_t> section;
+    if (worst.size() < max_sections) section = folder.read(damage_section_name(damage.id));
+    worst.push_back({std::move(damage), {section.begin(), section.end()}});
   }
   return worst;
 }
 
-std::string title_of(const FlightSettings& settings) {
+std::vector<std::array<double, 2>> positions_deg(const std::vector<io::GeoFrame>& frames) {
+  std::vector<std::array<double, 2>> points;
+  if (std::none_of(frames.begin(), frames.end(),
+                   [](const io::GeoFrame& frame) { return frame.position.has_value(); })) {
+    return points;
+  }
+  for (const io::GeoFrame& frame : frames) {
+    const io::GeoPosition position = frame.position.value_or(io::GeoPosition{std::nan(""), std::nan("")});
+    points.push_back({position.lon_deg, position.lat_deg});
+  }
+  return points;
+}
+
+/// Date of the recording if its times are those of a calendar, then that of the report.
+std::vector<std::pair<std::string, std::string>> head_of(const FlightSettings& settings, const FlightSummary& summary) {
+  constexpr double first_calendar_s = 315532800;  // 1980
+  std::vector<std::pair<std::string, std::string>> head = head_lines(settings.head);
+  const double time_s = summary.first_time_s + settings.track.offset_s;
+  if (time_s > first_calendar_s) {
+    const auto seconds = static_cast<std::time_t>(time_s);
+    head.insert(head.end() - 1, {"Recorded", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(seconds))});
+  }
+  return head;
+}
+
+std::string source_name(const FlightSettings& settings) {
   const std::string& name = settings.source.front();
   const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
   if (name.find(" ! ") != std::string::npos) return "GStreamer pipeline";
@@ -92,7 +120,7 @@ std::string title_of(const FlightSettings& settings) {
 }  // namespace
 
 FlightResults::FlightResults(const TrackSettings& track)
-    : frames_csv_(io::frames_csv_names()), damages_csv_(io::flight_damages_csv_names()) {
+    : frames_csv_(io::frames_csv_names()), sightings_csv_(io::sightings_csv_names()) {
   if (!track.file.empty()) positions_.emplace(track);
 }
 
@@ -105,8 +133,8 @@ std::vector<std::int64_t> FlightResults::add(const io::FlightFrame& frame) {
   summary_.add(frame);
   frames_csv_ += io::frames_csv_row(frame);
   std::vector<std::int64_t> road_damages = inventory_.add(frame);
-  damages_csv_ += io::flight_damages_csv_rows(frame, road_damages);
-  if (positions_) positions_->add(frame);
+  sightings_csv_ += io::sightings_csv_rows(frame, road_damages);
+  if (positions_) positions_->add(frame, road_damages);
   return road_damages;
 }
 
@@ -120,32 +148,58 @@ std::vector<io::CaptionedPicture> FlightResults::read_thumbnails(const FlightFol
   return pictures;
 }
 
-std::string FlightResults::report(const FlightSettings& settings, const FlightRun& run,
-                                  const FlightFolder& folder) const {
+std::vector<io::RoadDamage> FlightResults::located_damages() const {
+  std::vector<io::RoadDamage> damages = inventory_.damages();
+  for (io::RoadDamage& damage : damages) {
+    if (!damage.candidate) damage.picture = damage_picture_name(damage.id);
+    if (positions_) positions_->locate(damage);
+  }
+  return damages;
+}
+
+std::string FlightResults::report(const FlightSettings& settings, const FlightRun& run, const FlightFolder& folder,
+                                  const std::vector<io::RoadDamage>& damages) const {
   io::FlightReportInput report;
-  report.title = title_of(settings);
-  report.properties = properties_of(run, summary_, inventory_);
+  report.title = title_of(settings.head, source_name(settings));
+  report.head = head_of(settings, summary_);
+  report.properties = properties_of(run, summary_);
   report.notices = notices_of(run, summary_);
   report.curves = summary_.curves;
   report.thumbnails = read_thumbnails(folder);
-  report.worst = worst_of(inventory_, folder);
-  report.damages = inventory_.damages().size();
+  report.damages = reported(damages, folder);
+  report.candidates = io::worst_first(damages, true);
+  report.severity = run.options.damage.severity;
   report.metric = !run.calibration_format.empty();
+  if (positions_) {
+    report.track_deg = positions_deg(positions_->frames());
+    report.segments = io::road_segments(positions_->frames(), damages);
+  }
   return io::flight_report(report);
 }
 
 std::string FlightResults::write(const FlightSettings& settings, const FlightRun& run, FlightFolder& folder) {
+  const std::vector<io::RoadDamage> damages = located_damages();
+  const std::vector<io::RoadDamage> worst = io::worst_first(damages, false);
+  const std::vector<io::RoadDamage> candidates = io::worst_first(damages, true);
   summary_.settle_times();
-  summary_.damages = static_cast<std::int64_t>(inventory_.damages().size());
+  summary_.damages = static_cast<std::int64_t>(worst.size());
+  summary_.candidates = static_cast<std::int64_t>(candidates.size());
   if (positions_) {
     summary_.located = static_cast<std::int64_t>(positions_->located());
     summary_.no_position_reason = positions_->no_position_reason();
   }
-  std::string json = flight_json(settings, run, summary_, inventory_);
-  std::vector<StagedFile> files = positions_ ? positions_->files() : std::vector<StagedFile>{};
+  std::string json = flight_json(settings, run, summary_, worst);
+  std::vector<StagedFile> files;
+  if (positions_) {
+    files = positions_->files(damages, settings.candidates);
+    const std::vector<io::RoadSegment> segments = io::road_segments(positions_->frames(), damages);
+    files.push_back(text_file("segments.csv", io::segments_csv(segments, damages)));
+  }
   files.push_back(text_file("frames.csv", frames_csv_));
-  files.push_back(text_file("damages.csv", damages_csv_));
-  files.push_back(text_file("report.html", report(settings, run, folder)));
+  files.push_back(text_file("damages.csv", io::road_damages_csv_names() + io::road_damages_csv_rows(worst)));
+  files.push_back(text_file("candidates.csv", io::road_damages_csv_names() + io::road_damages_csv_rows(candidates)));
+  files.push_back(text_file("sightings.csv", sightings_csv_));
+  files.push_back(text_file("report.html", report(settings, run, folder, damages)));
   files.push_back(text_file("summary.json", json));
   folder.write(files);
   return json;

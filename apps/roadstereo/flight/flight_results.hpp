@@ -34,13 +34,13 @@ class FlightResults {
   /// Reads the track, if any. Throws Error naming its file and line.
   explicit FlightResults(const TrackSettings& track);
 
-  /// Adds the next frame. Returns the id of the road damage of each of its damages.
+  /// Adds the next frame. Returns the ids of the road damages of its damages, then of its candidates.
   std::vector<std::int64_t> add(const io::FlightFrame& frame);
 
   const io::FlightInventory& inventory() const { return inventory_; }
 
-  /// Writes frames.csv, damages.csv, summary.json and report.html, and the GIS files if there is a track. Completes the
-  /// summary; call it once. Returns the text of summary.json.
+  /// Writes frames.csv, damages.csv, candidates.csv, sightings.csv, summary.json and report.html, and segments.csv and
+  /// the GIS files if there is a track. Completes the summary; call it once. Returns the text of summary.json.
   std::string write(const FlightSettings& settings, const FlightRun& run, FlightFolder& folder);
 
   const FlightSummary& summary() const { return summary_; }
@@ -52,14 +52,16 @@ class FlightResults {
     std::string caption;
   };
   std::vector<io::CaptionedPicture> read_thumbnails(const FlightFolder& folder) const;
-  std::string report(const FlightSettings& settings, const FlightRun& run, const FlightFolder& folder) const;
+  std::vector<io::RoadDamage> located_damages() const;
+  std::string report(const FlightSettings& settings, const FlightRun& run, const FlightFolder& folder,
+                     const std::vector<io::RoadDamage>& damages) const;
 
   FlightSummary summary_;
   io::FlightInventory inventory_;
   std::optional<FlightPositions> positions_;
   std::vector<Thumbnail> thumbnails_;
   std::string frames_csv_;
-  std::string damages_csv_;
+  std::string sightings_csv_;
 };
 
 }  // namespace roadstereo::cli

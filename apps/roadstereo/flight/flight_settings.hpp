@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "processing_options.hpp"
+#include "report_head.hpp"
 #include "source_options.hpp"
 
 namespace roadstereo::cli {
@@ -38,7 +39,9 @@ struct FlightSettings {
   std::int64_t every = 1;          ///< processes every N-th frame
   std::vector<std::string> write;  ///< names of FrameFile
   TrackSettings track;
-  bool trajectory = false;          ///< estimates the motion from frame to frame
+  bool trajectory = false;  ///< estimates the motion from frame to frame
+  bool candidates = false;  ///< whether the GIS files have a layer of candidates
+  ReportHead head;
   std::optional<double> height_m;   ///< of the camera above the road, expected
   std::optional<double> pitch_deg;  ///< of the camera, expected
   bool quiet = false;

@@ -21,6 +21,7 @@ struct FlightSummary {
   std::optional<std::int64_t> located;  ///< frames with a position; absent without a track
   std::string no_position_reason;       ///< reason if no frame has a position
   std::int64_t damages = 0;             ///< road damages (FlightInventory)
+  std::int64_t candidates = 0;          ///< of the road
   std::int64_t sightings = 0;           ///< damages of all frames
   std::vector<std::string> reasons;     ///< first distinct reasons why frames are not good
   double first_time_s = io::FlightFrame::unknown;

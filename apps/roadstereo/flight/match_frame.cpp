@@ -25,6 +25,7 @@ void record(const FrameResult& result, const std::optional<StereoCalibration>& c
   const GroundPlane plane = ground_plane(geometry.plane, *calibration);
   frame.height_m = plane.height_m;
   frame.pitch_rad = plane.pitch_rad;
+  frame.footprint_m = road_footprint(geometry.plane, *calibration, result.disparity.width(), result.disparity.height());
 }
 
 /// Resets the job and fills the fields known before matching.
@@ -37,6 +38,7 @@ void begin(FlightJob& job) {
   frame.reason = job.pair.error;
   if (!frame.reason.empty()) frame.status = io::FrameStatus::rejected;
   job.damage.damages.clear();
+  job.damage.candidates.clear();
   job.files.clear();
 }
 

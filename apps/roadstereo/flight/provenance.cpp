@@ -39,12 +39,16 @@ std::string digest(const std::vector<std::string>& files) {
 
 io::Provenance provenance(const FlightSettings& settings, const PipelineOptions& options) {
   const std::vector<std::string> mask(settings.mask.empty() ? 0 : 1, settings.mask);
+  std::vector<std::string> severity_files;
+  if (settings.processing.severity != "d6433") severity_files.push_back(settings.processing.severity);
   io::Provenance entries{{"version", version},
                          {"source", joined(settings.source)},
                          {"calibration", joined(settings.calibration)},
                          {"content of the calibration", digest(settings.calibration)},
                          {"--mask", settings.mask},
                          {"content of the mask", digest(mask)},
+                         {"--severity", settings.processing.severity},
+                         {"content of the severities", digest(severity_files)},
                          {"--from", std::to_string(settings.from)},
                          {"--every", std::to_string(settings.every)},
                          {"--write", joined(settings.write)},

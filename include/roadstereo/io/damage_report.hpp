@@ -15,12 +15,14 @@ namespace roadstereo::io {
 /// Input of `damage_report`. Maps and image have the size of `map`; empty ones are absent.
 struct DamageReportInput {
   const DamageMap& map;
-  FrameView left{};                                ///< absent: the coloured transformed map is shown instead
-  ImageView<const float> disparity{};              ///< ℓ, px; NaN invalid
-  ImageView<const float> transformed{};            ///< ℓ', px; marks the holes if ℓ is absent
-  std::optional<StereoCalibration> calibration{};  ///< with ℓ: cross-sections and 3-D views are metric
-  std::string title{};                             ///< the frame's name
-  std::vector<std::pair<std::string, std::string>> properties{};  ///< of the frame: name, value with unit
+  FrameView left{};                                         ///< absent: the coloured transformed map is shown instead
+  ImageView<const float> disparity{};                       ///< ℓ, px; NaN invalid
+  ImageView<const float> transformed{};                     ///< ℓ', px; marks the holes if ℓ is absent
+  std::optional<StereoCalibration> calibration{};           ///< with ℓ: cross-sections and 3-D views are metric
+  std::string title{};                                      ///< the frame's name
+  std::vector<std::pair<std::string, std::string>> head{};  ///< road, operator, date: name, value
+  std::vector<std::pair<std::string, std::string>> properties{};  ///< of the processing, for the appendix
+  SeverityScheme severity = astm_d6433();                         ///< by which the damages were graded
   std::vector<std::uint8_t> sheet{};                              ///< the result sheet, PNG or JPEG
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -41,7 +42,9 @@ struct FlightFrame {
   double noise_px = unknown;                       ///< of the intact road
   double matching_ms = unknown;                    ///< time in Pipeline::process
   double damage_ms = unknown;                      ///< time in find_damage
+  std::vector<std::array<double, 2>> footprint_m;  ///< `road_footprint`; empty without a calibration
   std::vector<Damage> damages;                     ///< deepest first
+  std::vector<Damage> candidates;                  ///< `DamageMap::candidates`
   std::vector<std::string> warnings;
   double white_level = 0;        ///< sample value of white; 0: maximum of the sample type
   PipelineState pipeline_state;  ///< state of the pipeline after this frame

@@ -3,39 +3,49 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "roadstereo/io/flight_frame.hpp"
+#include "roadstereo/io/track.hpp"
 
 namespace roadstereo::io {
 
-/// One damage of the road, seen in one or several frames of a flight.
+/// One damage of the road, seen in one or several frames of a flight: the record behind every table, GIS layer and
+/// report.
 struct RoadDamage {
-  std::int64_t id = 0;         ///< unique in the flight, from 1
-  std::int64_t sightings = 0;  ///< number of frames that show it
-  std::int64_t frame = 0;      ///< index of the best frame: not cut by the border if possible, then smallest error
+  std::int64_t id = 0;                           ///< unique in the flight, from 1, in the order of the first sighting
+  bool candidate = false;                        ///< a candidate in every frame: listed apart and not counted
+  std::int64_t sightings = 0;                    ///< number of frames that show it
+  std::int64_t first_frame = 0, last_frame = 0;  ///< indices of the frames that show it
+  std::int64_t frame = 0;  ///< index of the best frame: not cut by the border if possible, then smallest error
   std::string frame_name;
   double time_s = FlightFrame::unknown;
-  Damage best;  ///< the measurement in that frame
+  Damage best;                                     ///< the measurement in that frame
+  std::optional<GeoPosition> position;             ///< of its centroid
+  std::vector<std::array<double, 2>> outline_deg;  ///< (longitude, latitude), counterclockwise, not closed
+  double station_m = FlightFrame::unknown;         ///< distance along the track
+  std::string picture;                             ///< file in the folder of the results; empty: none
 };
 
 /// Returns whether `one` is more severe than `other`, or as severe and deeper.
 bool is_worse(const RoadDamage& one, const RoadDamage& other);
+
+/// Returns the damages that are candidates, or those that are not, worst first.
+std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool candidates);
 
 /// Tracks damages over the frames of a flight. Sightings in successive frames are one damage if their boxes overlap
 /// after the image motion is compensated. Tracking restarts at a frame whose road model was estimated anew; frames too
 /// far apart to overlap yield one damage per sighting.
 class FlightInventory {
  public:
-  /// Adds the next frame of the flight. Returns the id of the road damage of each of its damages.
+  /// Adds the next frame of the flight. Returns the id of the road damage of each of its damages, then of its
+  /// candidates.
   std::vector<std::int64_t> add(const FlightFrame& frame);
 
-  /// All damages of the road in the order of their first sighting.
+  /// All damages of the road, candidates included, in the order of their first sighting.
   const std::vector<RoadDamage>& damages() const { return damages_; }
-
-  /// At most `max_count` damages, worst first.
-  std::vector<RoadDamage> worst(std::size_t max_count) const;
 
  private:
   /// Last sighting of a damage.

@@ -5,6 +5,7 @@
 
 #include "roadstereo/damage.hpp"
 #include "roadstereo/image.hpp"
+#include "roadstereo/io/damage_report.hpp"
 
 namespace roadstereo::io {
 
@@ -14,5 +15,9 @@ std::vector<std::uint8_t> frame_thumbnail(const FrameView& left, const DamageMap
 /// Encodes the surroundings of one damage in the left image with its outline as JPEG, at most `side`×`side` pixels.
 std::vector<std::uint8_t> damage_picture(const FrameView& left, const DamageMap& map, const Damage& damage,
                                          int side = 260);
+
+/// Returns the section of one damage for `flight_report`: values, image, depths, cross-section and 3-D view. `id`: of
+/// the road damage. Throws Error if the sizes of the maps differ.
+std::string road_damage_section(const DamageReportInput& input, const Damage& damage, std::int64_t id);
 
 }  // namespace roadstereo::io

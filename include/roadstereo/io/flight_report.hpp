@@ -1,12 +1,13 @@
 #pragma once
 
-#include <cstddef>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "roadstereo/io/flight_inventory.hpp"
+#include "roadstereo/io/road_segments.hpp"
 
 namespace roadstereo::io {
 
@@ -25,22 +26,26 @@ struct CaptionedPicture {
   std::vector<std::uint8_t> jpeg;
 };
 
-/// A damage and its image, which may be empty.
-struct PicturedDamage {
+/// A damage and its section (`road_damage_section`), which may be empty.
+struct ReportedDamage {
   RoadDamage damage;
-  std::vector<std::uint8_t> jpeg;
+  std::string section;
 };
 
 /// Input of `flight_report`.
 struct FlightReportInput {
   std::string title;
-  std::vector<std::pair<std::string, std::string>> properties;  ///< of the flight: name, value with unit
+  std::vector<std::pair<std::string, std::string>> head;        ///< road, operator, date: name, value
+  std::vector<std::pair<std::string, std::string>> properties;  ///< of the processing, for the appendix
   std::vector<std::string> notices;  ///< remarks at the top: rejected frames, an interrupted run
   FlightCurves curves;
-  std::vector<CaptionedPicture> thumbnails;  ///< in the order of the flight
-  std::vector<PicturedDamage> worst;         ///< worst first
-  std::size_t damages = 0;                   ///< number of all damages, of which `worst` are shown
-  bool metric = false;                       ///< there is a calibration
+  std::vector<CaptionedPicture> thumbnails;      ///< in the order of the flight
+  std::vector<ReportedDamage> damages;           ///< all, worst first
+  std::vector<RoadDamage> candidates;            ///< all, worst first
+  std::vector<std::array<double, 2>> track_deg;  ///< (longitude, latitude) of the frames; NaN: unknown
+  std::vector<RoadSegment> segments;
+  SeverityScheme severity = astm_d6433();  ///< by which the damages were graded
+  bool metric = false;                     ///< there is a calibration
 };
 
 /// Returns a self-contained HTML report: styles, scripts and images are embedded.

@@ -14,10 +14,10 @@ namespace roadstereo::io {
 std::string frames_csv_names();
 std::string frames_csv_row(const FlightFrame& frame);
 
-/// Header line of damages.csv: id of the road damage (FlightInventory), frame, name and time_s, then the columns of a
+/// Header line of sightings.csv: id of the road damage (FlightInventory), frame, name and time_s, then the columns of a
 /// single frame's damages.csv.
-std::string flight_damages_csv_names();
-/// One row per damage of the frame; `road_damages` are their ids in the flight.
-std::string flight_damages_csv_rows(const FlightFrame& frame, const std::vector<std::int64_t>& road_damages);
+std::string sightings_csv_names();
+/// One row per damage of the frame; `road_damages` begins with their ids in the flight.
+std::string sightings_csv_rows(const FlightFrame& frame, const std::vector<std::int64_t>& road_damages);
 
 }  // namespace roadstereo::io

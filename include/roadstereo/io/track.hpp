@@ -80,4 +80,7 @@ std::optional<GeoPosition> position_at(const Track& track, double time_s);
 std::optional<GeoPosition> offset_position(const GeoPosition& from, double right_m, double forward_m,
                                            double up_m = std::numeric_limits<double>::quiet_NaN());
 
+/// Returns the length of the geodesic between two positions, metres; altitudes are ignored.
+double distance_m(const GeoPosition& from, const GeoPosition& to);
+
 }  // namespace roadstereo::io

@@ -109,10 +109,15 @@ void each_field(DamageMetrics& metrics, Visit& visit) {
   visit("width_m", metrics.width_m);
   visit("angle_rad", metrics.angle_rad);
   visit("diameter_m", metrics.diameter_m);
+  visit("wall_slope", metrics.wall_slope);
+  visit("outline_m", metrics.outline_m);
   visit("centroid_m", metrics.centroid_m);
   visit("road_centroid_m", metrics.road_centroid_m);
   visit("distance_m", metrics.distance_m);
   visit("resolvable_depth_m", metrics.resolvable_depth_m);
+  visit("distress", metrics.distress);
+  visit("quantity", metrics.quantity);
+  visit("unit", metrics.unit);
   visit("severity_probabilities", metrics.severity_probabilities);
   visit("severity", metrics.severity);
 }
@@ -155,7 +160,9 @@ void each_field(FlightFrame& frame, Visit& visit) {
   visit("noise_px", frame.noise_px);
   visit("matching_ms", frame.matching_ms);
   visit("damage_ms", frame.damage_ms);
+  visit("footprint_m", frame.footprint_m);
   visit("damages", frame.damages);
+  visit("candidates", frame.candidates);
   visit("warnings", frame.warnings);
   visit("white_level", frame.white_level);
   visit("pipeline_state", frame.pipeline_state);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 
 #include "core/order_statistics.hpp"
@@ -37,6 +38,14 @@ double overlap(const std::array<int, 4>& box, const std::array<double, 2>& move,
   return width * height / smaller;
 }
 
+/// Takes the measurement in a frame as the best one.
+void measure(const FlightFrame& frame, const Damage& damage, RoadDamage& known) {
+  known.frame = frame.index;
+  known.frame_name = frame.name;
+  known.time_s = frame.time_s;
+  known.best = damage;
+}
+
 }  // namespace
 
 bool is_worse(const RoadDamage& one, const RoadDamage& other) {
@@ -44,6 +53,14 @@ bool is_worse(const RoadDamage& one, const RoadDamage& other) {
     return std::tuple(-static_cast<int>(severity_of(damage.best)), -depth_of(damage.best), damage.id);
   };
   return rank(one) < rank(other);
+}
+
+std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool candidates) {
+  std::vector<RoadDamage> sorted;
+  std::copy_if(damages.begin(), damages.end(), std::back_inserter(sorted),
+               [candidates](const RoadDamage& damage) { return damage.candidate == candidates; });
+  std::sort(sorted.begin(), sorted.end(), is_worse);
+  return sorted;
 }
 
 /// Returns the recent sighting with the largest overlap, or null.
@@ -90,31 +107,29 @@ std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
     recent_.clear();  // tracking was lost
   std::vector<std::int64_t> ids;
   std::vector<Sighting> sightings;
-  for (const Damage& damage : frame.damages) {
+  const auto add_one = [&](const Damage& damage, bool candidate) {
     const Sighting* const before = seen_before(damage, ids);
     const std::int64_t id = before == nullptr ? static_cast<std::int64_t>(damages_.size()) + 1 : before->id;
-    if (before == nullptr) damages_.push_back({id, 0, frame.index, frame.name, frame.time_s, damage});
+    if (before == nullptr) {
+      RoadDamage& found = damages_.emplace_back();
+      found.id = id;
+      found.candidate = candidate;
+      found.first_frame = frame.index;
+      measure(frame, damage, found);
+    }
     RoadDamage& known = damages_[static_cast<std::size_t>(id) - 1];
     ++known.sightings;
-    if (is_better(damage, known.best)) {
-      known.frame = frame.index;
-      known.frame_name = frame.name;
-      known.time_s = frame.time_s;
-      known.best = damage;
-    }
+    known.last_frame = frame.index;
+    const bool promoted = known.candidate && !candidate;
+    if (promoted || (known.candidate == candidate && is_better(damage, known.best))) measure(frame, damage, known);
+    known.candidate = known.candidate && candidate;
     ids.push_back(id);
     sightings.push_back({id, sequence_, damage});
-  }
+  };
+  for (const Damage& damage : frame.damages) add_one(damage, false);
+  for (const Damage& candidate : frame.candidates) add_one(candidate, true);
   remember(sightings);
   return ids;
-}
-
-std::vector<RoadDamage> FlightInventory::worst(std::size_t max_count) const {
-  std::vector<RoadDamage> sorted = damages_;
-  const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(max_count, sorted.size()));
-  std::partial_sort(sorted.begin(), end, sorted.end(), is_worse);
-  sorted.erase(end, sorted.end());
-  return sorted;
 }
 
 }  // namespace roadstereo::io

@@ -1,24 +1,26 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
-#include "io/damage_colours.hpp"
 #include "io/drawing.hpp"
+#include "io/flight/road_map.hpp"
 #include "io/flight/templates.hpp"
-#include "io/plot.hpp"
+#include "io/geo/utc_time.hpp"
 #include "io/report/cells.hpp"
+#include "io/report/curve.hpp"
 #include "io/report/markup.hpp"
 #include "io/report/number_text.hpp"
+#include "io/report/pictures.hpp"
 #include "io/report/summary.hpp"
 #include "io/report/templates.hpp"
 #include "roadstereo/io/flight_report.hpp"
-#include "roadstereo/io/image_file.hpp"
 #include "roadstereo/version.hpp"
 
 namespace roadstereo::io {
 namespace {
 
-constexpr double mm = 1000;      // in a metre
-constexpr double litres = 1000;  // in a cubic metre
+constexpr double mm = 1000;  // in a metre
+constexpr double degrees = 180 / std::numbers::pi;
 
 std::string jpeg_uri(const std::vector<std::uint8_t>& jpeg) {
   return "data:image/jpeg;base64," + base64(jpeg);
@@ -27,7 +29,7 @@ std::string jpeg_uri(const std::vector<std::uint8_t>& jpeg) {
 std::string notices_of(const FlightReportInput& input) {
   std::string html;
   for (const std::string& notice : input.notices) html += "<p class=\"notice\">" + escaped(notice) + "</p>\n";
-  if (input.damages == 0) {
+  if (input.damages.empty()) {
     html +=
         "<p class=\"notice good\"><strong>No damage found.</strong> No part of the visible road deviates from its "
         "surface by more than the resolvable depth of this rig.</p>";
@@ -47,117 +49,184 @@ std::string thumbnails_of(const std::vector<CaptionedPicture>& strip) {
     items += "<li><img src=\"" + jpeg_uri(picture.jpeg) + "\" alt=\"" + escaped(picture.caption) + "\"><small>" +
              escaped(picture.caption) + "</small></li>\n";
   }
-  return "<section id=\"strip\"><h2>The flight</h2>\n<ul class=\"strip\" tabindex=\"0\" aria-label=\"Frames of the "
-         "flight\">\n" +
-         items + "</ul></section>\n";
+  return "<h3>Frames</h3>\n<ul class=\"strip\" tabindex=\"0\" aria-label=\"Frames of the recording\">\n" + items +
+         "</ul>\n";
 }
 
-using Row = PicturedDamage;
-using Column = ReportColumn<Row>;
-
-std::string seconds_text(double time_s) {
-  return std::isfinite(time_s) ? number_text(time_s, 2) : "";
-}
-
-std::vector<Column> identity_columns() {
-  return {{"#", "", [](const Row& r) { return fixed_cell(static_cast<double>(r.damage.id), 0); }},
-          {"Picture", "",
-           [](const Row& r) -> ReportCell {
-             if (r.jpeg.empty()) return {};
-             return {"<img src=\"" + jpeg_uri(r.jpeg) + "\" alt=\"damage " + std::to_string(r.damage.id) + "\">", {}};
-           }},
-          {"Kind", "", [](const Row& r) -> ReportCell {
-             return {name_of(r.damage.best.kind), {}};
-           }}};
-}
-
-std::vector<Column> sighting_columns() {
-  return {{"Sightings", "", [](const Row& r) { return fixed_cell(static_cast<double>(r.damage.sightings), 0); }},
-          {"Frame", "",
-           [](const Row& r) -> ReportCell {
-             return {escaped(r.damage.frame_name), static_cast<double>(r.damage.frame)};
-           }},
-          {"Time", "s", [](const Row& r) -> ReportCell {
-             return {seconds_text(r.damage.time_s), r.damage.time_s};
-           }}};
-}
+using Column = ReportColumn<RoadDamage>;
 
 /// A metric value of a damage.
 template <class Figure>
-ReportCell metric_cell(const Row& row, const Figure& figure) {
-  if (!row.damage.best.metrics) return {"", std::numeric_limits<double>::quiet_NaN()};
-  return figure(*row.damage.best.metrics);
+ReportCell metric_cell(const RoadDamage& damage, const Figure& figure) {
+  if (!damage.best.metrics) return {"", std::numeric_limits<double>::quiet_NaN()};
+  return figure(*damage.best.metrics);
 }
 
-std::vector<Column> metric_columns() {
+ReportCell id_cell(const RoadDamage& damage) {
+  const std::string id = std::to_string(damage.id);
+  const std::string text = damage.candidate ? id : "<a href=\"#damage-" + id + "\">" + id + "</a>";
+  return {text, static_cast<double>(damage.id)};
+}
+
+std::string place_text(const GeoPosition& position) {
+  constexpr int decimals = 6;
+  return number_text(position.lat_deg, decimals) + ", " + number_text(position.lon_deg, decimals);
+}
+
+ReportCell place_cell(const RoadDamage& damage) {
+  return {damage.position ? place_text(*damage.position) : "", damage.station_m};
+}
+
+ReportCell quantity_cell(const RoadDamage& damage) {
+  if (!damage.best.metrics) return {};
+  const DamageMetrics& metrics = *damage.best.metrics;
+  const char* const unit = metrics.unit == DistressUnit::square_metre ? "m²"
+                           : metrics.unit == DistressUnit::metre      ? "m"
+                                                                      : "";
+  return {escaped(metrics.quantity == 1 && unit[0] == 0 ? "1" : value_text(metrics.quantity, unit)), metrics.quantity};
+}
+
+std::vector<Column> damage_columns_of(const FlightReportInput& input) {
+  using D = RoadDamage;
   using M = DamageMetrics;
-  return {
-      {"Severity", "", [](const Row& r) { return severity_cell(r.damage.best); }},
-      {"Max depth", "mm",
-       [](const Row& r) {
-         return metric_cell(r, [](const M& m) { return measured_cell(scaled(m.max_depth_m, mm)); });
-       }},
-      {"Area", "m²", [](const Row& r) { return metric_cell(r, [](const M& m) { return measured_cell(m.area_m2); }); }},
-      {"Volume", "L",
-       [](const Row& r) {
-         return metric_cell(r, [](const M& m) { return measured_cell(scaled(m.volume_m3, litres)); });
-       }},
-      {"Length", "m", [](const Row& r) { return metric_cell(r, [](const M& m) { return plain_cell(m.length_m); }); }},
-      {"Width", "m", [](const Row& r) { return metric_cell(r, [](const M& m) { return plain_cell(m.width_m); }); }},
-      {"Distance", "m",
-       [](const Row& r) { return metric_cell(r, [](const M& m) { return fixed_cell(m.distance_m, 2); }); }},
-      {"Resolvable", "mm",
-       [](const Row& r) { return metric_cell(r, [](const M& m) { return plain_cell(m.resolvable_depth_m * mm); }); }}};
+  std::vector<Column> columns{{"#", "", id_cell}, {"Distress", "", [](const D& d) { return distress_cell(d.best); }}};
+  if (input.metric) {
+    columns.push_back({"Severity", "", [](const D& d) { return severity_cell(d.best); }});
+    columns.push_back({"Depth", "mm", [](const D& d) {
+                         return metric_cell(d, [](const M& m) { return measured_cell(scaled(m.max_depth_m, mm)); });
+                       }});
+    columns.push_back(
+        {"Area", "m²", [](const D& d) { return metric_cell(d, [](const M& m) { return measured_cell(m.area_m2); }); }});
+    columns.push_back({"Quantity", "", quantity_cell});
+  } else {
+    columns.push_back({"Max change", "px", [](const D& d) { return measured_cell(d.best.max_depth_px); }});
+    columns.push_back({"Size", "px", [](const D& d) { return fixed_cell(static_cast<double>(d.best.pixels), 0); }});
+  }
+  if (!input.track_deg.empty()) {
+    columns.push_back({"Latitude, longitude", "°", place_cell});
+    columns.push_back({"Station", "m", [](const D& d) { return fixed_cell(d.station_m, 0); }});
+  }
+  columns.push_back({"Confidence", "%", [](const D& d) { return fixed_cell(100 * d.best.confidence, 0); }});
+  columns.push_back({"Frames", "", [](const D& d) { return fixed_cell(static_cast<double>(d.sightings), 0); }});
+  return columns;
 }
 
-std::vector<Column> pixel_columns() {
-  return {{"Max change", "px", [](const Row& r) { return measured_cell(r.damage.best.max_depth_px); }},
-          {"Size", "px", [](const Row& r) { return fixed_cell(static_cast<double>(r.damage.best.pixels), 0); }}};
+std::string table_of(const FlightReportInput& input, const std::string& id, const std::string& title,
+                     const std::string& hint, const std::vector<RoadDamage>& rows) {
+  if (rows.empty()) return "";
+  const std::vector<Column> columns = damage_columns_of(input);
+  return fill(templates::table, {{"id", id},
+                                 {"title", title},
+                                 {"hint", hint},
+                                 {"headings", report_headings(columns)},
+                                 {"rows", report_rows(columns, rows)}});
 }
 
 std::string damages_of(const FlightReportInput& input) {
-  if (input.worst.empty()) return "";
-  std::vector<Column> columns = identity_columns();
-  for (const auto& part : {input.metric ? metric_columns() : pixel_columns(), sighting_columns()}) {
-    columns.insert(columns.end(), part.begin(), part.end());
+  constexpr std::size_t max_rows = 200;
+  std::vector<RoadDamage> rows;
+  for (const ReportedDamage& reported : input.damages) {
+    if (rows.size() < max_rows) rows.push_back(reported.damage);
   }
-  std::string hint = sorting_hint;
-  if (input.worst.size() < input.damages) {
-    hint = "The worst " + std::to_string(input.worst.size()) + " of " + std::to_string(input.damages) +
+  std::string hint = std::string(sorting_hint) + " ± is one standard error.";
+  if (rows.size() < input.damages.size()) {
+    hint = "The worst " + std::to_string(rows.size()) + " of " + std::to_string(input.damages.size()) +
            " damages; all are in damages.csv. " + hint;
   }
-  return fill(templates::table, {{"id", "damages"},
-                                 {"title", "Damages by severity"},
-                                 {"hint", hint},
+  return table_of(input, "damages", "Damages by severity", hint, rows);
+}
+
+std::string candidates_of(const FlightReportInput& input) {
+  constexpr std::size_t max_rows = 50;
+  std::vector<RoadDamage> rows = input.candidates;
+  rows.resize(std::min(rows.size(), max_rows));
+  return table_of(input, "candidates", "Candidates",
+                  "Regions that may be damage: below the required confidence, or shallower than three standard errors "
+                  "of their depth. They are not counted above. candidates.csv has all " +
+                      std::to_string(input.candidates.size()) + ".",
+                  rows);
+}
+
+std::string where_html(const FlightReportInput& input, const RoadDamage& damage) {
+  std::vector<std::pair<std::string, std::string>> places;
+  if (damage.position) places.emplace_back("latitude, longitude", place_text(*damage.position));
+  if (std::isfinite(damage.station_m)) places.emplace_back("station", number_text(damage.station_m, 1) + "\u00a0m");
+  places.emplace_back("measured in frame", damage.frame_name);
+  if (input.curves.in_seconds && std::isfinite(damage.time_s)) {
+    const std::optional<UtcTime> time = utc_time(damage.time_s);
+    places.emplace_back("time", time ? iso_text(*time) : number_text(damage.time_s, 2) + "\u00a0s");
+  }
+  places.emplace_back("seen in", std::to_string(damage.sightings) + (damage.sightings == 1 ? " frame" : " frames"));
+  return property_list(places);
+}
+
+std::string sections_of(const FlightReportInput& input) {
+  std::string html;
+  for (const ReportedDamage& reported : input.damages) {
+    if (!reported.section.empty()) html += fill(reported.section, {{"where", where_html(input, reported.damage)}});
+  }
+  return html.empty() ? html : "<h2>Damage details</h2>\n" + html;
+}
+
+std::string segments_of(const FlightReportInput& input) {
+  if (input.segments.empty()) return "";
+  using S = RoadSegment;
+  static const std::vector<ReportColumn<S>> columns{
+      {"From", "m", [](const S& s) { return fixed_cell(s.from_m, 0); }},
+      {"To", "m", [](const S& s) { return fixed_cell(s.to_m, 0); }},
+      {"Damages", "", [](const S& s) { return fixed_cell(static_cast<double>(s.damages), 0); }},
+      {"Area", "m²",
+       [](const S& s) {
+         return s.damages > 0 ? plain_cell(s.area_m2) : ReportCell{"", 0.0};
+       }},
+      {"Worst", "",
+       [](const S& s) -> ReportCell {
+         if (s.worst == 0) return {"", 0.0};
+         const std::string id = std::to_string(s.worst);
+         return {"<a href=\"#damage-" + id + "\">" + id + "</a>", static_cast<double>(s.worst)};
+       }},
+      {"Roll", "°", [](const S& s) { return fixed_cell(s.roll_rad * degrees, 2); }},
+      {"Camera height", "m", [](const S& s) { return fixed_cell(s.height_m, 2); }}};
+  return fill(templates::table, {{"id", "segments"},
+                                 {"title", "Segments of the road"},
+                                 {"hint", "Stations are distances along the positions of the frames."},
                                  {"headings", report_headings(columns)},
-                                 {"rows", report_rows(columns, input.worst)}});
+                                 {"rows", report_rows(columns, input.segments)}});
+}
+
+std::string map_of(const FlightReportInput& input) {
+  const std::string svg = road_map_svg(input);
+  if (svg.empty()) return "";
+  return "<figure class=\"wide\">" + svg +
+         "<figcaption>Way of the camera and the damages by severity, north up; the ring is the start.</figcaption>"
+         "</figure>\n";
+}
+
+std::string cards_of(const FlightReportInput& input) {
+  std::vector<Damage> damages;
+  for (const ReportedDamage& reported : input.damages) {
+    damages.push_back(reported.damage.best);
+    damages.back().id = static_cast<int>(reported.damage.id);
+  }
+  return damages_cards(damages, input.candidates.size(), input.metric);
 }
 
 bool has_points(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
 
-std::string plot_of(const FlightCurves& curves, const std::vector<double>& values, const std::string& title,
-                    const std::string& label) {
-  constexpr int width = 1100;
-  constexpr int height = 260;
+std::string plot_of(const FlightCurves& curves, const std::vector<double>& values, const std::string& label) {
   if (!has_points(values)) return "";
-  Panel panel;
-  panel.title = title;
-  panel.x_label = curves.in_seconds ? "time since the first frame, s" : "frame";
-  panel.y_label = label;
-  panel.curves.push_back({"", curves.time, values, values.size() == 1});
-  const std::vector<std::uint8_t> png = encode_png(draw_plot(panel, width, height).view());
-  return "<figure class=\"plot\"><img src=\"data:image/png;base64," + base64(png) + "\" alt=\"" +
-         escaped(title + ", " + label) + "\"></figure>\n";
+  return "<figure class=\"plot\">" +
+         curve_svg(curves.time, values, curves.in_seconds ? "time since the first frame, s" : "frame", label) +
+         "</figure>\n";
 }
 
 std::string plots_of(const FlightCurves& curves) {
-  const std::string plots = plot_of(curves, curves.roll_deg, "Roll", "roll, deg") +
-                            plot_of(curves, curves.height_m, "Height above the road", "height, m") +
-                            plot_of(curves, curves.sigma_d_px, "Standard deviation on the road", "sigma_d, px");
-  if (plots.empty()) return "";
-  return "<section id=\"plots\"><h2>Time series</h2>\n" + plots + "</section>\n";
+  const std::string plots = plot_of(curves, curves.roll_deg, "roll, °") +
+                            plot_of(curves, curves.height_m, "camera height, m") +
+                            plot_of(curves, curves.sigma_d_px, "σ_d on the road, px");
+  return plots.empty() ? plots : "<h3>Time series</h3>\n" + plots;
 }
 
 }  // namespace
@@ -165,18 +234,24 @@ std::string plots_of(const FlightCurves& curves) {
 std::string flight_report(const FlightReportInput& input) {
   Fields fields;
   fields["title"] = input.title;
-  fields["colours"] = severity_colours();
+  fields["colours"] = severity_colours() + depth_colours();
   fields["style"] = std::string(templates::style);
   fields["flight_style"] = std::string(flight_templates::style);
   fields["version"] = version;
+  fields["head"] = property_list(input.head);
   fields["notices"] = notices_of(input);
-  fields["cards"] = "";
+  fields["cards"] = cards_of(input);
+  fields["map"] = map_of(input);
   fields["properties"] = property_list(input.properties);
   fields["strip"] = thumbnails_of(input.thumbnails);
   fields["damages"] = damages_of(input);
-  fields["legend"] = input.metric && !input.worst.empty() ? severity_legend() : "";
+  fields["segments"] = segments_of(input);
+  fields["sections"] = sections_of(input);
+  fields["candidates"] = candidates_of(input);
+  fields["legend"] = input.metric && !input.damages.empty() ? severity_legend(input.severity) : "";
   fields["plots"] = plots_of(input.curves);
-  fields["scripts"] = std::string(templates::sorting);
+  fields["palette"] = depth_palette_json();
+  fields["scripts"] = std::string(templates::sorting) + std::string(templates::relief3d);
   return fill(flight_templates::document, fields);
 }
 

@@ -67,14 +67,14 @@ std::string frames_csv_row(const FlightFrame& frame) {
   return line.end();
 }
 
-std::string flight_damages_csv_names() {
+std::string sightings_csv_names() {
   CsvLine line;
   line.add("road_damage").add("frame").add("name").add("time_s");
   add_damage_names(line);
   return line.end();
 }
 
-std::string flight_damages_csv_rows(const FlightFrame& frame, const std::vector<std::int64_t>& road_damages) {
+std::string sightings_csv_rows(const FlightFrame& frame, const std::vector<std::int64_t>& road_damages) {
   std::string rows;
   for (std::size_t i = 0; i < frame.damages.size(); ++i) {
     CsvLine line;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -24,10 +25,32 @@ struct GeoColumn {
   std::function<GeoValue(const Row& row)> value;
 };
 
+/// Longitude, latitude, degrees, and altitude, metres, NaN unknown: one point, or the corners of a polygon, not closed;
+/// empty: no geometry.
+using GeoShape = std::vector<std::array<double, 3>>;
+
+/// A layer of the GIS files.
+template <class Row>
+struct GeoLayer {
+  const char* name;
+  bool polygons = false;  ///< else points
+  std::vector<GeoColumn<Row>> columns;
+  GeoShape (*shape)(const Row& row);
+};
+
 /// Converts Unix seconds to a time of day; monostate if it is none.
 GeoValue geo_time(double time_s);
 
-const std::vector<GeoColumn<GeoFrame>>& geo_frame_columns();
-const std::vector<GeoColumn<GeoDamage>>& geo_damage_columns();
+const GeoLayer<GeoFrame>& frame_layer();
+const GeoLayer<GeoFrame>& footprint_layer();
+const GeoLayer<GeoSighting>& sighting_layer();
+/// The layer `damages`, or `candidates`.
+const GeoLayer<RoadDamage>& damage_layer(bool candidates);
+
+/// Number of first columns of `damage_layer` that are those of damages.csv.
+inline constexpr std::size_t damage_csv_columns = 13;
+
+/// Returns the rows of a layer of damages.
+std::vector<RoadDamage> damage_rows(const GeoLayers& layers, bool candidates);
 
 }  // namespace roadstereo::io

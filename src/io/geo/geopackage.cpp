@@ -7,6 +7,7 @@
 
 #include "io/geo/gdal_errors.hpp"
 #include "io/geo/geo_columns.hpp"
+#include "io/geo/layer_style.hpp"
 #include "io/geo/track_segments.hpp"
 
 namespace roadstereo::io {
@@ -86,11 +87,16 @@ std::unique_ptr<OGRGeometry> shape_of(const TrackSegment& segment) {
   return line;
 }
 
-/// Returns null without a position.
-template <class Row>
-std::unique_ptr<OGRGeometry> shape_of(const Row& row) {
-  if (!row.position) return nullptr;
-  return std::make_unique<OGRPoint>(row.position->lon_deg, row.position->lat_deg);
+/// Returns null for an empty shape.
+std::unique_ptr<OGRGeometry> geometry_of(const GeoShape& shape, bool polygon) {
+  if (shape.empty()) return nullptr;
+  if (!polygon) return std::make_unique<OGRPoint>(shape.front()[0], shape.front()[1]);
+  auto ring = std::make_unique<OGRLinearRing>();
+  for (const auto& corner : shape) ring->addPoint(corner[0], corner[1]);
+  ring->closeRings();
+  auto area = std::make_unique<OGRPolygon>();
+  area->addRingDirectly(ring.release());
+  return area;
 }
 
 /// Writes a GeoPackage.
@@ -107,17 +113,23 @@ class Package {
   }
 
   template <class Row>
-  void add(const char* name, OGRwkbGeometryType shape, const std::vector<GeoColumn<Row>>& columns,
-           std::span<const Row> rows) {
-    OGRLayer* layer = dataset_->CreateLayer(name, &wgs84_, shape, nullptr);
-    errors_.require(layer != nullptr, "creating a layer");
-    for (const GeoColumn<Row>& column : columns) {
-      const FieldType type = field_type(column.type);
-      OGRFieldDefn field(column.name.c_str(), type.type);
-      field.SetSubType(type.part);
-      errors_.require(layer->CreateField(&field) == OGRERR_NONE, "creating a column");
+  void add(const GeoLayer<Row>& layer, std::span<const Row> rows) {
+    OGRLayer& made = create(layer.name, layer.polygons ? wkbPolygon : wkbPoint, layer.columns);
+    for (const Row& row : rows) add_row(made, layer.columns, row, geometry_of(layer.shape(row), layer.polygons));
+  }
+
+  void add_track(const Track& track) {
+    OGRLayer& made = create("track", wkbLineString, track_segment_columns());
+    for (const TrackSegment& segment : track_segments(track)) {
+      add_row(made, track_segment_columns(), segment, shape_of(segment));
     }
-    for (const Row& row : rows) add_row(*layer, columns, row);
+  }
+
+  /// Adds QGIS styles, which its reader finds by the name of the table.
+  void add_styles(std::span<const LayerStyle> styles) {
+    const char* const options[] = {"FID=id", nullptr};
+    OGRLayer& made = create("layer_styles", wkbNone, layer_style_columns(), const_cast<char**>(options));
+    for (const LayerStyle& style : styles) add_row(made, layer_style_columns(), style, nullptr);
   }
 
   std::vector<std::uint8_t> finish() {
@@ -130,12 +142,27 @@ class Package {
 
  private:
   template <class Row>
-  void add_row(OGRLayer& layer, const std::vector<GeoColumn<Row>>& columns, const Row& row) {
+  OGRLayer& create(const char* name, OGRwkbGeometryType shape, const std::vector<GeoColumn<Row>>& columns,
+                   char** options = nullptr) {
+    OGRLayer* layer = dataset_->CreateLayer(name, shape == wkbNone ? nullptr : &wgs84_, shape, options);
+    errors_.require(layer != nullptr, "creating a layer");
+    for (const GeoColumn<Row>& column : columns) {
+      const FieldType type = field_type(column.type);
+      OGRFieldDefn field(column.name.c_str(), type.type);
+      field.SetSubType(type.part);
+      errors_.require(layer->CreateField(&field) == OGRERR_NONE, "creating a column");
+    }
+    return *layer;
+  }
+
+  template <class Row>
+  void add_row(OGRLayer& layer, const std::vector<GeoColumn<Row>>& columns, const Row& row,
+               std::unique_ptr<OGRGeometry> shape) {
     const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer.GetLayerDefn()));
     errors_.require(feature != nullptr, "creating a feature");
     int field = 0;
     for (const GeoColumn<Row>& column : columns) std::visit(SetField{*feature, field++}, column.value(row));
-    feature->SetGeometryDirectly(shape_of(row).release());
+    if (shape != nullptr) feature->SetGeometryDirectly(shape.release());
     errors_.require(layer.CreateFeature(feature.get()) == OGRERR_NONE, "writing a feature");
   }
 
@@ -147,14 +174,21 @@ class Package {
 
 }  // namespace
 
-std::vector<std::uint8_t> geopackage(std::span<const GeoFrame> frames, std::span<const GeoDamage> damages,
-                                     const Track& track) {
+std::vector<std::uint8_t> geopackage(const GeoLayers& layers, const Track& track) {
   const GdalErrors errors;
   Package package(errors);
-  package.add("frames", wkbPoint, geo_frame_columns(), frames);
-  package.add("damages", wkbPoint, geo_damage_columns(), damages);
-  const std::vector<TrackSegment> segments = track_segments(track);
-  package.add("track", wkbLineString, track_segment_columns(), std::span<const TrackSegment>(segments));
+  const std::vector<RoadDamage> damages = damage_rows(layers, false), candidates = damage_rows(layers, true);
+  std::vector<LayerStyle> styles{severity_style("damages")};
+  package.add(damage_layer(false), std::span<const RoadDamage>(damages));
+  if (layers.with_candidates) {
+    package.add(damage_layer(true), std::span<const RoadDamage>(candidates));
+    styles.push_back(severity_style("candidates"));
+  }
+  package.add(sighting_layer(), layers.sightings);
+  package.add(frame_layer(), layers.frames);
+  package.add(footprint_layer(), layers.frames);
+  package.add_track(track);
+  package.add_styles(styles);
   return package.finish();
 }
 

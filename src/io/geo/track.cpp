@@ -105,4 +105,10 @@ std::optional<GeoPosition> offset_position(const GeoPosition& from, double right
   return to;
 }
 
+double distance_m(const GeoPosition& from, const GeoPosition& to) {
+  double way_m = 0;
+  GeographicLib::Geodesic::WGS84().Inverse(from.lat_deg, from.lon_deg, to.lat_deg, to.lon_deg, way_m);
+  return way_m;
+}
+
 }  // namespace roadstereo::io

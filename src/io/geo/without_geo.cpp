@@ -33,8 +33,11 @@ std::optional<GeoPosition> offset_position(const GeoPosition& /*from*/, double /
   fail_without_geo();
 }
 
-std::vector<std::uint8_t> geopackage(std::span<const GeoFrame> /*frames*/, std::span<const GeoDamage> /*damages*/,
-                                     const Track& /*track*/) {
+double distance_m(const GeoPosition& /*from*/, const GeoPosition& /*to*/) {
+  fail_without_geo();
+}
+
+std::vector<std::uint8_t> geopackage(const GeoLayers& /*layers*/, const Track& /*track*/) {
   fail_without_geo();
 }
 

@@ -32,13 +32,18 @@ ReportCell plain_cell(double value) {
 }
 
 ReportCell fixed_cell(double value, int decimals) {
-  return {number_text(value, decimals), value};
+  return {std::isfinite(value) ? number_text(value, decimals) : "", value};
 }
 
 ReportCell severity_cell(const Damage& damage) {
-  const std::string name = name_of(severity_of(damage));
-  return {"<span class=\"chip " + name + " " + name_of(damage.kind) + "\">" + name + "</span>",
-          static_cast<double>(severity_of(damage))};
+  const Severity severity = severity_of(damage);
+  const std::string text = damage.metrics ? severity_text(*damage.metrics) : name_of(severity);
+  return {"<span class=\"chip " + std::string(name_of(severity)) + "\">" + text + "</span>",
+          static_cast<double>(severity)};
+}
+
+ReportCell distress_cell(const Damage& damage) {
+  return {damage.metrics ? name_of(damage.metrics->distress) : name_of(damage.kind), {}};
 }
 
 std::string report_heading(const std::string& title, const std::string& unit) {

@@ -19,6 +19,8 @@ ReportCell measured_cell(const Measurement& measured);
 ReportCell plain_cell(double value);
 ReportCell fixed_cell(double value, int decimals);
 ReportCell severity_cell(const Damage& damage);
+/// Shows the distress, or without a calibration the side of the road.
+ReportCell distress_cell(const Damage& damage);
 
 /// Hint above sortable tables.
 inline constexpr const char* sorting_hint = "Click a column header to sort; click again to reverse the order.";

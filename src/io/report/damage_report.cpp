@@ -1,7 +1,6 @@
 #include "roadstereo/io/damage_report.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "io/damage_colours.hpp"
 #include "io/frame_mat.hpp"
@@ -14,6 +13,7 @@
 #include "io/report/templates.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/damage_overlay.hpp"
+#include "roadstereo/io/flight_pictures.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/version.hpp"
 
@@ -76,29 +76,18 @@ std::string sections(const DamageReportInput& input) {
             std::to_string(damages.size()) + " damages have a 3-D view.</p>\n";
   }
   for (std::size_t i = 0; i < damages.size(); ++i) {
-    html += damage_section(input, background, damages[i], size, i < max_reliefs);
+    html += damage_section(input, background, damages[i], {size, i < max_reliefs, std::to_string(damages[i].id), ""});
   }
   return html;
 }
 
-/// The depth colours for the scripts, from above the road to below it.
-std::string palette_json() {
-  constexpr int steps = 65;
-  const cv::Mat ramp = depth_ramp(steps);
-  nlohmann::json colours = nlohmann::json::array();
-  for (int i = 0; i < steps; ++i) {
-    const auto& bgr = ramp.at<cv::Vec3b>(i);
-    colours.push_back({bgr[2], bgr[1], bgr[0]});
-  }
-  return colours.dump();
-}
-
-std::string ramp_uri() {
-  constexpr int steps = 128;
-  return picture_uri(depth_ramp(steps), {steps, 10000});
-}
-
 }  // namespace
+
+std::string road_damage_section(const DamageReportInput& input, const Damage& damage, std::int64_t id) {
+  validate(input);
+  constexpr SectionSize size{{360, 30000}, 72};
+  return damage_section(input, background_of(input), damage, {size, true, std::to_string(id), "{{&where}}"});
+}
 
 Frame damage_background(const DamageReportInput& input) {
   return frame_from(background_of(input), ChannelOrder::bgr);
@@ -110,18 +99,20 @@ std::string damage_report(const DamageReportInput& input) {
   Fields fields;
   fields["title"] = input.title;
   fields["style"] = std::string(templates::style);
-  fields["colours"] = severity_colours() + ":root{--ramp:url(" + ramp_uri() + ")}";
+  fields["colours"] = severity_colours() + depth_colours();
   fields["version"] = version;
   fields["size"] = std::to_string(map.ids.width()) + " × " + std::to_string(map.ids.height()) + " px";
   fields["notices"] = summary_notices(map);
-  fields["cards"] = summary_cards(map);
+  fields["head"] = property_list(input.head);
+  fields["cards"] = damages_cards(map.damages, map.candidates.size(), map.metric);
   fields["properties"] = property_list(input.properties);
   fields["sheet"] = sheet_figure(input);
   fields["overlay"] = overlay_figure(input);
   fields["list"] = damage_list(map);
-  fields["legend"] = map.metric && !map.damages.empty() ? severity_legend() : "";
+  fields["candidates"] = candidate_list(map);
+  fields["legend"] = map.metric && !map.damages.empty() ? severity_legend(input.severity) : "";
   fields["damages"] = sections(input);
-  fields["palette"] = palette_json();
+  fields["palette"] = depth_palette_json();
   fields["scripts"] = std::string(templates::sorting) + std::string(templates::relief3d);
   return fill(templates::report, fields);
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -23,34 +22,51 @@ using Properties = std::vector<std::pair<std::string, std::string>>;
 
 constexpr double mm = 1000;      // in a metre
 constexpr double litres = 1000;  // in a cubic metre
-constexpr double degrees = 180 / std::numbers::pi;
 
 std::string pair_text(double first, double second, int decimals, const std::string& unit) {
   return "(" + number_text(first, decimals) + ", " + number_text(second, decimals) + ")\u00a0" + unit;
 }
 
+std::string quantity_text(const DamageMetrics& metrics) {
+  if (metrics.unit == DistressUnit::square_metre) return value_text(metrics.quantity, "m²");
+  if (metrics.unit == DistressUnit::metre) return value_text(metrics.quantity, "m");
+  return number_text(metrics.quantity, metrics.quantity == 1 ? 0 : 1);
+}
+
+std::string probabilities_text(const SeverityProbabilities& p) {
+  constexpr double percent = 100;
+  return number_text(percent * p.minor, 0) + "\u00a0/\u00a0" + number_text(percent * p.low, 0) + "\u00a0/\u00a0" +
+         number_text(percent * p.medium, 0) + "\u00a0/\u00a0" + number_text(percent * p.high, 0) + "\u00a0%";
+}
+
 Properties metric_properties(const Damage& damage, const DamageMetrics& metrics) {
   const bool rises = damage.kind == DamageKind::protrusion;
-  return {{rises ? "maximum height" : "maximum depth", measured_text(scaled(metrics.max_depth_m, mm), "mm")},
-          {rises ? "mean height" : "mean depth", measured_text(scaled(metrics.mean_depth_m, mm), "mm")},
-          {"area", measured_text(metrics.area_m2, "m²")},
-          {"volume", measured_text(scaled(metrics.volume_m3, litres), "L")},
-          {"length × width", value_text(metrics.length_m, "") + " × " + value_text(metrics.width_m, "m")},
-          {"orientation", number_text(metrics.angle_rad * degrees, 0) + "°"},
-          {"mean diameter", value_text(metrics.diameter_m, "m")},
-          {"road position (x, y)", pair_text(metrics.road_centroid_m[0], metrics.road_centroid_m[1], 2, "m")},
-          {"distance", value_text(metrics.distance_m, "m")},
-          {"resolvable depth", value_text(metrics.resolvable_depth_m * mm, "mm")}};
+  Properties properties{
+      {rises ? "maximum height" : "maximum depth", measured_text(scaled(metrics.max_depth_m, mm), "mm")},
+      {rises ? "mean height" : "mean depth", measured_text(scaled(metrics.mean_depth_m, mm), "mm")},
+      {"area", measured_text(metrics.area_m2, "m²")},
+      {"volume", measured_text(scaled(metrics.volume_m3, litres), "L")},
+      {"length × width", value_text(metrics.length_m, "") + " × " + value_text(metrics.width_m, "m")},
+      {"mean diameter", value_text(metrics.diameter_m, "m")},
+      {"quantity", quantity_text(metrics)}};
+  const SeverityProbabilities& p = metrics.severity_probabilities;
+  if (p.minor + p.low + p.medium + p.high > 0) {
+    properties.emplace_back("minor / low / medium / high", probabilities_text(p));
+  }
+  properties.emplace_back("confidence", number_text(100 * damage.confidence, 0) + "\u00a0%");
+  properties.emplace_back("in front of the camera (x, y)",
+                          pair_text(metrics.road_centroid_m[0], metrics.road_centroid_m[1], 2, "m"));
+  properties.emplace_back("resolvable depth", value_text(metrics.resolvable_depth_m * mm, "mm"));
+  return properties;
 }
 
 Properties properties_of(const Damage& damage) {
-  Properties properties;
-  if (damage.metrics) properties = metric_properties(damage, *damage.metrics);
-  properties.emplace_back("maximum disparity change", measured_text(damage.max_depth_px, "px"));
-  properties.emplace_back("centre (u, v)", pair_text(damage.centroid_px[0], damage.centroid_px[1], 0, "px"));
-  properties.emplace_back("size", std::to_string(damage.pixels) + "\u00a0px");
-  properties.emplace_back("measured", number_text(100 * damage.measured_share, 0) + "\u00a0%");
-  return properties;
+  if (damage.metrics) return metric_properties(damage, *damage.metrics);
+  return {{"maximum disparity change", measured_text(damage.max_depth_px, "px")},
+          {"centre (u, v)", pair_text(damage.centroid_px[0], damage.centroid_px[1], 0, "px")},
+          {"size", std::to_string(damage.pixels) + "\u00a0px"},
+          {"measured", number_text(100 * damage.measured_share, 0) + "\u00a0%"},
+          {"confidence", number_text(100 * damage.confidence, 0) + "\u00a0%"}};
 }
 
 std::string properties_html(const Properties& properties) {
@@ -86,6 +102,12 @@ std::string scale_html(double max_depth) {
   return html;
 }
 
+std::string note_of(const Damage& damage) {
+  std::string note = damage.metrics ? distress_reason(*damage.metrics) : "";
+  if (damage.cut_by_border) note += (note.empty() ? "" : "; ") + std::string("cut by the image border: may be larger");
+  return note;
+}
+
 /// The map whose NaN pixels are the holes.
 ImageView<const float> holes_of(const DamageReportInput& input) {
   return input.disparity.empty() ? input.transformed : input.disparity;
@@ -106,26 +128,29 @@ SectionSize SectionSize::for_count(std::size_t damages) {
 }
 
 std::string damage_section(const DamageReportInput& input, const cv::Mat& background, const Damage& damage,
-                           const SectionSize& size, bool with_relief) {
+                           const SectionOptions& options) {
   const DamageMap& map = input.map;
-  const Crop crop = crop_around(map, damage, size.picture);
+  Crop crop = crop_around(map, damage, options.size.picture, input.calibration ? input.calibration->focal_px : 0);
+  crop.id = options.id;
   const double max_depth = max_depth_of(map, damage);
   const CrossSection section = extract_cross_section(map, damage, holes_of(input), rig_of(input));
   Fields fields;
-  fields["id"] = std::to_string(damage.id);
-  fields["kind"] = name_of(damage.kind);
+  fields["id"] = options.id;
+  fields["kind"] = damage.metrics ? name_of(damage.metrics->distress) : name_of(damage.kind);
   fields["severity"] = name_of(severity_of(damage));
-  fields["note"] = damage.cut_by_border ? "cut by the image border: the true size may be larger" : "";
+  fields["severity_text"] = damage.metrics ? severity_text(*damage.metrics) : "";
+  fields["where"] = options.where;
+  fields["note"] = note_of(damage);
   fields["properties"] = properties_html(properties_of(damage));
   fields["crop"] = crop_svg(background, map, damage, crop);
   fields["depth"] = depth_svg(map, damage, crop, {holes_of(input), &section, max_depth});
   fields["depth_unit"] = map.metric ? "mm" : "px";
   fields["scale"] = scale_html(map.metric ? max_depth * mm : max_depth);
-  fields["profile"] = profile_svg(section, damage, map.metric);
+  fields["profile"] = profile_svg(section, damage, options.id, map.metric);
   fields["relief"] = "";
-  if (with_relief) {
-    const Relief relief = extract_relief(map, damage, holes_of(input), rig_of(input), size.relief_points);
-    fields["relief"] = relief_html(relief, damage, max_depth);
+  if (options.with_relief) {
+    const Relief relief = extract_relief(map, damage, holes_of(input), rig_of(input), options.size.relief_points);
+    fields["relief"] = relief_html(relief, options.id, max_depth);
   }
   return fill(templates::damage, fields);
 }

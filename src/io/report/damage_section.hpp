@@ -19,9 +19,17 @@ struct SectionSize {
 /// Number of damages with a 3-D view, deepest first.
 inline constexpr std::size_t max_reliefs = 30;
 
-/// Returns the section of one damage: values, image, depths, cross-section and, if `with_relief`, 3-D view.
-/// `background` is the background image of the report, 8-bit BGR.
+/// What a section shows of a damage.
+struct SectionOptions {
+  SectionSize size;
+  bool with_relief = true;
+  std::string id;     ///< shown number
+  std::string where;  ///< HTML under the title
+};
+
+/// Returns the section of one damage: values, image, depths, cross-section and 3-D view. `background` is the background
+/// image of the report, 8-bit BGR.
 std::string damage_section(const DamageReportInput& input, const cv::Mat& background, const Damage& damage,
-                           const SectionSize& size, bool with_relief);
+                           const SectionOptions& options);
 
 }  // namespace roadstereo::io

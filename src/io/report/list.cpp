@@ -1,5 +1,6 @@
 #include "io/report/list.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "io/report/cells.hpp"
@@ -21,34 +22,24 @@ Cell id_cell(const Damage& damage) {
   return {"<a href=\"#damage-" + id + "\">" + id + "</a>", static_cast<double>(damage.id)};
 }
 
-Cell kind_cell(const Damage& damage) {
-  return {name_of(damage.kind)};
-}
-
 std::vector<Column> metric_columns() {
   using D = Damage;
   return {{"#", "", id_cell},
-          {"Kind", "", kind_cell},
+          {"Distress", "", distress_cell},
           {"Severity", "", severity_cell},
-          {"Confidence", "%", [](const D& d) { return fixed_cell(100 * d.confidence, 0); }},
-          {"Max depth", "mm", [](const D& d) { return measured_cell(scaled(d.metrics->max_depth_m, mm)); }},
-          {"Mean depth", "mm", [](const D& d) { return measured_cell(scaled(d.metrics->mean_depth_m, mm)); }},
+          {"Depth", "mm", [](const D& d) { return measured_cell(scaled(d.metrics->max_depth_m, mm)); }},
           {"Area", "m²", [](const D& d) { return measured_cell(d.metrics->area_m2); }},
+          {"Confidence", "%", [](const D& d) { return fixed_cell(100 * d.confidence, 0); }},
           {"Volume", "L", [](const D& d) { return measured_cell(scaled(d.metrics->volume_m3, litres)); }},
           {"Length", "m", [](const D& d) { return plain_cell(d.metrics->length_m); }},
           {"Width", "m", [](const D& d) { return plain_cell(d.metrics->width_m); }},
-          {"Diameter", "m", [](const D& d) { return plain_cell(d.metrics->diameter_m); }},
-          {"Road x", "m", [](const D& d) { return fixed_cell(d.metrics->road_centroid_m[0], 2); }},
-          {"Road y", "m", [](const D& d) { return fixed_cell(d.metrics->road_centroid_m[1], 2); }},
-          {"Distance", "m", [](const D& d) { return fixed_cell(d.metrics->distance_m, 2); }},
-          {"Resolvable", "mm", [](const D& d) { return plain_cell(d.metrics->resolvable_depth_m * mm); }},
-          {"Measured", "%", [](const D& d) { return fixed_cell(100 * d.measured_share, 0); }}};
+          {"Distance", "m", [](const D& d) { return fixed_cell(d.metrics->distance_m, 2); }}};
 }
 
 std::vector<Column> pixel_columns() {
   using D = Damage;
   return {{"#", "", id_cell},
-          {"Kind", "", kind_cell},
+          {"Distress", "", distress_cell},
           {"Confidence", "%", [](const D& d) { return fixed_cell(100 * d.confidence, 0); }},
           {"Max change", "px", [](const D& d) { return measured_cell(d.max_depth_px); }},
           {"Mean change", "px", [](const D& d) { return plain_cell(d.mean_depth_px); }},
@@ -59,22 +50,41 @@ std::vector<Column> pixel_columns() {
 }
 
 bool all_metric(const DamageMap& map) {
-  for (const Damage& damage : map.damages) {
-    if (!damage.metrics) return false;
-  }
-  return true;
+  const auto is_metric = [](const Damage& damage) { return damage.metrics.has_value(); };
+  return std::all_of(map.damages.begin(), map.damages.end(), is_metric) &&
+         std::all_of(map.candidates.begin(), map.candidates.end(), is_metric);
+}
+
+}  // namespace
+
+namespace {
+
+std::string table_of(const DamageMap& map, const std::vector<Damage>& rows, bool linked, const Fields& texts) {
+  if (rows.empty()) return "";
+  std::vector<Column> columns = all_metric(map) ? metric_columns() : pixel_columns();
+  if (!linked) columns.front().cell = [](const Damage& damage) { return fixed_cell(damage.id, 0); };
+  Fields fields = texts;
+  fields["headings"] = report_headings(columns);
+  fields["rows"] = report_rows(columns, rows);
+  return fill(templates::table, fields);
 }
 
 }  // namespace
 
 std::string damage_list(const DamageMap& map) {
-  if (map.damages.empty()) return "";
-  const std::vector<Column> columns = all_metric(map) ? metric_columns() : pixel_columns();
-  return fill(templates::table, {{"id", "list"},
-                                 {"title", "All damages"},
-                                 {"hint", std::string(sorting_hint) + " ± is one standard error."},
-                                 {"headings", report_headings(columns)},
-                                 {"rows", report_rows(columns, map.damages)}});
+  return table_of(
+      map, map.damages, true,
+      {{"id", "list"}, {"title", "All damages"}, {"hint", std::string(sorting_hint) + " ± is one standard error."}});
+}
+
+std::string candidate_list(const DamageMap& map) {
+  return table_of(
+      map, map.candidates, false,
+      {{"id", "candidates"},
+       {"title", "Candidates"},
+       {"hint",
+        "Regions that may be damage: below the required confidence, or shallower than three standard errors "
+        "of their depth. They are not counted above."}});
 }
 
 }  // namespace roadstereo::io

@@ -105,15 +105,43 @@ cv::Rect rect_of(const PixelBox& box) {
   return {box.u0, box.v0, box.width(), box.height()};
 }
 
+/// Largest 1, 2 or 5 times a power of ten that is at most `most`.
+double round_length(double most) {
+  const double power = std::pow(10.0, std::floor(std::log10(most)));
+  return power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
+}
+
+/// Height of the strip with the scale bar below a crop.
+int bar_height(const Crop& crop) {
+  return std::max(10, crop.size.width / 12);
+}
+
+/// Scale bar below the crop, along its rows.
+std::string bar_svg(const Crop& crop) {
+  const double unit = crop.gsd_m > 0 ? crop.gsd_m : 1;  // of a pixel of the frame
+  const double length = round_length(0.4 * crop.box.width() * unit);
+  const double shown = length / unit * crop.size.width / crop.box.width();
+  const int strip = bar_height(crop);
+  const std::string y = number_text(crop.size.height + 0.6 * strip, 1);
+  const std::string text = crop.gsd_m <= 0 ? number_text(length, length < 1 ? 1 : 0) + " px"
+                           : length >= 1   ? number_text(length, 0) + " m"
+                                           : number_text(1000 * length, 0) + " mm";
+  return "<path class=\"bar\" d=\"M2 " + y + "h" + number_text(shown, 1) + "\"/><text x=\"" +
+         number_text(shown + 0.4 * strip, 1) + "\" y=\"" + number_text(crop.size.height + 0.85 * strip, 1) +
+         "\" font-size=\"" + number_text(0.75 * strip, 1) + "\">" + text + "</text>";
+}
+
 Fields crop_fields(const cv::Mat& picture, const DamageMap& map, const Damage& damage, const Crop& crop) {
   const auto [red, green, blue] = damage_colour(damage.kind, severity_of(damage));
   return {{"width", std::to_string(crop.size.width)},
           {"height", std::to_string(crop.size.height)},
-          {"ratio", number_text(static_cast<double>(crop.size.width) / crop.size.height, 3)},
+          {"total_height", std::to_string(crop.size.height + bar_height(crop))},
+          {"ratio", number_text(static_cast<double>(crop.size.width) / (crop.size.height + bar_height(crop)), 3)},
+          {"bar", bar_svg(crop)},
           {"picture", picture_uri(picture, {std::max(crop.size.width, crop.size.height), crop.bytes})},
           {"outline", outline(map, damage, crop)},
           {"colour", "rgb(" + std::to_string(red) + "," + std::to_string(green) + "," + std::to_string(blue) + ")"},
-          {"id", std::to_string(damage.id)}};
+          {"id", crop.id}};
 }
 
 /// Line of a cross-section as an SVG path.
@@ -178,14 +206,19 @@ std::string picture_uri(std::span<const std::uint8_t> encoded_picture, const Pic
   return picture_uri(picture, limit);
 }
 
-Crop crop_around(const DamageMap& map, const Damage& damage, const PictureLimit& limit) {
+Crop crop_around(const DamageMap& map, const Damage& damage, const PictureLimit& limit, double focal_px) {
   constexpr double share = 0.25;
   constexpr int min_margin_px = 8;
   const auto& [u0, v0, u1, v1] = damage.box_px;
   const int longer = std::max(u1 - u0, v1 - v0) + 1;  // also shows the surroundings of a thin damage
   const PixelBox box = box_with_margin(map, damage, share, std::max(min_margin_px, longer / 8));
   const double scale = std::min(1.0, static_cast<double>(limit.side) / std::max(box.width(), box.height()));
-  return {box, {std::max(1, cvRound(scale * box.width())), std::max(1, cvRound(scale * box.height()))}, limit.bytes};
+  const double gsd_m = damage.metrics && focal_px > 0 ? damage.metrics->centroid_m[2] / focal_px : 0;
+  return {box,
+          {std::max(1, cvRound(scale * box.width())), std::max(1, cvRound(scale * box.height()))},
+          limit.bytes,
+          std::to_string(damage.id),
+          gsd_m};
 }
 
 std::string crop_svg(const cv::Mat& picture, const DamageMap& map, const Damage& damage, const Crop& crop) {
@@ -206,10 +239,32 @@ std::string depth_svg(const DamageMap& map, const Damage& damage, const Crop& cr
   return fill(templates::depth, fields);
 }
 
+namespace {
+
+/// The colour scale from −1 (above the road, top) to 1, one pixel wide.
 cv::Mat depth_ramp(int steps) {
   Image<float> ramp(1, steps);
   for (int i = 0; i < steps; ++i) ramp(0, i) = 1 - 2 * static_cast<float>(i) / static_cast<float>(steps - 1);
   return colour_pixels(ramp, {-1, 1, true, ""});
+}
+
+}  // namespace
+
+std::string depth_palette_json() {
+  constexpr int steps = 65;
+  const cv::Mat ramp = depth_ramp(steps);
+  std::string colours = "[";
+  for (int i = 0; i < steps; ++i) {
+    const auto& bgr = ramp.at<cv::Vec3b>(i);
+    colours += (i == 0 ? "[" : ",[") + std::to_string(bgr[2]) + "," + std::to_string(bgr[1]) + "," +
+               std::to_string(bgr[0]) + "]";
+  }
+  return colours + "]";
+}
+
+std::string depth_colours() {
+  constexpr int steps = 128;
+  return ":root{--ramp:url(" + picture_uri(depth_ramp(steps), {steps, 10000}) + ")}";
 }
 
 }  // namespace roadstereo::io

@@ -29,8 +29,11 @@ struct Crop {
   PixelBox box;
   cv::Size size;          ///< pixels of the scaled image
   std::size_t bytes = 0;  ///< of the file, approximate
+  std::string id;         ///< shown number of the damage
+  double gsd_m = 0;       ///< along the rows at the damage, metres per pixel of the frame; 0: unknown
 };
-Crop crop_around(const DamageMap& map, const Damage& damage, const PictureLimit& limit);
+/// `focal_px` 0: unknown.
+Crop crop_around(const DamageMap& map, const Damage& damage, const PictureLimit& limit, double focal_px);
 
 /// Returns the crop of the image with the outline of the damage as SVG.
 std::string crop_svg(const cv::Mat& picture, const DamageMap& map, const Damage& damage, const Crop& crop);
@@ -45,7 +48,10 @@ struct DepthMarks {
 /// Returns the crop of the depths with outline and marks as SVG.
 std::string depth_svg(const DamageMap& map, const Damage& damage, const Crop& crop, const DepthMarks& marks);
 
-/// Returns the colour scale from −max_depth (above the road, top) to max_depth as an image one pixel wide.
-cv::Mat depth_ramp(int steps);
+/// Returns the colours of the depths for the scripts as JSON, from above the road to below it.
+std::string depth_palette_json();
+
+/// Returns the colour scale of the depths, above the road at the top, as a CSS custom property.
+std::string depth_colours();
 
 }  // namespace roadstereo::io

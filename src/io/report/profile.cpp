@@ -7,26 +7,14 @@
 
 #include "io/drawing.hpp"
 #include "io/report/markup.hpp"
-#include "io/report/number_text.hpp"
+#include "io/report/svg_axes.hpp"
 #include "io/report/templates.hpp"
 
 namespace roadstereo::io {
 namespace {
 
-constexpr double plot_left = 58, plot_right = 508, plot_top = 18, plot_bottom = 204;
 constexpr double mm = 1000;
-
-/// One axis: maps values to coordinates of the drawing.
-struct Axis {
-  double lowest = 0, highest = 1;
-  double from = 0, to = 1;
-
-  double coordinate(double value) const { return from + (value - lowest) / (highest - lowest) * (to - from); }
-};
-
-std::string coordinate_text(double coordinate) {
-  return number_text(coordinate, 1);
-}
+using Axis = SvgAxis;
 
 /// The curve as an SVG path, interrupted at values that are not finite; about `max_points` points.
 std::string curve_path(const CrossSection& section, const std::vector<double>& depths, const Axis& x, const Axis& y) {
@@ -57,38 +45,6 @@ std::string area_path(const CrossSection& section, const Axis& x, const Axis& y)
     if (i + 1 == depths.size() || !std::isfinite(depths[i + 1])) path << 'L' << at << ' ' << road << 'Z';
   }
   return path.str();
-}
-
-/// A tick label; `kind` sets its anchor.
-std::string tick_text(double x, double y, const char* kind, const std::string& text) {
-  return "<text class=\"" + std::string(kind) + "\" x=\"" + coordinate_text(x) + "\" y=\"" + coordinate_text(y) +
-         "\">" + escaped(text) + "</text>";
-}
-
-std::string x_ticks(const Axis& x, double unit) {
-  constexpr int max_ticks = 7;
-  const Ticks ticks = round_ticks(x.lowest * unit, x.highest * unit, max_ticks);
-  std::string marks;
-  for (const double value : ticks.values) {
-    const double at = x.coordinate(value / unit);
-    marks += "<path class=\"grid\" d=\"M" + coordinate_text(at) + " " + coordinate_text(plot_top) + "V" +
-             coordinate_text(plot_bottom) + "\"/>" +
-             tick_text(at, plot_bottom + 16, "below", number_text(value, ticks.decimals));
-  }
-  return marks;
-}
-
-std::string y_ticks(const Axis& y, double unit) {
-  constexpr int max_ticks = 6;
-  const Ticks ticks = round_ticks(y.lowest * unit, y.highest * unit, max_ticks);
-  std::string marks;
-  for (const double value : ticks.values) {
-    const double at = y.coordinate(value / unit);
-    marks += "<path class=\"grid\" d=\"M" + coordinate_text(plot_left) + " " + coordinate_text(at) + "H" +
-             coordinate_text(plot_right) + "\"/>" +
-             tick_text(plot_left - 7, at + 4, "beside", number_text(value, ticks.decimals));
-  }
-  return marks;
 }
 
 /// Range of the depths including 0, with margins for the label.
@@ -123,19 +79,17 @@ std::string deepest_mark(const CrossSection& section, const Damage& damage, cons
 
 }  // namespace
 
-std::string profile_svg(const CrossSection& section, const Damage& damage, bool metric_depth) {
+std::string profile_svg(const CrossSection& section, const Damage& damage, const std::string& id, bool metric_depth) {
   const Axis x = position_axis(section), y = depth_axis(section);
   const bool metres = section.metric && x.highest - x.lowest >= 1;
   const double x_unit = section.metric && !metres ? mm : 1, y_unit = metric_depth ? mm : 1;
   Fields fields;
-  fields["id"] = std::to_string(damage.id);
+  fields["id"] = id;
   fields["ticks"] = x_ticks(x, x_unit) + y_ticks(y, y_unit);
   fields["area"] = area_path(section, x, y);
   fields["interpolated"] = curve_path(section, section.filled, x, y);
   fields["measured"] = curve_path(section, section.depth, x, y);
   fields["road"] = coordinate_text(y.coordinate(0));
-  const bool rises = damage.kind == DamageKind::protrusion;  // the label is on the other side of the line
-  fields["road_label"] = coordinate_text(y.coordinate(0) + (rises ? 15 : -6));
   fields["deepest"] = deepest_mark(section, damage, x, y);
   fields["kind"] = name_of(damage.kind);
   fields["x_label"] = section.metric ? std::string("along the road, ") + (metres ? "m" : "mm") : "along the image, px";

@@ -57,9 +57,9 @@ std::string number(double value) {
 
 }  // namespace
 
-std::string relief_html(const Relief& relief, const Damage& damage, double max_depth) {
+std::string relief_html(const Relief& relief, const std::string& id, double max_depth) {
   const Steps x = in_steps(relief.x), y = in_steps(relief.y), depth = in_steps(relief.depth);
-  return fill(templates::relief, {{"id", std::to_string(damage.id)},
+  return fill(templates::relief, {{"id", id},
                                   {"columns", std::to_string(relief.depth.width())},
                                   {"rows", std::to_string(relief.depth.height())},
                                   {"unit", relief.metric ? "m" : "px"},

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <vector>
 
 #include "io/damage_colours.hpp"
+#include "io/drawing.hpp"
 #include "io/report/markup.hpp"
 #include "io/report/number_text.hpp"
 #include "io/report/templates.hpp"
@@ -15,42 +18,55 @@ namespace {
 constexpr double mm = 1000;      // in a metre
 constexpr double litres = 1000;  // in a cubic metre
 
-constexpr std::array<Severity, 6> known_severities{Severity::high,  Severity::medium,    Severity::low,
-                                                   Severity::minor, Severity::uncertain, Severity::unresolvable};
+constexpr std::array known_severities{Severity::high,      Severity::medium,       Severity::low,    Severity::minor,
+                                      Severity::uncertain, Severity::unresolvable, Severity::unknown};
 
 std::string card(const std::string& name, const std::string& value, const std::string& more) {
   return "<div class=\"card\"><div class=\"name\">" + escaped(name) + "</div><div class=\"value\">" + escaped(value) +
          "</div><div class=\"more\">" + more + "</div></div>";
 }
 
-std::string counted(std::size_t count, const std::string& thing) {
-  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+using Damages = std::vector<Damage>;
+
+std::size_t count_of(const Damages& damages, DamageKind kind) {
+  return static_cast<std::size_t>(
+      std::count_if(damages.begin(), damages.end(), [kind](const Damage& damage) { return damage.kind == kind; }));
 }
 
-std::size_t count_of(const DamageMap& map, DamageKind kind) {
-  return static_cast<std::size_t>(std::count_if(map.damages.begin(), map.damages.end(),
-                                                [kind](const Damage& damage) { return damage.kind == kind; }));
+/// "2 potholes, 1 rut".
+std::string distress_counts(const Damages& damages) {
+  std::map<std::string, int> counts;
+  for (const Damage& damage : damages) {
+    ++counts[damage.metrics ? name_of(damage.metrics->distress) : name_of(damage.kind)];
+  }
+  std::string text;
+  for (const auto& [name, count] : counts) {
+    const bool plural = count > 1 && name != "debris";
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name + (plural ? "s" : "");
+  }
+  return text;
 }
 
 std::string chip(Severity severity, const std::string& text) {
   return "<span class=\"chip " + std::string(name_of(severity)) + "\">" + text + "</span> ";
 }
 
-std::string severity_chips(const DamageMap& map) {
+std::string severity_chips(const Damages& damages) {
   std::string html;
   for (const Severity severity : known_severities) {
-    const auto count = std::count_if(map.damages.begin(), map.damages.end(),
+    const auto count = std::count_if(damages.begin(), damages.end(),
                                      [severity](const Damage& damage) { return severity_of(damage) == severity; });
-    if (count > 0) html += chip(severity, std::to_string(count) + " " + name_of(severity));
+    const std::string name = severity == Severity::unknown ? "not graded" : name_of(severity);
+    if (count > 0) html += chip(severity, std::to_string(count) + " " + name);
   }
   return html;
 }
 
 /// Sum of a value over the damages of a kind; the errors are taken as independent.
 template <auto Member>
-Measurement total(const DamageMap& map, DamageKind kind) {
+Measurement total(const Damages& damages, DamageKind kind) {
   Measurement sum;
-  for (const Damage& damage : map.damages) {
+  for (const Damage& damage : damages) {
     if (damage.kind != kind || !damage.metrics) continue;
     const Measurement& measured = (*damage.metrics).*Member;
     sum.value += measured.value;
@@ -59,18 +75,24 @@ Measurement total(const DamageMap& map, DamageKind kind) {
   return sum;
 }
 
-std::string total_cards(const DamageMap& map, DamageKind kind) {
+std::string total_cards(const Damages& damages, DamageKind kind) {
   const bool below = kind == DamageKind::depression;
-  const Measurement area = total<&DamageMetrics::area_m2>(map, kind);
-  const Measurement volume = total<&DamageMetrics::volume_m3>(map, kind);
-  return card(below ? "Depressions" : "Protrusions", measured_text(area, "m²"),
+  const Measurement area = total<&DamageMetrics::area_m2>(damages, kind);
+  const Measurement volume = total<&DamageMetrics::volume_m3>(damages, kind);
+  return card(below ? "Below the road" : "Above the road", measured_text(area, "m²"),
               escaped((below ? "missing volume " : "raised volume ") + measured_text(scaled(volume, litres), "L")));
 }
 
-std::string deepest_card(const DamageMap& map) {
-  const Damage& deepest = map.damages.front();
-  const std::string link = "<a href=\"#damage-" + std::to_string(deepest.id) + "\">damage " +
-                           std::to_string(deepest.id) + "</a>, a " + name_of(deepest.kind);
+double depth_of(const Damage& damage) {
+  return damage.metrics ? damage.metrics->max_depth_m.value : damage.max_depth_px.value;
+}
+
+std::string deepest_card(const Damages& damages) {
+  const Damage& deepest = *std::max_element(damages.begin(), damages.end(), [](const Damage& one, const Damage& other) {
+    return depth_of(one) < depth_of(other);
+  });
+  const std::string link =
+      "<a href=\"#damage-" + std::to_string(deepest.id) + "\">damage " + std::to_string(deepest.id) + "</a>";
   if (!deepest.metrics) return card("Maximum disparity change", measured_text(deepest.max_depth_px, "px"), link);
   const bool below = deepest.kind == DamageKind::depression;
   return card(below ? "Maximum depth" : "Maximum height", measured_text(scaled(deepest.metrics->max_depth_m, mm), "mm"),
@@ -79,19 +101,18 @@ std::string deepest_card(const DamageMap& map) {
 
 }  // namespace
 
-std::string summary_cards(const DamageMap& map) {
-  if (map.damages.empty()) return "";
-  const std::size_t depressions = count_of(map, DamageKind::depression);
-  const std::size_t protrusions = count_of(map, DamageKind::protrusion);
-  std::string cards = card("Damages", std::to_string(map.damages.size()),
-                           counted(depressions, "depression") + ", " + counted(protrusions, "protrusion"));
-  if (map.metric) {
-    cards += "<div class=\"card\"><div class=\"name\">Severity</div><div class=\"chips\">" + severity_chips(map) +
+std::string damages_cards(const Damages& damages, std::size_t candidates, bool metric) {
+  if (damages.empty()) return "";
+  const std::string apart = candidates == 0 ? "" : "; " + std::to_string(candidates) + " candidates apart";
+  std::string cards = card("Damages", std::to_string(damages.size()), distress_counts(damages) + apart);
+  if (metric) {
+    cards += "<div class=\"card\"><div class=\"name\">Severity</div><div class=\"chips\">" + severity_chips(damages) +
              "</div></div>";
   }
-  cards += deepest_card(map);
-  if (map.metric && depressions > 0) cards += total_cards(map, DamageKind::depression);
-  if (map.metric && protrusions > 0) cards += total_cards(map, DamageKind::protrusion);
+  cards += deepest_card(damages);
+  for (const DamageKind kind : {DamageKind::depression, DamageKind::protrusion}) {
+    if (metric && count_of(damages, kind) > 0) cards += total_cards(damages, kind);
+  }
   return "<div class=\"cards\">" + cards + "</div>";
 }
 
@@ -118,23 +139,40 @@ std::string property_list(const std::vector<std::pair<std::string, std::string>>
   return html.empty() ? html : "<dl class=\"facts\">" + html + "</dl>";
 }
 
-std::string severity_legend() {
-  struct Row {
-    const char* name;
-    double depth_m;  // centre of the row
-  };
-  constexpr std::array<Row, 3> rows{{{"13 – 25 mm", 0.019}, {"25 – 50 mm", 0.037}, {"over 50 mm", 0.07}}};
-  constexpr std::array<double, 3> diameters_m{0.15, 0.3, 0.6};  // centres of the columns
-  std::string html;
-  for (const Row& row : rows) {
-    html += "<tr><th scope=\"row\">" + std::string(row.name) + "</th>";
-    for (const double diameter_m : diameters_m) {
-      const Severity severity = astm_severity(row.depth_m, diameter_m);
-      html += "<td>" + chip(severity, name_of(severity)) + "</td>";
-    }
+namespace {
+
+/// "13 – 25 mm", or "over 50 mm" for the last limit.
+std::string interval_text(const std::vector<double>& limits_m, std::size_t i) {
+  const std::string from = number_text(mm * limits_m[i], 0);
+  if (i + 1 == limits_m.size()) return "over " + from + " mm";
+  return from + " – " + number_text(mm * limits_m[i + 1], 0) + " mm";
+}
+
+std::string table_html(const SeverityTable& table) {
+  const bool wide = !table.diameters_m.empty();
+  std::string html = "<div class=\"scroll\"><table><caption>" + std::string(name_of(table.distress)) + ", " +
+                     (table.unit == DistressUnit::square_metre ? "m²" : name_of(table.unit)) +
+                     "</caption><thead><tr><th scope=\"col\">Depth</th>";
+  for (std::size_t j = 0; j < table.diameters_m.size(); ++j) {
+    html += "<th scope=\"col\">" + interval_text(table.diameters_m, j) + " wide</th>";
+  }
+  html += wide ? "</tr></thead>" : "<th></th></tr></thead>";
+  for (std::size_t i = 0; i < table.depths_m.size(); ++i) {
+    html += "<tr><th scope=\"row\">" + interval_text(table.depths_m, i) + "</th>";
+    for (const Severity severity : table.classes[i]) html += "<td>" + chip(severity, name_of(severity)) + "</td>";
     html += "</tr>";
   }
-  return fill(templates::legend, {{"rows", html}});
+  return html + "</table></div>";
+}
+
+}  // namespace
+
+std::string severity_legend(const SeverityScheme& scheme) {
+  std::string tables;
+  for (const SeverityTable& table : scheme.tables) {
+    if (!table.classes.empty()) tables += table_html(table);
+  }
+  return fill(templates::legend, {{"name", scheme.name}, {"tables", tables}});
 }
 
 std::string severity_colours() {
@@ -144,7 +182,7 @@ std::string severity_colours() {
            std::to_string(colour[2]) + ");";
   };
   for (const Severity severity : known_severities) {
-    add(name_of(severity), damage_colour(DamageKind::depression, severity));
+    if (severity != Severity::unknown) add(name_of(severity), damage_colour(DamageKind::depression, severity));
   }
   for (const DamageKind kind : {DamageKind::depression, DamageKind::protrusion}) {
     add(name_of(kind), damage_colour(kind, Severity::unknown));

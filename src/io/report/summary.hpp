@@ -8,8 +8,8 @@
 
 namespace roadstereo::io {
 
-/// Returns the summary cards: number of damages by severity, total area and volume.
-std::string summary_cards(const DamageMap& map);
+/// Returns the summary cards: number of damages by distress and severity, total area and volume.
+std::string damages_cards(const std::vector<Damage>& damages, std::size_t candidates, bool metric);
 
 /// Returns a notice if there is no damage or no metric result, else "".
 std::string summary_notices(const DamageMap& map);
@@ -18,7 +18,7 @@ std::string summary_notices(const DamageMap& map);
 std::string property_list(const std::vector<std::pair<std::string, std::string>>& properties);
 
 /// Returns the legend of the severities.
-std::string severity_legend();
+std::string severity_legend(const SeverityScheme& scheme);
 
 /// Returns the severity colours as CSS custom properties.
 std::string severity_colours();

@@ -17,5 +17,6 @@ extern const std::string_view relief;    ///< relief.html: the 3-D view in it
 extern const std::string_view crop;      ///< crop.svg: image crop with the outline
 extern const std::string_view depth;     ///< depth.svg: depth crop with the outline, holes hatched
 extern const std::string_view profile;   ///< profile.svg: a cross-section
+extern const std::string_view curve;     ///< curve.svg: values over time
 
 }  // namespace roadstereo::io::templates

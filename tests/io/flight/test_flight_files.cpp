@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +16,7 @@
 #include "roadstereo/io/flight_pictures.hpp"
 #include "roadstereo/io/flight_report.hpp"
 #include "roadstereo/io/flight_tables.hpp"
+#include "roadstereo/io/road_segments.hpp"
 
 namespace roadstereo::io {
 namespace {
@@ -171,10 +173,10 @@ TEST(FlightTables, QuotesCommasAndLeavesUnknownEmpty) {
   const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
   EXPECT_EQ(commas(row), commas(frames_csv_names()) + 1);  // the one in the name
   const FlightFrame damaged = frame_of(3, {pothole(1, 1), pothole(90, 1)});
-  const std::string rows = flight_damages_csv_rows(damaged, {4, 5});
+  const std::string rows = sightings_csv_rows(damaged, {4, 5});
   EXPECT_EQ(rows.substr(0, 6), "4,3,3,");
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 2);
-  EXPECT_EQ(commas(rows), 2 * commas(flight_damages_csv_names()));
+  EXPECT_EQ(commas(rows), 2 * commas(sightings_csv_names()));
 }
 
 TEST(FlightInventory, JoinsMovingDamage) {
@@ -212,6 +214,31 @@ TEST(FlightInventory, BridgesOneMissedFrameOnly) {
   EXPECT_EQ(inventory.add(frame_of(7, {bump})), std::vector<std::int64_t>{3}) << "a bump is no pothole";
 }
 
+/// A candidate that is a damage in a later frame is a damage, measured there, although its error was smaller before.
+TEST(FlightInventory, CandidateBecomesDamage) {
+  FlightInventory inventory;
+  FlightFrame first = frame_of(4, {});
+  first.candidates = {pothole(100, 100, 0.02, 0.001), pothole(300, 100)};
+  EXPECT_EQ(inventory.add(first), (std::vector<std::int64_t>{1, 2}));
+  EXPECT_TRUE(inventory.damages()[0].candidate);
+  FlightFrame second = frame_of(5, {pothole(100, 110, 0.04, 0.002)});
+  second.candidates = {pothole(300, 110)};
+  EXPECT_EQ(inventory.add(second), (std::vector<std::int64_t>{1, 2}));
+  FlightFrame third = frame_of(6, {});
+  third.candidates = {pothole(100, 120, 0.01, 0.0001)};
+  inventory.add(third);
+  const RoadDamage& damage = inventory.damages()[0];
+  EXPECT_FALSE(damage.candidate);
+  EXPECT_EQ(damage.best.metrics->max_depth_m.value, 0.04);
+  EXPECT_EQ(damage.sightings, 3);
+  EXPECT_EQ(damage.first_frame, 4);
+  EXPECT_EQ(damage.last_frame, 6);
+  EXPECT_EQ(damage.frame, 5);
+  EXPECT_EQ(worst_first(inventory.damages(), false).size(), 1U);
+  ASSERT_EQ(worst_first(inventory.damages(), true).size(), 1U);
+  EXPECT_EQ(worst_first(inventory.damages(), true)[0].id, 2);
+}
+
 TEST(FlightInventory, CutStartsNewDamages) {
   FlightInventory inventory;
   inventory.add(frame_of(0, {pothole(100, 100)}));
@@ -236,10 +263,42 @@ TEST(FlightInventory, PrefersWholeSightingsAndSortsBySeverity) {
   Damage deep = pothole(400, 300, 0.02);
   deep.metrics->severity = Severity::high;
   inventory.add(frame_of(2, {deep}));
-  const std::vector<RoadDamage> worst = inventory.worst(2);
-  ASSERT_EQ(worst.size(), 2U);
+  const std::vector<RoadDamage> worst = worst_first(inventory.damages(), false);
+  ASSERT_EQ(worst.size(), 3U);
   EXPECT_EQ(worst[0].id, 3) << "severity before depth";
   EXPECT_EQ(worst[1].id, 1);
+}
+
+/// Frames every 5 m; damages at 12 m and 19.9 m are of the first 20 m, one at 41 m of the third.
+TEST(RoadSegments, CountByStation) {
+  std::vector<GeoFrame> frames(9);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i].station_m = 5.0 * static_cast<double>(i) + 2;
+    frames[i].height_m = i == 3 ? 9 : 2;
+    frames[i].roll_rad = 0.1 * static_cast<double>(i);
+  }
+  std::vector<RoadDamage> damages(4);
+  const std::array<double, 4> stations{12, 19.9, 41, FlightFrame::unknown};
+  for (std::size_t i = 0; i < 4; ++i) {
+    damages[i].id = static_cast<std::int64_t>(i) + 1;
+    damages[i].station_m = stations[i];
+    damages[i].best = pothole(0, 0, i == 1 ? 0.06 : 0.03);
+    damages[i].best.metrics->area_m2 = {0.25, 0.01};
+  }
+  const std::vector<RoadSegment> segments = road_segments(frames, damages);
+  ASSERT_EQ(segments.size(), 3U);
+  EXPECT_EQ(segments[0].damages, 2);
+  EXPECT_EQ(segments[0].worst, 2);
+  EXPECT_DOUBLE_EQ(segments[0].area_m2, 0.5);
+  EXPECT_EQ(segments[0].frames, 4);
+  EXPECT_DOUBLE_EQ(segments[0].height_m, 2);
+  EXPECT_EQ(segments[1].damages, 0);
+  EXPECT_EQ(segments[1].worst, 0);
+  EXPECT_NEAR(segments[1].roll_rad, 0.6, 1e-12) << "upper median of 0.4 … 0.7";
+  EXPECT_EQ(segments[2].damages, 1);
+  EXPECT_DOUBLE_EQ(segments[2].to_m, 42);
+  EXPECT_EQ(segments_csv(segments, damages).substr(0, 200).find("from_m,to_m,frames,damages"), 0U);
+  EXPECT_TRUE(road_segments({}, damages).empty());
 }
 
 TEST(FlightReport, IsCompleteAndSelfContained) {
@@ -253,27 +312,45 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   left.width = 64;
   left.height = 48;
   left.bytes.assign(64 * 48, 120);
+  DamageReportInput pictures{map};
+  pictures.left = left.view();
   FlightReportInput input;
   input.title = "a <flight>";
+  input.head = {{"Road", "B 27 <north>"}};
   input.properties = {{"Frames", "3"}};
   input.notices = {"1 of 3 frames have no result"};
   input.curves = {{0, 1, 2}, true, {1, FlightFrame::unknown, 2}, {3, 3, 3}, {0.1, 0.2, 0.1}};
   input.thumbnails = {{"first", frame_thumbnail(left.view(), map)}};
-  input.worst.resize(1);
-  input.worst[0].damage = {7, 3, 1, "frame 1", 0.5, damage};
-  input.worst[0].jpeg = damage_picture(left.view(), map, damage);
-  input.damages = 12;
+  input.damages.resize(1);
+  RoadDamage& known = input.damages[0].damage;
+  known.id = 7;
+  known.sightings = 3;
+  known.frame_name = "frame 1";
+  known.best = damage;
+  known.position = GeoPosition{48.5, 9.25, 100, 0};
+  known.station_m = 33;
+  input.damages[0].section = road_damage_section(pictures, damage, 7);
+  RoadDamage candidate = known;
+  candidate.id = 8;
+  input.candidates = {candidate};
+  input.track_deg = {{9.249, 48.5}, {9.25, 48.5}, {9.251, 48.5}};
+  input.segments = {{20, 40, 5, 1, 0.25, 7, 0.01, 2}};
   input.metric = true;
   const std::string html = flight_report(input);
   for (const char* part :
-       {"a &lt;flight&gt;", "1 of 3 frames", "The worst 1 of 12", "50.0\u00a0±\u00a01.0", "frame 1", "chip medium",
-        "alt=\"Roll, roll, deg\"", "alt=\"Height above the road, height, m\"", "data:image/jpeg;base64,"}) {
+       {"a &lt;flight&gt;", "B 27 &lt;north&gt;", "1 of 3 frames", "50.0\u00a0±\u00a01.0", "frame 1", "chip medium",
+        "aria-label=\"roll, °\"", "48.500000, 9.250000", "id=\"damage-7\"", "href=\"#damage-7\"", "class=\"road-map\"",
+        "id=\"segments\"", "id=\"candidates\"", "seen in", "data:image/jpeg;base64,"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(html.find("http"), std::string::npos);
   EXPECT_EQ(html.find("{{"), std::string::npos) << "a place that was not filled";
-  input.worst.clear();
-  input.damages = 0;
+  EXPECT_LT(html.find("Damages by severity"), html.find("σ_d")) << "the appendix is last";
+  // 0.002° of longitude at 48.5° are 147.4 m on 628 px: a bar of 20 m is at most a fifth of 720 px (33.8 m), 85.2 px.
+  EXPECT_NE(html.find("h85.2\"/>"), std::string::npos);
+  EXPECT_NE(html.find(">20 m<"), std::string::npos);
+  input.damages.clear();
+  input.candidates.clear();
   input.metric = false;
   const std::string clean = flight_report(input);
   EXPECT_NE(clean.find("No damage found"), std::string::npos);

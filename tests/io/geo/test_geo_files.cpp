@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <pugixml.hpp>
 #include <regex>
 #include <set>
 
@@ -49,30 +50,85 @@ std::vector<GeoFrame> two_frames() {
   lost.index = 8;
   lost.name = "b";
   lost.status = "rejected: unpaired";
+  known.station_m = 4.5;
+  known.footprint_deg = {{-8, 50}, {-7.99, 50}, {-7.99, 50.01}, {-8, 50.01}};
   return {known, lost};
 }
 
-/// One placed damage in metres, one of an uncalibrated frame.
-std::vector<GeoDamage> two_damages() {
-  GeoDamage metric;
-  metric.frame = 7;
-  metric.frame_name = "a";
-  metric.time_s = noon;
-  metric.position = GeoPosition{-33.5, 179.9999999999, unknown, 0};
-  metric.damage.id = 3;
-  metric.damage.kind = DamageKind::depression;
-  metric.damage.pixels = 1234;
-  metric.damage.cut_by_border = true;
-  DamageMetrics& metrics = metric.damage.metrics.emplace();
+Damage metric_damage() {
+  Damage damage;
+  damage.id = 3;
+  damage.kind = DamageKind::depression;
+  damage.pixels = 1234;
+  damage.cut_by_border = true;
+  DamageMetrics& metrics = damage.metrics.emplace();
   metrics.max_depth_m = {0.0321, 0.0015};
   metrics.area_m2 = {0.25, 0.01};
   metrics.diameter_m = unknown;
+  metrics.distress = Distress::pothole;
+  metrics.quantity = 1;
   metrics.severity = Severity::medium;
-  GeoDamage plain;
+  return damage;
+}
+
+/// One placed damage in metres, one of an uncalibrated frame.
+std::vector<GeoSighting> two_sightings() {
+  GeoSighting metric{5, 7, "a", noon, metric_damage(), GeoPosition{-33.5, 179.9999999999, unknown, 0}};
+  GeoSighting plain;
   plain.frame = 8;
   plain.damage.id = 3;  // ids count within a frame
   plain.damage.kind = DamageKind::protrusion;
   return {metric, plain};
+}
+
+/// A damage with an outline of 2 m × 1 m seen in four frames, a candidate, and a damage without a position.
+std::vector<RoadDamage> three_damages() {
+  RoadDamage placed;
+  placed.id = 5;
+  placed.sightings = 4;
+  placed.first_frame = 6;
+  placed.last_frame = 9;
+  placed.frame = 7;
+  placed.frame_name = "a";
+  placed.time_s = noon;
+  placed.best = metric_damage();
+  placed.best.confidence = 0.875;
+  placed.position = GeoPosition{0, 8, 100, 0};
+  const double lon = 1 / metres_of_longitude, lat = 0.5 / metres_of_latitude;
+  placed.outline_deg = {{8 - lon, -lat}, {8 + lon, -lat}, {8 + lon, lat}, {8 - lon, lat}};
+  placed.station_m = 12.5;
+  placed.picture = "damages/00005.jpg";
+  RoadDamage candidate = placed;
+  candidate.id = 6;
+  candidate.candidate = true;
+  candidate.picture.clear();
+  RoadDamage lost;
+  lost.id = 9;
+  lost.best.kind = DamageKind::protrusion;
+  return {placed, candidate, lost};
+}
+
+const std::vector<GeoFrame>& frames() {
+  static const std::vector<GeoFrame> all = two_frames();
+  return all;
+}
+
+GeoLayers layers(bool with_candidates = false) {
+  static const std::vector<GeoSighting> sightings = two_sightings();
+  static const std::vector<RoadDamage> damages = three_damages();
+  return {frames(), sightings, damages, with_candidates};
+}
+
+/// The text of one GeoJSON file.
+std::string geojson(const std::string& name, const GeoLayers& rows) {
+  for (const NamedText& file : geojson_files(rows)) {
+    if (file.name == name) return file.text;
+  }
+  return "";
+}
+
+std::string frames_geojson(std::span<const GeoFrame> rows) {
+  return geojson("frames.geojson", {rows, {}, {}});
 }
 
 /// A metre a second northwards, a gap, then a metre a second across the antimeridian.
@@ -121,7 +177,7 @@ TEST(GeoJson, WritesFrames) {
   EXPECT_EQ(known.at("geometry").at("coordinates"), Json({-8.0, 50.1234568, 123.457}));
   EXPECT_EQ(known.at("properties"),
             Json::parse(R"({"frame": 7, "name": "strasse \"ä\".png", "time_utc": "2024-05-01T12:01:00.000Z",
-                            "time_s": 1714564859.9996, "status": "ok", "damages": 2, "heading_deg": 271.5,
+                            "time_s": 1714564859.9996, "status": "ok", "damages": 2, "station_m": 4.5, "heading_deg": 271.5,
                             "alt_m": 123.4567, "roll_deg": 5.729577951308232, "height_m": 4.25, "sigma_d_px": 0.5,
                             "valid_share": 0.875})"));
   const Json& lost = document.at("features")[1];
@@ -132,16 +188,18 @@ TEST(GeoJson, WritesFrames) {
   }
 }
 
-TEST(GeoJson, WritesDamages) {
-  const std::string text = damages_geojson(two_damages());
+TEST(GeoJson, WritesSightings) {
+  const std::string text = geojson("sightings.geojson", layers());
   expect_rfc7946(text, 2);
   const Json document = Json::parse(text);
   const Json& metric = document.at("features")[0];
   EXPECT_EQ(metric.at("geometry").at("coordinates"), Json({180.0, -33.5}));
   const Json& properties = metric.at("properties");
+  EXPECT_EQ(properties.at("road_damage"), 5);
   EXPECT_EQ(properties.at("frame"), 7);
   EXPECT_EQ(properties.at("time_utc"), "2024-05-01T12:00:00.000Z");
   EXPECT_EQ(properties.at("id"), 3);
+  EXPECT_EQ(properties.at("distress"), "pothole");
   EXPECT_EQ(properties.at("severity"), "medium");
   EXPECT_EQ(properties.at("max_depth_m"), 0.0321);
   EXPECT_EQ(properties.at("max_depth_m_stderr"), 0.0015);
@@ -152,9 +210,52 @@ TEST(GeoJson, WritesDamages) {
   EXPECT_TRUE(document.at("features")[1].at("properties").at("area_m2").is_null());
 }
 
+/// RFC 7946, 3.1.6: the ring is closed and counterclockwise, its signed area positive.
+TEST(GeoJson, DamageIsOneClosedPolygon) {
+  const Json document = Json::parse(geojson("damages.geojson", layers()));
+  ASSERT_EQ(document.at("features").size(), 2U) << "without the candidate";
+  const Json& ring = document.at("features")[0].at("geometry").at("coordinates")[0];
+  ASSERT_EQ(ring.size(), 5U);
+  EXPECT_EQ(ring[0], ring[4]);
+  double area_m2 = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto cross = ring[i][0].get<double>() * ring[i + 1][1].get<double>() -
+                       ring[i + 1][0].get<double>() * ring[i][1].get<double>();
+    area_m2 += 0.5 * cross * metres_of_longitude * metres_of_latitude;
+  }
+  EXPECT_NEAR(area_m2, 2, 1e-3);
+  const Json& properties = document.at("features")[0].at("properties");
+  EXPECT_EQ(properties.at("sightings"), 4);
+  EXPECT_EQ(properties.at("first_frame"), 6);
+  EXPECT_EQ(properties.at("last_frame"), 9);
+  EXPECT_EQ(properties.at("picture"), "damages/00005.jpg");
+  EXPECT_EQ(properties.at("station_m"), 12.5);
+  EXPECT_TRUE(document.at("features")[1].at("geometry").is_null());
+  EXPECT_EQ(geojson("candidates.geojson", layers()), "") << "not asked for";
+  expect_rfc7946(geojson("footprints.geojson", {{}, {}, {}}), 0);
+  const Json candidates = Json::parse(geojson("candidates.geojson", layers(true)));
+  ASSERT_EQ(candidates.at("features").size(), 1U);
+  EXPECT_EQ(candidates.at("features")[0].at("properties").at("id"), 6);
+}
+
+TEST(GeoJson, FootprintIsPolygon) {
+  const Json document = Json::parse(geojson("footprints.geojson", layers()));
+  EXPECT_EQ(document.at("features")[0].at("geometry"), Json::parse(R"({"type": "Polygon", "coordinates":
+                            [[[-8.0, 50.0], [-7.99, 50.0], [-7.99, 50.01], [-8.0, 50.01], [-8.0, 50.0]]]})"));
+  EXPECT_TRUE(document.at("features")[1].at("geometry").is_null());
+}
+
 TEST(GeoJson, NoFramesGiveEmptyCollection) {
-  expect_rfc7946(frames_geojson({}), 0);
-  expect_rfc7946(damages_geojson({}), 0);
+  for (const NamedText& file : geojson_files({})) expect_rfc7946(file.text, 0);
+}
+
+TEST(RoadDamagesCsv, HasPlaceAndTenColumns) {
+  EXPECT_EQ(road_damages_csv_names(),
+            "id,lat_deg,lon_deg,distress,severity,max_depth_m,max_depth_m_stderr,area_m2,area_m2_stderr,quantity,unit,"
+            "confidence,picture\r\n");
+  EXPECT_EQ(road_damages_csv_rows(std::span(layers().damages).first(1)),
+            "5,0,8,pothole,medium,0.0321,0.0015,0.25,0.01,1,count,0.875,damages/00005.jpg\r\n");
+  EXPECT_EQ(road_damages_csv_rows(std::span(layers().damages).last(1)), "9,,,unknown,unknown,,,,,,,0,\r\n");
 }
 
 TEST(GeoJson, PositionsHaveSevenDecimals) {
@@ -201,7 +302,7 @@ class GeoFile : public testing::Test {
     return path.string();
   }
   std::string write_flight() const {
-    const std::vector<std::uint8_t> bytes = geopackage(two_frames(), two_damages(), broken_track());
+    const std::vector<std::uint8_t> bytes = geopackage(layers(), broken_track());
     return write("flight.gpkg", std::string(bytes.begin(), bytes.end()));
   }
   GDALDataset& open(const std::string& path) {
@@ -252,16 +353,17 @@ TEST_F(GeoPackage, WritesFrames) {
   EXPECT_STREQ(lost->GetFieldAsString("status"), "rejected: unpaired");
 }
 
-TEST_F(GeoPackage, WritesDamages) {
-  OGRLayer* layer = open(write_flight()).GetLayerByName("damages");
+TEST_F(GeoPackage, WritesSightings) {
+  OGRLayer* layer = open(write_flight()).GetLayerByName("sightings");
   ASSERT_NE(layer, nullptr);
   expect_wgs84(*layer);
   ASSERT_EQ(layer->GetFeatureCount(), 2);
   EXPECT_EQ(type_of(*layer, "max_depth_m"), OFTReal);
   EXPECT_EQ(type_of(*layer, "pixels"), OFTInteger64);
   EXPECT_EQ(type_of(*layer, "kind"), OFTString);
-  EXPECT_EQ(layer->GetLayerDefn()->GetFieldCount(), static_cast<int>(damage_columns().size()) + 3);
+  EXPECT_EQ(layer->GetLayerDefn()->GetFieldCount(), static_cast<int>(damage_columns().size()) + 4);
   const OGRFeatureUniquePtr metric(layer->GetNextFeature());
+  EXPECT_EQ(metric->GetFieldAsInteger64("road_damage"), 5);
   EXPECT_EQ(metric->GetFieldAsInteger64("frame"), 7);
   EXPECT_EQ(metric->GetFieldAsInteger64("id"), 3);
   EXPECT_DOUBLE_EQ(metric->GetFieldAsDouble("max_depth_m"), 0.0321);
@@ -273,6 +375,48 @@ TEST_F(GeoPackage, WritesDamages) {
   EXPECT_STREQ(plain->GetFieldAsString("kind"), "protrusion");
   EXPECT_TRUE(plain->IsFieldNull(plain->GetFieldIndex("area_m2")));
   EXPECT_EQ(plain->GetFieldAsInteger("cut_by_border"), 0);
+}
+
+TEST_F(GeoPackage, DamageOfFourFramesIsOnePolygon) {
+  OGRLayer* layer = open(write_flight()).GetLayerByName("damages");
+  ASSERT_NE(layer, nullptr);
+  expect_wgs84(*layer);
+  ASSERT_EQ(layer->GetFeatureCount(), 2) << "without the candidate";
+  const OGRFeatureUniquePtr placed(layer->GetNextFeature());
+  const OGRPolygon* const area = placed->GetGeometryRef()->toPolygon();
+  EXPECT_NEAR(area->get_Area() * metres_of_longitude * metres_of_latitude, 2, 1e-3);
+  EXPECT_EQ(placed->GetFieldAsInteger64("id"), 5);
+  EXPECT_EQ(placed->GetFieldAsInteger64("sightings"), 4);
+  EXPECT_STREQ(placed->GetFieldAsString("distress"), "pothole");
+  EXPECT_STREQ(placed->GetFieldAsString("picture"), "damages/00005.jpg");
+  EXPECT_DOUBLE_EQ(placed->GetFieldAsDouble("lon_deg"), 8);
+  EXPECT_EQ(open(write_flight()).GetLayerByName("candidates"), nullptr);
+}
+
+/// What QGIS asks for when it opens a layer: the default style of the table by its name.
+TEST_F(GeoPackage, QgisFindsStyleBySeverity) {
+  const std::vector<std::uint8_t> bytes = geopackage(layers(true), broken_track());
+  GDALDataset& dataset = open(write("style.gpkg", std::string(bytes.begin(), bytes.end())));
+  EXPECT_EQ(dataset.GetLayerByName("candidates")->GetFeatureCount(), 1);
+  OGRLayer* styles = dataset.ExecuteSQL(
+      "SELECT f_geometry_column, styleQML FROM layer_styles WHERE f_table_name = 'damages' AND useAsDefault = 1",
+      nullptr, nullptr);
+  ASSERT_NE(styles, nullptr);
+  ASSERT_EQ(styles->GetFeatureCount(), 1);
+  const OGRFeatureUniquePtr style(styles->GetNextFeature());
+  EXPECT_STREQ(style->GetFieldAsString(0), dataset.GetLayerByName("damages")->GetGeometryColumn());
+  pugi::xml_document qml;
+  ASSERT_TRUE(qml.load_string(style->GetFieldAsString(1)));
+  const pugi::xml_node renderer = qml.child("qgis").child("renderer-v2");
+  EXPECT_STREQ(renderer.attribute("attr").value(), "severity");
+  int categories = 0;
+  for (const pugi::xml_node category : renderer.child("categories")) {
+    const char* symbol = category.attribute("symbol").value();
+    EXPECT_TRUE(renderer.child("symbols").find_child_by_attribute("symbol", "name", symbol)) << symbol;
+    ++categories;
+  }
+  EXPECT_EQ(categories, 7);
+  dataset.ReleaseResultSet(styles);
 }
 
 TEST_F(GeoPackage, TrackHasLinePerStretch) {
@@ -295,9 +439,9 @@ TEST_F(GeoPackage, TrackHasLinePerStretch) {
 }
 
 TEST_F(GeoPackage, NoFramesGiveEmptyLayers) {
-  const std::vector<std::uint8_t> bytes = geopackage({}, {}, broken_track());
+  const std::vector<std::uint8_t> bytes = geopackage({}, broken_track());
   GDALDataset& dataset = open(write("empty.gpkg", std::string(bytes.begin(), bytes.end())));
-  EXPECT_EQ(dataset.GetLayerCount(), 3);
+  EXPECT_EQ(dataset.GetLayerCount(), 6);
   EXPECT_EQ(dataset.GetLayerByName("frames")->GetFeatureCount(), 0);
 }
 
@@ -338,7 +482,7 @@ std::string output_of(const std::string& command) {
 }
 
 TEST_F(GeoFile, DamagesOfEqualIdAreTwoFeatures) {
-  OGRLayer* layer = open(write("damages.geojson", damages_geojson(two_damages()))).GetLayer(0);
+  OGRLayer* layer = open(write("sightings.geojson", geojson("sightings.geojson", layers()))).GetLayer(0);
   for (const GIntBig row : {1, 2}) {
     const OGRFeatureUniquePtr feature(layer->GetFeature(row));
     ASSERT_NE(feature, nullptr) << row;
@@ -364,17 +508,21 @@ class Ogrinfo : public GeoFile {
 };
 
 TEST_F(Ogrinfo, OpensGeoPackage) {
-  expect_shown(write_flight(), {"using driver `GPKG' successful", "Layer name: frames", "Layer name: damages",
-                                "Layer name: track", "time_utc (DateTime) = 2024/05/01 12:01:00+00",
-                                "cut_by_border (Integer(Boolean)) = 1", "LINESTRING (8 0,"});
+  expect_shown(
+      write_flight(),
+      {"using driver `GPKG' successful", "Layer name: frames", "Layer name: damages", "Layer name: sightings",
+       "Layer name: footprints", "Layer name: track", "Layer name: layer_styles", "POLYGON ((",
+       "time_utc (DateTime) = 2024/05/01 12:01:00+00", "cut_by_border (Integer(Boolean)) = 1", "LINESTRING (8 0,"});
 }
 
 TEST_F(Ogrinfo, OpensGeoJson) {
   expect_shown(write("frames.geojson", frames_geojson(two_frames())),
                {"using driver `GeoJSON' successful", "Feature Count: 2", "POINT Z (-8 50.1234568 123.457)",
                 "time_utc: DateTime", "roll_deg: Real"});
-  expect_shown(write("damages.geojson", damages_geojson(two_damages())),
+  expect_shown(write("sightings.geojson", geojson("sightings.geojson", layers())),
                {"using driver `GeoJSON' successful", "POINT (180", "max_depth_m (Real) = 0.0321"});
+  expect_shown(write("damages.geojson", geojson("damages.geojson", layers())),
+               {"Geometry: Polygon", "Feature Count: 2", "POLYGON ((", "sightings (Integer) = 4"});
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ TEST(WithoutGeo, ErrorNamesMissingPackages) {
 
 TEST(WithoutGeo, WritesFramesWithoutPosition) {
   const GeoFrame frame;
-  const nlohmann::json document = nlohmann::json::parse(frames_geojson(std::span(&frame, 1)));
+  const nlohmann::json document = nlohmann::json::parse(geojson_files({std::span(&frame, 1), {}, {}}).front().text);
   EXPECT_TRUE(document.at("features").at(0).at("geometry").is_null());
 }
 

@@ -1,0 +1,101 @@
+#include "damage/distress.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <numbers>
+#include <sstream>
+
+namespace roadstereo {
+namespace {
+
+constexpr double max_gentle_slope = 0.2;  // rise over run: depressions of D6433 are flatter, walls of potholes steeper
+constexpr double min_elongation = 3;      // of ruts and cracks
+constexpr double min_pothole_m = 0.1;     // diameter, ASTM D6433: narrower long damages are cracks
+constexpr double min_step_m = 0.025;      // ASTM D6433, lane/shoulder drop-off
+constexpr double max_oblique_rad = std::numbers::pi / 6;  // from the direction of the road
+
+double elongation(const DamageMetrics& metrics) {
+  return metrics.width_m > 0 ? metrics.length_m / metrics.width_m : 1;
+}
+
+bool is_along_road(const DamageMetrics& metrics) {
+  return std::numbers::pi / 2 - std::abs(metrics.angle_rad) <= max_oblique_rad;
+}
+
+/// Horizontal distance between a quarter and three quarters of the depth.
+double run_m(const DamageMetrics& metrics) {
+  return 0.5 * metrics.max_depth_m.value / metrics.wall_slope;
+}
+
+/// Whether the wall is gentle even where it is as steep as the support window allows.
+bool is_gentle(const DamageMetrics& metrics, double wall_m) {
+  const double run = run_m(metrics);
+  const double true_run = std::sqrt(std::max(0.0, run * run - wall_m * wall_m));
+  return 0.5 * metrics.max_depth_m.value < max_gentle_slope * true_run;
+}
+
+bool is_kerb_step(const Damage& damage, const DamageMetrics& metrics, int image_width) {
+  const bool at_side = damage.box_px[0] == 0 || damage.box_px[2] + 1 == image_width;
+  return at_side && metrics.max_depth_m.value >= min_step_m && elongation(metrics) >= min_elongation &&
+         is_along_road(metrics);
+}
+
+}  // namespace
+
+Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double wall_m, int image_width) {
+  const bool gentle = is_gentle(metrics, wall_m);
+  if (!gentle && is_kerb_step(damage, metrics, image_width)) return Distress::kerb_step;
+  if (damage.kind == DamageKind::protrusion) {
+    return metrics.wall_slope > max_gentle_slope ? Distress::debris : Distress::bump;
+  }
+  const bool long_one = elongation(metrics) >= min_elongation;
+  if (gentle) return long_one && is_along_road(metrics) ? Distress::rut : Distress::depression;
+  return long_one && metrics.area_m2.value < min_pothole_m * metrics.length_m ? Distress::crack : Distress::pothole;
+}
+
+std::string distress_reason(const DamageMetrics& metrics) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << "wall 1 in " << 1 / metrics.wall_slope << " or steeper";
+  if (elongation(metrics) >= min_elongation) {
+    text << ", " << elongation(metrics) << " times as long as wide, " << (is_along_road(metrics) ? "along" : "across")
+         << " the road";
+  }
+  return text.str();
+}
+
+void grade(const SeverityScheme& scheme, DamageMetrics& metrics) {
+  constexpr double max_area_error = 0.5;       // relative: two standard errors of the area include 0
+  constexpr double section_of_parabola = 1.5;  // maximum over mean depth of a rut's cross-section
+  const SeverityTable* const table = scheme.find(metrics.distress);
+  metrics.severity_probabilities = {};
+  metrics.severity = Severity::unknown;
+  metrics.unit = table == nullptr ? DistressUnit::count : table->unit;
+  metrics.quantity =
+      table == nullptr ? 1 : table->quantity(metrics.area_m2.value, metrics.length_m, metrics.diameter_m);
+  const double area_error = metrics.area_m2.std_error / metrics.area_m2.value;
+  if (table != nullptr && !table->classes.empty()) {
+    Measurement depth = metrics.max_depth_m;
+    if (metrics.distress == Distress::rut) {
+      depth.value = std::min(depth.value, section_of_parabola * metrics.mean_depth_m.value);
+      depth.std_error = section_of_parabola * metrics.mean_depth_m.std_error;
+    }
+    metrics.severity_probabilities =
+        severity_probabilities(*table, depth, {metrics.diameter_m, 0.5 * metrics.diameter_m * area_error});
+    metrics.severity =
+        area_error > max_area_error ? Severity::uncertain : likely_severity(metrics.severity_probabilities);
+  }
+  // The mean is a lower bound of the maximum, with a smaller standard error.
+  if (!metrics.max_depth_m.is_resolved() && !metrics.mean_depth_m.is_resolved()) {
+    metrics.severity = Severity::unresolvable;
+  }
+}
+
+std::string severity_text(const DamageMetrics& metrics) {
+  if (metrics.severity == Severity::unknown) return "not graded";
+  if (metrics.severity != Severity::uncertain) return name_of(metrics.severity);
+  const std::string range = severity_range(metrics.severity_probabilities);
+  return range.find("–") == std::string::npos ? "not graded" : range;
+}
+
+}  // namespace roadstereo

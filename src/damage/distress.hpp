@@ -1,0 +1,15 @@
+#pragma once
+
+#include "roadstereo/damage.hpp"
+
+namespace roadstereo {
+
+/// Decide the distress of a damage from its metrics: side, slope of the wall, elongation, direction, height. `wall_m`
+/// is the width over which the support window spreads a vertical wall between a quarter and three quarters of its
+/// height, `image_width` in pixels.
+Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double wall_m, int image_width);
+
+/// Set quantity, unit, probabilities and severity by the table of the distress.
+void grade(const SeverityScheme& scheme, DamageMetrics& metrics);
+
+}  // namespace roadstereo

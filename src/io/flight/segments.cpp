@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/order_statistics.hpp"
+#include "io/csv.hpp"
+#include "io/damage_colours.hpp"
+#include "roadstereo/io/road_segments.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+/// Median of the finite values of the frames.
+double median_of(const std::vector<const GeoFrame*>& frames, double GeoFrame::*member) {
+  std::vector<double> values;
+  for (const GeoFrame* frame : frames) {
+    if (std::isfinite(frame->*member)) values.push_back(frame->*member);
+  }
+  return values.empty() ? std::nan("") : upper_median(values);
+}
+
+}  // namespace
+
+std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::span<const RoadDamage> damages,
+                                       double length_m) {
+  const auto index_of = [length_m](double station_m) { return static_cast<std::size_t>(station_m / length_m); };
+  double end_m = -1;
+  for (const GeoFrame& frame : frames) end_m = std::fmax(end_m, frame.station_m);
+  if (end_m < 0) return {};
+  const std::size_t count = index_of(end_m) + 1;
+  std::vector<RoadSegment> segments(count);
+  std::vector<std::vector<const GeoFrame*>> members(count);
+  std::vector<const RoadDamage*> worst(count);
+  for (const GeoFrame& frame : frames) {
+    if (std::isfinite(frame.station_m)) members[index_of(frame.station_m)].push_back(&frame);
+  }
+  for (const RoadDamage& damage : damages) {
+    if (damage.candidate || !std::isfinite(damage.station_m)) continue;
+    const std::size_t i = index_of(damage.station_m);
+    ++segments[i].damages;
+    if (damage.best.metrics) segments[i].area_m2 += damage.best.metrics->area_m2.value;
+    if (worst[i] == nullptr || is_worse(damage, *worst[i])) worst[i] = &damage;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    RoadSegment& segment = segments[i];
+    segment.from_m = static_cast<double>(i) * length_m;
+    segment.to_m = std::min(segment.from_m + length_m, std::max(end_m, segment.from_m));
+    segment.frames = static_cast<std::int64_t>(members[i].size());
+    segment.worst = worst[i] == nullptr ? 0 : worst[i]->id;
+    segment.roll_rad = median_of(members[i], &GeoFrame::roll_rad);
+    segment.height_m = median_of(members[i], &GeoFrame::height_m);
+  }
+  return segments;
+}
+
+std::string segments_csv(std::span<const RoadSegment> segments, std::span<const RoadDamage> damages) {
+  CsvLine line;
+  for (const char* name : {"from_m", "to_m", "frames", "damages", "area_m2", "worst", "worst_distress",
+                           "worst_severity", "roll_deg", "height_m"}) {
+    line.add(name);
+  }
+  std::string text = line.end();
+  for (const RoadSegment& segment : segments) {
+    line.add(segment.from_m, 1).add(segment.to_m, 1).add(segment.frames).add(segment.damages).add(segment.area_m2);
+    const auto worst = std::find_if(damages.begin(), damages.end(),
+                                    [&](const RoadDamage& damage) { return damage.id == segment.worst; });
+    if (worst == damages.end()) {
+      line.add_nothing().add_nothing().add_nothing();
+    } else {
+      line.add(worst->id).add(name_of(distress_of(worst->best))).add(name_of(severity_of(worst->best)));
+    }
+    text += line.add(segment.roll_rad * 180 / std::numbers::pi).add(segment.height_m).end();
+  }
+  return text;
+}
+
+}  // namespace roadstereo::io

@@ -1,0 +1,105 @@
+#include "roadstereo/io/severity_file.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <array>
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+/// Value of one distress, named in error messages as "FILE: pothole".
+struct Entry {
+  std::string where;
+  YAML::Node map;
+
+  template <class Value>
+  Value as(const YAML::Node& node, const char* key) const {
+    try {
+      return node.as<Value>();
+    } catch (const YAML::Exception&) {
+      fail(where, ": ", key, " has a wrong value");
+    }
+  }
+};
+
+Distress distress_of(const std::string& path, const std::string& name) {
+  for (const Distress distress :
+       {Distress::pothole, Distress::depression, Distress::rut, Distress::crack, Distress::bump, Distress::debris}) {
+    if (name == name_of(distress)) return distress;
+  }
+  if (name == "kerb_step") return Distress::kerb_step;
+  fail(path, ": \"", name, "\" is no distress; use pothole, depression, rut, crack, bump, debris, kerb_step");
+}
+
+Severity severity_of(const Entry& entry, const YAML::Node& node) {
+  const auto name = entry.as<std::string>(node, "severity");
+  for (const Severity severity : {Severity::low, Severity::medium, Severity::high}) {
+    if (name == name_of(severity)) return severity;
+  }
+  fail(entry.where, ": severity has \"", name, "\"; it must be low, medium or high");
+}
+
+std::vector<double> metres_of(const Entry& entry, const char* key) {
+  std::vector<double> metres;
+  if (!entry.map[key]) return metres;
+  for (const double mm : entry.as<std::vector<double>>(entry.map[key], key)) metres.push_back(mm / 1000);
+  return metres;
+}
+
+DistressUnit unit_of(const Entry& entry) {
+  const auto name = entry.as<std::string>(entry.map["unit"], "unit");
+  for (const DistressUnit unit : {DistressUnit::count, DistressUnit::square_metre, DistressUnit::metre}) {
+    if (name == name_of(unit)) return unit;
+  }
+  fail(entry.where, ": unit is \"", name, "\"; it must be count, m2 or m");
+}
+
+SeverityTable table_of(Distress distress, const Entry& entry) {
+  SeverityTable table;
+  table.distress = distress;
+  table.unit = unit_of(entry);
+  table.depths_m = metres_of(entry, "depth_mm");
+  table.diameters_m = metres_of(entry, "diameter_mm");
+  for (const YAML::Node& row : entry.map["severity"]) {
+    std::vector<Severity>& classes = table.classes.emplace_back();
+    if (row.IsScalar()) classes.push_back(severity_of(entry, row));
+    for (const YAML::Node& cell : row) classes.push_back(severity_of(entry, cell));
+  }
+  if (entry.map["max_counted_mm"]) {
+    table.max_counted_m = entry.as<double>(entry.map["max_counted_mm"], "max_counted_mm") / 1000;
+  }
+  if (entry.map["area_of_one_m2"]) {
+    table.area_of_one_m2 = entry.as<double>(entry.map["area_of_one_m2"], "area_of_one_m2");
+  }
+  return table;
+}
+
+}  // namespace
+
+SeverityScheme read_severity_scheme(const std::string& name) {
+  if (name == "d6433") return astm_d6433();
+  YAML::Node root;
+  try {
+    root = YAML::LoadFile(name);
+  } catch (const YAML::Exception& error) {
+    fail(name, ": this is no file of severities: ", error.what());
+  }
+  if (!root.IsMap()) fail(name, ": this is no file of severities; it must have one map per distress");
+  SeverityScheme scheme{name, {}};
+  for (const auto& item : root) {
+    const auto key = item.first.as<std::string>();
+    if (key == "name") {
+      scheme.name = item.second.as<std::string>();
+      continue;
+    }
+    const Distress distress = distress_of(name, key);
+    if (!item.second.IsMap()) fail(name, ": ", key, " must be a map with unit, depth_mm and severity");
+    scheme.tables.push_back(table_of(distress, {name + ": " + key, item.second}));
+  }
+  scheme.validate();
+  return scheme;
+}
+
+}  // namespace roadstereo::io
