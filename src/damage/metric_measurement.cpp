@@ -86,7 +86,7 @@ double wall_slope(const MetricSums& sums, const DamageMetrics& metrics) {
 /// Corners of the outline on the road.
 std::vector<std::array<double, 2>> outline_on_road(const FrameGeometry& geometry, const DamageMap& maps,
                                                    const Damage& damage) {
-  constexpr double tolerance_px = 1;
+  constexpr double tolerance_px = 2;  // the outline is not known better: set_standard_errors
   std::vector<std::array<double, 2>> outline = trace_outline(maps.ids, damage, tolerance_px);
   std::reverse(outline.begin(), outline.end());  // counterclockwise seen from above
   for (std::array<double, 2>& corner : outline) corner = geometry.road_position(corner[0], corner[1]);

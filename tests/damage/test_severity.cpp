@@ -47,7 +47,7 @@ TEST(SeverityRange, IsShortestWithMajority) {
   EXPECT_EQ(severity_range({0, 0.1, 0.6, 0.3}), "medium");
   EXPECT_EQ(severity_range({0, 0.1, 0.45, 0.45}), "medium–high");
   EXPECT_EQ(severity_range({0.3, 0.3, 0.2, 0.2}), "minor–low");
-  EXPECT_EQ(severity_range({0.4, 0.1, 0.1, 0.4}), "minor–medium") << "two neighbours have half, not more";
+  EXPECT_EQ(severity_range({0.42, 0.08, 0.1, 0.4}), "minor–medium") << "two neighbours have half, not more";
 }
 
 DamageMetrics pothole(double depth_m, double depth_error_m, double area_m2, double area_error_m2) {

@@ -14,8 +14,8 @@ import tempfile
 
 DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
 RUN = ("first_flight", "calibration", "flying", "tuning", "cookbook")
-# Their keys are names of options, files or severities.
-FREE = {"options", "files"}
+# Their keys are names of options, files or kinds of damage.
+FREE = {"options", "files", "by_distress"}
 
 
 def shell_blocks(text):
