@@ -43,6 +43,10 @@ bool is_kerb_step(const Damage& damage, const DamageMetrics& metrics, int image_
 
 }  // namespace
 
+const char* name_of(DamageKind kind) {
+  return kind == DamageKind::depression ? "depression" : "protrusion";
+}
+
 Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double wall_m, int image_width) {
   const bool gentle = is_gentle(metrics, wall_m);
   if (!gentle && is_kerb_step(damage, metrics, image_width)) return Distress::kerb_step;
