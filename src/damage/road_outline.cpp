@@ -34,7 +34,7 @@ void simplify(const std::vector<Corner>& ring, std::size_t first, std::size_t la
 }  // namespace
 
 std::vector<Corner> trace_outline(const Image<std::uint16_t>& ids, const Damage& damage, double tolerance_px) {
-  const auto& [u0, v0, u1, v1] = damage.box_px;
+  const int u0 = damage.box_px[0], v0 = damage.box_px[1], u1 = damage.box_px[2], v1 = damage.box_px[3];
   const auto inside = [&](int u, int v) { return u >= u0 && v >= v0 && u <= u1 && v <= v1 && ids(u, v) == damage.id; };
   int u = u0, v = v0;
   while (v <= v1 && !inside(u, v)) {

@@ -1,4 +1,4 @@
-// Floor: 16 bytes a pixel, and of each of its 25 neighbours (radius 8, step 4) 12 bytes of shared memory and 18
+// Floor: 16 bytes a pixel, and of each of its 25 neighbours (radius 10, step 5) 12 bytes of shared memory and 18
 // operations: 3.7 MB and 104 million operations for 640×360, for each of two passes. A tile of 32×16 pixels reads its
 // border of 8 too, of 16 in the second pass: three and eight times its pixels.
 
