@@ -49,6 +49,9 @@ part ./scripts/check_sanitizers.sh tsan -DROADSTEREO_WERROR=ON
 part preset emulated
 part preset standalone -DROADSTEREO_GTEST_SOURCE=/usr/src/googletest \
   -DROADSTEREO_HIGHWAY_SOURCE="${ROADSTEREO_HIGHWAY_SOURCE:-}"
+part ./scripts/fuzz.sh
+part cmake --build build --target live_player
+part ./scripts/soak.py
 part nvcc
 export ROADSTEREO_WERROR=ON
 part ./scripts/check_aarch64.sh

@@ -29,16 +29,17 @@ double invalidate(const Inspection& inspection, Image<float>& disparity) {
 
 RoadModelEstimate road_of_pair(const Inspection& inspection) {
   const PipelineOptions& options = inspection.options;
-  GreyImage right;
-  to_grey(inspection.pair.right.view(), options.white_level, right);
-  return estimate_road_model(inspection.result.grey, right, inspection.pair.calibration, options.road_model,
-                             options.threads, inspection.mask);
+  return estimate_road_model(inspection.result.grey, inspection.result.right, inspection.pair.calibration,
+                             options.road_model, options.threads, inspection.mask);
 }
 
 /// Estimates the roll, from the plane of the pair's road if there is a right image.
 void estimate_geometry(const Inspection& inspection, FrameResult& result) {
   const bool has_right = !inspection.pair.right.bytes.empty();
-  if (has_right) result.road = road_of_pair(inspection);
+  if (has_right) {
+    to_grey(inspection.pair.right.view(), inspection.options.white_level, result.right);
+    result.road = road_of_pair(inspection);
+  }
   if (has_right && !result.road.has_road()) return;
   const auto prior = has_right ? std::optional(result.road.model) : std::nullopt;
   try {

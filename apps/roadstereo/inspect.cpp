@@ -79,7 +79,7 @@ void process(Inspection& inspection) {
   inspection.threads = used_threads(inspection.options);
   inspection.warnings = inspection.result.warnings;
   find_damage_or_warn(inspection.result, inspection.pair.calibration, inspection.options.damage,
-                      inspection.options.threads, inspection.damage, inspection.warnings);
+                      inspection.options.threads, inspection.damage, inspection.health, inspection.warnings);
   if (inspection.pair.calibration && inspection.result.roll_found) {
     inspection.plane = ground_plane(inspection.result.geometry.plane, *inspection.pair.calibration);
   }
@@ -94,6 +94,7 @@ void reject_flight_options(const FlightSettings& settings) {
   if (!settings.track.file.empty()) reject("--track");
   if (settings.trajectory) reject("--trajectory");
   if (settings.candidates) reject("--candidates");
+  if (!settings.source_settings.camera_size.empty()) reject("--camera-size");
 }
 
 PairFiles pair_files(const FlightSettings& settings) {

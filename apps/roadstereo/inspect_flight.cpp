@@ -19,8 +19,8 @@ namespace {
 std::optional<std::int64_t> frames_to_do(const FlightSettings& settings, const io::FrameSource& source) {
   const std::optional<std::int64_t> size = source.size();
   if (!size) return std::nullopt;
-  const std::int64_t end = settings.to ? std::min(*settings.to + 1, *size) : *size;
-  return std::max<std::int64_t>(0, (end - settings.from + settings.every - 1) / settings.every);
+  const std::int64_t last = settings.to ? std::min(*settings.to, *size - 1) : *size - 1;
+  return last < settings.from ? 0 : (last - settings.from) / settings.every + 1;
 }
 
 io::FlightJournal open_journal(const FlightSettings& settings, const PipelineOptions& options, FlightFolder& folder) {

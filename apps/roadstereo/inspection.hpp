@@ -8,6 +8,7 @@
 #include "pair_source.hpp"
 #include "report_head.hpp"
 #include "roadstereo/ground_plane.hpp"
+#include "roadstereo/health.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
@@ -25,6 +26,7 @@ struct Inspection {
   int threads = 0;     ///< number of threads used
   FrameResult result;
   DamageMap damage;
+  PairHealth health;
   std::optional<GroundPlane> plane;                                  ///< metric; needs a calibration and a road
   std::vector<std::string> warnings;                                 ///< of the pipeline and of the command
   std::vector<std::pair<std::string, std::string>> files_written{};  ///< name, what it is

@@ -3,9 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <opencv2/core/utils/logger.hpp>
 #include <string>
@@ -31,9 +34,11 @@ constexpr const char* footer =
     "Exit codes: 0 success; 2 wrong usage or invalid input; 1 other errors, e.g. a full disk;\n"
     "130 inspection interrupted by Ctrl-C.";
 
-/// Prints an error message in one line.
+/// Prints an error message in one line. Control characters, e.g. of file names, do not reach the terminal.
 int report_error(std::string message, int exit_code) {
   std::replace(message.begin(), message.end(), '\n', ' ');
+  std::replace_if(
+      message.begin(), message.end(), [](unsigned char letter) { return std::iscntrl(letter) != 0; }, '?');
   roadstereo::cli::log_stderr("roadstereo: {}\n", message);
   return exit_code;
 }
@@ -57,7 +62,10 @@ int run(CLI::App& app, int argc, char** argv) {
     flush_output();
     return 0;
   } catch (const CLI::Success& wanted) {  // --help, --version
-    return app.exit(wanted);
+    const int exit_code = app.exit(wanted);
+    std::cout.flush();
+    if (!std::cout) throw roadstereo::SystemError("standard output cannot be written");
+    return exit_code;
   } catch (const CLI::ParseError& error) {
     const std::string unknown = roadstereo::cli::unknown_word(app);
     return report_error(fmt::format("{} (see {})", unknown.empty() ? error.what() : unknown, help_command(app)),
@@ -99,6 +107,11 @@ void quieten_decoders() {
   }
 }
 
+/// Makes a file above the limit of its size (ulimit -f) an error, as a full disk is, instead of the end of the process.
+void report_large_files() {
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
 /// Keeps freed memory in the process for the next frame; returning it to the system costs about 1 ms per frame.
 void keep_memory() {
 #ifdef __GLIBC__
@@ -114,6 +127,7 @@ int main(int argc, char** argv) {
   try {
     quieten_decoders();
     keep_memory();
+    report_large_files();
     CLI::App app;
     describe(app);
     return run(app, argc, argv);

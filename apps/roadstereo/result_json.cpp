@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "finite_values.hpp"
+#include "health_json.hpp"
 #include "json_text.hpp"
 #include "roadstereo/options.hpp"
 #include "roadstereo/version.hpp"
@@ -126,6 +127,7 @@ std::string result_json(const Inspection& inspection) {
   document["damages"] = inspection.damage.damages.size();  // each is in damages.json
   document["road_noise_px"] = json_number(inspection.damage.noise_px);
   document["rows"] = rows_json(result.rows);
+  document["health"] = health_json(inspection.health);
   document["road"] = estimate_json(result.road);
   document["ms"] = times_json(result.ms);
   document["mde_per_s"] = json_number(result.mde_per_s);

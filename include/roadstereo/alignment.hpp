@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "roadstereo/image.hpp"
 
 namespace roadstereo {
@@ -12,6 +14,16 @@ struct RowAlignment {
 
   bool known() const { return points >= 20; }
 };
+
+/// A matched point: (u, v) in the left image, (u + du, v + dv) in the right one.
+struct RowSample {
+  double u = 0, v = 0;
+  double du = 0, dv = 0;  ///< pixels; dv to a fraction of one
+};
+
+/// Matches the points that `measure_row_alignment` takes the median of: at most 135, spread over the image.
+std::vector<RowSample> sample_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                            int threads = 0);
 
 /// Measures the vertical offset of a rectified pair by affine Lucas-Kanade alignment of image blocks, up to about 2 %
 /// of the image height.

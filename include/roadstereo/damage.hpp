@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,8 +42,10 @@ struct DamageInput {
   ImageView<const float> transformed;  ///< ℓ', pixels; NaN invalid. Depressions lie below the road, protrusions above
   ImageView<const float> disparity;    ///< ℓ, pixels; required for metric results
   ImageView<const float> sigma;  ///< standard error of ℓ, pixels; when absent, noise is estimated from `transformed`
-  ImageView<const std::int16_t> grey;            ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
-  std::optional<DisparityPlane> plane;           ///< the road's plane in ℓ; required for metric results
+  ImageView<const std::int16_t> grey;   ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
+  ImageView<const std::int16_t> right;  ///< right image; with `grey`, tells what one camera alone sees from damage
+  double row_offset_px = 0;             ///< the rows of `right` lie this much lower than those of `grey`
+  std::optional<DisparityPlane> plane;  ///< the road's plane in ℓ; required for metric results
   std::optional<StereoCalibration> calibration;  ///< required for metric results
 };
 
@@ -88,6 +91,10 @@ struct DamageEvidence {
   double steepness = 0;     ///< maximum of the mean slope on a contour, relative to a cone of the same area and depth
   double road_share = 0;    ///< share of the band around that is road, 0 … 1
   double border_share = 0;  ///< share of the outline that lies on the border of the image, 0 … 1
+  /// Share of the blocks inside that correlate better between the pictures along the measured surface than along the
+  /// undamaged road, 0 … 1, weighed by their ρ²; NaN unknown. What one camera alone sees agrees along neither, the
+  /// texture around it along the road.
+  double surface_share = std::numeric_limits<double>::quiet_NaN();
 
   /// Probability that the region is damage, 0 … 1: logistic regression on the evidence (docs/method.md).
   double confidence() const;

@@ -65,6 +65,7 @@ struct StageTimes {
 /// Result for one pair. All maps have the size of the images.
 struct FrameResult {
   GreyImage grey;            ///< the left image
+  GreyImage right;           ///< the right image; its rows lie `shift.row_offset` lower
   Image<float> disparity;    ///< ℓ: left-image disparities, pixels, NaN invalid
   Image<float> sigma;        ///< standard error of `disparity`, pixels, NaN where that is invalid
   Image<std::uint8_t> mask;  ///< of `Pipeline::set_mask`, not 0 where pixels are left out; empty without one

@@ -21,7 +21,7 @@ const char* name_of(Distress distress);
 
 /// Severity of a damage by a table of its distress.
 enum class Severity {
-  unknown,       ///< no calibration, or the scheme has no table for this distress
+  unknown,       ///< no calibration, no table for this distress in the scheme, or the depth cannot be trusted
   unresolvable,  ///< neither the largest nor the mean depth is three standard errors
   uncertain,     ///< no class has more than half of the probability
   minor,         ///< below the table

@@ -15,6 +15,7 @@ namespace roadstereo {
 ///   few-disparities  too few pixels have a disparity
 ///   no-damage        damage could not be searched
 ///   values-lost      a file cannot hold all values
+/// and those of `HealthFinding`.
 constexpr std::string_view warning_code(std::string_view warning) {
   const std::string_view word = warning.substr(0, std::min(warning.find(": "), warning.size()));
   const auto allowed = [](char letter) { return (letter >= 'a' && letter <= 'z') || letter == '-'; };

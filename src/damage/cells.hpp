@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+
 #include "roadstereo/damage.hpp"
 
 namespace roadstereo {
@@ -16,6 +19,11 @@ struct Cells {
   int height() const { return value.height(); }
   /// Image coordinate of the centre of cell i, for columns and rows.
   double middle(int i) const { return i * factor + 0.5 * (factor - 1); }
+  /// Pixel (u, v) at the centre of a cell, inside the image even if the border clips the cell.
+  std::array<int, 2> centre(int i, int j) const {
+    return {std::min(static_cast<int>(middle(i)), image_width - 1),
+            std::min(static_cast<int>(middle(j)), image_height - 1)};
+  }
 };
 
 /// Side of a cell, pixels, so that an image has at most some 300 000 cells.

@@ -9,6 +9,7 @@
 #include "damage/measurement.hpp"
 #include "damage/road_region.hpp"
 #include "damage/road_surface.hpp"
+#include "damage/surface_correlation.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -31,6 +32,7 @@ void require_input(const DamageInput& input) {
   require_size(input.disparity, map, "disparity map");
   require_size(input.sigma, map, "map of standard errors");
   require_size(input.grey, map, "image");
+  require_size(input.right, map, "right image");
   if (input.calibration) input.calibration->validate(map.width(), map.height(), "calibration");
 }
 
@@ -90,12 +92,13 @@ DamageMap find_damage(const DamageInput& input, const DamageOptions& options, in
 void find_damage(const DamageInput& input, const DamageOptions& options, int threads, DamageMap& result) {
   options.validate();
   require_input(input);
-  const Cells cells = make_cells(input.transformed, input.sigma,
-                                 cell_factor(input.transformed.width(), input.transformed.height()), threads);
+  Cells cells = make_cells(input.transformed, input.sigma,
+                           cell_factor(input.transformed.width(), input.transformed.height()), threads);
   const SurfaceCoordinates coordinates = surface_coordinates(cells, input);
   RoadSurface surface;
   Image<std::uint8_t> road;
   find_road(cells, coordinates, surface, road);
+  if (move_unsupported_cells(input, surface, threads, cells)) find_road(cells, coordinates, surface, road);
   const DepthCells depth_cells = make_depth_cells(cells, surface);
   result.non_metric_reason = reason_for_pixels(input);
   result.metric = result.non_metric_reason.empty();

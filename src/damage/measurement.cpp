@@ -6,6 +6,7 @@
 
 #include "damage/damage_maps.hpp"
 #include "damage/metric_measurement.hpp"
+#include "damage/surface_correlation.hpp"
 
 namespace roadstereo {
 namespace {
@@ -72,15 +73,16 @@ void find_deepest(const DamageInput& input, const Segmentation& segmentation, co
 
 /// Measure candidate `k` in pixels.
 Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentation, std::size_t k,
-                         const DamageMap& maps) {
+                         const SurfaceOffset& offset, const DamageMap& maps) {
   const Candidate& candidate = segmentation.candidates[k];
   PixelSums sums;
   Damage& damage = sums.damage;
   damage.id = static_cast<int>(k + 1);
   damage.kind = candidate.kind;
   damage.evidence = candidate.evidence;
-  damage.confidence = candidate.evidence.confidence();
   const PixelBox box = pixel_box(candidate, segmentation.cells);
+  damage.evidence.surface_share = surface_share(input, maps, damage.id, box, offset.value);
+  damage.confidence = damage.evidence.confidence();
   for (int v = box.v0; v <= box.v1; ++v) {
     for (int u = box.u0; u <= box.u1; ++u) {
       if (maps.ids(u, v) == damage.id) add_pixel(input, maps, u, v, sums);
@@ -122,7 +124,8 @@ bool is_within_limits(const Damage& damage, const DamageOptions& options) {
   if (!damage.metrics) return true;
   const double max_m = damage.kind == DamageKind::depression ? options.max_depth_m : options.max_height_m;
   const double depth_m = damage.metrics->max_depth_m.value;
-  return std::isfinite(damage.metrics->area_m2.value) && depth_m >= options.min_depth_m && depth_m <= max_m;
+  const double area_m2 = damage.metrics->area_m2.value;
+  return std::isfinite(area_m2) && area_m2 >= options.min_area_m2 && depth_m >= options.min_depth_m && depth_m <= max_m;
 }
 
 /// Whether the depth is at least three of its standard errors.
@@ -169,7 +172,7 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
   for (std::size_t k = 0; k < segmentation.candidates.size(); ++k) {
     const SurfaceOffset offset =
         offsets.emplace_back(estimate_surface_offset(segmentation, segmentation.candidates[k]));
-    Damage& damage = result.damages.emplace_back(measure_in_pixels(input, segmentation, k, result));
+    Damage& damage = result.damages.emplace_back(measure_in_pixels(input, segmentation, k, offset, result));
     damage.mean_depth_px = std::max(0.0, damage.mean_depth_px + sign_of(damage.kind) * offset.value);
     damage.max_depth_px.value =
         std::max(damage.max_depth_px.value + sign_of(damage.kind) * offset.value, damage.mean_depth_px);

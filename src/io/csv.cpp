@@ -10,6 +10,7 @@ namespace roadstereo::io {
 CsvLine& CsvLine::add(std::string_view text) {
   const bool quoted = text.find_first_of(",\"\r\n") != std::string_view::npos;
   if (quoted) text_ += '"';
+  if (!text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos) text_ += '\'';
   for (const char letter : text) {
     if (letter == '"') text_ += '"';
     text_ += letter;

@@ -9,7 +9,8 @@ namespace roadstereo::io {
 /// Builds a line of RFC 4180 CSV.
 class CsvLine {
  public:
-  /// Adds a text, quoted if it contains a comma, a quote or a line end.
+  /// Adds a text, quoted if it contains a comma, a quote or a line end. An apostrophe is put before what spreadsheets
+  /// would take for a formula: a text that begins with =, +, −, @, a tab or a carriage return.
   CsvLine& add(std::string_view text);
   CsvLine& add(const char* text) { return add(std::string_view(text)); }
   CsvLine& add(std::int64_t value);

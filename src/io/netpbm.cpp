@@ -85,9 +85,6 @@ void read_text_samples(const std::string& path, Words& words, const NetpbmHeader
 void read_binary_samples(const std::string& path, const Words& words, Frame& frame) {
   const Bytes data = words.rest();
   const std::size_t size = frame.bytes.size();
-  if (data.size() < size) {
-    fail(path, ": the file is truncated: ", size, " bytes of samples are expected, but there are ", data.size());
-  }
   if (frame.sample == SampleType::u8) {
     std::memcpy(frame.bytes.data(), data.data(), size);
     return;
@@ -150,7 +147,12 @@ Frame read_netpbm(const std::string& path, Bytes bytes) {
   }
   frame.order = header.channels == 3 ? ChannelOrder::rgb : ChannelOrder::grey;
   frame.sample = header.white > 255 ? SampleType::u16 : SampleType::u8;
-  frame.bytes.resize(static_cast<std::size_t>(frame.view().stride_bytes) * static_cast<std::size_t>(frame.height));
+  const std::size_t size = static_cast<std::size_t>(frame.view().stride_bytes) * static_cast<std::size_t>(frame.height);
+  if (!header.text && words.rest().size() < size) {  // before memory is taken
+    fail(path, ": the file is truncated: ", size, " bytes of samples are expected, but there are ",
+         words.rest().size());
+  }
+  frame.bytes.resize(size);
   if (header.text) {
     read_text_samples(path, words, header, frame);
   } else {

@@ -124,6 +124,7 @@ class HostStages final : public FrameStages {
 
   void download(FrameResult& result) override {
     std::swap(result.grey, left_);
+    std::swap(result.right, right_);
     std::swap(result.disparity, disparity_);
     std::swap(result.sigma, sigma_);
     std::swap(result.transformed, transformed_);

@@ -360,6 +360,8 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
   input.disparity = frame.disparity;
   input.sigma = frame.sigma;
   input.grey = frame.grey;
+  input.right = frame.right;
+  input.row_offset_px = frame.shift.row_offset;
   input.plane = frame.geometry.plane;
   input.calibration = calibration;
   find_damage(input, options, threads, result);

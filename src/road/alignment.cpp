@@ -148,12 +148,12 @@ std::optional<double> refined_offset(const Pyramid& pair, const Place& place, co
   return aligned->dv - shift_v;
 }
 
-/// The vertical offsets that one row of cells shows.
-std::vector<double> measure_cells(const Pyramid& pair, int cell_v) {
+/// The matched points of one row of cells.
+std::vector<RowSample> measure_cells(const Pyramid& pair, int cell_v) {
   const int rows = 1 + pair.small_left.height() / 40;
   const int columns = 2 * pair.small_left.width() / 5;
   const int reach = pair.factor / 2 + 1;
-  std::vector<double> offsets;
+  std::vector<RowSample> samples;
   Strip strip{};
   for (int cell_u = 0; cell_u < cells_across; ++cell_u) {
     const auto place = best_place(pair.small_left, cell_u * pair.small_left.width() / cells_across,
@@ -170,9 +170,11 @@ std::vector<double> measure_cells(const Pyramid& pair, int cell_v) {
         search(pair.left, full, pair.right, {coarse.du * pair.factor - reach, coarse.dv * pair.factor - reach},
                {coarse.du * pair.factor + reach, coarse.dv * pair.factor + reach}, strip);
     if (fine.correlation < min_correlation) continue;
-    if (const auto dv = refined_offset(pair, full, fine)) offsets.push_back(*dv);
+    if (const auto dv = refined_offset(pair, full, fine)) {
+      samples.push_back({1.0 * full.u, 1.0 * full.v, 1.0 * fine.du, *dv});
+    }
   }
-  return offsets;
+  return samples;
 }
 
 /// Power of two that leaves between 120 and 240 columns: the search over all disparities fits into a strip.
@@ -185,15 +187,22 @@ int alignment_factor(int width) {
 
 }  // namespace
 
-RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                   int threads) {
+std::vector<RowSample> sample_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                            int threads) {
   const int factor = alignment_factor(left.width());
   const Pyramid pair{left, right, factor, downsample(left, factor), downsample(right, factor)};
-  std::vector<std::vector<double>> by_row(cells_down);
+  std::vector<std::vector<RowSample>> by_row(cells_down);
   parallel_for(cells_down, threads,
                [&](int cell_v, int) { by_row[static_cast<std::size_t>(cell_v)] = measure_cells(pair, cell_v); });
+  std::vector<RowSample> samples;
+  for (const auto& row : by_row) samples.insert(samples.end(), row.begin(), row.end());
+  return samples;
+}
+
+RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                   int threads) {
   std::vector<double> offsets;
-  for (const auto& row : by_row) offsets.insert(offsets.end(), row.begin(), row.end());
+  for (const RowSample& sample : sample_row_alignment(left, right, threads)) offsets.push_back(sample.dv);
   RowAlignment alignment;
   alignment.points = static_cast<int>(offsets.size());
   if (offsets.empty()) return alignment;

@@ -1,8 +1,10 @@
 // What all commands share: help, version, wrong usage.
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 
 #include "roadstereo/options.hpp"
@@ -76,6 +78,17 @@ TEST_F(CommandLine, PrintsVersion) {
   const Outcome outcome = run("--version");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.out.rfind("roadstereo ", 0), 0U);
+}
+
+TEST_F(CommandLine, HelpToFullDiskFails) {
+  const int status = std::system("'" ROADSTEREO_BINARY "' --help > /dev/full 2> /dev/null");
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+}
+
+TEST_F(CommandLine, ControlCharactersDoNotReachTerminal) {
+  const Outcome outcome = run("inspect \"$(printf 'l\\033[31mx.png')\" right.png --output result");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("l?[31mx.png"), std::string::npos) << outcome.err;
 }
 
 TEST_F(CommandLine, WrongUsageExitsWithTwo) {

@@ -208,6 +208,10 @@ TEST_F(FlightCommand, FromToAndEverySelectFrames) {
   std::vector<std::string> taken;
   for (const std::string& row : rows("out/frames.csv")) taken.push_back(row.substr(0, row.find(',')));
   EXPECT_EQ(taken, (std::vector<std::string>{"frame", "2", "5", "8"}));
+  const auto health = nlohmann::json::parse(outcome.out)["health"];
+  EXPECT_TRUE(health["depth_is_trusted"]);
+  EXPECT_EQ(health["lost_share"], 0);
+  EXPECT_NEAR(health["gain"], 1, 0.01);
 }
 
 TEST_F(FlightCommand, SecondRunReplacesFirst) {
@@ -392,6 +396,7 @@ TEST_F(FlightCommand, RejectsBadInput) {
   expect_complaint(run("inspect flight.txt --output out --write cloud"), "needs --calibration");
   expect_complaint(run("inspect flight.txt --output out --from 2 --to 1"), "--to is 1");
   expect_complaint(run("inspect flight.txt --output out --every 0"), "--every is 0");
+  expect_complaint(run("inspect flight.txt --output out --every 9223372036854775807"), "between 1 and 1000000000");
   expect_complaint(run("inspect flight.txt --output out --layout upside-down"), "the layout is \"upside-down\"");
   expect_complaint(run("inspect nowhere --output out"), "nowhere: no such file");
   expect_complaint(run("inspect left/0.png --output out"), "give two images");

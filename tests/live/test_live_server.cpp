@@ -50,7 +50,7 @@ TEST(Access, RejectsForeignHostHeader) {
     EXPECT_TRUE(names_this_machine(header)) << header;
   }
   for (const char* header : {"", "evil.com", "evil.com:8080", "localhost.evil.com:80", "127.0.0.1.evil.com", "[::2]:80",
-                             "0.0.0.0", "192.168.0.2:80"}) {
+                             "0.0.0.0", "192.168.0.2:80", "localhost:evil", "localhost:123456"}) {
     EXPECT_FALSE(names_this_machine(header)) << header;
   }
 }

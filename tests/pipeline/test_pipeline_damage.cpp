@@ -61,20 +61,21 @@ TEST(PipelineDamage, FindsPotholeOfMatchedPair) {
   }
 }
 
-TEST(PipelineDamage, TwoPipelinesInTwoThreadsMatchOne) {
+TEST(PipelineDamage, SixteenPipelinesInSixteenThreadsMatchOne) {
   const std::vector<synth::SyntheticPair> pairs{synth::render(small_scene(1)), synth::render(small_scene(2))};
-  const auto look = [&](std::size_t k) {
+  const auto find_in = [&](std::size_t k) {
     Pipeline pipeline(preset("default"), pairs[k].calibration);
     pipeline.process(pairs[k].left.view(), pairs[k].right.view());
     return pipeline.find_damage();
   };
-  const std::vector<DamageMap> alone{look(0), look(1)};
+  const std::vector<DamageMap> alone{find_in(0), find_in(1)};
   EXPECT_FALSE(alone[0].damages.empty());
-  std::vector<DamageMap> together(2);
-  std::thread other([&] { together[1] = look(1); });
-  together[0] = look(0);
-  other.join();
-  for (std::size_t k = 0; k < 2; ++k) expect_same(alone[k], together[k]);
+  constexpr std::size_t count = 16;
+  std::vector<DamageMap> together(count);
+  std::vector<std::thread> threads;
+  for (std::size_t k = 0; k < count; ++k) threads.emplace_back([&, k] { together[k] = find_in(k % 2); });
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t k = 0; k < count; ++k) expect_same(alone[k % 2], together[k]);
 }
 
 }  // namespace

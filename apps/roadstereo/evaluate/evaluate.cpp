@@ -32,6 +32,7 @@ void add_evaluate(CLI::App& app) {
   add_flatness(*command);
   add_blur(*command);
   add_damage_accuracy(*command);
+  add_faults(*command);
   add_scan(*command);
   add_flight(*command);
   add_runtime(*command);

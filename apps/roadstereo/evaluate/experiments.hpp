@@ -19,6 +19,7 @@ void add_roll(CLI::App& evaluate);
 void add_flatness(CLI::App& evaluate);
 void add_blur(CLI::App& evaluate);
 void add_damage_accuracy(CLI::App& evaluate);
+void add_faults(CLI::App& evaluate);
 void add_scan(CLI::App& evaluate);
 void add_flight(CLI::App& evaluate);
 void add_runtime(CLI::App& evaluate);

@@ -10,7 +10,8 @@ namespace {
 
 void record_damage(const std::optional<StereoCalibration>& calibration, const DamageOptions& options, FlightJob& job) {
   constexpr int threads = 1;  // the others match the next frame
-  if (find_damage_or_warn(job.result, calibration, options, threads, job.damage, job.frame.warnings)) {
+  if (find_damage_or_warn(job.result, calibration, options, threads, job.damage, job.frame.health,
+                          job.frame.warnings)) {
     job.frame.noise_px = job.damage.noise_px;
   }
   job.frame.damages = job.damage.damages;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "finite_values.hpp"
+#include "health_json.hpp"
 #include "json_text.hpp"
 #include "result_json.hpp"
 #include "roadstereo/version.hpp"
@@ -68,6 +69,16 @@ Json run_json(const FlightRun& run) {
           {"threads", run.threads}};
 }
 
+/// Medians of the frames, with what only successive frames show.
+Json flight_health_json(const FlightHealth& health) {
+  Json document = health_json(health.typical());
+  document["findings"] = findings_json(health.findings());
+  document["vibration_px"] = json_number(health.vibration_px());
+  document["lost_share"] = json_number(health.lost_share());
+  document["frames_with"] = health.frames_with();
+  return document;
+}
+
 }  // namespace
 
 std::string flight_json(const FlightSettings& settings, const FlightRun& run, const FlightSummary& summary,
@@ -91,6 +102,7 @@ std::string flight_json(const FlightSettings& settings, const FlightRun& run, co
   document["valid_share"] = range_json(summary.valid_share);
   document["matching_ms"] = range_json(summary.matching_ms);
   document["damage_ms"] = range_json(summary.damage_ms);
+  document["health"] = flight_health_json(summary.health);
   document["run"] = run_json(run);
   return json_text(document);
 }

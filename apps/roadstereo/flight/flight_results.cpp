@@ -59,6 +59,7 @@ std::vector<std::string> notices_of(const FlightRun& run, const FlightSummary& s
   if (!run.complete) notices.emplace_back("The flight was interrupted; continue it with inspect --resume.");
   if (!summary.no_position_reason.empty())
     notices.push_back("No frame has a position: " + summary.no_position_reason + ".");
+  for (const HealthFinding& finding : summary.health.findings()) notices.push_back("Health: " + finding.text + ".");
   const std::int64_t without = summary.rejected + summary.failed;
   if (without == 0) return notices;
   std::string text =

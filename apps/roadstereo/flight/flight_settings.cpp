@@ -51,7 +51,8 @@ void FlightSettings::validate() const {
   if (to && *to < from) fail("--to is ", *to, "; it must be at least --from, which is ", from);
   if (!std::isfinite(track.offset_s)) fail("--track-offset is ", track.offset_s, "; it must be a number of seconds");
   if (trajectory && resume) fail("--trajectory cannot be resumed; start again without --resume");
-  if (every < 1) fail("--every is ", every, "; it must be at least 1");
+  constexpr std::int64_t max_every = 1'000'000'000;
+  if (every < 1 || every > max_every) fail("--every is ", every, "; it must be between 1 and ", max_every);
 }
 
 FlightPlan resolve(const FlightSettings& settings) {

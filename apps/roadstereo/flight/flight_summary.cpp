@@ -11,6 +11,7 @@ void FlightSummary::add(const io::FlightFrame& frame) {
   constexpr std::size_t max_reasons = 5;
   constexpr double degrees = 180 / std::numbers::pi;  // in a radian
   ++frames;
+  health.add(frame);
   good += frame.status == io::FrameStatus::good ? 1 : 0;
   rejected += frame.status == io::FrameStatus::rejected ? 1 : 0;
   failed += frame.status == io::FrameStatus::failed ? 1 : 0;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "flight/flight_health.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/flight_report.hpp"
 
@@ -26,6 +27,7 @@ struct FlightSummary {
   std::vector<std::string> reasons;     ///< first distinct reasons why frames are not good
   double first_time_s = io::FlightFrame::unknown;
   double last_time_s = io::FlightFrame::unknown;
+  FlightHealth health;
   io::FlightCurves curves;  ///< of every frame
   std::vector<double> valid_share;
   std::vector<double> matching_ms;

@@ -36,9 +36,12 @@ bool equal_in_constant_time(std::string_view given, std::string_view wanted) {
 }
 
 bool names_this_machine(std::string_view host_header) {
+  constexpr std::size_t max_digits = 5;
   const std::size_t colon = host_header.rfind(':');
   const std::size_t bracket = host_header.rfind(']');
   const bool has_port = colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket);
+  const std::string_view port = has_port ? host_header.substr(colon + 1) : "";
+  if (port.size() > max_digits || port.find_first_not_of("0123456789") != std::string_view::npos) return false;
   std::string host(host_header.substr(0, has_port ? colon : host_header.size()));
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
   std::transform(host.begin(), host.end(), host.begin(),

@@ -9,6 +9,7 @@
 #include "live/clock.hpp"
 #include "roadstereo/damage.hpp"
 #include "roadstereo/ground_plane.hpp"
+#include "roadstereo/health.hpp"
 #include "roadstereo/image.hpp"
 #include "roadstereo/roll.hpp"
 
@@ -28,6 +29,7 @@ struct LiveView {
   std::vector<Damage> damages;           ///< deepest first
   std::optional<RollEstimate> geometry;  ///< absent if no road was found
   std::optional<GroundPlane> plane;      ///< absent without a road or a calibration
+  PairHealth health;
   std::vector<std::string> warnings;
 };
 

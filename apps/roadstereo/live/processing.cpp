@@ -69,7 +69,7 @@ LiveView Processing::view_of(Matched matched) const {
   view.warnings = std::move(result.warnings);
   DamageMap map;
   find_damage_or_warn(result, matched.calibration, options_.pipeline.damage, options_.pipeline.threads, map,
-                      view.warnings);
+                      view.health, view.warnings);
   view.damages = std::move(map.damages);
   view.ids = std::move(map.ids);
   view.name = std::move(matched.captured.pair.name);

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "health_json.hpp"
 #include "json_text.hpp"
 
 namespace roadstereo::cli {
@@ -48,10 +49,15 @@ ordered_json roll_json(const LiveView& view) {
 }
 
 ordered_json view_json(const LiveView& view) {
-  ordered_json json{{"name", view.name},          {"width", view.left.width},
-                    {"height", view.left.height}, {"latency_ms", json_number(view.latency_ms)},
-                    {"roll", roll_json(view)},    {"height_m", nullptr},
-                    {"pitch_degrees", nullptr},   {"damages", view.damages.size()},
+  ordered_json json{{"name", view.name},
+                    {"width", view.left.width},
+                    {"height", view.left.height},
+                    {"latency_ms", json_number(view.latency_ms)},
+                    {"roll", roll_json(view)},
+                    {"height_m", nullptr},
+                    {"pitch_degrees", nullptr},
+                    {"damages", view.damages.size()},
+                    {"health", health_json(view.health)},
                     {"warnings", view.warnings}};
   if (view.plane) {
     json["height_m"] = json_number(view.plane->height_m);

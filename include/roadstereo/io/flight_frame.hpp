@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "roadstereo/damage.hpp"
+#include "roadstereo/health.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::io {
@@ -43,6 +44,7 @@ struct FlightFrame {
   double matching_ms = unknown;                    ///< time in Pipeline::process
   double damage_ms = unknown;                      ///< time in find_damage
   std::vector<std::array<double, 2>> footprint_m;  ///< `road_footprint`; empty without a calibration
+  PairHealth health;
   std::vector<Damage> damages;                     ///< deepest first
   std::vector<Damage> candidates;                  ///< `DamageMap::candidates`
   std::vector<std::string> warnings;

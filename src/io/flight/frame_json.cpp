@@ -97,6 +97,7 @@ void each_field(DamageEvidence& evidence, Visit& visit) {
   visit("steepness", evidence.steepness);
   visit("road_share", evidence.road_share);
   visit("border_share", evidence.border_share);
+  visit("surface_share", evidence.surface_share);
 }
 
 template <class Visit>
@@ -140,6 +141,29 @@ void each_field(Damage& damage, Visit& visit) {
 }
 
 template <class Visit>
+void each_field(PairHealth& health, Visit& visit) {
+  visit("row_offset_px", health.row_offset_px);
+  visit("row_correction_px", health.row_correction_px);
+  visit("row_scale", health.row_scale);
+  visit("row_turn_rad", health.row_turn_rad);
+  visit("row_error_px", health.row_error_px);
+  visit("distortion_right", health.distortion_right);
+  visit("distortion_both", health.distortion_both);
+  visit("bowl_px", health.bowl_px);
+  visit("noise_px", health.noise_px);
+  visit("wave_px", health.wave_px);
+  visit("gain", health.gain);
+  visit("clipped_left", health.clipped_left);
+  visit("clipped_right", health.clipped_right);
+  visit("blur_left_px", health.blur_left_px);
+  visit("blur_right_px", health.blur_right_px);
+  visit("blocks_left", health.blocks_left);
+  visit("blocks_right", health.blocks_right);
+  visit("infinity_px", health.infinity_px);
+  visit("threshold_sigma", health.threshold_sigma);
+}
+
+template <class Visit>
 void each_field(FlightFrame& frame, Visit& visit) {
   visit("frame", frame.index);
   visit("name", frame.name);
@@ -161,6 +185,7 @@ void each_field(FlightFrame& frame, Visit& visit) {
   visit("matching_ms", frame.matching_ms);
   visit("damage_ms", frame.damage_ms);
   visit("footprint_m", frame.footprint_m);
+  visit("health", frame.health);
   visit("damages", frame.damages);
   visit("candidates", frame.candidates);
   visit("warnings", frame.warnings);

@@ -35,8 +35,10 @@ std::string provenance_line(const Provenance& provenance) {
 /// Calls `visit` for every complete line of a file with the position after it.
 template <class Visit>
 void for_each_line(const fs::path& file, const Visit& visit) {
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file.string(), ": there is no flight to resume");
+  if (!stream && errno == ENOENT) fail(file.string(), ": there is no flight to resume");
+  if (!stream) fail<SystemError>(file.string(), " cannot be read: ", std::generic_category().message(errno));
   std::string line;
   std::uintmax_t end = 0;
   while (std::getline(stream, line) && !stream.eof()) {  // a line without its end is incomplete

@@ -1,5 +1,7 @@
 #include "pipeline/cuda/device_stages.hpp"
 
+#include <algorithm>
+
 #include "core/cuda/device.hpp"
 #include "core/cuda/grey.hpp"
 #include "pipeline/cuda/frame_maps.hpp"
@@ -202,8 +204,17 @@ class DeviceStages final : public FrameStages {
     transform_.run(disparity, road, {options_.roll.delta_t_px, shift.delta_p}, maps_.transformed(), stream());
     mark(StageClock::transformed);
     complete_ = false;
-    if (download_) maps_.download_transformed(stream());
+    if (download_) enqueue_last_downloads();
   }
+
+  /// The right image lies apart: kernels read it in vectors.
+  void enqueue_last_downloads() {
+    maps_.download_transformed(stream());
+    right_downloaded_.reserve(right_pixels());
+    ROADSTEREO_CUDA(cudaMemcpyAsync(right_downloaded_.data(), right_.data(), right_pixels() * sizeof(std::int16_t),
+                                    cudaMemcpyDeviceToHost, stream()));
+  }
+  std::size_t right_pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
 
   RollEstimate fit_on_host(ImageView<const float> disparity);
 
@@ -219,6 +230,7 @@ class DeviceStages final : public FrameStages {
   PairToGrey to_grey_;
   FrameMaps maps_;
   DeviceArray<std::int16_t> right_, target_;
+  PinnedArray<std::int16_t> right_downloaded_;
   DeviceArray<int> first_column_;
   DeviceArray<float> between_;  ///< disparities and variances between two passes of the refinement
   GreyImage left_on_host_, right_on_host_;
@@ -294,7 +306,7 @@ void DeviceStages::invalidate_transformed() {
   ROADSTEREO_CUDA(cudaMemsetAsync(maps_.transformed().data(), every_bit, bytes, stream_));
   mark(StageClock::transformed);
   complete_ = false;
-  if (download_) maps_.download_transformed(stream());
+  if (download_) enqueue_last_downloads();
 }
 
 void DeviceStages::download(FrameResult& result) {
@@ -302,9 +314,12 @@ void DeviceStages::download(FrameResult& result) {
   if (clock_) clock_->read(result.ms);
   if (download_) {
     maps_.take(result);
+    result.right.resize(width_, height_);
+    std::copy_n(right_downloaded_.data(), right_pixels(), result.right.row(0));
   } else {
     for (Image<float>* map : {&result.disparity, &result.sigma, &result.transformed}) map->resize(0, 0);
     result.grey.resize(0, 0);
+    result.right.resize(0, 0);
   }
 }
 

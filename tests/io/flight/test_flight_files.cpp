@@ -69,12 +69,15 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   frame.roll_rad = -0.1 / 3;
   frame.road = {1.0 / 3, 2.0 / 7, -1e-17};
   frame.warnings = {"a \"quoted\" word", "line\nend"};
+  frame.health.row_scale = 1.0 / 3;
   frame.pipeline_state = {640, 360, TrackedRoad{{1.0 / 3, 1e-300, 5}, 0.1, 0.7}, 1.0 / 7, -0.3};
   const FlightFrame back = read_flight_frame(flight_frame_json(frame));
   EXPECT_EQ(back.index, 7);
   EXPECT_EQ(back.time_s, frame.time_s);
   EXPECT_EQ(back.roll_rad, frame.roll_rad);
   EXPECT_EQ(back.road.a0, frame.road.a0);
+  EXPECT_EQ(back.health.row_scale, frame.health.row_scale);
+  EXPECT_TRUE(std::isnan(back.health.gain));
   EXPECT_EQ(back.road.a2, frame.road.a2);
   EXPECT_TRUE(std::isnan(back.height_m));
   EXPECT_EQ(back.warnings, frame.warnings);
@@ -177,6 +180,14 @@ TEST(FlightTables, QuotesCommasAndLeavesUnknownEmpty) {
   EXPECT_EQ(rows.substr(0, 6), "4,3,3,");
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 2);
   EXPECT_EQ(commas(rows), 2 * commas(sightings_csv_names()));
+}
+
+TEST(FlightTables, FormulasOfNamesAreDefused) {
+  FlightFrame frame = frame_of(3, {});
+  frame.name = "=cmd|' /C calc'!A0.png";
+  EXPECT_EQ(frames_csv_row(frame).substr(0, 8), "3,'=cmd|");
+  frame.name = "-2.png";
+  EXPECT_EQ(frames_csv_row(frame).substr(0, 6), "3,'-2.");
 }
 
 TEST(FlightInventory, JoinsMovingDamage) {

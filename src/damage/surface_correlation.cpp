@@ -1,0 +1,164 @@
+#include "damage/surface_correlation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.hpp"
+#include "road/cubic.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr int block_radius = 2;
+constexpr std::size_t block_side = 2 * block_radius + 1;
+constexpr std::size_t block_pixels = block_side * block_side;
+using Block = std::array<float, block_pixels>;
+
+/// ZNCC; NaN if a value is NaN or a block has no contrast.
+float correlation(const Block& one, const Block& other) {
+  float a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+  for (std::size_t k = 0; k < block_pixels; ++k) {
+    const float x = one[k] - one[block_pixels / 2], y = other[k] - other[block_pixels / 2];  // keeps digits
+    a += x;
+    b += y;
+    aa += x * x;
+    bb += y * y;
+    ab += x * y;
+  }
+  constexpr float n = block_pixels;
+  const float variances = (aa - a * a / n) * (bb - b * b / n);
+  return variances > 0 ? (ab - a * b / n) / std::sqrt(variances) : std::numeric_limits<float>::quiet_NaN();
+}
+
+/// Compares two surfaces by blocks of both images.
+class SurfaceComparison {
+ public:
+  explicit SurfaceComparison(const DamageInput& input) : input_(input) {}
+
+  static bool is_possible(const DamageInput& input) {
+    return !input.right.empty() && !input.grey.empty() && !input.disparity.empty();
+  }
+
+  /// ρ² of the surface along which the block around (u, v) correlates better; negative if that is the road at
+  /// `surface`, 0 if it correlates along neither.
+  float vote(int u, int v, float surface) const {
+    Block left, measured, road;
+    std::size_t k = 0;
+    if (u < block_radius || v < block_radius || u + block_radius >= input_.grey.width() ||
+        v + block_radius >= input_.grey.height()) {
+      return 0;
+    }
+    for (int y = v - block_radius; y <= v + block_radius; ++y) {
+      for (int x = u - block_radius; x <= u + block_radius; ++x, ++k) {
+        const float at = static_cast<float>(x) - input_.disparity(x, y);
+        left[k] = input_.grey(x, y);
+        measured[k] = right_at(at, y);
+        road[k] = right_at(at - (surface - input_.transformed(x, y)), y);
+      }
+    }
+    const float along_measured = correlation(left, measured), along_road = correlation(left, road);
+    if (along_measured > std::max(along_road, 0.0F)) return along_measured * along_measured;
+    return along_road > std::max(along_measured, 0.0F) ? -along_road * along_road : 0;
+  }
+
+ private:
+  /// Right image at column u of the row that belongs to row v; NaN outside.
+  float right_at(float u, int v) const {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    const double row = v + input_.row_offset_px;
+    const auto first = static_cast<int>(std::floor(row));
+    if (first < 1 || first + 2 >= input_.right.height() || !(u >= 1) ||
+        !(u < static_cast<float>(input_.right.width() - 2))) {
+      return nan;
+    }
+    const int column = static_cast<int>(u);
+    const CubicWeights across = cubic_weights(double{u} - column);
+    if (row == first) return in_row(first, column, across);
+    return weighted(cubic_weights(row - first), in_row(first - 1, column, across), in_row(first, column, across),
+                    in_row(first + 1, column, across), in_row(first + 2, column, across));
+  }
+
+  float in_row(int v, int column, const CubicWeights& weight) const {
+    const std::int16_t* const at = input_.right.row(v) + column;
+    return weighted(weight, at[-1], at[0], at[1], at[2]);
+  }
+
+  const DamageInput& input_;
+};
+
+/// Sums over windows of (2·radius + 1)² cells.
+Image<double> box_sums(const Image<float>& values, int radius) {
+  const int width = values.width(), height = values.height();
+  Image<double> integral(width + 1, height + 1, 0), sums(width, height);
+  for (int j = 0; j < height; ++j) {
+    double row = 0;
+    for (int i = 0; i < width; ++i) {
+      row += double{values(i, j)};
+      integral(i + 1, j + 1) = integral(i + 1, j) + row;
+    }
+  }
+  for (int j = 0; j < height; ++j) {
+    const int top = std::max(0, j - radius), bottom = std::min(height, j + radius + 1);
+    for (int i = 0; i < width; ++i) {
+      const int first = std::max(0, i - radius), last = std::min(width, i + radius + 1);
+      sums(i, j) = integral(last, bottom) - integral(first, bottom) - integral(last, top) + integral(first, top);
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+double surface_share(const DamageInput& input, const DamageMap& maps, int id, const PixelBox& box, double offset) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  if (!SurfaceComparison::is_possible(input)) return nan;
+  constexpr double max_blocks = 2000;
+  const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(box.width() * box.height() / max_blocks))));
+  const SurfaceComparison comparison(input);
+  double measured = 0, road = 0;
+  for (int v = box.v0; v <= box.v1; v += step) {
+    for (int u = box.u0; u <= box.u1; u += step) {
+      if (maps.ids(u, v) != id) continue;
+      const double vote = comparison.vote(u, v, maps.surface(u, v) + static_cast<float>(offset));
+      measured += std::max(vote, 0.0);
+      road += std::max(-vote, 0.0);
+    }
+  }
+  return measured + road > 0 ? measured / (measured + road) : nan;
+}
+
+bool move_unsupported_cells(const DamageInput& input, const RoadSurface& surface, int threads, Cells& cells) {
+  constexpr int step = 2;                                   // cells from block to block
+  constexpr int rows_per_band = 16, window_radius_px = 10;  // block radius + aggregation radius
+  constexpr float max_sigmas = 3;
+  if (!SurfaceComparison::is_possible(input)) return false;
+  const auto is_off = [&](int i, int j) {
+    return std::abs(surface.value(i, j) - cells.value(i, j)) > max_sigmas * static_cast<float>(surface.noise);
+  };
+  const SurfaceComparison comparison(input);
+  Image<float> votes(cells.width(), cells.height(), 0);
+  parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int j = first; j < last; ++j) {
+      if (j % step != 0) continue;
+      for (int i = 0; i < cells.width(); i += step) {
+        if (!is_off(i, j)) continue;
+        const auto [u, v] = cells.centre(i, j);
+        votes(i, j) = comparison.vote(u, v, surface.value(i, j));
+      }
+    }
+  });
+  const Image<double> sums = box_sums(votes, (window_radius_px + cells.factor - 1) / cells.factor);
+  bool moved = false;
+  for (int j = 0; j < cells.height(); ++j) {
+    for (int i = 0; i < cells.width(); ++i) {
+      if (sums(i, j) >= 0 || !is_off(i, j)) continue;
+      cells.value(i, j) = surface.value(i, j);
+      moved = true;
+    }
+  }
+  return moved;
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,139 @@
+#include "roadstereo/health.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/cholesky.hpp"
+#include "core/order_statistics.hpp"
+#include "pipeline/picture_health.hpp"
+#include "pipeline/rectification_error.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Largest value over a grid of the road's pixels of what a quadratic in u and v leaves of `error(u, v)`.
+template <class Error>
+double beyond_quadratic(const DamageMap& damage, const Error& error) {
+  constexpr std::size_t terms = 6;
+  constexpr int across = 24;
+  constexpr double smallest = 1e-10;
+  const int step = std::max(1, damage.road.width() / across);
+  struct Point {
+    Vector<terms> row;
+    double value;
+  };
+  std::vector<Point> points;
+  Matrix<terms> a{};
+  Vector<terms> b{};
+  for (int v = step / 2; v < damage.road.height(); v += step) {
+    for (int u = step / 2; u < damage.road.width(); u += step) {
+      if (damage.road(u, v) == 0) continue;
+      const double x = 1.0 * u / damage.road.width(), y = 1.0 * v / damage.road.width();
+      const Point& point = points.emplace_back(Point{{1, x, y, x * x, x * y, y * y}, error(u, v)});
+      for (std::size_t i = 0; i < terms; ++i) {
+        b[i] += point.row[i] * point.value;
+        for (std::size_t j = 0; j <= i; ++j) a[i][j] += point.row[i] * point.row[j];
+      }
+    }
+  }
+  factor_in_place(a, smallest);
+  const Vector<terms> fit = solve_factored(a, b);
+  double largest = 0;
+  for (const Point& point : points) {
+    double rest = point.value;
+    for (std::size_t i = 0; i < terms; ++i) rest -= fit[i] * point.row[i];
+    largest = std::max(largest, std::abs(rest));
+  }
+  return largest;
+}
+
+void measure_rectification(const FrameResult& frame, const DamageMap& damage,
+                           const std::optional<StereoCalibration>& calibration, int threads, PairHealth& health) {
+  const int width = frame.grey.width(), height = frame.grey.height();
+  const auto fit =
+      fit_rectification_error(sample_row_alignment(frame.grey, frame.right, threads), width, height, calibration);
+  if (!fit) return;
+  const auto& [offset, scale, turn, right, both] = fit->value;
+  health.row_offset_px = fit->focal_px * offset;
+  health.row_correction_px = frame.shift.row_offset;
+  health.row_scale = scale;
+  health.row_turn_rad = turn;
+  health.distortion_right = right;
+  health.distortion_both = both;
+  const DisparityPlane& plane = frame.geometry.plane;
+  const double rest = health.row_offset_px - health.row_correction_px;
+  double largest = std::abs(rest);
+  for (const int v : {0, height - 1}) {
+    for (const int u : {0, width - 1}) {
+      largest = std::max(largest, std::abs(rest + fit->slope_px(u, v, std::max(0.0, plane.disparity(u, v)))));
+    }
+  }
+  health.row_error_px = largest;
+  health.bowl_px =
+      beyond_quadratic(damage, [&](int u, int v) { return fit->disparity_error_px(u, v, plane.disparity(u, v)); });
+}
+
+/// Robust standard deviation (MAD), as that of the noise, of the medians of the road's rows around its surface.
+double measure_wave(const FrameResult& frame, const DamageMap& damage) {
+  constexpr int rows = 4, step = 4;
+  constexpr std::size_t min_columns = 40, min_bands = 20;
+  std::vector<double> medians;
+  std::vector<float> residuals;
+  for (int v = 0; v + rows <= frame.transformed.height(); v += rows) {
+    residuals.clear();
+    for (int u = 0; u < frame.transformed.width(); u += step) {
+      if (damage.road(u, v) == 0 || damage.ids(u, v) != 0) continue;
+      const float residual = damage.surface(u, v) - frame.transformed(u, v);
+      if (std::isfinite(residual)) residuals.push_back(residual);
+    }
+    if (residuals.size() >= min_columns) medians.push_back(static_cast<double>(upper_median(residuals)));
+  }
+  if (medians.size() < min_bands) return PairHealth::unknown;
+  return gaussian_mad * upper_median_magnitude(medians);
+}
+
+/// Smallest disparities where the plane of the road lies beyond infinity.
+double measure_infinity(const FrameResult& frame, const std::optional<StereoCalibration>& calibration) {
+  constexpr int step = 4;
+  constexpr double margin_px = 2, share = 0.1;
+  constexpr float max_sigma_px = 0.3F;
+  constexpr std::size_t min_pixels = 200;
+  const double offset = calibration ? calibration->disparity_offset_px : 0;
+  std::vector<double> values;
+  for (int v = 0; v < frame.disparity.height(); v += step) {
+    for (int u = 0; u < frame.disparity.width(); u += step) {
+      if (frame.geometry.plane.disparity(u, v) + offset > -margin_px) continue;
+      if (!(frame.sigma(u, v) < max_sigma_px) || std::isnan(frame.disparity(u, v))) continue;
+      values.push_back(double{frame.disparity(u, v)} + offset);
+    }
+  }
+  return values.size() < min_pixels ? PairHealth::unknown : lower_quantile(values, share);
+}
+
+}  // namespace
+
+PairHealth measure_health(const FrameResult& frame, const DamageMap& damage,
+                          const std::optional<StereoCalibration>& calibration, const DamageOptions& options,
+                          int threads) {
+  PairHealth health;
+  health.threshold_sigma = options.threshold_sigma;
+  if (!frame.roll_found || frame.grey.empty() || frame.right.empty()) return health;
+  measure_rectification(frame, damage, calibration, threads, health);
+  health.noise_px = damage.noise_px;
+  health.wave_px = measure_wave(frame, damage);
+  measure_pictures(frame, damage, health);
+  if (!frame.sigma.empty()) health.infinity_px = measure_infinity(frame, calibration);
+  return health;
+}
+
+void withhold_severity(const PairHealth& health, DamageMap& damage) {
+  if (health.depth_is_trusted()) return;
+  for (auto* const list : {&damage.damages, &damage.candidates}) {
+    for (Damage& one : *list) {
+      if (one.metrics) one.metrics->severity = Severity::unknown;
+    }
+  }
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/format_message.hpp"
+#include "roadstereo/health.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// A quarter of the period of the finest texture, 2 px: there the disparity of diagonal texture is off by as much.
+constexpr double max_row_error_px = 0.5;
+/// Half of that period: rows that are a pixel apart show other texture.
+constexpr double max_trusted_row_error_px = 1.0;
+
+double rounded(double value, double unit) {
+  return std::round(value / unit) * unit;
+}
+
+class Findings {
+ public:
+  /// Adds a finding if the value, unless NaN, exceeds the limit.
+  template <class... Parts>
+  void add_above(const char* id, double value, double limit, const char* unit, bool spoils_depth,
+                 const Parts&... text) {
+    if (value > limit) list_.push_back({id, value, limit, unit, format_message(text...), spoils_depth});
+  }
+  std::vector<HealthFinding> take() { return std::move(list_); }
+
+ private:
+  std::vector<HealthFinding> list_;
+};
+
+void add_rectification(const PairHealth& h, Findings& findings) {
+  const bool spoils_rows = h.row_error_px > max_trusted_row_error_px;
+  findings.add_above("row-error", h.row_error_px, max_row_error_px, "px", spoils_rows,
+                     "the rows of the pair differ by up to ", rounded(h.row_error_px, 0.01), " px (limit ",
+                     max_row_error_px, " px): the right view is ", rounded(100 * h.row_scale, 0.01),
+                     " % larger, turned by ", rounded(h.row_turn_rad * 180 / std::numbers::pi, 0.01), "° and lies ",
+                     rounded(h.row_offset_px, 0.01), " px lower; calibrate the rig anew");
+  findings.add_above("distortion", h.bowl_px, h.noise_px, "px", h.bowl_px > h.threshold_sigma * h.noise_px,
+                     "lens distortion is left (k = ", rounded(h.distortion_right, 1e-4), " in the right view, ",
+                     rounded(h.distortion_both, 1e-4), " in both): it bends the road by up to ",
+                     rounded(h.bowl_px, 0.001), " px (limit ", rounded(h.noise_px, 0.001),
+                     " px, its noise); calibrate the rig anew");
+}
+
+void add_road(const PairHealth& h, Findings& findings) {
+  const double limit = h.noise_px * std::numbers::sqrt2 / 2;
+  findings.add_above("wave", h.wave_px, limit, "px", false,
+                     "more than half of the road's noise is common to whole rows (", rounded(h.wave_px, 0.001),
+                     " px of ", rounded(h.noise_px, 0.001),
+                     " px): one camera vibrates while its shutter rolls, or the road undulates; damp the mount");
+  constexpr double max_beyond_px = 1;
+  findings.add_above("infinity", -h.infinity_px, max_beyond_px, "px", true,
+                     "what lies above the horizon has disparities ", rounded(-h.infinity_px, 0.01),
+                     " px beyond infinity (limit ", max_beyond_px,
+                     " px): the offset of the disparities is wrong, or the cameras do not expose at the same moment");
+}
+
+void add_pictures(const PairHealth& h, Findings& findings) {
+  constexpr double max_gain = 2;       // one stop
+  constexpr double max_clipped = 0.1;  // a tenth of the pixels lost adds 5 % to a standard error
+  const double gain = std::max(h.gain, 1 / h.gain);
+  findings.add_above("gain", gain, max_gain, "", false, "the right view is ", rounded(h.gain, 0.01),
+                     " times as bright as the left one (limit ", max_gain, "); couple the exposures");
+  const double clipped = std::max(h.clipped_left, h.clipped_right);
+  findings.add_above("clipped", clipped, max_clipped, "", false, "of the road ", rounded(100 * h.clipped_left, 1),
+                     " % (left) and ", rounded(100 * h.clipped_right, 1),
+                     " % (right) of the pixels are black or white (limit ", 100 * max_clipped,
+                     " %); change the exposure");
+  constexpr double max_blur_px = 3;  // the radius of a block
+  constexpr double max_blur_ratio = 1.5;
+  const double blur = std::max(h.blur_left_px, h.blur_right_px);
+  const double ratio = blur / std::min(h.blur_left_px, h.blur_right_px);
+  findings.add_above("blur", blur, max_blur_px, "px", false, "the pictures are blurred by ",
+                     rounded(h.blur_left_px, 0.1), " px (left) and ", rounded(h.blur_right_px, 0.1),
+                     " px (right; limit ", max_blur_px, " px); focus, or expose for a shorter time");
+  findings.add_above("blur-ratio", ratio, max_blur_ratio, "", false, "one view is ", rounded(ratio, 0.1),
+                     " times as blurred as the other (", rounded(h.blur_left_px, 0.1), " px left, ",
+                     rounded(h.blur_right_px, 0.1), " px right; limit ", max_blur_ratio, "); focus, clean the lens");
+  constexpr double max_blocks = 0.1;
+  const double blocks = std::max(h.blocks_left, h.blocks_right);
+  findings.add_above("compression", blocks, max_blocks, "", false, "steps between blocks of 8×8 pixels are ",
+                     rounded(100 * blocks, 1), " % higher than others (limit ", 100 * max_blocks,
+                     " %): the pictures are compressed too much; use PNG, or JPEG of quality 95");
+}
+
+}  // namespace
+
+std::vector<HealthFinding> PairHealth::findings() const {
+  Findings findings;
+  add_rectification(*this, findings);
+  add_road(*this, findings);
+  add_pictures(*this, findings);
+  return findings.take();
+}
+
+bool PairHealth::depth_is_trusted() const {
+  const std::vector<HealthFinding> list = findings();
+  return std::none_of(list.begin(), list.end(), [](const HealthFinding& finding) { return finding.spoils_depth; });
+}
+
+}  // namespace roadstereo

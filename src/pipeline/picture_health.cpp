@@ -1,0 +1,108 @@
+#include "pipeline/picture_health.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/order_statistics.hpp"
+
+namespace roadstereo {
+namespace {
+
+using Grey = ImageView<const std::int16_t>;
+
+/// Share of the road's pixels in each view that are black or white, and the ratio of the levels of the others.
+void measure_exposure(const FrameResult& frame, const DamageMap& damage, PairHealth& health) {
+  constexpr int step = 3;
+  constexpr std::size_t min_pixels = 100;
+  const auto is_clipped = [](int level) { return level <= 0 || level >= grey_max; };
+  std::vector<float> ratios;
+  std::size_t pixels = 0, left_clipped = 0, right_clipped = 0;
+  for (int v = 0; v < frame.grey.height(); v += step) {
+    for (int u = 0; u < frame.grey.width(); u += step) {
+      const float disparity = frame.disparity(u, v);
+      const auto from = std::lround(u - double{disparity});
+      if (damage.road(u, v) == 0 || std::isnan(disparity) || from < 0 || from >= frame.right.width()) continue;
+      const int left = frame.grey(u, v), right = frame.right(static_cast<int>(from), v);
+      ++pixels;
+      left_clipped += is_clipped(left) ? 1U : 0U;
+      right_clipped += is_clipped(right) ? 1U : 0U;
+      if (is_clipped(left) || is_clipped(right)) continue;
+      ratios.push_back(static_cast<float>(right) / static_cast<float>(left));
+    }
+  }
+  if (pixels < min_pixels) return;
+  health.clipped_left = static_cast<double>(left_clipped) / static_cast<double>(pixels);
+  health.clipped_right = static_cast<double>(right_clipped) / static_cast<double>(pixels);
+  if (ratios.size() >= min_pixels) health.gain = static_cast<double>(upper_median(ratios));
+}
+
+/// Mean square of the differences of pixels `lag` apart, along rows and columns, over the road.
+double structure_function(Grey image, const DamageMap& damage, int lag, bool down) {
+  constexpr int step = 2;
+  double sum = 0, count = 0;
+  const int du = down ? 0 : lag, dv = down ? lag : 0;
+  for (int v = 0; v + dv < image.height(); v += step) {
+    for (int u = 0; u + du < image.width(); u += step) {
+      if (damage.road(u, v) == 0 || damage.road(u + du, v + dv) == 0) continue;
+      const double difference = image(u + du, v + dv) - image(u, v);
+      sum += difference * difference;
+      ++count;
+    }
+  }
+  constexpr double min_count = 100;
+  return count >= min_count ? sum / count : PairHealth::unknown;
+}
+
+/// Gaussian blur σ of white texture whose structure function, 1 − exp(−lag² / 4σ²), has that ratio at the two lags.
+double blur_of_ratio(double ratio, double near, double far) {
+  constexpr double min_px = 0.3, max_px = 12;
+  double low = min_px, high = max_px;
+  constexpr int bisections = 30;
+  for (int i = 0; i < bisections; ++i) {
+    const double sigma = 0.5 * (low + high), scale = 1 / (4 * sigma * sigma);
+    const double expected = -std::expm1(-near * near * scale) / -std::expm1(-far * far * scale);
+    (expected > ratio ? low : high) = sigma;
+  }
+  return 0.5 * (low + high);
+}
+
+/// The larger blur of the two directions.
+double blur_of(Grey image, const DamageMap& damage) {
+  constexpr int near = 2, far = 12;
+  double blur = 0;
+  for (const bool down : {false, true}) {
+    const double ratio = structure_function(image, damage, near, down) / structure_function(image, damage, far, down);
+    if (std::isnan(ratio)) return PairHealth::unknown;
+    blur = std::max(blur, blur_of_ratio(ratio, near, far));
+  }
+  return blur;
+}
+
+/// Excess of the steps at multiples of 8 pixels over those beside them, relative: JPEG quantises blocks of 8×8 apart.
+double block_excess(Grey image) {
+  constexpr int block = 8;
+  std::array<double, block> steps{};
+  for (int v = 1; v < image.height(); ++v) {
+    const std::int16_t *above = image.row(v - 1), *row = image.row(v);
+    for (int u = 1; u < image.width(); ++u) {
+      steps[static_cast<std::size_t>(u % block)] += std::abs(row[u] - row[u - 1]);
+      steps[static_cast<std::size_t>(v % block)] += std::abs(row[u] - above[u]);
+    }
+  }
+  const double beside = 0.5 * (steps[1] + steps[block - 1]);
+  return beside > 0 ? steps[0] / beside - 1 : PairHealth::unknown;
+}
+
+}  // namespace
+
+void measure_pictures(const FrameResult& frame, const DamageMap& damage, PairHealth& health) {
+  measure_exposure(frame, damage, health);
+  health.blur_left_px = blur_of(frame.grey, damage);
+  health.blur_right_px = blur_of(frame.right, damage);
+  health.blocks_left = block_excess(frame.grey);
+  health.blocks_right = block_excess(frame.right);
+}
+
+}  // namespace roadstereo

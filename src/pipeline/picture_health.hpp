@@ -1,0 +1,10 @@
+#pragma once
+
+#include "roadstereo/health.hpp"
+
+namespace roadstereo {
+
+/// Measure exposure, blur and compression from the grey levels of the road in both views.
+void measure_pictures(const FrameResult& frame, const DamageMap& damage, PairHealth& health);
+
+}  // namespace roadstereo

@@ -1,0 +1,169 @@
+// Faults of a rig, each put into an otherwise perfect pair.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "pipeline/rectification_error.hpp"
+#include "roadstereo/health.hpp"
+#include "tests/damage/damage_scene.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Points of a road 30 px away, with the vertical offsets of a fault of the right camera and noise of 0.1 px.
+std::vector<RowSample> samples_of(const std::function<double(double x, double y, double left_x)>& offset_px) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 0.1);
+  std::vector<RowSample> samples;
+  for (int v = 20; v < 360; v += 40) {
+    for (int u = 60; u < 640; u += 40) {
+      const double du = -10 - 0.1 * v;
+      const double y = (v - 179.5) / 350;
+      samples.push_back(
+          {1.0 * u, 1.0 * v, du, offset_px((u + du - 319.5) / 350, y, (u - 319.5) / 350) + noise(random)});
+    }
+  }
+  samples[7].dv += 20;  // a wrong match
+  return samples;
+}
+
+RectificationError fit_of(const std::vector<RowSample>& samples) {
+  const StereoCalibration calibration{.focal_px = 350, .cx_px = 319.5, .cy_px = 179.5, .baseline_m = 0.12};
+  const auto fit = fit_rectification_error(samples, 640, 360, calibration);
+  EXPECT_TRUE(fit.has_value());
+  return fit.value_or(RectificationError{});
+}
+
+TEST(RectificationError, FindsScaleTurnAndDistortion) {
+  const RectificationError scaled = fit_of(samples_of([](double, double y, double) { return 350 * 0.01 * y; }));
+  EXPECT_NEAR(scaled.value[1], 0.01, 0.0006);
+  EXPECT_TRUE(scaled.is_significant(1));
+  const RectificationError turned = fit_of(samples_of([](double x, double, double) { return 350 * 0.0087 * x; }));
+  EXPECT_NEAR(turned.value[2], 0.0087, 0.0004);
+  const RectificationError bent =
+      fit_of(samples_of([](double x, double y, double) { return 350 * 0.01 * y * (x * x + y * y); }));
+  EXPECT_NEAR(bent.value[3], 0.01, 0.001);
+  // At the border x = −0.9, y = 0.5 of the right view: 350 · 0.01 · 0.9 · 1.06 px.
+  EXPECT_NEAR(bent.disparity_error_px(319.5 - 0.9 * 350, 179.5 + 0.5 * 350, 0), 3.339, 0.4);
+  const RectificationError alike =
+      fit_of(samples_of([](double x, double y, double left_x) { return 350 * -0.1 * y * (x * x - left_x * left_x); }));
+  EXPECT_NEAR(alike.value[4], -0.1, 0.02);
+  EXPECT_FALSE(alike.is_significant(3));
+}
+
+TEST(RectificationError, FindsNothingInNoise) {
+  const RectificationError none = fit_of(samples_of([](double, double, double) { return 0.3; }));
+  EXPECT_NEAR(350 * none.value[0], 0.3, 0.03);
+  for (std::size_t term = 1; term < RectificationError::terms; ++term) EXPECT_FALSE(none.is_significant(term)) << term;
+  EXPECT_EQ(none.disparity_error_px(0, 0, 20), 0);
+  EXPECT_FALSE(fit_rectification_error(std::vector<RowSample>(19), 640, 360, std::nullopt).has_value());
+}
+
+/// The exact maps of the damaged scene as a frame.
+struct ExactFrame {
+  FrameResult frame;
+  DamageMap damage;
+
+  explicit ExactFrame(const std::function<void(Frame& left, Frame& right)>& fault = [](Frame&, Frame&) {}) {
+    Frame left = damaged().pair.left, right = damaged().pair.right;
+    fault(left, right);
+    to_grey(left.view(), 255, frame.grey);
+    to_grey(right.view(), 255, frame.right);
+    frame.disparity = damaged().disparity;
+    frame.transformed = damaged().transformed;
+    frame.sigma.assign(frame.disparity.width(), frame.disparity.height(), 0.03F);
+    frame.geometry.plane = damaged().pair.plane;
+    frame.roll_found = true;
+    damage = find_damage(damaged().metric());
+  }
+
+  PairHealth health() const { return measure_health(frame, damage, damaged().pair.calibration); }
+  /// Ids of the findings, joined.
+  std::string found() const {
+    std::string ids;
+    for (const HealthFinding& finding : health().findings()) ids += finding.id + " ";
+    return ids;
+  }
+};
+
+TEST(MeasureHealth, PerfectPairHasNoFinding) {
+  const ExactFrame exact;
+  EXPECT_EQ(exact.found(), "");
+  const PairHealth health = exact.health();
+  EXPECT_TRUE(health.depth_is_trusted());
+  EXPECT_NEAR(health.gain, 1, 0.01);
+  EXPECT_NEAR(health.row_offset_px, 0, 0.05);
+  EXPECT_NEAR(health.blur_left_px, health.blur_right_px, 0.05);
+}
+
+TEST(MeasureHealth, ExposureIsMeasured) {
+  const ExactFrame dark([](Frame&, Frame& right) {
+    for (std::uint8_t& level : right.bytes) level = static_cast<std::uint8_t>(level / 4);
+  });
+  EXPECT_NEAR(dark.health().gain, 0.25, 0.01);
+  EXPECT_EQ(dark.found(), "gain ");
+  const ExactFrame clipped([](Frame& left, Frame&) {
+    for (std::size_t k = 0; k < left.bytes.size(); k += 5) left.bytes[k] = 255;
+  });
+  EXPECT_NEAR(clipped.health().clipped_left, 0.2, 0.02);
+  EXPECT_NE(clipped.found().find("clipped"), std::string::npos);
+}
+
+TEST(MeasureHealth, BlocksAreCompression) {
+  constexpr int block = 8;
+  const auto quantise = [](Frame& frame) {
+    for (int v = 0; v < frame.height; ++v) {
+      for (int u = 0; u < frame.width; ++u) {
+        const auto at = [&](int x, int y) -> std::uint8_t& {
+          return frame
+              .bytes[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)];
+        };
+        at(u, v) = static_cast<std::uint8_t>((at(u, v) + at(u - u % block, v - v % block)) / 2);
+      }
+    }
+  };
+  const ExactFrame blocks([&](Frame& left, Frame& right) {
+    quantise(left);
+    quantise(right);
+  });
+  EXPECT_NE(blocks.found().find("compression"), std::string::npos);
+}
+
+TEST(MeasureHealth, LoweredViewSpoilsDepth) {
+  constexpr int rows = 2;
+  const ExactFrame lowered([](Frame&, Frame& right) {
+    const auto width = static_cast<std::ptrdiff_t>(right.width);
+    std::copy_backward(right.bytes.begin(), right.bytes.end() - rows * width, right.bytes.end());
+  });
+  EXPECT_NEAR(lowered.health().row_offset_px, rows, 0.1);
+  EXPECT_NE(lowered.found().find("row-error"), std::string::npos);
+  ASSERT_FALSE(lowered.health().depth_is_trusted());
+  DamageMap damage = lowered.damage;
+  ASSERT_FALSE(damage.damages.empty());
+  withhold_severity(lowered.health(), damage);
+  for (const Damage& one : damage.damages) EXPECT_EQ(one.metrics->severity, Severity::unknown);
+}
+
+TEST(MeasureHealth, WaveOfRowsIsVibration) {
+  ExactFrame shaken;
+  for (int v = 0; v < shaken.frame.transformed.height(); ++v) {
+    const auto wave = static_cast<float>(0.2 * std::sin(2 * std::numbers::pi * 6 * v / 360));
+    for (int u = 0; u < shaken.frame.transformed.width(); ++u) shaken.frame.transformed(u, v) += wave;
+  }
+  DamageInput input = damaged().metric();
+  input.transformed = shaken.frame.transformed;
+  shaken.damage = find_damage(input);
+  // The median of |sin| is 1/√2; 1.4826 of it is the robust deviation.
+  EXPECT_NEAR(shaken.health().wave_px, 1.4826 * 0.2 / std::numbers::sqrt2, 0.02);
+  EXPECT_NE(shaken.found().find("wave"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace roadstereo
