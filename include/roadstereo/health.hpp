@@ -28,11 +28,11 @@ struct PairHealth {
   double row_correction_px = 0;       ///< of it, undone before matching
   double row_scale = unknown;         ///< relative size of the right view minus 1
   double row_turn_rad = unknown;      ///< of the right view about the optical axis
-  double row_error_px = unknown;      ///< largest vertical offset in the picture that is not undone
+  double row_error_px = unknown;      ///< vertical offset not undone, 90th percentile of the points
   double distortion_right = unknown;  ///< k of 1 + k r² left in the right view alone
   double distortion_both = unknown;   ///< k of 1 + k r² left in both views
-  double bowl_px = unknown;  ///< largest disparity error on the road by that distortion, less the quadratic that the
-                             ///< road's surface takes up
+  double bowl_px = unknown;  ///< largest disparity error at the road's points by that distortion, less the quadratic
+                             ///< that the road's surface takes up
 
   // The road's residual.
   double noise_px = unknown;  ///< standard deviation of the intact road

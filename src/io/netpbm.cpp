@@ -82,7 +82,8 @@ void read_text_samples(const std::string& path, Words& words, const NetpbmHeader
   }
 }
 
-void read_binary_samples(const std::string& path, const Words& words, Frame& frame) {
+/// The file has as many bytes as the frame.
+void read_binary_samples(const Words& words, Frame& frame) {
   const Bytes data = words.rest();
   const std::size_t size = frame.bytes.size();
   if (frame.sample == SampleType::u8) {
@@ -156,7 +157,7 @@ Frame read_netpbm(const std::string& path, Bytes bytes) {
   if (header.text) {
     read_text_samples(path, words, header, frame);
   } else {
-    read_binary_samples(path, words, frame);
+    read_binary_samples(words, frame);
   }
   if (header.white < 255) stretch_to_white(header.white, frame);
   return frame;

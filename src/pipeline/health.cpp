@@ -12,13 +12,10 @@
 namespace roadstereo {
 namespace {
 
-/// Largest value over a grid of the road's pixels of what a quadratic in u and v leaves of `error(u, v)`.
-template <class Error>
-double beyond_quadratic(const DamageMap& damage, const Error& error) {
-  constexpr std::size_t terms = 6;
-  constexpr int across = 24;
+/// Largest value of what a quadratic in u and v leaves of the fit's disparity errors at the samples on the road.
+double beyond_quadratic(const std::vector<RowSample>& samples, const DamageMap& damage, const RectificationError& fit) {
+  constexpr std::size_t terms = 6, min_points = 20;
   constexpr double smallest = 1e-10;
-  const int step = std::max(1, damage.road.width() / across);
   struct Point {
     Vector<terms> row;
     double value;
@@ -26,33 +23,34 @@ double beyond_quadratic(const DamageMap& damage, const Error& error) {
   std::vector<Point> points;
   Matrix<terms> a{};
   Vector<terms> b{};
-  for (int v = step / 2; v < damage.road.height(); v += step) {
-    for (int u = step / 2; u < damage.road.width(); u += step) {
-      if (damage.road(u, v) == 0) continue;
-      const double x = 1.0 * u / damage.road.width(), y = 1.0 * v / damage.road.width();
-      const Point& point = points.emplace_back(Point{{1, x, y, x * x, x * y, y * y}, error(u, v)});
-      for (std::size_t i = 0; i < terms; ++i) {
-        b[i] += point.row[i] * point.value;
-        for (std::size_t j = 0; j <= i; ++j) a[i][j] += point.row[i] * point.row[j];
-      }
+  for (const RowSample& sample : samples) {
+    if (damage.road(static_cast<int>(sample.u), static_cast<int>(sample.v)) == 0) continue;
+    const double x = sample.u / damage.road.width(), y = sample.v / damage.road.width();
+    const Point& point = points.emplace_back(
+        Point{{1, x, y, x * x, x * y, y * y}, fit.disparity_error_px(sample.u, sample.v, -sample.du)});
+    for (std::size_t i = 0; i < terms; ++i) {
+      b[i] += point.row[i] * point.value;
+      for (std::size_t j = 0; j <= i; ++j) a[i][j] += point.row[i] * point.row[j];
     }
   }
+  if (points.size() < min_points) return PairHealth::unknown;
   factor_in_place(a, smallest);
-  const Vector<terms> fit = solve_factored(a, b);
+  const Vector<terms> surface = solve_factored(a, b);
   double largest = 0;
   for (const Point& point : points) {
     double rest = point.value;
-    for (std::size_t i = 0; i < terms; ++i) rest -= fit[i] * point.row[i];
+    for (std::size_t i = 0; i < terms; ++i) rest -= surface[i] * point.row[i];
     largest = std::max(largest, std::abs(rest));
   }
   return largest;
 }
 
+/// The fit holds where there are samples: elsewhere it would extrapolate cubes.
 void measure_rectification(const FrameResult& frame, const DamageMap& damage,
                            const std::optional<StereoCalibration>& calibration, int threads, PairHealth& health) {
-  const int width = frame.grey.width(), height = frame.grey.height();
-  const auto fit =
-      fit_rectification_error(sample_row_alignment(frame.grey, frame.right, threads), width, height, calibration);
+  constexpr double share = 0.9;
+  const std::vector<RowSample> samples = sample_row_alignment(frame.grey, frame.right, threads);
+  const auto fit = fit_rectification_error(samples, frame.grey.width(), frame.grey.height(), calibration);
   if (!fit) return;
   const auto& [offset, scale, turn, right, both] = fit->value;
   health.row_offset_px = fit->focal_px * offset;
@@ -61,17 +59,13 @@ void measure_rectification(const FrameResult& frame, const DamageMap& damage,
   health.row_turn_rad = turn;
   health.distortion_right = right;
   health.distortion_both = both;
-  const DisparityPlane& plane = frame.geometry.plane;
   const double rest = health.row_offset_px - health.row_correction_px;
-  double largest = std::abs(rest);
-  for (const int v : {0, height - 1}) {
-    for (const int u : {0, width - 1}) {
-      largest = std::max(largest, std::abs(rest + fit->slope_px(u, v, std::max(0.0, plane.disparity(u, v)))));
-    }
+  std::vector<double> errors;
+  for (const RowSample& sample : samples) {
+    errors.push_back(std::abs(rest + fit->slope_px(sample.u, sample.v, -sample.du)));
   }
-  health.row_error_px = largest;
-  health.bowl_px =
-      beyond_quadratic(damage, [&](int u, int v) { return fit->disparity_error_px(u, v, plane.disparity(u, v)); });
+  health.row_error_px = lower_quantile(errors, share);
+  health.bowl_px = beyond_quadratic(samples, damage, *fit);
 }
 
 /// Robust standard deviation (MAD), as that of the noise, of the medians of the road's rows around its surface.

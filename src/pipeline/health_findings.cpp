@@ -13,6 +13,9 @@ constexpr double max_row_error_px = 0.5;
 /// Half of that period: rows that are a pixel apart show other texture.
 constexpr double max_trusted_row_error_px = 1.0;
 
+/// What a sine of half the amplitude of `max_row_error_px` shows: a camera that vibrates moves along rows and columns.
+constexpr double min_wave_px = 0.5 * max_row_error_px;
+
 double rounded(double value, double unit) {
   return std::round(value / unit) * unit;
 }
@@ -46,7 +49,7 @@ void add_rectification(const PairHealth& h, Findings& findings) {
 }
 
 void add_road(const PairHealth& h, Findings& findings) {
-  const double limit = h.noise_px * std::numbers::sqrt2 / 2;
+  const double limit = std::max(min_wave_px, h.noise_px * std::numbers::sqrt2 / 2);
   findings.add_above("wave", h.wave_px, limit, "px", false,
                      "more than half of the road's noise is common to whole rows (", rounded(h.wave_px, 0.001),
                      " px of ", rounded(h.noise_px, 0.001),

@@ -154,14 +154,14 @@ TEST(MeasureHealth, LoweredViewSpoilsDepth) {
 TEST(MeasureHealth, WaveOfRowsIsVibration) {
   ExactFrame shaken;
   for (int v = 0; v < shaken.frame.transformed.height(); ++v) {
-    const auto wave = static_cast<float>(0.2 * std::sin(2 * std::numbers::pi * 6 * v / 360));
+    const auto wave = static_cast<float>(0.4 * std::sin(2 * std::numbers::pi * 6 * v / 360));
     for (int u = 0; u < shaken.frame.transformed.width(); ++u) shaken.frame.transformed(u, v) += wave;
   }
   DamageInput input = damaged().metric();
   input.transformed = shaken.frame.transformed;
   shaken.damage = find_damage(input);
   // The median of |sin| is 1/√2; 1.4826 of it is the robust deviation.
-  EXPECT_NEAR(shaken.health().wave_px, 1.4826 * 0.2 / std::numbers::sqrt2, 0.02);
+  EXPECT_NEAR(shaken.health().wave_px, 1.4826 * 0.4 / std::numbers::sqrt2, 0.03);
   EXPECT_NE(shaken.found().find("wave"), std::string::npos);
 }
 
