@@ -100,6 +100,7 @@ void register_all() {
     input.transformed = f.transformed;
     input.disparity = f.disparity;
     input.grey = f.left;
+    input.right = f.right;
     input.plane = f.geometry.plane;
     input.calibration = f.pair.calibration;
     find_damage(input, {}, 1, f.damage);

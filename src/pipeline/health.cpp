@@ -61,6 +61,7 @@ void measure_rectification(const FrameResult& frame, const DamageMap& damage,
   health.distortion_both = both;
   const double rest = health.row_offset_px - health.row_correction_px;
   std::vector<double> errors;
+  errors.reserve(samples.size());
   for (const RowSample& sample : samples) {
     errors.push_back(std::abs(rest + fit->slope_px(sample.u, sample.v, -sample.du)));
   }

@@ -92,6 +92,7 @@ std::optional<RectificationError> fit_rectification_error(const std::vector<RowS
   fit.cy_px = calibration ? calibration->cy_px : 0.5 * (height - 1);
   fit.right_cx_px = fit.cx_px + (calibration ? calibration->disparity_offset_px : 0);
   std::vector<double> residuals;
+  residuals.reserve(samples.size());
   for (const RowSample& sample : samples) residuals.push_back(sample.dv / fit.focal_px);
   const double median = upper_median(std::vector(residuals));
   for (double& residual : residuals) residual -= median;

@@ -79,6 +79,7 @@ TEST_P(CudaPreset, MatchesHostFrameByFrame) {
     const FrameResult& found = device.process(pair.left.view(), pair.right.view());
     SCOPED_TRACE("frame " + std::to_string(frame));
     EXPECT_EQ(found.grey, expected.grey);
+    EXPECT_EQ(found.right, expected.right);
     EXPECT_EQ(found.road.has_road(), expected.road.has_road());
     EXPECT_EQ(found.road.status, expected.road.status);
     EXPECT_EQ(found.road.status == RoadStatus::tracked, frame > 0);
@@ -193,7 +194,7 @@ TEST_F(CudaPipeline, FollowingFrameWaitsTwice) {
     const DeviceProfile profile = pipeline.device_profile();
     EXPECT_EQ(profile.waits, 2);
     EXPECT_EQ(profile.bytes_up, pair.left.bytes.size() + pair.right.bytes.size());
-    EXPECT_EQ(profile.bytes_down, pair.left.bytes.size() * (3 * sizeof(float) + sizeof(std::int16_t)));
+    EXPECT_EQ(profile.bytes_down, pair.left.bytes.size() * (3 * sizeof(float) + 2 * sizeof(std::int16_t)));
     int launches = 0;
     double kernels_ms = 0;
     for (const KernelProfile& kernel : profile.kernels) {

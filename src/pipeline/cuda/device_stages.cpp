@@ -211,8 +211,7 @@ class DeviceStages final : public FrameStages {
   void enqueue_last_downloads() {
     maps_.download_transformed(stream());
     right_downloaded_.reserve(right_pixels());
-    ROADSTEREO_CUDA(cudaMemcpyAsync(right_downloaded_.data(), right_.data(), right_pixels() * sizeof(std::int16_t),
-                                    cudaMemcpyDeviceToHost, stream()));
+    stream().download(right_downloaded_.data(), right_.data(), right_pixels() * sizeof(std::int16_t));
   }
   std::size_t right_pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
 
