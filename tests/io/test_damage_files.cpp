@@ -135,7 +135,8 @@ TEST(DamageTables, JsonAndCsvAgree) {
       if (value.is_number()) {
         EXPECT_EQ(std::strtod(cell.c_str(), nullptr), value.get<double>()) << lines[0][k];
       } else {
-        EXPECT_EQ(cell, value.is_string() ? value.get<std::string>() : value.dump()) << lines[0][k];
+        const std::string text = value.is_null() ? "" : value.dump();
+        EXPECT_EQ(cell, value.is_string() ? value.get<std::string>() : text) << lines[0][k];
       }
     }
   }
@@ -150,8 +151,9 @@ TEST(DamageTables, UncalibratedOmitMetresWithReason) {
   const Json& row = document["damages"][0];
   std::size_t metric = 0;
   for (std::size_t k = 0; k < lines[0].size(); ++k) {
-    const bool expected_empty = metric_names.count(lines[0][k]) > 0;
-    metric += expected_empty ? 1 : 0;
+    const bool is_metric = metric_names.count(lines[0][k]) > 0;
+    const bool expected_empty = is_metric || lines[0][k] == "surface_share";  // needs the right image
+    metric += is_metric ? 1 : 0;
     EXPECT_EQ(row[lines[0][k]].is_null(), expected_empty) << lines[0][k];
     EXPECT_EQ(lines[1][k].empty(), expected_empty) << lines[0][k];
   }
