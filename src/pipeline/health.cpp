@@ -126,7 +126,9 @@ void withhold_severity(const PairHealth& health, DamageMap& damage) {
   if (health.depth_is_trusted()) return;
   for (auto* const list : {&damage.damages, &damage.candidates}) {
     for (Damage& one : *list) {
-      if (one.metrics) one.metrics->severity = Severity::unknown;
+      if (!one.metrics) continue;
+      one.metrics->severity = Severity::unknown;
+      one.metrics->severity_probabilities = {};
     }
   }
 }

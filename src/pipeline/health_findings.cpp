@@ -83,9 +83,11 @@ void add_pictures(const PairHealth& h, Findings& findings) {
                      " times as blurred as the other (", rounded(h.blur_left_px, 0.1), " px left, ",
                      rounded(h.blur_right_px, 0.1), " px right; limit ", max_blur_ratio, "); focus, clean the lens");
   constexpr double max_blocks = 0.1;
+  constexpr double max_trusted_blocks = 1;  // the grid of the blocks is as strong as the texture: it is matched
   const double blocks = std::max(h.blocks_left, h.blocks_right);
-  findings.add_above("compression", blocks, max_blocks, "", false, "steps between blocks of 8×8 pixels are ",
-                     rounded(100 * blocks, 1), " % higher than others (limit ", 100 * max_blocks,
+  findings.add_above("compression", blocks, max_blocks, "", blocks > max_trusted_blocks,
+                     "steps between blocks of 8×8 pixels are ", rounded(100 * blocks, 1),
+                     " % higher than others (limit ", 100 * max_blocks,
                      " %): the pictures are compressed too much; use PNG, or JPEG of quality 95");
 }
 

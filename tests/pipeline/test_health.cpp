@@ -136,6 +136,14 @@ TEST(MeasureHealth, BlocksAreCompression) {
   EXPECT_NE(blocks.found().find("compression"), std::string::npos);
 }
 
+TEST(PairHealth, GridOfBlocksAsStrongAsTextureSpoilsDepth) {
+  PairHealth health;
+  health.blocks_left = health.blocks_right = 0.9;
+  EXPECT_TRUE(health.depth_is_trusted());
+  health.blocks_right = 1.1;
+  EXPECT_FALSE(health.depth_is_trusted());
+}
+
 TEST(MeasureHealth, LoweredViewSpoilsDepth) {
   constexpr int rows = 2;
   const ExactFrame lowered([](Frame&, Frame& right) {
@@ -148,7 +156,10 @@ TEST(MeasureHealth, LoweredViewSpoilsDepth) {
   DamageMap damage = lowered.damage;
   ASSERT_FALSE(damage.damages.empty());
   withhold_severity(lowered.health(), damage);
-  for (const Damage& one : damage.damages) EXPECT_EQ(one.metrics->severity, Severity::unknown);
+  for (const Damage& one : damage.damages) {
+    EXPECT_EQ(one.metrics->severity, Severity::unknown);
+    EXPECT_EQ(one.metrics->severity_probabilities.high, 0);
+  }
 }
 
 TEST(MeasureHealth, WaveOfRowsIsVibration) {
