@@ -9,6 +9,7 @@
 #include "damage/measurement.hpp"
 #include "damage/road_region.hpp"
 #include "damage/road_surface.hpp"
+#include "damage/smoothing_error.hpp"
 #include "damage/surface_correlation.hpp"
 #include "roadstereo/error.hpp"
 
@@ -56,7 +57,7 @@ void find_road(const Cells& cells, const SurfaceCoordinates& coordinates, RoadSu
 }
 
 ImageEdges make_image_edges(const DamageInput& input, const Cells& cells) {
-  constexpr int window_radius_px = 10;  // of the support window: block radius + aggregation radius
+  constexpr int window_radius_px = SmoothingError::window_radius_px;
   return {input.grey, cells.factor, (window_radius_px + cells.factor - 1) / cells.factor};
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/parallel.hpp"
+#include "damage/smoothing_error.hpp"
 #include "road/cubic.hpp"
 
 namespace roadstereo {
@@ -130,8 +131,8 @@ double surface_share(const DamageInput& input, const DamageMap& maps, int id, co
 }
 
 bool move_unsupported_cells(const DamageInput& input, const RoadSurface& surface, int threads, Cells& cells) {
-  constexpr int step = 2;                                   // cells from block to block
-  constexpr int rows_per_band = 16, window_radius_px = 10;  // block radius + aggregation radius
+  constexpr int step = 2;  // cells from block to block
+  constexpr int rows_per_band = 16, window_radius_px = SmoothingError::window_radius_px;
   constexpr float max_sigmas = 3;
   if (!SurfaceComparison::is_possible(input)) return false;
   const auto is_off = [&](int i, int j) {

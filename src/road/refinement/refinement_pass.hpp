@@ -6,8 +6,8 @@ namespace roadstereo {
 
 /// One pass over a map.
 struct RefinementPass {
-  int radius = 8;  ///< distance of the window's outermost neighbours from its centre, pixels: a multiple of `step`
-  int step = 4;    ///< pixels
+  int radius = 0;  ///< distance of the window's outermost neighbours from its centre, pixels: a multiple of `step`
+  int step = 1;    ///< pixels
   MeanSettings mean;
   bool is_last = true;  ///< writes standard errors and leaves out what is no measurement; else variances
 };
