@@ -22,10 +22,12 @@ function(roadstereo_target target)
   endif()
 endfunction()
 
-# roadstereo_sanitized_fast(<target>): with sanitizers, what computes is optimised a little; what does not is not, for
-# compiling it would last longer than running it.
-function(roadstereo_sanitized_fast target)
+# roadstereo_computes(<target>): what lasts longer to run than to compile is optimised fully in a release, whatever is set
+# for the rest (.ci/run compiles files, reports and commands with -O1), and a little with sanitizers.
+function(roadstereo_computes target)
   if(ROADSTEREO_SANITIZE)
     target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-O1>)
+  else()
+    target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O3>)
   endif()
 endfunction()

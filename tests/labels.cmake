@@ -7,7 +7,7 @@
 #   Slow      slow       lasts too long for every change, or under sanitizers
 #   Threads   threads    is about threads: the thread sanitizer runs it
 #   /cuda     engine_cuda  is that of every engine, with the engine cuda
-foreach(program embedded allocations cuda io live flight cli evaluate)
+foreach(program embedded allocations cuda io live flight cli evaluate mapping)
   foreach(test IN LISTS test_${program}_TESTS)
     set(labels ${program})
     foreach(name_and_label RealData:real_data TwoGpus:two_gpus GStreamer:gstreamer Ogrinfo:ogrinfo Slow:slow
