@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <wordexp.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +16,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "apps/roadstereo/command_line.hpp"
 
 namespace roadstereo {
 
@@ -47,13 +51,14 @@ class CommandTest : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// `before` is shell code that prepares the binary's process.
+  /// Runs the command line in a process forked from this one, or, after shell code that prepares its process, as the
+  /// binary.
   Outcome run(const std::string& arguments, const std::string& before = "") const {
     const std::filesystem::path out = folder_ / "stdout.txt";
     const std::filesystem::path err = folder_ / "stderr.txt";
     const std::string command = "cd '" + folder_.string() + "' && { " + before + " '" ROADSTEREO_BINARY "' " +
                                 arguments + " >'" + out.string() + "' 2>'" + err.string() + "'; }";
-    const int status = std::system(command.c_str());
+    const int status = before.empty() ? run_forked(arguments, out, err) : std::system(command.c_str());
     Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
     std::filesystem::remove(out);
     std::filesystem::remove(err);
@@ -71,6 +76,28 @@ class CommandTest : public testing::Test {
   nlohmann::json json_file(const std::string& name) const { return nlohmann::json::parse(read_text(folder_ / name)); }
 
   std::filesystem::path folder_;
+
+ private:
+  /// Returns the status of the process, as waitpid does.
+  int run_forked(const std::string& arguments, const std::filesystem::path& out,
+                 const std::filesystem::path& err) const {
+    std::fflush(nullptr);  // or the process would write what is still to be written here
+    const pid_t child = ::fork();
+    if (child == 0) {
+      wordexp_t words{};
+      words.we_offs = 1;
+      const bool ready = ::chdir(folder_.c_str()) == 0 && std::freopen(out.c_str(), "w", stdout) != nullptr &&
+                         std::freopen(err.c_str(), "w", stderr) != nullptr &&
+                         ::wordexp(arguments.c_str(), &words, WRDE_DOOFFS) == 0;
+      if (!ready) ::_exit(127);
+      std::string name = "roadstereo";
+      words.we_wordv[0] = name.data();
+      std::exit(cli::run_command_line(static_cast<int>(words.we_wordc) + 1, words.we_wordv));
+    }
+    int status = -1;
+    ::waitpid(child, &status, 0);
+    return status;
+  }
 };
 
 /// One sentence on stderr, nothing on stdout.
