@@ -12,6 +12,7 @@
 #include "roadstereo/coarse_search.hpp"
 #include "roadstereo/damage.hpp"
 #include "roadstereo/image.hpp"
+#include "roadstereo/lucas_kanade.hpp"
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/refinement.hpp"
@@ -36,6 +37,7 @@ struct PipelineOptions {
   CoarseSearchOptions coarse_search;
   MatcherOptions matcher;
   RefinementOptions refinement;
+  LucasKanadeOptions lucas_kanade;
   RollOptions roll;
   DamageOptions damage;  ///< of `Pipeline::find_damage`
 
@@ -55,7 +57,7 @@ struct StageTimes {
   double perspective = 0;
   double coarse = 0;      ///< coarse search: disparity range of each tile, prior
   double match = 0;       ///< cost, aggregation, winner-take-all, left–right check, sub-pixel
-  double refinement = 0;  ///< adding the shift back, smoothing by the standard errors
+  double refinement = 0;  ///< adding the shift back, smoothing by the standard errors, Lucas–Kanade step
   double roll = 0;        ///< roll and projection model
   double transform = 0;   ///< disparity transformation
   double download = 0;    ///< maps from a device to the host; about 0 with the engines of the host

@@ -103,6 +103,15 @@ class HostStages final : public FrameStages {
     return disparity_;
   }
 
+  ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,
+                               const PerspectiveShift& shift) override {
+    if (options_.lucas_kanade.radius == 0) return disparity;
+    const TransformedPair pair{input.reference, input.target, input.first_column, shift};
+    lucas_kanade(pair, disparity, options_.lucas_kanade, threads_, restored_);
+    std::swap(disparity_, restored_);
+    return disparity_;
+  }
+
   RollFit estimate_roll(ImageView<const float> disparity, const std::optional<DisparityPlane>& prior,
                         double initial_roll_rad, double min_share, const PerspectiveShift&) override {
     RollFit fit{valid_share(disparity), std::nullopt};

@@ -118,6 +118,12 @@ void visit_options(Options& o, Visitor visit) {
   visit("refinement.min_sigma_px", o.refinement.min_sigma_px,
         "standard error of interpolation and calibration, pixels");
 
+  visit("lucas_kanade.radius", o.lucas_kanade.radius,
+        "radius of the window of the Lucas-Kanade step, pixels; 0 is off");
+  visit("lucas_kanade.bias_sigma_px", o.lucas_kanade.bias_sigma_px,
+        "expected size of the sub-pixel bias that it corrects, pixels");
+  visit("lucas_kanade.max_shift_px", o.lucas_kanade.max_shift_px, "largest change of a disparity by it, pixels");
+
   visit("roll.solver", o.roll.solver, "solver of the roll angle");
   visit("roll.initial_lambda", o.roll.initial_lambda, "first learning rate of the descent");
   visit("roll.roll_threshold_rad", o.roll.roll_threshold_rad, "step below which the descent has converged, radians");

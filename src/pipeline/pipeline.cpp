@@ -77,6 +77,7 @@ struct Pipeline::State {
   ResidualMaps match(const MatchInput& input);
   DisparityMaps restore_disparity(const ResidualMaps& residual);
   ImageView<const float> refine(const DisparityMaps& maps);
+  ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity);
   void estimate_roll(ImageView<const float> disparity);
   void transform_disparity(ImageView<const float> disparity);
   void download();
@@ -206,6 +207,12 @@ ImageView<const float> Pipeline::State::refine(const DisparityMaps& maps) {
   return stages->refine(maps, result.shift.road);
 }
 
+/// A Lucas–Kanade step undoes the pixel locking of eq. (13).
+ImageView<const float> Pipeline::State::align(const MatchInput& input, ImageView<const float> disparity) {
+  const StageTimer timer(result.ms.refinement);
+  return stages->align(input, disparity, result.shift);
+}
+
 /// Roll angle and projection model, section 3.3.
 void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
   // Of a pair without a road nothing is told but its disparities.
@@ -245,7 +252,8 @@ void Pipeline::State::run_stages(const FrameView& left, const FrameView& right) 
   const MatchInput input = search_coarsely(transformed);
   const ResidualMaps residual = match(input);
   const DisparityMaps restored = restore_disparity(residual);
-  const ImageView<const float> disparity = refine(restored);
+  const ImageView<const float> refined = refine(restored);
+  const ImageView<const float> disparity = align(input, refined);
   estimate_roll(disparity);
   transform_disparity(disparity);
   download();

@@ -26,6 +26,7 @@ PipelineOptions paper_preset() {
   options.matcher.lr_max_diff_px = 1;   // δr
   options.matcher.occlusion_sigma_px = 0;
   options.matcher.reject_range_boundary = false;
+  options.lucas_kanade.radius = 0;
   options.refinement.radius = 0;
   options.refinement.max_sigma_px = 1000;  // the left-right check alone decides
   options.roll.solver = RollSolver::gradient_descent;
@@ -72,6 +73,7 @@ void PipelineOptions::validate() const {
   perspective.validate();
   coarse_search.validate();
   matcher.validate();
+  lucas_kanade.validate();
   refinement.validate();
   roll.validate();
   damage.validate();

@@ -31,6 +31,11 @@ ROADSTEREO_HD inline RowLine row_line(const DisparityPlane& plane, int v, double
   return {static_cast<float>(plane.disparity(0, v) - by), static_cast<float>(plane.a2)};
 }
 
+/// The line of the shifts of row v, Δu − δp; negative everywhere when the transformation is off.
+ROADSTEREO_HD inline RowLine shift_line(const PerspectiveShift& shift, int v) {
+  return shift.enabled ? row_line(shift.road, v, shift.delta_p) : RowLine{-1, 0};
+}
+
 /// Disparity between the original images of a residual disparity (NaN stays) in column u: the shift belongs to the
 /// column of the transformed target that was matched. `road` is the row's line less δp.
 ROADSTEREO_HD inline float with_shift(float residual, const RowLine& road, int u) {
@@ -38,7 +43,13 @@ ROADSTEREO_HD inline float with_shift(float residual, const RowLine& road, int u
   return residual + (shift > 0.0F ? shift : 0.0F);
 }
 
-/// The same where the shifts are whole pixels.
+/// Inverse of with_shift: the residual disparity of one between the original images.
+ROADSTEREO_HD inline float without_shift(float disparity, const RowLine& road, int u) {
+  const float residual = (disparity - road.at(static_cast<float>(u))) / (1 - road.slope);
+  return road.at(static_cast<float>(u) - residual) > 0.0F ? residual : disparity;
+}
+
+/// The same as with_shift where the shifts are whole pixels.
 ROADSTEREO_HD inline float with_whole_shift(float residual, const PerspectiveShift& shift, int u, int v) {
   if (residual != residual) return residual;
   return residual + static_cast<float>(shift.at(u - static_cast<double>(residual), v));

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "roadstereo/image.hpp"
+#include "roadstereo/perspective_shift.hpp"
+
+namespace roadstereo {
+
+/// Options of the Lucas–Kanade step.
+struct LucasKanadeOptions {
+  int radius = 10;              ///< of the square window, pixels, 0 … 16; 0 switches the step off
+  double bias_sigma_px = 0.04;  ///< expected size of what it corrects, pixels, 0.001 … 10; larger ones trust noise more
+  double max_shift_px = 0.5;    ///< largest change of a disparity, pixels, 0.01 … 2
+
+  /// Throws Error naming the first option that is out of range.
+  void validate() const;
+  bool operator==(const LucasKanadeOptions&) const = default;
+};
+
+/// A stereo pair after the perspective transformation of the target.
+struct TransformedPair {
+  ImageView<const std::int16_t> reference, target;
+  const int* first_column = nullptr;  ///< of each row of the target that is not empty; nullptr: 0
+  PerspectiveShift shift;
+};
+
+/// One Gauss–Newton step of Lucas and Kanade ("An iterative image registration technique", 1981) for every disparity:
+/// the change that makes the target, sampled at the disparities of all pixels of a window, equal to the reference up to
+/// a gain and an offset. It undoes the pixel locking of eq. (13), whose parabola pulls the residual disparity of fine
+/// texture towards whole pixels by up to 0.15 px, and part of the smoothing by the window of matching, since every
+/// pixel of the window is compared at its own disparity. The change is shrunk by its own variance: where the picture is
+/// noisy it is small.
+///
+/// `disparity`: of the original images, W×H, pixels, NaN invalid. Writes `aligned`, W×H, NaN where `disparity` is.
+/// Throws Error when the sizes differ.
+void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity, const LucasKanadeOptions& options,
+                  int threads, Image<float>& aligned);
+
+}  // namespace roadstereo

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "roadstereo/host_device.hpp"
+#include "roadstereo/lucas_kanade.hpp"
+
+// The Gauss–Newton step of one window, for the host and for kernels. C++17.
+
+namespace roadstereo {
+
+/// Triangle filter of five pixels along a row, times nine. Interpolation shifts what is finer, by a part of its period
+/// that depends on the phase; the gradients are too small there.
+constexpr int prefilter_radius = 2;
+ROADSTEREO_HD inline float prefiltered(const std::int16_t* row, int u) {
+  return static_cast<float>(row[u - 2] + row[u + 2] + 2 * (row[u - 1] + row[u + 1]) + 3 * row[u]);
+}
+
+/// What one pixel adds to its windows, in grey levels; `weight` 0 without a disparity.
+struct AlignmentSample {
+  float weight = 0;
+  float target = 0;      ///< T at the pixel's disparity, less a constant
+  float gradient = 0;    ///< ½ (L' + T'), per pixel: symmetric, so that noise in either image does not bias the step
+  float difference = 0;  ///< L − T
+};
+
+/// The sample of pixel u at the residual `disparity`. Rows are prefiltered. `first`: first column of the target.
+/// `centre`: any level near those of the image, which keeps the sums small.
+template <class Row>
+ROADSTEREO_HD inline AlignmentSample alignment_sample(const Row& reference, const Row& target, int first, int width,
+                                                      int u, float disparity, float centre) {
+  constexpr int margin = prefilter_radius + 1;
+  const float x = static_cast<float>(u) - disparity;
+  // Keys' interpolation reads from one pixel before to two behind; the comparison is false for NaN.
+  const bool inside = x >= static_cast<float>(first + margin) && x < static_cast<float>(width - margin - 1) &&
+                      u >= margin && u < width - margin;
+  if (!inside) return {};
+  const int at = static_cast<int>(x);
+  const float f = x - static_cast<float>(at);
+  const float t0 = target[at - 1], t1 = target[at], t2 = target[at + 1], t3 = target[at + 2];
+  const float linear = 0.5F * (t2 - t0);
+  const float square = t0 - 2.5F * t1 + 2 * t2 - 0.5F * t3;
+  const float cube = 0.5F * (t3 - t0) + 1.5F * (t1 - t2);
+  const float value = t1 + f * (linear + f * (square + f * cube));
+  const float before = reference[u - 1], after = reference[u + 1];
+  // Both by central differences over two pixels, so that one is not sharper than the other.
+  const float target_gradient = 0.5F * ((1 - f) * (t2 - t0) + f * (t3 - t1));
+  return {1.0F, value - centre, 0.5F * (0.5F * (after - before) + target_gradient), reference[u] - value};
+}
+
+/// Sums of the samples of a window and of their products.
+template <class Number>
+struct AlignmentSums {
+  Number n, t, g, r, tt, tg, tr, gg, gr, rr;
+};
+
+struct AlignmentSettings {
+  float max_shift;
+  float bias_variance;  ///< pixels²
+};
+
+inline AlignmentSettings alignment_settings(const LucasKanadeOptions& options) {
+  return {static_cast<float>(options.max_shift_px), static_cast<float>(options.bias_sigma_px * options.bias_sigma_px)};
+}
+
+/// Shift of the disparity, pixels: the regression of L − T on T, 1 and the gradient, shrunk by its own variance.
+template <class Number>
+ROADSTEREO_HD inline float alignment_shift(const AlignmentSums<Number>& sums, const AlignmentSettings& settings) {
+  constexpr Number min_samples = 6, min_variance = 1;
+  constexpr Number pixels_per_sample = Number(81) / 19;  // noise that the prefilter has correlated: (Σ w)² / Σ w²
+  if (!(sums.n >= min_samples)) return 0.0F;
+  const Number share = 1 / sums.n;
+  const Number tt = sums.tt - sums.t * sums.t * share, tg = sums.tg - sums.t * sums.g * share;
+  const Number tr = sums.tr - sums.t * sums.r * share, gg = sums.gg - sums.g * sums.g * share;
+  const Number gr = sums.gr - sums.g * sums.r * share, rr = sums.rr - sums.r * sums.r * share;
+  if (!(tt > min_variance * sums.n)) return 0.0F;
+  const Number per_tt = 1 / tt;
+  const Number curvature = gg - tg * tg * per_tt;
+  if (!(curvature > min_variance)) return 0.0F;
+  const Number slope = (gr - tg * tr * per_tt) / curvature;
+  const Number left = rr - tr * tr * per_tt - slope * slope * curvature;
+  const Number noise = (left > 0 ? left : 0) * share;
+  const auto variance = static_cast<float>(pixels_per_sample * noise / curvature);
+  // L' is G T' when the contrast of L is G times that of T, so that the gradient is ½ (G + 1) T'.
+  const Number ll = tt + 2 * tr + rr;
+  const auto contrast = static_cast<float>((ll > 0 ? ll : 0) * per_tt);
+  const float gradients = 0.5F * (1 + 1 / sqrtf(fmaxf(contrast, 1e-4F)));
+  const float shift =
+      static_cast<float>(-slope) * gradients * settings.bias_variance / (settings.bias_variance + variance);
+  return fminf(fmaxf(shift, -settings.max_shift), settings.max_shift);
+}
+
+}  // namespace roadstereo

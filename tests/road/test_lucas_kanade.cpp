@@ -1,0 +1,234 @@
+// Lucas–Kanade step: known disparities of painted pairs, and a normal equation solved pixel by pixel.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/lucas_kanade.hpp"
+#include "roadstereo/perspective.hpp"
+#include "tests/stereo/textured_pair.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr int width = 160, height = 60;
+
+PerspectiveShift no_shift() {
+  PerspectiveShift shift;
+  shift.enabled = false;
+  return shift;
+}
+
+Image<float> align(const test::TexturedPair& pair, const Image<float>& disparity,
+                   const LucasKanadeOptions& options = {}, int threads = 1) {
+  Image<float> aligned;
+  lucas_kanade({pair.reference, pair.target, nullptr, no_shift()}, disparity, options, threads, aligned);
+  return aligned;
+}
+
+/// Root mean square of map − truth away from the borders.
+double rms_error(const Image<float>& map, double truth) {
+  constexpr int border = 20;
+  double sum = 0;
+  int count = 0;
+  for (int v = border; v < map.height() - border; ++v) {
+    for (int u = border; u < map.width() - border; ++u) {
+      sum += std::pow(static_cast<double>(map(u, v)) - truth, 2);
+      ++count;
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
+TEST(LucasKanade, UndoesPixelLocking) {
+  for (const double truth : {6.1, 6.25, 6.4, 6.6, 6.75, 6.9}) {
+    const test::TexturedPair pair = test::textured_pair(width, height, [&](double, double) { return truth; });
+    const double locked = truth - 0.1 * std::sin(2 * std::numbers::pi * truth);
+    const Image<float> disparity(width, height, static_cast<float>(locked));
+    EXPECT_LT(rms_error(align(pair, disparity), truth), 0.02) << truth;
+  }
+}
+
+TEST(LucasKanade, IgnoresGainAndOffset) {
+  constexpr double truth = 6.3;
+  test::TexturedPair pair = test::textured_pair(width, height, [](double, double) { return truth; });
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      pair.target(u, v) = static_cast<std::int16_t>(std::lround(0.7 * pair.target(u, v) + 300));
+    }
+  }
+  EXPECT_LT(rms_error(align(pair, Image<float>(width, height, 6.2F)), truth), 0.02);
+}
+
+TEST(LucasKanade, WorksThroughPerspectiveTransformation) {
+  const DisparityPlane road{9.4, 0.11, 0.06};
+  const test::TexturedPair pair =
+      test::textured_pair(width, height, [&](double u, double v) { return road.disparity(u, v); });
+  // The road is known only roughly: half a pixel beside the true one.
+  const PerspectiveShift shift{{9.9, 0.11, 0.05}, 4, 12};
+  GreyImage transformed;
+  std::vector<int> first_column;
+  transform_target(pair.target, shift, 1, transformed, first_column);
+  Image<float> disparity(width, height), aligned;
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) disparity(u, v) = static_cast<float>(road.disparity(u, v) + 0.1);
+  }
+  lucas_kanade({pair.reference, transformed, first_column.data(), shift}, disparity, {}, 1, aligned);
+  for (int v = 15; v < height - 15; v += 5) {
+    for (int u = 60; u < width - 20; u += 5) EXPECT_NEAR(aligned(u, v), road.disparity(u, v), 0.03) << u << ", " << v;
+  }
+}
+
+TEST(LucasKanade, TrustsNoiseLittle) {
+  test::TexturedPair pair{GreyImage(width, height), GreyImage(width, height)};
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      pair.reference(u, v) = static_cast<std::int16_t>(grey_max * test::lattice(u, v, 1));
+      pair.target(u, v) = static_cast<std::int16_t>(grey_max * test::lattice(u, v, 2));
+    }
+  }
+  LucasKanadeOptions small, large;
+  small.bias_sigma_px = 0.01;
+  large.bias_sigma_px = 1;
+  const Image<float> disparity(width, height, 5);
+  const double changed = rms_error(align(pair, disparity, small), 5);
+  EXPECT_LT(changed, 0.01);
+  EXPECT_GT(rms_error(align(pair, disparity, large), 5), 5 * changed);
+}
+
+TEST(LucasKanade, LeavesPixelsWithoutTextureOrDisparity) {
+  test::TexturedPair pair = test::textured_pair(width, height, [](double, double) { return 6.3; });
+  for (int v = 0; v < height; ++v) {
+    for (int u = 90; u < width; ++u) pair.reference(u, v) = pair.target(u, v) = 1000;
+  }
+  Image<float> disparity(width, height, 6.2F);
+  disparity(40, 30) = nan;
+  const Image<float> aligned = align(pair, disparity);
+  EXPECT_TRUE(std::isnan(aligned(40, 30)));
+  EXPECT_NEAR(aligned(42, 30), 6.3, 0.02);
+  EXPECT_EQ(aligned(120, 30), 6.2F);
+}
+
+TEST(LucasKanade, ChangesByNoMoreThanLimit) {
+  const test::TexturedPair pair = test::textured_pair(width, height, [](double, double) { return 6.9; });
+  LucasKanadeOptions options;
+  options.bias_sigma_px = 10;
+  options.max_shift_px = 0.05;
+  const Image<float> aligned = align(pair, Image<float>(width, height, 6.5F), options);
+  EXPECT_NEAR(aligned(80, 30), 6.55, 1e-5);
+}
+
+/// −γ of L − T = α + β T + γ g by least squares over a window of the prefiltered rows, for gradients of equal contrast.
+double naive_shift(const test::TexturedPair& pair, const Image<float>& disparity, int u, int v, int radius) {
+  const auto filtered = [](const GreyImage& image, int x, int y) {
+    constexpr std::array<double, 5> weights{1, 2, 3, 2, 1};
+    double sum = 0;
+    for (int k = -2; k <= 2; ++k) sum += weights[static_cast<std::size_t>(k + 2)] * image(x + k, y);
+    return sum;
+  };
+  std::array<std::array<double, 4>, 3> normal{};
+  double n = 0, l = 0, ll = 0, t1 = 0, t2 = 0;
+  for (int y = std::max(0, v - radius); y <= std::min(height - 1, v + radius); ++y) {
+    for (int x = u - radius; x <= u + radius; ++x) {
+      const double at = x - static_cast<double>(disparity(x, y));
+      const int whole = static_cast<int>(std::floor(at));
+      const double f = at - whole;
+      std::array<double, 4> t{};
+      for (int k = 0; k < 4; ++k) t[static_cast<std::size_t>(k)] = filtered(pair.target, whole - 1 + k, y);
+      const double value = ((-0.5 * t[0] + 1.5 * t[1] - 1.5 * t[2] + 0.5 * t[3]) * f * f * f) +
+                           ((t[0] - 2.5 * t[1] + 2 * t[2] - 0.5 * t[3]) * f * f) + (0.5 * (t[2] - t[0]) * f) + t[1];
+      const double left = 0.5 * (filtered(pair.reference, x + 1, y) - filtered(pair.reference, x - 1, y));
+      const double right = 0.5 * ((1 - f) * (t[2] - t[0]) + f * (t[3] - t[1]));
+      const double level = filtered(pair.reference, x, y);
+      const std::array<double, 4> row{1, value / 1e4, 0.5 * (left + right), level - value};
+      n += 1;
+      l += level;
+      ll += level * level;
+      t1 += value;
+      t2 += value * value;
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 4; ++k) normal[i][k] += row[i] * row[k];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {  // Gauss–Jordan; the matrix is positive definite
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (j == i) continue;
+      const double factor = normal[j][i] / normal[i][i];
+      for (std::size_t k = 0; k < 4; ++k) normal[j][k] -= factor * normal[i][k];
+    }
+  }
+  const double contrast = std::sqrt((ll - l * l / n) / (t2 - t1 * t1 / n));
+  return -normal[2][3] / normal[2][2] * 0.5 * (contrast + 1) / contrast;
+}
+
+TEST(LucasKanade, SolvesNormalEquationOfEveryWindow) {
+  const test::TexturedPair pair =
+      test::textured_pair(width, height, [](double u, double v) { return 6 + std::sin(0.03 * u + 0.02 * v); });
+  Image<float> disparity(width, height);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      disparity(u, v) =
+          static_cast<float>(6 + std::sin(0.03 * u + 0.02 * v) + 0.2 * (test::smooth_noise(u, v, 9, 4) - 0.5));
+    }
+  }
+  LucasKanadeOptions options;
+  options.bias_sigma_px = 10;  // the variance has no part in it
+  for (const int radius : {1, 4, 10, 16}) {
+    options.radius = radius;
+    const Image<float> aligned = align(pair, disparity, options);
+    for (int v = 0; v < height; v += 7) {
+      for (int u = 40; u < width - 40; u += 9) {
+        const double expected = std::clamp(naive_shift(pair, disparity, u, v, radius), -0.5, 0.5);
+        ASSERT_NEAR(aligned(u, v) - disparity(u, v), expected, 3e-4) << radius << ": " << u << ", " << v;
+      }
+    }
+  }
+}
+
+TEST(LucasKanade, IsIndependentOfThreads) {
+  const test::TexturedPair pair = test::textured_pair(width, height, [](double, double) { return 6.3; });
+  Image<float> disparity(width, height, 6.2F);
+  disparity(70, 33) = nan;
+  const Image<float> one = align(pair, disparity);
+  for (const int threads : {2, 3, 7}) {
+    const Image<float> several = align(pair, disparity, {}, threads);
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        if (std::isnan(one(u, v))) continue;
+        ASSERT_EQ(several(u, v), one(u, v)) << u << ", " << v;
+      }
+    }
+  }
+}
+
+TEST(LucasKanade, TakesImagesSmallerThanWindow) {
+  for (const int size : {1, 3, 6, 8}) {
+    const test::TexturedPair pair = test::textured_pair(size, size, [](double, double) { return 0.5; });
+    EXPECT_EQ(align(pair, Image<float>(size, size, 0.5F)).width(), size);
+  }
+}
+
+TEST(LucasKanade, RejectsBadInput) {
+  const test::TexturedPair pair = test::textured_pair(20, 20, [](double, double) { return 3.0; });
+  EXPECT_THROW(align(pair, Image<float>(20, 19, 3.0F)), Error);
+  LucasKanadeOptions options;
+  options.radius = 17;
+  EXPECT_THROW(options.validate(), Error);
+  options = {};
+  options.bias_sigma_px = 0;
+  EXPECT_THROW(options.validate(), Error);
+  options = {};
+  options.max_shift_px = 3;
+  EXPECT_THROW(options.validate(), Error);
+}
+
+}  // namespace
+}  // namespace roadstereo
