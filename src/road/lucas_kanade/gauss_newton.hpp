@@ -81,11 +81,11 @@ ROADSTEREO_HD inline float alignment_shift(const AlignmentSums<Number>& sums, co
   const Number slope = (gr - tg * tr * per_tt) / curvature;
   const Number left = rr - tr * tr * per_tt - slope * slope * curvature;
   const Number noise = (left > 0 ? left : 0) * share;
-  const auto variance = static_cast<float>(pixels_per_sample * noise / curvature);
   // L' is G T' when the contrast of L is G times that of T, so that the gradient is ½ (G + 1) T'.
   const Number ll = tt + 2 * tr + rr;
   const auto contrast = static_cast<float>((ll > 0 ? ll : 0) * per_tt);
   const float gradients = 0.5F * (1 + 1 / sqrtf(fmaxf(contrast, 1e-4F)));
+  const auto variance = gradients * gradients * static_cast<float>(pixels_per_sample * noise / curvature);
   const float shift =
       static_cast<float>(-slope) * gradients * settings.bias_variance / (settings.bias_variance + variance);
   return fminf(fmaxf(shift, -settings.max_shift), settings.max_shift);
