@@ -19,6 +19,9 @@ function(roadstereo_target target)
     target_compile_options(${target} PRIVATE
       $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${ROADSTEREO_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>)
     target_link_options(${target} PRIVATE -fsanitize=${ROADSTEREO_SANITIZE})
+    if(ROADSTEREO_SANITIZE MATCHES thread AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-tsan>)  # the fences of Boost.Asio
+    endif()
   endif()
 endfunction()
 

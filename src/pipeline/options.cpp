@@ -119,7 +119,7 @@ void visit_options(Options& o, Visitor visit) {
         "standard error of interpolation and calibration, pixels");
 
   visit("lucas_kanade.radius", o.lucas_kanade.radius,
-        "radius of the window of the Lucas-Kanade step, pixels; 0 is off");
+        "radius of the window of the Lucas-Kanade step, cells of 4x4 pixels; 0 is off");
   visit("lucas_kanade.bias_sigma_px", o.lucas_kanade.bias_sigma_px,
         "expected size of the sub-pixel bias that it corrects, pixels");
   visit("lucas_kanade.max_shift_px", o.lucas_kanade.max_shift_px, "largest change of a disparity by it, pixels");

@@ -44,6 +44,7 @@ PipelineOptions fast_preset() {
   options.matcher.occlusion_sigma_px = 0;
   options.matcher.block_radius = 5;
   options.matcher.aggregation_radius = 0;
+  options.lucas_kanade.radius = 0;
   options.refinement.radius = 0;
   options.refinement.max_sigma_px = 1000;  // the left-right check alone decides
   return options;

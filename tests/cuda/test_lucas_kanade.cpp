@@ -33,8 +33,9 @@ void expect_as_on_host(int width, int height, const PerspectiveShift& shift, con
   const test::DevicePlane<std::int16_t> device_reference(pair.reference), device_target(target);
   const test::DevicePlane<float> device_disparity(disparity), aligned(width, height);
   const cuda::DeviceArray<int> device_columns = test::to_device(first_column);
-  cuda::lucas_kanade({device_reference.view(), device_target.view(), device_columns.data(), shift},
-                     device_disparity.view(), options.radius, alignment_settings(options), aligned.plane(), nullptr);
+  cuda::LucasKanade step;
+  step.run({device_reference.view(), device_target.view(), device_columns.data(), shift}, device_disparity.view(),
+           options, aligned.plane(), nullptr);
   const Image<float> found = aligned.on_host();
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
@@ -56,7 +57,7 @@ TEST_F(CudaLucasKanade, MatchesHost) {
 
 TEST_F(CudaLucasKanade, EveryWindowSizeMatchesHost) {
   const PerspectiveShift shift{{6, 0.2, 0.05}, 4, 16};
-  for (const int radius : {1, 3, 16}) {
+  for (const int radius : {1, 4, 8}) {
     LucasKanadeOptions options;
     options.radius = radius;
     expect_as_on_host(97, 40, shift, options);

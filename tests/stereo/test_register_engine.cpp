@@ -36,6 +36,7 @@ TEST(RegisterEngine, PipelineUsesIt) {
   PipelineOptions options = preset("default");
   options.engine = "constant";
   options.refinement.radius = 0;
+  options.lucas_kanade.radius = 0;
   options.perspective.enabled = false;
   options.perspective.disparities = 64;
   Pipeline pipeline(options, pair.calibration);

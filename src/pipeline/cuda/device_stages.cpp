@@ -115,25 +115,23 @@ class DeviceStages final : public FrameStages {
     const ImageView<float> between_variance(between_.data() + pixels, width_, height_);
     DisparityMaps from = maps;
     const int passes = pass_count(options_.refinement);
-    const int later_steps = options_.lucas_kanade.radius > 0 ? 1 : 0;
     for (int k = 0; k < passes; ++k) {
-      const int left = passes - 1 - k;
-      const ImageView<float> refined = (left + later_steps) % 2 == 0 ? maps_.disparity() : between_disparity;
-      const ImageView<float> error = left % 2 == 0 ? maps_.sigma() : between_variance;
+      const bool to_result = (passes - 1 - k) % 2 == 0;
+      const ImageView<float> refined = to_result ? maps_.disparity() : between_disparity;
+      const ImageView<float> error = to_result ? maps_.sigma() : between_variance;
       cuda::refine_disparities(from.disparity, from.variance, road,
                                refinement_settings(options_.refinement, k, maps.samples), refined, error, stream());
       from.disparity = refined;
       from.variance = error;
     }
-    return from.disparity;
+    return maps_.disparity();
   }
 
   ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,
                                const PerspectiveShift& shift) override {
-    const LucasKanadeOptions& options = options_.lucas_kanade;
-    if (options.radius > 0) {
-      lucas_kanade({input.reference, input.target, input.first_column, shift}, disparity, options.radius,
-                   alignment_settings(options), maps_.disparity(), stream());
+    if (options_.lucas_kanade.radius > 0) {
+      const TransformedPair pair{input.reference, input.target, input.first_column, shift};
+      lucas_kanade_.run(pair, disparity, options_.lucas_kanade, maps_.disparity(), stream());
     }
     mark(StageClock::refined);
     if (download_) maps_.download_refined(stream());
@@ -249,6 +247,7 @@ class DeviceStages final : public FrameStages {
   RoadVerification verification_;
   std::optional<CudaCoarseSearch> coarse_search_;
   DeviceMatcher matcher_;
+  LucasKanade lucas_kanade_;
   RoadFit fit_;
   MapSums sums_;
   DisparityTransform transform_;

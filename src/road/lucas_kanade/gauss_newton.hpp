@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/mid_grey.hpp"
 #include "roadstereo/host_device.hpp"
 #include "roadstereo/lucas_kanade.hpp"
 
@@ -17,19 +18,21 @@ ROADSTEREO_HD inline float prefiltered(const std::int16_t* row, int u) {
   return static_cast<float>(row[u - 2] + row[u + 2] + 2 * (row[u - 1] + row[u + 1]) + 3 * row[u]);
 }
 
-/// What one pixel adds to its windows, in grey levels; `weight` 0 without a disparity.
+/// Level that samples are relative to, which keeps the sums small.
+constexpr float alignment_centre = 9.0F * mid_grey;
+
+/// What one pixel adds to its cell, in grey levels; `weight` 0 without a disparity.
 struct AlignmentSample {
   float weight = 0;
-  float target = 0;      ///< T at the pixel's disparity, less a constant
+  float target = 0;      ///< T at the pixel's disparity, less alignment_centre
   float gradient = 0;    ///< ½ (L' + T'), per pixel: symmetric, so that noise in either image does not bias the step
   float difference = 0;  ///< L − T
 };
 
 /// The sample of pixel u at the residual `disparity`. Rows are prefiltered. `first`: first column of the target.
-/// `centre`: any level near those of the image, which keeps the sums small.
 template <class Row>
 ROADSTEREO_HD inline AlignmentSample alignment_sample(const Row& reference, const Row& target, int first, int width,
-                                                      int u, float disparity, float centre) {
+                                                      int u, float disparity) {
   constexpr int margin = prefilter_radius + 1;
   const float x = static_cast<float>(u) - disparity;
   // Keys' interpolation reads from one pixel before to two behind; the comparison is false for NaN.
@@ -46,14 +49,60 @@ ROADSTEREO_HD inline AlignmentSample alignment_sample(const Row& reference, cons
   const float before = reference[u - 1], after = reference[u + 1];
   // Both by central differences over two pixels, so that one is not sharper than the other.
   const float target_gradient = 0.5F * ((1 - f) * (t2 - t0) + f * (t3 - t1));
-  return {1.0F, value - centre, 0.5F * (0.5F * (after - before) + target_gradient), reference[u] - value};
+  return {1.0F, value - alignment_centre, 0.5F * (0.5F * (after - before) + target_gradient), reference[u] - value};
 }
 
-/// Sums of the samples of a window and of their products.
+/// Sums of samples and of their products.
 template <class Number>
 struct AlignmentSums {
   Number n, t, g, r, tt, tg, tr, gg, gr, rr;
+
+  ROADSTEREO_HD void add(const AlignmentSample& sample) {
+    const Number target = sample.target, gradient = sample.gradient, difference = sample.difference;
+    n += sample.weight;
+    t += target;
+    g += gradient;
+    r += difference;
+    tt += target * target;
+    tg += target * gradient;
+    tr += target * difference;
+    gg += gradient * gradient;
+    gr += gradient * difference;
+    rr += difference * difference;
+  }
+  template <class Other>
+  ROADSTEREO_HD void add(const AlignmentSums<Other>& other) {
+    n += other.n;
+    t += other.t;
+    g += other.g;
+    r += other.r;
+    tt += other.tt;
+    tg += other.tg;
+    tr += other.tr;
+    gg += other.gg;
+    gr += other.gr;
+    rr += other.rr;
+  }
 };
+
+/// Side of a cell, pixels.
+constexpr int alignment_cell = 4;
+
+inline int alignment_cells(int pixels) {
+  return (pixels + alignment_cell - 1) / alignment_cell;
+}
+
+/// The two cells around a pixel, along one axis, and the share of the second.
+struct CellPlace {
+  int first, second;
+  float share;
+};
+
+ROADSTEREO_HD inline CellPlace cell_place(int pixel, int cells) {
+  const float at = (static_cast<float>(pixel) + 0.5F) / alignment_cell - 0.5F;
+  const int below = at < 0 ? -1 : static_cast<int>(at);
+  return {below < 0 ? 0 : below, below + 1 < cells ? below + 1 : cells - 1, at - static_cast<float>(below)};
+}
 
 struct AlignmentSettings {
   float max_shift;
@@ -64,7 +113,8 @@ inline AlignmentSettings alignment_settings(const LucasKanadeOptions& options) {
   return {static_cast<float>(options.max_shift_px), static_cast<float>(options.bias_sigma_px * options.bias_sigma_px)};
 }
 
-/// Shift of the disparity, pixels: the regression of L − T on T, 1 and the gradient, shrunk by its own variance.
+/// Shift of the residual disparity, pixels: the regression of L − T on T, 1 and the gradient, shrunk by its own
+/// variance.
 template <class Number>
 ROADSTEREO_HD inline float alignment_shift(const AlignmentSums<Number>& sums, const AlignmentSettings& settings) {
   constexpr Number min_samples = 6, min_variance = 1;

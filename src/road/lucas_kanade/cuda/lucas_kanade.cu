@@ -1,6 +1,7 @@
-// Floor: 12 bytes a pixel, and of each of the (2 r + 1)² samples of its window 16 bytes of shared memory and 16
-// operations: for 640×360 and r = 10 2.8 MB and 1.6 billion operations. A tile of 32×8 pixels reads a border of r, too:
-// six times its pixels.
+// Floor: 12 bytes a pixel and 80 bytes a cell of 16 pixels: 4 MB for 640×360. Some 100 operations a pixel to sample and
+// sum, and 250 additions a cell for a window of 5×5 cells: 27 million operations.
+
+#include <cstddef>
 
 #include "core/cuda/launch.hpp"
 #include "road/lucas_kanade/cuda/lucas_kanade.hpp"
@@ -9,7 +10,7 @@
 namespace roadstereo::cuda {
 namespace {
 
-constexpr int tile_columns = 32, tile_rows = 8;
+constexpr int block_columns = 32, block_rows = 8;
 
 /// What is aligned.
 struct Maps {
@@ -24,68 +25,79 @@ struct PrefilteredRow {
   __device__ float operator[](int u) const { return prefiltered(row, u); }
 };
 
-__device__ AlignmentSample sample_at(const Maps& maps, int u, int v, float centre) {
-  if (u < 0 || u >= maps.disparity.width() || v < 0 || v >= maps.disparity.height()) return {};
+__device__ int thread_column() {
+  return static_cast<int>(blockIdx.x * block_columns + threadIdx.x);
+}
+__device__ int thread_row() {
+  return static_cast<int>(blockIdx.y * block_rows + threadIdx.y);
+}
+
+/// One thread a cell.
+__global__ void sum_cells(Maps maps, ImageView<AlignmentSums<float>> cells) {
+  const int i = thread_column(), j = thread_row();
+  if (i >= cells.width() || j >= cells.height()) return;
   const TransformedPair& pair = maps.pair;
-  const int first = pair.first_column != nullptr ? __ldg(pair.first_column + v) : 0;
-  const float residual = without_shift(__ldg(&maps.disparity(u, v)), shift_line(pair.shift, v), u);
-  return alignment_sample(PrefilteredRow{pair.reference.row(v)}, PrefilteredRow{pair.target.row(v)}, first,
-                          maps.disparity.width(), u, residual, centre);
-}
-
-/// Single precision: samples are relative to the level at the middle of the tile.
-__device__ float tile_centre(const Maps& maps, int left, int top) {
-  const int u = min(left + tile_columns / 2, maps.disparity.width() - 1);
-  const int v = min(top + tile_rows / 2, maps.disparity.height() - 1);
-  constexpr float prefilter_gain = 9;
-  return prefilter_gain * static_cast<float>(maps.pair.reference(u, v));
-}
-
-__device__ void add(const AlignmentSample& sample, AlignmentSums<float>& sums) {
-  sums.n += sample.weight;
-  sums.t += sample.target;
-  sums.g += sample.gradient;
-  sums.r += sample.difference;
-  sums.tt += sample.target * sample.target;
-  sums.tg += sample.target * sample.gradient;
-  sums.tr += sample.target * sample.difference;
-  sums.gg += sample.gradient * sample.gradient;
-  sums.gr += sample.gradient * sample.difference;
-  sums.rr += sample.difference * sample.difference;
-}
-
-__global__ void align(Maps maps, int radius, AlignmentSettings settings, ImageView<float> aligned) {
-  const int left = static_cast<int>(blockIdx.x) * tile_columns, top = static_cast<int>(blockIdx.y) * tile_rows;
-  const int columns = tile_columns + 2 * radius, rows = tile_rows + 2 * radius;
-  auto* samples = shared_memory<AlignmentSample>();
-  const float centre = tile_centre(maps, left, top);
-  for (int y = static_cast<int>(threadIdx.y); y < rows; y += tile_rows) {
-    for (int x = static_cast<int>(threadIdx.x); x < columns; x += tile_columns) {
-      samples[y * columns + x] = sample_at(maps, left - radius + x, top - radius + y, centre);
+  const int width = maps.disparity.width();
+  AlignmentSums<float> sums{};
+  for (int v = j * alignment_cell; v < min((j + 1) * alignment_cell, maps.disparity.height()); ++v) {
+    const int first = pair.first_column != nullptr ? __ldg(pair.first_column + v) : 0;
+    const RowLine road = shift_line(pair.shift, v);
+    const PrefilteredRow reference{pair.reference.row(v)}, target{pair.target.row(v)};
+    for (int u = i * alignment_cell; u < min((i + 1) * alignment_cell, width); ++u) {
+      const float residual = without_shift(__ldg(&maps.disparity(u, v)), road, u);
+      sums.add(alignment_sample(reference, target, first, width, u, residual));
     }
   }
-  __syncthreads();
-  const int u = left + static_cast<int>(threadIdx.x), v = top + static_cast<int>(threadIdx.y);
-  if (u >= aligned.width() || v >= aligned.height()) return;
+  cells(i, j) = sums;
+}
+
+/// One thread a cell: the window around it.
+__global__ void solve_windows(ImageView<const AlignmentSums<float>> cells, int radius, AlignmentSettings settings,
+                              ImageView<float> shifts) {
+  const int i = thread_column(), j = thread_row();
+  if (i >= cells.width() || j >= cells.height()) return;
   AlignmentSums<float> sums{};
-  for (int y = 0; y <= 2 * radius; ++y) {
-    const AlignmentSample* row =
-        samples + (static_cast<int>(threadIdx.y) + y) * columns + static_cast<int>(threadIdx.x);
-    for (int x = 0; x <= 2 * radius; ++x) add(row[x], sums);
+  for (int y = max(0, j - radius); y <= min(cells.height() - 1, j + radius); ++y) {
+    for (int x = max(0, i - radius); x <= min(cells.width() - 1, i + radius); ++x) sums.add(cells(x, y));
   }
-  const float full_scale = 1 - shift_line(maps.pair.shift, v).slope;  // d disparity / d residual
-  aligned(u, v) = __ldg(&maps.disparity(u, v)) + full_scale * alignment_shift(sums, settings);
+  shifts(i, j) = alignment_shift(sums, settings);
+}
+
+/// One thread a pixel: the shift between the cells. `scale`: of a disparity over that of a residual disparity.
+__global__ void add_shifts(ImageView<const float> shifts, float scale, ImageView<const float> disparity,
+                           ImageView<float> aligned) {
+  const int u = thread_column(), v = thread_row();
+  if (u >= aligned.width() || v >= aligned.height()) return;
+  const CellPlace row = cell_place(v, shifts.height()), column = cell_place(u, shifts.width());
+  const auto between_rows = [&](int i) {
+    const float above = shifts(i, row.first);
+    return above + row.share * (shifts(i, row.second) - above);
+  };
+  const float first = between_rows(column.first);
+  aligned(u, v) = disparity(u, v) + scale * (first + column.share * (between_rows(column.second) - first));
+}
+
+dim3 grid_of(int width, int height) {
+  return dim3(blocks_for(width, block_columns), blocks_for(height, block_rows));
 }
 
 }  // namespace
 
-void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity, int radius,
-                  const AlignmentSettings& settings, ImageView<float> aligned, StreamView stream) {
-  const dim3 block(tile_columns, tile_rows);
-  const dim3 grid(blocks_for(aligned.width(), tile_columns), blocks_for(aligned.height(), tile_rows));
-  const std::size_t bytes = static_cast<std::size_t>(tile_columns + 2 * radius) *
-                            static_cast<std::size_t>(tile_rows + 2 * radius) * sizeof(AlignmentSample);
-  launch("lucas_kanade", align, {grid, block, bytes}, stream, Maps{pair, disparity}, radius, settings, aligned);
+void LucasKanade::run(const TransformedPair& pair, ImageView<const float> disparity, const LucasKanadeOptions& options,
+                      ImageView<float> aligned, StreamView stream) {
+  const int columns = alignment_cells(disparity.width()), rows = alignment_cells(disparity.height());
+  const std::size_t cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  sums_.reserve(cells);
+  shifts_.reserve(cells);
+  const ImageView<AlignmentSums<float>> sums(sums_.data(), columns, rows);
+  const ImageView<float> shifts(shifts_.data(), columns, rows);
+  const dim3 block(block_columns, block_rows);
+  launch("lucas_kanade_sums", sum_cells, {grid_of(columns, rows), block, 0}, stream, Maps{pair, disparity}, sums);
+  launch("lucas_kanade_solve", solve_windows, {grid_of(columns, rows), block, 0}, stream, sums, options.radius,
+         alignment_settings(options), shifts);
+  const float scale = 1 - shift_line(pair.shift, 0).slope;
+  launch("lucas_kanade_shift", add_shifts, {grid_of(aligned.width(), aligned.height()), block, 0}, stream, shifts,
+         scale, disparity, aligned);
 }
 
 }  // namespace roadstereo::cuda

@@ -1,16 +1,22 @@
 #pragma once
 
-#include <cstdint>
-
+#include "core/cuda/memory.hpp"
 #include "core/cuda/stream.hpp"
 #include "road/lucas_kanade/gauss_newton.hpp"
-#include "roadstereo/perspective_shift.hpp"
+#include "roadstereo/image_view.hpp"
 
 namespace roadstereo::cuda {
 
-/// Enqueues lucas_kanade (roadstereo/lucas_kanade.hpp) on the device. `aligned` is another map than `disparity`;
-/// `radius` is at least 1.
-void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity, int radius,
-                  const AlignmentSettings& settings, ImageView<float> aligned, StreamView stream);
+/// lucas_kanade (roadstereo/lucas_kanade.hpp) on the device. Keeps its memory from frame to frame.
+class LucasKanade {
+ public:
+  /// Enqueues the step; `options` are valid and have a radius of at least 1. `aligned` may be `disparity`.
+  void run(const TransformedPair& pair, ImageView<const float> disparity, const LucasKanadeOptions& options,
+           ImageView<float> aligned, StreamView stream);
+
+ private:
+  DeviceArray<AlignmentSums<float>> sums_;  ///< of each cell
+  DeviceArray<float> shifts_;               ///< of each cell, residual pixels
+};
 
 }  // namespace roadstereo::cuda
