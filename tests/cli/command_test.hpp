@@ -51,14 +51,15 @@ class CommandTest : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Runs the command line in a process forked from this one, or, after shell code that prepares its process, as the
-  /// binary.
+  /// Runs the command line in a process forked from this one; or as the binary, after shell code that prepares its
+  /// process or when this process has several threads, of which a forked one would have but one.
   Outcome run(const std::string& arguments, const std::string& before = "") const {
     const std::filesystem::path out = folder_ / "stdout.txt";
     const std::filesystem::path err = folder_ / "stderr.txt";
     const std::string command = "cd '" + folder_.string() + "' && { " + before + " '" ROADSTEREO_BINARY "' " +
                                 arguments + " >'" + out.string() + "' 2>'" + err.string() + "'; }";
-    const int status = before.empty() ? run_forked(arguments, out, err) : std::system(command.c_str());
+    const int status =
+        before.empty() && threads() == 1 ? run_forked(arguments, out, err) : std::system(command.c_str());
     Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
     std::filesystem::remove(out);
     std::filesystem::remove(err);
@@ -78,6 +79,12 @@ class CommandTest : public testing::Test {
   std::filesystem::path folder_;
 
  private:
+  /// Number of threads of this process; TBB's stay.
+  static std::ptrdiff_t threads() {
+    const std::filesystem::directory_iterator tasks("/proc/self/task");
+    return std::distance(begin(tasks), end(tasks));
+  }
+
   /// Returns the status of the process, as waitpid does.
   int run_forked(const std::string& arguments, const std::filesystem::path& out,
                  const std::filesystem::path& err) const {
