@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstdint>
-
 #include "roadstereo/image.hpp"
-#include "roadstereo/perspective_shift.hpp"
+#include "roadstereo/transformed_pair.hpp"
 
 namespace roadstereo {
 
@@ -16,13 +14,6 @@ struct LucasKanadeOptions {
   /// Throws Error naming the first option that is out of range.
   void validate() const;
   bool operator==(const LucasKanadeOptions&) const = default;
-};
-
-/// A stereo pair after the perspective transformation of the target.
-struct TransformedPair {
-  ImageView<const std::int16_t> reference, target;
-  const int* first_column = nullptr;  ///< of each row of the target that is not empty; nullptr: 0
-  PerspectiveShift shift;
 };
 
 /// One Gauss–Newton step of Lucas and Kanade ("An iterative image registration technique", 1981) for every cell of 4×4

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "road/lucas_kanade/cuda/lucas_kanade.hpp"
+#include "road/lucas_kanade/settings.hpp"
 #include "roadstereo/perspective.hpp"
 #include "tests/cuda/device_copy.hpp"
 #include "tests/cuda/device_test.hpp"
@@ -35,7 +36,7 @@ void expect_as_on_host(int width, int height, const PerspectiveShift& shift, con
   const cuda::DeviceArray<int> device_columns = test::to_device(first_column);
   cuda::LucasKanade step;
   step.run({device_reference.view(), device_target.view(), device_columns.data(), shift}, device_disparity.view(),
-           options, aligned.plane(), nullptr);
+           options.radius, alignment_settings(options), aligned.plane(), nullptr);
   const Image<float> found = aligned.on_host();
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {

@@ -16,6 +16,7 @@
 #include "road/cuda/roll_assessment.hpp"
 #include "road/cuda/verification_assessment.hpp"
 #include "road/lucas_kanade/cuda/lucas_kanade.hpp"
+#include "road/lucas_kanade/settings.hpp"
 #include "road/refinement/cuda/refinement_settings.hpp"
 #include "road/roll_assessment.hpp"
 #include "roadstereo/device.hpp"
@@ -131,7 +132,8 @@ class DeviceStages final : public FrameStages {
                                const PerspectiveShift& shift) override {
     if (options_.lucas_kanade.radius > 0) {
       const TransformedPair pair{input.reference, input.target, input.first_column, shift};
-      lucas_kanade_.run(pair, disparity, options_.lucas_kanade, maps_.disparity(), stream());
+      lucas_kanade_.run(pair, disparity, options_.lucas_kanade.radius, alignment_settings(options_.lucas_kanade),
+                        maps_.disparity(), stream());
     }
     mark(StageClock::refined);
     if (download_) maps_.download_refined(stream());

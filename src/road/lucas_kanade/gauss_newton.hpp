@@ -5,7 +5,6 @@
 
 #include "core/mid_grey.hpp"
 #include "roadstereo/host_device.hpp"
-#include "roadstereo/lucas_kanade.hpp"
 
 // The Gauss–Newton step of one window, for the host and for kernels. C++17.
 
@@ -108,10 +107,6 @@ struct AlignmentSettings {
   float max_shift;
   float bias_variance;  ///< pixels²
 };
-
-inline AlignmentSettings alignment_settings(const LucasKanadeOptions& options) {
-  return {static_cast<float>(options.max_shift_px), static_cast<float>(options.bias_sigma_px * options.bias_sigma_px)};
-}
 
 /// Shift of the residual disparity, pixels: the regression of L − T on T, 1 and the gradient, shrunk by its own
 /// variance.

@@ -6,7 +6,7 @@
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
 #include "core/scratch.hpp"
-#include "road/lucas_kanade/gauss_newton.hpp"
+#include "road/lucas_kanade/settings.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/error.hpp"
 

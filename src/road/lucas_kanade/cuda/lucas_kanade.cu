@@ -83,8 +83,8 @@ dim3 grid_of(int width, int height) {
 
 }  // namespace
 
-void LucasKanade::run(const TransformedPair& pair, ImageView<const float> disparity, const LucasKanadeOptions& options,
-                      ImageView<float> aligned, StreamView stream) {
+void LucasKanade::run(const TransformedPair& pair, ImageView<const float> disparity, int radius,
+                      const AlignmentSettings& settings, ImageView<float> aligned, StreamView stream) {
   const int columns = alignment_cells(disparity.width()), rows = alignment_cells(disparity.height());
   const std::size_t cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   sums_.reserve(cells);
@@ -93,8 +93,8 @@ void LucasKanade::run(const TransformedPair& pair, ImageView<const float> dispar
   const ImageView<float> shifts(shifts_.data(), columns, rows);
   const dim3 block(block_columns, block_rows);
   launch("lucas_kanade_sums", sum_cells, {grid_of(columns, rows), block, 0}, stream, Maps{pair, disparity}, sums);
-  launch("lucas_kanade_solve", solve_windows, {grid_of(columns, rows), block, 0}, stream, sums, options.radius,
-         alignment_settings(options), shifts);
+  launch("lucas_kanade_solve", solve_windows, {grid_of(columns, rows), block, 0}, stream, sums, radius, settings,
+         shifts);
   const float scale = 1 - shift_line(pair.shift, 0).slope;
   launch("lucas_kanade_shift", add_shifts, {grid_of(aligned.width(), aligned.height()), block, 0}, stream, shifts,
          scale, disparity, aligned);

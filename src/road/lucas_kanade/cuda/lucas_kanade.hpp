@@ -3,15 +3,15 @@
 #include "core/cuda/memory.hpp"
 #include "core/cuda/stream.hpp"
 #include "road/lucas_kanade/gauss_newton.hpp"
-#include "roadstereo/image_view.hpp"
+#include "roadstereo/transformed_pair.hpp"
 
 namespace roadstereo::cuda {
 
 /// lucas_kanade (roadstereo/lucas_kanade.hpp) on the device. Keeps its memory from frame to frame.
 class LucasKanade {
  public:
-  /// Enqueues the step; `options` are valid and have a radius of at least 1. `aligned` may be `disparity`.
-  void run(const TransformedPair& pair, ImageView<const float> disparity, const LucasKanadeOptions& options,
+  /// Enqueues the step; `radius` is at least 1. `aligned` may be `disparity`.
+  void run(const TransformedPair& pair, ImageView<const float> disparity, int radius, const AlignmentSettings& settings,
            ImageView<float> aligned, StreamView stream);
 
  private:
