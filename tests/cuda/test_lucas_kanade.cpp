@@ -16,7 +16,7 @@ namespace {
 
 class CudaLucasKanade : public test::OnDevice {};
 
-void expect_as_on_host(int width, int height, const PerspectiveShift& shift, const LucasKanadeOptions& options) {
+void expect_step_as_on_host(int width, int height, const PerspectiveShift& shift, const LucasKanadeOptions& options) {
   const auto truth = [&](double u, double v) { return shift.at(u, v) + 4.3 + std::sin(0.05 * u + 0.1 * v); };
   const test::TexturedPair pair = test::textured_pair(width, height, truth);
   GreyImage target;
@@ -51,9 +51,9 @@ TEST_F(CudaLucasKanade, MatchesHost) {
   const PerspectiveShift tilted{{6, 0.2, 0.05}, 4, 16};
   PerspectiveShift none;
   none.enabled = false;
-  expect_as_on_host(131, 45, tilted, {});
-  expect_as_on_host(64, 32, none, {});
-  expect_as_on_host(20, 9, none, {});
+  expect_step_as_on_host(131, 45, tilted, {});
+  expect_step_as_on_host(64, 32, none, {});
+  expect_step_as_on_host(20, 9, none, {});
 }
 
 TEST_F(CudaLucasKanade, EveryWindowSizeMatchesHost) {
@@ -61,7 +61,7 @@ TEST_F(CudaLucasKanade, EveryWindowSizeMatchesHost) {
   for (const int radius : {1, 4, 8}) {
     LucasKanadeOptions options;
     options.radius = radius;
-    expect_as_on_host(97, 40, shift, options);
+    expect_step_as_on_host(97, 40, shift, options);
   }
 }
 
