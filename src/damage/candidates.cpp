@@ -26,7 +26,7 @@ struct SegmentationConstants {
   float foot_sigmas = 0.5F;          ///< minimum depth at the foot of the wall
   double min_confidence = 0.05;      ///< below it a region is no candidate
   int max_level_attempts = 8;        ///< maximum number of levels to separate touching damages
-  float level_factor = 1.25F;        ///< between these levels
+  float max_level_share = 0.9F;      ///< of the floor's depth, the highest of these levels
   std::size_t max_hole_divisor = 4;  ///< holes up to 1/4 of the image are filled
 
   // Surroundings.
@@ -35,6 +35,9 @@ struct SegmentationConstants {
   float max_hollow_sigmas = 10;  ///< maximum depth of a hollow around a pothole, which counts as road
 };
 constexpr SegmentationConstants constants{};
+
+/// Label of a cell higher than a damage can be; damage keeps clear of it.
+constexpr std::uint8_t obstacle_label = 3;
 
 /// Label of a cell that belongs to a damage; 0: none.
 std::uint8_t label_of(DamageKind kind) {
@@ -54,7 +57,8 @@ struct SearchImages {
   Image<float> depth;             ///< positive inside this kind of damage
   Image<std::uint8_t> allowed;    ///< 255 where a cell may belong to a damage
   Image<std::uint8_t> visited;    ///< scratch of flood fills
-  Image<std::uint8_t>& assigned;  ///< `label_of` the damage that the cell belongs to; shared by both kinds
+  Image<std::uint8_t>& assigned;  ///< `label_of` the damage that the cell belongs to, `obstacle_label`, or 0; shared by
+                                  ///< both kinds
 
   DepthField field() { return {depth, allowed, visited}; }
 };
@@ -122,16 +126,26 @@ float max_depth(const ConnectedComponent& core, DamageKind kind, const Threshold
                                         : thresholds.max_height(first.first, first.row);
 }
 
-/// Recompute the bounding box and the size, and remove cells that are assigned to the other kind. False if a cell is
-/// assigned to another damage of the same kind.
-bool update_extent(Candidate& candidate, const Image<std::uint8_t>& assigned) {
+/// Whether a region has cells of an obstacle or of another damage of the same kind.
+bool overlaps_other(const Candidate& candidate, const Image<std::uint8_t>& assigned) {
+  const CellBox& box = candidate.box();
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      const std::uint8_t label = candidate.cells(i, j) ? assigned(i, j) : std::uint8_t{0};
+      if (label == label_of(candidate.kind) || label == obstacle_label) return true;
+    }
+  }
+  return false;
+}
+
+/// Remove assigned cells, and recompute the bounding box and the size.
+void update_extent(Candidate& candidate, const Image<std::uint8_t>& assigned) {
   const CellBox around = candidate.box();
   CellBox box;
   candidate.size = 0;
   for (int j = around.first_row; j <= around.last_row; ++j) {
     for (int i = around.first_column; i <= around.last_column; ++i) {
       if (!candidate.cells(i, j)) continue;
-      if (assigned(i, j) == label_of(candidate.kind)) return false;
       if (assigned(i, j) != 0) {
         candidate.cells.set(i, j, false);
         continue;
@@ -141,12 +155,11 @@ bool update_extent(Candidate& candidate, const Image<std::uint8_t>& assigned) {
     }
   }
   candidate.cells = candidate.cells.cropped(box);
-  return true;
 }
 
 /// Extend the region from the flood fill at its level to its outline: to the foot of the wall, and for depressions to
-/// the edge in the image. False if it runs into another damage of the same kind.
-bool extend_region(const SearchInput& input, SearchImages& images, Candidate& candidate) {
+/// the edge in the image, up to the cells of other damages.
+void extend_region(const SearchInput& input, SearchImages& images, Candidate& candidate) {
   const std::size_t max_hole = images.depth.pixels() / constants.max_hole_divisor;
   if (input.thresholds.metric()) {
     const float min_depth = constants.foot_sigmas * static_cast<float>(input.depth_cells.noise);
@@ -157,32 +170,34 @@ bool extend_region(const SearchInput& input, SearchImages& images, Candidate& ca
                    candidate.cells);
   }
   fill_holes(candidate.cells.cells(), max_hole);
-  if (!update_extent(candidate, images.assigned)) return false;
-  if (candidate.size == 0 || candidate.kind == DamageKind::protrusion || input.image_edges.grey.empty()) return true;
+  update_extent(candidate, images.assigned);
+  if (candidate.size == 0 || candidate.kind == DamageKind::protrusion || input.image_edges.grey.empty()) return;
   refine_outline_by_image(input.image_edges, images.depth.width(), images.depth.height(), candidate.cells);
   fill_holes(candidate.cells.cells(), max_hole);
-  return update_extent(candidate, images.assigned);
+  update_extent(candidate, images.assigned);
 }
 
-/// Segment the region around a core. If it runs into another damage, the level is raised above the saddle between them.
-/// Size 0 if there is no such region.
+/// Segment the region around a core. If it runs into another damage or an obstacle, the
+/// level is raised above the saddle between them. Size 0 if there is no such region.
 Candidate segment(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images) {
   const DepthField field = images.field();
   const bool metric = input.thresholds.metric();
   Candidate candidate;
   candidate.kind = kind;
   const float floor = floor_depth(field, core);
-  if (floor > max_depth(core, kind, input.thresholds)) return candidate;
   const float min_level = constants.min_level_sigmas * static_cast<float>(input.depth_cells.noise);
   const Outline outline = find_outline(field, core, floor, min_level, metric);
   candidate.level = outline.level;
   candidate.evidence.steepness = outline.steepness;
-  for (int i = 0; i < constants.max_level_attempts; ++i, candidate.level *= constants.level_factor) {
+  const float max_level = std::max(candidate.level, constants.max_level_share * floor);
+  const int raises = constants.max_level_attempts - 1;
+  const float factor = std::pow(max_level / candidate.level, 1.0F / static_cast<float>(raises));
+  candidate.cells = flood_fill(field, core, candidate.level);
+  for (int i = 0; i < raises && overlaps_other(candidate, images.assigned); ++i) {
+    candidate.level *= factor;
     candidate.cells = flood_fill(field, core, candidate.level);
-    if (candidate.box().empty()) break;
-    if (extend_region(input, images, candidate)) return candidate;
   }
-  candidate.size = 0;
+  if (!candidate.box().empty()) extend_region(input, images, candidate);
   return candidate;
 }
 
@@ -219,7 +234,8 @@ double road_share(const SearchInput& input, const Candidate& candidate, const Im
   double on_road = 0;
   for (int j = around.first_row; j <= around.last_row; ++j) {
     for (int i = around.first_column; i <= around.last_column; ++i) {
-      if (!dilated(i, j) || candidate.cells(i, j) || assigned(i, j) != 0) continue;
+      const bool other_damage = assigned(i, j) != 0 && assigned(i, j) != obstacle_label;
+      if (!dilated(i, j) || candidate.cells(i, j) || other_damage) continue;
       ++cells;
       if (input.depth_cells.valid(i, j) == 0) continue;
       const float depth = sign * input.depth_cells.depth(i, j);
@@ -261,6 +277,15 @@ void assign(const Candidate& candidate, Image<std::uint8_t>& assigned) {
   }
 }
 
+/// Label the cells of a core that are higher, or deeper, than a damage can be.
+void mark_obstacle(const ConnectedComponent& core, float max_depth, SearchImages& images) {
+  for (const CellRun& run : core.runs) {
+    for (int i = run.first; i <= run.last; ++i) {
+      if (images.depth(i, run.row) > max_depth) images.assigned(i, run.row) = obstacle_label;
+    }
+  }
+}
+
 /// Segment the region around a core and add it to `found` if it is large enough and surrounded by road.
 void add_candidate(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images,
                    std::vector<Candidate>& found) {
@@ -281,6 +306,13 @@ void find_kind(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& a
   const ConnectedComponents components(core_cells(images, input.thresholds));
   std::vector<ConnectedComponent> cores(components.begin(), components.end());
   std::sort(cores.begin(), cores.end(), [](const auto& one, const auto& other) { return one.size > other.size; });
+  const auto too_deep = [&](const ConnectedComponent& core) {
+    const float limit = max_depth(core, kind, input.thresholds);
+    const bool exceeded = floor_depth(images.field(), core) > limit;
+    if (exceeded) mark_obstacle(core, limit, images);
+    return exceeded;
+  };
+  std::erase_if(cores, too_deep);
   for (const ConnectedComponent& core : cores) {
     const CellRun& first = core.runs.front();
     if (assigned(first.first, first.row) == 0) add_candidate(input, core, kind, images, found);

@@ -59,8 +59,8 @@ float half_height(const DepthField& field, const ConnectedComponent& seeds, floa
   return level;
 }
 
-/// Add the allowed neighbours that are deeper than `min_depth`, `steps` times.
-void grow_deeper(const DepthField& field, float min_depth, int steps, BoxMask& region) {
+/// Add the allowed neighbours with depths from `min_depth` to `max_depth`, `steps` times.
+void grow_between(const DepthField& field, float min_depth, float max_depth, int steps, BoxMask& region) {
   const int columns = field.depth.width();
   const int rows = field.depth.height();
   std::vector<CellIndex> front = contour_cells(region, columns, rows);
@@ -70,7 +70,8 @@ void grow_deeper(const DepthField& field, float min_depth, int steps, BoxMask& r
     next.clear();
     for (const CellIndex cell : front) {
       for_each_neighbour(cell.column, cell.row, columns, rows, [&](int i, int j) {
-        if (region(i, j) || field.allowed(i, j) == 0 || field.depth(i, j) <= min_depth) return;
+        const float depth = field.depth(i, j);
+        if (region(i, j) || field.allowed(i, j) == 0 || depth <= min_depth || depth > max_depth) return;
         region.set(i, j);
         next.push_back({i, j});
       });
@@ -199,7 +200,8 @@ void grow_to_wall_foot(const DepthField& field, float level, float min_depth, Bo
   const int full_run = std::max(1, run(level));
   const float hollow = std::clamp(median_around(field, region, full_run, 2 * full_run + 1), 0.0F, level);
   const int steps = static_cast<int>(std::ceil(rounding * run(level - hollow)));
-  grow_deeper(field, std::max(min_depth, hollow + min_rise * (level - hollow)), steps, region);
+  // What rises above the level again is another damage.
+  grow_between(field, std::max(min_depth, hollow + min_rise * (level - hollow)), level, steps, region);
 }
 
 }  // namespace roadstereo

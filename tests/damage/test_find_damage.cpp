@@ -328,6 +328,64 @@ TEST(FindDamage, HighBlockIsNoDamageLowBlockIsBump) {
   EXPECT_NEAR(static_cast<double>(low.damages[0].pixels), 220 * 160, 0.1 * 220 * 160);
 }
 
+/// Mean over a square window, as the support of matching smears depths over rims.
+void smear(Image<float>& map, int radius) {
+  const Image<float> sharp = map;
+  for (int v = radius; v + radius < map.height(); ++v) {
+    for (int u = radius; u + radius < map.width(); ++u) {
+      double sum = 0;
+      for (int y = v - radius; y <= v + radius; ++y) {
+        for (int x = u - radius; x <= u + radius; ++x) sum += sharp(x, y);
+      }
+      map(u, v) = static_cast<float>(sum / ((2 * radius + 1) * (2 * radius + 1)));
+    }
+  }
+}
+
+/// Two damages whose outlines touch are both kept.
+TEST(FindDamage, FindsShallowDamageBesidePothole) {
+  synth::Scene scene = intact_scene();
+  scene.road.blobs = {{-0.02, 0.62, 0.19, 0.008, 0, 1, 3}, {0.245, 0.66, 0.08, 0.09, 0, 0.2, 8}};
+  ExactMaps maps(scene, 0);
+  smear(maps.transformed, 6);
+  maps.transformed = with_noise(maps.transformed, 0.02);
+  const DamageMap map = find_damage(maps.metric());
+  ASSERT_EQ(map.damages.size(), 2U);
+  for (const synth::DamageTruth& known : maps.pair.damages) {
+    const Damage* found = find(map, maps.pair, known.id);
+    ASSERT_NE(found, nullptr) << known.depth_m;
+    EXPECT_NEAR(found->metrics->max_depth_m.value, known.depth_m, 0.15 * known.depth_m);
+  }
+}
+
+/// A bump keeps clear of a block too high for damage, with which its foot is connected through smeared depths.
+TEST(FindDamage, FindsBumpBesideHighBlock) {
+  synth::Scene scene = intact_scene();
+  scene.road.blobs = {{0.35, 0.6, 0.12, -0.03, 0, 0.3, 3}};
+  ExactMaps maps(scene, 0);
+  const double height_m = ground_plane(maps.pair.plane, maps.pair.calibration).height_m;
+  const auto& bump = maps.pair.damages[0];
+  const auto [bump_u, bump_v] = label_centroid(maps.pair, bump.id);
+  int bump_end = 0;
+  for (int u = 0; u < maps.pair.labels.width(); ++u) {
+    if (maps.pair.labels(u, static_cast<int>(bump_v)) == bump.id) bump_end = u;
+  }
+  constexpr int gap = 12;
+  for (int v = static_cast<int>(bump_v) - 60; v < static_cast<int>(bump_v) + 60; ++v) {
+    for (int u = bump_end - 2; u < bump_end + gap + 80; ++u) {
+      constexpr double bridge_px = 0.035;  // between the level of an outline and that of a core
+      const double block_px = maps.pair.plane.disparity(u, v) * (height_m / (height_m - 0.3) - 1);
+      const double change = u < bump_end + gap ? bridge_px : block_px;
+      maps.transformed(u, v) += static_cast<float>(change);
+    }
+  }
+  maps.transformed = with_noise(maps.transformed, 0.02);
+  const DamageMap map = find_damage(maps.metric());
+  ASSERT_EQ(map.damages.size(), 1U);
+  EXPECT_EQ(map.damages[0].kind, DamageKind::protrusion);
+  EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, bump.depth_m, 0.3 * bump.depth_m);
+}
+
 TEST(FindDamage, OmitsBumpsUnlessRequested) {
   DamageOptions options;
   options.protrusions = false;
