@@ -28,6 +28,7 @@ struct SegmentationConstants {
   int max_level_attempts = 8;        ///< maximum number of levels to separate touching damages
   float max_level_share = 0.9F;      ///< of the floor's depth, the highest of these levels
   std::size_t max_hole_divisor = 4;  ///< holes up to 1/4 of the image are filled
+  float outlier_floors = 1.25F;      ///< minimum depth, in depths of the floor, of the cells around an impossible one
 
   // Surroundings.
   double margin_radii = 0.5;     ///< width of the band around the region
@@ -46,7 +47,7 @@ std::uint8_t label_of(DamageKind kind) {
 
 /// Inputs of the search.
 struct SearchInput {
-  const DepthCells& depth_cells;
+  DepthCells& depth_cells;
   const Image<std::uint8_t>& road;
   const Thresholds& thresholds;
   const ImageEdges& image_edges;
@@ -119,11 +120,20 @@ Image<std::uint8_t> core_cells(const SearchImages& images, const Thresholds& thr
   return cores;
 }
 
-/// Maximum depth, or height, of a damage at the core.
-float max_depth(const ConnectedComponent& core, DamageKind kind, const Thresholds& thresholds) {
-  const CellRun& first = core.runs.front();
-  return kind == DamageKind::depression ? thresholds.max_depth(first.first, first.row)
-                                        : thresholds.max_height(first.first, first.row);
+/// Maximum depth, or height, of a damage at a cell.
+float max_depth(int i, int j, DamageKind kind, const Thresholds& thresholds) {
+  return kind == DamageKind::depression ? thresholds.max_depth(i, j) : thresholds.max_height(i, j);
+}
+
+/// Call `visit` for the cells of a core that are deeper, or higher, than a damage can be.
+template <class Visit>
+void for_each_impossible(const SearchInput& input, const ConnectedComponent& core, DamageKind kind,
+                         const SearchImages& images, Visit&& visit) {
+  for (const CellRun& run : core.runs) {
+    for (int i = run.first; i <= run.last; ++i) {
+      if (images.depth(i, run.row) > max_depth(i, run.row, kind, input.thresholds)) visit(i, run.row);
+    }
+  }
 }
 
 /// Whether a region has cells of an obstacle or of another damage of the same kind.
@@ -277,13 +287,31 @@ void assign(const Candidate& candidate, Image<std::uint8_t>& assigned) {
   }
 }
 
-/// Label the cells of a core that are higher, or deeper, than a damage can be.
-void mark_obstacle(const ConnectedComponent& core, float max_depth, SearchImages& images) {
-  for (const CellRun& run : core.runs) {
-    for (int i = run.first; i <= run.last; ++i) {
-      if (images.depth(i, run.row) > max_depth) images.assigned(i, run.row) = obstacle_label;
+/// Turn outliers into gaps: the cells around those that are deeper, or higher, than a damage can be, as wrong matches at
+/// snow or dirt make them. They take the depth of the floor.
+void remove_outliers(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images) {
+  std::vector<CellRun> impossible;
+  for_each_impossible(input, core, kind, images, [&](int i, int j) { impossible.push_back({j, i, i}); });
+  if (impossible.empty()) return;
+  ConnectedComponent seeds;
+  seeds.runs = impossible;
+  const float floor = floor_depth(images.field(), core);
+  const BoxMask outliers = flood_fill(images.field(), seeds, constants.outlier_floors * floor);
+  const CellBox& box = outliers.box();
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      if (!outliers(i, j)) continue;
+      images.depth(i, j) = floor;
+      input.depth_cells.depth(i, j) = sign_of(kind) * floor;
+      input.depth_cells.valid(i, j) = 0;
     }
   }
+}
+
+/// Whether the floor of a core is deeper, or higher, than a damage can be.
+bool is_obstacle(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images) {
+  const CellRun& first = core.runs.front();
+  return floor_depth(images.field(), core) > max_depth(first.first, first.row, kind, input.thresholds);
 }
 
 /// Segment the region around a core and add it to `found` if it is large enough and surrounded by road.
@@ -306,22 +334,22 @@ void find_kind(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& a
   const ConnectedComponents components(core_cells(images, input.thresholds));
   std::vector<ConnectedComponent> cores(components.begin(), components.end());
   std::sort(cores.begin(), cores.end(), [](const auto& one, const auto& other) { return one.size > other.size; });
-  const auto too_deep = [&](const ConnectedComponent& core) {
-    const float limit = max_depth(core, kind, input.thresholds);
-    const bool exceeded = floor_depth(images.field(), core) > limit;
-    if (exceeded) mark_obstacle(core, limit, images);
-    return exceeded;
-  };
-  std::erase_if(cores, too_deep);
+  std::erase_if(cores, [&](const ConnectedComponent& core) {
+    if (!is_obstacle(input, core, kind, images)) return false;
+    for_each_impossible(input, core, kind, images, [&](int i, int j) { assigned(i, j) = obstacle_label; });
+    return true;
+  });
   for (const ConnectedComponent& core : cores) {
     const CellRun& first = core.runs.front();
-    if (assigned(first.first, first.row) == 0) add_candidate(input, core, kind, images, found);
+    if (assigned(first.first, first.row) != 0) continue;
+    remove_outliers(input, core, kind, images);
+    add_candidate(input, core, kind, images, found);
   }
 }
 
 }  // namespace
 
-std::vector<Candidate> find_candidates(const DepthCells& depth_cells, const Image<std::uint8_t>& road,
+std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road,
                                        const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions) {
   const SearchInput input{depth_cells, road, thresholds, image_edges};
   std::vector<Candidate> found;

@@ -28,8 +28,8 @@ struct Candidate {
 
 /// Find candidates: connected components deeper than the thresholds (cores), extended to their outlines, with the
 /// evidence that they are damage. Depressions come first, each kind by decreasing size of the core. Regions do not
-/// overlap.
-std::vector<Candidate> find_candidates(const DepthCells& depth_cells, const Image<std::uint8_t>& road,
+/// overlap. Outliers in them, deeper than a damage can be, become gaps of `depth_cells` at the depth of the floor.
+std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road,
                                        const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions);
 
 }  // namespace roadstereo

@@ -100,14 +100,14 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
   Image<std::uint8_t> road;
   find_road(cells, coordinates, surface, road);
   if (move_unsupported_cells(input, surface, threads, cells)) find_road(cells, coordinates, surface, road);
-  const DepthCells depth_cells = make_depth_cells(cells, surface);
+  DepthCells depth_cells = make_depth_cells(cells, surface);
   result.non_metric_reason = reason_for_pixels(input);
   result.metric = result.non_metric_reason.empty();
   result.noise_px = surface.noise;
   const Thresholds thresholds(input, options, cells, coordinates, depth_cells.noise, result.metric);
-  const Segmentation segmentation{
-      cells, surface, road, depth_cells,
-      find_candidates(depth_cells, road, thresholds, make_image_edges(input, cells), options.protrusions)};
+  std::vector<Candidate> candidates =
+      find_candidates(depth_cells, road, thresholds, make_image_edges(input, cells), options.protrusions);
+  const Segmentation segmentation{cells, surface, road, depth_cells, std::move(candidates)};
   measure_damage(input, options, segmentation, threads, result);
 }
 

@@ -99,9 +99,10 @@ void fill_road_maps(const DamageInput& input, const Segmentation& segmentation, 
   });
 }
 
-/// Add a damage to the road region, and interpolate its holes and islands.
-void fill_damage(const Candidate& candidate, std::uint16_t id, const Cells& cells, const Image<float>& interpolated,
-                 DamageMap& result) {
+/// Add a damage to the road region, and interpolate its holes, outliers and islands.
+void fill_damage(const Segmentation& segmentation, const Candidate& candidate, std::uint16_t id,
+                 const Image<float>& interpolated, DamageMap& result) {
+  const Cells& cells = segmentation.cells;
   const float sign = sign_of(candidate.kind);
   const PixelBox box = pixel_box(candidate, cells);
   for (int v = box.v0; v <= box.v1; ++v) {
@@ -109,9 +110,10 @@ void fill_damage(const Candidate& candidate, std::uint16_t id, const Cells& cell
       if (result.ids(u, v) != id) continue;
       result.road(u, v) = 255;
       float& depth = result.depth(u, v);
-      if (sign * depth >= candidate.level) continue;
+      const bool is_gap = segmentation.depth_cells.valid(u / cells.factor, v / cells.factor) == 0;
+      if (sign * depth >= candidate.level && !is_gap) continue;
       const float inside = interpolate_bilinear(interpolated, cells.factor, u, v);
-      if (std::isnan(depth) || sign * inside > candidate.level) depth = inside;
+      if (std::isnan(depth) || is_gap || sign * inside > candidate.level) depth = inside;
     }
   }
 }
@@ -138,7 +140,7 @@ void fill_maps(const DamageInput& input, const Segmentation& segmentation, int t
   for (std::size_t k = 0; k < segmentation.candidates.size(); ++k) {
     const auto id = static_cast<std::uint16_t>(k + 1);
     rasterise(segmentation.cells, segmentation.candidates[k], id, result.ids);
-    fill_damage(segmentation.candidates[k], id, segmentation.cells, interpolated, result);
+    fill_damage(segmentation, segmentation.candidates[k], id, interpolated, result);
   }
 }
 

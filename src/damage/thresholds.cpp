@@ -28,9 +28,13 @@ void Thresholds::min_depths(int j, float* row) const {
   for (int i = 0; i < width; ++i) row[i] = std::max(noise, static_cast<float>(min_depth_m * scale[i]));
 }
 
-float Thresholds::in_pixels(double metres, int i, int j) const {
-  const float scale = scale_(i, j);
-  return metric_ && !std::isnan(scale) ? static_cast<float>(metres * scale) : std::numeric_limits<float>::infinity();
+float Thresholds::pixels_below(double depth_m, int i, int j) const {
+  const double scale = scale_(i, j);
+  const double distance_m = camera_height_m_ + depth_m;  // a point at a fixed pixel moves away by its share
+  if (!metric_ || std::isnan(scale) || distance_m <= 0) {
+    return std::copysign(std::numeric_limits<float>::infinity(), static_cast<float>(depth_m));
+  }
+  return static_cast<float>(depth_m * scale * camera_height_m_ / distance_m);
 }
 
 float Thresholds::min_cells(int i, int j) const {

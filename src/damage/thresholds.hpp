@@ -19,14 +19,15 @@ class Thresholds {
   /// Minimum depths of row j.
   void min_depths(int j, float* row) const;
   /// Maximum depth of a depression; infinity if it is not metric.
-  float max_depth(int i, int j) const { return in_pixels(options_.max_depth_m, i, j); }
+  float max_depth(int i, int j) const { return pixels_below(options_.max_depth_m, i, j); }
   /// Maximum height of a protrusion; infinity if it is not metric.
-  float max_height(int i, int j) const { return in_pixels(options_.max_height_m, i, j); }
+  float max_height(int i, int j) const { return -pixels_below(-options_.max_height_m, i, j); }
   /// Minimum area, cells.
   float min_cells(int i, int j) const;
 
  private:
-  float in_pixels(double metres, int i, int j) const;
+  /// Change of the disparity at `depth_m` below the road, negative above it; infinite if it is not metric.
+  float pixels_below(double depth_m, int i, int j) const;
 
   const DamageInput& input_;
   const DamageOptions& options_;
