@@ -233,11 +233,11 @@ def descent(result):
     return markdown(["λ(0)", "mean iterations", "max"], table)
 
 
-@needs("damage_maps", "damage_pairs")
-def damage(maps, pairs):
+@needs("damage_maps", "damage_wider_maps", "damage_pairs")
+def damage(maps, wider, pairs):
     table = [[name, row["frame"], *(number(row[key], 3) for key in ("precision", "recall", "f")),
               number(row["false_positives"], 0)]
-             for name, result in (("maps", maps), ("pairs", pairs)) for row in result["rows"]]
+             for name, result in (("maps", maps), ("wider maps", wider), ("pairs", pairs)) for row in result["rows"]]
     return markdown(["transformed", "frame", "precision", "recall", "F", "false positives"], table)
 
 
@@ -248,21 +248,52 @@ def damage_kitti(result):
     return markdown(["frame", "IoU", "precision", "recall", "false regions"], table)
 
 
-@needs("damage_scenes", "damage_degraded")
-def damage_scenes(clean, degraded):
+@needs("damage_scenes", "damage_degraded", "damage_wide", "damage_other")
+def damage_scenes(clean, degraded, wide, other):
+    sources = (("clean", clean), ("degraded", degraded), ("wide", wide), ("another renderer", other))
     table = [[name, row["kind"], number(row["in_view"], 0), number(row["deeper_than_3_std_errors"], 0),
               number(row["found_of_those"], 0), number(100 * row["recall"], 0) if row["recall"] is not None else ""]
-             for name, result in (("clean", clean), ("degraded", degraded)) for row in result["detection"]]
+             for name, result in sources for row in result["detection"]]
     table += [[name, "false positives", "", "", f"{result['false_positives']:.0f} of {result['regions']:.0f}", ""]
-              for name, result in (("clean", clean), ("degraded", degraded))]
+              for name, result in sources]
     return markdown(["images", "kind", "in view", "deeper than 3 standard errors", "found of those", "recall %"], table)
 
 
-@needs("damage_scenes")
-def damage_errors(result):
-    table = [[row["quantity"], number(row["within_2_std_errors_percent"], 0), number(row["median_error_percent"], 0),
-              number(row["mean_abs_error_percent"], 1), number(row["precise"], 0)] for row in result["measurement"]]
-    return markdown(["quantity", "within 2 standard errors %", "median error %", "mean error of precise ones %",
+@needs("damage_scenes", "damage_wide", "damage_other")
+def damage_confidence(clean, wide, other):
+    def cells(row):
+        return [number(row["regions"], 0), number(row["damage_share"], 2)]
+    table = [[rows[0]["confidence"], *(cell for row in rows for cell in cells(row))]
+             for rows in zip(clean["confidence"], wide["confidence"], other["confidence"])]
+    return markdown(["confidence", "clean: regions", "damage", "wide: regions", "damage", "another renderer: regions", "damage"],
+                    table)
+
+
+FAULTS = ("none", "20 streaks", "60 streaks", "150 streaks", "100 snow dots", "0.5 % dead pixels", "6 specks, left",
+          "right k = 0.01", "right turned 0.5°", "right 1 rows lower", "right 3 rows lower", "right vibrates 0.5 px",
+          "both skewed 10 px", "doffs +5", "doffs -5", "focal +20 %", "JPEG 75", "JPEG 20", "noise 8", "noise 25")
+
+
+@needs("faults")
+def faults(result):
+    keys = ("found", "false_invented", "false_graded", "depths", "within_2_std_errors", "warned")
+    table = []
+    for row in result["rows"]:
+        if row["fault"] not in FAULTS:
+            continue
+        found, invented, graded, depths, within, warned = (number(row[key], 0) for key in keys)
+        table.append([row["fault"], found, invented, graded, f"{within} of {depths}", warned])
+    return markdown(["fault", "found of 21", "invented", "graded", "within 2", "warned of 10"], table)
+
+
+@needs("damage_scenes", "damage_wide", "damage_other")
+def damage_errors(clean, wide, other):
+    table = [[name, row["quantity"], number(row["within_2_std_errors_percent"], 0), number(row["median_error_percent"], 0),
+              number(row["mean_abs_error_percent"], 1),
+              number(row["precise"], 0)]
+             for name, result in (("clean", clean), ("wide", wide), ("another renderer", other))
+             for row in result["measurement"]]
+    return markdown(["roads", "quantity", "within 2 standard errors %", "median error %", "mean error of precise ones %",
                      "precise ones"], table)
 
 

@@ -43,6 +43,10 @@ EXPERIMENTS = {
     "damage_kitti": "evaluate damage {data}/kitti2015",
     "damage_scenes": "evaluate damage",
     "damage_degraded": "evaluate damage --degraded --scenes 30",
+    "damage_wide": "evaluate damage --wide",
+    "damage_other": "evaluate damage {data}/wider/synthetic",
+    "damage_wider_maps": "evaluate damage {data}/wider/transformed",
+    "faults": "evaluate faults",
     "scan": "evaluate scan {data}/potholes",
     "flight": "evaluate flight",
     "flight_jumps": "evaluate flight --flight jump=100,jump=200",
@@ -59,7 +63,7 @@ EXPERIMENTS |= {
 # Of these a figure is not compared: times, and variants that are worse on purpose.
 UNCHECKED = ("ablation", "benchmark", "lambda")
 # What the tables do not need: values of single frames and trials.
-LEFT_OUT = {"trials", "frames", "bins", "damage_bins", "times", "common", "common_damage", "best_visible",
+LEFT_OUT = {"trials", "frames", "bins", "damage_bins", "found_regions", "times", "common", "common_damage", "best_visible",
             "best_damage", "version", "peak_memory_bytes"}
 
 SHARES = re.compile(r"(density|completeness|covered|measured|within_\w*)_percent$|_percent_within$")

@@ -168,7 +168,9 @@ std::vector<TransverseProfile> measure_across(MapReader& reader, const Path& pat
   const auto count = static_cast<std::size_t>(std::lround(options.lane_width_m / spacing_m)) + 1;
   NoiseGaps noise(spacing_m, options.straightedge_m);
   std::vector<TransverseProfile> profiles;
-  for (double s = 0; s <= path.length_m(); s += options.station_m) {
+  const auto stations = static_cast<int>(path.length_m() / options.station_m) + 1;
+  for (int k = 0; k < stations; ++k) {
+    const double s = k * options.station_m;
     const Station station = path.at(s);
     std::vector<double> heights(count, nan);
     double variance = 0;

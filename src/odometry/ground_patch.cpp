@@ -41,7 +41,9 @@ std::vector<double> integral(const std::vector<float>& values) {
 double box_sum(const std::vector<double>& sums, int x, int y, int radius) {
   const int x0 = std::max(x - radius, 0), x1 = std::min(x + radius + 1, side);
   const int y0 = std::max(y - radius, 0), y1 = std::min(y + radius + 1, side);
-  const auto at = [&sums](int column, int row) { return sums[static_cast<std::size_t>(row * (side + 1) + column)]; };
+  const auto at = [&sums](int column, int row) {
+    return sums[static_cast<std::size_t>(row) * (side + 1) + static_cast<std::size_t>(column)];
+  };
   return at(x1, y1) - at(x0, y1) - at(x1, y0) + at(x0, y0);
 }
 
@@ -52,7 +54,7 @@ void filter(std::vector<float>& cells, const std::vector<float>& valid) {
   const std::vector<double> grey = integral(cells), count = integral(valid);
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
-      const auto i = static_cast<std::size_t>(y * side + x);
+      const auto i = static_cast<std::size_t>(y) * side + static_cast<std::size_t>(x);
       if (valid[i] == 0) continue;
       const double neighbours = box_sum(count, x, y, radius);
       const double detail = static_cast<double>(cells[i]) - box_sum(grey, x, y, radius) / neighbours;
@@ -96,9 +98,10 @@ void sample_ground(const ImagePyramid& pyramid, const StereoCalibration& calibra
   cells.assign(static_cast<std::size_t>(side) * side, 0);
   std::vector<float> valid(cells.size(), 0);
   const double cosine = std::cos(yaw_rad), sine = std::sin(yaw_rad);
+  constexpr int middle = side / 2;
   for (int row = 0; row < side; ++row) {
     for (int column = 0; column < side; ++column) {
-      const double dx = (column - side / 2) * grid.cell_m, dy = (row - side / 2) * grid.cell_m;
+      const double dx = (column - middle) * grid.cell_m, dy = (row - middle) * grid.cell_m;
       const Vector<3> p =
           from_road(road.axes, grid.centre_x_m + cosine * dx - sine * dy, grid.centre_y_m + sine * dx + cosine * dy);
       if (!(p[2] > 0)) continue;
@@ -111,7 +114,7 @@ void sample_ground(const ImagePyramid& pyramid, const StereoCalibration& calibra
       const Image<GreySample>& samples = pyramid.level(level);
       const long x = std::lround((u + 0.5) / (1 << level) - 0.5), y = std::lround((v + 0.5) / (1 << level) - 0.5);
       if (x < 0 || y < 0 || x >= samples.width() || y >= samples.height()) continue;
-      const auto i = static_cast<std::size_t>(row * side + column);
+      const auto i = static_cast<std::size_t>(row) * side + static_cast<std::size_t>(column);
       cells[i] = samples(static_cast<int>(x), static_cast<int>(y)).grey;
       valid[i] = 1;
     }

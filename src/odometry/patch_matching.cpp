@@ -114,13 +114,13 @@ class WarpedPatch {
                  row = std::clamp(y + TexturePatch::radius, 0.0, last);
     const int u = static_cast<int>(column), v = static_cast<int>(row);
     const float fu = static_cast<float>(column - u), fv = static_cast<float>(row - v);
-    const float* at = patch.grey.data() + v * TexturePatch::side + u;
+    const float* at = patch.grey.data() + std::ptrdiff_t{v} * TexturePatch::side + u;
     const float above = at[0] + fu * (at[1] - at[0]);
     const float below = at[TexturePatch::side] + fu * (at[TexturePatch::side + 1] - at[TexturePatch::side]);
     return above + fv * (below - above);
   }
 
-  std::array<float, side * side> grey_{};
+  std::array<float, std::size_t{side} * side> grey_{};
 };
 
 /// Where a patch was found, pixels of the image.
@@ -169,7 +169,10 @@ class Search {
   }
 
  private:
-  float& at(int x, int y) { return ncc_[static_cast<std::size_t>(y * (2 * radius_ + 1) + x)]; }
+  float& at(int x, int y) {
+    return ncc_[static_cast<std::size_t>(y) * (2 * static_cast<std::size_t>(radius_) + 1) +
+                static_cast<std::size_t>(x)];
+  }
 
   /// Whether no other position agrees nearly as well: structures repeat.
   bool unique(int best_x, int best_y, float best) {

@@ -23,26 +23,27 @@ class Transform {
   }
 
   void run(Complex* values, int stride) {
-    for (int i = 0, reversed = 0; i < n_; ++i) {
-      line_[static_cast<std::size_t>(reversed)] = values[i * stride];
-      int bit = n_ / 2;
+    const auto n = static_cast<std::size_t>(n_);
+    for (std::size_t i = 0, reversed = 0; i < n; ++i) {
+      line_[reversed] = values[static_cast<std::ptrdiff_t>(i) * stride];
+      std::size_t bit = n / 2;
       for (; bit > 0 && (reversed & bit) != 0; bit /= 2) reversed ^= bit;
       reversed |= bit;
     }
-    for (int half = 1; half < n_; half *= 2) {
-      const int step = n_ / (2 * half);
-      for (int first = 0; first < n_; first += 2 * half) {
-        for (int k = 0; k < half; ++k) {
-          Complex& a = line_[static_cast<std::size_t>(first + k)];
-          Complex& b = line_[static_cast<std::size_t>(first + k + half)];
-          const Complex w = twiddles_[static_cast<std::size_t>(k * step)];
+    for (std::size_t half = 1; half < n; half *= 2) {
+      const std::size_t step = n / (2 * half);
+      for (std::size_t first = 0; first < n; first += 2 * half) {
+        for (std::size_t k = 0; k < half; ++k) {
+          Complex& a = line_[first + k];
+          Complex& b = line_[first + k + half];
+          const Complex w = twiddles_[k * step];
           const Complex turned{b.real() * w.real() - b.imag() * w.imag(), b.real() * w.imag() + b.imag() * w.real()};
           b = a - turned;
           a += turned;
         }
       }
     }
-    for (int i = 0; i < n_; ++i) values[i * stride] = line_[static_cast<std::size_t>(i)];
+    for (std::size_t i = 0; i < n; ++i) values[static_cast<std::ptrdiff_t>(i) * stride] = line_[i];
   }
 
  private:

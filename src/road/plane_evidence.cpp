@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "core/full_resolution.hpp"
@@ -156,9 +157,10 @@ void search_lines(const EvidenceGrid& grid, const ShearedRows& sheared, double s
       const double top = grid.disparities() * (lowest_top + (1 - lowest_top) * t / top_steps);
       const ThreePoints points{{bottom - span, bottom + span, top}};
       const float step = static_cast<float>((bottom - top) / last_row);
+      const float rounded_bottom = static_cast<float>(bottom) + 0.5F;
       float sum = 0;
       for (int r = last_row; r >= 0; r -= row_step) {
-        const int d = static_cast<int>(static_cast<float>(bottom) - step * static_cast<float>(last_row - r) + 0.5f);
+        const int d = static_cast<int>(rounded_bottom - step * static_cast<float>(last_row - r));
         if (d > 0 && d < grid.disparities()) sum += sheared.row(r)[d];
       }
       if (static_cast<double>(sum) <= best[b].score) continue;
@@ -169,9 +171,11 @@ void search_lines(const EvidenceGrid& grid, const ShearedRows& sheared, double s
 
 /// Coordinate descent over the three points with a step that is halved.
 void refine_plane(const EvidenceGrid& grid, int factor, const TiltLimit& limit, Candidate& candidate) {
-  constexpr double first_step = 1.0, last_step = 0.12;
+  constexpr double first_step = 1.0;
+  constexpr int halvings = 4;
   candidate.score = grid.score(candidate.points.plane(grid));
-  for (double step = first_step; step > last_step; step /= 2) {
+  double step = first_step;
+  for (int halving = 0; halving < halvings; ++halving, step /= 2) {
     for (bool moved = true; moved;) {
       moved = false;
       for (std::size_t i = 0; i < 3; ++i) {
@@ -226,7 +230,7 @@ ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const 
   if (grid.rows() < 2 || grid.columns() < 2 || grid.disparities() < 4) return planes;
   const double half_width = 0.5 * (grid.column(grid.columns() - 1) - grid.column(0));
   const int slopes = static_cast<int>(max_slope * half_width / slope_step);
-  auto candidates = scratch_vector<Candidate>(static_cast<std::size_t>((2 * slopes + 1) * bottom_steps));
+  auto candidates = scratch_vector<Candidate>(static_cast<std::size_t>(2 * slopes + 1) * bottom_steps);
   auto sheared = scratch_vector<float>(static_cast<std::size_t>(resolve_threads(threads)) * ShearedRows::size(grid));
   parallel_for(2 * slopes + 1, threads, [&](int i, int worker) {
     const double slope = (i - slopes) * slope_step / half_width;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 #include "core/parallel.hpp"
@@ -167,8 +168,10 @@ PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageVi
   if (std::abs(plane.a2) >= plane_match_max_slant) return {};
   const PlaneSearch search(left, right, plane, range_px, masked);
   const int cell_rows = (grid.rows + cell - 1) / cell, cell_columns = (grid.columns + cell - 1) / cell;
-  auto points = scratch_vector<DisparityPoint>(static_cast<std::size_t>(cell_rows * cell_columns));
-  auto near = scratch_vector<float>(static_cast<std::size_t>(cell_rows * cell * grid.columns));
+  auto points =
+      scratch_vector<DisparityPoint>(static_cast<std::size_t>(cell_rows) * static_cast<std::size_t>(cell_columns));
+  auto near =
+      scratch_vector<float>(static_cast<std::size_t>(cell_rows) * static_cast<std::size_t>(cell * grid.columns));
   auto rows = scratch_vector<RowCount>(static_cast<std::size_t>(cell_rows));
   parallel_for(cell_rows, threads, [&](int cell_row, int) {
     RowCount& row = rows[static_cast<std::size_t>(cell_row)];
@@ -187,7 +190,7 @@ PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageVi
         if (const auto correlation = correlation_on_plane(correlations, range_px)) {
           near[static_cast<std::size_t>(cell_row * cell * grid.columns) + row.near++] = *correlation;
         }
-        for (std::size_t k = 0; k <= static_cast<std::size_t>(2 * range_px); ++k) sums[k] += correlations[k];
+        for (std::size_t k = 0; k <= 2 * static_cast<std::size_t>(range_px); ++k) sums[k] += correlations[k];
         sum_u += u;
         sum_v += v;
         ++samples;

@@ -80,7 +80,7 @@ void find_rivals(const RowCorrelations& row, const float* best_disparity, float*
     Float rival = none;
     for (int d = 0; d < row.disparities; ++d) {
       const Float away = hn::Abs(hn::Sub(best, hn::Set(df, static_cast<float>(d))));
-      const Float value = hn::LoadU(df, row.values + d * row.pitch + u);
+      const Float value = hn::LoadU(df, row.values + std::ptrdiff_t{d} * row.pitch + u);
       rival = hn::Max(rival, hn::IfThenElse(hn::Gt(away, near), value, none));
     }
     hn::StoreU(rival, df, rivals + u);
@@ -106,8 +106,9 @@ void add_evidence(const RowCorrelations& row, int first, float* posterior, const
     const auto inside = hn::Lt(hn::Iota(df, static_cast<float>(u)), hn::Set(df, static_cast<float>(row.width)));
     Float total = zero, count = zero;
     for (int d = 0; d < row.disparities; ++d) {
-      const Float p = hn::IfThenElseZero(inside, likelihood(hn::LoadU(df, row.values + d * row.pitch + u)));
-      hn::StoreU(p, df, posterior + d * lanes);
+      const Float p =
+          hn::IfThenElseZero(inside, likelihood(hn::LoadU(df, row.values + std::ptrdiff_t{d} * row.pitch + u)));
+      hn::StoreU(p, df, posterior + std::ptrdiff_t{d} * lanes);
       total = hn::Add(total, p);
       count = hn::Add(count, hn::IfThenElseZero(hn::Gt(p, zero), one));
     }
@@ -117,7 +118,7 @@ void add_evidence(const RowCorrelations& row, int first, float* posterior, const
     const Float per_chance = hn::Mul(count, inverse_total);  // posterior over prior of a likelihood of 1
     Float before = zero, at = hn::LoadU(df, posterior), cumulative = zero, chance = zero;
     for (int d = 0; d < row.disparities; ++d) {
-      const Float after = d + 1 < row.disparities ? hn::LoadU(df, posterior + (d + 1) * lanes) : zero;
+      const Float after = d + 1 < row.disparities ? hn::LoadU(df, posterior + std::ptrdiff_t{d + 1} * lanes) : zero;
       const auto valid = hn::Gt(at, zero);
       const Float smooth = hn::MulAdd(at, half, hn::Mul(hn::Add(before, after), quarter));
       const Float ratio = hn::Mul(smooth, per_chance);

@@ -11,6 +11,7 @@
 #include "evaluate/experiments.hpp"
 #include "evaluate/pair_files.hpp"
 #include "evaluate/report.hpp"
+#include "evaluate/scene_folders.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 
@@ -42,10 +43,22 @@ constexpr const char* scene_note =
     "error\n"
     "of the maximum depth at most 2 mm.\n";
 
-void print_and_write(const DamageArguments& arguments, const Table& table, const char* note) {
-  fmt::print("{}\n{}", table.text(), note);
+constexpr const char* confidence_note = "damage: at least a third of the region is labelled.\n";
+
+template <class Results>
+void print_and_write(const DamageArguments& arguments, const Results& results, const Table& table, const char* note) {
+  std::vector<FoundRegion> regions;
+  for (const auto& one : results) {
+    if (one.method == results.front().method) regions.insert(regions.end(), one.regions.begin(), one.regions.end());
+  }
+  const Table confidence = confidence_table(regions);
+  fmt::print("{}\n{}\n{}{}", table.text(), note, confidence.text(), confidence_note);
   if (arguments.json.empty()) return;
-  write_report(arguments.json, {{"experiment", "damage"}, {"preset", arguments.preset}, {"rows", table.json()}});
+  write_report(arguments.json, {{"experiment", "damage"},
+                                {"preset", arguments.preset},
+                                {"rows", table.json()},
+                                {"confidence", confidence.json()},
+                                {"found_regions", regions_json(regions)}});
 }
 
 void score_synthetic(const DamageArguments& arguments) {
@@ -61,7 +74,8 @@ void score_synthetic(const DamageArguments& arguments) {
     if (one.method == arguments.preset) continue;
     others[one.method] = {{"regions", one.found}, {"false_positives", one.false_positives}};
   }
-  fmt::print("\n{}\n{}", measurement.text(), scene_note);
+  const Table confidence = confidence_table(results.front().regions);
+  fmt::print("\n{}\n{}\n{}{}", measurement.text(), scene_note, confidence.text(), confidence_note);
   if (arguments.json.empty()) return;
   nlohmann::ordered_json document{{"experiment", "damage"},
                                   {"preset", arguments.preset},
@@ -69,12 +83,14 @@ void score_synthetic(const DamageArguments& arguments) {
                                   {"regions", results.front().found},
                                   {"false_positives", results.front().false_positives},
                                   {"detection", detection.json()},
-                                  {"measurement", measurement.json()}};
+                                  {"measurement", measurement.json()},
+                                  {"confidence", confidence.json()},
+                                  {"found_regions", regions_json(results.front().regions)}};
   if (!others.empty()) document["maps"] = others;
   write_report(arguments.json, document);
 }
 
-void run(const DamageArguments& arguments) {
+void run(DamageArguments arguments) {
   preset(arguments.preset);  // throws now if there is no such preset
   const fs::path root = arguments.data;
   const std::vector<DamageMethod> methods = damage_methods(arguments.preset, arguments.maps);
@@ -85,14 +101,22 @@ void run(const DamageArguments& arguments) {
     score_synthetic(arguments);
   } else if (fs::is_directory(root / "disp_tg")) {
     if (!arguments.maps.empty()) fail("--maps is for pairs; it must not be given with transformed maps (disp_tg)");
-    print_and_write(arguments, label_table(score_labelled_maps(arguments.data)), label_note);
+    const std::vector<LabelResult> results = score_labelled_maps(arguments.data);
+    print_and_write(arguments, results, label_table(results), label_note);
   } else if (fs::is_directory(root / "label")) {
-    print_and_write(arguments, label_table(score_labelled_pairs(arguments.data, methods)), label_note);
+    const std::vector<LabelResult> results = score_labelled_pairs(arguments.data, methods);
+    print_and_write(arguments, results, label_table(results), label_note);
   } else if (fs::is_directory(root / "image_2")) {
-    print_and_write(arguments, road_table(score_intact_roads(arguments.data, methods)), road_note);
+    const std::vector<RoadResult> results = score_intact_roads(arguments.data, methods);
+    print_and_write(arguments, results, road_table(results), road_note);
+  } else if (!scene_folders(root).empty()) {
+    arguments.set.folder = arguments.data;
+    score_synthetic(arguments);
   } else {
     fail(arguments.data,
-         ": the folder must contain disp_tg (maps with labels), label (pairs with labels) or image_2 (KITTI)");
+         ": the folder must contain disp_tg (maps with labels), label (pairs with labels), image_2 (KITTI) or folders "
+         "of "
+         "synthetic scenes");
   }
 }
 
@@ -104,7 +128,8 @@ void add_damage_accuracy(CLI::App& evaluate) {
   const auto arguments = std::make_shared<DamageArguments>();
   command->add_option(
       "DIR", arguments->data,
-      "Folder with disp_tg and label, with left, right and label, or of KITTI; if absent, synthetic roads");
+      "Folder with disp_tg and label, with left, right and label, of KITTI, or with synthetic scenes; if absent, roads "
+      "are rendered");
   command->add_option("--preset", arguments->preset, "Preset for matching")->type_name("NAME")->capture_default_str();
   command->add_option("--scenes", arguments->set.scenes, "Number of synthetic roads")
       ->type_name("N")
@@ -113,7 +138,10 @@ void add_damage_accuracy(CLI::App& evaluate) {
   command->add_option("--seed", arguments->set.first_seed, "Seed of the first road")
       ->type_name("N")
       ->capture_default_str();
-  command->add_flag("--degraded", arguments->set.degraded, "Degrade the synthetic images: noise, blur, exposure");
+  CLI::Option* degraded =
+      command->add_flag("--degraded", arguments->set.degraded, "Degrade the synthetic images: noise, blur, exposure");
+  command->add_flag("--wide", arguments->set.wide, "Render scenes of the widest kind, as synth --scene random does")
+      ->excludes(degraded);
   add_maps_option(*command, arguments->maps);
   add_write_pairs_option(*command, arguments->pairs_folder);
   command->add_option("--json", arguments->json, "Also write the results to this file")->type_name("FILE");

@@ -64,6 +64,7 @@ LabelResult score_frame(const std::string& name, const DamageMap& map, const Ima
     }
   }
   count_regions(map, label, result);
+  result.regions = found_regions(name, map, [&](int u, int v) { return label(u, v) != 0; });
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "evaluate/damage_method.hpp"
+#include "evaluate/damage_regions.hpp"
 #include "evaluate/region_score.hpp"
 #include "evaluate/table.hpp"
 
@@ -17,6 +18,7 @@ struct LabelResult {
   std::size_t found = 0;            ///< labels that depressions cover by at least a third
   std::size_t false_positives = 0;  ///< depressions of which less than a third is labelled
   std::size_t measured = 0;         ///< labelled pixels with a disparity
+  std::vector<FoundRegion> regions;
 };
 
 /// Score transformed maps with labels: folder/disp_tg, folder/label, and folder/rgb if present. Throws Error naming the

@@ -24,6 +24,7 @@ RoadResult score_frame(const KittiFiles& files, const DamageMethod& method) {
   for (const Damage& damage : map.damages) {
     (damage.kind == DamageKind::depression ? result.depressions : result.protrusions) += 1;
   }
+  result.regions = found_regions(files.name, map, [](int, int) { return false; });
   return result;
 }
 

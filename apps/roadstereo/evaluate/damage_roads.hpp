@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "evaluate/damage_method.hpp"
+#include "evaluate/damage_regions.hpp"
 #include "evaluate/region_score.hpp"
 #include "evaluate/table.hpp"
 
@@ -15,6 +16,7 @@ struct RoadResult {
   RegionScore road;             ///< road region against the mask, over the pixels with a ground truth
   std::size_t depressions = 0;  ///< false positives, since the road is intact
   std::size_t protrusions = 0;  ///< false positives
+  std::vector<FoundRegion> regions;
 };
 
 /// Score KITTI frames with road masks by every method. Throws Error naming the frame whose mask is missing.

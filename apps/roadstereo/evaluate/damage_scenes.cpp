@@ -4,11 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "evaluate/pair_files.hpp"
+#include "evaluate/scene_folders.hpp"
 #include "finite_values.hpp"
 #include "progress.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/image_file.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
@@ -189,18 +195,68 @@ void add_detection_rows(const SceneResults& results, Table& table) {
                         Cell(all, 0), Cell(all_found, 0), Cell(all_found / all, 3)});
 }
 
-/// A rendered scene and the name of its files.
-struct RenderedScene {
+/// A scene with its truth and the name of its files.
+struct LabelledScene {
   std::string frame;
-  synth::Scene scene;
   synth::SyntheticPair pair;
+  double camera_height_m = 0;
 };
 
-RenderedScene render_scene(const SceneSet& set, int index) {
+LabelledScene render_scene(const SceneSet& set, int index) {
   const std::uint64_t seed = set.first_seed + static_cast<std::uint64_t>(index);
-  RenderedScene rendered{fmt::format("{:06}", seed), synth::random_scene(seed, set.degraded), {}};
-  rendered.pair = synth::render(rendered.scene);
+  const synth::Scene scene = set.wide ? synth::random_wide_scene(seed) : synth::random_scene(seed, set.degraded);
+  LabelledScene rendered{fmt::format("{:06}", seed), synth::render(scene), scene.rig.camera_height_m};
+  if (const int quality = scene.degradation.jpeg_quality; quality > 0) {
+    rendered.pair.left = io::with_jpeg_loss(rendered.pair.left, quality);
+    rendered.pair.right = io::with_jpeg_loss(rendered.pair.right, quality);
+  }
   return rendered;
+}
+
+/// 8 or 16-bit grey image of one size with `like`.
+Image<std::uint16_t> read_damage_labels(const std::string& path, const Image<float>& like) {
+  const Frame file = io::read_frame(path);
+  if (file.order != ChannelOrder::grey || file.width != like.width() || file.height != like.height()) {
+    fail(path, " must be grey with ", like.width(), "×", like.height(), " pixels like the disparities");
+  }
+  Image<std::uint16_t> labels(file.width, file.height);
+  for (std::size_t i = 0; i < labels.pixels(); ++i) {
+    labels.row(0)[i] = file.sample == SampleType::u8
+                           ? file.bytes[i]
+                           : static_cast<std::uint16_t>(file.bytes[2 * i] | (file.bytes[2 * i + 1] << 8U));
+  }
+  return labels;
+}
+
+LabelledScene read_scene(const std::filesystem::path& folder) {
+  LabelledFrame files = read_scene_folder(folder);
+  if (!files.pair.calibration) fail(folder.string(), ": calibration.yaml is missing");
+  LabelledScene scene;
+  scene.frame = folder.filename().string();
+  scene.pair.left = std::move(files.pair.left);
+  scene.pair.right = std::move(files.pair.right);
+  scene.pair.calibration = *files.pair.calibration;
+  scene.pair.disparity.resize(files.truth.width(), files.truth.height());
+  std::copy_n(files.truth.row(0), files.truth.pixels(), scene.pair.disparity.row(0));
+  scene.pair.labels = read_damage_labels((folder / "damage.png").string(), files.truth);
+  const std::string path = (folder / "truth.json").string();
+  try {
+    const auto truth = nlohmann::json::parse(std::ifstream(path));
+    scene.camera_height_m = truth.at("height_m");
+    for (const auto& damage : truth.at("damages")) {
+      synth::DamageTruth one;
+      one.id = damage.at("label");
+      one.kind = damage.at("kind");
+      one.depth_m = damage.at("max_depth_m");
+      one.area_m2 = damage.at("area_m2");
+      one.volume_m3 = damage.at("volume_m3");
+      one.mean_depth_m = one.volume_m3 / one.area_m2;
+      scene.pair.damages.push_back(one);
+    }
+  } catch (const nlohmann::json::exception& error) {
+    fail(path, ": ", error.what());
+  }
+  return scene;
 }
 
 StereoPair pair_of(const synth::SyntheticPair& rendered) {
@@ -211,32 +267,38 @@ StereoPair pair_of(const synth::SyntheticPair& rendered) {
   return pair;
 }
 
-void add_scene(const RenderedScene& rendered, const DamageMethod& method, SceneResults& results) {
-  const FrameDamage found = find_damage_of(method, pair_of(rendered.pair), rendered.frame);
-  const SceneCase scene_case{rendered.pair, found.frame, found.map};
+void add_scene(const LabelledScene& scene, const DamageMethod& method, SceneResults& results) {
+  const FrameDamage found = find_damage_of(method, pair_of(scene.pair), scene.frame);
+  const SceneCase scene_case{scene.pair, found.frame, found.map};
   const std::map<int, Cover> covers = covers_of(scene_case);
-  for (const synth::DamageTruth& truth : rendered.pair.damages) {
+  for (const synth::DamageTruth& truth : scene.pair.damages) {
     const auto cover = covers.find(truth.id);
     if (cover == covers.end()) continue;  // out of view
-    results.damages.push_back(
-        describe(rendered.scene.name, scene_case, truth, cover->second, rendered.scene.rig.camera_height_m));
+    results.damages.push_back(describe(scene.frame, scene_case, truth, cover->second, scene.camera_height_m));
   }
   results.found += found.map.damages.size();
   results.false_positives += count_false_positives(scene_case);
+  const std::vector<FoundRegion> regions =
+      found_regions(scene.frame, found.map, [&](int u, int v) { return scene.pair.labels(u, v) != 0; });
+  results.regions.insert(results.regions.end(), regions.begin(), regions.end());
 }
 
 }  // namespace
 
 std::vector<SceneResults> score_scenes(const SceneSet& set, const std::vector<DamageMethod>& methods) {
+  const std::vector<std::filesystem::path> folders =
+      set.folder.empty() ? std::vector<std::filesystem::path>{} : scene_folders(set.folder);
+  const int scenes = set.folder.empty() ? set.scenes : static_cast<int>(folders.size());
   std::vector<SceneResults> all(methods.size());
   for (std::size_t i = 0; i < methods.size(); ++i) {
     all[i].method = methods[i].name;
-    all[i].scenes = set.scenes;
+    all[i].scenes = scenes;
   }
-  Progress progress = Progress::on_terminal(static_cast<std::size_t>(set.scenes));
-  for (int k = 0; k < set.scenes; ++k) {
-    const RenderedScene rendered = render_scene(set, k);
-    for (std::size_t i = 0; i < methods.size(); ++i) add_scene(rendered, methods[i], all[i]);
+  Progress progress = Progress::on_terminal(static_cast<std::size_t>(scenes));
+  for (int k = 0; k < scenes; ++k) {
+    const LabelledScene scene =
+        set.folder.empty() ? render_scene(set, k) : read_scene(folders[static_cast<std::size_t>(k)]);
+    for (std::size_t i = 0; i < methods.size(); ++i) add_scene(scene, methods[i], all[i]);
     progress.frame_done();
   }
   return all;
@@ -245,7 +307,7 @@ std::vector<SceneResults> score_scenes(const SceneSet& set, const std::vector<Da
 void write_scene_pairs(const SceneSet& set, const std::string& folder) {
   io::OutputFolder files(folder);
   for (int k = 0; k < set.scenes; ++k) {
-    const RenderedScene rendered = render_scene(set, k);
+    const LabelledScene rendered = render_scene(set, k);
     add_pair(rendered.frame, pair_of(rendered.pair), files);
   }
   files.commit();

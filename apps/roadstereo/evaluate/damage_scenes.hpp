@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evaluate/damage_method.hpp"
+#include "evaluate/damage_regions.hpp"
 #include "evaluate/table.hpp"
 #include "roadstereo/damage.hpp"
 #include "roadstereo/synth.hpp"
@@ -30,20 +31,24 @@ struct SceneResults {
   std::vector<SceneDamage> damages;
   std::size_t found = 0;            ///< regions
   std::size_t false_positives = 0;  ///< regions of which less than a third is damage
+  std::vector<FoundRegion> regions;
   int scenes = 0;
 };
 
-/// Random scenes, by seed.
+/// Random scenes, by seed, or the scenes of a folder.
 struct SceneSet {
   int scenes = 60;
   std::uint64_t first_seed = 1000;
   bool degraded = false;  ///< noise, blur, exposure
+  bool wide = false;      ///< synth::random_wide_scene
+  std::string folder;     ///< with folders of one scene each (`scene_folders`); empty: random scenes
 };
 
-/// Score the damage that every method finds in the scenes. The frame of given maps is the seed in six digits.
+/// Score the damage that every method finds in the scenes. The frame of given maps is the seed in six digits, or the
+/// name of the folder.
 std::vector<SceneResults> score_scenes(const SceneSet& set, const std::vector<DamageMethod>& methods);
 
-/// Write the pairs of the scenes, named by their seeds.
+/// Write the pairs of random scenes, named by their seeds.
 void write_scene_pairs(const SceneSet& set, const std::string& folder);
 
 /// Table of recall by kind: of all damages, and of those deeper than three standard errors.

@@ -1,0 +1,54 @@
+#include "evaluate/damage_regions.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+
+namespace roadstereo::cli {
+
+Table confidence_table(const std::vector<FoundRegion>& regions) {
+  constexpr std::array<double, 7> bounds{0, 0.1, 0.3, 0.5, 0.7, 0.9, 1};
+  Table table{"Confidence: share of the regions, candidates included, that are damage",
+              {{"confidence", "confidence"},
+               {"regions", "regions"},
+               {"mean confidence", "mean_confidence"},
+               {"damage", "damage_share"}},
+              {}};
+  for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
+    double count = 0, confidence = 0, damage = 0;
+    for (const FoundRegion& region : regions) {
+      const bool is_last = k + 2 == bounds.size();
+      if (region.damage.confidence < bounds[k] || (!is_last && region.damage.confidence >= bounds[k + 1])) continue;
+      ++count;
+      confidence += region.damage.confidence;
+      damage += region.is_damage ? 1 : 0;
+    }
+    const double share = count > 0 ? damage / count : std::nan("");
+    table.rows.push_back({Cell(fmt::format("{:.1f} to {:.1f}", bounds[k], bounds[k + 1])), Cell(count, 0),
+                          Cell(count > 0 ? confidence / count : std::nan(""), 2), Cell(share, 2)});
+  }
+  return table;
+}
+
+nlohmann::ordered_json regions_json(const std::vector<FoundRegion>& regions) {
+  const auto number = [](double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+  };
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const FoundRegion& region : regions) {
+    const DamageEvidence& evidence = region.damage.evidence;
+    list.push_back({{"frame", region.frame},
+                    {"kind", name_of(region.damage.kind)},
+                    {"pixels", region.damage.pixels},
+                    {"significance", number(evidence.significance)},
+                    {"road_share", number(evidence.road_share)},
+                    {"border_share", number(evidence.border_share)},
+                    {"surface_share", number(evidence.surface_share)},
+                    {"confidence", number(region.damage.confidence)},
+                    {"is_damage", region.is_damage}});
+  }
+  return list;
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,20 @@
+// Folders of one synthetic scene each: left.png, right.png, disparity.tiff (float, NaN none), occ.png (255 seen by both
+// cameras), region.png (1 road, 2 damage), and optionally calibration.yaml, damage.png (16 bit, labels) and truth.json.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "evaluate/labelled_frame.hpp"
+
+namespace roadstereo::cli {
+
+bool is_scene_folder(const std::filesystem::path& folder);
+
+/// The scenes in a folder, by name.
+std::vector<std::filesystem::path> scene_folders(const std::filesystem::path& folder);
+
+/// The pair of a scene and its truth. The road is road and damage that both cameras see.
+LabelledFrame read_scene_folder(const std::filesystem::path& folder);
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""Fit the confidence of damage to regions whose truth is known, with every source left out in turn.
+
+scripts/fit_confidence.py NAME=FILE.json [NAME=FILE.json …]
+
+FILE.json is what `roadstereo evaluate damage … --json FILE.json` wrote; files of one NAME are one source. Prints the
+coefficients of the logistic regression (src/damage/evidence.cpp), and for each source how many of its regions are judged
+rightly by the fit to all sources, by the fit to the others, and by the confidence of the program.
+"""
+
+import json
+import math
+import sys
+
+import numpy as np
+
+MAX_SIGNIFICANCE = 100
+RIDGE = 0.05
+REGIONS_PER_SOURCE = 20  # real and false ones of a source weigh as much as so many
+
+
+def surface_log_odds(share):
+    """As in src/damage/evidence.cpp; it is not fitted."""
+    of_damage, of_artefacts, deviation = 0.88, 0.47, 0.10
+    if share is None:
+        return 0.0
+    return min(0.0, (of_damage - of_artefacts) * (share - 0.5 * (of_damage + of_artefacts)) / deviation**2)
+
+
+def features(region):
+    significance = min(max(region["significance"], 1), MAX_SIGNIFICANCE)
+    return [1, math.log(significance), region["road_share"], region["border_share"]]
+
+
+def fit(x, y, offset, weight):
+    """Newton's method for logistic regression with a fixed offset and a small ridge."""
+    coefficients = np.zeros(x.shape[1])
+    ridge = RIDGE * np.eye(x.shape[1])
+    ridge[0, 0] = 1e-6
+    for _ in range(100):
+        p = predict(x, offset, coefficients)
+        hessian = (x * (weight * p * (1 - p))[:, None]).T @ x + ridge
+        coefficients = coefficients + np.linalg.solve(hessian, x.T @ (weight * (y - p)) - ridge @ coefficients)
+    return coefficients
+
+
+def predict(x, offset, coefficients):
+    return 1 / (1 + np.exp(-np.clip(x @ coefficients + offset, -30, 30)))
+
+
+def read(arguments):
+    sources, rows = [], []
+    for argument in arguments:
+        name, separator, path = argument.partition("=")
+        if not separator:
+            sys.exit(f"{argument}: must be NAME=FILE.json")
+        with open(path, encoding="utf-8") as file:
+            document = json.load(file)
+        usable = [region for region in document["found_regions"] if region["significance"] is not None]
+        rows += usable
+        sources += [name] * len(usable)
+    if not rows:
+        sys.exit("usage: scripts/fit_confidence.py NAME=FILE.json …")
+    return np.array(sources), rows
+
+
+def main():
+    sources, rows = read(sys.argv[1:])
+    x = np.array([features(row) for row in rows])
+    y = np.array([float(row["is_damage"]) for row in rows])
+    offset = np.array([surface_log_odds(row["surface_share"]) for row in rows])
+    program = np.array([row["confidence"] for row in rows])
+    weight = np.ones(len(rows))
+    for name in set(sources):
+        for truth in (0, 1):
+            of_kind = (sources == name) & (y == truth)
+            weight[of_kind] = min(1, REGIONS_PER_SOURCE / max(1, of_kind.sum()))
+    coefficients = fit(x, y, offset, weight)
+    print("intercept, ln significance, road share, border share:", np.round(coefficients, 2))
+    taking_part = predict(x, offset, coefficients)
+    print(f"{'source':<12}{'damage':>7}{'found: all':>12}{'left out':>10}{'program':>9}"
+          f"{'others':>8}{'wrong: all':>12}{'left out':>10}{'program':>9}")
+    for name in sorted(set(sources)):
+        of_source = sources == name
+        left_out = predict(x[of_source], offset[of_source],
+                           fit(x[~of_source], y[~of_source], offset[~of_source], weight[~of_source]))
+        is_damage = y[of_source] > 0
+        judged = [values > 0.5 for values in (taking_part[of_source], left_out, program[of_source])]
+        found = [int((yes & is_damage).sum()) for yes in judged]
+        wrong = [int((yes & ~is_damage).sum()) for yes in judged]
+        print(f"{name:<12}{int(is_damage.sum()):>7}{found[0]:>12}{found[1]:>10}{found[2]:>9}"
+              f"{int((~is_damage).sum()):>8}{wrong[0]:>12}{wrong[1]:>10}{wrong[2]:>9}")
+
+
+if __name__ == "__main__":
+    main()
