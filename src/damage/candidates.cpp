@@ -287,8 +287,8 @@ void assign(const Candidate& candidate, Image<std::uint8_t>& assigned) {
   }
 }
 
-/// Turn outliers into gaps: the cells around those that are deeper, or higher, than a damage can be, as wrong matches at
-/// snow or dirt make them. They take the depth of the floor.
+/// Turn outliers into gaps: the cells around those that are deeper, or higher, than a damage can be, as wrong matches
+/// at snow or dirt make them. They take the depth of the floor.
 void remove_outliers(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images) {
   std::vector<CellRun> impossible;
   for_each_impossible(input, core, kind, images, [&](int i, int j) { impossible.push_back({j, i, i}); });
