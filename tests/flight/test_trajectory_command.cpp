@@ -23,7 +23,7 @@ class TrajectoryCommand : public CommandTest {
 };
 
 TEST_F(TrajectoryCommand, FilesHaveMotion) {
-  const std::string options = "--calibration flight/calibration.yaml --trajectory";
+  const std::string options = "--trajectory";  // flight/calibration.yaml is taken
   const Outcome outcome = run("inspect flight " + options + " --output out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("in 1 piece, 3 links (0 weak)"), std::string::npos) << outcome.out;
@@ -37,6 +37,7 @@ TEST_F(TrajectoryCommand, FilesHaveMotion) {
   EXPECT_EQ(std::count(poses.begin(), poses.end(), '\n'), 5);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out/trajectory.tum"));
   expect_complaint(run("inspect flight " + options + " --output out --resume"), "--trajectory cannot be resumed");
+  std::filesystem::remove(folder_ / "flight/calibration.yaml");
   expect_complaint(run("inspect flight --trajectory --output other"), "--trajectory needs --calibration");
   expect_complaint(run("inspect flight/left/000000.png flight/right/000000.png --trajectory --output pair"),
                    "--trajectory is for recordings only");

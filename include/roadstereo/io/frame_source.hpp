@@ -66,7 +66,7 @@ class FrameSource {
   /// Whether the source is a camera: pairs arrive in real time and never end.
   virtual bool live() const { return false; }
 
-  /// Calibration contained in the source (camera_info of a bag), if any.
+  /// Calibration contained in the source, if any: camera_info of a bag, calibration.yaml in a folder or beside a list.
   virtual std::optional<CalibrationFile> calibration() const { return std::nullopt; }
 
   /// Short description for messages, e.g. "folder, 300 pairs".

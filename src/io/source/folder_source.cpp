@@ -150,7 +150,8 @@ std::unique_ptr<FrameSource> folder_pair(const fs::path& folder, const fs::path&
   std::vector<ImagePair> pairs = pair_views(std::move(left), std::move(right), options.max_time_difference_s);
   add_times(pairs, left_images, times_file(folder, left_folder), options);
   return std::make_unique<ImagePairs>(
-      std::move(pairs), "folders " + left_folder.filename().string() + " and " + right_folder.filename().string());
+      std::move(pairs), "folders " + left_folder.filename().string() + " and " + right_folder.filename().string(),
+      folder);
 }
 
 std::unique_ptr<FrameSource> one_folder(const fs::path& folder, const SourceOptions& options) {
@@ -162,7 +163,7 @@ std::unique_ptr<FrameSource> one_folder(const fs::path& folder, const SourceOpti
     const std::size_t left_images = left.size();
     std::vector<ImagePair> pairs = pair_views(std::move(left), std::move(right), options.max_time_difference_s);
     add_times(pairs, left_images, times_file(folder, folder), options);
-    return std::make_unique<ImagePairs>(std::move(pairs), "folder");
+    return std::make_unique<ImagePairs>(std::move(pairs), "folder", folder);
   }
   fail(folder.string(), ": there are no stereo pairs in this folder; it must contain left/ right/, image_2/ image_3/, ",
        "image_0/ image_1/ or cam0/data cam1/data, or images named L… and R…");

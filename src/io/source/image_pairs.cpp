@@ -8,8 +8,8 @@
 
 namespace roadstereo::io {
 
-ImagePairs::ImagePairs(std::vector<ImagePair> pairs, std::string kind)
-    : pairs_(std::move(pairs)), kind_(std::move(kind)) {}
+ImagePairs::ImagePairs(std::vector<ImagePair> pairs, std::string kind, const std::filesystem::path& folder)
+    : pairs_(std::move(pairs)), kind_(std::move(kind)), calibration_(folder / "calibration.yaml") {}
 
 std::optional<SourcePair> ImagePairs::next() {
   if (next_ >= pairs_.size()) return std::nullopt;
@@ -36,6 +36,11 @@ std::optional<SourcePair> ImagePairs::next() {
 void ImagePairs::skip(std::int64_t pairs) {
   const auto left = static_cast<std::int64_t>(pairs_.size() - next_);
   next_ += static_cast<std::size_t>(std::clamp<std::int64_t>(pairs, 0, left));
+}
+
+std::optional<CalibrationFile> ImagePairs::calibration() const {
+  if (!std::filesystem::exists(calibration_)) return std::nullopt;
+  return read_calibration(calibration_.string());
 }
 
 std::string ImagePairs::description() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,16 +21,19 @@ struct ImagePair {
 /// Reads pairs of image files.
 class ImagePairs final : public FrameSource {
  public:
-  ImagePairs(std::vector<ImagePair> pairs, std::string kind);
+  /// The calibration is that of `calibration.yaml` in `folder`, if there is one.
+  ImagePairs(std::vector<ImagePair> pairs, std::string kind, const std::filesystem::path& folder);
 
   std::optional<SourcePair> next() override;
   void skip(std::int64_t pairs) override;
   std::optional<std::int64_t> size() const override { return static_cast<std::int64_t>(pairs_.size()); }
+  std::optional<CalibrationFile> calibration() const override;
   std::string description() const override;
 
  private:
   std::vector<ImagePair> pairs_;
   std::string kind_;
+  std::filesystem::path calibration_;
   std::size_t next_ = 0;
 };
 

@@ -74,7 +74,7 @@ std::unique_ptr<FrameSource> open_list(const std::string& file, const SourceOpti
     double index = 0;
     for (ImagePair& pair : pairs) pair.time_s = index++ / options.rate_hz;
   }
-  return std::make_unique<ImagePairs>(std::move(pairs), "list");
+  return std::make_unique<ImagePairs>(std::move(pairs), "list", fs::path(file).parent_path());
 }
 
 }  // namespace roadstereo::io

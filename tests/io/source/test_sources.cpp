@@ -190,6 +190,22 @@ TEST_F(FolderSource, PairsTwoFoldersByNumber) {
   expect_numbers(*pair, 7, 8);
 }
 
+/// synth and live --record write calibration.yaml beside the pictures.
+TEST_F(FolderSource, TakesCalibrationBesideImages) {
+  image("left/0.png", 0);
+  image("right/0.png", 0);
+  text("pairs.txt", "left/0.png right/0.png\n");
+  for (const char* name : {"", "pairs.txt"}) EXPECT_FALSE(open_source({(folder_ / name).string()})->calibration());
+  text("calibration.yaml", "focal_px: 300\ncx_px: 15.5\ncy_px: 11.5\nbaseline_m: 0.12\n");
+  for (const char* name : {"", "pairs.txt"}) {
+    const auto file = open_source({(folder_ / name).string()})->calibration();
+    ASSERT_TRUE(file && file->rectified) << name;
+    EXPECT_EQ(file->rectified->baseline_m, 0.12);
+  }
+  text("calibration.yaml", "focal_px: none\n");
+  EXPECT_THROW(open_source({folder_.string()})->calibration(), Error);
+}
+
 TEST_F(ListSource, ReadsRelativePathsAndTimes) {
   image("x/one.png", 1);
   image("y/two.png", 2);
