@@ -9,6 +9,7 @@ geographiclib=libgeographiclib-dev
 [ "$(. /etc/os-release; echo "$ID ${VERSION_ID:-}")" != "ubuntu 22.04" ] || geographiclib=libgeographic-dev  # its name there
 packages=(build-essential cmake ninja-build pkg-config
           libopencv-dev libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev zlib1g-dev
+          libfreetype-dev
           libeigen3-dev libnanoflann-dev
           libgdal-dev libpugixml-dev "$geographiclib"
           libgstreamer-plugins-base1.0-dev librosbag-storage-dev libsqlite3-dev libzstd-dev liblz4-dev libboost-dev

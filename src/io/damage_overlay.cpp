@@ -82,14 +82,6 @@ class LabelPlacer {
   std::vector<cv::Rect> taken_;
 };
 
-void put_haloed(cv::Mat& picture, const std::string& text, cv::Point at, int height, const cv::Scalar& colour) {
-  const int halo = std::max(1, height / 7);
-  for (const int dy : {-halo, 0, halo}) {
-    for (const int dx : {-halo, 0, halo}) put_text(picture, text, at + cv::Point(dx, dy), height, dark);
-  }
-  put_text(picture, text, at, height, colour);
-}
-
 }  // namespace
 
 Frame damage_overlay(const FrameView& picture, const DamageMap& map) {
@@ -107,7 +99,7 @@ Frame damage_overlay(const FrameView& picture, const DamageMap& map) {
     const std::string text = label_of(damage);
     const int width = text_width(text, letters);
     const cv::Rect position = positions.take(box_of(damage), {width + 2 * line, letters + letters / 2});
-    put_haloed(canvas, text, {position.x + line, position.y + letters + letters / 4}, letters, white);
+    put_haloed_text(canvas, text, {position.x + line, position.y + letters + letters / 4}, letters, white, dark);
   }
   return frame_from(canvas, ChannelOrder::bgr);
 }

@@ -3,48 +3,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
-#include <string_view>
-#include <utility>
+
+#include "io/text_line.hpp"
 
 namespace roadstereo::io {
 namespace {
 
-constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
-
-int thickness_for(int height) {
-  return std::max(1, cvRound(height / 10.0));
-}
-
-double scale_for(int height) {
-  return cv::getFontScaleFromHeight(font, height, thickness_for(height));
-}
-
-/// ASCII replacements of other characters.
-std::string substitute(std::string_view character) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> known{
-      {{"×", "x"}, {"–", "-"}, {"−", "-"}, {"…", "..."}, {"°", " deg"}, {"±", "+/-"}, {"’", "'"}, {"·", "."}}};
-  for (const auto& [from, to] : known) {
-    if (from == character) return std::string(to);
+/// Blends the colour with opacity `cover`, 0 … 255, whose corner lies at `corner`.
+void lay_colour(cv::Mat& picture, const cv::Mat& cover, cv::Point corner, const cv::Scalar& colour) {
+  const cv::Rect visible = cv::Rect(corner, cover.size()) & cv::Rect(0, 0, picture.cols, picture.rows);
+  const cv::Vec3d paint(colour[0], colour[1], colour[2]);
+  for (int v = visible.y; v < visible.br().y; ++v) {
+    for (int u = visible.x; u < visible.br().x; ++u) {
+      auto& pixel = picture.at<cv::Vec3b>(v, u);
+      const double share = cover.at<std::uint8_t>(v - corner.y, u - corner.x) / 255.0;
+      pixel = cv::Vec3b(cv::Vec3d(pixel) * (1 - share) + paint * share);
+    }
   }
-  return "?";
-}
-
-std::string to_ascii(const std::string& text) {
-  std::string ascii;
-  for (std::size_t at = 0; at < text.size();) {
-    std::size_t end = at + 1;
-    while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) ++end;
-    const bool plain = end == at + 1 && text[at] >= ' ' && text[at] <= '~';
-    ascii += plain ? text.substr(at, 1) : substitute(std::string_view(text).substr(at, end - at));
-    at = end;
-  }
-  return ascii;
-}
-
-cv::Size text_size(const std::string& ascii, int height, int& below_base) {
-  return cv::getTextSize(ascii, font, scale_for(height), thickness_for(height), &below_base);
 }
 
 }  // namespace
@@ -54,50 +32,36 @@ int text_height_for(int picture_height) {
 }
 
 int text_width(const std::string& text, int height) {
-  int below_base = 0;
-  return text_size(to_ascii(text), height, below_base).width;
+  return render_line(text, height).width;
 }
 
 void put_text(cv::Mat& picture, const std::string& text, cv::Point at, int height, const cv::Scalar& colour,
               Align align) {
-  const std::string ascii = to_ascii(text);
-  int below_base = 0;
-  const int width = text_size(ascii, height, below_base).width;
-  if (align == Align::centre) at.x -= width / 2;
-  if (align == Align::right) at.x -= width;
-  cv::putText(picture, ascii, at, font, scale_for(height), colour, thickness_for(height), cv::LINE_AA);
+  const TextLine line = render_line(text, height);
+  if (align == Align::centre) at.x -= line.width / 2;
+  if (align == Align::right) at.x -= line.width;
+  lay_colour(picture, line.cover, at + line.origin, colour);
 }
 
-namespace {
-
-/// Blends the colour with opacity `cover`, 0 … 255.
-void lay_colour(cv::Mat picture, const cv::Mat& cover, const cv::Scalar& colour) {
-  const cv::Vec3d paint(colour[0], colour[1], colour[2]);
-  for (int v = 0; v < picture.rows; ++v) {
-    for (int u = 0; u < picture.cols; ++u) {
-      auto& pixel = picture.at<cv::Vec3b>(v, u);
-      const double share = cover.at<std::uint8_t>(v, u) / 255.0;
-      pixel = cv::Vec3b(cv::Vec3d(pixel) * (1 - share) + paint * share);
-    }
-  }
+void put_haloed_text(cv::Mat& picture, const std::string& text, cv::Point at, int height, const cv::Scalar& colour,
+                     const cv::Scalar& halo) {
+  const TextLine line = render_line(text, height);
+  if (line.cover.empty()) return;
+  const int radius = std::max(1, height / 7);
+  cv::Mat wide;
+  cv::copyMakeBorder(line.cover, wide, radius, radius, radius, radius, cv::BORDER_CONSTANT, cv::Scalar(0));
+  cv::dilate(wide, wide, cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * radius + 1, 2 * radius + 1}));
+  lay_colour(picture, wide, at + line.origin - cv::Point(radius, radius), halo);
+  lay_colour(picture, line.cover, at + line.origin, colour);
 }
-
-}  // namespace
 
 void put_text_upwards(cv::Mat& picture, const std::string& text, cv::Point centre, int height, int max_length,
                       const cv::Scalar& colour) {
-  const std::string ascii = to_ascii(text);
-  const int fitting = fitting_height(ascii, height, max_length);
-  int below_base = 0;
-  const cv::Size size = text_size(ascii, fitting, below_base);
-  const int margin = thickness_for(fitting) + 1;
-  cv::Mat line(size.height + below_base + 2 * margin, size.width + 2 * margin, CV_8UC1, cv::Scalar(0));
-  put_text(line, ascii, {margin, size.height + margin}, fitting, cv::Scalar(255));
-  cv::rotate(line, line, cv::ROTATE_90_COUNTERCLOCKWISE);
-  const cv::Rect wanted(centre.x - line.cols / 2, centre.y - line.rows / 2, line.cols, line.rows);
-  const cv::Rect visible = wanted & cv::Rect(0, 0, picture.cols, picture.rows);
-  if (visible.empty()) return;
-  lay_colour(picture(visible), line(visible - wanted.tl()), colour);
+  const TextLine line = render_line(text, fitting_height(text, height, max_length));
+  if (line.cover.empty()) return;
+  cv::Mat upwards;
+  cv::rotate(line.cover, upwards, cv::ROTATE_90_COUNTERCLOCKWISE);
+  lay_colour(picture, upwards, {centre.x - upwards.cols / 2, centre.y - upwards.rows / 2}, colour);
 }
 
 int fitting_height(const std::string& text, int height, int max_length) {

@@ -18,10 +18,13 @@ int text_height_for(int picture_height);
 /// Returns the width of a line of text whose capitals are `height` pixels high.
 int text_width(const std::string& text, int height);
 
-/// Draws one line of text; `at` is the left end, middle or right end of its base line. Non-ASCII letters, which OpenCV
-/// cannot draw, are replaced.
+/// Draws one line of text; `at` is the left end, middle or right end of its base line.
 void put_text(cv::Mat& picture, const std::string& text, cv::Point at, int height, const cv::Scalar& colour,
               Align align = Align::left);
+
+/// Draws one line of text from the left end of its base line, with a halo that sets it off from a picture.
+void put_haloed_text(cv::Mat& picture, const std::string& text, cv::Point at, int height, const cv::Scalar& colour,
+                     const cv::Scalar& halo);
 
 /// Draws one line of text upwards, centred on `centre`; scaled down to `max_length`.
 void put_text_upwards(cv::Mat& picture, const std::string& text, cv::Point centre, int height, int max_length,
