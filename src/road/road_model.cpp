@@ -114,6 +114,22 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneM
   return result;
 }
 
+/// Replace a plane by that which most of the image around it supports, by RANSAC over cells of equal size. Single
+/// blocks match where the texture is: on a pavement or a verge rather than on a smooth road, so that the plane tips
+/// over.
+void fit_evenly(const FinePair& pair, const TiltLimit& limit, bool with_roll, int threads, DisparityPlane& plane) {
+  const int factor = pair.factor();
+  const int places = static_cast<int>(pair.left().pixels() / (even_spacing_px * even_spacing_px));
+  const PlaneMatches found = match_cells_along_plane(pair.left(), pair.right(), downsample_plane(plane, factor),
+                                                     even_range_px, places, threads, pair.masked());
+  const auto points = points_to_full_resolution(found.points, factor);
+  if (points.size() < min_even_points) return;
+  const auto start = ransac_plane(points, even_tolerance * factor);
+  if (!start || !limit.can_be_road(*start)) return;
+  const auto fit = fit_plane_irls(points, *start, fine_fit_scale * factor, with_roll, fine_fit_iterations);
+  if (fit && limit.can_be_road(fit->plane)) plane = fit->plane;
+}
+
 /// Whether exchanging the images explains them far better than the order they came in. Only asked when few pixels of
 /// the downsampled image matched.
 bool look_swapped(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int factor,
@@ -191,6 +207,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
       }
       if (refinement.evidence.found) break;
     }
+    if (refinement.evidence.found) fit_evenly(fine, limit, options.with_roll, threads, refinement.evidence.plane);
     RoadModelEstimate assessed = estimate;
     assess_found_road(refinement.evidence, hypothesis.score / coarse.pixels(), limit, options, assessed);
     // Where none is a road, the reason is that of the plane with the most evidence.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 #include "roadstereo/host_device.hpp"
 
@@ -34,6 +35,12 @@ inline constexpr FineSearch first_search{7, 1000};  ///< the coarse plane is goo
 inline constexpr FineSearch close_search{4, 2500};
 inline constexpr FineSearch close_search_again{2, 1500};
 inline constexpr FineSearch first_search_again{4, 700};  ///< around the last frame's plane
+
+/// Of the search that covers the image evenly: distance of its samples, and how far from the plane it looks, pixels of
+/// the shrunk image, as is the tolerance of its RANSAC.
+inline constexpr int even_spacing_px = 5, even_range_px = 7;
+inline constexpr double even_tolerance = 1.0;
+inline constexpr std::size_t min_even_points = 40;
 
 /// Of the robust fit after a search. The window is in pixels of the shrunk image: a kerb must not pull the plane, a
 /// road that is not flat must stay in.
