@@ -119,7 +119,7 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneM
 /// over.
 void fit_evenly(const FinePair& pair, const TiltLimit& limit, bool with_roll, int threads, DisparityPlane& plane) {
   const int factor = pair.factor();
-  const int places = static_cast<int>(pair.left().pixels() / (even_spacing_px * even_spacing_px));
+  const int places = static_cast<int>(pair.left().pixels() / (std::size_t{even_spacing_px} * even_spacing_px));
   const PlaneMatches found = match_cells_along_plane(pair.left(), pair.right(), downsample_plane(plane, factor),
                                                      even_range_px, places, threads, pair.masked());
   const auto points = points_to_full_resolution(found.points, factor);

@@ -386,6 +386,26 @@ TEST(FindDamage, FindsBumpBesideHighBlock) {
   EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, bump.depth_m, 0.3 * bump.depth_m);
 }
 
+/// Wrong matches, as snow or dirt make them, do not cost the damage that they lie in.
+TEST(FindDamage, ImpossibleDepthInsideDamageIsOutlier) {
+  ExactMaps maps = damaged();
+  const synth::DamageTruth& pothole = maps.pair.damages[0];
+  const auto [centre_u, centre_v] = label_centroid(maps.pair, pothole.id);
+  for (int v = static_cast<int>(centre_v) - 6; v < static_cast<int>(centre_v) + 6; ++v) {
+    for (int u = static_cast<int>(centre_u) - 6; u < static_cast<int>(centre_u) + 6; ++u) {
+      const double surface = maps.pair.plane.disparity(u, v);
+      maps.disparity(u, v) -= static_cast<float>(0.4 * surface);  // far below any pothole
+      maps.transformed(u, v) -= static_cast<float>(0.4 * surface);
+    }
+  }
+  const DamageMap map = find_damage(maps.metric());
+  ASSERT_EQ(map.damages.size(), 2U);
+  const Damage* found = find(map, maps.pair, pothole.id);
+  ASSERT_NE(found, nullptr);
+  EXPECT_NEAR(found->metrics->max_depth_m.value, pothole.depth_m, 0.05 * pothole.depth_m);
+  EXPECT_NEAR(found->metrics->volume_m3.value, pothole.volume_m3, 0.1 * pothole.volume_m3);
+}
+
 TEST(FindDamage, OmitsBumpsUnlessRequested) {
   DamageOptions options;
   options.protrusions = false;

@@ -38,7 +38,7 @@ class WorkerRows {
   /// Rows: reference, target, disparity, and the sums.
   static constexpr std::size_t count = 3 + alignment_sum_count;
 
-  static std::size_t pitch(int width) { return static_cast<std::size_t>(width) + 2 * sample_guard; }
+  static std::size_t pitch(int width) { return static_cast<std::size_t>(width) + std::size_t{2} * sample_guard; }
 
   WorkerRows(float* memory, int width) : memory_(memory), width_(width), pitch_(pitch(width)) {}
 
