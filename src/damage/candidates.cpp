@@ -296,8 +296,10 @@ void remove_outliers(const SearchInput& input, const ConnectedComponent& core, D
   ConnectedComponent seeds;
   seeds.runs = impossible;
   const float floor = floor_depth(images.field(), core);
-  const BoxMask outliers = flood_fill(images.field(), seeds, constants.outlier_floors * floor);
-  const CellBox& box = outliers.box();
+  constexpr int smoothing_radius = 2;  // of the 5×5 binomial mean, which spreads them
+  const BoxMask wrong = flood_fill(images.field(), seeds, constants.outlier_floors * floor);
+  const CellBox box = wrong.box().grown(smoothing_radius, images.depth.width(), images.depth.height());
+  const BoxMask outliers = dilate(wrong, smoothing_radius, box);
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
       if (!outliers(i, j)) continue;
