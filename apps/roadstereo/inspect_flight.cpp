@@ -63,12 +63,16 @@ void require_frames(const FlightSettings& settings, const io::FrameSource& sourc
 
 }  // namespace
 
-void inspect_flight(const FlightSettings& settings) {
+void inspect_flight(FlightSettings settings) {
   const FlightPlan plan = resolve(settings);
   FlightRun run;
   run.options = plan.options;
   FlightResults results(settings.track);
-  RectifiedSource source(io::open_source(settings.source, plan.source), settings.calibration);
+  std::unique_ptr<io::FrameSource> frames = io::open_source(settings.source, plan.source);
+  if (settings.calibration.empty() && !frames->calibration_file().empty()) {
+    settings.calibration = {frames->calibration_file()};
+  }
+  RectifiedSource source(std::move(frames), settings.calibration);
   if (source.source().live()) fail(settings.source[0], ": cameras are not supported by inspect; use roadstereo live");
   require_calibration(plan, settings.trajectory, source);
   require_frames(settings, source.source());

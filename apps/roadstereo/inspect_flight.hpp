@@ -10,6 +10,6 @@ struct Interrupted {
 };
 
 /// Inspects a recording. Throws Interrupted if it can be resumed, and Error if no frame could be matched.
-void inspect_flight(const FlightSettings& settings);
+void inspect_flight(FlightSettings settings);
 
 }  // namespace roadstereo::cli

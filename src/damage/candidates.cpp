@@ -47,7 +47,7 @@ std::uint8_t label_of(DamageKind kind) {
 
 /// Inputs of the search.
 struct SearchInput {
-  DepthCells& depth_cells;
+  DepthCells& depth_cells;  ///< `remove_outliers` changes it
   const Image<std::uint8_t>& road;
   const Thresholds& thresholds;
   const ImageEdges& image_edges;
@@ -187,8 +187,8 @@ void extend_region(const SearchInput& input, SearchImages& images, Candidate& ca
   update_extent(candidate, images.assigned);
 }
 
-/// Segment the region around a core. If it runs into another damage or an obstacle, the
-/// level is raised above the saddle between them. Size 0 if there is no such region.
+/// Segment the region around a core. If it runs into another damage or an obstacle, the level is raised above the
+/// saddle between them. Size 0 if there is no such region.
 Candidate segment(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images) {
   const DepthField field = images.field();
   const bool metric = input.thresholds.metric();

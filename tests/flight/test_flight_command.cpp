@@ -358,6 +358,15 @@ TEST_F(FlightCommand, ResumeNeedsSameFramesAndCalibration) {
   EXPECT_EQ(rows("out/frames.csv").size(), 7U);
 }
 
+TEST_F(FlightCommand, ResumeNeedsSameCalibrationOfSource) {
+  write_list(3);
+  write("calibration.yaml", read_text(folder_ / "rig.yaml"));
+  const std::string command = "inspect flight.txt --output out --quiet ";
+  EXPECT_EQ(run(command + "--to 1").exit_code, 0);
+  write("calibration.yaml", read_text(folder_ / "rig.yaml") + "# another line\n");
+  expect_complaint(run(command + "--resume"), "content of the calibration");
+}
+
 TEST_F(FlightCommand, MistypedOptionKeepsEarlierResult) {
   write_list(3);
   EXPECT_EQ(run("inspect flight.txt --output out --quiet").exit_code, 0);

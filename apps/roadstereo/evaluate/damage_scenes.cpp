@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "evaluate/pair_files.hpp"
 #include "evaluate/scene_folders.hpp"
@@ -213,21 +211,6 @@ LabelledScene render_scene(const SceneSet& set, int index) {
   return rendered;
 }
 
-/// 8 or 16-bit grey image of one size with `like`.
-Image<std::uint16_t> read_damage_labels(const std::string& path, const Image<float>& like) {
-  const Frame file = io::read_frame(path);
-  if (file.order != ChannelOrder::grey || file.width != like.width() || file.height != like.height()) {
-    fail(path, " must be grey with ", like.width(), "×", like.height(), " pixels like the disparities");
-  }
-  Image<std::uint16_t> labels(file.width, file.height);
-  for (std::size_t i = 0; i < labels.pixels(); ++i) {
-    labels.row(0)[i] = file.sample == SampleType::u8
-                           ? file.bytes[i]
-                           : static_cast<std::uint16_t>(file.bytes[2 * i] | (file.bytes[2 * i + 1] << 8U));
-  }
-  return labels;
-}
-
 LabelledScene read_scene(const std::filesystem::path& folder) {
   LabelledFrame files = read_scene_folder(folder);
   if (!files.pair.calibration) fail(folder.string(), ": calibration.yaml is missing");
@@ -238,24 +221,10 @@ LabelledScene read_scene(const std::filesystem::path& folder) {
   scene.pair.calibration = *files.pair.calibration;
   scene.pair.disparity.resize(files.truth.width(), files.truth.height());
   std::copy_n(files.truth.row(0), files.truth.pixels(), scene.pair.disparity.row(0));
-  scene.pair.labels = read_damage_labels((folder / "damage.png").string(), files.truth);
-  const std::string path = (folder / "truth.json").string();
-  try {
-    const auto truth = nlohmann::json::parse(std::ifstream(path));
-    scene.camera_height_m = truth.at("height_m");
-    for (const auto& damage : truth.at("damages")) {
-      synth::DamageTruth one;
-      one.id = damage.at("label");
-      one.kind = damage.at("kind");
-      one.depth_m = damage.at("max_depth_m");
-      one.area_m2 = damage.at("area_m2");
-      one.volume_m3 = damage.at("volume_m3");
-      one.mean_depth_m = one.volume_m3 / one.area_m2;
-      scene.pair.damages.push_back(one);
-    }
-  } catch (const nlohmann::json::exception& error) {
-    fail(path, ": ", error.what());
-  }
+  SceneTruth truth = read_scene_truth(folder, files.truth);
+  scene.pair.labels = std::move(truth.labels);
+  scene.pair.damages = std::move(truth.damages);
+  scene.camera_height_m = truth.camera_height_m;
   return scene;
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
@@ -19,6 +21,20 @@ Frame read_labels(const fs::path& path, const Frame& like) {
   if (labels.width != like.width || labels.height != like.height) {
     fail(path.string(), " has ", labels.width, "×", labels.height, " pixels; it must have ", like.width, "×",
          like.height, " like the pair");
+  }
+  return labels;
+}
+
+Image<std::uint16_t> read_damage_labels(const std::string& path, const Image<float>& like) {
+  const Frame file = io::read_frame(path);
+  if (file.order != ChannelOrder::grey || file.width != like.width() || file.height != like.height()) {
+    fail(path, " must be grey with ", like.width(), "×", like.height(), " pixels like the disparities");
+  }
+  Image<std::uint16_t> labels(file.width, file.height);
+  if (file.sample == SampleType::u8) {
+    std::copy(file.bytes.begin(), file.bytes.end(), labels.row(0));
+  } else {
+    std::memcpy(labels.row(0), file.bytes.data(), file.bytes.size());
   }
   return labels;
 }
@@ -55,6 +71,29 @@ LabelledFrame read_scene_folder(const fs::path& folder) {
     frame.road->row(0)[i] = on_road && seen.bytes[i] == seen_by_both ? 255 : 0;
   }
   return frame;
+}
+
+SceneTruth read_scene_truth(const fs::path& folder, const Image<float>& disparity) {
+  SceneTruth scene;
+  scene.labels = read_damage_labels((folder / "damage.png").string(), disparity);
+  const std::string path = (folder / "truth.json").string();
+  try {
+    const auto truth = nlohmann::json::parse(std::ifstream(path));
+    scene.camera_height_m = truth.at("height_m");
+    for (const auto& damage : truth.at("damages")) {
+      synth::DamageTruth one;
+      one.id = damage.at("label");
+      one.kind = damage.at("kind");
+      one.depth_m = damage.at("max_depth_m");
+      one.area_m2 = damage.at("area_m2");
+      one.volume_m3 = damage.at("volume_m3");
+      one.mean_depth_m = one.volume_m3 / one.area_m2;
+      scene.damages.push_back(one);
+    }
+  } catch (const nlohmann::json::exception& error) {
+    fail(path, ": ", error.what());
+  }
+  return scene;
 }
 
 }  // namespace roadstereo::cli

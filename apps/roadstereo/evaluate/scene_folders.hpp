@@ -2,10 +2,12 @@
 // cameras), region.png (1 road, 2 damage), and optionally calibration.yaml, damage.png (16 bit, labels) and truth.json.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
 #include "evaluate/labelled_frame.hpp"
+#include "roadstereo/synth.hpp"
 
 namespace roadstereo::cli {
 
@@ -16,5 +18,15 @@ std::vector<std::filesystem::path> scene_folders(const std::filesystem::path& fo
 
 /// The pair of a scene and its truth. The road is road and damage that both cameras see.
 LabelledFrame read_scene_folder(const std::filesystem::path& folder);
+
+/// What damage.png and truth.json tell of the damage of a scene.
+struct SceneTruth {
+  Image<std::uint16_t> labels;  ///< id of the damage at the pixel; 0: none
+  std::vector<synth::DamageTruth> damages;
+  double camera_height_m = 0;
+};
+
+/// Throws Error naming the file if it is missing or the labels do not have the size of `disparity`.
+SceneTruth read_scene_truth(const std::filesystem::path& folder, const Image<float>& disparity);
 
 }  // namespace roadstereo::cli

@@ -69,6 +69,9 @@ class FrameSource {
   /// Calibration contained in the source, if any: camera_info of a bag, calibration.yaml in a folder or beside a list.
   virtual std::optional<CalibrationFile> calibration() const { return std::nullopt; }
 
+  /// File that `calibration` reads; empty if it is part of the source, or if there is none.
+  virtual std::string calibration_file() const { return {}; }
+
   /// Short description for messages, e.g. "folder, 300 pairs".
   virtual std::string description() const = 0;
 };

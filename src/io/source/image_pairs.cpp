@@ -9,7 +9,10 @@
 namespace roadstereo::io {
 
 ImagePairs::ImagePairs(std::vector<ImagePair> pairs, std::string kind, const std::filesystem::path& folder)
-    : pairs_(std::move(pairs)), kind_(std::move(kind)), calibration_(folder / "calibration.yaml") {}
+    : pairs_(std::move(pairs)), kind_(std::move(kind)) {
+  const std::filesystem::path file = folder / "calibration.yaml";
+  if (std::filesystem::exists(file)) calibration_ = file.string();
+}
 
 std::optional<SourcePair> ImagePairs::next() {
   if (next_ >= pairs_.size()) return std::nullopt;
@@ -39,8 +42,8 @@ void ImagePairs::skip(std::int64_t pairs) {
 }
 
 std::optional<CalibrationFile> ImagePairs::calibration() const {
-  if (!std::filesystem::exists(calibration_)) return std::nullopt;
-  return read_calibration(calibration_.string());
+  if (calibration_.empty()) return std::nullopt;
+  return read_calibration(calibration_);
 }
 
 std::string ImagePairs::description() const {

@@ -28,12 +28,13 @@ class ImagePairs final : public FrameSource {
   void skip(std::int64_t pairs) override;
   std::optional<std::int64_t> size() const override { return static_cast<std::int64_t>(pairs_.size()); }
   std::optional<CalibrationFile> calibration() const override;
+  std::string calibration_file() const override { return calibration_; }
   std::string description() const override;
 
  private:
   std::vector<ImagePair> pairs_;
   std::string kind_;
-  std::filesystem::path calibration_;
+  std::string calibration_;
   std::size_t next_ = 0;
 };
 
