@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/roadstereo)
 
 # A 0.x version is compatible with itself only. Objects of shared and static libraries are the same, for compiler caches.
-set(roadstereo_libraries roadstereo roadstereo_mapping roadstereo_odometry roadstereo_synth)
+set(roadstereo_libraries roadstereo roadstereo_graph roadstereo_mapping roadstereo_odometry roadstereo_synth)
 if(NOT ROADSTEREO_EMBEDDED_ONLY)
   list(APPEND roadstereo_libraries roadstereo_io)
 endif()
@@ -28,7 +28,9 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/roadstereo DESTINATION ${CMAKE_I
 install(FILES ${PROJECT_BINARY_DIR}/generated/roadstereo/version.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/roadstereo COMPONENT development)
 
-# A set of its own, so that a user of the embedded library need not have OpenCV.
+# Sets of their own, so that a user of the embedded library need have neither Ceres nor OpenCV.
+roadstereo_install(roadstereoGraphTargets roadstereo_graph)
+install(EXPORT roadstereoGraphTargets NAMESPACE roadstereo:: DESTINATION ${package_folder} COMPONENT development)
 if(NOT ROADSTEREO_EMBEDDED_ONLY)
   roadstereo_install(roadstereoIoTargets roadstereo_io)
   install(EXPORT roadstereoIoTargets NAMESPACE roadstereo:: DESTINATION ${package_folder} COMPONENT development)

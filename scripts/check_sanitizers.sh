@@ -6,7 +6,7 @@
 #   asan-all  the same with them, files and pictures, maps and the commands, and all of undefined behaviour: checks of every
 #             pointer, most of which the address sanitizer makes too, take a third of the time to compile
 #   tsan      thread sanitizer: what is about threads, recordings, cameras, and every kernel, whose threads are threads to it
-# Left out by label: slow, whose short siblings take the same ways through the code, real data and browsers.
+# Left out by label: slow, whose short siblings take the same ways through the code, real data, browsers and ament.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -36,6 +36,6 @@ cmake --preset "$preset" "${options[@]}" "$@"
 cmake --build --preset "$preset" -j "$(nproc)" --target "${programs[@]}"
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp"
-./scripts/run_tests.sh "build-$preset" --label-regex "$with" --label-exclude '^(slow|real_data|browser)$' \
+./scripts/run_tests.sh "build-$preset" --label-regex "$with" --label-exclude '^(slow|real_data|browser|ament)$' \
   --exclude-regex "$without"
 echo "Sanitizers: $preset is good."

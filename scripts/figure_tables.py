@@ -86,6 +86,21 @@ def kitti_regions(result):
     return markdown(["region", "", "e_r px", "e_p(2) %", "e_p(3) %", "e_p+(2) %"], table)
 
 
+@needs("kitti", "kitti_scene", "kitti_wider", "kitti_wider_scene")
+def kitti_scope(ten, ten_scene, wider, wider_scene):
+    def row(title, name, result, method):
+        road, off_road, everything = (row_where(result[region]["mean"], method=method)
+                                      for region in ("road", "off_road", "all"))
+        return [title, name, number(road["e_r_px"], 2), number(off_road["density_percent"], 1),
+                number(off_road["e_p_3px_percent"], 1), number(everything["e_p_or_missing_2px_percent"], 1)]
+
+    table = []
+    for title, road, scene in (("ten frames", ten, ten_scene), ("wider/kitti2015", wider, wider_scene)):
+        table += [row(title, "`default`", road, "default"), row(title, "`default`, `--scope scene`", scene, "default"),
+                  row(title, METHODS["3WAY"], road, "3WAY"), row(title, METHODS["HH4"], road, "HH4")]
+    return markdown(["frames", "", "road: e_r px", "off it: density %", "off it: e_p(3) %", "all: e_p+(2) %"], table)
+
+
 def synth_rows(rows, keys):
     for group in dict.fromkeys(row["group"] for row in rows):
         of_group = rows_where(rows, group=group)

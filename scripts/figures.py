@@ -31,6 +31,9 @@ SLACK = 1.25
 # Name → arguments of the program, where {data} is the folder of the real data.
 EXPERIMENTS = {
     "kitti": "evaluate kitti {data}/kitti2015",
+    "kitti_scene": "evaluate kitti {data}/kitti2015 --set perspective.scope=scene",
+    "kitti_wider": "evaluate kitti {data}/wider/kitti2015",
+    "kitti_wider_scene": "evaluate kitti {data}/wider/kitti2015 --set perspective.scope=scene",
     "synth": "evaluate synth",
     "sigma": "evaluate sigma",
     "roll": "evaluate roll",

@@ -19,12 +19,12 @@ RIDGE = 0.05
 REGIONS_PER_SOURCE = 20  # real and false ones of a source weigh as much as so many
 
 
-def surface_log_odds(share):
+def surface_log_odds(significance):
     """As in src/damage/evidence.cpp; it is not fitted."""
-    of_damage, of_artefacts, deviation = 0.88, 0.47, 0.10
-    if share is None:
+    per_standard_error, even_odds = 4.7, 1.85
+    if significance is None:
         return 0.0
-    return min(0.0, (of_damage - of_artefacts) * (share - 0.5 * (of_damage + of_artefacts)) / deviation**2)
+    return min(0.0, per_standard_error * (significance - even_odds))
 
 
 def features(region):
@@ -68,7 +68,7 @@ def main():
     sources, rows = read(sys.argv[1:])
     x = np.array([features(row) for row in rows])
     y = np.array([float(row["is_damage"]) for row in rows])
-    offset = np.array([surface_log_odds(row["surface_share"]) for row in rows])
+    offset = np.array([surface_log_odds(row["surface_significance"]) for row in rows])
     program = np.array([row["confidence"] for row in rows])
     weight = np.ones(len(rows))
     for name in set(sources):

@@ -12,20 +12,25 @@ packages=(build-essential cmake ninja-build pkg-config
           libfreetype-dev
           libeigen3-dev libnanoflann-dev
           libgdal-dev libpugixml-dev "$geographiclib"
-          libgstreamer-plugins-base1.0-dev librosbag-storage-dev libsqlite3-dev libzstd-dev liblz4-dev libboost-dev
+          libgstreamer-plugins-base1.0-dev librosbag-storage-dev libsqlite3-dev libzstd-dev liblz4-dev
+          cyclonedds-dev cyclonedds-tools libboost-dev libceres-dev
           libcpp-httplib-dev libgtest-dev libbenchmark-dev)
 checks=(clang-format-14 clang-tidy doxygen python3 gdal-bin libsensor-msgs-dev gstreamer1.0-plugins-base)
+ros2_checks=(ament-cmake-xmllint ament-cmake-lint-cmake ament-cmake-flake8 ament-cmake-pep257 rosidl-tools
+             rosidl-generator-c-cpp python3-ament-index librosidl-runtime-c-cpp-dev libfastrtps-dev)
 case "${1:-}" in
   "") ;;
   --checks) packages+=("${checks[@]}") ;;
   --all-checks) packages+=("${checks[@]}" g++-aarch64-linux-gnu qemu-user googletest
                            chromium chromium-driver python3-selenium
                            pybind11-dev python3-dev python3-numpy python3-matplotlib python3-pil mypy
-                           python3-build python3-setuptools python3-wheel python3-venv) ;;
+                           python3-build python3-setuptools python3-wheel python3-venv
+                           "${ros2_checks[@]}") ;;
   *) echo "usage: $0 [--checks|--all-checks]" >&2; exit 2 ;;
 esac
 
-optional=(librosbag-storage-dev libsensor-msgs-dev)  # ROS 1 bags; newer distributions no longer have them
+# ROS 1 bags, DDS and lints of ROS 2: not every distribution has them.
+optional=(librosbag-storage-dev libsensor-msgs-dev cyclonedds-dev cyclonedds-tools "${ros2_checks[@]}")
 
 installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 

@@ -17,6 +17,7 @@ data=$(cached ROADSTEREO_DATA)
 [ "$(cached GSTREAMER_FOUND)" = 1 ] && compgen -G '/usr/lib/*/gstreamer-1.0/libgstvideotestsrc.so' >/dev/null ||
   missing+=(gstreamer)
 command -v chromedriver >/dev/null && /usr/bin/python3 -c 'import selenium' 2>/dev/null || missing+=(browser)
+command -v ament_xmllint >/dev/null && command -v rosidl >/dev/null || missing+=(ament)
 gpus=$(nvidia-smi --list-gpus 2>/dev/null | grep -c '^GPU' || true)
 if [ "$(cached ROADSTEREO_CUDA)" != EMULATED ]; then  # two GPUs are emulated
   [ "$gpus" -ge 1 ] || missing+=(cuda engine_cuda)

@@ -20,7 +20,7 @@ struct Key {
   const char* meaning;
 };
 
-constexpr std::array<Key, 12> keys{{
+constexpr std::array<Key, 13> keys{{
     {"roll", &FlightPath::roll_deg, "amplitude of the roll, degrees"},
     {"pitch", &FlightPath::pitch_deg, "amplitude of the pitch, degrees"},
     {"climb", &FlightPath::climb_m, "maximum climb above the start, metres"},
@@ -29,6 +29,7 @@ constexpr std::array<Key, 12> keys{{
     {"climb_period", &FlightPath::climb_period, "period of the climb, frames"},
     {"step", &FlightPath::step_m, "motion along the road per frame, metres"},
     {"loop", &FlightPath::loop_period, "frames of a full circle to the right, 0: straight ahead"},
+    {"turn", &FlightPath::turn_frame, "frame at which a straight flight turns to fly back, 0: never"},
     {"jump_roll", &FlightPath::jump_roll_deg, "change of the roll at a jump, degrees"},
     {"jump_pitch", &FlightPath::jump_pitch_deg, "change of the pitch at a jump, degrees"},
     {"jump_climb", &FlightPath::jump_climb_m, "change of the height at a jump, metres"},

@@ -93,6 +93,7 @@ void reject_flight_options(const FlightSettings& settings) {
   if (settings.every != 1) reject("--every");
   if (!settings.track.file.empty()) reject("--track");
   if (settings.trajectory) reject("--trajectory");
+  if (settings.map) reject("--map");
   if (settings.candidates) reject("--candidates");
   if (!settings.source_settings.camera_size.empty()) reject("--camera-size");
 }
@@ -153,7 +154,7 @@ report. "files" of result.json says what each file is.
 Output of a recording: damages.csv (one row per damage of the road, worst first), candidates.csv, sightings.csv (one row
 per damage and frame), frames.csv, summary.json, report.html, an image of each damage in damages/, and the files selected
 with --write; with --track also segments.csv (every 20 m), flight.gpkg and the same layers as GeoJSON: damages, sightings,
-frames and footprints. Ctrl-C stops after the frames already read; --resume continues there, also after a kill.
+frames and footprints; with --map also map/ (frames are matched twice). --resume continues after Ctrl-C or a kill.
 
 SOURCE is a folder (left/ right/, image_2/ image_3/, image_0/ image_1/, cam0/data cam1/data, or images named L… and R…),
 a list (.txt or .csv with lines "left right [seconds]"), a video with both views in one image, or a ROS bag (.bag, .mcap,
@@ -161,12 +162,11 @@ a list (.txt or .csv with lines "left right [seconds]"), a video with both views
 
 Calibration formats, recognised by content: plain YAML (focal_px, cx_px, cy_px, baseline_m, width, height), OpenCV stereo
 YAML or XML, ROS camera_info and EuRoC sensor.yaml (two files, left then right), Kalibr camchain.yaml, ZED SN*.conf,
-DepthAI JSON, KITTI calib*.txt, Middlebury calib.txt, K.txt. Images of an unrectified rig are rectified first. Without a
-calibration there are no metric results.
+RealSense and DepthAI JSON, COLMAP cameras.txt (then rigs.txt or images.txt), KITTI calib*.txt, Middlebury calib.txt,
+K.txt. Unrectified images are rectified. Metric results need it.
 
 Examples:
   roadstereo inspect left.png right.png --calibration calibration.yaml --output out
-  roadstereo inspect left.png right.png --output out --preset paper --set matcher.sigma_space=2
   roadstereo inspect left.png --disparity map.tiff --calibration calibration.yaml --output out
   roadstereo inspect flight/ --calibration left.yaml --calibration right.yaml --every 5 --write sheet --output out)";
 
@@ -219,7 +219,9 @@ void add_track_options(CLI::App& command, TrackSettings& track, bool& candidates
 void add_flight_options(CLI::App& command, FlightSettings& settings) {
   command.add_flag(
       "--trajectory", settings.trajectory,
-      "Estimate the motion from frame to frame: trajectory_kitti.txt, trajectory.tum, trajectory.csv, links.csv");
+      "Estimate the motion of the camera and close loops, with --track in UTM: trajectory_kitti.txt and others");
+  command.add_flag("--map", settings.map,
+                   "Map of the road along the trajectory, in map/: rasters, damages, profiles (as roadstereo map)");
   command.add_flag("--resume", settings.resume, "Continue the flight in the output folder");
   command.add_option("--from", settings.from, "First frame of the recording, from 0")->type_name("N");
   command.add_option("--to", settings.to, "Last frame of the recording, inclusive")->type_name("N");
@@ -228,7 +230,7 @@ void add_flight_options(CLI::App& command, FlightSettings& settings) {
       .add_option(
           "--write", settings.write,
           "Files, comma-separated. Of a pair: see below, default all; of every frame of a recording: disparity, "
-          "transformed, sheet, cloud, overlay, default none")
+          "transformed, sheet, cloud, overlay, mcap (one flight.mcap of ROS 2 messages), default none")
       ->type_name("LIST")
       ->delimiter(',')
       ->expected(1)

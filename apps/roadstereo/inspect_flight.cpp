@@ -9,6 +9,7 @@
 #include "flight/flight_results.hpp"
 #include "flight/provenance.hpp"
 #include "flight/run_flight.hpp"
+#include "map/make_map.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/version.hpp"
 
@@ -30,6 +31,15 @@ io::FlightJournal open_journal(const FlightSettings& settings, const PipelineOpt
   }
   folder.remove_earlier_flight();
   return io::FlightJournal::begin(folder.journal(), made_with);
+}
+
+std::optional<io::McapWriter> open_mcap(const FlightPlan& plan, const FlightSettings& settings,
+                                        const RectifiedSource& source, const FlightResults& results,
+                                        const FlightFolder& folder) {
+  if (!plan.mcap) return std::nullopt;
+  const auto topics = io::flight_topics(!source.calibration_format().empty(), settings.trajectory);
+  if (results.summary().frames == 0) return io::McapWriter::begin(folder.mcap(), topics);
+  return io::McapWriter::resume(folder.mcap(), topics, results.summary().good);
 }
 
 std::string flight_text(const FlightRun& run, const FlightSummary& summary, const FlightFolder& folder) {
@@ -61,9 +71,42 @@ void require_frames(const FlightSettings& settings, const io::FrameSource& sourc
   fail(settings.source[0], ": the source has ", source.size().value_or(0), " frames; --from is ", settings.from);
 }
 
+/// Maps the flight along its trajectory: its poses are final only now, so the frames are matched again. Returns the
+/// text for the terminal.
+std::string add_map(const FlightSettings& settings, const FlightPlan& plan, const FlightFolder& folder,
+                    const std::string& crs, const StopSignals& stop, FlightRun& run) {
+  MapPlan map;
+  MapPass& pass = map.passes.emplace_back();
+  pass.source = settings.source;
+  pass.source_options = plan.source;
+  pass.calibration = settings.calibration;
+  pass.trajectory = (folder.path() / trajectory_file_names().front()).string();
+  pass.options = plan.options;
+  pass.find_white_level = plan.find_white_level;
+  pass.mask = plan.mask;
+  pass.time_offset_s = settings.track.offset_s;
+  map.output = folder.path() / "map";
+  map.crs = crs;
+  map.resume = settings.resume;
+  map.quiet = settings.quiet;
+  try {
+    MapSummary made = make_map(map, stop);
+    run.map = {std::move(made.picture), std::move(made.damages)};
+    return made.text;
+  } catch (const SystemError&) {
+    throw;
+  } catch (const Error& error) {
+    run.no_map_reason = error.what();
+  } catch (const Interrupted&) {
+    run.complete = false;
+  }
+  return {};
+}
+
 }  // namespace
 
 void inspect_flight(FlightSettings settings) {
+  settings.trajectory = settings.trajectory || settings.map;
   const FlightPlan plan = resolve(settings);
   FlightRun run;
   run.options = plan.options;
@@ -85,32 +128,44 @@ void inspect_flight(FlightSettings settings) {
   if (journal.last() && journal.last()->white_level > 0) source.set_white_level(journal.last()->white_level);
   run.resumed_at = journal.frames();
 
+  std::optional<io::McapWriter> mcap = open_mcap(plan, settings, source, results, folder);
   Progress progress(frames_to_do(settings, source.source()), journal.frames(), settings.quiet);
   auto stop = std::make_unique<StopSignals>();  // until here Ctrl-C ends the program
   std::optional<FlightTrajectory> trajectory;
-  Flight flight{source, folder, journal, results, trajectory, plan, progress, *stop};
+  Flight flight{source, folder, journal, results, trajectory, mcap, plan, progress, *stop};
   run.complete = run_flight(settings, flight);
-  stop.reset();  // the next Ctrl-C ends the program
-  if (journal.last() && journal.last()->white_level > 0) run.options.white_level = journal.last()->white_level;
   run.seconds = progress.seconds();
   run.frames_per_second = progress.frames_per_second();
+  progress.end();
+  if (trajectory) {
+    if (run.complete) trajectory->optimise(settings.track);
+    folder.write(trajectory->files());
+  }
+  std::string map_text;
+  if (settings.map && trajectory && run.complete)
+    map_text = add_map(settings, plan, folder, trajectory->crs(), *stop, run);
+  stop.reset();  // the next Ctrl-C ends the program
+  if (journal.last() && journal.last()->white_level > 0) run.options.white_level = journal.last()->white_level;
   run.source = source.source().description();
   run.calibration_format = source.calibration_format();
   run.engine = resolve_engine_name(run.options.engine);
   run.threads = used_threads(run.options);
 
-  if (trajectory) folder.write(trajectory->files());
+  if (mcap) mcap->finish();
   const std::string json = results.write(settings, run, folder);
   const FlightSummary& summary = results.summary();
-  progress.end();
   if (settings.json) fmt::print("{}", json);
   if (!settings.json && !settings.quiet) {
     fmt::print("{}", flight_text(run, summary, folder));
     if (trajectory) fmt::print("  path      {}\n", trajectory->summary());
+    fmt::print("{}", map_text);
   }
   if (!run.complete) throw Interrupted{"interrupted; continue with --resume"};
   if (summary.frames == 0) fail(settings.source[0], ": there is no frame between --from and --to");
   if (summary.good == 0) fail("none of the ", summary.frames, " frames could be matched: ", summary.reasons.front());
+  const std::string contradiction = trajectory ? trajectory->track_contradiction() : std::string();
+  if (!contradiction.empty()) fail(settings.track.file, ": ", contradiction);
+  if (!run.no_map_reason.empty()) fail("there is no map: ", run.no_map_reason);
 }
 
 }  // namespace roadstereo::cli

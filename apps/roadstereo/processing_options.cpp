@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "roadstereo/io/severity_file.hpp"
+#include "roadstereo/options.hpp"
 #include "settings.hpp"
 
 namespace roadstereo::cli {
@@ -29,6 +30,10 @@ void add_processing_options(CLI::App& command, ProcessingSettings& processing) {
   command.add_option("--preset", processing.preset, "Preset of the options: " + joined_presets())
       ->type_name("NAME")
       ->capture_default_str();
+  command.add_option("--scope", processing.scope, "What is matched: road, or scene: vehicles and houses, too (slower)")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"road", "scene"}).description(""))
+      ->capture_default_str();
   command.add_option("--engine", processing.engine, "Matching engine, see roadstereo engines")
       ->type_name("NAME")
       ->capture_default_str();
@@ -47,6 +52,7 @@ PipelineOptions make_options(const ProcessingSettings& processing) {
   PipelineOptions options = preset(processing.preset);
   options.engine = processing.engine;
   options.threads = processing.threads;
+  set_option(options, "perspective.scope", processing.scope);
   apply_settings(processing.settings, options);
   options.damage.severity = io::read_severity_scheme(processing.severity);
   options.validate();

@@ -14,6 +14,7 @@ namespace roadstereo::cli {
 /// Command line options of the pipeline.
 struct ProcessingSettings {
   std::string preset = "default";
+  std::string scope = "road";  ///< or "scene"
   std::string engine = "auto";
   int threads = 0;
   std::vector<std::string> settings;  ///< "key=value"

@@ -91,10 +91,10 @@ struct DamageEvidence {
   double steepness = 0;     ///< maximum of the mean slope on a contour, relative to a cone of the same area and depth
   double road_share = 0;    ///< share of the band around that is road, 0 … 1
   double border_share = 0;  ///< share of the outline that lies on the border of the image, 0 … 1
-  /// Share of the blocks inside that correlate better between the pictures along the measured surface than along the
-  /// undamaged road, 0 … 1, weighed by their ρ²; NaN unknown. What one camera alone sees agrees along neither, the
-  /// texture around it along the road.
-  double surface_share = std::numeric_limits<double>::quiet_NaN();
+  /// Standard errors by which the blocks inside correlate better between the pictures along the measured surface than
+  /// along the undamaged road; NaN unknown. What one camera alone sees agrees along neither, the texture around it
+  /// along the road.
+  double surface_significance = std::numeric_limits<double>::quiet_NaN();
 
   /// Probability that the region is damage, 0 … 1: logistic regression on the evidence (docs/method.md).
   double confidence() const;

@@ -71,6 +71,9 @@ class Odometry {
   const FramePose& add(int frame, const OdometryFrame& maps);
   const FramePose& add(int frame, const FrameResult& result);
 
+  /// Index of the frame that the next one is aligned with; −1 before the first.
+  int reference() const;
+
   /// Links so far, one per frame that has one.
   const std::vector<FrameLink>& links() const;
 

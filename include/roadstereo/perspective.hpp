@@ -13,10 +13,17 @@ namespace roadstereo {
 /// Sampling of the target image when its rows are shifted.
 enum class ShiftPrecision { whole_pixel, sub_pixel };
 
+/// What is searched after the shift.
+enum class Scope {
+  road,   ///< the road and its damage: what stands on the road gets no right disparity
+  scene,  ///< everything that the pair shows, vehicles and houses too: slower
+};
+
 /// Options of the perspective transformation, section 3.1.
 struct PerspectiveOptions {
   bool enabled = true;  ///< false: no shift, plain stereo over the full range
   ShiftPrecision shift = ShiftPrecision::sub_pixel;
+  Scope scope = Scope::road;
   double max_damage_depth_m = 0.10;  ///< deepest measurable damage, metres, above 0, at most 2; needs a calibration
   double max_bump_height_m = 0.05;   ///< highest measurable bump, metres, above 0, at most 2; needs a calibration
   int disparities = 0;               ///< number of disparities D searched after the shift, 1 … 1024; 0 derives it
@@ -27,8 +34,8 @@ struct PerspectiveOptions {
 };
 
 /// Chooses δp and D: with a calibration from the deepest damage and the highest bump at the road's distance, without
-/// one from the residuals of the correspondences. Without a reliable model there is no shift and the full range is
-/// searched.
+/// one from the residuals of the correspondences; for the scene from the largest disparity, too. Without a reliable
+/// model there is no shift and the full range is searched.
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
                                   int width, int height, const PerspectiveOptions& options);
 

@@ -68,6 +68,12 @@ struct MapFrame {
   RigidTransform camera_to_map{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 };
 
+/// What continues a map with the tiles in its folder.
+struct SavedMap {
+  std::vector<std::array<int, 3>> tiles;  ///< column, row, generation of its file
+  std::array<double, 3> sums{};           ///< of the errors of heights
+};
+
 /// 2.5-D map of a road: height, its standard error and colour in square cells, z up. Frames are fused cell by cell with
 /// inverse variances. The standard errors are scaled by the spread of the heights, and count the correlation of
 /// successive frames, both of which the map measures. A cell keeps two surfaces, the one that more frames agree on and
@@ -82,6 +88,8 @@ class RoadMap {
   /// Keeps its tiles in `folder`, which it creates, and removes. Throws Error for options out of range, and if the
   /// folder cannot be written to.
   RoadMap(const std::filesystem::path& folder, const RoadMapOptions& options);
+  /// Continues a map from `saved` and the tiles that it names. Throws Error if a tile is missing.
+  RoadMap(const std::filesystem::path& folder, const RoadMapOptions& options, const SavedMap& saved);
   ~RoadMap();
   RoadMap(RoadMap&&) noexcept;
   RoadMap& operator=(RoadMap&&) noexcept;
@@ -89,6 +97,13 @@ class RoadMap {
   /// Fuses a frame. Returns the number of cells that it measures. Throws Error for an image without a size in common
   /// with the disparities, SystemError if a tile cannot be written.
   std::size_t add(const MapFrame& frame);
+
+  /// Writes all tiles to the folder and returns what continues the map. The files of the last save stay until `commit`,
+  /// to be called when this one is recorded. Throws SystemError on a full disk.
+  SavedMap save();
+  void commit();
+  /// Leaves the tiles in the folder at the end.
+  void keep();
 
   /// Returns the smallest box with all tiles; empty without any.
   MapBox bounds() const;

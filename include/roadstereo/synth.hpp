@@ -177,6 +177,7 @@ struct FlightPath {
   double climb_period = 170;  ///< 2 … 1e6
   double step_m = 0.1;        ///< along the road per frame, −10 … 10
   double loop_period = 0;     ///< frames after which the rig, on a circle to the right, is back; 0: straight; 2 … 1e6
+  double turn_frame = 0;      ///< of a straight flight, where it turns to fly back 0.3 m beside; 0: never; 1 … 1e6
   std::vector<int> jumps;     ///< frames, ≥ 1, without duplicates
   double jump_roll_deg = 5;   ///< offset of the roll, −45 … 45
   double jump_pitch_deg = 4;  ///< offset of the pitch, −45 … 45

@@ -69,8 +69,8 @@ void bind_one_damage(py::module_& module) {
       .field("steepness", &Evidence::steepness, "Maximum mean slope on a contour, relative to a cone.")
       .field("road_share", &Evidence::road_share, "Share of the band around that is road, 0 … 1.")
       .field("border_share", &Evidence::border_share, "Share of the outline on the border of the image, 0 … 1.")
-      .field("surface_share", &Evidence::surface_share,
-             "Share of the blocks inside that agree along the measured surface, not along the road; NaN unknown.");
+      .field("surface_significance", &Evidence::surface_significance,
+             "Standard errors by which the images agree better along the measured surface than the road; NaN unknown.");
   Record<Damage>(module, "Damage", "One damage: a connected component of the left image.")
       .field("id", &Damage::id, "Value in `DamageMap.ids`.")
       .field(

@@ -7,15 +7,11 @@ namespace roadstereo {
 
 namespace {
 
-/// Log of the ratio of two normal densities of the surface share, of damage and of what one camera alone sees, at most
-/// 0: the agreement of the pictures shows a surface, not that it is damage. Measured on regions of at least 400 pixels
-/// in the pictures with rain, snow and dead pixels of `evaluate faults`: 0.88 ± 0.07 and 0.47 ± 0.13, here with one
-/// deviation.
-double surface_log_odds(double share) {
-  constexpr double of_damage = 0.88, of_artefacts = 0.47, deviation = 0.10;
-  if (std::isnan(share)) return 0;
-  const double middle = 0.5 * (of_damage + of_artefacts);
-  return std::min(0.0, (of_damage - of_artefacts) * (share - middle) / (deviation * deviation));
+/// Log-odds of damage against what one camera alone sees, at most 0: the agreement of the pictures shows a surface, not
+/// that it is damage. Fitted to regions of rendered roads with rain, snow and dead pixels (docs/method.md).
+double surface_log_odds(double significance) {
+  constexpr double per_standard_error = 4.7, even_odds = 1.85;
+  return std::isnan(significance) ? 0 : std::min(0.0, per_standard_error * (significance - even_odds));
 }
 
 }  // namespace
@@ -29,7 +25,7 @@ double DamageEvidence::confidence() const {
   constexpr double max_significance = 100;  // more does not tell a pothole from a kerb
   const double log_odds = intercept + per_log_significance * std::log(std::clamp(significance, 1.0, max_significance)) +
                           per_road_share * road_share + per_border_share * border_share;
-  return 1 / (1 + std::exp(-(log_odds + surface_log_odds(surface_share))));
+  return 1 / (1 + std::exp(-(log_odds + surface_log_odds(surface_significance))));
 }
 
 }  // namespace roadstereo

@@ -81,7 +81,7 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   damage.kind = candidate.kind;
   damage.evidence = candidate.evidence;
   const PixelBox box = pixel_box(candidate, segmentation.cells);
-  damage.evidence.surface_share = surface_share(input, maps, damage.id, box, offset.value);
+  damage.evidence.surface_significance = surface_significance(input, maps, damage.id, box, offset.value);
   damage.confidence = damage.evidence.confidence();
   for (int v = box.v0; v <= box.v1; ++v) {
     for (int u = box.u0; u <= box.u1; ++u) {

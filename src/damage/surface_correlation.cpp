@@ -17,7 +17,7 @@ constexpr std::size_t block_side = 2 * block_radius + 1;
 constexpr std::size_t block_pixels = block_side * block_side;
 using Block = std::array<float, block_pixels>;
 
-/// ZNCC; NaN if a value is NaN or a block has no contrast.
+/// ZNCC, 0 if negative; NaN if a value is NaN or a block has no contrast.
 float correlation(const Block& one, const Block& other) {
   float a = 0, b = 0, aa = 0, bb = 0, ab = 0;
   for (std::size_t k = 0; k < block_pixels; ++k) {
@@ -30,7 +30,8 @@ float correlation(const Block& one, const Block& other) {
   }
   constexpr float n = block_pixels;
   const float variances = (aa - a * a / n) * (bb - b * b / n);
-  return variances > 0 ? (ab - a * b / n) / std::sqrt(variances) : std::numeric_limits<float>::quiet_NaN();
+  return variances > 0 ? std::max(0.0F, (ab - a * b / n) / std::sqrt(variances))
+                       : std::numeric_limits<float>::quiet_NaN();
 }
 
 /// Compares two surfaces by blocks of both images.
@@ -42,9 +43,10 @@ class SurfaceComparison {
     return !input.right.empty() && !input.grey.empty() && !input.disparity.empty();
   }
 
-  /// ρ² of the surface along which the block around (u, v) correlates better; negative if that is the road at
-  /// `surface`, 0 if it correlates along neither.
+  /// Vote of the block around (u, v): log of the likelihood ratio of the measured surface to the road at `surface`,
+  /// from their correlations, truncated and scaled to [−1, 1]; 0 if either is unknown.
   float vote(int u, int v, float surface) const {
+    constexpr float max_log_ratio = 2;  // an object that one camera alone sees counts no more than a block of the road
     Block left, measured, road;
     std::size_t k = 0;
     if (u < block_radius || v < block_radius || u + block_radius >= input_.grey.width() ||
@@ -60,11 +62,17 @@ class SurfaceComparison {
       }
     }
     const float along_measured = correlation(left, measured), along_road = correlation(left, road);
-    if (along_measured > std::max(along_road, 0.0F)) return along_measured * along_measured;
-    return along_road > std::max(along_measured, 0.0F) ? -along_road * along_road : 0;
+    const float log_ratio = log_likelihood(along_measured) - log_likelihood(along_road);
+    return std::isnan(log_ratio) ? 0 : std::clamp(log_ratio / max_log_ratio, -1.0F, 1.0F);
   }
 
  private:
+  /// Log likelihood of a block along a surface, but for a constant: grey levels differ by normal noise.
+  static float log_likelihood(float correlation) {
+    constexpr float min_noise_share = 1e-4F;
+    return -0.5F * float{block_pixels} * std::log(std::max(1 - correlation * correlation, min_noise_share));
+  }
+
   /// Right image at column u of the row that belongs to row v; NaN outside.
   float right_at(float u, int v) const {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -112,22 +120,24 @@ Image<double> box_sums(const Image<float>& values, int radius) {
 
 }  // namespace
 
-double surface_share(const DamageInput& input, const DamageMap& maps, int id, const PixelBox& box, double offset) {
+double surface_significance(const DamageInput& input, const DamageMap& maps, int id, const PixelBox& box,
+                            double offset) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   if (!SurfaceComparison::is_possible(input)) return nan;
   constexpr double max_blocks = 2000;
-  const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(box.width() * box.height() / max_blocks))));
+  const int step =
+      std::max(block_radius, static_cast<int>(std::ceil(std::sqrt(box.width() * box.height() / max_blocks))));
   const SurfaceComparison comparison(input);
-  double measured = 0, road = 0;
+  double votes = 0, blocks = 0;
   for (int v = box.v0; v <= box.v1; v += step) {
     for (int u = box.u0; u <= box.u1; u += step) {
       if (maps.ids(u, v) != id) continue;
-      const double vote = comparison.vote(u, v, maps.surface(u, v) + static_cast<float>(offset));
-      measured += std::max(vote, 0.0);
-      road += std::max(-vote, 0.0);
+      votes += comparison.vote(u, v, maps.surface(u, v) + static_cast<float>(offset));
+      blocks += 1;
     }
   }
-  return measured + road > 0 ? measured / (measured + road) : nan;
+  const double independent = blocks * std::min(1.0, static_cast<double>(step * step) / block_pixels);
+  return blocks > 0 ? votes / blocks * std::sqrt(std::max(1.0, independent)) : nan;
 }
 
 bool move_unsupported_cells(const DamageInput& input, const RoadSurface& surface, int threads, Cells& cells) {
@@ -139,7 +149,7 @@ bool move_unsupported_cells(const DamageInput& input, const RoadSurface& surface
     return std::abs(surface.value(i, j) - cells.value(i, j)) > max_sigmas * static_cast<float>(surface.noise);
   };
   const SurfaceComparison comparison(input);
-  Image<float> votes(cells.width(), cells.height(), 0);
+  Image<float> votes(cells.width(), cells.height(), 0), blocks(cells.width(), cells.height(), 0);
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int j = first; j < last; ++j) {
       if (j % step != 0) continue;
@@ -147,14 +157,17 @@ bool move_unsupported_cells(const DamageInput& input, const RoadSurface& surface
         if (!is_off(i, j)) continue;
         const auto [u, v] = cells.centre(i, j);
         votes(i, j) = comparison.vote(u, v, surface.value(i, j));
+        blocks(i, j) = 1;
       }
     }
   });
-  const Image<double> sums = box_sums(votes, (window_radius_px + cells.factor - 1) / cells.factor);
+  const int radius = (window_radius_px + cells.factor - 1) / cells.factor;
+  const Image<double> sums = box_sums(votes, radius), counts = box_sums(blocks, radius);
   bool moved = false;
   for (int j = 0; j < cells.height(); ++j) {
     for (int i = 0; i < cells.width(); ++i) {
-      if (sums(i, j) >= 0 || !is_off(i, j)) continue;
+      const double standard_error = std::sqrt(counts(i, j));
+      if (sums(i, j) >= -standard_error || !is_off(i, j)) continue;
       cells.value(i, j) = surface.value(i, j);
       moved = true;
     }

@@ -10,13 +10,15 @@
 
 namespace roadstereo {
 
-/// Share, 0 … 1, of the blocks on damage `id` that correlate better along the measured disparities than along the
-/// surface of `maps`, raised by `offset`; each block weighs the square of the better correlation. NaN without a right
-/// image, a disparity map or a block with texture.
-double surface_share(const DamageInput& input, const DamageMap& maps, int id, const PixelBox& box, double offset);
+/// Standard errors by which the blocks on damage `id` correlate better along the measured disparities than along the
+/// surface of `maps`, raised by `offset`: their mean vote in [−1, 1] times the root of the number of independent
+/// blocks. NaN without a right image or a disparity map.
+double surface_significance(const DamageInput& input, const DamageMap& maps, int id, const PixelBox& box,
+                            double offset);
 
-/// Move cells onto the surface that are off it while, in the support window of matching around them, the blocks that
-/// correlate along the road weigh more. Returns whether there were any; none without a right image or a disparity map.
+/// Move cells onto the surface that are off it while, in the support window of matching around them, the votes are for
+/// the road by more than a standard error. Returns whether there were any; none without a right image or a disparity
+/// map.
 bool move_unsupported_cells(const DamageInput& input, const RoadSurface& surface, int threads, Cells& cells);
 
 }  // namespace roadstereo

@@ -13,6 +13,7 @@ namespace roadstereo::io {
 namespace {
 
 constexpr std::size_t max_bytes = std::size_t{1} << 20U;
+constexpr std::size_t max_images_bytes = std::size_t{1} << 28U;  // COLMAP's, with the points of every image
 
 enum class Format {
   plain_yaml,
@@ -22,14 +23,16 @@ enum class Format {
   euroc,
   zed,
   depthai,
+  realsense,
+  colmap,
   kitti,
   middlebury,
   k_txt,
   unknown
 };
 
-CalibrationText read_text(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
+CalibrationText read_text(const std::string& path, std::size_t limit = max_bytes) {
+  const std::vector<std::uint8_t> bytes = read_file(path, limit);
   if (std::find(bytes.begin(), bytes.end(), std::uint8_t{0}) != bytes.end()) {
     fail(path, ": this is not a text file; a calibration must be one");
   }
@@ -67,6 +70,7 @@ Format recognise(const std::string& text) {
   const std::vector<KeyLine> colon = key_lines(text, ':');
   const std::vector<KeyLine> equals = key_lines(text, '=');
   if (contains(text, "\"cameraData\"") && contains(text, "\"stereoRectificationData\"")) return Format::depthai;
+  if (contains(text, "\"rectified.0.fx\"")) return Format::realsense;
   if (has_any_key(colon, {"T_BS"})) return Format::euroc;
   if (is_opencv(text)) return Format::opencv_stereo;
   if (has_any_key(colon, {"T_cn_cnm1"})) return Format::kalibr;
@@ -77,6 +81,7 @@ Format recognise(const std::string& text) {
     return Format::kitti;
   }
   if (has_any_key(equals, {"cam0", "cam1"})) return Format::middlebury;
+  if (is_colmap_cameras(text)) return Format::colmap;
   return is_k_txt(text) ? Format::k_txt : Format::unknown;
 }
 
@@ -95,6 +100,12 @@ CalibrationFile read_as(Format format, const CalibrationText& file, const std::s
     const CalibrationText second = read_text(second_path);
     return is_ros ? read_ros_camera_info(file, second) : read_euroc_sensors(file, second);
   }
+  if (format == Format::colmap) {
+    if (!has_second) {
+      fail(file.path, ": this is COLMAP's cameras.txt; rigs.txt or images.txt with the poses is needed, too");
+    }
+    return read_colmap(file, read_text(second_path, max_images_bytes));
+  }
   if (format == Format::opencv_stereo) {
     if (!has_second) return read_opencv_stereo(file, nullptr);
     const CalibrationText second = read_text(second_path);
@@ -103,7 +114,7 @@ CalibrationFile read_as(Format format, const CalibrationText& file, const std::s
   if (format == Format::unknown) {
     fail(file.path,
          ": unknown calibration format; supported are plain YAML (focal_px, cx_px, cy_px, baseline_m), "
-         "OpenCV stereo, ROS camera_info, Kalibr, EuRoC, ZED, DepthAI, KITTI, Middlebury and K.txt");
+         "OpenCV stereo, ROS camera_info, Kalibr, EuRoC, ZED, RealSense, DepthAI, COLMAP, KITTI, Middlebury and K.txt");
   }
   if (has_second) fail_second(file, second_path);
   switch (format) {
@@ -115,6 +126,8 @@ CalibrationFile read_as(Format format, const CalibrationText& file, const std::s
       return read_zed_conf(file);
     case Format::depthai:
       return read_depthai(file);
+    case Format::realsense:
+      return read_realsense(file);
     case Format::kitti:
       return read_kitti(file);
     case Format::middlebury:
@@ -131,8 +144,8 @@ void CalibrationFile::select_size(int width, int height, const std::string& sour
   std::string sizes;
   for (const StereoRig& of_size : rigs) {
     if (of_size.width == width && of_size.height == height) {
-      rig = of_size;
-      rigs.clear();
+      const StereoRig chosen = of_size;
+      *this = describe_rig(chosen, format, source);
       return;
     }
     sizes += (sizes.empty() ? "" : ", ") + std::to_string(of_size.width) + "×" + std::to_string(of_size.height);

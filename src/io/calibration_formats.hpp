@@ -24,6 +24,10 @@ CalibrationFile read_kalibr_camchain(const CalibrationText& file);
 CalibrationFile read_euroc_sensors(const CalibrationText& left, const CalibrationText& right);
 CalibrationFile read_zed_conf(const CalibrationText& file);
 CalibrationFile read_depthai(const CalibrationText& file);
+/// The calibration that the RealSense Viewer saves: one rig per size of the images.
+CalibrationFile read_realsense(const CalibrationText& file);
+/// cameras.txt, and rigs.txt or images.txt.
+CalibrationFile read_colmap(const CalibrationText& cameras, const CalibrationText& poses);
 CalibrationFile read_kitti(const CalibrationText& file);
 CalibrationFile read_middlebury(const CalibrationText& file);
 CalibrationFile read_k_txt(const CalibrationText& file);
@@ -44,6 +48,9 @@ struct KeyLine {
 std::vector<KeyLine> key_lines(std::string_view text, char separator);
 /// Returns the line with that key, or null.
 const KeyLine* find_key(const std::vector<KeyLine>& lines, std::string_view key);
+
+/// Whether it is COLMAP's cameras.txt.
+bool is_colmap_cameras(std::string_view text);
 
 /// Names of the values of a rectified rig in its file, for error messages.
 struct FigureNames {

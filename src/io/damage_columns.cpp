@@ -136,7 +136,7 @@ std::vector<DamageColumn> pixel_columns() {
           {"steepness", evidence<&DamageEvidence::steepness>},
           {"road_share", evidence<&DamageEvidence::road_share>},
           {"border_share", evidence<&DamageEvidence::border_share>},
-          {"surface_share", evidence<&DamageEvidence::surface_share>},
+          {"surface_significance", evidence<&DamageEvidence::surface_significance>},
           {"cut_by_border", [](const Damage& d) -> DamageValue { return d.cut_by_border; }}};
 }
 

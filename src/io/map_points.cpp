@@ -6,21 +6,11 @@
 #include <fstream>
 #include <vector>
 
+#include "io/map_blocks.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
 namespace {
-
-template <class Visit>
-void for_each_block(const MapBox& bounds, const ReadMap& read, const Visit& visit) {
-  constexpr int block = 512;
-  for (int j = 0; j < bounds.rows; j += block) {
-    for (int i = 0; i < bounds.columns; i += block) {
-      visit(
-          read({bounds.i0 + i, bounds.j0 + j, std::min(block, bounds.columns - i), std::min(block, bounds.rows - j)}));
-    }
-  }
-}
 
 template <class Value>
 void append(std::vector<char>& bytes, Value value) {
@@ -45,17 +35,11 @@ void write_map_points(const std::filesystem::path& file, const MapBox& bounds, c
   std::vector<char> bytes;
   for_each_block(bounds, read, [&](const MapRaster& raster) {
     bytes.clear();
-    const MapBox& box = raster.box;
-    for (int v = 0; v < box.rows; ++v) {
-      for (int u = 0; u < box.columns; ++u) {
-        if (raster.views(u, v) == 0) continue;
-        append(bytes, reference.east_m + (box.i0 + u + 0.5) * reference.cell_m);
-        append(bytes, reference.north_m + (box.j0 + box.rows - v - 0.5) * reference.cell_m);
-        append(bytes, reference.up_m + raster.height(u, v));
-        append(bytes, raster.sigma(u, v));
-        for (const std::uint8_t colour : raster.colour(u, v)) append(bytes, colour);
-      }
-    }
+    for_each_point(raster, reference, [&](double x, double y, double z, int u, int v) {
+      for (const double coordinate : {x, y, z}) append(bytes, coordinate);
+      append(bytes, raster.sigma(u, v));
+      for (const std::uint8_t colour : raster.colour(u, v)) append(bytes, colour);
+    });
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   });
   stream.close();

@@ -11,33 +11,10 @@
 #include "core/order_statistics.hpp"
 #include "damage/distress.hpp"
 #include "damage/smoothing_error.hpp"
+#include "mapping/footprints.hpp"
 
 namespace roadstereo {
 namespace {
-
-bool cell_less(const std::array<std::int32_t, 2>& a, const std::array<std::int32_t, 2>& b) {
-  return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
-}
-
-/// Share of the smaller of two footprints that both cover.
-double overlap_share(const MapCells& one, const MapCells& other) {
-  if (one.empty() || other.empty()) return 0;
-  const auto above = [](const MapCells& a, const MapCells& b) { return a.back()[1] < b.front()[1]; };
-  if (above(one, other) || above(other, one)) return 0;
-  std::size_t common = 0;
-  for (auto a = one.begin(), b = other.begin(); a != one.end() && b != other.end();) {
-    if (cell_less(*a, *b)) {
-      ++a;
-    } else if (cell_less(*b, *a)) {
-      ++b;
-    } else {
-      ++common;
-      ++a;
-      ++b;
-    }
-  }
-  return static_cast<double>(common) / static_cast<double>(std::min(one.size(), other.size()));
-}
 
 void add_cells(const MapCells& more, MapCells& cells) {
   MapCells all;
@@ -55,9 +32,8 @@ struct Group {
 
 /// Returns the group with the largest overlap, or null.
 Group* group_of(const MapDamage& found, std::vector<Group>& groups) {
-  constexpr double min_share = 0.2;
   Group* best = nullptr;
-  double max_share = min_share;
+  double max_share = min_overlap_share;
   for (Group& group : groups) {
     if (group.kind != found.damage.kind) continue;
     const double share = overlap_share(group.footprint, found.footprint);

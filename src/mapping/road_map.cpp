@@ -61,8 +61,8 @@ void RoadMapOptions::validate() const {
 }
 
 struct RoadMap::State {
-  State(const std::filesystem::path& folder, const RoadMapOptions& given)
-      : options(given), store(folder, given.tile_cells, given.max_tiles) {}
+  State(const std::filesystem::path& folder, const RoadMapOptions& given, const TileStore::Saved& saved = {})
+      : options(given), store(folder, given.tile_cells, given.max_tiles, saved) {}
 
   RoadMapOptions options;
   TileStore store;
@@ -72,6 +72,13 @@ struct RoadMap::State {
 RoadMap::RoadMap(const std::filesystem::path& folder, const RoadMapOptions& options) {
   options.validate();
   state_ = std::make_unique<State>(folder, options);
+}
+RoadMap::RoadMap(const std::filesystem::path& folder, const RoadMapOptions& options, const SavedMap& saved) {
+  options.validate();
+  TileStore::Saved tiles;
+  for (const auto& [column, row, generation] : saved.tiles) tiles[{column, row}] = generation;
+  state_ = std::make_unique<State>(folder, options, tiles);
+  state_->sums = {saved.sums[0], saved.sums[1], saved.sums[2]};
 }
 RoadMap::~RoadMap() = default;
 RoadMap::RoadMap(RoadMap&&) noexcept = default;
@@ -118,12 +125,27 @@ std::size_t RoadMap::add(const MapFrame& frame) {
   return cells;
 }
 
+SavedMap RoadMap::save() {
+  SavedMap saved;
+  for (const auto& [key, generation] : state_->store.save()) saved.tiles.push_back({key.first, key.second, generation});
+  saved.sums = {state_->sums.spread, state_->sums.differences, state_->sums.count};
+  return saved;
+}
+
+void RoadMap::commit() {
+  state_->store.commit();
+}
+
+void RoadMap::keep() {
+  state_->store.keep();
+}
+
 MapBox RoadMap::bounds() const {
   const auto& keys = state_->store.keys();
   if (keys.empty()) return {};
   int column0 = std::numeric_limits<int>::max(), column1 = std::numeric_limits<int>::min();
   int row0 = column0, row1 = column1;
-  for (const auto& [key, in_memory] : keys) {
+  for (const auto& [key, generation] : keys) {
     column0 = std::min(column0, key.first);
     column1 = std::max(column1, key.first);
     row0 = std::min(row0, key.second);

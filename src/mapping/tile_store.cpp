@@ -1,6 +1,9 @@
 #include "mapping/tile_store.hpp"
 
+#include <algorithm>
+#include <cerrno>
 #include <fstream>
+#include <set>
 #include <string>
 #include <system_error>
 #include <type_traits>
@@ -11,38 +14,69 @@ namespace roadstereo {
 
 static_assert(std::is_trivially_copyable_v<MapCell>);
 
-TileStore::TileStore(std::filesystem::path folder, int tile_cells, int max_tiles)
+TileStore::TileStore(std::filesystem::path folder, int tile_cells, int max_tiles, const Saved& saved)
     : folder_(std::move(folder)),
       cells_per_tile_(static_cast<std::size_t>(tile_cells) * static_cast<std::size_t>(tile_cells)),
-      max_tiles_(static_cast<std::size_t>(max_tiles)) {
+      max_tiles_(static_cast<std::size_t>(max_tiles)),
+      known_(saved) {
   std::error_code error;
-  std::filesystem::remove_all(folder_, error);
+  if (saved.empty()) std::filesystem::remove_all(folder_, error);
   std::filesystem::create_directories(folder_, error);
   if (error) fail<SystemError>("cannot write to folder ", folder_.string(), ": ", error.message());
+  std::set<std::filesystem::path> needed;
+  for (const auto& [key, generation] : saved) {
+    generation_ = std::max(generation_, generation + 1);
+    needed.insert(file(key, generation));
+    if (!std::filesystem::exists(file(key, generation))) fail(file(key, generation).string(), ": this tile is missing");
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    if (needed.find(entry.path()) == needed.end()) superseded_.push_back(entry.path());
+  }
+  commit();
 }
 
 TileStore::~TileStore() {
+  if (keep_) return;
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);
 }
 
-std::filesystem::path TileStore::file(const Key& key) const {
-  return folder_ / (std::to_string(key.first) + "_" + std::to_string(key.second));
+std::filesystem::path TileStore::file(const Key& key, int generation) const {
+  return folder_ / (std::to_string(key.first) + "_" + std::to_string(key.second) + "." + std::to_string(generation));
+}
+
+void TileStore::write_file(Tile& tile) {
+  const std::filesystem::path path = file(tile.key, generation_);
+  std::ofstream stream(path, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(tile.cells.data()),
+               static_cast<std::streamsize>(tile.cells.size() * sizeof(MapCell)));
+  stream.close();
+  if (!stream) fail<SystemError>(path.string(), ": cannot be written: ", std::generic_category().message(errno));
+  int& generation = known_[tile.key];
+  if (generation > 0 && generation < generation_) superseded_.push_back(file(tile.key, generation));
+  generation = generation_;
+  tile.changed = false;
 }
 
 void TileStore::evict_oldest() {
-  const Tile& tile = recent_.back();
-  if (tile.changed) {
-    const std::filesystem::path path = file(tile.key);
-    std::ofstream stream(path, std::ios::binary);
-    stream.write(reinterpret_cast<const char*>(tile.cells.data()),
-                 static_cast<std::streamsize>(tile.cells.size() * sizeof(MapCell)));
-    stream.close();
-    if (!stream) fail<SystemError>(path.string(), ": cannot be written");
-  }
-  known_[tile.key] = false;
+  Tile& tile = recent_.back();
+  if (tile.changed) write_file(tile);
   in_memory_.erase(tile.key);
   recent_.pop_back();
+}
+
+const TileStore::Saved& TileStore::save() {
+  for (Tile& tile : recent_) {
+    if (tile.changed) write_file(tile);
+  }
+  ++generation_;
+  return known_;
+}
+
+void TileStore::commit() {
+  std::error_code ignored;
+  for (const std::filesystem::path& path : superseded_) std::filesystem::remove(path, ignored);
+  superseded_.clear();
 }
 
 TileStore::Tile& TileStore::fetch(const Key& key) {
@@ -53,16 +87,16 @@ TileStore::Tile& TileStore::fetch(const Key& key) {
   }
   while (recent_.size() >= max_tiles_) evict_oldest();
   Tile tile{key, Cells(cells_per_tile_), false};
-  const auto known = known_.find(key);
-  if (known != known_.end()) {
-    std::ifstream stream(file(key), std::ios::binary);
+  const int generation = known_[key];
+  if (generation > 0) {
+    const std::filesystem::path path = file(key, generation);
+    std::ifstream stream(path, std::ios::binary);
     stream.read(reinterpret_cast<char*>(tile.cells.data()),
                 static_cast<std::streamsize>(tile.cells.size() * sizeof(MapCell)));
-    if (!stream) fail<SystemError>(file(key).string(), ": cannot be read");
+    if (!stream) fail<SystemError>(path.string(), ": cannot be read");
   }
   recent_.push_front(std::move(tile));
   in_memory_[key] = recent_.begin();
-  known_[key] = true;
   return recent_.front();
 }
 

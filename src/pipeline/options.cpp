@@ -20,6 +20,11 @@ const Words<ShiftPrecision>& words(ShiftPrecision) {
   return all;
 }
 
+const Words<Scope>& words(Scope) {
+  static const Words<Scope> all{{"road", Scope::road}, {"scene", Scope::scene}};
+  return all;
+}
+
 const Words<WindowShape>& words(WindowShape) {
   static const Words<WindowShape> all{{"square", WindowShape::square}, {"disc", WindowShape::disc}};
   return all;
@@ -58,6 +63,7 @@ void visit_options(Options& o, Visitor visit) {
 
   visit("perspective.enabled", o.perspective.enabled, "shift the rows of the target image by the road model");
   visit("perspective.shift", o.perspective.shift, "precision of that shift");
+  visit("perspective.scope", o.perspective.scope, "what is searched after the shift");
   visit("perspective.max_damage_depth_m", o.perspective.max_damage_depth_m,
         "deepest damage to be measured, metres (needs a calibration)");
   visit("perspective.max_bump_height_m", o.perspective.max_bump_height_m,

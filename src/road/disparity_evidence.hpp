@@ -14,7 +14,8 @@ inline constexpr int evidence_rows = 2;
 /// disparity given its correlations; a pixel without texture adds nothing.
 struct EvidenceCell {
   float* support;  ///< logarithm-like score of the disparity, saturated for a single pixel: −0.53 … 3.2 each
-  float* beyond;   ///< probability that the pixel is farther away than the disparity, above chance: 0 … 1 each
+  float* beyond;   ///< 0 … 1 each, near 1 where the pixel is surely farther away than the disparity: square of the
+                   ///< share that the probability of all nearer ones lacks of chance
 };
 
 /// Evidence for disparities over the downsampled left image, rows × columns cells of `disparities` values.

@@ -39,12 +39,11 @@ ResidualRange physical_range(const DisparityPlane& road, const StereoCalibration
   return {nearest * options.max_damage_depth_m / (h + options.max_damage_depth_m), nearest * bump / (h - bump)};
 }
 
-/// Disparities of a search without a road model: all that the correspondences show, but not more than a quarter of the
-/// image, since wrong ones lie anywhere.
-int full_range(const RoadModelEstimate& road, int width) {
+/// Largest disparity of the scene: what the correspondences show, but not more than a quarter of the image, since wrong
+/// ones lie anywhere.
+double max_scene_disparity(const RoadModelEstimate& road, int width) {
   const double largest = width / 4.0;
-  const double shown = road.matches > 0 ? road.max_disparity_px * 1.1 + 8 : largest;
-  return std::clamp(static_cast<int>(std::ceil(std::min(shown, largest))) + 1, 8, std::min(max_disparities, width - 1));
+  return road.max_disparity_px > 0 ? std::min(road.max_disparity_px * 1.1 + 8, largest) : largest;
 }
 
 /// Pixels that cubic interpolation reads beyond the ends of a row: copies of the border.
@@ -112,7 +111,9 @@ PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::opti
   shift.whole_pixel = options.shift == ShiftPrecision::whole_pixel;
   shift.enabled = options.enabled && road.has_road();
   if (!shift.enabled) {
-    shift.disparities = options.disparities > 0 ? options.disparities : full_range(road, width);
+    const int full_range = static_cast<int>(std::ceil(max_scene_disparity(road, width))) + 1;
+    shift.disparities =
+        options.disparities > 0 ? options.disparities : std::clamp(full_range, 8, std::min(max_disparities, width - 1));
     return shift;
   }
   shift.road = road.model;
@@ -122,6 +123,8 @@ PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::opti
     const ResidualRange physical = physical_range(road.model, *calibration, width, height, options);
     range = {std::max(range.below, physical.below), std::max(range.above, physical.above)};
   }
+  // Where the road's disparity is 0 or less there is no shift, and the residual is the disparity.
+  if (options.scope == Scope::scene) range.above = std::max(range.above, max_scene_disparity(road, width));
   range.below += margin_px;
   range.above += margin_px;
   if (options.disparities > 0) {

@@ -50,11 +50,12 @@ struct Refinement {
   ScratchVector<DisparityPoint> points = scratch_vector<DisparityPoint>();  ///< full-size coordinates
 };
 
-/// The pair as the fine search sees it: at full size, or a large one downsampled.
+/// The pair as the fine search sees it: at full size, or downsampled.
 class FinePair {
  public:
-  FinePair(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, ImageView<const std::uint8_t> mask)
-      : factor_(fine_factor(left.width())), masked_(mask, factor_) {
+  FinePair(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, ImageView<const std::uint8_t> mask,
+           int factor)
+      : factor_(factor), masked_(mask, factor_) {
     // At full size there is nothing to downsample, and nothing to copy.
     const std::size_t size = factor_ > 1 ? left.pixels() / static_cast<std::size_t>(factor_ * factor_) : 0;
     pixels_.resize(2 * size);
@@ -130,6 +131,36 @@ void fit_evenly(const FinePair& pair, const TiltLimit& limit, bool with_roll, in
   if (fit && limit.can_be_road(fit->plane)) plane = fit->plane;
 }
 
+/// First wide, for the coarse plane is good to a pixel of the downsampled image at best; then close. By single blocks,
+/// and where these find nothing by cells of them.
+Refinement find_around(const FinePair& pair, const DisparityPlane& plane, bool with_roll, int threads) {
+  Refinement refinement;
+  for (PlaneMatcher* match : {&match_along_plane, &match_cells_along_plane}) {
+    refinement = refine_road(pair, plane, *match, first_search, with_roll, threads);
+    if (refinement.evidence.found) {
+      refinement = refine_road(pair, refinement.evidence.plane, *match, close_search, with_roll, threads);
+    }
+    if (refinement.evidence.found) break;
+  }
+  return refinement;
+}
+
+/// Assess the planes in turn until one is a road. If none is, the reason is that of the first.
+RoadModelEstimate assess_planes(const FinePair& pair, std::span<const PlaneHypothesis> planes, double coarse_pixels,
+                                const TiltLimit& limit, const RoadModelOptions& options, int threads,
+                                const RoadModelEstimate& matched) {
+  RoadModelEstimate estimate = matched;
+  for (const PlaneHypothesis& hypothesis : planes) {
+    Refinement refinement = find_around(pair, hypothesis.plane, options.with_roll, threads);
+    if (refinement.evidence.found) fit_evenly(pair, limit, options.with_roll, threads, refinement.evidence.plane);
+    RoadModelEstimate assessed = matched;
+    assess_found_road(refinement.evidence, hypothesis.score / coarse_pixels, limit, options, assessed);
+    if (assessed.has_road()) return assessed;
+    if (&hypothesis == &planes.front()) estimate = assessed;
+  }
+  return estimate;
+}
+
 /// Whether exchanging the images explains them far better than the order they came in. Only asked when few pixels of
 /// the downsampled image matched.
 bool look_swapped(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int factor,
@@ -194,35 +225,28 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   constexpr int max_planes = 3;
   const ScratchVector<PlaneHypothesis> planes =
       search_planes(coarse, limit, RigPrior(options, calibration), max_planes, threads);
-  if (planes.empty()) estimate.reason = "no plane has more evidence for it than against it";
-  const FinePair fine(left, right, mask);
-  for (const PlaneHypothesis& hypothesis : planes) {
-    // First wide, for the coarse plane is good to a pixel of the downsampled image at best; then close. By single
-    // blocks, and where these find nothing by cells of them.
-    Refinement refinement;
-    for (PlaneMatcher* match : {&match_along_plane, &match_cells_along_plane}) {
-      refinement = refine_road(fine, hypothesis.plane, *match, first_search, options.with_roll, threads);
-      if (refinement.evidence.found) {
-        refinement = refine_road(fine, refinement.evidence.plane, *match, close_search, options.with_roll, threads);
-      }
-      if (refinement.evidence.found) break;
-    }
-    if (refinement.evidence.found) fit_evenly(fine, limit, options.with_roll, threads, refinement.evidence.plane);
-    RoadModelEstimate assessed = estimate;
-    assess_found_road(refinement.evidence, hypothesis.score / coarse.pixels(), limit, options, assessed);
-    // Where none is a road, the reason is that of the plane with the most evidence.
-    if (assessed.has_road() || &hypothesis == &planes.front()) estimate = assessed;
-    if (assessed.has_road()) break;
+  if (planes.empty()) {
+    estimate.reason = "no plane has more evidence for it than against it";
+    return estimate;
   }
-  measure_range(matches, estimate);
-  return estimate;
+  const auto assess_in = [&](int downsampling) {
+    return assess_planes({left, right, mask, downsampling}, planes, coarse.pixels(), limit, options, threads, estimate);
+  };
+  RoadModelEstimate found = assess_in(fine_factor(left.width()));
+  if (!found.has_road()) {
+    // Noise that hides every block at full size averages out in the downsampled pair.
+    const RoadModelEstimate found_coarsely = assess_in(factor);
+    if (found_coarsely.has_road()) found = found_coarsely;
+  }
+  measure_range(matches, found);
+  return found;
 }
 
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                     const TrackedRoad& previous, const std::optional<StereoCalibration>& calibration,
                                     const RoadModelOptions& options, int threads, ImageView<const std::uint8_t> mask) {
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
-  const FinePair fine(left, right, mask);
+  const FinePair fine(left, right, mask, fine_factor(left.width()));
   const Refinement around =
       refine_road(fine, previous.model, match_along_plane, first_search_again, options.with_roll, threads);
   const Refinement close = around.evidence.found ? refine_road(fine, around.evidence.plane, match_along_plane,

@@ -102,6 +102,7 @@ void add_evidence(const RowCorrelations& row, int first, float* posterior, const
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float zero = hn::Zero(df), one = hn::Set(df, 1.0f), half = hn::Set(df, 0.5f), quarter = hn::Set(df, 0.25f);
+  const Float smallest_chance = hn::Set(df, 0.05f);
   for (int u = first; u < first + evidence_columns && u < row.width; u += lanes) {
     const auto inside = hn::Lt(hn::Iota(df, static_cast<float>(u)), hn::Set(df, static_cast<float>(row.width)));
     Float total = zero, count = zero;
@@ -126,7 +127,9 @@ void add_evidence(const RowCorrelations& row, int first, float* posterior, const
       cumulative = hn::MulAdd(at, inverse_total, cumulative);
       chance = hn::Add(chance, hn::IfThenElseZero(valid, inverse_count));
       cell.support[d] += hn::GetLane(hn::SumOfLanes(df, hn::IfThenElseZero(valid, support)));
-      cell.beyond[d] += hn::GetLane(hn::SumOfLanes(df, hn::Max(zero, hn::Sub(cumulative, chance))));
+      const Float excess = hn::Max(zero, hn::Sub(cumulative, chance));
+      const Float missing = hn::Div(excess, hn::Max(hn::Sub(one, chance), smallest_chance));
+      cell.beyond[d] += hn::GetLane(hn::SumOfLanes(df, hn::Mul(missing, missing)));
       before = at;
       at = after;
     }

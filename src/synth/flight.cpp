@@ -31,6 +31,20 @@ void circle(const FlightPath& path, double frame, Rig& rig) {
   rig.yaw_deg = std::remainder(rig.yaw_deg - turn * 180 / std::numbers::pi, 360.0);
 }
 
+/// Moves the rig along the road, and after `turn_frame` frames back: within 30 frames round half a circle to the right.
+void straight(const FlightPath& path, double frame, Rig& rig) {
+  constexpr double radius_m = 0.15, turn_frames = 30;
+  if (path.turn_frame == 0 || frame <= path.turn_frame) {
+    rig.y_m += frame * path.step_m;
+    return;
+  }
+  const double turn = std::numbers::pi * std::min((frame - path.turn_frame) / turn_frames, 1.0);
+  const double back = std::max(frame - path.turn_frame - turn_frames, 0.0);
+  rig.x_m += radius_m * (1 - std::cos(turn));
+  rig.y_m += (path.turn_frame - back) * path.step_m + radius_m * std::sin(turn);
+  rig.yaw_deg = std::remainder(rig.yaw_deg - turn * 180 / std::numbers::pi, 360.0);
+}
+
 }  // namespace
 
 void FlightPath::validate() const {
@@ -43,6 +57,9 @@ void FlightPath::validate() const {
   require_in_range("climb_period", climb_period, min_period, max_period);
   require_in_range("step_m", step_m, -10, 10);
   if (loop_period != 0) require_in_range("loop_period", loop_period, min_period, max_period);
+  if (turn_frame != 0) require_in_range("turn_frame", turn_frame, 1, max_period);
+  if (turn_frame != 0 && loop_period != 0)
+    fail("flight: turn_frame is for straight flights, but loop_period is ", loop_period);
   require_in_range("jump_roll_deg", jump_roll_deg, -max_deg, max_deg);
   require_in_range("jump_pitch_deg", jump_pitch_deg, -max_deg, max_deg);
   require_in_range("jump_climb_m", jump_climb_m, -max_climb_m, max_climb_m);
@@ -63,7 +80,7 @@ Scene flight_frame(const Scene& scene, const FlightPath& path, int frame) {
   Scene next = scene;
   Rig& rig = next.rig;
   rig.y_m += static_cast<double>(jumps) * path.jump_step_m;
-  if (path.loop_period == 0) rig.y_m += t * path.step_m;
+  if (path.loop_period == 0) straight(path, t, rig);
   if (path.loop_period != 0) circle(path, t, rig);
   rig.camera_height_m += path.climb_m * raised_cosine(t, path.climb_period) + is_offset * path.jump_climb_m;
   rig.roll_deg += path.roll_deg * sine_wave(t, path.roll_period) + is_offset * path.jump_roll_deg;

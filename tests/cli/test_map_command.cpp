@@ -1,5 +1,9 @@
 // `map` from outside.
 
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
 #include "tests/cli/command_test.hpp"
 
 namespace roadstereo {
@@ -16,6 +20,8 @@ class MapCommand : public CommandTest {
     return run("map flight --calibration flight/calibration.yaml --output map " + arguments);
   }
 };
+
+using SlowMapCommand = MapCommand;
 
 // The scene has a pothole of 0.35 m radius at (0.35, 0.15), 0.085 m deep with its roughness (truth.json), another one
 // and a crack. The map's origin is the foot of the first camera, which is that of the road.
@@ -50,6 +56,93 @@ TEST_F(MapCommand, NamesWhatIsMissing) {
   for (int i = 0; i < 9; ++i) poses += "1 0 0 0 0 1 0 0 0 0 1 0\n";
   write("long.txt", poses);
   expect_complaint(map("--trajectory long.txt"), "has 2 frames");
+}
+
+// The same road with and without its potholes ("flat" has none); poses are true, so both days have one world.
+TEST_F(SlowMapCommand, SaysWhatChangedBetweenDays) {
+  for (const std::string scene : {"uav", "flat"}) {
+    const Outcome made =
+        run("synth --scene " + scene + " --frames 2 --flight step=0.1 --size 384x216 --output " + scene + " --quiet");
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  const std::string poses = " --trajectory uav/trajectory_kitti.txt --trajectory flat/trajectory_kitti.txt";
+  const Outcome outcome =
+      run("map uav flat --calibration uav/calibration.yaml --day spring --day autumn --output days --quiet" + poses);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json map = json_file("days/map.json");
+  EXPECT_EQ(map["days"], nlohmann::json({"spring", "autumn"}));
+  EXPECT_TRUE(map["damages"].empty());  // autumn has seen all of it
+  ASSERT_GE(map["changes"].size(), 1U);
+  const nlohmann::json& change = map["changes"][0];
+  EXPECT_EQ(change["change"], "repaired");
+  EXPECT_NEAR(change["x_m"], 0.45, 0.05);  // the larger pothole of the scene, 80 mm
+  EXPECT_NEAR(change["y_m"], 1.35, 0.05);
+  EXPECT_EQ(change["before_day"], "spring");
+  EXPECT_TRUE(change["max_depth_after_m"]["value"].is_null());
+  const std::string table = read_text(folder_ / "days/changes.csv");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + static_cast<std::ptrdiff_t>(map["changes"].size()));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "days/.tiles"));
+  expect_complaint(run("map uav flat --calibration uav/calibration.yaml --day spring --output days" + poses), "1 days");
+}
+
+TEST_F(MapCommand, RunIsMappedWithItsOwnOptions) {
+  make_flight("256x144");
+  ASSERT_EQ(run("inspect flight --trajectory --preset fast --output run --quiet").exit_code, 0);
+  ASSERT_EQ(run("map run --output map --quiet").exit_code, 0);
+  ASSERT_EQ(run("map flight --trajectory run/trajectory_kitti.txt --preset fast --output same --quiet").exit_code, 0);
+  EXPECT_TRUE(read_text(folder_ / "map/height.tif") == read_text(folder_ / "same/height.tif"));
+  EXPECT_EQ(json_file("run/summary.json")["inputs"]["source"][0], "../flight");
+  expect_complaint(run("map run --preset paper --output map"), "--preset is for recordings");
+  expect_complaint(run("map run run --output map"), "those of their first cameras");
+  expect_complaint(run("map run flight --output map"), "not both");
+  std::filesystem::remove(folder_ / "run/trajectory_kitti.txt");
+  expect_complaint(run("map run --output map"), "no trajectory");
+  std::filesystem::remove(folder_ / "run/summary.json");
+  expect_complaint(run("map run --output map"), "not finished");
+}
+
+/// A test with a map of 20 small frames, long enough for a checkpoint after 16.
+class MapResume : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    const Outcome made = run("synth --scene uav --frames 20 --flight step=0.02 --size 160x90 --output flight --quiet");
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const Outcome whole = run(command_ + "whole");
+    ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  }
+  void expect_whole(const std::string& name) const {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "whole")) {
+      const std::string file = entry.path().filename().string();
+      EXPECT_TRUE(read_text(entry.path()) == read_text(folder_ / name / file)) << file;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder_ / name / ".tiles"));
+  }
+
+  const std::string command_ =
+      "map flight --trajectory flight/trajectory_kitti.txt --preset fast --quiet --points --output ";
+};
+
+// By a kill after the checkpoint, and by a full disk before it.
+TEST_F(MapResume, InterruptedMapIsContinuedBitForBit) {
+  const std::string kill = "cd '" + folder_.string() + "' && { '" ROADSTEREO_BINARY "' " + command_ +
+                           "killed & } 2>/dev/null; pid=$!; "
+                           "while [ ! -e killed/.tiles/checkpoint.json ] && kill -0 $pid; do sleep 0.01; done; "
+                           "kill -9 $pid; wait $pid";
+  EXPECT_NE(std::system((kill + " 2>/dev/null").c_str()), 0);
+  ASSERT_TRUE(std::filesystem::exists(folder_ / "killed/.tiles/checkpoint.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "killed/map.json"));
+  expect_complaint(run(command_ + "killed --resume --cell 0.05"), "--cell \"0\", not \"0.05\"");
+  std::filesystem::copy(folder_ / "killed", folder_ / "broken", std::filesystem::copy_options::recursive);
+  write("broken/.tiles/frames.jsonl", std::string("{"));
+  expect_complaint(run(command_ + "broken --resume"), "is broken");
+  const Outcome resumed = run(command_ + "killed --resume");
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  expect_whole("killed");
+  expect_complaint(run(command_ + "full", "trap '' XFSZ; ulimit -f 1000;"), 1, "cannot be written: File too large");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "full/map.json"));
+  ASSERT_EQ(run(command_ + "full --resume").exit_code, 0);
+  expect_whole("full");
 }
 
 }  // namespace

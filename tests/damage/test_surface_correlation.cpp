@@ -48,12 +48,12 @@ TEST(SurfaceCorrelation, HollowThatNoPictureShowsIsNone) {
   const DamageMap by_map = find_damage(input);
   EXPECT_EQ(by_map.damages.size(), 3U);
   EXPECT_NE(ids_at_hollow(by_map), 0);
-  EXPECT_TRUE(std::isnan(by_map.damages[0].evidence.surface_share));
+  EXPECT_TRUE(std::isnan(by_map.damages[0].evidence.surface_significance));
   input.right = claimed.right;
   const DamageMap by_pictures = find_damage(input);
   ASSERT_EQ(by_pictures.damages.size(), 2U);
   EXPECT_EQ(ids_at_hollow(by_pictures), 0);
-  for (const Damage& damage : by_pictures.damages) EXPECT_GT(damage.evidence.surface_share, 0.8);
+  for (const Damage& damage : by_pictures.damages) EXPECT_GT(damage.evidence.surface_significance, 3);
 }
 
 TEST(SurfaceCorrelation, RowOffsetIsUndone) {
@@ -68,16 +68,16 @@ TEST(SurfaceCorrelation, RowOffsetIsUndone) {
   input.row_offset_px = rows;
   const DamageMap map = find_damage(input);
   ASSERT_EQ(map.damages.size(), 2U);
-  for (const Damage& damage : map.damages) EXPECT_GT(damage.evidence.surface_share, 0.8);
+  for (const Damage& damage : map.damages) EXPECT_GT(damage.evidence.surface_significance, 3);
 }
 
 TEST(DamageEvidence, SurfaceThatPicturesContradictIsNoDamage) {
-  // The log-odds of −9.8 + 2.15·ln 50 + 4.4 fall by (0.88 − 0.47)·(0.675 − 0.45)/0.10² = 9.225.
+  // The log-odds of −9.8 + 2.15·ln 50 + 4.4 fall by 4.7·(1.85 + 0.15) = 9.4.
   const double before = -9.8 + 2.15 * std::log(50) + 4.4;
   DamageEvidence evidence{20, 50, 3, 1, 0};
-  evidence.surface_share = 0.45;
-  EXPECT_NEAR(evidence.confidence(), 1 / (1 + std::exp(9.225 - before)), 1e-4);
-  evidence.surface_share = 1;
+  evidence.surface_significance = -0.15;
+  EXPECT_NEAR(evidence.confidence(), 1 / (1 + std::exp(9.4 - before)), 1e-4);
+  evidence.surface_significance = 1.9;
   EXPECT_DOUBLE_EQ(evidence.confidence(), (DamageEvidence{20, 50, 3, 1, 0}.confidence()));
 }
 

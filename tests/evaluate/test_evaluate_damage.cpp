@@ -16,7 +16,9 @@ namespace fs = std::filesystem;
 using EvaluateDamage = CommandTest;
 using EvaluateDamageRealData = CommandTest;
 
-TEST_F(EvaluateDamage, ScoresSyntheticRoads) {
+using SlowEvaluateDamage = EvaluateDamage;
+
+TEST_F(SlowEvaluateDamage, ScoresSyntheticRoads) {
   const Outcome outcome = run("evaluate damage --scenes 3 --json score.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("Damage found"), std::string::npos);

@@ -122,6 +122,8 @@ class GivenMaps : public CommandTest {
   }
 };
 
+using SlowGivenMaps = GivenMaps;
+
 TEST_F(GivenMaps, StandInTheTableOfKitti) {
   write_frame();
   const Outcome outcome =
@@ -162,7 +164,7 @@ TEST_F(GivenMaps, AreRejectedInOneSentence) {
   expect("--road-masks bad.json", "not a JSON object");
 }
 
-TEST_F(GivenMaps, OfRenderedRoadsAreComparedOnDamage) {
+TEST_F(SlowGivenMaps, OfRenderedRoadsAreComparedOnDamage) {
   ASSERT_EQ(run("evaluate damage --scenes 1 --seed 1003 --write-pairs pairs").exit_code, 0);
   const Frame left = io::read_frame((folder_ / "pairs/left/001003.png").string());
   const synth::SyntheticPair pair = synth::render(synth::random_scene(1003, false));

@@ -77,7 +77,7 @@ void expect_inverse(const RigidMotion& found, const RigidMotion& applied, double
   EXPECT_LT((found(applied(middle)) - middle).norm(), max_mm);
 }
 
-TEST(Registration, RecoversMotionDespiteNoiseAndOutliers) {
+TEST(SlowRegistration, RecoversMotionDespiteNoiseAndOutliers) {
   const ScanModel scan(make_scan(0.5));
   const RigidMotion motions[] = {make_motion(0, {0, 0, 1}, {0, 0, 0}), make_motion(180, {1, 0.2, 0}, {3, -800, 900}),
                                  make_motion(140, {0.1, 0.2, 1}, {-200, 50, 700}),

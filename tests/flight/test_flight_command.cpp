@@ -147,6 +147,8 @@ class FlightCommand : public CommandTest {
   StereoCalibration rig_;
 };
 
+using SlowFlightCommand = FlightCommand;
+
 TEST_F(FlightCommand, MaskHoldsForEveryFrame) {
   write_list(3);
   Frame mask{std::vector<std::uint8_t>(std::size_t{256} * 144, 0), 256, 144};
@@ -223,9 +225,9 @@ TEST_F(FlightCommand, SecondRunReplacesFirst) {
   EXPECT_EQ(rows("out/frames.csv").size(), 3U);
 }
 
-TEST_F(FlightCommand, ResumesAfterCutJournal) {
+TEST_F(SlowFlightCommand, ResumesAfterCutJournal) {
   write_list(9);
-  const std::string command = "inspect flight.txt --calibration rig.yaml --write disparity --quiet --output ";
+  const std::string command = "inspect flight.txt --calibration rig.yaml --write disparity,mcap --quiet --output ";
   ASSERT_EQ(run(command + "whole").exit_code, 0);
   const std::vector<std::string> journal = rows("whole/flight/journal.jsonl");
   ASSERT_EQ(journal.size(), 10U);
@@ -238,7 +240,11 @@ TEST_F(FlightCommand, ResumesAfterCutJournal) {
     }
     std::string text;
     for (std::size_t i = 0; i <= frames; ++i) text += journal[i] + "\n";
-    if (frames < 9) text += journal[frames + 1].substr(0, 100);
+    if (frames < 9) {
+      text += journal[frames + 1].substr(0, 100);
+      fs::resize_file(folder_ / "cut/flight.mcap",
+                      fs::file_size(folder_ / "whole/flight.mcap") * (2 * frames + 1) / 18);
+    }
     write("cut/flight/journal.jsonl", text);
     fs::create_directories(folder_ / "cut/.roadstereo-abcdef/new");
     write("cut/.roadstereo-abcdef/new/frames.csv", std::string("half"));
@@ -251,7 +257,8 @@ TEST_F(FlightCommand, ResumesAfterCutJournal) {
 
 TEST_F(FlightCommand, ResumesAfterKillWithoutBrokenFile) {
   write_list(40);
-  const std::vector<std::string> words{"flight.txt", "--calibration", "rig.yaml", "--write", "disparity", "--output"};
+  const std::vector<std::string> words{"flight.txt", "--calibration",  "rig.yaml",
+                                       "--write",    "disparity,mcap", "--output"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), words.begin(), words.end());
     return more;
@@ -356,6 +363,29 @@ TEST_F(FlightCommand, ResumeNeedsSameFramesAndCalibration) {
   write("flight.txt", list);
   EXPECT_EQ(run(command + "--resume").exit_code, 0);
   EXPECT_EQ(rows("out/frames.csv").size(), 7U);
+}
+
+TEST_F(FlightCommand, ResumeNeedsItsMcapFile) {
+  write_list(3);
+  const std::string command = "inspect flight.txt --output out --write mcap --quiet ";  // without a calibration
+  ASSERT_EQ(run(command + "--to 1").exit_code, 0);
+  const std::string file = read_text(folder_ / "out/flight.mcap");
+  for (const std::size_t size : {file.size() / 3, std::size_t{20}}) {
+    write("out/flight.mcap", file.substr(0, size));
+    expect_complaint(run(command + "--resume"), size == 20 ? "is not the one that the flight has begun" : "0 of the 2");
+  }
+  fs::remove(folder_ / "out/flight.mcap");
+  expect_complaint(run(command + "--resume"), "flight.mcap: the file is missing");
+  write("out/flight.mcap", file);
+  EXPECT_EQ(run(command + "--resume").exit_code, 0);
+  EXPECT_GT(fs::file_size(folder_ / "out/flight.mcap"), file.size());
+  EXPECT_EQ(run("inspect flight.txt --output out --quiet").exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "out/flight.mcap")) << "it was that of an earlier flight";
+}
+
+TEST_F(FlightCommand, McapNeedsTimesOfRos) {
+  write("flight.txt", std::string("left/0.png right/0.png -1\n"));
+  expect_complaint(run("inspect flight.txt --output out --write mcap --quiet"), "frame 0: a frame has the time -1 s");
 }
 
 TEST_F(FlightCommand, ResumeNeedsSameCalibrationOfSource) {

@@ -2,12 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "roadstereo/io/trajectory_file.hpp"
+#include "roadstereo/pose_graph.hpp"
+#include "roadstereo/synth.hpp"
 #include "tests/cli/command_test.hpp"
 
 namespace roadstereo {
@@ -21,6 +26,8 @@ class TrajectoryCommand : public CommandTest {
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
 };
+
+using SlowTrajectoryCommand = TrajectoryCommand;
 
 TEST_F(TrajectoryCommand, FilesHaveMotion) {
   const std::string options = "--trajectory";  // flight/calibration.yaml is taken
@@ -36,11 +43,113 @@ TEST_F(TrajectoryCommand, FilesHaveMotion) {
   EXPECT_EQ(std::count(links.begin(), links.end(), '\n'), 4);
   EXPECT_EQ(std::count(poses.begin(), poses.end(), '\n'), 5);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out/trajectory.tum"));
-  expect_complaint(run("inspect flight " + options + " --output out --resume"), "--trajectory cannot be resumed");
   std::filesystem::remove(folder_ / "flight/calibration.yaml");
   expect_complaint(run("inspect flight --trajectory --output other"), "--trajectory needs --calibration");
   expect_complaint(run("inspect flight/left/000000.png flight/right/000000.png --trajectory --output pair"),
                    "--trajectory is for recordings only");
+}
+
+/// A bend of 5.5 m, and its positions as a receiver on the camera records them: at 48° north on the central meridian of
+/// UTM zone 32, with a clock that is 2.5 s ahead.
+class TrackOfBend : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    const Outcome made =
+        run("synth --scene uav --size 256x144 --frames 12 --flight loop=40,step=0.5,roll=2,pitch=2 --output flight "
+            "--quiet");
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const Trajectory truth = io::read_trajectory((folder_ / "flight/trajectory_kitti.txt").string());
+    const std::array<double, 12> to_road = synth::named_scene("uav").rig.camera_to_road();  // of the first frame
+    for (const FramePose& frame : truth.frames) {
+      const auto& pose = frame.camera_to_world;
+      std::array<double, 3> position{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double* const row = to_road.data() + 4 * i;
+        position[i] = row[0] * pose[3] + row[1] * pose[7] + row[2] * pose[11] + row[3];
+      }
+      truth_.push_back(position);
+    }
+    std::ifstream times(folder_ / "flight/times.txt");
+    for (double time_s = 0; times >> time_s;) times_s_.push_back(time_s);
+    ASSERT_EQ(times_s_.size(), truth_.size());
+  }
+
+  std::string track(double east_sign) const {
+    // Radii of curvature of WGS84 at 48°: metres per degree along the meridian and the parallel.
+    constexpr double a = 6378137, e2 = 0.00669437999014, degree = 3.14159265358979323846 / 180;
+    const double sine = std::sin(48 * degree), w = 1 - e2 * sine * sine;
+    const double north_m = degree * a * (1 - e2) / std::pow(w, 1.5);
+    const double east_m = degree * a / std::sqrt(w) * std::cos(48 * degree);
+    std::string text = "time,lat,lon,alt,h_acc,v_acc\n";
+    for (std::size_t i = 0; i < times_s_.size(); ++i) {
+      char line[160];
+      std::snprintf(line, sizeof line, "%.6f,%.10f,%.10f,%.4f,0.05,0.1\n", times_s_[i] + 2.5,
+                    48 + truth_[i][1] / north_m, 9 + east_sign * truth_[i][0] / east_m, 300 + truth_[i][2]);
+      text += line;
+    }
+    return text;
+  }
+
+  std::vector<std::array<double, 3>> truth_;  ///< positions on the road: right, ahead, up
+  std::vector<double> times_s_;
+};
+
+TEST_F(TrackOfBend, PlacesTrajectoryOnTheEarthUnlessMirrored) {
+  if (!has_pose_graph()) GTEST_SKIP() << "a build without Ceres";
+  write("track.csv", track(1));
+  const Outcome outcome = run("inspect flight --trajectory --track track.csv --track-offset 2.5 --output out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("poses in EPSG:32632"), std::string::npos) << outcome.out;
+  const Trajectory found = io::read_trajectory((folder_ / "out/trajectory_kitti.txt").string());
+  ASSERT_EQ(found.frames.size(), truth_.size());
+  // On an arc of constant speed another time is another direction, so that chords tell, and the place roughly.
+  constexpr double scale = 0.9996;  // of UTM on the central meridian, which is at 500 km
+  const auto& first = found.frames[0].camera_to_world;
+  EXPECT_NEAR(first[3], 500000 + truth_[0][0], 3);
+  for (std::size_t i = 0; i < truth_.size(); ++i) {
+    const auto& pose = found.frames[i].camera_to_world;
+    EXPECT_NEAR(std::hypot(pose[3] - first[3], pose[7] - first[7]),
+                scale * std::hypot(truth_[i][0] - truth_[0][0], truth_[i][1] - truth_[0][1]), 0.02)
+        << i;
+    EXPECT_NEAR(pose[11], 300 + truth_[i][2], 0.1) << i;
+  }
+  EXPECT_EQ(read_text(folder_ / "out/loops.csv").rfind("from,to,used,", 0), 0U);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/.keyframes"));
+
+  write("track.csv", track(-1));
+  expect_complaint(run("inspect flight --trajectory --track track.csv --track-offset 2.5 --output other --quiet"),
+                   "only mirrored");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "other/trajectory_kitti.txt"));  // without the track
+}
+
+TEST_F(SlowTrajectoryCommand, MapIsThatOfMapCommandAlsoAfterResume) {
+  const Outcome outcome = run("inspect flight --map --output out --quiet");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json map = json_file("out/map/map.json");
+  EXPECT_EQ(map["mapped"], 4);
+  ASSERT_GE(map["damages"].size(), 1U);
+  const std::string report = read_text(folder_ / "out/report.html");
+  EXPECT_NE(report.find("Map of the road"), std::string::npos);
+  ASSERT_EQ(run("map flight --trajectory out/trajectory_kitti.txt --output again --quiet").exit_code, 0);
+
+  // As a kill leaves it after two frames.
+  std::filesystem::create_directories(folder_ / "cut/flight");
+  const std::string journal = read_text(folder_ / "out/flight/journal.jsonl");
+  std::size_t end = 0;
+  for (int line = 0; line < 3; ++line) end = journal.find('\n', end) + 1;
+  write("cut/flight/journal.jsonl", journal.substr(0, end));
+  const Outcome resumed = run("inspect flight --map --output cut --resume --quiet");
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  for (const char* name : {"orthophoto.tif", "height.tif", "sigma.tif", "relief.tif", "map.json", "map.jpg",
+                           "damages.csv", "sightings.csv", "longitudinal.csv"}) {
+    const std::string bytes = read_text(folder_ / "out/map" / name);
+    EXPECT_FALSE(bytes.empty()) << name;
+    EXPECT_TRUE(bytes == read_text(folder_ / "again" / name)) << name;
+    EXPECT_TRUE(bytes == read_text(folder_ / "cut/map" / name)) << name;
+  }
+  EXPECT_EQ(read_text(folder_ / "cut/links.csv"), read_text(folder_ / "out/links.csv"));
+  EXPECT_EQ(json_file("cut/summary.json")["run"]["resumed_at_frame"], 2);
 }
 
 }  // namespace

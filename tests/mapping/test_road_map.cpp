@@ -5,7 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
-#include <random>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -13,66 +13,12 @@
 #include "roadstereo/map_damage.hpp"
 #include "roadstereo/road_map.hpp"
 #include "roadstereo/road_relief.hpp"
+#include "tests/mapping/step_frame.hpp"
 
 namespace roadstereo {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int width = 160, height = 120;
-
-StereoCalibration rig() {
-  StereoCalibration calibration;
-  calibration.focal_px = 120;
-  calibration.cx_px = 79.5;
-  calibration.cy_px = 59.5;
-  calibration.baseline_m = 0.2;
-  calibration.width = width;
-  calibration.height = height;
-  return calibration;
-}
-
-/// Camera `up_m` above z = 0 that looks straight down; the upper border of the image is at +y.
-RigidTransform looking_down(double x, double y, double up_m) {
-  return {1, 0, 0, x, 0, -1, 0, y, 0, 0, -1, up_m};
-}
-
-/// Road with a round step of `depth_m` around a point.
-struct Step {
-  double x = 0, y = 0, radius_m = 0.2, depth_m = 0;
-  double height(double at_x, double at_y) const { return std::hypot(at_x - x, at_y - y) < radius_m ? -depth_m : 0; }
-};
-
-/// Frame of a road with exact disparities, plus noise.
-struct TestFrame {
-  // Bilinear interpolation between pixels with independent noise takes 5/9 of the variance, on average.
-  Image<float> disparity{width, height}, sigma{width, height, 0.1F * 2 / 3};
-  std::vector<std::uint8_t> grey = std::vector<std::uint8_t>(width * height, 100);
-  MapFrame frame;
-
-  TestFrame(const RigidTransform& pose, const Step& step, double noise_px, unsigned seed) {
-    std::mt19937 random(seed);
-    std::normal_distribution<double> noise(0, 1);
-    const StereoCalibration calibration = rig();
-    const double up = pose[11], fb = calibration.focal_px * calibration.baseline_m;
-    for (int v = 0; v < height; ++v) {
-      for (int u = 0; u < width; ++u) {
-        double z = up;  // the wall of the step is not seen from above: fixed-point iteration along the ray
-        for (int i = 0; i < 20; ++i) {
-          z = up - step.height(pose[3] + (u - calibration.cx_px) / calibration.focal_px * z,
-                               pose[7] - (v - calibration.cy_px) / calibration.focal_px * z);
-        }
-        disparity(u, v) = static_cast<float>(fb / z + noise_px * noise(random));
-      }
-    }
-    frame.disparity = disparity;
-    frame.sigma = sigma;
-    frame.image = FrameView::grey8(grey.data(), width, height);
-    frame.road = {fb / up, 0, 0};
-    frame.calibration = calibration;
-    frame.camera_to_map = pose;
-  }
-};
 
 class RoadMapTest : public testing::Test {
  protected:
@@ -197,6 +143,42 @@ TEST_F(RoadMapTest, TilesOnDiskChangeNothing) {
     EXPECT_TRUE(one == other || (std::isnan(one) && std::isnan(other)));
   }
   EXPECT_FALSE(fs::is_empty(folder_ / "few"));
+}
+
+// As after a kill: tiles newer than the save are on disk, some of them of places that the save has.
+TEST_F(RoadMapTest, ContinuesFromSaveBitForBit) {
+  RoadMapOptions few = options();
+  few.max_tiles = 4;
+  const auto view = [](int i) {
+    return TestFrame(looking_down(0.1 * i, 0, 2), {0.1, 0, 0.1, 0.04}, 0.05, static_cast<unsigned>(i + 1));
+  };
+  RoadMap whole(folder_ / "whole", few);
+  for (int i = 0; i < 6; ++i) whole.add(view(i).frame);
+  SavedMap saved;
+  {
+    RoadMap killed(folder_ / "killed", few);
+    killed.keep();
+    for (int i = 0; i < 4; ++i) {
+      killed.add(view(i).frame);
+      if (i != 0 && i != 2) continue;
+      saved = killed.save();
+      killed.commit();
+    }
+  }
+  RoadMap continued(folder_ / "killed", few, saved);
+  for (int i = 3; i < 6; ++i) continued.add(view(i).frame);
+  const MapRaster a = whole.read(whole.bounds()), b = continued.read(whole.bounds());
+  EXPECT_EQ(a.views, b.views);
+  for (std::size_t k = 0; k < a.height.pixels(); ++k) {
+    if (a.views.row(0)[k] == 0) continue;
+    ASSERT_EQ(a.height.row(0)[k], b.height.row(0)[k]);
+    ASSERT_EQ(a.sigma.row(0)[k], b.sigma.row(0)[k]);
+  }
+  const SavedMap all = continued.save();
+  continued.commit();
+  EXPECT_EQ(static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_ / "killed"), {})), all.tiles.size());
+  fs::remove(fs::directory_iterator(folder_ / "killed")->path());
+  EXPECT_THROW(RoadMap(folder_ / "killed", few, all), Error);
 }
 
 // The road is inclined by 5 %; the relief is that of the step alone.

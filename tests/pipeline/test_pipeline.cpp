@@ -67,6 +67,21 @@ struct PresetFigures {
   double depth_px;                 ///< error of the mean depth of the demo's potholes
 };
 
+/// A street in which vehicles and houses fill half of the image, up to 26 px nearer than the road.
+TEST(PipelineScope, SceneMatchesWhatStandsOnRoad) {
+  synth::Scene street = synth::random_wide_scene(12);
+  street.supersampling = 1;
+  const synth::SyntheticPair pair = synth::render(street);
+  const auto wrong_or_missing = [&](Scope scope) {
+    PipelineOptions options;
+    options.perspective.scope = scope;
+    Pipeline pipeline(options, pair.calibration);
+    const Errors errors = compare(pipeline.process(pair.left.view(), pair.right.view()).disparity, pair);
+    return errors.missing + (1 - errors.missing) * errors.share_above_1px;
+  };
+  EXPECT_LT(wrong_or_missing(Scope::scene), 0.5 * wrong_or_missing(Scope::road));
+}
+
 class PipelinePreset : public testing::TestWithParam<PresetFigures> {};
 
 TEST_P(PipelinePreset, MatchesRoadFromAir) {

@@ -173,6 +173,22 @@ TEST(PlanPerspective, WithoutScaleUsesResidualsOfMatches) {
   EXPECT_EQ(shift.disparities, 17);  // 10 + 5.5 rounded up + 1
 }
 
+TEST(PlanPerspective, SceneSearchesUpToLargestDisparity) {
+  PerspectiveOptions options;
+  options.scope = Scope::scene;
+  // Above the horizon, v < 20, the residual is the disparity itself, and δp more below it.
+  RoadModelEstimate road = reliable({-10, 0.5, 0}, -1, 1);
+  road.max_disparity_px = 100;
+  const PerspectiveShift shift = plan_perspective(road, std::nullopt, 640, 360, options);
+  EXPECT_EQ(shift.at(0, 0), 0);
+  EXPECT_GE(shift.disparities - 1, 100);
+  EXPECT_LE(shift.disparities - 1, 100 * 1.1 + 8 + shift.delta_p + 3);
+  road.max_disparity_px = 0;  // unknown, as when the road is tracked: a quarter of the width
+  EXPECT_GE(plan_perspective(road, std::nullopt, 640, 360, options).disparities, 160);
+  options.scope = Scope::road;
+  EXPECT_LE(plan_perspective(road, std::nullopt, 640, 360, options).disparities, 10);
+}
+
 TEST(PlanPerspective, TakesGivenPixels) {
   PerspectiveOptions options;
   options.disparities = 33;

@@ -49,7 +49,8 @@ TEST_P(DisparityEvidenceTarget, MatchesPosteriorByHand) {
     cumulative += posterior[d] / total;
     const double chance = std::min(static_cast<double>(d + 1), n) / n;
     EXPECT_NEAR(support[d], d < rho.size() ? 3.2 * (ratio - 1) / (ratio + 6) : 0.0, 1e-4) << d;
-    EXPECT_NEAR(beyond[d], std::max(0.0, cumulative - chance), 1e-5) << d;
+    const double missing = std::max(0.0, cumulative - chance) / std::max(0.05, 1 - chance);
+    EXPECT_NEAR(beyond[d], missing * missing, 1e-5) << d;
   }
 }
 

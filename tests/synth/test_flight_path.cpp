@@ -80,6 +80,23 @@ TEST(FlightPath, LoopCloses) {
   EXPECT_THROW(path.validate(), Error);
 }
 
+TEST(FlightPath, TurnsAndFliesBackBeside) {
+  const Scene scene = small_scene("uav");
+  FlightPath path;
+  path.roll_deg = path.pitch_deg = path.climb_m = 0;
+  path.turn_frame = 50;  // 5 m ahead; then 30 frames on half a circle of 0.15 m
+  const Rig half = flight_frame(scene, path, 65).rig;
+  EXPECT_NEAR(half.x_m, scene.rig.x_m + 0.15, 1e-9);
+  EXPECT_NEAR(half.y_m, scene.rig.y_m + 5.15, 1e-9);
+  EXPECT_NEAR(half.yaw_deg, -90, 1e-9);
+  const Rig back = flight_frame(scene, path, 100).rig;
+  EXPECT_NEAR(back.x_m, scene.rig.x_m + 0.3, 1e-9);
+  EXPECT_NEAR(back.y_m, scene.rig.y_m + 3, 1e-9);
+  EXPECT_NEAR(std::abs(back.yaw_deg), 180, 1e-9);
+  path.loop_period = 40;
+  EXPECT_THROW(path.validate(), Error);
+}
+
 TEST(Rig, PoseMapsTrueDisparitiesToRoad) {
   Scene scene = small_scene("uav");
   scene.rig.roll_deg = 3;

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <limits>
 #include <memory>
 
@@ -49,10 +50,11 @@ struct Regions {
         lane{"Lane: road within 1.75 m to either side, nearer than 15 m", "lane", methods},
         lane_without_edges{"Lane without edges along the rows (gradient four times as strong down as across)",
                            "lane_without_edges", methods},
+        off_road{"Off the road", "off_road", methods},
         all{"All labelled pixels", "all", methods},
         all_common{"All labelled pixels with a disparity of every method except BM", "all_common", methods} {}
 
-  Region road, road_common, lane, lane_without_edges, all, all_common;
+  Region road, road_common, lane, lane_without_edges, off_road, all, all_common;
   std::vector<std::vector<std::string>> without_shift{};  ///< frames that a preset did not transform, by method
 };
 
@@ -62,6 +64,13 @@ void add_scores(const std::string& frame, const std::vector<Image<float>>& maps,
   for (std::size_t i = 0; i < maps.size(); ++i) {
     region.scores[i].push_back(score_disparity(maps[i], truth, mask, tolerances_px()));
   }
+}
+
+Image<std::uint8_t> complement(const Image<std::uint8_t>& mask) {
+  Image<std::uint8_t> rest(mask.width(), mask.height());
+  std::transform(mask.row(0), mask.row(0) + mask.pixels(), rest.row(0),
+                 [](std::uint8_t m) { return m == 0 ? 255 : 0; });
+  return rest;
 }
 
 void add_lane_scores(const std::string& name, const std::vector<Image<float>>& maps, const LabelledFrame& frame,
@@ -88,6 +97,7 @@ void score_frame(const KittiFiles& files, const MethodSettings& methods, Regions
     add_scores(files.name, maps, frame.truth, frame.road->view(), regions.road);
     add_scores(files.name, maps, frame.truth, common_pixels(maps, frame.road->view()).view(), regions.road_common);
     add_lane_scores(files.name, maps, frame, regions);
+    add_scores(files.name, maps, frame.truth, complement(*frame.road).view(), regions.off_road);
   }
   if (sheet != nullptr) {
     sheet->push_back(labelled_sheet_row(
@@ -185,7 +195,7 @@ void kitti(const KittiArguments& arguments) {
   nlohmann::ordered_json document;
   const Table paper = published_table(mean_table(regions.road).columns);
   for (const Region* region : {&regions.road, &regions.road_common, &regions.lane, &regions.lane_without_edges,
-                               &regions.all, &regions.all_common}) {
+                               &regions.off_road, &regions.all, &regions.all_common}) {
     if (region->frames.empty()) continue;
     Table table = mean_table(*region);
     document[region->key] = region_json(*region);

@@ -10,6 +10,8 @@
 #include <random>
 #include <tuple>
 
+#include "evaluate/estimated_poses.hpp"
+#include "evaluate/scratch_folder.hpp"
 #include "progress.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
@@ -19,23 +21,6 @@ namespace {
 
 constexpr int passes = 3;
 constexpr double step_m = 0.16;
-
-/// A folder for tiles that is removed at the end.
-class ScratchFolder {
- public:
-  ScratchFolder()
-      : path_(std::filesystem::temp_directory_path() / ("roadstereo-map-" + std::to_string(std::random_device{}()))) {}
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 double uniform_between(std::mt19937_64& random, double from, double to) {
   return from + (to - from) * static_cast<double>(random()) / static_cast<double>(std::mt19937_64::max());
@@ -151,6 +136,12 @@ class RoadTrial {
     PipelineOptions pipeline_options = preset(options.preset);
     pipeline_options.threads = options.threads;
     damage_ = pipeline_options.damage;
+    if (options.estimated_poses) {
+      const auto scene_of = [&](int i) {
+        return frame_of(scene_, i / options.frames, i % options.frames, options.frames);
+      };
+      poses_ = roadstereo::cli::estimated_poses(passes * options.frames, scene_of, pipeline_options, loops_);
+    }
     pipeline_options.damage.min_confidence = 0;
     for (int pass = 0; pass < passes; ++pass) {
       Pipeline pipeline(pipeline_options, scene_.rig.calibration());
@@ -166,6 +157,7 @@ class RoadTrial {
     trials.reverse.push_back(compare(maps_[0], maps_[2]));
     const RoadMap& all = maps_.back();
     trials.single_sigma_m = single_sigma_m_;
+    trials.loops.insert(trials.loops.end(), loops_.begin(), loops_.end());
     trials.fused_sigma_m = median_sigma(all);
     DamageOptions everything = damage_;
     everything.min_confidence = 0;
@@ -193,7 +185,10 @@ class RoadTrial {
     truths_ = pair.damages;
     const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
     if (!result.roll_found) return;
-    const RigidTransform pose = scene.rig.camera_to_road();
+    const RigidTransform pose = poses_.empty()
+                                    ? RigidTransform(scene.rig.camera_to_road())
+                                    : poses_[static_cast<std::size_t>(pass) * static_cast<std::size_t>(options.frames) +
+                                             static_cast<std::size_t>(frame)];
     const MapFrame seen{result.disparity, result.sigma, pair.left.view(), 0, result.geometry.plane,
                         pair.calibration, pose};
     maps_[static_cast<std::size_t>(pass)].add(seen);
@@ -205,6 +200,8 @@ class RoadTrial {
   }
 
   synth::Scene scene_;
+  std::vector<RigidTransform> poses_;  ///< estimated, pass after pass; empty: the true ones
+  std::vector<LoopLink> loops_;
   ScratchFolder folder_;
   std::vector<RoadMap> maps_;
   DamageOptions damage_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "roadstereo/map_inventory.hpp"
+#include "roadstereo/pose_graph.hpp"
 #include "roadstereo/synth.hpp"
 
 namespace roadstereo::cli {
@@ -15,6 +16,7 @@ struct MapTrialOptions {
   std::uint64_t seed = 1;
   std::string preset = "default";
   int threads = 0;
+  bool estimated_poses = false;  ///< those of odometry, loops and positions instead of the true ones
 
   /// Throws Error naming the first option out of range.
   void validate() const;
@@ -41,12 +43,13 @@ struct MapTrials {
   std::vector<PassDifference> reverse;  ///< pass in the other direction against the first
   std::vector<MapDamageTrial> damages;
   int false_records = 0;
-  double single_sigma_m = 0;  ///< median standard error of a height, one frame
-  double fused_sigma_m = 0;   ///< and of the map of all passes
+  double single_sigma_m = 0;    ///< median standard error of a height, one frame
+  double fused_sigma_m = 0;     ///< and of the map of all passes
+  std::vector<LoopLink> loops;  ///< with estimated poses
 };
 
 /// Renders roads with random potholes and bumps that a rig flies over three times, the third time in the other
-/// direction, maps them with their true poses, and compares. Throws Error for options out of range.
+/// direction, maps them, and compares. Throws Error for options out of range.
 MapTrials run_map_trials(const MapTrialOptions& options);
 
 /// Growth of the peak memory of this process while a map of `frames` more frames, 0.5 m apart, is made, MiB. The first

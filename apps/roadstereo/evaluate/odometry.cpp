@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 
 #include "evaluate/experiments.hpp"
@@ -23,8 +24,15 @@ struct OdometryArguments {
 constexpr const char* odometry_note =
     R"(trans, rot: errors of the motion over pieces of 10, 20, … 50 m of path (short paths: tenths of it), as KITTI odometry
 defines them. ATE: RMS of the positions after a rigid alignment, of the path. link: displacement of the pixels of a frame
-by the error of its link; roadstereo links to a reference up to several frames before. share: of the time of matching.
+by the error of its link; roadstereo links to a reference up to several frames before. link/σ, pose/σ: RMS of the
+whitened errors of links, and of poses against the first frame, 1 if their covariances are right. share: of the time of matching.
 )";
+
+double rms(const std::vector<double>& values) {
+  double squares = 0;
+  for (const double value : values) squares += value * value;
+  return values.empty() ? NAN : std::sqrt(squares / static_cast<double>(values.size()));
+}
 
 Table odometry_table(const OdometryTrials& trials, const std::string& title) {
   Table table{title,
@@ -34,18 +42,32 @@ Table odometry_table(const OdometryTrials& trials, const std::string& title) {
                {"ATE %", "ate_percent"},
                {"link px", "link_median_px"},
                {"95 %", "link_p95_px"},
+               {"link/σ", "link_rms_sd"},
+               {"pose/σ", "pose_rms_sd"},
                {"lost", "lost"},
                {"ms", "median_ms"},
                {"share %", "share_percent"}},
               {}};
   for (const OdometryTrial& trial : trials.methods) {
-    table.rows.push_back({trial.method, Cell(trial.score.translation_percent, 3),
-                          Cell(trial.score.rotation_deg_per_m, 4), Cell(trial.score.absolute_percent, 3),
-                          Cell(median(trial.link_errors_px), 3), Cell(quantile(trial.link_errors_px, 0.95), 3),
-                          Cell(static_cast<double>(trial.lost), 0), Cell(trial.median_ms, 1),
-                          Cell(100 * trial.median_ms / trials.matching_ms, 0)});
+    const bool linked = !trial.link_errors_px.empty();
+    table.rows.push_back(
+        {trial.method, Cell(trial.score.translation_percent, 3), Cell(trial.score.rotation_deg_per_m, 4),
+         Cell(trial.score.absolute_percent, 3), Cell(linked ? median(trial.link_errors_px) : NAN, 3),
+         Cell(linked ? quantile(trial.link_errors_px, 0.95) : NAN, 3), Cell(rms(trial.link_errors_sd), 2),
+         Cell(rms(trial.pose_errors_sd), 2), Cell(static_cast<double>(trial.lost), 0),
+         Cell(linked ? trial.median_ms : NAN, 1), Cell(linked ? 100 * trial.median_ms / trials.matching_ms : NAN, 0)});
   }
   return table;
+}
+
+nlohmann::json loops_json(const OdometryTrials& trials) {
+  if (!trials.graph) return nullptr;
+  const PoseGraphResult::Misclosure misclosure = trials.graph->misclosure();
+  return {{"found", trials.graph->loops.size()},
+          {"used", trials.graph->loops_used()},
+          {"compared", trials.compared},
+          {"misclosure_before_px", misclosure.before_px},
+          {"misclosure_after_px", misclosure.after_px}};
 }
 
 void run(const OdometryArguments& arguments) {
@@ -62,6 +84,7 @@ void run(const OdometryArguments& arguments) {
                                   {"rows", table.json()},
                                   {"path_m", trials.methods[0].score.path_m},
                                   {"matching_ms", trials.matching_ms},
+                                  {"loops", loops_json(trials)},
                                   {"links", trials.links},
                                   {"links_with_offset", trials.with_offset},
                                   {"offset_px", trials.offset_px}});
@@ -70,6 +93,12 @@ void run(const OdometryArguments& arguments) {
   if (trials.with_offset > 0) {
     fmt::print("Disparities are short by an offset at infinity: {:.2f} px (median), undone in {} of {} links.\n",
                trials.offset_px, trials.with_offset, trials.links);
+  }
+  if (trials.graph) {
+    const PoseGraphResult::Misclosure misclosure = trials.graph->misclosure();
+    fmt::print("Loops: {} of {} used, from {} pairs of frames; misclosure {:.2f} px before, {:.2f} px after.\n",
+               trials.graph->loops_used(), trials.graph->loops.size(), trials.compared, misclosure.before_px,
+               misclosure.after_px);
   }
   fmt::print("{}", odometry_note);
 }

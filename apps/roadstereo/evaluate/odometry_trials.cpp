@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "evaluate/scratch_folder.hpp"
 #include "evaluation/peer_odometry.hpp"
 #include "finite_values.hpp"
 #include "flight/rectified_source.hpp"
@@ -12,6 +13,7 @@
 #include "progress.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/trajectory_file.hpp"
+#include "roadstereo/loop_search.hpp"
 #include "roadstereo/synth.hpp"
 #include "scene_options.hpp"
 #include "settings.hpp"
@@ -109,6 +111,7 @@ double link_error_px(const Eigen::Isometry3d& error, const Image<float>& dispari
 struct Track {
   std::vector<Pose> poses;
   std::vector<double> errors_px;
+  std::vector<double> errors_sd;
   std::vector<double> times_ms;
   std::size_t lost = 0;
 };
@@ -118,9 +121,20 @@ OdometryTrial trial_of(const std::string& method, const Track& track, const std:
   trial.method = method;
   trial.score = score_trajectory(truth, track.poses);
   trial.link_errors_px = track.errors_px;
+  trial.link_errors_sd = track.errors_sd;
   trial.lost = track.lost;
-  trial.median_ms = median(track.times_ms);
+  trial.median_ms = track.times_ms.empty() ? 0 : median(track.times_ms);
   return trial;
+}
+
+/// RMS of the six whitened errors.
+double whitened_rms(const Eigen::Isometry3d& error, const std::array<double, 36>& values) {
+  const Eigen::AngleAxisd turn(error.rotation());
+  Eigen::Matrix<double, 6, 1> x;
+  x << error.translation(), turn.angle() * turn.axis();
+  const Eigen::Matrix<double, 6, 6> covariance =
+      Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(values.data());
+  return std::sqrt(x.dot(covariance.ldlt().solve(x)) / 6);
 }
 
 /// Adds the pose and the error of the last link of this library.
@@ -136,8 +150,9 @@ void add_own(Odometry& odometry, int frame, const FrameResult& result, const std
   const FrameLink& link = odometry.links().back();
   const Eigen::Isometry3d from = isometry(truth[static_cast<std::size_t>(link.from)]);
   const Eigen::Isometry3d to = isometry(truth[static_cast<std::size_t>(link.to)]);
-  track.errors_px.push_back(
-      link_error_px(isometry(link.motion) * (to.inverse() * from).inverse(), result.disparity, rig));
+  const Eigen::Isometry3d error = isometry(link.motion) * (to.inverse() * from).inverse();
+  track.errors_px.push_back(link_error_px(error, result.disparity, rig));
+  track.errors_sd.push_back(whitened_rms(error, link.covariance));
 }
 
 /// The same for the peer; without a motion the camera stands still.
@@ -151,6 +166,32 @@ void add_peer(io::OpticalFlowOdometry& odometry, int frame, const FrameResult& r
   track.poses.push_back(pose_of(isometry(track.poses.back()) * motion.inverse()));
   const Eigen::Isometry3d from = isometry(truth[truth.size() - 2]), to = isometry(truth.back());
   track.errors_px.push_back(link_error_px(motion * (to.inverse() * from).inverse(), result.disparity, rig));
+}
+
+/// Errors of the poses against the first one.
+std::vector<double> pose_errors_sd(const Trajectory& trajectory, const std::vector<Pose>& truth) {
+  std::vector<double> errors;
+  const Eigen::Isometry3d first = isometry(trajectory.frames[0].camera_to_world), true_first = isometry(truth[0]);
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    const FramePose& pose = trajectory.frames[i];
+    if (pose.piece != trajectory.frames[0].piece) continue;
+    const Eigen::Isometry3d moved = first.inverse() * isometry(pose.camera_to_world);
+    errors.push_back(whitened_rms(moved.inverse() * true_first.inverse() * isometry(truth[i]), pose.covariance));
+  }
+  return errors;
+}
+
+/// Closes loops, and adds the trial.
+void add_graph(const Odometry& odometry, LoopSearch& search, const std::vector<Pose>& truth, OdometryTrials& trials) {
+  PoseGraphInput input;
+  input.trajectory = odometry.trajectory();
+  input.links = odometry.links();
+  trials.graph = close_loops(input, search);
+  trials.compared = search.compared();
+  Track track;
+  for (const FramePose& pose : trials.graph->trajectory.frames) track.poses.push_back(pose.camera_to_world);
+  trials.methods.push_back(trial_of("  with loops", track, truth));
+  trials.methods.back().pose_errors_sd = pose_errors_sd(trials.graph->trajectory, truth);
 }
 
 void summarise_offsets(const std::vector<FrameLink>& links, OdometryTrials& trials) {
@@ -178,6 +219,9 @@ OdometryTrials run_odometry_trials(const OdometryTrialOptions& options) {
   Pipeline pipeline(pipeline_options, pairs.calibration);
   Odometry odometry(pairs.calibration);
   io::OpticalFlowOdometry peer(pairs.calibration);
+  const ScratchFolder folder;
+  std::optional<LoopSearch> search;
+  if (has_pose_graph()) search.emplace(pairs.calibration, folder / "keyframes");
   Track own, other;
   std::vector<Pose> truth;
   std::vector<double> matching_ms;
@@ -188,11 +232,17 @@ OdometryTrials run_odometry_trials(const OdometryTrialOptions& options) {
     const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
     matching_ms.push_back(result.ms.total);
     add_own(odometry, static_cast<int>(i), result, truth, pairs.calibration, own);
+    if (search && odometry.reference() == static_cast<int>(i)) {
+      search->add(static_cast<int>(i), result, odometry.links().empty() ? 0 : odometry.links().back().offset_px);
+    }
     add_peer(peer, static_cast<int>(i), result, truth, pairs.calibration, other);
     progress.frame_done();
   }
   OdometryTrials trials;
-  trials.methods = {trial_of("roadstereo", own, truth), trial_of("optical flow, PnP", other, truth)};
+  trials.methods = {trial_of("roadstereo", own, truth)};
+  trials.methods[0].pose_errors_sd = pose_errors_sd(odometry.trajectory(), truth);
+  if (search) add_graph(odometry, *search, truth, trials);
+  trials.methods.push_back(trial_of("optical flow, PnP", other, truth));
   trials.matching_ms = median(matching_ms);
   summarise_offsets(odometry.links(), trials);
   return trials;

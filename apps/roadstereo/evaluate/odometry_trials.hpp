@@ -1,11 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "evaluate/methods.hpp"
 #include "evaluate/trajectory_score.hpp"
-#include "roadstereo/odometry.hpp"
+#include "roadstereo/pose_graph.hpp"
 
 namespace roadstereo::cli {
 
@@ -30,16 +31,20 @@ struct OdometryTrial {
   std::string method;
   TrajectoryScore score;
   std::vector<double> link_errors_px;  ///< RMS displacement of pixels of the later frame by the error of a link
+  std::vector<double> link_errors_sd;  ///< RMS of the six whitened errors of a link: 1 if its covariance is right
+  std::vector<double> pose_errors_sd;  ///< the same of the poses against the first one
   std::size_t lost = 0;                ///< frames without a link, but the first
   double median_ms = 0;                ///< of a frame, without matching
 };
 
 struct OdometryTrials {
-  std::vector<OdometryTrial> methods;  ///< this library, then the peer
+  std::vector<OdometryTrial> methods;  ///< this library, with its pose graph if the build has one, then the peer
   double matching_ms = 0;              ///< median time of Pipeline::process
   double offset_px = 0;                ///< median disparity offset at infinity of the links that undid one
   std::size_t with_offset = 0;         ///< number of those links
   std::size_t links = 0;
+  std::optional<PoseGraphResult> graph;
+  std::size_t compared = 0;  ///< pairs of frames in which a loop was searched
 };
 
 /// Processes a recording whose poses are known, or a rendered flight, frame by frame.

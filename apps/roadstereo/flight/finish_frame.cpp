@@ -2,6 +2,7 @@
 
 #include "find_damage_or_warn.hpp"
 #include "flight/frame_files.hpp"
+#include "flight/frame_messages.hpp"
 #include "stopwatch.hpp"
 
 namespace roadstereo::cli {
@@ -20,11 +21,11 @@ void record_damage(const std::optional<StereoCalibration>& calibration, const Da
 
 }  // namespace
 
-void finish_frame(const std::optional<StereoCalibration>& calibration, const DamageOptions& options,
-                  const std::vector<FrameFile>& write, FlightJob& job) {
+void finish_frame(const std::optional<StereoCalibration>& calibration, const FlightPlan& plan, FlightJob& job) {
   if (job.frame.status != io::FrameStatus::good) return;
-  job.frame.damage_ms = time_ms([&] { record_damage(calibration, options, job); });
-  for (const FrameFile file : write) job.files.push_back(encode_frame_file(file, calibration, job));
+  job.frame.damage_ms = time_ms([&] { record_damage(calibration, plan.options.damage, job); });
+  for (const FrameFile file : plan.write) job.files.push_back(encode_frame_file(file, calibration, job));
+  if (plan.mcap) job.mcap_chunk = encode_frame_messages(calibration, job);
 }
 
 }  // namespace roadstereo::cli

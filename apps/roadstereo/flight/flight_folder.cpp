@@ -43,12 +43,25 @@ int lock_folder(const fs::path& folder) {
 }
 
 /// What a flight writes besides the files of its frames.
-constexpr std::array flight_files = {
-    "frames.csv",          "damages.csv",     "candidates.csv",    "sightings.csv",
-    "segments.csv",        "summary.json",    "report.html",       "frames.geojson",
-    "footprints.geojson",  "damages.geojson", "sightings.geojson", "candidates.geojson",
-    "flight.gpkg",         "damages",         "flight/thumbnails", "flight/sections",
-    "flight/journal.jsonl"};
+constexpr std::array flight_files = {"frames.csv",
+                                     "damages.csv",
+                                     "candidates.csv",
+                                     "sightings.csv",
+                                     "segments.csv",
+                                     "summary.json",
+                                     "report.html",
+                                     "frames.geojson",
+                                     "footprints.geojson",
+                                     "damages.geojson",
+                                     "sightings.geojson",
+                                     "candidates.geojson",
+                                     "flight.gpkg",
+                                     "flight.mcap",
+                                     "damages",
+                                     "map",
+                                     "flight/thumbnails",
+                                     "flight/sections",
+                                     "flight/journal.jsonl"};
 
 }  // namespace
 

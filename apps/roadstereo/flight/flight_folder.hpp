@@ -22,6 +22,7 @@ class FlightFolder {
   ~FlightFolder();
 
   std::filesystem::path journal() const;
+  std::filesystem::path mcap() const { return path() / "flight.mcap"; }
   const std::filesystem::path& path() const { return files_.path(); }
 
   /// Names an input that must not be overwritten or removed. Throws Error if it is a file of an earlier flight here.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/ros/flight_messages.hpp"
 #include "roadstereo/io/flight_frame.hpp"
 #include "roadstereo/io/frame_source.hpp"
 #include "roadstereo/pipeline.hpp"
@@ -29,6 +30,8 @@ struct FlightJob {
   FrameResult result;
   DamageMap damage;
   std::vector<StagedFile> files;
+  std::optional<io::RosPose> pose;       ///< with a trajectory
+  std::vector<std::uint8_t> mcap_chunk;  ///< of flight.mcap; empty: none
 };
 
 }  // namespace roadstereo::cli

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "finite_values.hpp"
 #include "health_json.hpp"
@@ -79,6 +81,26 @@ Json flight_health_json(const FlightHealth& health) {
   return document;
 }
 
+/// What the run was made of, for commands that continue with it. Paths are relative to the output folder; what is no
+/// file, such as a GStreamer pipeline, is as given.
+Json inputs_json(const FlightSettings& settings) {
+  const auto relative = [&](const std::string& name) {
+    std::error_code absent;
+    return std::filesystem::exists(name, absent) ? std::filesystem::proximate(name, settings.output).string() : name;
+  };
+  Json source = Json::array(), calibration = Json::array();
+  for (const std::string& name : settings.source) source.push_back(relative(name));
+  for (const std::string& name : settings.calibration) calibration.push_back(relative(name));
+  return {{"source", source},
+          {"calibration", calibration},
+          {"mask", settings.mask.empty() ? "" : relative(settings.mask)},
+          {"layout", settings.source_settings.layout},
+          {"topics", settings.source_settings.topics},
+          {"max_time_difference_ms", settings.source_settings.max_time_difference_ms},
+          {"rate_hz", settings.source_settings.rate_hz},
+          {"track_offset_s", settings.track.offset_s}};
+}
+
 }  // namespace
 
 std::string flight_json(const FlightSettings& settings, const FlightRun& run, const FlightSummary& summary,
@@ -86,6 +108,7 @@ std::string flight_json(const FlightSettings& settings, const FlightRun& run, co
   Json document = {{"version", version}, {"source", settings.source}, {"source_kind", run.source}};
   document["calibration"] = settings.calibration.empty() ? Json(nullptr) : Json(settings.calibration);
   document["calibration_format"] = run.calibration_format.empty() ? Json(nullptr) : Json(run.calibration_format);
+  document["inputs"] = inputs_json(settings);
   document["from"] = settings.from;
   document["to"] = settings.to ? Json(*settings.to) : Json(nullptr);
   document["every"] = settings.every;

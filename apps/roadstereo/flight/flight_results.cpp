@@ -59,6 +59,7 @@ std::vector<std::string> notices_of(const FlightRun& run, const FlightSummary& s
   if (!run.complete) notices.emplace_back("The flight was interrupted; continue it with inspect --resume.");
   if (!summary.no_position_reason.empty())
     notices.push_back("No frame has a position: " + summary.no_position_reason + ".");
+  if (!run.no_map_reason.empty()) notices.push_back("There is no map: " + run.no_map_reason + ".");
   for (const HealthFinding& finding : summary.health.findings()) notices.push_back("Health: " + finding.text + ".");
   const std::int64_t without = summary.rejected + summary.failed;
   if (without == 0) return notices;
@@ -167,6 +168,7 @@ std::string FlightResults::report(const FlightSettings& settings, const FlightRu
   report.notices = notices_of(run, summary_);
   report.curves = summary_.curves;
   report.thumbnails = read_thumbnails(folder);
+  report.map = run.map;
   report.damages = reported(damages, folder);
   report.candidates = io::worst_first(damages, true);
   report.severity = run.options.damage.severity;

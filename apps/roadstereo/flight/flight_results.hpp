@@ -26,6 +26,8 @@ struct FlightRun {
   double seconds = 0;            ///< of this run
   double frames_per_second = 0;  ///< of this run, from the first frame to the last
   std::int64_t resumed_at = 0;   ///< number of frames done by earlier runs
+  std::optional<io::ReportedMap> map;
+  std::string no_map_reason;  ///< why --map made none
 };
 
 /// Collects the results of a flight frame by frame and writes its tables, report and GIS files.

@@ -22,7 +22,7 @@ FrameFile frame_file(const std::string& name) {
     if (name == known) return file;
   }
   fail("--write has \"", name,
-       "\"; it must be a comma-separated list of disparity, transformed, sheet, cloud and overlay");
+       "\"; it must be a comma-separated list of disparity, transformed, sheet, cloud, overlay and mcap");
 }
 
 PipelineOptions make_options(const FlightSettings& settings) {
@@ -50,7 +50,6 @@ void FlightSettings::validate() const {
   if (from < 0) fail("--from is ", from, "; it must be at least 0");
   if (to && *to < from) fail("--to is ", *to, "; it must be at least --from, which is ", from);
   if (!std::isfinite(track.offset_s)) fail("--track-offset is ", track.offset_s, "; it must be a number of seconds");
-  if (trajectory && resume) fail("--trajectory cannot be resumed; start again without --resume");
   constexpr std::int64_t max_every = 1'000'000'000;
   if (every < 1 || every > max_every) fail("--every is ", every, "; it must be between 1 and ", max_every);
 }
@@ -62,7 +61,13 @@ FlightPlan resolve(const FlightSettings& settings) {
   plan.mask = read_ignored(settings);
   plan.find_white_level = !sets_white_level(settings.processing);
   plan.source = make_source_options(settings.source_settings);
-  for (const std::string& name : settings.write) plan.write.push_back(frame_file(name));
+  for (const std::string& name : settings.write) {
+    if (name == "mcap") {
+      plan.mcap = true;
+    } else {
+      plan.write.push_back(frame_file(name));
+    }
+  }
   return plan;
 }
 

@@ -37,9 +37,10 @@ struct FlightSettings {
   std::int64_t from = 0;           ///< first frame of the source, from 0
   std::optional<std::int64_t> to;  ///< last frame, inclusive; absent: the end
   std::int64_t every = 1;          ///< processes every N-th frame
-  std::vector<std::string> write;  ///< names of FrameFile
+  std::vector<std::string> write;  ///< names of FrameFile, and "mcap"
   TrackSettings track;
   bool trajectory = false;  ///< estimates the motion from frame to frame
+  bool map = false;         ///< makes a map along the trajectory
   bool candidates = false;  ///< whether the GIS files have a layer of candidates
   ReportHead head;
   std::optional<double> height_m;   ///< of the camera above the road, expected
@@ -68,6 +69,7 @@ struct FlightPlan {
   bool find_white_level = true;  ///< determines it from the first valid pair of a 16-bit source
   io::SourceOptions source;
   std::vector<FrameFile> write;
+  bool mcap = false;  ///< writes flight.mcap
 };
 
 /// Parses and checks the command line options. Throws Error naming the option that is unknown or out of range.

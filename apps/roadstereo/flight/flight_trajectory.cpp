@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "finite_values.hpp"
 #include "io/csv.hpp"
+#include "roadstereo/ground_plane.hpp"
+#include "roadstereo/io/local_axes.hpp"
 #include "roadstereo/io/trajectory_file.hpp"
 
 namespace roadstereo::cli {
@@ -67,35 +71,108 @@ double path_length(const Trajectory& trajectory) {
   return length;
 }
 
+std::string loops_csv(const std::vector<LoopLink>& loops) {
+  std::string text = fmt::format("from,to,used,correlation,overlap,misclosure_before_m,misclosure_after_m,{},{}\n",
+                                 matrix_names, deviation_names);
+  for (const LoopLink& loop : loops) {
+    io::CsvLine line;
+    line.add(std::int64_t{loop.link.from}).add(std::int64_t{loop.link.to}).add(std::int64_t{loop.used ? 1 : 0});
+    line.add(loop.link.correlation, 3).add(loop.link.overlap, 3).add(loop.before_m).add(loop.after_m);
+    add_matrix(loop.link.motion, line);
+    add_deviations(loop.link.covariance, line);
+    text += line.end();
+  }
+  return text;
+}
+
+std::string loops_text(const PoseGraphResult& graph) {
+  if (graph.loops_used() == 0) return {};
+  const PoseGraphResult::Misclosure misclosure = graph.misclosure();
+  constexpr double mm = 1000;
+  return fmt::format("; {} loops, misclosure {:.1f} mm before, {:.1f} mm ({:.2f} px) after", graph.loops_used(),
+                     mm * misclosure.before_m, mm * misclosure.after_m, misclosure.after_px);
+}
+
+std::string track_text(const PoseGraphResult& graph) {
+  if (!graph.track) return graph.track_unused.empty() ? std::string() : "; track not used: " + graph.track_unused;
+  const TrackFit& fit = *graph.track;
+  std::string text = fmt::format("; track RMS {:.3f} m, times of the frames {:+.3f} ± {:.3f} s, antenna at", fit.rms_m,
+                                 fit.time_offset_s.value, fit.time_offset_s.sd);
+  for (const Estimate& axis : fit.lever_arm_m) text += fmt::format(" {:+.2f} ± {:.2f}", axis.value, axis.sd);
+  return text + " m";
+}
+
 }  // namespace
 
 const std::vector<std::string>& trajectory_file_names() {
-  static const std::vector<std::string> names{"trajectory_kitti.txt", "trajectory.tum", "trajectory.csv", "links.csv"};
+  static const std::vector<std::string> names{"trajectory_kitti.txt", "trajectory.tum", "trajectory.csv", "links.csv",
+                                              "loops.csv"};
   return names;
 }
 
-void FlightTrajectory::add(const io::FlightFrame& frame, const FrameResult& result) {
-  odometry_.add(static_cast<int>(frame.index), result);
+FlightTrajectory::FlightTrajectory(const StereoCalibration& calibration, const std::filesystem::path& keyframes)
+    : odometry_(calibration), road_odometry_(calibration), calibration_(calibration) {
+  if (has_pose_graph()) loops_.emplace(calibration, keyframes);
+}
+
+std::optional<io::RosPose> FlightTrajectory::add(const io::FlightFrame& frame, const FrameResult& result) {
+  const auto index = static_cast<int>(frame.index);
+  const FramePose& pose = odometry_.add(index, result);
   times_s_.push_back(frame.time_s);
+  std::optional<DisparityPlane> road;
+  if (result.roll_found) road = result.geometry.plane;
+  road_up_.emplace_back();
+  if (road) road_up_.back() = road_axes(ground_plane(*road, calibration_)).z;
+  if (loops_ && odometry_.reference() == index) {
+    loops_->add(index, result, odometry_.links().empty() ? 0 : odometry_.links().back().offset_px);
+  }
+  return road_odometry_.add(pose, road);
+}
+
+void FlightTrajectory::optimise(const TrackSettings& track) {
+  if (!loops_) return;
+  PoseGraphInput input;
+  input.trajectory = odometry_.trajectory();
+  input.links = odometry_.links();
+  input.times_s = times_s_;
+  input.road_up = road_up_;
+  std::optional<io::LocalAxes> axes;
+  if (!track.file.empty()) {
+    axes.emplace(io::read_track(track.file));
+    input.fixes = axes->fixes();
+    for (double& time_s : input.times_s) time_s += track.offset_s;
+  }
+  graph_ = close_loops(std::move(input), *loops_);
+  loops_.reset();
+  if (!graph_.track) return;
+  crs_ = axes->crs();
+  for (FramePose& pose : graph_.trajectory.frames) {
+    if (pose.piece == 0) pose.camera_to_world = axes->to_utm(pose.camera_to_world);
+  }
+}
+
+const Trajectory& FlightTrajectory::trajectory() const {
+  return graph_.trajectory.frames.empty() ? odometry_.trajectory() : graph_.trajectory;
 }
 
 std::vector<StagedFile> FlightTrajectory::files() const {
-  const Trajectory& trajectory = odometry_.trajectory();
-  const int piece = io::longest_piece(trajectory);
+  const Trajectory& poses = trajectory();
+  const int piece = crs_.empty() ? io::longest_piece(poses) : 0;
   const std::vector<std::string>& names = trajectory_file_names();
-  return {text_file(names[0], io::kitti_trajectory(trajectory, piece)),
-          text_file(names[1], io::tum_trajectory(trajectory, piece, times_s_)),
-          text_file(names[2], poses_csv(trajectory, times_s_)), text_file(names[3], links_csv(odometry_.links()))};
+  return {text_file(names[0], io::kitti_trajectory(poses, piece)),
+          text_file(names[1], io::tum_trajectory(poses, piece, times_s_)),
+          text_file(names[2], poses_csv(poses, times_s_)), text_file(names[3], links_csv(odometry_.links())),
+          text_file(names[4], loops_csv(graph_.loops))};
 }
 
 std::string FlightTrajectory::summary() const {
   const std::vector<FrameLink>& links = odometry_.links();
   const auto weak =
       std::count_if(links.begin(), links.end(), [](const FrameLink& link) { return link.status == LinkStatus::weak; });
-  const std::vector<FramePose>& frames = odometry_.trajectory().frames;
-  const std::size_t pieces = frames.size() - links.size();
-  std::string text = fmt::format("{:.2f} m in {} piece{}, {} links ({} weak)", path_length(odometry_.trajectory()),
-                                 pieces, pieces == 1 ? "" : "s", links.size(), weak);
+  std::set<int> pieces;
+  for (const FramePose& pose : trajectory().frames) pieces.insert(pose.piece);
+  std::string text = fmt::format("{:.2f} m in {} piece{}, {} links ({} weak)", path_length(trajectory()), pieces.size(),
+                                 pieces.size() == 1 ? "" : "s", links.size(), weak);
   std::vector<double> offsets;
   for (const FrameLink& link : links) {
     if (link.offset_px != 0) offsets.push_back(link.offset_px);
@@ -104,7 +181,8 @@ std::string FlightTrajectory::summary() const {
     text += fmt::format("; disparities are short by {:.2f} px at infinity (median), undone in {} links",
                         median(offsets), offsets.size());
   }
-  return text;
+  text += loops_text(graph_) + track_text(graph_);
+  return crs_.empty() ? text : text + "; poses in " + crs_;
 }
 
 }  // namespace roadstereo::cli

@@ -1,9 +1,14 @@
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "flight/flight_job.hpp"
+#include "flight/flight_settings.hpp"
+#include "io/ros/road_odometry.hpp"
+#include "roadstereo/loop_search.hpp"
 #include "roadstereo/odometry.hpp"
 
 namespace roadstereo::cli {
@@ -11,23 +16,42 @@ namespace roadstereo::cli {
 /// Names of the files of a trajectory.
 const std::vector<std::string>& trajectory_file_names();
 
-/// Trajectory of a flight, frame by frame.
+/// Trajectory of a flight: odometry frame by frame, and at the end the pose graph, if this build has it.
 class FlightTrajectory {
  public:
-  explicit FlightTrajectory(const StereoCalibration& calibration) : odometry_(calibration) {}
+  /// `keyframes` becomes a folder of this trajectory's own, and is removed with it.
+  FlightTrajectory(const StereoCalibration& calibration, const std::filesystem::path& keyframes);
 
-  /// Adds the next matched frame.
-  void add(const io::FlightFrame& frame, const FrameResult& result);
+  /// Adds the next matched frame. Returns its pose for flight.mcap, if it has one.
+  std::optional<io::RosPose> add(const io::FlightFrame& frame, const FrameResult& result);
 
-  /// Returns trajectory_kitti.txt and trajectory.tum (the longest piece), trajectory.csv and links.csv (all of them).
+  /// Closes loops, and places the trajectory on the Earth if there is a track that fits it.
+  void optimise(const TrackSettings& track);
+
+  /// Returns trajectory_kitti.txt and trajectory.tum (the longest piece), trajectory.csv, links.csv and loops.csv
+  /// (all).
   std::vector<StagedFile> files() const;
 
-  /// Returns one line: path, pieces, weak links, offset of the disparities.
+  /// The coordinate system of the poses, as GDAL reads it; empty: the axes of the first camera.
+  const std::string& crs() const { return crs_; }
+
+  /// Why the track cannot be that of this flight, a sentence; empty without one, or if it can.
+  std::string track_contradiction() const { return graph_.track_contradicts ? graph_.track_unused : std::string(); }
+
+  /// Returns one line: path, pieces, weak links, offset of the disparities, loops, track.
   std::string summary() const;
 
  private:
+  const Trajectory& trajectory() const;
+
   Odometry odometry_;
+  std::optional<LoopSearch> loops_;
+  io::RoadOdometry road_odometry_;
   std::vector<double> times_s_;
+  std::vector<std::optional<std::array<double, 3>>> road_up_;
+  StereoCalibration calibration_;
+  PoseGraphResult graph_;  ///< empty before `optimise`
+  std::string crs_;
 };
 
 }  // namespace roadstereo::cli

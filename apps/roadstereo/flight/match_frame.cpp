@@ -40,6 +40,8 @@ void begin(FlightJob& job) {
   job.damage.damages.clear();
   job.damage.candidates.clear();
   job.files.clear();
+  job.pose.reset();
+  job.mcap_chunk.clear();
 }
 
 }  // namespace

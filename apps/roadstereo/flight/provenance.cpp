@@ -20,8 +20,9 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// FNV-1a hash of a file.
-std::string digest(const std::vector<std::string>& files) {
+}  // namespace
+
+std::string content_digest(const std::vector<std::string>& files) {
   constexpr std::uint64_t basis = 0xcbf29ce484222325ULL;
   constexpr std::uint64_t prime = 0x100000001b3ULL;
   std::uint64_t hash = basis;
@@ -35,8 +36,6 @@ std::string digest(const std::vector<std::string>& files) {
   return fmt::format("{:016x}", hash);
 }
 
-}  // namespace
-
 io::Provenance provenance(const FlightSettings& settings, const PipelineOptions& options) {
   const std::vector<std::string> mask(settings.mask.empty() ? 0 : 1, settings.mask);
   std::vector<std::string> severity_files;
@@ -44,11 +43,11 @@ io::Provenance provenance(const FlightSettings& settings, const PipelineOptions&
   io::Provenance entries{{"version", version},
                          {"source", joined(settings.source)},
                          {"calibration", joined(settings.calibration)},
-                         {"content of the calibration", digest(settings.calibration)},
+                         {"content of the calibration", content_digest(settings.calibration)},
                          {"--mask", settings.mask},
-                         {"content of the mask", digest(mask)},
+                         {"content of the mask", content_digest(mask)},
                          {"--severity", settings.processing.severity},
-                         {"content of the severities", digest(severity_files)},
+                         {"content of the severities", content_digest(severity_files)},
                          {"--from", std::to_string(settings.from)},
                          {"--every", std::to_string(settings.every)},
                          {"--write", joined(settings.write)},

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "flight/flight_settings.hpp"
 #include "roadstereo/io/flight_journal.hpp"
 
@@ -8,5 +11,9 @@ namespace roadstereo::cli {
 /// Returns all inputs and options that determine the results of a flight, including a hash of its calibration.
 /// Throws Error naming a calibration that cannot be read.
 io::Provenance provenance(const FlightSettings& settings, const PipelineOptions& options);
+
+/// Returns the FNV-1a hash of files, one after another, as 16 hexadecimal digits. Throws Error naming a file that
+/// cannot be read.
+std::string content_digest(const std::vector<std::string>& files);
 
 }  // namespace roadstereo::cli

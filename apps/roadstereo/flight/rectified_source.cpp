@@ -32,7 +32,10 @@ void RectifiedSource::prepare(const io::SourcePair& first) {
   if (!white_known_ && first.left.sample == SampleType::u16 && first.right.sample == SampleType::u16) {
     white_level_ = io::find_white_level(first.left.view(), first.right.view());
   }
-  if (file_) file_->select_size(first.left.width, first.left.height, file_name_);
+  if (file_) {
+    file_->select_size(first.left.width, first.left.height, file_name_);
+    if (!calibration_) calibration_ = file_->rectified;
+  }
   if (file_ && file_->rig && !rectifier_) {
     rectifier_.emplace(*file_->rig, first.left.width, first.left.height);
     calibration_ = rectifier_->calibration();

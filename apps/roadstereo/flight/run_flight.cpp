@@ -28,10 +28,11 @@ class FlightPipeline {
   bool run();
 
  private:
-  void seek(io::FrameSource& source) const;
+  void require_unchanged(const io::FlightFrame& last, const std::optional<io::SourcePair>& again) const;
+  void seek(io::FrameSource& source, const std::optional<io::FlightFrame>& last) const;
   void read();
   void match();
-  void add_to_trajectory(const FlightJob& job);
+  void add_to_trajectory(FlightJob& job);
   void finish();
   void commit_frame(FlightJob& job);
   void add_pictures(FlightJob& job, const std::vector<std::int64_t>& road_damages);
@@ -88,28 +89,32 @@ void FlightPipeline::run_stage(const Work& work) {
   failure_.run(work, [this] { stop_all(); });
 }
 
-/// Skips to the frame after the last one of an earlier run. Throws Error if that one has changed.
-void FlightPipeline::seek(io::FrameSource& source) const {
-  const std::optional<io::FlightFrame>& last = flight_.journal.last();
-  if (!last) return source.skip(settings_.from);
+/// Throws Error unless the pair is the last one of an earlier run.
+void FlightPipeline::require_unchanged(const io::FlightFrame& last, const std::optional<io::SourcePair>& again) const {
+  if (again && io::valid_utf8(again->name) == last.name) return;
+  fail(settings_.source[0], ": the source has changed since this flight was started: frame ", last.index, " was \"",
+       last.name, "\" and is now ", again ? "\"" + again->name + "\"" : "missing", "; start again without --resume");
+}
+
+/// Skips to the frame after the last one of an earlier run. A trajectory needs the frames before it again.
+void FlightPipeline::seek(io::FrameSource& source, const std::optional<io::FlightFrame>& last) const {
+  if (!last || settings_.trajectory) return source.skip(settings_.from);
   source.skip(last->index);
-  const std::optional<io::SourcePair> again = source.next();
-  if (!again || io::valid_utf8(again->name) != last->name) {
-    fail(settings_.source[0], ": the source has changed since this flight was started: frame ", last->index, " was \"",
-         last->name, "\" and is now ", again ? "\"" + again->name + "\"" : "missing", "; start again without --resume");
-  }
+  require_unchanged(*last, source.next());
   source.skip(settings_.every - 1);
 }
 
 void FlightPipeline::read() {
+  const std::optional<io::FlightFrame> last = flight_.journal.last();  // before the journal grows
   io::FrameSource& source = flight_.source.source();
-  seek(source);
+  seek(source, last);
   while (!flight_.stop.wait(0)) {
     std::optional<io::SourcePair> pair = flight_.source.next();
     if (!pair || (settings_.to && pair->index > *settings_.to)) {
       reached_end_ = true;
       break;
     }
+    if (last && pair->index == last->index) require_unchanged(*last, pair);
     if (!pairs_.put(std::move(*pair))) break;
     if (settings_.every > 1) source.skip(settings_.every - 1);
   }
@@ -119,7 +124,8 @@ void FlightPipeline::read() {
 void FlightPipeline::match() {
   const std::optional<io::FlightFrame> before = flight_.journal.last();  // before the journal grows
   std::optional<Pipeline> pipeline;
-  std::int64_t sequence = flight_.journal.frames();
+  const std::int64_t done = flight_.journal.frames();
+  std::int64_t sequence = settings_.trajectory ? 0 : done;  // the trajectory begins anew, with the same results
   while (std::optional<io::SourcePair> pair = pairs_.take()) {
     std::optional<JobPointer> job = free_.take();
     if (!job) break;
@@ -131,7 +137,7 @@ void FlightPipeline::match() {
       pipeline.emplace(options, flight_.source.calibration());
       if (!mask.empty()) pipeline->set_mask(mask);
       warm_up(*pipeline, *pair);
-      if (before) pipeline->restore(before->pipeline_state);
+      if (before && sequence == done) pipeline->restore(before->pipeline_state);
     }
     (*job)->sequence = sequence++;
     (*job)->pair = std::move(*pair);
@@ -141,24 +147,28 @@ void FlightPipeline::match() {
     } else {
       record_rejected(before, **job);
     }
+    if ((*job)->sequence < done) {
+      free_.put(std::move(*job));
+      continue;
+    }
     if (!matched_.put(std::move(*job))) break;
   }
   matched_.close();
 }
 
-void FlightPipeline::add_to_trajectory(const FlightJob& job) {
+void FlightPipeline::add_to_trajectory(FlightJob& job) {
   if (!settings_.trajectory || job.frame.status != io::FrameStatus::good) return;
   if (!flight_.trajectory) {
     const std::optional<StereoCalibration>& calibration = flight_.source.calibration();
     if (!calibration) fail("--trajectory needs --calibration");
-    flight_.trajectory.emplace(*calibration);
+    flight_.trajectory.emplace(*calibration, flight_.folder.path() / ".keyframes");
   }
-  flight_.trajectory->add(job.frame, job.result);
+  job.pose = flight_.trajectory->add(job.frame, job.result);
 }
 
 void FlightPipeline::finish() {
   while (std::optional<JobPointer> job = matched_.take()) {
-    finish_frame(flight_.source.calibration(), flight_.plan.options.damage, flight_.plan.write, **job);
+    finish_frame(flight_.source.calibration(), flight_.plan, **job);
     sequencer_.run_in_order((*job)->sequence, [&] { commit_frame(**job); });
     free_.put(std::move(*job));
   }
@@ -168,6 +178,7 @@ void FlightPipeline::finish() {
 void FlightPipeline::commit_frame(FlightJob& job) {
   add_pictures(job, flight_.results.add(job.frame));
   flight_.folder.write(job.files);
+  if (!job.mcap_chunk.empty()) flight_.mcap->append(job.mcap_chunk);
   flight_.journal.append(job.frame);
   flight_.progress.frame_done(job.frame.status == io::FrameStatus::good);
 }

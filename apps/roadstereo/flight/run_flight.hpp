@@ -8,6 +8,7 @@
 #include "flight/flight_settings.hpp"
 #include "flight/flight_trajectory.hpp"
 #include "flight/rectified_source.hpp"
+#include "io/ros/mcap_writer.hpp"
 #include "progress.hpp"
 #include "roadstereo/io/flight_journal.hpp"
 #include "stop_signals.hpp"
@@ -21,6 +22,7 @@ struct Flight {
   io::FlightJournal& journal;
   FlightResults& results;                       ///< of the frames in the journal
   std::optional<FlightTrajectory>& trajectory;  ///< with --trajectory, from the first matched frame on
+  std::optional<io::McapWriter>& mcap;          ///< with --write mcap
   const FlightPlan& plan;
   Progress& progress;
   const StopSignals& stop;

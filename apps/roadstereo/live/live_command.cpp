@@ -27,6 +27,7 @@ struct LiveCommandArguments {
   ProcessingSettings processing;
   std::string record;
   std::string serve;
+  std::optional<std::uint32_t> dds_domain;
   double max_age_ms = 500;
   bool loop = false;
   std::int64_t frames = 0;
@@ -41,6 +42,7 @@ LiveOptions live_options(const LiveCommandArguments& arguments) {
   LiveOptions options;
   options.processing.pipeline = make_options(arguments.processing);
   options.processing.find_white_level = !sets_white_level(arguments.processing);
+  options.processing.dds_domain = arguments.dds_domain;
   options.capture.rate_hz = arguments.source.rate_hz;
   options.capture.loop = arguments.loop;
   options.calibration = arguments.calibration;
@@ -96,13 +98,17 @@ for roadstereo inspect DIR. It never delays processing: if the disk is too slow,
 frame rate, latency, age, and the list of damages. With a HOST (0.0.0.0: all addresses) other machines can open it with
 the token in the printed address. Port 0: any free port.
 
+--dds DOMAIN (ROS_DOMAIN_ID, usually 0) publishes what inspect --write mcap writes (docs/file_formats.md): image, disparities,
+points, damages, odometry and /tf. A message is dropped rather than waited for.
+
 The status line shows the latency (median/95th percentile), the height, and the damages (current/total). Ctrl-C stops and
 prints a summary.
 
 Examples:
   roadstereo live /dev/video0 --calibration rig.yaml --serve 8080
   roadstereo live flight.mp4 --calibration rig.yaml --loop --serve 0.0.0.0:8080
-  roadstereo live /dev/video0 --calibration rig.yaml --record flight1)";
+  roadstereo live /dev/video0 --calibration rig.yaml --record flight1
+  roadstereo live /dev/video0 --calibration rig.yaml --dds 0)";
 
 void add_options(CLI::App& command, LiveCommandArguments& arguments) {
   command.add_option("SOURCE", arguments.names, "Camera, video, folder, list, bag or pipeline; or two: left and right")
@@ -111,6 +117,9 @@ void add_options(CLI::App& command, LiveCommandArguments& arguments) {
   add_calibration_option(command, arguments.calibration);
   command.add_option("--record", arguments.record, "New folder for the raw pairs")->type_name("DIR");
   command.add_option("--serve", arguments.serve, "Serve a web page at this port")->type_name("[HOST:]PORT");
+  command.add_option("--dds", arguments.dds_domain, "Publish the results to the ROS 2 nodes of this domain, by DDS")
+      ->type_name("DOMAIN")
+      ->check(CLI::Range(0U, 230U));
   command.add_option("--max-age", arguments.max_age_ms, "Maximum age of a pair, ms")
       ->type_name("MS")
       ->check(CLI::Range(1.0, 60000.0))

@@ -63,13 +63,22 @@ void Processing::match() {
   matched_.close();
 }
 
-LiveView Processing::view_of(Matched matched) const {
+/// Joins the domain on first use, when the calibration is known.
+void Processing::publish_messages(const Matched& matched, const DamageMap& map) {
+  if (!options_.dds_domain) return;
+  if (!messages_) messages_.emplace(*options_.dds_domain, matched.calibration);
+  messages_->publish(matched.captured.pair.left.view(), options_.pipeline.white_level, matched.captured.clock_s,
+                     matched.result, map);
+}
+
+LiveView Processing::view_of(Matched matched) {
   LiveView view;
   FrameResult& result = matched.result;
   view.warnings = std::move(result.warnings);
   DamageMap map;
   find_damage_or_warn(result, matched.calibration, options_.pipeline.damage, options_.pipeline.threads, map,
                       view.health, view.warnings);
+  publish_messages(matched, map);
   view.damages = std::move(map.damages);
   view.ids = std::move(map.ids);
   view.name = std::move(matched.captured.pair.name);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "live/captured_pair.hpp"
 #include "live/latest_value.hpp"
 #include "live/live_board.hpp"
+#include "live/live_messages.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
@@ -16,7 +18,8 @@ namespace roadstereo::cli {
 /// Options of Processing.
 struct ProcessingOptions {
   PipelineOptions pipeline;
-  bool find_white_level = true;  ///< determines it from the first pair of a 16-bit source
+  bool find_white_level = true;             ///< determines it from the first pair of a 16-bit source
+  std::optional<std::uint32_t> dds_domain;  ///< publishes the results there as ROS 2 messages
 };
 
 /// Converts captured pairs to views in two stages, which run concurrently on successive pairs.
@@ -42,7 +45,8 @@ class Processing {
   void match_pairs();
   std::optional<Matched> match(CapturedPair captured);
   Pipeline& pipeline();
-  LiveView view_of(Matched matched) const;
+  LiveView view_of(Matched matched);
+  void publish_messages(const Matched& matched, const DamageMap& map);
 
   ProcessingOptions options_;
   std::unique_ptr<RectifiedSource> rectifier_;
@@ -50,6 +54,7 @@ class Processing {
   LatestValue<CapturedPair>& captured_;
   LatestValue<Matched> matched_;
   std::optional<Pipeline> pipeline_;
+  std::optional<LiveMessages> messages_;  ///< of the second stage
 };
 
 }  // namespace roadstereo::cli

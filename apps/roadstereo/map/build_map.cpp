@@ -1,13 +1,18 @@
 #include "map/build_map.hpp"
 
+#include <fmt/chrono.h>
+
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <map>
 #include <memory>
 #include <utility>
 
 #include "flight/rectified_source.hpp"
 #include "inspect_flight.hpp"
+#include "map/map_journal.hpp"
+#include "map/map_provenance.hpp"
 #include "progress.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/trajectory_file.hpp"
@@ -24,92 +29,184 @@ struct Pass {
 
 class MapBuilder {
  public:
-  MapBuilder(const MapSettings& settings, std::filesystem::path folder, const StopSignals& stop)
-      : settings_(settings), folder_(std::move(folder)), stop_(stop), options_(make_options(settings.processing)) {
-    built_.damage = options_.damage;
-    options_.damage.min_confidence = 0;  // what one frame doubts may be clear in the map
-  }
+  MapBuilder(const MapPlan& plan, const std::filesystem::path& folder, const StopSignals& stop)
+      : plan_(plan), folder_(folder), stop_(stop), journal_(folder, provenance(plan), plan.resume) {}
 
   BuiltMap build() {
-    std::vector<Pass> passes = open_passes();
-    std::int64_t poses = 0;
-    for (const Pass& pass : passes) poses += static_cast<std::int64_t>(pass.poses.size());
-    Progress progress(poses / settings_.every, 0, settings_.quiet);
-    for (std::size_t k = 0; k < passes.size(); ++k) add_pass(static_cast<int>(k), passes[k], progress);
+    std::vector<Pass> passes;
+    std::int64_t frames = 0;
+    for (const MapPass& pass : plan_.passes) {
+      passes.push_back(open_pass(pass));
+      frames += static_cast<std::int64_t>(passes.back().poses.size());
+    }
+    restore();
+    Progress progress(frames, state_.frames, plan_.quiet);
+    while (state_.pass < static_cast<int>(passes.size())) {
+      add_pass(passes[static_cast<std::size_t>(state_.pass)], progress);
+      begin_next_pass();
+    }
+    save();
     progress.end();
-    return std::move(built_);
+    return result();
   }
 
  private:
-  std::vector<Pass> open_passes() const {
-    const io::SourceOptions source = make_source_options(settings_.source_settings);
-    const bool one_each = settings_.trajectory.size() == settings_.source.size();
-    std::vector<Pass> passes;
-    for (std::size_t k = 0; k < settings_.trajectory.size(); ++k) {
-      const std::vector<std::string> names = one_each ? std::vector{settings_.source[k]} : settings_.source;
-      Pass pass;
-      pass.source = std::make_unique<RectifiedSource>(io::open_source(names, source), settings_.calibration);
-      if (pass.source->source().live()) fail(names[0], ": a camera has no trajectory; record it first");
-      for (const FramePose& pose : io::read_trajectory(settings_.trajectory[k]).frames) pass.poses[pose.frame] = pose;
-      const std::optional<std::int64_t> size = pass.source->source().size();
-      if (size && pass.poses.rbegin()->first >= *size) {
-        fail(settings_.trajectory[k], ": its last pose is of frame ", pass.poses.rbegin()->first, ", but ", names[0],
-             " has ", *size, " frames");
-      }
-      passes.push_back(std::move(pass));
+  /// Continues from the checkpoint, if there is one.
+  void restore() {
+    std::vector<MappedFrame> frames;
+    std::optional<MapState> state = journal_.restore([&](MappedFrame& frame) { frames.push_back(std::move(frame)); });
+    if (!state) return;
+    state_ = std::move(*state);
+    map_options_ = map_options(state_.cell_m);
+    for (const auto& [day, saved] : state_.days) {
+      RoadMap map(folder_of(day), map_options_, saved);
+      map.keep();
+      days_.emplace(day, DayMap{state_.day_names[day], std::move(map), {}, {}});
     }
-    return passes;
+    for (MappedFrame& frame : frames) add_record(std::move(frame));
   }
 
-  void add_pass(int number, Pass& pass, Progress& progress) {
+  /// Tiles, journal and checkpoint on disk; a later run continues here.
+  void save() {
+    for (auto& [day, map] : days_) state_.days[day] = map.map.save();
+    journal_.checkpoint(state_);
+    for (auto& entry : days_) entry.second.map.commit();
+  }
+
+  void begin_next_pass() {
+    ++state_.pass;
+    state_.next_frame = 0;
+    state_.day.reset();
+    state_.piece = -1;
+    state_.white_level = 0;
+    state_.pipeline.reset();
+  }
+
+  BuiltMap result() {
+    BuiltMap built;
+    for (auto& entry : days_) built.days.push_back(std::move(entry.second));
+    const bool named =
+        std::any_of(plan_.passes.begin(), plan_.passes.end(), [](auto& pass) { return !pass.day.empty(); });
+    if (!named) {  // dates
+      std::stable_sort(built.days.begin(), built.days.end(), [](auto& a, auto& b) { return a.name < b.name; });
+    }
+    built.origin_m = state_.origin_m;
+    built.frames = state_.frames;
+    built.mapped = state_.mapped;
+    built.reasons = state_.reasons;
+    return built;
+  }
+
+  Pass open_pass(const MapPass& from) const {
+    Pass pass;
+    pass.source =
+        std::make_unique<RectifiedSource>(io::open_source(from.source, from.source_options), from.calibration);
+    if (pass.source->source().live()) fail(from.source[0], ": a camera has no trajectory; record it first");
+    const Trajectory trajectory = io::read_trajectory(from.trajectory);
+    for (const FramePose& pose : trajectory.frames) {
+      if (pose.frame % plan_.every == 0) pass.poses[pose.frame] = pose;
+    }
+    const std::optional<std::int64_t> size = pass.source->source().size();
+    const int last = trajectory.frames.back().frame;
+    if (size && last >= *size) {
+      fail(from.trajectory, ": its last pose is of frame ", last, ", but ", from.source[0], " has ", *size, " frames");
+    }
+    return pass;
+  }
+
+  void add_pass(Pass& pass, Progress& progress) {
+    constexpr std::int64_t frames_per_save = 16;
+    const MapPass& from = plan_.passes[static_cast<std::size_t>(state_.pass)];
+    if (state_.white_level > 0) pass.source->set_white_level(state_.white_level);
     std::optional<Pipeline> pipeline;
-    int piece = -1;
-    for (std::int64_t index = 0;; ++index) {
-      if (stop_.wait(0)) throw Interrupted{"interrupted; there is no map"};
-      std::optional<io::SourcePair> pair = pass.source->next();
-      if (!pair) break;
-      const auto pose = pass.poses.find(pair->index);
-      const bool wanted = pose != pass.poses.end() && index % settings_.every == 0;
-      if (!wanted) continue;
-      ++built_.frames;
-      if (!pair->error.empty()) {
-        add_reason(pair->error);
-      } else {
-        if (!pass.source->calibration()) fail("map needs --calibration");
-        if (!pipeline) {
-          PipelineOptions options = options_;
-          if (!sets_white_level(settings_.processing)) options.white_level = pass.source->white_level();
-          pipeline.emplace(options, pass.source->calibration());
-        }
-        if (pose->second.piece != piece) built_.paths.emplace_back();
-        piece = pose->second.piece;
-        add_frame(number, *pair, pose->second, *pass.source->calibration(), *pipeline);
+    std::int64_t next = 0;
+    for (auto pose = pass.poses.lower_bound(state_.next_frame); pose != pass.poses.end(); ++pose) {
+      if (stop_.wait(0)) {
+        save();
+        throw Interrupted{"interrupted; continue with --resume"};
       }
+      pass.source->source().skip(pose->first - next);
+      const std::optional<io::SourcePair> pair = pass.source->next();
+      if (!pair) break;
+      next = pair->index + 1;
+      add_pair(from, *pass.source, *pair, pose->second, pipeline);
+      state_.next_frame = next;
       progress.frame_done();
+      if (++state_.frames % frames_per_save == 0) save();
     }
   }
 
-  void add_frame(int number, const io::SourcePair& pair, const FramePose& pose, const StereoCalibration& calibration,
+  void add_pair(const MapPass& from, const RectifiedSource& source, const io::SourcePair& pair, const FramePose& pose,
+                std::optional<Pipeline>& pipeline) {
+    if (!state_.day) state_.day = day_of(from, pair.time_s);
+    if (!pair.error.empty()) return add_reason(pair.error);
+    if (!pipeline) pipeline.emplace(begin_pass(from, source));
+    add_frame(pair, pose, *source.calibration(), *pipeline);
+    state_.pipeline = pipeline->carried();
+  }
+
+  /// Index of the day of a recording whose first frame has this time.
+  std::size_t day_of(const MapPass& pass, double time_s) {
+    constexpr double first_calendar_s = 315532800;  // 1980
+    std::string name = pass.day;
+    const double utc_s = time_s + pass.time_offset_s;
+    if (name.empty() && utc_s > first_calendar_s) {
+      name = fmt::format("{:%Y-%m-%d}", fmt::gmtime(static_cast<std::time_t>(utc_s)));
+    }
+    const auto known = std::find(state_.day_names.begin(), state_.day_names.end(), name);
+    const auto index = static_cast<std::size_t>(known - state_.day_names.begin());
+    if (known == state_.day_names.end()) state_.day_names.push_back(name);
+    return index;
+  }
+
+  /// Called after the first valid pair: white level and size are known.
+  Pipeline begin_pass(const MapPass& pass, const RectifiedSource& source) {
+    if (!source.calibration()) fail("map needs --calibration");
+    PipelineOptions options = pass.options;
+    options.damage.min_confidence = 0;  // what one frame doubts may be clear in the map
+    if (pass.find_white_level) options.white_level = source.white_level();
+    state_.white_level = options.white_level;
+    Pipeline pipeline(options, source.calibration());
+    if (!pass.mask.empty()) pipeline.set_mask(pass.mask);
+    if (state_.pipeline) pipeline.restore(*state_.pipeline);
+    return pipeline;
+  }
+
+  void add_frame(const io::SourcePair& pair, const FramePose& pose, const StereoCalibration& calibration,
                  Pipeline& pipeline) {
     try {
       const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
       if (!result.roll_found || !result.road.has_road()) return add_reason("there is no road: " + result.road.reason);
       const DisparityPlane& road = result.geometry.plane;
-      if (!built_.map) begin_map(road, pose, calibration);
-      const RigidTransform camera_to_map = compose(world_to_map_, pose.camera_to_world);
-      MapFrame frame{result.disparity, result.sigma, pair.left.view(), pipeline.options().white_level, road,
-                     calibration,      camera_to_map};
-      built_.map->add(frame);
-      ++built_.mapped;
-      built_.paths.back().push_back(foot_of(road, calibration, camera_to_map));
+      if (days_.empty()) set_axes(road, pose, calibration);
+      const RigidTransform camera_to_map = compose(state_.world_to_map, pose.camera_to_world);
+      map_of(*state_.day)
+          .map.add({result.disparity, result.sigma, pair.left.view(), pipeline.options().white_level, road, calibration,
+                    camera_to_map});
+      ++state_.mapped;
       pipeline.find_damage(damage_);
-      for (MapDamage& found : locate_damage(damage_, road, calibration, camera_to_map)) {
-        built_.sightings.push_back({number, pose.frame, std::move(found)});
-      }
+      MappedFrame mapped{state_.pass,
+                         pose.frame,
+                         *state_.day,
+                         pose.piece != state_.piece,
+                         foot_of(road, calibration, camera_to_map),
+                         locate_damage(damage_, road, calibration, camera_to_map)};
+      state_.piece = pose.piece;
+      journal_.append(mapped);
+      add_record(std::move(mapped));
     } catch (const SystemError&) {
       throw;
     } catch (const Error& error) {
       add_reason(error.what());
+    }
+  }
+
+  void add_record(MappedFrame frame) {
+    DayMap& day = map_of(frame.day);
+    if (frame.new_path) day.paths.emplace_back();
+    day.paths.back().push_back(frame.foot_m);
+    for (MapDamage& found : frame.found) {
+      day.sightings.push_back({frame.pass, static_cast<int>(frame.index), std::move(found)});
     }
   }
 
@@ -120,54 +217,57 @@ class MapBuilder {
     return {road_to_map[3], road_to_map[7]};
   }
 
-  /// Sets the map's axes: those of the road under the first camera, or with --crs those of the trajectory, with an
-  /// origin at a whole number of metres.
-  void begin_map(const DisparityPlane& road, const FramePose& pose, const StereoCalibration& calibration) {
+  std::filesystem::path folder_of(std::size_t day) const { return folder_ / std::to_string(day); }
+
+  DayMap& map_of(std::size_t day) {
+    const auto known = days_.find(day);
+    if (known != days_.end()) return known->second;
+    RoadMap map(folder_of(day), map_options_);
+    map.keep();
+    return days_.emplace(day, DayMap{state_.day_names[day], std::move(map), {}, {}}).first->second;
+  }
+
+  RoadMapOptions map_options(double cell_m) const {
     RoadMapOptions options;
-    options.cell_m = settings_.cell_m > 0 ? settings_.cell_m : suggested_cell_m(road, calibration);
-    options.threads = options_.threads;
-    built_.map.emplace(folder_, options);
-    if (settings_.crs.empty()) {
-      world_to_map_ = compose(camera_to_road(road, calibration), inverse(pose.camera_to_world));
+    options.cell_m = cell_m;
+    options.threads = plan_.passes.front().options.threads;
+    return options;
+  }
+
+  /// Sets cells and axes: those of the road under the first camera, or with --crs those of the trajectory, with an
+  /// origin at a whole number of metres.
+  void set_axes(const DisparityPlane& road, const FramePose& pose, const StereoCalibration& calibration) {
+    state_.cell_m = plan_.cell_m > 0 ? plan_.cell_m : suggested_cell_m(road, calibration);
+    map_options_ = map_options(state_.cell_m);
+    if (plan_.crs.empty()) {
+      state_.world_to_map = compose(camera_to_road(road, calibration), inverse(pose.camera_to_world));
       return;
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      built_.origin_m[axis] = std::floor(pose.camera_to_world[4 * axis + 3]);
-      world_to_map_[4 * axis + 3] = -built_.origin_m[axis];
+      state_.origin_m[axis] = std::floor(pose.camera_to_world[4 * axis + 3]);
+      state_.world_to_map[4 * axis + 3] = -state_.origin_m[axis];
     }
   }
 
   void add_reason(const std::string& reason) {
-    if (std::find(built_.reasons.begin(), built_.reasons.end(), reason) == built_.reasons.end())
-      built_.reasons.push_back(reason);
+    std::vector<std::string>& reasons = state_.reasons;
+    if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end()) reasons.push_back(reason);
   }
 
-  const MapSettings& settings_;
+  const MapPlan& plan_;
   std::filesystem::path folder_;
   const StopSignals& stop_;
-  PipelineOptions options_;
-  RigidTransform world_to_map_{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  MapJournal journal_;
+  MapState state_;
+  std::map<std::size_t, DayMap> days_;  ///< by index of their names, those with a mapped frame
+  RoadMapOptions map_options_;
   DamageMap damage_;
-  BuiltMap built_;
 };
 
 }  // namespace
 
-void MapSettings::validate() const {
-  if (trajectory.empty()) fail("map needs --trajectory FILE: the pose of every frame, 12 numbers a line");
-  const bool fits = trajectory.size() == source.size() || (trajectory.size() == 1 && source.size() == 2);
-  if (!fits) {
-    fail("map has ", source.size(), " recordings and ", trajectory.size(),
-         " trajectories; every recording needs one --trajectory FILE");
-  }
-  if (!(cell_m == 0 || (cell_m >= 0.0005 && cell_m <= 10))) {
-    fail("--cell is ", cell_m, "; it must be between 0.0005 and 10 metres");
-  }
-  if (every < 1) fail("--every is ", every, "; it must be at least 1");
-}
-
-BuiltMap build_map(const MapSettings& settings, const std::filesystem::path& folder, const StopSignals& stop) {
-  return MapBuilder(settings, folder, stop).build();
+BuiltMap build_map(const MapPlan& plan, const std::filesystem::path& folder, const StopSignals& stop) {
+  return MapBuilder(plan, folder, stop).build();
 }
 
 }  // namespace roadstereo::cli

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/csv.hpp"
 #include "json_text.hpp"
+#include "map/day_layers.hpp"
+#include "map/map_values.hpp"
+#include "roadstereo/map_changes.hpp"
 #include "roadstereo/version.hpp"
 
 namespace roadstereo::cli {
@@ -13,26 +17,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A number for CSV, empty if it is unknown.
-std::string csv(double value, int decimals) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "";
-}
-
-Json measurement_json(const Measurement& measured) {
-  return {{"value", json_number(measured.value)}, {"std_error", json_number(measured.std_error)}};
-}
-
-std::array<double, 2> in_crs(const BuiltMap& built, const std::array<double, 2>& at_m) {
-  return {built.origin_m[0] + at_m[0], built.origin_m[1] + at_m[1]};
-}
-
-std::string damages_csv(const BuiltMap& built, const std::vector<RoadDamageRecord>& damages) {
+std::string damages_csv(const BuiltMap& built, const MapResults& results) {
   std::string text =
       "id,kind,x_m,y_m,max_depth_m,max_depth_stderr_m,mean_depth_m,mean_depth_stderr_m,area_m2,area_stderr_m2,"
       "volume_m3,volume_stderr_m3,length_m,width_m,angle_deg,severity,confidence,sightings,passes,views,found_in_"
-      "map\r\n";
+      "map,day\r\n";
   constexpr double degrees = 180 / 3.14159265358979323846;
-  for (const RoadDamageRecord& damage : damages) {
+  for (std::size_t k = 0; k < results.damages.size(); ++k) {
+    const RoadDamageRecord& damage = results.damages[k];
     const std::array<double, 2> at = in_crs(built, damage.best.at_m);
     const DamageMetrics& metrics = *damage.best.damage.metrics;
     text += fmt::format("{},{},{},{},", damage.id, name_of(damage.best.damage.kind), csv(at[0], 3), csv(at[1], 3));
@@ -40,27 +32,32 @@ std::string damages_csv(const BuiltMap& built, const std::vector<RoadDamageRecor
       text += fmt::format("{},{},", csv(measured.value, 6), csv(measured.std_error, 6));
     }
     text +=
-        fmt::format("{},{},{},{},{},{},{},{},{}\r\n", csv(metrics.length_m, 4), csv(metrics.width_m, 4),
+        fmt::format("{},{},{},{},{},{},{},{},{},", csv(metrics.length_m, 4), csv(metrics.width_m, 4),
                     csv(damage.best.length_angle_rad * degrees, 1), name_of(damage.severity), csv(damage.confidence, 3),
                     damage.sightings, damage.passes, damage.views, damage.found_in_map ? 1 : 0);
+    text += io::CsvLine().add(built.days[results.damage_days[k]].name).end();
   }
   return text;
+}
+
+std::string sighting_row(const BuiltMap& built, const DamageSighting& sighting) {
+  const Damage& damage = sighting.found.damage;
+  const DamageMetrics& metrics = *damage.metrics;
+  const std::array<double, 2> at = in_crs(built, sighting.found.at_m);
+  std::string text =
+      fmt::format("{},{},{},{},{},", sighting.pass, sighting.frame, name_of(damage.kind), csv(at[0], 3), csv(at[1], 3));
+  for (const Measurement& measured : {metrics.max_depth_m, metrics.mean_depth_m, metrics.area_m2}) {
+    text += fmt::format("{},{},", csv(measured.value, 6), csv(measured.std_error, 6));
+  }
+  return text + fmt::format("{},{}\r\n", csv(damage.confidence, 3), damage.cut_by_border ? 1 : 0);
 }
 
 std::string sightings_csv(const BuiltMap& built) {
   std::string text =
       "recording,frame,kind,x_m,y_m,max_depth_m,max_depth_stderr_m,mean_depth_m,mean_depth_stderr_m,area_m2,"
       "area_stderr_m2,confidence,cut_by_border\r\n";
-  for (const DamageSighting& sighting : built.sightings) {
-    const Damage& damage = sighting.found.damage;
-    const DamageMetrics& metrics = *damage.metrics;
-    const std::array<double, 2> at = in_crs(built, sighting.found.at_m);
-    text += fmt::format("{},{},{},{},{},", sighting.pass, sighting.frame, name_of(damage.kind), csv(at[0], 3),
-                        csv(at[1], 3));
-    for (const Measurement& measured : {metrics.max_depth_m, metrics.mean_depth_m, metrics.area_m2}) {
-      text += fmt::format("{},{},", csv(measured.value, 6), csv(measured.std_error, 6));
-    }
-    text += fmt::format("{},{}\r\n", csv(damage.confidence, 3), damage.cut_by_border ? 1 : 0);
+  for (const DayMap& day : built.days) {
+    for (const DamageSighting& sighting : day.sightings) text += sighting_row(built, sighting);
   }
   return text;
 }
@@ -161,32 +158,57 @@ std::string roughness_text(const std::vector<LaneProfiles>& lanes) {
   return text.empty() ? "  roughness no profile is 11.5 m long\n" : text;
 }
 
+/// Takes every place as the newest day that measures it has it; ids from 1, deepest first.
+void add_newest(const BuiltMap& built, const std::vector<std::vector<RoadDamageRecord>>& of_days, MapResults& results) {
+  std::vector<std::pair<std::size_t, const RoadDamageRecord*>> newest;
+  for (std::size_t day = 0; day < of_days.size(); ++day) {
+    for (const RoadDamageRecord& record : of_days[day]) {
+      const auto seen_again = [&](const DayMap& later) { return measures(later.map, record.best.footprint); };
+      const auto later = built.days.begin() + static_cast<std::ptrdiff_t>(day) + 1;
+      if (std::none_of(later, built.days.end(), seen_again)) newest.emplace_back(day, &record);
+    }
+  }
+  std::stable_sort(newest.begin(), newest.end(), [](const auto& a, const auto& b) {
+    return a.second->max_depth_m.value > b.second->max_depth_m.value;
+  });
+  for (const auto& [day, record] : newest) {
+    results.damage_days.push_back(day);
+    results.damages.push_back(*record);
+    results.damages.back().id = static_cast<int>(results.damages.size());
+  }
+}
+
 }  // namespace
 
-MapResults measure_map(const BuiltMap& built) {
+MapResults measure_map(const MapPlan& plan, const BuiltMap& built) {
   MapResults results;
-  DamageOptions options = built.damage;
+  const DamageOptions& damage = plan.passes.front().options.damage;
+  DamageOptions options = damage;
   options.min_confidence = 0;
-  const std::vector<MapDamage> in_map = find_map_damage(*built.map, options);
-  results.damages = join_damage(built.sightings, in_map, *built.map, built.damage);
-  for (const auto& path : built.paths) results.lanes.push_back(measure_lane(*built.map, path, {}));
+  std::vector<std::vector<RoadDamageRecord>> of_days;
+  for (const DayMap& day : built.days) {
+    of_days.push_back(join_damage(day.sightings, find_map_damage(day.map, options), day.map, damage));
+    for (const auto& path : day.paths) results.lanes.push_back(measure_lane(day.map, path, {}));
+  }
+  results.changes = changes_between_days(built, of_days);
+  add_newest(built, of_days, results);
   return results;
 }
 
-void add_map_tables(const MapSettings& /*settings*/, const BuiltMap& built, const MapResults& results,
-                    io::OutputFolder& folder) {
-  folder.add("damages.csv", damages_csv(built, results.damages));
+void add_map_tables(const BuiltMap& built, const MapResults& results, io::OutputFolder& folder) {
+  folder.add("damages.csv", damages_csv(built, results));
   folder.add("sightings.csv", sightings_csv(built));
   folder.add("transverse.csv", transverse_csv(built, results.lanes));
   folder.add("longitudinal.csv", longitudinal_csv(built, results.lanes));
   folder.add("roughness.csv", roughness_csv(results.lanes));
+  if (built.days.size() > 1) folder.add("changes.csv", changes_csv(built, results.changes));
 }
 
-std::string map_json(const MapSettings& settings, const BuiltMap& built, const MapResults& results) {
-  const MapBox bounds = built.map->bounds();
-  const double cell_m = built.map->options().cell_m;
+std::string map_json(const MapPlan& plan, const BuiltMap& built, const MapResults& results) {
+  const MapBox bounds = bounds_of(built);
+  const double cell_m = built.days.back().map.options().cell_m;
   Json document = {{"version", version},
-                   {"crs", settings.crs},
+                   {"crs", plan.crs},
                    {"frames", built.frames},
                    {"mapped", built.mapped},
                    {"cell_m", json_number(cell_m)},
@@ -194,21 +216,29 @@ std::string map_json(const MapSettings& settings, const BuiltMap& built, const M
                    {"south_m", json_number(built.origin_m[1] + bounds.j0 * cell_m)},
                    {"width_m", json_number(bounds.columns * cell_m)},
                    {"length_m", json_number(bounds.rows * cell_m)},
-                   {"frames_per_independent_view", json_number(built.map->view_factor())}};
+                   {"frames_per_independent_view", json_number(built.days.back().map.view_factor())}};
   document["reasons"] = built.reasons;
   document["damages"] = Json::array();
-  for (const RoadDamageRecord& damage : results.damages) document["damages"].push_back(damage_json(built, damage));
+  for (std::size_t k = 0; k < results.damages.size(); ++k) {
+    document["damages"].push_back(damage_json(built, results.damages[k]));
+    document["damages"].back()["day"] = built.days[results.damage_days[k]].name;
+  }
+  document["days"] = Json::array();
+  for (const DayMap& day : built.days) document["days"].push_back(day.name);
+  document["changes"] = changes_json(built, results.changes);
   return json_text(document);
 }
 
-std::string map_text(const MapSettings& settings, const BuiltMap& built, const MapResults& results) {
-  const MapBox bounds = built.map->bounds();
-  const double cell_m = built.map->options().cell_m;
-  std::string text = fmt::format("roadstereo {}: map of {} recordings\n", version, settings.trajectory.size());
+std::string map_text(const MapPlan& plan, const BuiltMap& built, const MapResults& results) {
+  const MapBox bounds = bounds_of(built);
+  const double cell_m = built.days.back().map.options().cell_m;
+  std::string text = fmt::format("roadstereo {}: map of {} recordings\n", version, plan.passes.size());
   text += fmt::format("  frames    {} with a pose, {} mapped\n", built.frames, built.mapped);
   text += fmt::format("  map       {:.1f} × {:.1f} m, cells of {:g} mm\n", bounds.columns * cell_m,
                       bounds.rows * cell_m, 1000 * cell_m);
-  text += fmt::format("  damage    {} damages from {} sightings\n", results.damages.size(), built.sightings.size());
+  std::size_t sightings = 0;
+  for (const DayMap& day : built.days) sightings += day.sightings.size();
+  text += fmt::format("  damage    {} damages from {} sightings\n", results.damages.size(), sightings);
   constexpr double mm = 1000;
   for (const RoadDamageRecord& damage : results.damages) {
     const std::array<double, 2> at = in_crs(built, damage.best.at_m);
@@ -218,9 +248,10 @@ std::string map_text(const MapSettings& settings, const BuiltMap& built, const M
         mm * damage.max_depth_m.std_error, damage.area_m2.value, damage.area_m2.std_error, damage.sightings,
         damage.confidence);
   }
+  text += changes_text(built, results.changes);
   text += rut_text(results.lanes) + roughness_text(results.lanes);
   for (const std::string& reason : built.reasons) text += fmt::format("  no result {}\n", reason);
-  return text + fmt::format("  output    {}\n", settings.output);
+  return text + fmt::format("  output    {}\n", plan.output.string());
 }
 
 }  // namespace roadstereo::cli

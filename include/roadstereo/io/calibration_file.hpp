@@ -27,9 +27,10 @@ struct CalibrationFile {
   std::string format;                          ///< e.g. "plain YAML", "OpenCV stereo", "ROS camera_info", "KITTI P2/P3"
   std::optional<StereoCalibration> rectified;  ///< the images are already rectified
   std::optional<StereoRig> rig;                ///< the images must be rectified first
-  std::vector<StereoRig> rigs{};               ///< the same, one per size of the images: `select_size`
+  std::vector<StereoRig> rigs{};               ///< either of both, one per size of the images: `select_size`
 
-  /// Makes the member of `rigs` of that size the `rig`; does nothing without `rigs`. Throws Error naming the sizes.
+  /// Makes the member of `rigs` of that size the `rig`, or `rectified` if it needs no rectification; does nothing
+  /// without `rigs`. Throws Error naming the sizes.
   void select_size(int width, int height, const std::string& source);
 };
 
@@ -42,6 +43,9 @@ struct CalibrationFile {
 ///   EuRoC          sensor.yaml with T_BS; `second_path` is the right camera's file
 ///   ZED            SN*.conf, one rig per resolution
 ///   DepthAI        JSON of the calibration that is stored in the device
+///   RealSense      JSON of the calibration that the RealSense Viewer saves, one per size of the rectified images
+///   COLMAP         cameras.txt; `second_path` is rigs.txt with one rig of two cameras, or images.txt with images of
+///                  the same name in two folders (the mean of their poses); metres
 ///   KITTI          calib*.txt with P0/P1 or P2/P3 (also P_rect_0N); P2/P3 wins when a file has both
 ///   Middlebury     calib.txt with cam0, cam1, doffs, baseline in millimetres
 ///   K.txt          nine values of K and the baseline in metres

@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/road_segments.hpp"
+#include "roadstereo/map_inventory.hpp"
 
 namespace roadstereo::io {
 
@@ -32,6 +34,12 @@ struct ReportedDamage {
   std::string section;
 };
 
+/// A map of the road (`map_picture`) and the damages whose numbers it shows.
+struct ReportedMap {
+  std::vector<std::uint8_t> picture;  ///< JPEG
+  std::vector<RoadDamageRecord> damages;
+};
+
 /// Input of `flight_report`.
 struct FlightReportInput {
   std::string title;
@@ -44,6 +52,7 @@ struct FlightReportInput {
   std::vector<RoadDamage> candidates;            ///< all, worst first
   std::vector<std::array<double, 2>> track_deg;  ///< (longitude, latitude) of the frames; NaN: unknown
   std::vector<RoadSegment> segments;
+  std::optional<ReportedMap> map;          ///< with inspect --map
   SeverityScheme severity = astm_d6433();  ///< by which the damages were graded
   bool metric = false;                     ///< there is a calibration
 };

@@ -18,6 +18,8 @@ struct TrackPoint {
   double lon_deg = 0;                                             ///< -180 … 180
   double alt_m = std::numeric_limits<double>::quiet_NaN();        ///< NaN unknown
   double heading_deg = std::numeric_limits<double>::quiet_NaN();  ///< clockwise from north, -360 … 360; NaN unknown
+  double horizontal_sd_m = std::numeric_limits<double>::quiet_NaN();  ///< standard error per axis, > 0; NaN unknown
+  double vertical_sd_m = std::numeric_limits<double>::quiet_NaN();    ///< of the altitude, > 0; NaN unknown
 };
 
 /// A position and the direction of the upper image border of the camera.
@@ -62,11 +64,13 @@ class Track {
 ///                  lat, latitude, lat_deg; lon, lng, long, longitude, lon_deg: degrees; both empty: no fix, skipped
 ///                  alt, altitude, ele, elevation, alt_m: metres, may be empty or missing
 ///                  heading, yaw, course, bearing, heading_deg: degrees, the first of these; may be empty or missing
+///                  horizontal_sd_m, h_acc, eph and vertical_sd_m, v_acc, epv: standard errors, metres, may be empty or
+///                  missing; what is not above 0 is unknown
 ///                  time_utc_usec, lat, lon, alt of PX4's vehicle_gps_position, as ulog2csv writes it: microseconds,
 ///                  1e-7 degrees, millimetres (or latitude_deg, longitude_deg, altitude_msl_m)
 ///   NMEA 0183      RMC and GGA sentences; those with a wrong checksum or without a fix are left out
 ///   SRT            subtitles of DJI drones; times are seconds since the start of the video
-///   bag            ROS 1, rosbag2 or MCAP with one topic of sensor_msgs/NavSatFix
+///   bag            ROS 1, rosbag2 or MCAP with one topic of sensor_msgs/NavSatFix, with its covariances
 /// Throws Error naming the file, the line, the value and its limits; also if times decrease.
 Track read_track(const std::string& path, const TrackOptions& options = {});
 

@@ -97,7 +97,7 @@ void each_field(DamageEvidence& evidence, Visit& visit) {
   visit("steepness", evidence.steepness);
   visit("road_share", evidence.road_share);
   visit("border_share", evidence.border_share);
-  visit("surface_share", evidence.surface_share);
+  visit("surface_significance", evidence.surface_significance);
 }
 
 template <class Visit>

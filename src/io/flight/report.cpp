@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "io/drawing.hpp"
+#include "io/flight/fused_map.hpp"
 #include "io/flight/road_map.hpp"
 #include "io/flight/templates.hpp"
 #include "io/geo/utc_time.hpp"
@@ -244,6 +245,7 @@ std::string flight_report(const FlightReportInput& input) {
   fields["map"] = map_of(input);
   fields["properties"] = property_list(input.properties);
   fields["strip"] = thumbnails_of(input.thumbnails);
+  fields["fused"] = input.map ? fused_map_section(*input.map) : "";
   fields["damages"] = damages_of(input);
   fields["segments"] = segments_of(input);
   fields["sections"] = sections_of(input);

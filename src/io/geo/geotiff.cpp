@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "io/geo/gdal_errors.hpp"
+#include "io/geo/map_crs.hpp"
 
 namespace roadstereo::io {
 namespace {
@@ -147,6 +148,16 @@ GDALDatasetUniquePtr create_plain(const std::string& file, const MapBox& bounds,
 }
 
 }  // namespace
+
+std::string map_wkt(const MapReference& reference) {
+  const GdalErrors errors("the coordinate system");
+  char* text = nullptr;
+  const char* const options[] = {"FORMAT=WKT1_GDAL", nullptr};
+  errors.require(spatial_reference(reference, errors).exportToWkt(&text, options) == OGRERR_NONE, "exporting");
+  std::string wkt = text;
+  CPLFree(text);
+  return wkt;
+}
 
 void write_geotiff(const std::filesystem::path& file, MapLayer layer, const MapBox& bounds,
                    const MapReference& reference, const ReadMap& read) {

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "io/geo/track_formats.hpp"
 #include "io/source/message_log.hpp"
 #include "roadstereo/error.hpp"
@@ -35,6 +37,8 @@ std::vector<TrackLine> read_track_bag(const std::string& path) {
     point.lat_deg = fix.lat_deg;
     point.lon_deg = fix.lon_deg;
     point.alt_m = fix.alt_m;
+    if (fix.horizontal_variance_m2 > 0) point.horizontal_sd_m = std::sqrt(fix.horizontal_variance_m2);
+    if (fix.vertical_variance_m2 > 0) point.vertical_sd_m = std::sqrt(fix.vertical_variance_m2);
     points.push_back({point, number});
   }
   return points;

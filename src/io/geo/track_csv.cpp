@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -17,6 +18,8 @@ constexpr std::array lon_names = {"lon", "lng", "long", "longitude", "lon_deg", 
 constexpr std::array alt_names = {"alt", "altitude", "ele", "elevation", "alt_m", "altitude_msl_m"};
 // PX4's vehicle_gps_position, as ulog2csv writes it: microseconds, 1e-7 degrees and millimetres, or degrees and metres.
 constexpr const char* px4_time = "time_utc_usec";
+constexpr std::array horizontal_sd_names = {"horizontal_sd_m", "h_acc", "eph"};
+constexpr std::array vertical_sd_names = {"vertical_sd_m", "v_acc", "epv"};
 constexpr std::array heading_names = {"heading", "yaw", "course", "bearing", "heading_deg"};
 
 std::string_view bare(std::string_view cell) {
@@ -73,7 +76,7 @@ struct Column {
 /// Indices of the columns.
 struct Columns {
   Column time, lat, lon;
-  std::optional<Column> alt, heading;
+  std::optional<Column> alt, heading, horizontal_sd, vertical_sd;
   std::size_t count = 0;
   bool px4 = false;  ///< units of PX4's vehicle_gps_position
 };
@@ -108,8 +111,26 @@ Columns find_columns(const std::string& where, const std::vector<std::string_vie
     return *std::move(column);
   };
   const std::optional<Column> px4 = find_column(header, std::array{px4_time});
-  return {px4 ? *px4 : needed(time_names),    needed(lat_names), needed(lon_names), find_column(header, alt_names),
-          find_column(header, heading_names), header.size(),     px4.has_value()};
+  Columns columns;
+  columns.time = px4 ? *px4 : needed(time_names);
+  columns.lat = needed(lat_names);
+  columns.lon = needed(lon_names);
+  columns.alt = find_column(header, alt_names);
+  columns.heading = find_column(header, heading_names);
+  columns.horizontal_sd = find_column(header, horizontal_sd_names);
+  columns.vertical_sd = find_column(header, vertical_sd_names);
+  columns.count = header.size();
+  columns.px4 = px4.has_value();
+  return columns;
+}
+
+/// NaN unless the receiver knows it.
+double standard_error(const std::string& where, const std::optional<Column>& column,
+                      const std::vector<std::string_view>& cells) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (!column || cells[column->index].empty()) return unknown;
+  const double value = parse_number(where, column->name, cells[column->index]);
+  return value > 0 ? value : unknown;
 }
 
 /// A row of PX4's vehicle_gps_position. Integers are 1e-7 degrees and millimetres in the columns lat, lon, alt.
@@ -131,13 +152,23 @@ std::optional<TrackPoint> read_px4_row(const std::string& where, const Columns& 
   return point;
 }
 
+void add_standard_errors(const std::string& where, const Columns& columns, const std::vector<std::string_view>& cells,
+                         TrackPoint& point) {
+  point.horizontal_sd_m = standard_error(where, columns.horizontal_sd, cells);
+  point.vertical_sd_m = standard_error(where, columns.vertical_sd, cells);
+}
+
 /// Returns nullopt if the receiver had no fix.
 std::optional<TrackPoint> read_row(const std::string& where, const Columns& columns,
                                    const std::vector<std::string_view>& cells) {
   if (cells.size() != columns.count) {
     fail(where, ": the line has ", cells.size(), " cells; the header line has ", columns.count);
   }
-  if (columns.px4) return read_px4_row(where, columns, cells);
+  if (columns.px4) {
+    std::optional<TrackPoint> point = read_px4_row(where, columns, cells);
+    if (point) add_standard_errors(where, columns, cells, *point);
+    return point;
+  }
   if (cells[columns.lat.index].empty() && cells[columns.lon.index].empty()) return std::nullopt;
   TrackPoint point;
   point.time_s = parse_any_time(where, columns.time.name, cells[columns.time.index]);
@@ -145,6 +176,7 @@ std::optional<TrackPoint> read_row(const std::string& where, const Columns& colu
   point.lon_deg = parse_longitude(where, columns.lon.name, cells[columns.lon.index]);
   if (columns.alt) point.alt_m = parse_altitude(where, columns.alt->name, cells[columns.alt->index]);
   if (columns.heading) point.heading_deg = parse_heading(where, columns.heading->name, cells[columns.heading->index]);
+  add_standard_errors(where, columns, cells, point);
   return point;
 }
 

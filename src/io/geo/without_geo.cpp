@@ -4,6 +4,7 @@
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/geo_files.hpp"
+#include "roadstereo/io/local_axes.hpp"
 
 namespace roadstereo::io {
 namespace {
@@ -34,6 +35,14 @@ std::optional<GeoPosition> offset_position(const GeoPosition& /*from*/, double /
 }
 
 double distance_m(const GeoPosition& /*from*/, const GeoPosition& /*to*/) {
+  fail_without_geo();
+}
+
+LocalAxes::LocalAxes(const Track& /*track*/) {
+  fail_without_geo();
+}
+
+std::array<double, 12> LocalAxes::to_utm(const std::array<double, 12>& /*pose*/) const {
   fail_without_geo();
 }
 

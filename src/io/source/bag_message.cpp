@@ -206,6 +206,11 @@ SatelliteFix read_satellite_fix(const std::string& source, const std::vector<std
   fix.lat_deg = reader.value<double>();
   fix.lon_deg = reader.value<double>();
   fix.alt_m = reader.value<double>();
+  std::array<double, 9> covariance{};  // of east, north, up
+  for (double& value : covariance) value = reader.value<double>();
+  if (reader.value<std::uint8_t>() == 0) return fix;  // COVARIANCE_TYPE_UNKNOWN
+  fix.horizontal_variance_m2 = (covariance[0] + covariance[4]) / 2;
+  fix.vertical_variance_m2 = covariance[8];
   return fix;
 }
 

@@ -31,7 +31,8 @@ struct SatelliteFix {
   std::int64_t stamp_ns = 0;  ///< 0: none
   bool valid = false;         ///< false: the receiver had no fix
   double lat_deg = 0, lon_deg = 0;
-  double alt_m = 0;  ///< above the ellipsoid; NaN: unknown
+  double alt_m = 0;                                             ///< above the ellipsoid; NaN: unknown
+  double horizontal_variance_m2 = 0, vertical_variance_m2 = 0;  ///< per axis; 0: unknown
 };
 
 /// Parses a sensor_msgs/NavSatFix. Throws Error.

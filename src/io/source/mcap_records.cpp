@@ -11,8 +11,8 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr std::uint64_t head_bytes = 9;  // opcode and length
-constexpr std::uint64_t magic_bytes = 8;
+constexpr std::uint64_t head_bytes = mcap_head_bytes;
+constexpr std::uint64_t magic_bytes = mcap_magic.size();
 constexpr std::uint64_t footer_bytes = 20;
 
 template <class Value>
@@ -112,7 +112,7 @@ McapFile::McapFile(const std::string& path) : path_(path), file_(path, std::ios:
   size_ = std::filesystem::file_size(path);
   char magic[magic_bytes] = {};
   file_.read(magic, sizeof magic);
-  if (std::memcmp(magic, "\x89MCAP0\r\n", sizeof magic) != 0) fail(path, ": this is not an MCAP file");
+  if (std::string_view(magic, sizeof magic) != mcap_magic) fail(path, ": this is not an MCAP file");
 }
 
 std::optional<std::uint64_t> McapFile::summary_offset() {

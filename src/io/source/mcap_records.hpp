@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace roadstereo::io {
@@ -18,10 +19,17 @@ enum class McapOpcode : std::uint8_t {
   channel = 4,
   message = 5,
   chunk = 6,
+  message_index = 7,
   chunk_index = 8,
   statistics = 11,
+  summary_offset = 14,
   data_end = 15
 };
+
+/// At the start and the end of a file.
+inline constexpr std::string_view mcap_magic{"\x89MCAP0\r\n", 8};
+/// Bytes of a record before its content: opcode and length.
+inline constexpr std::uint64_t mcap_head_bytes = 9;
 
 /// Fields of a record, one after the other. Throws Error that starts with `source` where the record ends too early.
 class McapFields {
@@ -73,7 +81,7 @@ class McapFile {
   explicit McapFile(const std::string& path);
 
   /// Offset of the first record.
-  static std::uint64_t first_offset() { return 8; }
+  static std::uint64_t first_offset() { return mcap_magic.size(); }
   /// Offset of the summary at the end; nullopt if the file has none, or is cut off.
   std::optional<std::uint64_t> summary_offset();
   void seek(std::uint64_t offset) { at_ = offset; }

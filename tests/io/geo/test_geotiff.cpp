@@ -5,11 +5,17 @@
 #include <ogr_spatialref.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "roadstereo/error.hpp"
@@ -131,6 +137,83 @@ TEST_F(GeoTiffTest, PointsHaveHeaderAndOneRecordPerCell) {
   const auto size = fs::file_size(folder_ / "points.ply");
   EXPECT_GT(size, points * record + 100);
   EXPECT_LT(size, points * record + 300);
+}
+
+template <class Value>
+Value value_at(const std::string& bytes, std::size_t at) {
+  Value value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);  // little-endian, as this machine
+  return value;
+}
+
+// Offsets are those of the tables of "LAS Specification 1.4 - R15" (ASPRS): public header block, variable length record
+// header, point data record format 7.
+TEST_F(GeoTiffTest, LasHasHeaderCoordinateSystemAndPoints) {
+  const fs::path file = folder_ / "points.las";
+  const MapReference reference{0.02, 500000, 5400000, 100, "EPSG:32632"};
+  write_map_las(file, bounds, reference, read_cells);
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  constexpr std::uint64_t points = 1000 * 700;
+  ASSERT_GT(bytes.size(), 375U);
+  EXPECT_EQ(bytes.substr(0, 4), "LASF");
+  EXPECT_EQ(value_at<std::uint16_t>(bytes, 6), 16);  // WKT
+  EXPECT_EQ(bytes[24], 1);
+  EXPECT_EQ(bytes[25], 4);
+  EXPECT_EQ(value_at<std::uint16_t>(bytes, 94), 375);
+  const auto data = value_at<std::uint32_t>(bytes, 96);
+  ASSERT_EQ(value_at<std::uint32_t>(bytes, 100), 2U);
+  EXPECT_EQ(bytes[104], 7);
+  const std::size_t record = value_at<std::uint16_t>(bytes, 105);
+  ASSERT_EQ(record, 40U);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 107), 0U);
+  EXPECT_EQ(value_at<std::uint64_t>(bytes, 247), points);
+  EXPECT_EQ(value_at<std::uint64_t>(bytes, 255), points);
+  ASSERT_EQ(bytes.size(), data + points * record);
+  // Cells −200 … 799 and 40 … 739 of 0.02 m, heights 0.001 i − 0.002 j above 100 m.
+  const std::array<double, 6> limits{500000 + 799.5 * 0.02, 500000 - 199.5 * 0.02, 5400000 + 739.5 * 0.02,
+                                     5400000 + 40.5 * 0.02, 100 + 0.799 - 0.08,    100 - 0.2 - 1.478};
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(value_at<double>(bytes, 179 + 8 * k), limits[k], 6e-5) << k;
+
+  EXPECT_EQ(bytes.substr(375 + 2, 16), std::string("LASF_Projection\0", 16));
+  EXPECT_EQ(value_at<std::uint16_t>(bytes, 375 + 18), 2112);
+  const std::size_t size = value_at<std::uint16_t>(bytes, 375 + 20);
+  EXPECT_EQ(bytes[375 + 54 + size - 1], 0);
+  OGRSpatialReference crs;
+  ASSERT_EQ(crs.importFromWkt(bytes.c_str() + 375 + 54), OGRERR_NONE);
+  EXPECT_EQ(crs.GetUTMZone(), 32);
+  const std::size_t extra = 375 + 54 + size;
+  EXPECT_EQ(value_at<std::uint16_t>(bytes, extra + 18), 4);
+  EXPECT_EQ(value_at<std::uint16_t>(bytes, extra + 20), 192);
+  EXPECT_EQ(bytes[extra + 54 + 2], 9);  // float
+  EXPECT_EQ(bytes.substr(extra + 54 + 4, 6), std::string("sigma\0", 6));
+  ASSERT_EQ(data, extra + 54 + 192);
+
+  double worst_m = 0;
+  std::set<std::pair<int, int>> cells;
+  for (std::uint64_t n = 0; n < points; n += 1001) {
+    const std::size_t at = data + n * record;
+    std::array<double, 3> xyz{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      xyz[k] = value_at<std::int32_t>(bytes, at + 4 * k) * value_at<double>(bytes, 131 + 8 * k) +
+               value_at<double>(bytes, 155 + 8 * k);
+    }
+    const auto i = static_cast<int>(std::lround((xyz[0] - 500000) / 0.02 - 0.5));
+    const auto j = static_cast<int>(std::lround((xyz[1] - 5400000) / 0.02 - 0.5));
+    cells.insert({i, j});
+    worst_m =
+        std::max({worst_m, std::abs(xyz[0] - 500000 - (i + 0.5) * 0.02), std::abs(xyz[2] - 100 - height_at(i, j))});
+    EXPECT_EQ(bytes[at + 14], 0x11);
+    EXPECT_EQ(bytes[at + 16], 11);
+    EXPECT_EQ(value_at<std::uint16_t>(bytes, at + 30), 200 * 257);
+    EXPECT_EQ(value_at<std::uint16_t>(bytes, at + 32), 100 * 257);
+    EXPECT_EQ(value_at<std::uint16_t>(bytes, at + 34), 50 * 257);
+    EXPECT_EQ(value_at<float>(bytes, at + 36), 0.003F);
+  }
+  EXPECT_EQ(cells.size(), 700U);
+  EXPECT_LT(worst_m, 6e-5);  // half a step, and float heights
+  EXPECT_THROW(write_map_las(file, bounds, {0.02, 0, 0, 0, "EPSG:nonsense"}, read_cells), Error);
+  EXPECT_THROW(write_map_las(folder_ / "none" / "p.las", bounds, reference, read_cells), SystemError);
 }
 
 }  // namespace

@@ -1,0 +1,59 @@
+#include "map/make_map.hpp"
+
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "map/build_map.hpp"
+#include "map/map_files.hpp"
+#include "map/map_results.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/io/output_folder.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+BuiltMap built_map(const MapPlan& plan, const std::filesystem::path& tiles, const StopSignals& stop) {
+  BuiltMap built = build_map(plan, tiles, stop);
+  if (!built.days.empty()) return built;
+  std::error_code ignored;
+  std::filesystem::remove_all(tiles, ignored);
+  fail("none of the ", built.frames, " frames with a pose has a road",
+       built.reasons.empty() ? std::string() : ": " + built.reasons.front());
+}
+
+}  // namespace
+
+MapSummary make_map(const MapPlan& plan, const StopSignals& stop) {
+  io::OutputFolder folder(plan.output);  // fails early
+  for (const MapPass& pass : plan.passes) {
+    for (const auto& inputs : {pass.source, pass.calibration, std::vector{pass.trajectory}}) {
+      for (const std::string& input : inputs) folder.protect(input);
+    }
+  }
+  const std::filesystem::path tiles = folder.path() / ".tiles";
+  const BuiltMap built = built_map(plan, tiles, stop);
+  MapResults results = measure_map(plan, built);
+  MapSummary summary;
+  summary.json = map_json(plan, built, results);
+  summary.text = map_text(plan, built, results);
+  summary.picture = overview_of(plan, built, results.damages);
+  const std::filesystem::path drafts = tiles / "rasters";
+  std::filesystem::create_directories(drafts);
+  write_rasters(plan, built, drafts);
+  add_map_tables(built, results, folder);
+  folder.add("map.jpg", summary.picture);
+  folder.add("map.json", summary.json);
+  folder.commit();
+  for (const auto& raster : std::filesystem::directory_iterator(drafts)) {
+    std::filesystem::rename(raster.path(), folder.path() / raster.path().filename());
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(tiles, ignored);
+  for (RoadDamageRecord& damage : results.damages) damage.best.footprint.clear();
+  summary.damages = std::move(results.damages);
+  return summary;
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "roadstereo/io/frame_source.hpp"
+#include "roadstereo/pipeline.hpp"
+
+namespace roadstereo::cli {
+
+/// A recording of a map and its poses.
+struct MapPass {
+  std::vector<std::string> source;  ///< one name, or left and right
+  io::SourceOptions source_options;
+  std::vector<std::string> calibration;  ///< empty: that of the source
+  std::string trajectory;                ///< file of the poses
+  PipelineOptions options;
+  bool find_white_level = true;  ///< determines it from the first valid pair of a 16-bit source
+  Image<std::uint8_t> mask;      ///< not 0 left out; empty: none
+  std::string day;               ///< empty: by the time of its first frame
+  double time_offset_s = 0;      ///< added to the times of the frames
+};
+
+/// Checked options of a map.
+struct MapPlan {
+  std::vector<MapPass> passes;  ///< at least one; the damage options of the first are those of the map
+  std::filesystem::path output;
+  std::string crs;    ///< of the trajectories, whose z axis then points up; empty: cameras
+  double cell_m = 0;  ///< 0: from the first frame
+  std::int64_t every = 1;
+  bool points = false;  ///< whether to write points.ply
+  bool las = false;     ///< whether to write points.las
+  bool resume = false;  ///< continues a map that was interrupted
+  bool quiet = false;
+};
+
+}  // namespace roadstereo::cli

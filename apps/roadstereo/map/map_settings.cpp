@@ -1,0 +1,102 @@
+#include "map/map_settings.hpp"
+
+#include <algorithm>
+
+#include "flight/flight_folder.hpp"
+#include "map/run_folder.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::cli {
+
+namespace {
+
+/// Options of recordings that runs have of their own.
+void reject_run_options(const MapSettings& settings) {
+  const auto reject = [](const char* option) {
+    fail(option, " is for recordings; the runs have theirs from inspect, which are used again");
+  };
+  if (!settings.calibration.empty()) reject("--calibration");
+  if (!settings.processing.settings.empty()) reject("--set");
+  if (settings.processing.preset != ProcessingSettings().preset) reject("--preset");
+}
+
+std::vector<MapPass> runs_of(const MapSettings& settings) {
+  reject_run_options(settings);
+  const std::vector<std::string>& trajectory = settings.trajectory;
+  if (!trajectory.empty() && trajectory.size() != settings.source.size()) {
+    fail("map has ", settings.source.size(), " runs and ", trajectory.size(),
+         " trajectories; either each run has another --trajectory FILE than its own or none");
+  }
+  if (settings.source.size() > 1 && trajectory.empty() && settings.crs.empty()) {
+    fail("the worlds of ", settings.source.size(),
+         " runs are those of their first cameras, not one; give each run "
+         "a --trajectory FILE, all in one world, or --crs if theirs are in that system");
+  }
+  const DamageOptions damage = make_options(settings.processing).damage;
+  std::vector<MapPass> passes;
+  for (const std::string& folder : settings.source) {
+    passes.push_back(read_run(folder));
+    if (!trajectory.empty()) passes.back().trajectory = trajectory[passes.size() - 1];
+    passes.back().options.threads = settings.processing.threads;
+    passes.back().options.damage.severity = damage.severity;
+  }
+  return passes;
+}
+
+std::vector<MapPass> recordings_of(const MapSettings& settings) {
+  const std::vector<std::string>&source = settings.source, &trajectory = settings.trajectory;
+  if (trajectory.empty()) fail("map needs --trajectory FILE: the pose of every frame, 12 numbers a line");
+  const bool one_each = trajectory.size() == source.size();
+  if (!one_each && !(trajectory.size() == 1 && source.size() == 2)) {
+    fail("map has ", source.size(), " recordings and ", trajectory.size(),
+         " trajectories; every recording needs one --trajectory FILE");
+  }
+  MapPass pass;
+  pass.source_options = make_source_options(settings.source_settings);
+  pass.calibration = settings.calibration;
+  pass.options = make_options(settings.processing);
+  pass.find_white_level = !sets_white_level(settings.processing);
+  std::vector<MapPass> passes;
+  for (std::size_t k = 0; k < trajectory.size(); ++k) {
+    pass.source = one_each ? std::vector{source[k]} : source;
+    pass.trajectory = trajectory[k];
+    passes.push_back(pass);
+  }
+  return passes;
+}
+
+}  // namespace
+
+void MapSettings::validate() const {
+  if (!(cell_m == 0 || (cell_m >= 0.0005 && cell_m <= 10))) {
+    fail("--cell is ", cell_m, "; it must be between 0.0005 and 10 metres");
+  }
+  if (every < 1) fail("--every is ", every, "; it must be at least 1");
+}
+
+MapPlan MapSettings::plan() const {
+  validate();
+  MapPlan plan;
+  const auto runs = static_cast<std::size_t>(
+      std::count_if(source.begin(), source.end(), [](const std::string& name) { return is_flight_folder(name); }));
+  if (runs != 0 && runs != source.size()) {
+    fail("map takes either recordings or outputs of inspect, not both: ", runs, " of ", source.size(), " are outputs");
+  }
+  plan.passes = runs > 0 ? runs_of(*this) : recordings_of(*this);
+  if (!day.empty() && day.size() != plan.passes.size()) {
+    fail("map has ", plan.passes.size(), " recordings and ", day.size(),
+         " days; either each has one --day NAME or none");
+  }
+  for (std::size_t k = 0; k < day.size(); ++k) plan.passes[k].day = day[k];
+  plan.output = output;
+  plan.crs = crs;
+  plan.cell_m = cell_m;
+  plan.every = every;
+  plan.points = points;
+  plan.las = las;
+  plan.resume = resume;
+  plan.quiet = quiet;
+  return plan;
+}
+
+}  // namespace roadstereo::cli

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "roadstereo/io/track.hpp"
+#include "roadstereo/pose_graph.hpp"
+
+namespace roadstereo::io {
+
+/// Axes at the first fix of a track, x east, y north, z up, metres, and the UTM zone around it (WGS84). In UTM lengths
+/// are up to 0.04 % shorter and 0.1 % longer than on the ground; in these axes they are not. Needs a build with GDAL
+/// and GeographicLib; without it the constructor throws Error.
+class LocalAxes {
+ public:
+  explicit LocalAxes(const Track& track);
+
+  /// The fixes of the track; accuracies that it does not have are those of `PositionFix`.
+  const std::vector<PositionFix>& fixes() const { return fixes_; }
+
+  /// The coordinate system of `to_utm`, e.g. "EPSG:32632".
+  const std::string& crs() const { return crs_; }
+
+  /// Moves a pose (3×4, row-major, metres) from these axes to UTM: x east, y north of the grid, z altitude.
+  std::array<double, 12> to_utm(const std::array<double, 12>& pose) const;
+
+ private:
+  double lat_deg_ = 0, lon_deg_ = 0, alt_m_ = 0;  ///< of the origin
+  int zone_ = 0;
+  bool north_ = true;
+  std::string crs_;
+  std::vector<PositionFix> fixes_;
+};
+
+}  // namespace roadstereo::io

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadstereo/odometry.hpp"
+#include "roadstereo/trajectory.hpp"
+
+namespace roadstereo {
+
+// Pose graph: nonlinear least squares over the poses of all frames, weighted by covariance, with robust losses. Needs a
+// build with Ceres (CMake option ROADSTEREO_CERES); without it `optimise_poses` throws Error naming the package.
+
+/// Whether this build has Ceres.
+bool has_pose_graph();
+
+/// Link between frames that are far apart in time: the place was seen before.
+struct LoopLink {
+  FrameLink link;
+  std::array<double, 3> centre_m{};  ///< what the middle of the image shows, camera `link.to`
+  double pixel_m = 0;                ///< side of a pixel there
+  bool used = false;                 ///< agrees with the graph
+  double before_m = 0;               ///< misclosure: how far the trajectory is off at `centre_m`, without loops
+  double after_m = 0;                ///< ... with loops
+};
+
+/// Position of a GNSS antenna in axes of the Earth: x east, y north, z up. Errors are one for all fixes, with the
+/// standard errors given here, and noise about it, whose size the fit to the trajectory tells.
+struct PositionFix {
+  double time_s = 0;
+  std::array<double, 3> position_m{};  ///< z NaN: unknown
+  double horizontal_sd_m = 2.5;        ///< standard error of x and of y
+  double vertical_sd_m = 5;            ///< standard error of z
+};
+
+struct PoseGraphInput {
+  Trajectory trajectory;        ///< of `Odometry`
+  std::vector<double> times_s;  ///< of its frames; NaN unknown. Needed for fixes only
+  /// Normal of the road of each frame, out of the road, camera axes. Roads are level within 3° on average, which
+  /// matters where the fixes say less of it. Needed for fixes only.
+  std::vector<std::optional<std::array<double, 3>>> road_up;
+  std::vector<FrameLink> links;
+  std::vector<LoopLink> loops;
+  std::vector<PositionFix> fixes;  ///< in order of time; empty: none
+};
+
+struct PoseGraphOptions {
+  double max_time_offset_s = 30;  ///< between the clocks of frames and fixes, 0 … 600
+  double time_offset_sd_s = 10;   ///< expected time offset; it is 0 where nothing tells, 0.001 … 600
+  double lever_arm_sd_m = 1;      ///< expected distance of the antenna from the camera, per axis, 0.001 … 100
+  double fix_correlation_s = 10;  ///< within this time the noise of fixes is the same, 0 … 3600
+  double max_fix_gap_s = 5;       ///< no position between fixes farther apart in time, 0.001 … 3600
+
+  /// Throws Error naming the first option out of range.
+  void validate() const;
+};
+
+/// A value and its standard error.
+struct Estimate {
+  double value = 0;
+  double sd = std::numeric_limits<double>::infinity();
+};
+
+/// How fixes and trajectory fit.
+struct TrackFit {
+  Estimate time_offset_s;               ///< to be added to the times of the frames
+  std::array<Estimate, 3> lever_arm_m;  ///< antenna in camera axes
+  double rms_m = 0;                     ///< of the distances that remain, horizontally
+  std::size_t frames = 0;               ///< with a position
+};
+
+struct PoseGraphResult {
+  /// Without fixes in the world of the input: the first frame of each piece stays. With fixes x is east, y north, z up,
+  /// and what they anchor is piece 0; covariances are then those of the position on the Earth.
+  Trajectory trajectory;
+  std::vector<LoopLink> loops;     ///< those of the input, with what became of them
+  std::optional<TrackFit> track;   ///< absent without fixes, or if they cannot be used
+  std::string track_unused;        ///< why, a sentence
+  bool track_contradicts = false;  ///< whether the fixes are none of this trajectory
+
+  std::size_t loops_used() const;
+  /// RMS misclosure of the loops used, metres and pixels of the ground, without and with loops; 0 without loops.
+  struct Misclosure {
+    double before_m = 0, after_m = 0, before_px = 0, after_px = 0;
+  };
+  Misclosure misclosure() const;
+};
+
+/// Optimises the poses. Loops that contradict the trajectory (χ² test with 16 times the covariance of both) or other
+/// loops (Cauchy loss) have no weight. Fixes that do not fit the trajectory at any time offset, or only mirrored, are
+/// refused. The result does not depend on the number of threads. Throws Error for options out of range, links of
+/// unknown frames, or a build without Ceres.
+PoseGraphResult optimise_poses(const PoseGraphInput& input, const PoseGraphOptions& options = {});
+
+}  // namespace roadstereo

@@ -1,0 +1,41 @@
+#include "graph/fix_curve.hpp"
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo {
+
+FixCurve::FixCurve(std::vector<PositionFix> fixes, double max_gap_s) : fixes_(std::move(fixes)), max_gap_s_(max_gap_s) {
+  for (std::size_t i = 1; i < fixes_.size(); ++i) {
+    if (fixes_[i].time_s > fixes_[i - 1].time_s) continue;
+    fail("fix ", i, " is at ", fixes_[i].time_s, " s, the one before it at ", fixes_[i - 1].time_s,
+         " s; times must increase");
+  }
+  for (const PositionFix& fix : fixes_) {
+    const auto& [x, y, z] = fix.position_m;
+    positions_.emplace_back(x, y, std::isnan(z) ? 0 : z);
+  }
+  const std::size_t count = positions_.size();
+  const auto slope = [&](std::size_t a, std::size_t b) -> Eigen::Vector3d {
+    return (positions_[b] - positions_[a]) / (fixes_[b].time_s - fixes_[a].time_s);
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
+    if (a == i || b == i) {
+      tangents_.push_back(a == b ? Eigen::Vector3d::Zero().eval() : slope(a, b));
+      continue;
+    }
+    const double before = fixes_[i].time_s - fixes_[a].time_s, after = fixes_[b].time_s - fixes_[i].time_s;
+    tangents_.push_back((after * slope(a, i) + before * slope(i, b)) / (before + after));
+  }
+}
+
+std::optional<std::size_t> FixCurve::segment(double time_s) const {
+  if (fixes_.size() < 2 || !(time_s >= fixes_.front().time_s && time_s <= fixes_.back().time_s)) return std::nullopt;
+  const auto after = std::upper_bound(fixes_.begin() + 1, fixes_.end() - 1, time_s,
+                                      [](double time, const PositionFix& fix) { return time < fix.time_s; });
+  const auto index = static_cast<std::size_t>(after - fixes_.begin()) - 1;
+  if (fixes_[index + 1].time_s - fixes_[index].time_s > max_gap_s_) return std::nullopt;
+  return index;
+}
+
+}  // namespace roadstereo

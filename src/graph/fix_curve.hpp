@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "roadstereo/pose_graph.hpp"
+
+namespace roadstereo {
+
+/// Positions between fixes: cubic Hermite spline through them whose tangents are those of the parabola through three
+/// neighbours. Altitudes that are unknown are 0.
+class FixCurve {
+ public:
+  FixCurve(std::vector<PositionFix> fixes, double max_gap_s);
+
+  const std::vector<PositionFix>& fixes() const { return fixes_; }
+
+  /// Index of the fix before a time; nullopt outside or in a gap.
+  std::optional<std::size_t> segment(double time_s) const;
+
+  /// Position in a segment, which may be left a little. T is double or a jet of Ceres.
+  template <class T>
+  Eigen::Matrix<T, 3, 1> at(std::size_t segment, const T& time_s) const {
+    const std::size_t a = segment, b = segment + 1;
+    const double length_s = fixes_[b].time_s - fixes_[a].time_s;
+    const T u = (time_s - fixes_[a].time_s) / length_s;
+    const T u2 = u * u, u3 = u2 * u;
+    const T from = 2.0 * u3 - 3.0 * u2 + 1.0, to = 3.0 * u2 - 2.0 * u3;
+    const T leave = (u3 - 2.0 * u2 + u) * length_s, arrive = (u3 - u2) * length_s;
+    Eigen::Matrix<T, 3, 1> position;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      position[i] =
+          from * positions_[a][i] + to * positions_[b][i] + leave * tangents_[a][i] + arrive * tangents_[b][i];
+    }
+    return position;
+  }
+
+ private:
+  std::vector<PositionFix> fixes_;
+  std::vector<Eigen::Vector3d> positions_, tangents_;
+  double max_gap_s_;
+};
+
+}  // namespace roadstereo

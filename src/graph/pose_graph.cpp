@@ -1,0 +1,294 @@
+#include "roadstereo/pose_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include "core/order_statistics.hpp"
+#include "graph/pose_graph_problem.hpp"
+#include "graph/track_alignment.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Frames that are linked with each other.
+class Components {
+ public:
+  explicit Components(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), 0); }
+  std::size_t of(std::size_t i) const {
+    while (parents_[i] != i) i = parents_[i];
+    return i;
+  }
+  /// The first frame of a component stands for it.
+  void join(std::size_t a, std::size_t b) {
+    const std::size_t one = of(a), other = of(b);
+    parents_[std::max(one, other)] = std::min(one, other);
+  }
+
+ private:
+  std::vector<std::size_t> parents_;
+};
+
+class Optimiser {
+ public:
+  Optimiser(const PoseGraphInput& input, const PoseGraphOptions& options) : input_(input), options_(options) {
+    for (const FramePose& frame : input.trajectory.frames) {
+      if (!indices_.emplace(frame.frame, poses_.size()).second) fail("frame ", frame.frame, " has two poses");
+      poses_.push_back(graph_pose(frame.camera_to_world));
+    }
+    anchored_.assign(poses_.size(), 0);
+    result_.trajectory = input.trajectory;
+    result_.loops = input.loops;
+  }
+
+  PoseGraphResult run() {
+    if (!input_.fixes.empty()) align();
+    std::vector<char> taken(result_.loops.size(), 0);
+    std::unique_ptr<PoseGraphProblem> problem = solve(taken);
+    if (has_track()) {  // with what the fixes prove to be
+      noise_m_ = noise_of_fixes();
+      problem = solve(taken);
+    }
+    if (!taken.empty()) {
+      taken = agreeing(*problem);
+      for (LoopLink& loop : result_.loops) loop.before_m = misclosure(loop);
+      problem = solve(taken);
+      for (std::size_t i = 0; i < taken.size(); ++i) {
+        result_.loops[i].after_m = misclosure(result_.loops[i]);
+        result_.loops[i].used = taken[i] != 0 && fits(result_.loops[i].link);
+      }
+    }
+    fill_trajectory(*problem);
+    if (has_track()) fill_track(*problem);
+    return std::move(result_);
+  }
+
+ private:
+  std::size_t index(int frame) const {
+    const auto found = indices_.find(frame);
+    if (found == indices_.end()) fail("a link has frame ", frame, ", which has no pose");
+    return found->second;
+  }
+
+  bool has_track() const { return curve_ != nullptr; }
+
+  /// Puts the pieces where the fixes have them.
+  void align() {
+    const std::vector<FramePose>& frames = input_.trajectory.frames;
+    if (input_.times_s.size() != frames.size() || input_.road_up.size() != frames.size()) {
+      fail("the trajectory has ", frames.size(), " frames, but ", input_.times_s.size(), " times and ",
+           input_.road_up.size(), " normals of the road; fixes need one of each per frame");
+    }
+    constexpr std::size_t most = 500;  // frames that the search of the time offset compares
+    const std::size_t every = (frames.size() + most - 1) / most;
+    std::vector<TimedPosition> timed;
+    std::vector<Eigen::Vector3d> ups;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const auto piece = static_cast<std::size_t>(frames[i].piece);
+      ups.resize(std::max(ups.size(), piece + 1), Eigen::Vector3d::Zero());
+      if (input_.road_up[i]) ups[piece] += poses_[i].rotation * Eigen::Vector3d(input_.road_up[i]->data());
+      if (i % every == 0 && std::isfinite(input_.times_s[i]))
+        timed.push_back({piece, input_.times_s[i], poses_[i].position});
+    }
+    std::vector<std::optional<Eigen::Vector3d>> up(ups.size());
+    for (std::size_t i = 0; i < ups.size(); ++i) {
+      if (ups[i].norm() > 0) up[i] = ups[i].normalized();
+    }
+    curve_ = std::make_unique<FixCurve>(input_.fixes, options_.max_fix_gap_s);
+    const TrackAlignment alignment = align_to_track(timed, up, *curve_, options_);
+    result_.track_unused = alignment.unused;
+    result_.track_contradicts = alignment.contradicts;
+    if (!alignment.unused.empty()) return curve_.reset();
+    track_.time_offset_s = alignment.time_offset_s;
+    noise_m_ = input_.fixes.front().horizontal_sd_m;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      const auto& to_earth = alignment.pieces[static_cast<std::size_t>(frames[i].piece)];
+      if (!to_earth) continue;
+      poses_[i] = *to_earth * poses_[i];
+      anchored_[i] = 1;
+    }
+  }
+
+  /// Solves the graph with the loops that are taken.
+  std::unique_ptr<PoseGraphProblem> solve(const std::vector<char>& taken) {
+    auto problem = std::make_unique<PoseGraphProblem>(poses_, track_);
+    Components components(poses_.size());
+    const auto add = [&](const FrameLink& link, bool is_loop) {
+      problem->add_link(index(link.from), index(link.to), link, is_loop);
+      components.join(index(link.from), index(link.to));
+    };
+    for (FrameLink link : input_.links) {
+      for (double& value : link.covariance) value *= link_variance_factor_;
+      add(link, false);
+    }
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+      if (taken[i] != 0) add(result_.loops[i].link, true);
+    }
+    if (has_track()) add_track(*problem);
+    std::vector<char> has_anchor(poses_.size(), 0);
+    for (std::size_t i = 0; i < poses_.size(); ++i) has_anchor[components.of(i)] |= anchored_[i];
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      if (components.of(i) == i && has_anchor[i] == 0) problem->hold(i);
+    }
+    component_.resize(poses_.size());
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      component_[i] = has_anchor[components.of(i)] != 0 ? anchor_component : components.of(i);
+    }
+    problem->solve();
+    problem->linearise();
+    return problem;
+  }
+
+  void add_track(PoseGraphProblem& problem) {
+    constexpr double road_sd_rad = 3 * 3.14159265358979323846 / 180;
+    const std::vector<PositionFix>& fixes = curve_->fixes();
+    const double frames_s = input_.times_s.back() - input_.times_s.front();
+    const double shared_s = std::max(options_.fix_correlation_s, 0.0);
+    const double count = std::max(1.0, shared_s * static_cast<double>(poses_.size()) / std::max(frames_s, 1e-3));
+    std::size_t roads = 0;
+    for (std::size_t i = 0; i < poses_.size(); ++i) roads += anchored_[i] != 0 && input_.road_up[i] ? 1U : 0U;
+    Eigen::Vector3d error_sd(INFINITY, INFINITY, INFINITY);
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      if (anchored_[i] == 0) continue;
+      if (const auto& up = input_.road_up[i]) {
+        problem.add_level(i, Eigen::Vector3d(up->data()), 1 / (road_sd_rad * std::sqrt(static_cast<double>(roads))));
+      }
+      const double time_s = input_.times_s[i];
+      const std::optional<std::size_t> segment = curve_->segment(time_s + track_.time_offset_s);
+      if (!segment) continue;
+      const PositionFix& fix = fixes[*segment];
+      constexpr double unknown_altitude_m = 100;  // 0, then: as good as any, so that the height is determined
+      const bool has_z = !std::isnan(fix.position_m[2]) && !std::isnan(fixes[*segment + 1].position_m[2]);
+      const double vertical = has_z ? fix.vertical_sd_m / fix.horizontal_sd_m * noise_m_ : unknown_altitude_m;
+      problem.add_fix(i, {*curve_, time_s, *segment, {1 / noise_m_, 1 / noise_m_, 1 / vertical}}, count);
+      error_sd = error_sd.cwiseMin(Eigen::Vector3d(fix.horizontal_sd_m, fix.horizontal_sd_m, fix.vertical_sd_m));
+    }
+    problem.add_track_prior(error_sd, options_.lever_arm_sd_m, options_.time_offset_sd_s);
+  }
+
+  /// What is left of a link when the graph's motion is undone.
+  GraphPose error_of(const FrameLink& link) const {
+    const GraphPose motion = inverse(poses_[index(link.to)]) * poses_[index(link.from)];
+    return graph_pose(link.motion) * inverse(motion);
+  }
+
+  double misclosure(const LoopLink& loop) const {
+    const Eigen::Vector3d centre(loop.centre_m.data());
+    const GraphPose error = error_of(loop.link);
+    return (error.rotation * centre + error.position - centre).norm();
+  }
+
+  /// χ² of a link with a covariance.
+  double chi_square(const FrameLink& link, const Eigen::Matrix<double, 6, 6>& covariance) const {
+    const GraphPose error = error_of(link);
+    const Eigen::AngleAxisd turn(error.rotation);
+    Eigen::Matrix<double, 6, 1> x;
+    x << error.position, turn.angle() * turn.axis();
+    return (whitening<6>(covariance) * x).squaredNorm();
+  }
+
+  static Eigen::Matrix<double, 6, 6> covariance_of(const FrameLink& link) {
+    return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(link.covariance.data());
+  }
+
+  /// Loops that agree with the trajectory (χ² test with both covariances), and how many times the variances of links
+  /// are too small: errors of neighbouring links are alike, which adds up along the chain.
+  std::vector<char> agreeing(const PoseGraphProblem& problem) {
+    constexpr double most_factor = 16;           // measured: standard errors of poses up to 3.6 times too small
+    constexpr double chi_square_median = 5.348;  // six degrees of freedom
+    std::vector<char> taken;
+    std::vector<double> chi_squares;
+    for (const LoopLink& loop : result_.loops) {
+      const std::size_t from = index(loop.link.from), to = index(loop.link.to);
+      double value = INFINITY;  // between worlds nothing tells whether a loop is true
+      if (component_[from] == component_[to]) {
+        value = chi_square(loop.link, covariance_of(loop.link) + problem.relative_covariance(from, to));
+      }
+      taken.push_back(value < most_factor * chi_square_6_gate ? 1 : 0);
+      if (taken.back() != 0) chi_squares.push_back(value);
+    }
+    if (!chi_squares.empty()) {
+      link_variance_factor_ = std::clamp(upper_median(chi_squares) / chi_square_median, 1.0, most_factor);
+    }
+    return taken;
+  }
+
+  bool fits(const FrameLink& link) const { return chi_square(link, covariance_of(link)) < chi_square_6_gate; }
+
+  void fill_trajectory(PoseGraphProblem& problem) {
+    std::map<std::size_t, int> pieces;
+    const bool on_earth = std::find(component_.begin(), component_.end(), anchor_component) != component_.end();
+    if (on_earth) pieces[anchor_component] = 0;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      FramePose& frame = result_.trajectory.frames[i];
+      frame.camera_to_world = matrix_of(poses_[i]);
+      Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(frame.covariance.data()) = problem.covariance(i);
+      frame.piece = pieces.emplace(component_[i], static_cast<int>(pieces.size())).first->second;
+    }
+  }
+
+  /// Horizontal distances of the antenna from the fixes, frame by frame.
+  std::vector<double> distances() const {
+    std::vector<double> result;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      const double time_s = input_.times_s[i] + track_.time_offset_s;
+      const std::optional<std::size_t> segment = anchored_[i] != 0 ? curve_->segment(time_s) : std::nullopt;
+      if (!segment) continue;
+      const Eigen::Vector3d antenna = poses_[i].rotation * track_.lever_arm + poses_[i].position;
+      result.push_back((antenna - curve_->at(*segment, time_s) + track_.fix_error).head<2>().norm());
+    }
+    return result;
+  }
+
+  /// Standard deviation per axis. Of a distance in two dimensions the median is 1.18 of them.
+  double noise_of_fixes() const {
+    constexpr double rayleigh_median = 1.1774, least_m = 0.01;  // of the best receivers
+    return std::max(upper_median(distances()) / rayleigh_median, least_m);
+  }
+
+  void fill_track(PoseGraphProblem& problem) {
+    TrackFit fit;
+    const Eigen::Vector4d deviations = problem.track_deviations();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto axis = static_cast<Eigen::Index>(i);
+      fit.lever_arm_m[i] = {track_.lever_arm[axis], deviations[axis]};
+    }
+    fit.time_offset_s = {track_.time_offset_s, deviations[3]};
+    double squares = 0;
+    for (const double distance_m : distances()) squares += distance_m * distance_m;
+    fit.frames = distances().size();
+    fit.rms_m = std::sqrt(squares / static_cast<double>(fit.frames));
+    result_.track = fit;
+  }
+
+  static constexpr std::size_t anchor_component = static_cast<std::size_t>(-1);
+
+  const PoseGraphInput& input_;
+  const PoseGraphOptions& options_;
+  std::map<int, std::size_t> indices_;  ///< of frames
+  std::vector<GraphPose> poses_;
+  std::vector<char> anchored_;          ///< whether the fixes place a frame
+  std::vector<std::size_t> component_;  ///< of each frame: its first frame, or `anchor_component`
+  std::unique_ptr<FixCurve> curve_;     ///< null without fixes
+  TrackUnknowns track_;
+  double noise_m_ = 0;  ///< of the fixes, per axis
+  double link_variance_factor_ = 1;
+  PoseGraphResult result_;
+};
+
+}  // namespace
+
+bool has_pose_graph() {
+  return true;
+}
+
+PoseGraphResult optimise_poses(const PoseGraphInput& input, const PoseGraphOptions& options) {
+  options.validate();
+  if (input.trajectory.frames.empty()) return {};
+  return Optimiser(input, options).run();
+}
+
+}  // namespace roadstereo

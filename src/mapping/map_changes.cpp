@@ -1,0 +1,172 @@
+#include "roadstereo/map_changes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/order_statistics.hpp"
+#include "mapping/footprints.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr double min_std_errors = 2;
+
+/// Cells of two maps around a footprint.
+class PlacePair {
+ public:
+  PlacePair(const MapCells& footprint, const RoadMap& before, const RoadMap& after)
+      : cell_before_m_(before.options().cell_m), cell_after_m_(after.options().cell_m) {
+    constexpr int band = static_cast<int>(0.1 / footprint_m + 0.5);
+    int column0 = footprint.front()[0], column1 = column0;
+    const int row0 = footprint.front()[1] - band, row1 = footprint.back()[1] + band;
+    for (const auto& [column, row] : footprint) {
+      column0 = std::min(column0, column);
+      column1 = std::max(column1, column);
+    }
+    column0 -= band;
+    column1 += band;
+    before_ = before.read(box_of(column0, row0, column1, row1, cell_before_m_));
+    after_ = after.read(box_of(column0, row0, column1, row1, cell_after_m_));
+    // 2 in the footprint, 1 in the band around it
+    Image<std::uint8_t> part(column1 - column0 + 1, row1 - row0 + 1, 0);
+    for (const auto& [column, row] : footprint) {
+      for (int y = row - row0 - band; y <= row - row0 + band; ++y) {
+        std::fill_n(part.row(y) + column - column0 - band, 2 * band + 1, std::uint8_t{1});
+      }
+    }
+    for (const auto& [column, row] : footprint) part(column - column0, row - row0) = 2;
+    for (int y = 0; y < part.height(); ++y) {
+      for (int x = 0; x < part.width(); ++x) {
+        if (part(x, y) > 0) add(column0 + x, row0 + y, part(x, y) == 2);
+      }
+    }
+    share_ = static_cast<double>(inside_.size()) / static_cast<double>(footprint.size());
+  }
+
+  /// Absent if one of the maps does not measure half of the footprint, or nothing around it.
+  std::optional<Measurement> change() const {
+    constexpr double min_share = 0.5;
+    if (share_ < min_share || around_.empty()) return std::nullopt;
+    double sum = 0;
+    for (const double difference : inside_) sum += difference;
+    std::vector<double> around = around_;
+    const auto n = static_cast<double>(inside_.size());
+    return Measurement{sum / n - upper_median(around), std::sqrt(variances_ / n)};
+  }
+
+ private:
+  static MapBox box_of(int column0, int row0, int column1, int row1, double cell_m) {
+    const auto cell = [&](int index) { return static_cast<int>(std::floor(index * footprint_m / cell_m)); };
+    return {cell(column0), cell(row0), cell(column1 + 1) - cell(column0) + 1, cell(row1 + 1) - cell(row0) + 1};
+  }
+
+  struct Seen {
+    double height, variance;
+  };
+  static std::optional<Seen> look(const MapRaster& raster, double cell_m, int column, int row) {
+    const auto cell = [&](int index) { return static_cast<int>(std::floor((index + 0.5) * footprint_m / cell_m)); };
+    const int u = cell(column) - raster.box.i0, v = raster.box.j0 + raster.box.rows - 1 - cell(row);
+    if (raster.views(u, v) == 0) return std::nullopt;
+    const double sigma = raster.sigma(u, v);
+    return Seen{raster.height(u, v), sigma * sigma};
+  }
+
+  void add(int column, int row, bool inside) {
+    const auto before = look(before_, cell_before_m_, column, row), after = look(after_, cell_after_m_, column, row);
+    if (!before || !after) return;
+    (inside ? inside_ : around_).push_back(after->height - before->height);
+    if (inside) variances_ += before->variance + after->variance;
+  }
+
+  double cell_before_m_, cell_after_m_;
+  MapRaster before_, after_;
+  std::vector<double> inside_, around_;  ///< later minus earlier heights
+  double variances_ = 0, share_ = 0;
+};
+
+/// By how many standard errors a figure grew; 0 for less than two.
+double growth(const Measurement& before, const Measurement& after) {
+  const double ratio = (after.value - before.value) / std::hypot(before.std_error, after.std_error);
+  return std::abs(ratio) > min_std_errors ? ratio : 0;
+}
+
+/// By how many standard errors the heights moved away from the road; 0 for less than two.
+double growth(DamageKind kind, const Measurement& height_change) {
+  const double away = kind == DamageKind::depression ? -height_change.value : height_change.value;
+  return growth({0, 0}, {away, height_change.std_error});
+}
+
+/// Heights, which are known best, decide before depth and area.
+std::optional<DamageChangeKind> change_of(const RoadDamageRecord& before, const RoadDamageRecord& after,
+                                          const Measurement& height_change) {
+  for (const double grown : {growth(after.best.damage.kind, height_change),
+                             growth(before.max_depth_m, after.max_depth_m), growth(before.area_m2, after.area_m2)}) {
+    if (grown != 0) return grown > 0 ? DamageChangeKind::grown : DamageChangeKind::reduced;
+  }
+  return std::nullopt;
+}
+
+/// Index of the record of the same damage with the largest overlap.
+std::optional<std::size_t> partner_of(const RoadDamageRecord& record, std::span<const RoadDamageRecord> others) {
+  std::optional<std::size_t> partner;
+  double max_share = min_overlap_share;
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    if (others[k].best.damage.kind != record.best.damage.kind) continue;
+    const double share = overlap_share(record.best.footprint, others[k].best.footprint);
+    if (share < max_share) continue;
+    max_share = share;
+    partner = k;
+  }
+  return partner;
+}
+
+}  // namespace
+
+const char* name_of(DamageChangeKind kind) {
+  switch (kind) {
+    case DamageChangeKind::appeared:
+      return "new";
+    case DamageChangeKind::grown:
+      return "grown";
+    case DamageChangeKind::reduced:
+      return "reduced";
+    case DamageChangeKind::repaired:
+      break;
+  }
+  return "repaired";
+}
+
+bool measures(const RoadMap& map, const MapCells& footprint) {
+  return !footprint.empty() && PlacePair(footprint, map, map).change().has_value();
+}
+
+std::vector<DamageChange> compare_damage(std::span<const RoadDamageRecord> before, const RoadMap& map_before,
+                                         std::span<const RoadDamageRecord> after, const RoadMap& map_after) {
+  std::vector<DamageChange> changes;
+  const auto height_change = [&](const RoadDamageRecord& record) {
+    return record.best.footprint.empty() ? std::nullopt
+                                         : PlacePair(record.best.footprint, map_before, map_after).change();
+  };
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    const auto moved = height_change(after[k]);
+    if (!moved) continue;
+    const std::optional<std::size_t> partner = partner_of(after[k], before);
+    if (partner) {
+      const auto kind = change_of(before[*partner], after[k], *moved);
+      if (kind) changes.push_back({*kind, partner, k, *moved});
+    } else if (growth(after[k].best.damage.kind, *moved) > 0) {
+      changes.push_back({DamageChangeKind::appeared, std::nullopt, k, *moved});
+    }
+  }
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    if (partner_of(before[k], after)) continue;
+    const auto moved = height_change(before[k]);
+    if (moved && growth(before[k].best.damage.kind, *moved) < 0) {
+      changes.push_back({DamageChangeKind::repaired, k, std::nullopt, *moved});
+    }
+  }
+  return changes;
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,111 @@
+// Rendered frames of one place, seen twice from poses that are known.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+#include "odometry/link_estimator.hpp"
+#include "roadstereo/error.hpp"
+#include "roadstereo/loop_search.hpp"
+#include "roadstereo/synth.hpp"
+
+namespace roadstereo {
+namespace {
+
+struct SeenFrame {
+  GreyImage grey;
+  Image<float> disparity, sigma;
+  DisparityPlane plane;
+  RigidMotion pose;  ///< camera to road
+
+  OdometryFrame maps() const { return {grey, disparity, sigma, true, plane}; }
+};
+
+synth::Scene scene_at(double x_m, double y_m, double yaw_deg) {
+  synth::Scene scene = synth::named_scene("uav");
+  scene.rig.width /= 2;
+  scene.rig.height /= 2;
+  scene.rig.focal_px /= 2;
+  scene.supersampling = 1;
+  scene.degradation.noise_grey = 2;
+  scene.degradation.noise_seed = static_cast<std::uint32_t>(1000 + 100 * y_m + yaw_deg);
+  scene.rig.x_m += x_m;
+  scene.rig.y_m += y_m;
+  scene.rig.yaw_deg += yaw_deg;
+  return scene;
+}
+
+SeenFrame seen(const synth::Scene& scene) {
+  const synth::SyntheticPair pair = synth::render(scene);
+  SeenFrame frame;
+  to_grey(pair.left.view(), 0, frame.grey);
+  frame.disparity.resize(pair.disparity.width(), pair.disparity.height());
+  std::transform(pair.disparity.row(0), pair.disparity.row(0) + pair.disparity.pixels(), frame.disparity.row(0),
+                 [](double d) { return static_cast<float>(d); });
+  frame.sigma.assign(frame.disparity.width(), frame.disparity.height(), 0.05F);
+  frame.plane = pair.plane;
+  frame.pose = motion_of(scene.rig.camera_to_road());
+  return frame;
+}
+
+/// A place, one far from it, and the place again: with this yaw, and this error of its pose.
+class LoopSearchOfPlace : public testing::TestWithParam<double> {};
+
+TEST_P(LoopSearchOfPlace, IsLinked) {
+  const double yaw_deg = GetParam();
+  const double y_m = std::abs(yaw_deg) > 90 ? 2.6 : 0.25;  // the camera looks ahead of its foot
+  const std::vector<SeenFrame> frames{seen(scene_at(0, 0, 0)), seen(scene_at(0, 12, 0)),
+                                      seen(scene_at(0.15, y_m, yaw_deg))};
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "roadstereo_loops";
+  Trajectory trajectory;
+  {
+    LoopSearch search(scene_at(0, 0, 0).rig.calibration(), folder);
+    for (int i = 0; i < 3; ++i) {
+      const SeenFrame& frame = frames[static_cast<std::size_t>(i)];
+      search.add(i, frame.maps());
+      FramePose pose;
+      pose.frame = i;
+      RigidMotion known = frame.pose;
+      if (i == 2) known.translation[0] += 0.08;
+      pose.camera_to_world = matrix_of(known);
+      for (std::size_t k = 0; k < 6; ++k) pose.covariance[7 * k] = i * (k < 3 ? 1e-3 : 1e-5);
+      trajectory.frames.push_back(pose);
+    }
+    const std::vector<LoopLink> loops = search.find(trajectory, trajectory);
+    ASSERT_EQ(loops.size(), 1U);
+    EXPECT_EQ(loops[0].link.from, 0);
+    EXPECT_EQ(loops[0].link.to, 2);
+    EXPECT_GT(loops[0].link.correlation, 0.5);
+    const RigidMotion truth = inverse(frames[2].pose) * frames[0].pose;
+    const RigidMotion error = motion_of(loops[0].link.motion) * inverse(truth);
+    // What the middle of the image shows is off by less than a tenth of a pixel's side.
+    const Vector<3> centre = loops[0].centre_m, moved = error(centre);
+    EXPECT_LT(std::hypot(moved[0] - centre[0], moved[1] - centre[1]), 0.2 * loops[0].pixel_m);
+    EXPECT_TRUE(search.find(trajectory, trajectory).empty());  // found already
+    EXPECT_THROW(search.add(2, frames[2].maps()), Error);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder));
+}
+
+INSTANTIATE_TEST_SUITE_P(Yaws, LoopSearchOfPlace, testing::Values(0, 25, 180));
+
+TEST(LoopSearch, PlaceThatIsNeverLeftHasNoLoop) {
+  const SeenFrame frame = seen(scene_at(0, 0, 0));
+  LoopSearch search(scene_at(0, 0, 0).rig.calibration(),
+                    std::filesystem::path(testing::TempDir()) / "roadstereo_still");
+  Trajectory trajectory;
+  for (int i = 0; i < 4; ++i) {
+    search.add(i, frame.maps());
+    FramePose pose;
+    pose.frame = i;
+    pose.camera_to_world = matrix_of(frame.pose);
+    trajectory.frames.push_back(pose);
+  }
+  EXPECT_TRUE(search.find(trajectory, trajectory).empty());
+  EXPECT_EQ(search.compared(), 0U);
+}
+
+}  // namespace
+}  // namespace roadstereo
