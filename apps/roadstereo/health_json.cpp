@@ -19,6 +19,17 @@ Json findings_json(const std::vector<HealthFinding>& findings) {
   return list;
 }
 
+namespace {
+
+Json spots_json(const LensSpots& spots) {
+  return {{"dirt", json_number(spots.dirt)},
+          {"dead_pixels", json_number(spots.dead_pixels)},
+          {"largest_u", json_number(spots.largest_u)},
+          {"largest_v", json_number(spots.largest_v)}};
+}
+
+}  // namespace
+
 Json health_json(const PairHealth& health) {
   return {{"depth_is_trusted", health.depth_is_trusted()},
           {"findings", findings_json(health.findings())},
@@ -37,7 +48,9 @@ Json health_json(const PairHealth& health) {
           {"blur_right_px", json_number(health.blur_right_px)},
           {"blocks_left", json_number(health.blocks_left)},
           {"blocks_right", json_number(health.blocks_right)},
-          {"infinity_px", json_number(health.infinity_px)}};
+          {"infinity_px", json_number(health.infinity_px)},
+          {"left_spots", spots_json(health.spots.left)},
+          {"right_spots", spots_json(health.spots.right)}};
 }
 
 }  // namespace roadstereo::cli

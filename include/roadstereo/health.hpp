@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "roadstereo/lens_spots.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo {
@@ -48,6 +49,8 @@ struct PairHealth {
   double blocks_right = unknown;
 
   double infinity_px = unknown;  ///< smallest disparity + doffs above the horizon (10th percentile)
+
+  PairSpots spots;  ///< of a recording, by PairWatch
 
   double threshold_sigma = 5;  ///< of DamageOptions
 

@@ -91,6 +91,15 @@ void add_pictures(const PairHealth& h, Findings& findings) {
                      " %): the pictures are compressed too much; use PNG, or JPEG of quality 95");
 }
 
+void add_spots(const LensSpots& spots, const char* id, const char* view, Findings& findings) {
+  constexpr double max_dead_share = 2e-4;  // one of a hundred blocks of 7×7 pixels has a dead one
+  const double dead = spots.dead_share > max_dead_share ? spots.dead_pixels : 0;
+  findings.add_above(id, spots.dirt + dead, 0, "", false, "the same ", spots.dirt + dead, " places of the ", view,
+                     " picture stay as they are while the rest moves (", spots.dirt, " of dirt, ", dead,
+                     " dead pixels; the largest is around pixel ", std::round(spots.largest_u), ", ",
+                     std::round(spots.largest_v), "; limit 0); clean the lens, mask what stays");
+}
+
 }  // namespace
 
 std::vector<HealthFinding> PairHealth::findings() const {
@@ -98,6 +107,8 @@ std::vector<HealthFinding> PairHealth::findings() const {
   add_rectification(*this, findings);
   add_road(*this, findings);
   add_pictures(*this, findings);
+  add_spots(spots.left, "left-spots", "left", findings);
+  add_spots(spots.right, "right-spots", "right", findings);
   return findings.take();
 }
 

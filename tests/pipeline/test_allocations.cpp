@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "allocation_count.hpp"
+#include "roadstereo/lens_spots.hpp"
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
@@ -28,6 +31,24 @@ constexpr int max_threads = 2;
 #else
 constexpr int max_threads = 1;
 #endif
+
+TEST(LensWatch, AllocatesForFirstFrameOnly) {
+  SKIP_WITHOUT_COUNT();
+  GreyImage frame(320, 180);
+  LensWatch watch;
+  const auto add = [&](int i) {
+    for (int v = 0; v < frame.height(); ++v) {
+      for (int u = 0; u < frame.width(); ++u)
+        frame(u, v) = static_cast<std::int16_t>((i * (7 * u + 13 * v) * v) % grey_max);
+    }
+    watch.add(frame);
+  };
+  add(1);
+  const std::size_t before = allocations()->count;
+  for (int i = 2; i <= 45; ++i) add(i);
+  EXPECT_EQ(allocations()->count - before, 0U);
+  EXPECT_FALSE(std::isnan(watch.spots().dirt));
+}
 
 class PresetAllocations : public testing::TestWithParam<std::string> {};
 

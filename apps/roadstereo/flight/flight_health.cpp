@@ -59,6 +59,10 @@ void FlightHealth::add(const io::FlightFrame& frame) {
 PairHealth FlightHealth::typical() const {
   PairHealth health;
   for (double PairHealth::*const number : numbers) health.*number = median_or_unknown(known_of(of_frames_, number));
+  for (const PairHealth& one : of_frames_) {
+    if (!std::isnan(one.spots.left.dirt)) health.spots.left = one.spots.left;
+    if (!std::isnan(one.spots.right.dirt)) health.spots.right = one.spots.right;
+  }
   return health;
 }
 

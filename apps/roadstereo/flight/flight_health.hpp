@@ -14,7 +14,7 @@ class FlightHealth {
  public:
   void add(const io::FlightFrame& frame);
 
-  /// Median of every number over the frames that have it.
+  /// Median of every number over the frames that have it, and the spots that were found last.
   PairHealth typical() const;
   /// Standard deviation of the rows' offset from frame to frame, pixels; NaN unknown.
   double vibration_px() const;

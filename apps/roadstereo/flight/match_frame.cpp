@@ -46,12 +46,14 @@ void begin(FlightJob& job) {
 
 }  // namespace
 
-void match_frame(Pipeline& pipeline, const std::optional<StereoCalibration>& calibration, FlightJob& job) {
+void match_frame(Pipeline& pipeline, const std::optional<StereoCalibration>& calibration, PairWatch& watch,
+                 FlightJob& job) {
   begin(job);
   if (job.frame.status == io::FrameStatus::good) {
     try {
       pipeline.process(job.pair.left.view(), job.pair.right.view(), job.result);
       record(job.result, calibration, job.frame);
+      job.frame.health.spots = watch.add(job.result.grey, job.result.right);
     } catch (const Error& error) {
       job.frame.status = io::FrameStatus::failed;
       job.frame.reason = error.what();

@@ -5,8 +5,9 @@
 namespace roadstereo::cli {
 
 /// Matches the pair of the job and fills its frame record. A rejected pair, or one that cannot be matched, is recorded
-/// with its reason.
-void match_frame(Pipeline& pipeline, const std::optional<StereoCalibration>& calibration, FlightJob& job);
+/// with its reason. `watch` sees the frames in order.
+void match_frame(Pipeline& pipeline, const std::optional<StereoCalibration>& calibration, PairWatch& watch,
+                 FlightJob& job);
 
 /// Records a rejected pair before the first match; `before` is the last frame of an earlier run.
 void record_rejected(const std::optional<io::FlightFrame>& before, FlightJob& job);

@@ -124,6 +124,7 @@ void FlightPipeline::read() {
 void FlightPipeline::match() {
   const std::optional<io::FlightFrame> before = flight_.journal.last();  // before the journal grows
   std::optional<Pipeline> pipeline;
+  PairWatch watch;
   const std::int64_t done = flight_.journal.frames();
   std::int64_t sequence = settings_.trajectory ? 0 : done;  // the trajectory begins anew, with the same results
   while (std::optional<io::SourcePair> pair = pairs_.take()) {
@@ -142,7 +143,7 @@ void FlightPipeline::match() {
     (*job)->sequence = sequence++;
     (*job)->pair = std::move(*pair);
     if (pipeline) {
-      match_frame(*pipeline, flight_.source.calibration(), **job);
+      match_frame(*pipeline, flight_.source.calibration(), watch, **job);
       add_to_trajectory(**job);
     } else {
       record_rejected(before, **job);

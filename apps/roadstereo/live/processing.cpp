@@ -41,6 +41,7 @@ std::optional<Processing::Matched> Processing::match(CapturedPair captured) {
     board_.count_rejected(error.what());
     return std::nullopt;
   }
+  matched.spots = watch_.add(matched.result.grey, matched.result.right);
   matched.calibration = rectifier_->calibration();
   matched.captured = std::move(captured);
   return matched;
@@ -75,6 +76,7 @@ LiveView Processing::view_of(Matched matched) {
   LiveView view;
   FrameResult& result = matched.result;
   view.warnings = std::move(result.warnings);
+  view.health.spots = matched.spots;
   DamageMap map;
   find_damage_or_warn(result, matched.calibration, options_.pipeline.damage, options_.pipeline.threads, map,
                       view.health, view.warnings);

@@ -11,6 +11,7 @@
 #include "live/latest_value.hpp"
 #include "live/live_board.hpp"
 #include "live/live_messages.hpp"
+#include "roadstereo/lens_spots.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
@@ -39,6 +40,7 @@ class Processing {
   struct Matched {
     CapturedPair captured;
     FrameResult result;
+    PairSpots spots;
     std::optional<StereoCalibration> calibration;
   };
 
@@ -54,6 +56,7 @@ class Processing {
   LatestValue<CapturedPair>& captured_;
   LatestValue<Matched> matched_;
   std::optional<Pipeline> pipeline_;
+  PairWatch watch_;
   std::optional<LiveMessages> messages_;  ///< of the second stage
 };
 

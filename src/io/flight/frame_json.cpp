@@ -141,6 +141,15 @@ void each_field(Damage& damage, Visit& visit) {
 }
 
 template <class Visit>
+void each_field(LensSpots& spots, Visit& visit) {
+  visit("dirt", spots.dirt);
+  visit("dead_pixels", spots.dead_pixels);
+  visit("dead_share", spots.dead_share);
+  visit("largest_u", spots.largest_u);
+  visit("largest_v", spots.largest_v);
+}
+
+template <class Visit>
 void each_field(PairHealth& health, Visit& visit) {
   visit("row_offset_px", health.row_offset_px);
   visit("row_correction_px", health.row_correction_px);
@@ -160,6 +169,8 @@ void each_field(PairHealth& health, Visit& visit) {
   visit("blocks_left", health.blocks_left);
   visit("blocks_right", health.blocks_right);
   visit("infinity_px", health.infinity_px);
+  visit("left_spots", health.spots.left);
+  visit("right_spots", health.spots.right);
   visit("threshold_sigma", health.threshold_sigma);
 }
 

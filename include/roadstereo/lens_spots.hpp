@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "roadstereo/image.hpp"
+
+namespace roadstereo {
+
+/// Places of a view that keep their grey levels while the picture around them changes. NaN: unknown yet, or none.
+struct LensSpots {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+  double dirt = unknown;  ///< number of connected places
+  double dead_pixels =
+      unknown;                  ///< number of pixels that are brighter, or darker, than their neighbours in every frame
+  double dead_share = unknown;  ///< of all pixels
+  double largest_u = unknown;   ///< centre of the largest place of dirt, else the first dead pixel; pixels
+  double largest_v = unknown;
+};
+
+/// Watches one view of a recording for dirt on its lens and for dead pixels. A frame counts when more than half of the
+/// picture has changed since the last one that did: what never moves because the vehicle stands still tells nothing.
+class LensWatch {
+ public:
+  /// Adds the next frame. Allocates only for the first one, or when the size changes, which begins anew.
+  void add(ImageView<const std::int16_t> grey);
+
+  /// What the last 20 frames that count, or more, showed.
+  const LensSpots& spots() const { return spots_; }
+
+ private:
+  struct Extreme {
+    int u, v, sign;  ///< 1: brighter than its neighbours, −1: darker
+  };
+
+  void begin(int width, int height);
+  void average_cells(ImageView<const std::int16_t> grey);
+  bool has_moved();
+  void add_levels();
+  void add_extremes(ImageView<const std::int16_t> grey);
+  bool stands_out(int x, int y, int reach) const;
+  void find_steady_cells();
+  void count_dirt();
+  void count_dead_pixels();
+
+  int cell_px_ = 1, width_ = 0, height_ = 0;
+  int frames_ = 0;                 ///< that counted
+  Image<float> cells_;             ///< mean levels of the cells of the frame
+  Image<float> last_;              ///< of the last frame that counted
+  Image<float> mean_;              ///< of every cell over the frames
+  Image<float> variance_;          ///< the same
+  Image<float> deviation_;         ///< its square root
+  Image<std::uint8_t> steady_;     ///< 1: cell of a place
+  std::vector<Extreme> extremes_;  ///< in every frame since the last count
+  std::vector<int> sums_;          ///< over the rows of a cell
+  std::vector<int> pending_;       ///< cells of a place whose neighbours are to be looked at
+  LensSpots spots_;
+};
+
+/// Spots of both lenses.
+struct PairSpots {
+  LensSpots left, right;
+};
+
+/// Watches both views. A view may be empty: it tells nothing.
+class PairWatch {
+ public:
+  PairSpots add(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right) {
+    if (left.width() > 0) left_.add(left);
+    if (right.width() > 0) right_.add(right);
+    return {left_.spots(), right_.spots()};
+  }
+
+ private:
+  LensWatch left_, right_;
+};
+
+}  // namespace roadstereo

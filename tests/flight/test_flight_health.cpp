@@ -1,0 +1,64 @@
+// What only a recording tells of its rig: `health` of summary.json.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "roadstereo/io/image_file.hpp"
+#include "tests/cli/command_test.hpp"
+
+namespace roadstereo {
+namespace {
+
+class FlightHealthCommand : public CommandTest {
+ protected:
+  /// Ids of the findings of the flight in a folder, each followed by a blank.
+  std::string findings_of(const std::string& source) {
+    const Outcome outcome = run("inspect " + source + " --output " + source + "_out --json");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    health_ = nlohmann::json::parse(outcome.out)["health"];
+    std::string ids;
+    for (const auto& finding : health_["findings"]) ids += finding["id"].get<std::string>() + " ";
+    return ids;
+  }
+
+  nlohmann::json health_;
+};
+
+/// Darkens six discs of the picture as dirt on the lens does.
+std::vector<std::uint8_t> with_specks(const std::filesystem::path& file) {
+  constexpr double specks[][3] = {{50, 20, 5}, {160, 40, 6}, {280, 60, 5}, {90, 100, 6}, {220, 120, 8}, {140, 150, 5}};
+  Frame frame = io::read_frame(file.string());
+  for (const auto& [at_u, at_v, radius] : specks) {
+    for (int v = 0; v < frame.height; ++v) {
+      for (int u = 0; u < frame.width; ++u) {
+        if (std::hypot(u - at_u, v - at_v) > radius) continue;
+        std::uint8_t& level = frame.bytes[static_cast<std::size_t>(v * frame.width + u)];
+        level = static_cast<std::uint8_t>(0.2 * level + 0.8 * 20);
+      }
+    }
+  }
+  return io::encode_png(frame.view());
+}
+
+TEST_F(FlightHealthCommand, NamesSpecksOfOneLens) {
+  const Outcome made = run("synth --scene uav --size 320x180 --frames 21 --flight default --output flight --quiet");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(findings_of("flight").find("spots"), std::string::npos);
+  EXPECT_EQ(health_["left_spots"]["dirt"], 0);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "flight/left")) {
+    write("flight/left/" + entry.path().filename().string(), with_specks(entry.path()));
+  }
+  EXPECT_NE(findings_of("flight").find("left-spots "), std::string::npos);
+  EXPECT_EQ(health_["left_spots"]["dirt"], 6);
+  EXPECT_EQ(health_["right_spots"]["dirt"], 0);
+  EXPECT_NEAR(health_["left_spots"]["largest_u"], 220, 2);
+  EXPECT_NEAR(health_["left_spots"]["largest_v"], 120, 2);
+  EXPECT_EQ(health_["frames_with"]["left-spots"], 2);  // from the twentieth frame on
+  const std::string report = read_text(folder_ / "flight_out/report.html");
+  EXPECT_NE(report.find("the same 6 places of the left picture"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace roadstereo
