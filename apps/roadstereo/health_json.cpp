@@ -46,6 +46,7 @@ Json health_json(const PairHealth& health) {
           {"clipped_right", json_number(health.clipped_right)},
           {"blur_left_px", json_number(health.blur_left_px)},
           {"blur_right_px", json_number(health.blur_right_px)},
+          {"noise_share", json_number(health.noise_share)},
           {"blocks_left", json_number(health.blocks_left)},
           {"blocks_right", json_number(health.blocks_right)},
           {"infinity_px", json_number(health.infinity_px)},

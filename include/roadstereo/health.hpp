@@ -45,6 +45,7 @@ struct PairHealth {
   double clipped_right = unknown;  ///< the same
   double blur_left_px = unknown;   ///< standard deviation of a Gaussian blur
   double blur_right_px = unknown;
+  double noise_share = unknown;  ///< of the variance of blocks of 7×7 pixels: white noise that the views do not share
   double blocks_left = unknown;  ///< excess of the steps between 8×8 blocks (JPEG) over other steps, relative
   double blocks_right = unknown;
 

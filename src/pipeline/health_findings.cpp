@@ -82,6 +82,10 @@ void add_pictures(const PairHealth& h, Findings& findings) {
   findings.add_above("blur-ratio", ratio, max_blur_ratio, "", false, "one view is ", rounded(ratio, 0.1),
                      " times as blurred as the other (", rounded(h.blur_left_px, 0.1), " px left, ",
                      rounded(h.blur_right_px, 0.1), " px right; limit ", max_blur_ratio, "); focus, clean the lens");
+  constexpr double max_noise = 0.25;  // a third of the texture: blocks that match correlate by three quarters at best
+  findings.add_above("noise", h.noise_share, max_noise, "", false, rounded(100 * h.noise_share, 1),
+                     " % of the variance of the road's grey levels are noise (limit ", rounded(100 * max_noise, 1),
+                     " %): damage may be missed; add light, or expose for longer with less gain");
   constexpr double max_blocks = 0.1;
   constexpr double max_trusted_blocks = 1;  // the grid of the blocks is as strong as the texture: it is matched
   const double blocks = std::max(h.blocks_left, h.blocks_right);

@@ -80,6 +80,47 @@ double blur_of(Grey image, const DamageMap& damage) {
   return blur;
 }
 
+/// Immerkær's mask, which takes away planes of grey levels; its coefficients squared sum to 36.
+int noise_mask(Grey image, int u, int v) {
+  const auto second_difference = [&](int row) { return image(u - 1, row) - 2 * image(u, row) + image(u + 1, row); };
+  return second_difference(v - 1) - 2 * second_difference(v) + second_difference(v + 1);
+}
+
+double block_variance(Grey image, int at_u, int at_v, int radius) {
+  double sum = 0, squares = 0, pixels = 0;
+  for (int v = at_v - radius; v <= at_v + radius; ++v) {
+    for (int u = at_u - radius; u <= at_u + radius; ++u, ++pixels) {
+      const double level = image(u, v);
+      sum += level;
+      squares += level * level;
+    }
+  }
+  return (squares - sum * sum / pixels) / (pixels - 1);
+}
+
+/// Variance of the white noise of a view by the median variance of blocks of the road. Noise is what the mask responds
+/// to differently in both views, where the disparity is nearly a whole number: fine texture is the same in both.
+double noise_share(const FrameResult& frame, const DamageMap& damage) {
+  constexpr int radius = 3, step = 3;
+  constexpr double mask_norm = 6, max_fraction_px = 0.25;
+  constexpr std::size_t min_blocks = 100;
+  std::vector<float> differences, variances;
+  for (int v = radius; v + radius < frame.grey.height(); v += step) {
+    for (int u = radius; u + radius < frame.grey.width(); u += step) {
+      if (damage.road(u, v) == 0 || std::isnan(frame.disparity(u, v))) continue;
+      const double at = u - double{frame.disparity(u, v)};
+      const auto from = static_cast<int>(std::lround(at));
+      if (std::abs(at - from) > max_fraction_px || from < radius || from + radius >= frame.right.width()) continue;
+      differences.push_back(static_cast<float>(noise_mask(frame.grey, u, v) - noise_mask(frame.right, from, v)));
+      variances.push_back(static_cast<float>(block_variance(frame.grey, u, v, radius)));
+    }
+  }
+  if (variances.size() < min_blocks) return PairHealth::unknown;
+  const double noise = gaussian_mad * upper_median_magnitude(differences) / mask_norm;
+  const double variance = upper_median(variances);
+  return variance > 0 ? 0.5 * noise * noise / variance : PairHealth::unknown;
+}
+
 /// Excess of the steps at multiples of 8 pixels over those beside them, relative: JPEG quantises blocks of 8×8 apart.
 double block_excess(Grey image) {
   constexpr int block = 8;
@@ -101,6 +142,7 @@ void measure_pictures(const FrameResult& frame, const DamageMap& damage, PairHea
   measure_exposure(frame, damage, health);
   health.blur_left_px = blur_of(frame.grey, damage);
   health.blur_right_px = blur_of(frame.right, damage);
+  health.noise_share = noise_share(frame, damage);
   health.blocks_left = block_excess(frame.grey);
   health.blocks_right = block_excess(frame.right);
 }

@@ -4,7 +4,7 @@
 
 namespace roadstereo {
 
-/// Measure exposure, blur and compression from the grey levels of the road in both views.
+/// Measure exposure, blur, noise and compression from the grey levels of the road in both views.
 void measure_pictures(const FrameResult& frame, const DamageMap& damage, PairHealth& health);
 
 }  // namespace roadstereo

@@ -116,6 +116,30 @@ TEST(MeasureHealth, ExposureIsMeasured) {
   EXPECT_NE(clipped.found().find("clipped"), std::string::npos);
 }
 
+TEST(MeasureHealth, NoiseIsShareOfVariance) {
+  const auto health_with = [](double sigma) {
+    const ExactFrame noisy([sigma](Frame& left, Frame& right) {
+      std::mt19937 random(5);
+      std::normal_distribution<double> noise(0, sigma);
+      for (Frame* const frame : {&left, &right}) {
+        for (std::uint8_t& level : frame->bytes)
+          level = static_cast<std::uint8_t>(std::clamp(std::lround(level + noise(random)), 0L, 255L));
+      }
+    });
+    return std::pair(noisy.health(), noisy.found());
+  };
+  const auto [none, without] = health_with(0);
+  const auto [little, still_without] = health_with(3);
+  const auto [much, noisy] = health_with(20);
+  EXPECT_LT(none.noise_share, 0.15);  // sub-pixel parts of the disparity, at the finest texture
+  EXPECT_EQ(still_without, "");
+  EXPECT_EQ(noisy, "noise ");
+  // N / (S + N): S is the variance of the clean picture's blocks.
+  const double texture = 400 * (1 - much.noise_share) / much.noise_share;
+  EXPECT_NEAR(little.noise_share - none.noise_share * texture / (texture + 9), 9 / (texture + 9), 0.03);
+  EXPECT_TRUE(much.depth_is_trusted());
+}
+
 TEST(MeasureHealth, BlocksAreCompression) {
   constexpr int block = 8;
   const auto quantise = [](Frame& frame) {

@@ -166,6 +166,7 @@ void each_field(PairHealth& health, Visit& visit) {
   visit("clipped_right", health.clipped_right);
   visit("blur_left_px", health.blur_left_px);
   visit("blur_right_px", health.blur_right_px);
+  visit("noise_share", health.noise_share);
   visit("blocks_left", health.blocks_left);
   visit("blocks_right", health.blocks_right);
   visit("infinity_px", health.infinity_px);
