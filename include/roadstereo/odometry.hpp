@@ -44,6 +44,8 @@ struct FrameLink {
   double overlap = 0;                               ///< share of the view of `from` that `to` sees, 0 … 1
   double offset_px = 0;                             ///< disparity offset at infinity that was undone, pixels
   double offset_sd_px = 0;                          ///< its standard error
+  double measured_offset_px = 0;                    ///< what this link alone tells of the offset
+  double measured_offset_sd_px = 0;                 ///< its standard error, 0: nothing
 };
 
 /// Maps of one frame, W×H.

@@ -72,6 +72,8 @@ FrameLink frame_link(int from, int to, const Alignment& alignment, const Odometr
   link.overlap = alignment.overlap;
   link.offset_px = alignment.offset_px;
   link.offset_sd_px = alignment.offset_sd_px;
+  link.measured_offset_px = alignment.measured_offset_px;
+  link.measured_offset_sd_px = alignment.measured_offset_sd_px;
   return link;
 }
 

@@ -108,6 +108,7 @@ std::vector<HealthFinding> FlightHealth::findings() const {
                      100 * lost, 100 * max_lost),
          false});
   }
+  findings.insert(findings.end(), of_trajectory_.begin(), of_trajectory_.end());
   return findings;
 }
 

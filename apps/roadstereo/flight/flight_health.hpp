@@ -14,6 +14,9 @@ class FlightHealth {
  public:
   void add(const io::FlightFrame& frame);
 
+  /// Adds what the trajectory tells.
+  void add(const HealthFinding& finding) { of_trajectory_.push_back(finding); }
+
   /// Median of every number over the frames that have it, and the spots that were found last.
   PairHealth typical() const;
   /// Standard deviation of the rows' offset from frame to frame, pixels; NaN unknown.
@@ -21,7 +24,7 @@ class FlightHealth {
   /// Share of the pairs that are missing or without a result, 0 … 1: rejected, failed, or gaps in the times of more
   /// than one and a half periods.
   double lost_share() const;
-  /// Findings of `typical`, vibration and lost pairs.
+  /// Findings of `typical`, vibration, lost pairs and what the trajectory tells.
   std::vector<HealthFinding> findings() const;
   /// Number of frames with each finding, by id.
   const std::map<std::string, std::int64_t>& frames_with() const { return frames_with_; }
@@ -29,6 +32,7 @@ class FlightHealth {
  private:
   std::int64_t frames_ = 0, without_result_ = 0;
   std::vector<PairHealth> of_frames_;
+  std::vector<HealthFinding> of_trajectory_;
   std::vector<double> times_s_;
   std::map<std::string, std::int64_t> frames_with_;
 };

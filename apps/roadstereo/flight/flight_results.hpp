@@ -39,6 +39,9 @@ class FlightResults {
   /// Adds the next frame. Returns the ids of the road damages of its damages, then of its candidates.
   std::vector<std::int64_t> add(const io::FlightFrame& frame);
 
+  /// Adds what the trajectory tells of the health of the rig.
+  void add(const HealthFinding& finding) { summary_.health.add(finding); }
+
   const io::FlightInventory& inventory() const { return inventory_; }
 
   /// Writes frames.csv, damages.csv, candidates.csv, sightings.csv, summary.json and report.html, and segments.csv and

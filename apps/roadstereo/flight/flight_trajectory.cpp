@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "finite_values.hpp"
+#include "flight/exposure_delay.hpp"
 #include "io/csv.hpp"
 #include "roadstereo/ground_plane.hpp"
 #include "roadstereo/io/local_axes.hpp"
@@ -163,6 +165,12 @@ std::vector<StagedFile> FlightTrajectory::files() const {
           text_file(names[1], io::tum_trajectory(poses, piece, times_s_)),
           text_file(names[2], poses_csv(poses, times_s_)), text_file(names[3], links_csv(odometry_.links())),
           text_file(names[4], loops_csv(graph_.loops))};
+}
+
+std::optional<HealthFinding> FlightTrajectory::exposure_delay() const {
+  std::map<int, double> times_s;
+  for (std::size_t i = 0; i < times_s_.size(); ++i) times_s[odometry_.trajectory().frames[i].frame] = times_s_[i];
+  return cli::exposure_delay(odometry_.links(), times_s, calibration_.focal_px);
 }
 
 std::string FlightTrajectory::summary() const {

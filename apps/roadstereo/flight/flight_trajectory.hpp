@@ -38,6 +38,9 @@ class FlightTrajectory {
   /// Why the track cannot be that of this flight, a sentence; empty without one, or if it can.
   std::string track_contradiction() const { return graph_.track_contradicts ? graph_.track_unused : std::string(); }
 
+  /// A delay between the cameras' exposures, if the links show one.
+  std::optional<HealthFinding> exposure_delay() const;
+
   /// Returns one line: path, pieces, weak links, offset of the disparities, loops, track.
   std::string summary() const;
 
