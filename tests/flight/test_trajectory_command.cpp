@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,31 @@ TEST_F(TrajectoryCommand, FilesHaveMotion) {
   expect_complaint(run("inspect flight --trajectory --output other"), "--trajectory needs --calibration");
   expect_complaint(run("inspect flight/left/000000.png flight/right/000000.png --trajectory --output pair"),
                    "--trajectory is for recordings only");
+}
+
+TEST_F(TrajectoryCommand, FrameOfOtherSizeIsLeftOut) {
+  const Outcome made = run("synth --scene uav --size 192x108 --output small --quiet");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  for (const char* const view : {"left", "right"}) {
+    std::filesystem::copy_file(folder_ / "small" / (std::string(view) + ".png"),
+                               folder_ / "flight" / view / "000001.png",
+                               std::filesystem::copy_options::overwrite_existing);
+  }
+  const std::string rig = read_text(folder_ / "flight/calibration.yaml");
+  std::string any_size;  // a calibration without an image size fits every frame
+  std::istringstream lines(rig);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("width", 0) != 0 && line.rfind("height", 0) != 0) any_size += line + "\n";
+  }
+  for (const std::string& calibration : {rig, any_size}) {
+    write("flight/calibration.yaml", calibration);
+    const Outcome outcome = run("inspect flight --trajectory --output out");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("no result 000001: "), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("in 1 piece, 2 links"), std::string::npos) << outcome.out;
+    const nlohmann::json frames = json_file("out/summary.json")["frames"];
+    EXPECT_EQ(frames["good"], 3);
+  }
 }
 
 /// A bend of 5.5 m, and its positions as a receiver on the camera records them: at 48° north on the central meridian of

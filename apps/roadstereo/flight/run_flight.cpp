@@ -1,5 +1,7 @@
 #include "flight/run_flight.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -32,6 +34,7 @@ class FlightPipeline {
   void seek(io::FrameSource& source, const std::optional<io::FlightFrame>& last) const;
   void read();
   void match();
+  void reject_other_size(io::SourcePair& pair) const;
   void add_to_trajectory(FlightJob& job);
   void finish();
   void commit_frame(FlightJob& job);
@@ -45,6 +48,7 @@ class FlightPipeline {
 
   int finishers_;
   bool reached_end_ = false;
+  int width_ = 0, height_ = 0;          ///< of the first good pair
   BoundedQueue<io::SourcePair> pairs_;  ///< from reader to matcher
   BoundedQueue<JobPointer> matched_;    ///< from matcher to finishers
   BoundedQueue<JobPointer> free_;       ///< unused jobs
@@ -136,6 +140,8 @@ void FlightPipeline::match() {
       const Image<std::uint8_t>& mask = flight_.plan.mask;
       require_mask_size(settings_, mask, pair->left.width, pair->left.height);
       pipeline.emplace(options, flight_.source.calibration());
+      width_ = pair->left.width;
+      height_ = pair->left.height;
       if (!mask.empty()) pipeline->set_mask(mask);
       warm_up(*pipeline, *pair);
       if (before && sequence == done) pipeline->restore(before->pipeline_state);
@@ -143,6 +149,7 @@ void FlightPipeline::match() {
     (*job)->sequence = sequence++;
     (*job)->pair = std::move(*pair);
     if (pipeline) {
+      if (settings_.trajectory) reject_other_size((*job)->pair);
       match_frame(*pipeline, flight_.source.calibration(), watch, **job);
       add_to_trajectory(**job);
     } else {
@@ -155,6 +162,13 @@ void FlightPipeline::match() {
     if (!matched_.put(std::move(*job))) break;
   }
   matched_.close();
+}
+
+/// A trajectory is that of frames of one size.
+void FlightPipeline::reject_other_size(io::SourcePair& pair) const {
+  if (!pair.error.empty() || (pair.left.width == width_ && pair.left.height == height_)) return;
+  pair.error = fmt::format("the image has {}×{} pixels, but the trajectory is that of {}×{}", pair.left.width,
+                           pair.left.height, width_, height_);
 }
 
 void FlightPipeline::add_to_trajectory(FlightJob& job) {
