@@ -27,7 +27,10 @@ TileStore::TileStore(std::filesystem::path folder, int tile_cells, int max_tiles
   for (const auto& [key, generation] : saved) {
     generation_ = std::max(generation_, generation + 1);
     needed.insert(file(key, generation));
-    if (!std::filesystem::exists(file(key, generation))) fail(file(key, generation).string(), ": this tile is missing");
+    const std::uintmax_t bytes = cells_per_tile_ * sizeof(MapCell),
+                         found = std::filesystem::file_size(file(key, generation), error);
+    if (error) fail(file(key, generation).string(), ": this tile is missing");
+    if (found != bytes) fail(file(key, generation).string(), ": this tile has ", found, " bytes, but needs ", bytes);
   }
   for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
     if (needed.find(entry.path()) == needed.end()) superseded_.push_back(entry.path());

@@ -136,6 +136,26 @@ TEST_F(MapResume, InterruptedMapIsContinuedBitForBit) {
   std::filesystem::copy(folder_ / "killed", folder_ / "broken", std::filesystem::copy_options::recursive);
   write("broken/.tiles/frames.jsonl", std::string("{"));
   expect_complaint(run(command_ + "broken --resume"), "is broken");
+  const std::string checkpoint = read_text(folder_ / "killed/.tiles/checkpoint.json");
+  const auto resume_broken = [&](const std::string& from, const std::string& to) {
+    std::filesystem::remove_all(folder_ / "broken");
+    std::filesystem::copy(folder_ / "killed", folder_ / "broken", std::filesystem::copy_options::recursive);
+    std::string changed = checkpoint;
+    const std::size_t at = changed.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    write("broken/.tiles/checkpoint.json", changed.replace(at, from.size(), to));
+    return run(command_ + "broken --resume");
+  };
+  expect_complaint(resume_broken("\"made_with\"", "\"other\""), "this map was started with");
+  expect_complaint(resume_broken("\"pass\":0", "\"pass\":-1"), "is broken");
+  expect_complaint(resume_broken("\"day_names\":[\"", "\"day_names\":[],\"x\":[\""), "is broken");
+  expect_complaint(resume_broken("\"cell_m\":", "\"cell_m\":-"), "cell_m");
+  const std::filesystem::path tile =
+      *std::filesystem::begin(std::filesystem::directory_iterator(folder_ / "killed/.tiles/0"));
+  std::filesystem::remove_all(folder_ / "broken");
+  std::filesystem::copy(folder_ / "killed", folder_ / "broken", std::filesystem::copy_options::recursive);
+  write("broken/.tiles/0/" + tile.filename().string(), std::string("x"));
+  expect_complaint(run(command_ + "broken --resume"), "this tile has 1 bytes");
   const Outcome resumed = run(command_ + "killed --resume");
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
   expect_whole("killed");
@@ -143,6 +163,26 @@ TEST_F(MapResume, InterruptedMapIsContinuedBitForBit) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "full/map.json"));
   ASSERT_EQ(run(command_ + "full --resume").exit_code, 0);
   expect_whole("full");
+}
+
+TEST_F(MapCommand, FarPoseIsNamed) {
+  const Outcome made = run("synth --scene nadir --frames 3 --flight default --size 160x90 --output flight --quiet");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const std::string here = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  write("far.txt", here + here + "1 0 0 100000 0 1 0 100000 0 0 1 0\n");
+  expect_complaint(map("--trajectory far.txt"), "(limit 8e+09); frame 2 is 141421 m from the middle");
+}
+
+TEST_F(MapCommand, NamesNeedNotBeUtf8) {
+  make_flight("160x90");
+  const std::string name = "fl\xff\xfe";
+  std::filesystem::rename(folder_ / "flight", folder_ / name);
+  // The second pair cannot be read: its name is in a reason, and the day's in the checkpoint.
+  write(name + "/left/000001.png", std::string("no picture"));
+  const Outcome outcome = run("map " + name + " --trajectory " + name + "/trajectory_kitti.txt --calibration " + name +
+                              "/calibration.yaml --day d\xff --output map --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json_file("map/map.json")["mapped"], 1);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/order_statistics.hpp"
 #include "flight/rectified_source.hpp"
 #include "inspect_flight.hpp"
 #include "map/map_journal.hpp"
@@ -57,6 +58,12 @@ class MapBuilder {
     std::optional<MapState> state = journal_.restore([&](MappedFrame& frame) { frames.push_back(std::move(frame)); });
     if (!state) return;
     state_ = std::move(*state);
+    const auto is_day = [&](std::size_t day) { return day < state_.day_names.size(); };
+    bool fits = state_.pass >= 0 && state_.pass <= static_cast<int>(plan_.passes.size()) && state_.next_frame >= 0 &&
+                (!state_.day || is_day(*state_.day));
+    for (const auto& entry : state_.days) fits = fits && is_day(entry.first);
+    for (const MappedFrame& frame : frames) fits = fits && state_.days.count(frame.day) > 0;
+    if (!fits) fail(folder_.string(), ": the journal of this map is broken; start again without --resume");
     map_options_ = map_options(state_.cell_m);
     for (const auto& [day, saved] : state_.days) {
       RoadMap map(folder_of(day), map_options_, saved);
@@ -129,7 +136,9 @@ class MapBuilder {
       const std::optional<io::SourcePair> pair = pass.source->next();
       if (!pair) break;
       next = pair->index + 1;
+      const bool is_first = days_.empty();
       add_pair(from, *pass.source, *pair, pose->second, pipeline);
+      if (is_first && !days_.empty()) require_extent(pass, from);
       state_.next_frame = next;
       progress.frame_done();
       if (++state_.frames % frames_per_save == 0) save();
@@ -148,7 +157,7 @@ class MapBuilder {
   /// Index of the day of a recording whose first frame has this time.
   std::size_t day_of(const MapPass& pass, double time_s) {
     constexpr double first_calendar_s = 315532800;  // 1980
-    std::string name = pass.day;
+    std::string name = io::valid_utf8(pass.day);
     const double utc_s = time_s + pass.time_offset_s;
     if (name.empty() && utc_s > first_calendar_s) {
       name = fmt::format("{:%Y-%m-%d}", fmt::gmtime(static_cast<std::time_t>(utc_s)));
@@ -203,7 +212,7 @@ class MapBuilder {
 
   void add_record(MappedFrame frame) {
     DayMap& day = map_of(frame.day);
-    if (frame.new_path) day.paths.emplace_back();
+    if (frame.new_path || day.paths.empty()) day.paths.emplace_back();
     day.paths.back().push_back(frame.foot_m);
     for (MapDamage& found : frame.found) {
       day.sightings.push_back({frame.pass, static_cast<int>(frame.index), std::move(found)});
@@ -249,7 +258,36 @@ class MapBuilder {
     }
   }
 
-  void add_reason(const std::string& reason) {
+  /// Throws Error if the box around the poses of a recording has too many cells for rasters.
+  void require_extent(const Pass& pass, const MapPass& from) const {
+    constexpr double max_cells = 8e9;  // about twenty minutes of writing
+    std::array<std::vector<double>, 2> at;
+    for (const auto& [frame, pose] : pass.poses) {
+      const RigidTransform camera_to_map = compose(state_.world_to_map, pose.camera_to_world);
+      for (std::size_t axis = 0; axis < 2; ++axis) at[axis].push_back(camera_to_map[4 * axis + 3]);
+    }
+    std::array<double, 2> size_m{}, middle_m{};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const auto [low, high] = std::minmax_element(at[axis].begin(), at[axis].end());
+      size_m[axis] = *high - *low;
+      middle_m[axis] = central_median(std::vector(at[axis]));
+    }
+    const double cells = size_m[0] / state_.cell_m * (size_m[1] / state_.cell_m);
+    if (cells <= max_cells) return;
+    std::size_t farthest = 0;
+    const auto distance_m = [&](std::size_t k) { return std::hypot(at[0][k] - middle_m[0], at[1][k] - middle_m[1]); };
+    for (std::size_t k = 1; k < at[0].size(); ++k) {
+      if (distance_m(k) > distance_m(farthest)) farthest = k;
+    }
+    const std::int64_t frame = std::next(pass.poses.begin(), static_cast<std::ptrdiff_t>(farthest))->first;
+    fail(from.trajectory, ": its poses lie in a box of ",
+         fmt::format("{:.0f} × {:.0f} m, which has {:.2g} cells of {} m (limit {:.0g}); frame {} is {:.0f} m from the "
+                     "middle of the others: leave out what is wrong (nan), map parts, or use a larger --cell",
+                     size_m[0], size_m[1], cells, state_.cell_m, max_cells, frame, distance_m(farthest)));
+  }
+
+  void add_reason(const std::string& given) {
+    const std::string reason = io::valid_utf8(given);
     std::vector<std::string>& reasons = state_.reasons;
     if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end()) reasons.push_back(reason);
   }

@@ -106,9 +106,11 @@ MapJournal::MapJournal(fs::path folder, const io::Provenance& made_with, bool re
   std::error_code error;
   resumed_ = resume && fs::exists(checkpoint_file(), error);
   if (resumed_) {
-    const Json begun_with = read_json(checkpoint_file()).at("made_with");
+    const Json checkpoint = read_json(checkpoint_file());
+    const Json begun_with = checkpoint.value("made_with", Json());
     for (const auto& [name, value] : made_with_) {
-      const std::string before = begun_with.value(name, std::string());
+      const auto known = begun_with.find(name);
+      const std::string before = known != begun_with.end() && known->is_string() ? known->get<std::string>() : "";
       if (before == value) continue;
       fail(folder_.parent_path().string(), ": this map was started with ", name, " \"", before, "\", not \"", value,
            "\"; use the same, or start again without --resume");
