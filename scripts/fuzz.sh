@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Feeds mutated inputs to a reader, under the address and undefined behaviour sanitizers.
-#   scripts/fuzz.sh [READER] [SECONDS]    READER: request, journal, calibration, bag, track or all (default); 60 seconds each
+#   scripts/fuzz.sh [READER] [SECONDS]    READER: request, journal, calibration, bag, track, image, trajectory or all
+#                                         (default); 60 seconds each
 # With clang++ libFuzzer mutates the inputs of tests/fuzz/seeds; without, g++ builds a program that replays them. New
 # inputs are kept in build-fuzz/corpus, those that fail in build-fuzz.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-readers=(request journal calibration bag track)
+readers=(request journal calibration bag track image trajectory)
 reader=${1:-all}
 seconds=${2:-60}
 [ "$reader" = all ] || readers=("$reader")
@@ -40,7 +41,12 @@ for name in "${readers[@]}"; do
       sources=(src/io/geo/track_csv.cpp src/io/geo/track_nmea.cpp src/io/geo/track_srt.cpp src/io/geo/track_values.cpp
                src/io/geo/utc_time.cpp src/io/calibration_text.cpp)
       libraries=() ;;
-    *) echo "usage: $0 [request|journal|calibration|bag|track|all] [SECONDS]" >&2; exit 2 ;;
+    image)
+      sources=(src/io/image_file.cpp src/io/{jpeg,png,tiff}_check.cpp src/io/netpbm.cpp src/io/file_bytes.cpp src/io/frame_mat.cpp
+               src/core/frame.cpp)
+      libraries=($(pkg-config --cflags --libs opencv4 zlib)) ;;
+    trajectory) sources=(src/io/trajectory_file.cpp src/io/quaternion.cpp) libraries=() ;;
+    *) echo "usage: $0 [request|journal|calibration|bag|track|image|trajectory|all] [SECONDS]" >&2; exit 2 ;;
   esac
   corpus=build-fuzz/corpus/$name
   mkdir -p "$corpus"
