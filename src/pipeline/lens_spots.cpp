@@ -32,7 +32,8 @@ void LensWatch::begin(int width, int height) {
 
 void LensWatch::average_cells(ImageView<const std::int16_t> grey) {
   constexpr int step = 2;  // rows
-  const float scale = 1 / static_cast<float>((cell_px_ + step - 1) / step * cell_px_);
+  const int rows = (cell_px_ + step - 1) / step;
+  const float scale = 1 / static_cast<float>(rows * cell_px_);
   for (int y = 0; y < cells_.height(); ++y) {
     std::fill(sums_.begin(), sums_.end(), 0);
     for (int v = y * cell_px_; v < (y + 1) * cell_px_; v += step) {
