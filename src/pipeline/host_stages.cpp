@@ -11,7 +11,6 @@
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/coarse_search.hpp"
-#include "stereo/coarse/road_plausibility.hpp"
 #include "stereo/window.hpp"
 
 namespace roadstereo {
@@ -74,12 +73,9 @@ class HostStages final : public FrameStages {
 
   MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift, int block_radius) override {
     MatchInput input = pair;
-    const auto road = [&shift](double u, double v) {
-      return shifted_road(shift, u, v, std::numeric_limits<double>::quiet_NaN());
-    };
     if (!coarse_search_) return input;
     coarse_search_->set_block_radius(block_radius);
-    if (!coarse_search_->find(pair, road)) return input;
+    if (!coarse_search_->find(pair, shift)) return input;
     if (options_.narrow_search && coarse_search_->ranges() != nullptr) input.ranges = coarse_search_->ranges()->views();
     input.prior = coarse_search_->prior().view();
     return input;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -14,11 +15,46 @@ namespace roadstereo {
 namespace {
 
 constexpr int rows_per_band = 64;
+constexpr std::size_t chains = 8;  ///< of sums along a row, one a column in turn, so that compilers use vectors
 
 void subtract_road(ImageView<const float> disparity, const DisparityPlane& plane, int v, float* out) {
   const float* in = disparity.row(v);
   const RowLine road = row_line(plane, v, 0);
   for (int u = 0; u < disparity.width(); ++u) out[u] = above_road(in[u], road, u);
+}
+
+/// Calls `visit(u, chain)` for the columns of a row.
+template <class Visit>
+void for_each_column(int width, Visit&& visit) {
+  int u = 0;
+  for (; u + static_cast<int>(chains) <= width; u += static_cast<int>(chains)) {
+    for (std::size_t k = 0; k < chains; ++k) visit(u + static_cast<int>(k), k);
+  }
+  for (; u < width; ++u) visit(u, 0);
+}
+
+/// The smallest value of a row; infinite where there is none.
+float lowest_of_row(const float* row, int width) {
+  std::array<float, chains> lowest{};
+  lowest.fill(std::numeric_limits<float>::infinity());
+  for_each_column(width, [&](int u, std::size_t k) { lowest[k] = row[u] < lowest[k] ? row[u] : lowest[k]; });
+  return *std::min_element(lowest.begin(), lowest.end());
+}
+
+/// Sums of the residuals of a row whose magnitude is at most `limit`.
+Spread spread_of_row(const float* row, int width, double delta_t, double limit) {
+  std::array<double, chains> n{}, sum{}, squares{};
+  for_each_column(width, [&](int u, std::size_t k) {
+    const double residual = row[u] - delta_t;
+    const bool counts = std::abs(residual) <= limit;  // false for NaN
+    const double counted = counts ? residual : 0;
+    n[k] += counts ? 1 : 0;
+    sum[k] += counted;
+    squares[k] += counted * counted;
+  });
+  Spread spread{};
+  for (std::size_t k = 0; k < chains; ++k) spread.add(Spread{n[k], sum[k], squares[k]});
+  return spread;
 }
 
 }  // namespace
@@ -27,14 +63,12 @@ double transform_disparity(ImageView<const float> disparity, const RollEstimate&
                            const RollOptions& options, int threads, Image<float>& transformed) {
   const int height = disparity.height();
   transformed.resize(disparity.width(), height);
-  auto lowest = scratch_vector(static_cast<std::size_t>(height), std::numeric_limits<float>::infinity());
+  auto lowest = scratch_vector<float>(static_cast<std::size_t>(height));
   parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
       float* out = transformed.row(v);
       subtract_road(disparity, geometry.plane, v, out);
-      for (int u = 0; u < disparity.width(); ++u) {
-        if (out[u] < lowest[static_cast<std::size_t>(v)]) lowest[static_cast<std::size_t>(v)] = out[u];
-      }
+      lowest[static_cast<std::size_t>(v)] = lowest_of_row(out, disparity.width());
     }
   });
   double delta_t = options.delta_t_px;
@@ -65,14 +99,10 @@ RoadResiduals measure_residuals(ImageView<const float> transformed, double delta
   auto rows = scratch_vector<Row>(static_cast<std::size_t>(transformed.height()));
   parallel_rows(transformed.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
-      const float* values = transformed.row(v);
-      Row& row = rows[static_cast<std::size_t>(v)];
-      for (int u = 0; u < transformed.width(); ++u) {
-        const double r = values[u] - delta_t;
-        if (std::isnan(r)) continue;
-        row.all.add(r);
-        if (std::abs(r) <= limit) row.road.add(r);
-      }
+      const float* const values = transformed.row(v);
+      rows[static_cast<std::size_t>(v)] = {
+          spread_of_row(values, transformed.width(), delta_t, std::numeric_limits<double>::infinity()),
+          spread_of_row(values, transformed.width(), delta_t, limit)};
     }
   });
   Spread all{}, road{};

@@ -31,12 +31,6 @@ struct Case {
   CoarseSearchOptions options{};
 };
 
-/// What the pipeline guesses: the road's disparity after the shift, NaN beyond the horizon.
-double guess(const PerspectiveShift& shift, double u, double v) {
-  const double disparity = shift.enabled ? shift.road.disparity(u, v) : -1;
-  return disparity < 0 ? std::numeric_limits<double>::quiet_NaN() : std::min(disparity, shift.delta_p);
-}
-
 void expect_ranges(ImageView<const SearchRange> found, const Image<SearchRange>& expected) {
   ASSERT_EQ(found.pixels(), expected.pixels());
   const auto ranges = test::to_host(found.data(), expected.pixels());
@@ -65,8 +59,7 @@ void expect_prior(const Image<float>& found, const Image<float>& expected) {
 void expect_as_on_host(cuda::CudaCoarseSearch& look, const Case& of) {
   CoarseSearch search(of.options, 1);
   const int* columns = of.first_column.empty() ? nullptr : of.first_column.data();
-  ASSERT_TRUE(search.find({of.pair.reference, of.pair.target, columns, of.disparities},
-                          [&](double u, double v) { return guess(of.shift, u, v); }));
+  ASSERT_TRUE(search.find({of.pair.reference, of.pair.target, columns, of.disparities}, of.shift));
   const test::DevicePlane<std::int16_t> reference(of.pair.reference), target(of.pair.target);
   const auto device_columns = test::to_device(of.first_column);
   ASSERT_TRUE(look.find(

@@ -19,9 +19,9 @@
 namespace roadstereo {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-constexpr auto no_road = [](double /*u*/, double /*v*/) { return nan; };
+const PerspectiveShift no_road{.enabled = false};
 
 class SlowCoarseSearchScene : public testing::TestWithParam<const char*> {};
 
@@ -39,11 +39,7 @@ TEST_P(SlowCoarseSearchScene, RangesHoldTrueDisparities) {
   to_grey(pair.right.view(), 0, right);
   transform_target(right, shift, 0, target, first_column);
   CoarseSearch search({}, 2);
-  const auto road = [&](double u, double v) {
-    const double disparity = shift.road.disparity(u, v);
-    return disparity < 0 ? nan : std::min(disparity, shift.delta_p);
-  };
-  ASSERT_TRUE(search.find({left, target, first_column.data(), shift.disparities}, road));
+  ASSERT_TRUE(search.find({left, target, first_column.data(), shift.disparities}, shift));
   const SearchRanges* ranges = search.ranges();
   ASSERT_NE(ranges, nullptr);
   std::size_t seen = 0, held = 0;
@@ -86,7 +82,8 @@ TEST(CoarseSearch, RangesHoldRaisedObject) {
   const auto pair =
       test::textured_pair(256, 192, [](double u, double v) { return u > 80 && u < 128 && v > 30 && v < 70 ? 34 : 20; });
   CoarseSearch search({}, 1);
-  ASSERT_TRUE(search.find({pair.reference, pair.target, nullptr, 48}, [](double, double) { return 20.0; }));
+  const PerspectiveShift road{.road = {20, 0, 0}, .delta_p = 20};
+  ASSERT_TRUE(search.find({pair.reference, pair.target, nullptr, 48}, road));
   const SearchRanges* ranges = search.ranges();
   ASSERT_NE(ranges, nullptr);
   EXPECT_LE(ranges->reference(0, 0).first, 19);
@@ -172,7 +169,7 @@ TEST(MedianOfRows, RemovesStreakAndKeepsStep) {
   Image<float> map(6, 12, 8.0F), smoothed(6, 12);
   for (int u = 0; u < 6; ++u) map(u, 3) = 20;  // the streak
   for (int v = 7; v < 12; ++v) std::fill(map.row(v), map.row(v) + 6, 5.0F);
-  map(2, 9) = static_cast<float>(nan);
+  map(2, 9) = nan;
   median_of_rows(map, 0, 12, smoothed);
   for (int v = 0; v < 12; ++v) EXPECT_EQ(smoothed(0, v), v < 7 ? 8 : 5) << v;
   EXPECT_TRUE(std::isnan(smoothed(2, 9)));

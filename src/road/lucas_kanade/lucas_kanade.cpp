@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
@@ -16,20 +17,18 @@
 namespace roadstereo {
 namespace {
 
-using Sums = AlignmentSums<double>;
-
-/// Cells of a map: rows of `columns`.
-template <class Cell>
-struct CellMap {
+/// Sums of the cells: every row of cells has `alignment_sum_count` rows of numbers, one for each sum.
+struct CellSums {
   int columns, rows;
-  ScratchVector<Cell> cells;
+  ScratchVector<float> numbers;
 
-  CellMap(int width, int height)
+  CellSums(int width, int height)
       : columns(alignment_cells(width)),
         rows(alignment_cells(height)),
-        cells(scratch_vector<Cell>(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows))) {}
-  Cell* row(int j) { return cells.data() + static_cast<std::ptrdiff_t>(j) * columns; }
-  const Cell* row(int j) const { return cells.data() + static_cast<std::ptrdiff_t>(j) * columns; }
+        numbers(scratch_vector<float>(row_numbers(columns) * static_cast<std::size_t>(rows))) {}
+  static std::size_t row_numbers(int columns) { return alignment_sum_count * static_cast<std::size_t>(columns); }
+  float* row(int j) { return numbers.data() + row_numbers(columns) * static_cast<std::size_t>(j); }
+  const float* row(int j) const { return numbers.data() + row_numbers(columns) * static_cast<std::size_t>(j); }
 };
 
 /// Rows of one worker, with guards.
@@ -55,17 +54,13 @@ class WorkerRows {
     add_samples(samples, static_cast<std::ptrdiff_t>(pitch_), row(3));
   }
 
-  /// Sums of the cells.
-  void sum_cells(int columns, Sums* cells) {
-    const float* const sums = row(3);
-    for (int cell = 0; cell < columns; ++cell) {
-      const int begin = cell * alignment_cell, end = std::min(begin + alignment_cell, width_);
-      std::array<double, alignment_sum_count> of_cell{};
-      for (std::size_t k = 0; k < alignment_sum_count; ++k) {
-        for (int u = begin; u < end; ++u) of_cell[k] += double{sums[k * pitch_ + static_cast<std::size_t>(u)]};
-      }
-      const auto& [n, t, g, r, tt, tg, tr, gg, gr, rr] = of_cell;
-      cells[cell] = {n, t, g, r, tt, tg, tr, gg, gr, rr};
+  /// Sums of the cells of a row.
+  void sum_cells(int columns, float* cells) {
+    const int whole = width_ / alignment_cell;
+    for (std::size_t k = 0; k < alignment_sum_count; ++k, cells += columns) {
+      const float* at = row(3) + k * pitch_;
+      for (int cell = 0; cell < whole; ++cell, at += alignment_cell) cells[cell] = (at[0] + at[1]) + (at[2] + at[3]);
+      if (whole < columns) cells[whole] = std::accumulate(at, at + width_ % alignment_cell, 0.0F);
     }
   }
 
@@ -77,32 +72,74 @@ class WorkerRows {
   std::size_t pitch_;
 };
 
-/// Sums over the rows up to `radius` from row j.
-void sum_rows(const CellMap<Sums>& cells, int j, int radius, Sums* sums) {
-  std::fill_n(sums, cells.columns, Sums{});
-  for (int y = std::max(0, j - radius); y <= std::min(cells.rows - 1, j + radius); ++y) {
-    const Sums* const row = cells.row(y);
-    for (int i = 0; i < cells.columns; ++i) sums[i].add(row[i]);
+/// Sums of the windows of a row of cells.
+class WindowSums {
+ public:
+  static std::size_t numbers(int columns) { return 2 * CellSums::row_numbers(columns); }
+
+  WindowSums(double* memory, int columns)
+      : columns_(columns), of_rows_(memory), sums_(memory + CellSums::row_numbers(columns)) {}
+
+  /// Add up the cells that are up to `radius` rows and columns away from those of row j.
+  void add_up(const CellSums& cells, int j, int radius) {
+    const std::size_t count = CellSums::row_numbers(columns_);
+    std::fill_n(of_rows_, count, 0.0);
+    for (int y = std::max(0, j - radius); y <= std::min(cells.rows - 1, j + radius); ++y) {
+      const float* const row = cells.row(y);
+      for (std::size_t i = 0; i < count; ++i) of_rows_[i] += double{row[i]};
+    }
+    std::fill_n(sums_, count, 0.0);
+    for (int k = 0; k < static_cast<int>(alignment_sum_count); ++k) {
+      const double* const from = of_rows_ + static_cast<std::ptrdiff_t>(k) * columns_;
+      double* const to = sums_ + static_cast<std::ptrdiff_t>(k) * columns_;
+      for (int x = -radius; x <= radius; ++x) {
+        const int begin = std::max(0, -x), end = std::min(columns_, columns_ - x);
+        for (int i = begin; i < end; ++i) to[i] += from[i + x];
+      }
+    }
   }
-}
 
-/// Sums over the columns up to `radius` from column i.
-Sums sum_columns(const Sums* sums, int columns, int i, int radius) {
-  Sums window{};
-  for (int x = std::max(0, i - radius); x <= std::min(columns - 1, i + radius); ++x) window.add(sums[x]);
-  return window;
-}
+  AlignmentSums<double> of_column(int i) const {
+    const auto sum = [this, i](int k) { return sums_[static_cast<std::ptrdiff_t>(k) * columns_ + i]; };
+    return {sum(0), sum(1), sum(2), sum(3), sum(4), sum(5), sum(6), sum(7), sum(8), sum(9)};
+  }
 
-/// Adds `scale` times the shifts, interpolated between the cells, to row v. `line`: room for a row of cells.
-void add_shifts(const CellMap<float>& shifts, float scale, int v, const float* disparity, int width, float* line,
+ private:
+  int columns_;
+  double *of_rows_, *sums_;
+};
+
+/// Shifts of the cells, with one more on either side that repeats the outermost.
+struct CellShifts {
+  int columns, rows;
+  ScratchVector<float> numbers;
+
+  CellShifts(int width, int height)
+      : columns(alignment_cells(width)),
+        rows(alignment_cells(height)),
+        numbers(scratch_vector<float>(static_cast<std::size_t>(columns + 2) * static_cast<std::size_t>(rows))) {}
+  float* row(int j) { return numbers.data() + std::ptrdiff_t{j} * (columns + 2) + 1; }
+  void repeat_outermost(int j) {
+    float* const shifts = row(j);
+    shifts[-1] = shifts[0];
+    shifts[columns] = shifts[columns - 1];
+  }
+};
+
+/// Adds `scale` times the shifts, interpolated between the cells, to row v. `line`: room for a row of shifts.
+void add_shifts(CellShifts& shifts, float scale, int v, const float* disparity, int width, float* line,
                 float* aligned) {
   const CellPlace row = cell_place(v, shifts.rows);
-  const float *const above = shifts.row(row.first), *const below = shifts.row(row.second);
-  for (int i = 0; i < shifts.columns; ++i) line[i] = above[i] + row.share * (below[i] - above[i]);
-  for (int u = 0; u < width; ++u) {
-    const CellPlace column = cell_place(u, shifts.columns);
-    const float first = line[column.first], second = line[column.second];
-    aligned[u] = disparity[u] + scale * (first + column.share * (second - first));
+  const float *const above = shifts.row(row.first) - 1, *const below = shifts.row(row.second) - 1;
+  for (int i = 0; i < shifts.columns + 2; ++i) line[i] = scale * (above[i] + row.share * (below[i] - above[i]));
+  constexpr int half = alignment_cell / 2;
+  // Between the middles of two cells the shift is linear: half a cell of the one, and half of the other.
+  for (int i = 0; i <= shifts.columns; ++i) {
+    const float first = line[i], slope = (line[i + 1] - first) / alignment_cell;
+    const int begin = i * alignment_cell - half;
+    for (int k = std::max(0, -begin); k < std::min(alignment_cell, width - begin); ++k) {
+      aligned[begin + k] = disparity[begin + k] + (first + (static_cast<float>(k) + 0.5F) * slope);
+    }
   }
 }
 
@@ -127,7 +164,7 @@ void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity,
   const auto workers = static_cast<std::size_t>(resolve_threads(threads));
   const std::size_t row_numbers = WorkerRows::count * WorkerRows::pitch(width);
   auto memory = scratch_vector<float>(row_numbers * workers);
-  CellMap<Sums> cells(width, height);
+  CellSums cells(width, height);
   parallel_rows(cells.rows, rows_per_band, threads, [&](int first, int last, int worker) {
     WorkerRows rows(memory.data() + row_numbers * static_cast<std::size_t>(worker), width);
     for (int j = first; j < last; ++j) {
@@ -137,23 +174,22 @@ void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity,
       rows.sum_cells(cells.columns, cells.row(j));
     }
   });
-  CellMap<float> shifts(width, height);
+  CellShifts shifts(width, height);
   const AlignmentSettings settings = alignment_settings(options);
-  const auto columns = static_cast<std::size_t>(cells.columns);
-  auto row_sums = scratch_vector<Sums>(columns * workers);
+  const std::size_t window_numbers = WindowSums::numbers(cells.columns);
+  auto window_memory = scratch_vector<double>(window_numbers * workers);
   parallel_rows(cells.rows, rows_per_band, threads, [&](int first, int last, int worker) {
-    Sums* const sums = row_sums.data() + columns * static_cast<std::size_t>(worker);
+    WindowSums windows(window_memory.data() + window_numbers * static_cast<std::size_t>(worker), cells.columns);
     for (int j = first; j < last; ++j) {
-      sum_rows(cells, j, options.radius, sums);
-      for (int i = 0; i < cells.columns; ++i) {
-        shifts.row(j)[i] = alignment_shift(sum_columns(sums, cells.columns, i, options.radius), settings);
-      }
+      windows.add_up(cells, j, options.radius);
+      for (int i = 0; i < cells.columns; ++i) shifts.row(j)[i] = alignment_shift(windows.of_column(i), settings);
+      shifts.repeat_outermost(j);
     }
   });
   aligned.resize(width, height);
   const float scale = 1 - shift_line(pair.shift, 0).slope;  // d disparity / d residual
   parallel_rows(height, rows_per_band * alignment_cell, threads, [&](int first, int last, int worker) {
-    float* const line = memory.data() + columns * static_cast<std::size_t>(worker);
+    float* const line = memory.data() + static_cast<std::size_t>(cells.columns + 2) * static_cast<std::size_t>(worker);
     for (int v = first; v < last; ++v) add_shifts(shifts, scale, v, disparity.row(v), width, line, aligned.row(v));
   });
 }

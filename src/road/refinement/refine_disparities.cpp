@@ -58,9 +58,16 @@ class BandRows {
     const RowLine road = row_line(maps_.road, v, 0);
     float* height = numbers_ + 3 * pitch_ * (v - first_);
     float *precision = height + pitch_, *spread = precision + pitch_;
-    std::fill_n(height, 2 * pitch_, 0.0F);
-    std::fill_n(spread, pitch_, not_measured().variance);
-    for (int u = 0; u < maps_.disparity.width(); ++u) {
+    const int width = maps_.disparity.width();
+    const MeasuredHeight unknown = not_measured();
+    const auto fill_sides = [&](float* row, float value) {
+      std::fill_n(row, radius_, value);
+      std::fill(row + radius_ + width, row + pitch_, value);
+    };
+    fill_sides(height, unknown.value);
+    fill_sides(precision, unknown.precision);
+    fill_sides(spread, unknown.variance);
+    for (int u = 0; u < width; ++u) {
       const MeasuredHeight pixel = measured(disparity[u], variance[u], road.at(static_cast<float>(u)), bounds);
       height[radius_ + u] = pixel.value;
       precision[radius_ + u] = pixel.precision;

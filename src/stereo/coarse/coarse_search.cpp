@@ -1,7 +1,9 @@
 #include "stereo/coarse/coarse_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/downsample.hpp"
 #include "core/parallel.hpp"
@@ -19,13 +21,24 @@ namespace {
 
 constexpr int min_rows = 24;  // of a band
 
+/// The smallest of the first `count` costs, at most `uncorrelated_cost`; in several chains, so that compilers use vectors.
+float smallest_cost(const float* costs, int count) {
+  std::array<float, 8> smallest{};
+  smallest.fill(uncorrelated_cost);
+  const int chains = static_cast<int>(smallest.size()), whole = count / chains * chains;
+  for (int d = 0; d < whole; d += chains) {
+    for (std::size_t k = 0; k < smallest.size(); ++k) smallest[k] = std::min(smallest[k], costs[d + static_cast<int>(k)]);
+  }
+  for (int d = whole; d < count; ++d) smallest[0] = std::min(smallest[0], costs[d]);
+  return *std::min_element(smallest.begin(), smallest.end());
+}
+
 /// Plausibility of the road from the costs of a pixel.
 float road_plausibility(const float* costs, int count, float road) {
   const NearRoad near = near_road(road, count);
-  float at_road = uncorrelated_cost, smallest = uncorrelated_cost;
+  float at_road = uncorrelated_cost;
   for (int d = near.first; d < near.end; ++d) at_road = std::min(at_road, costs[d]);
-  for (int d = 0; d < count; ++d) smallest = std::min(smallest, costs[d]);
-  return cost_plausibility(at_road, smallest);
+  return cost_plausibility(at_road, smallest_cost(costs, count));
 }
 
 }  // namespace
@@ -64,7 +77,7 @@ void CoarseSearch::downsample_pair(const MatchInput& input, int factor) {
   }
 }
 
-bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, double)> road) {
+bool CoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift) {
   const int width = input.reference.width(), height = input.reference.height();
   ranges_found_ = false;
   if (!coarse_search_pays(width, height)) return false;
@@ -91,39 +104,36 @@ bool CoarseSearch::find(const MatchInput& input, FunctionRef<double(double, doub
   // A band begins by filling its sums, so it should be high.
   const int rows = std::max(min_rows, (reference_.height() + 4 * threads_ - 1) / (4 * threads_));
   parallel_rows(reference_.height(), rows, threads_, [&](int first, int last, int worker) {
-    match_rows(coarse, first, last, road, workers_[static_cast<std::size_t>(worker)]);
+    match_rows(coarse, first, last, shift, workers_[static_cast<std::size_t>(worker)]);
   });
   parallel_rows(reference_.height(), rows, threads_, [&](int first, int last, int worker) {
     correct_rows(first, last, workers_[static_cast<std::size_t>(worker)]);
   });
   if (input.disparities < min_ranged_disparities) return true;
-  tile_ranges_.find(prior_.disparity, prior_.factor, width, height, input.disparities);
+  tile_ranges_.find(prior_.disparity, prior_.factor, width, height, input.disparities, threads_);
   ranges_found_ = true;
   return true;
 }
 
-void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, FunctionRef<double(double, double)> road,
+void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, const PerspectiveShift& shift,
                               Worker& worker) {
   const cpu::MatchView view(coarse, cpu::MatchView::reference, block_first_column_);
   worker.costs.start(view, first, 0, view.width(), {0, coarse.disparities});
   worker.texture.start(coarse.reference, first, texture_uncertainty_options(options_));
   for (int v = first; v < last; ++v) {
     worker.costs.compute(v, worker.row.row(0));
-    finish_row(coarse, v, road, worker);
+    finish_row(coarse, v, shift, worker);
   }
 }
 
 /// Optimises the scanline of row v, with the road as prior where texture is weak.
-void CoarseSearch::finish_row(const MatchInput& coarse, int v, FunctionRef<double(double, double)> road,
-                              Worker& worker) {
+void CoarseSearch::finish_row(const MatchInput& coarse, int v, const PerspectiveShift& shift, Worker& worker) {
   const int width = reference_.width();
-  const auto factor = static_cast<float>(prior_.factor);
   const std::vector<float>& texture_uncertainty = worker.texture.next();
   const int first_seen = block_first_column_[static_cast<std::size_t>(v)];
   for (int u = 0; u < width; ++u) {
     const auto column = static_cast<std::size_t>(u);
-    worker.centre[column] =
-        static_cast<float>(road(to_full_resolution(u, prior_.factor), to_full_resolution(v, prior_.factor))) / factor;
+    worker.centre[column] = coarse_road(shift, u, v, prior_.factor, std::numeric_limits<float>::quiet_NaN());
     worker.weight[column] = static_cast<float>(options_.road_prior_weight) * texture_uncertainty[column];
     const int count = std::min(coarse.disparities, u - first_seen + 1);
     if (std::isnan(worker.centre[column]) || count <= 0 || texture_uncertainty[column] < min_uncertainty) continue;

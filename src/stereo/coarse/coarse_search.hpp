@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "core/function_ref.hpp"
 #include "roadstereo/coarse_search.hpp"
 #include "roadstereo/matcher.hpp"
+#include "roadstereo/perspective_shift.hpp"
 #include "stereo/coarse/texture_uncertainty.hpp"
 #include "stereo/coarse/tile_ranges.hpp"
 #include "stereo/cpu/padded_rows.hpp"
@@ -21,9 +21,9 @@ class CoarseSearch {
   /// Radius of the blocks from now on, coarse pixels; at first that of the options.
   void set_block_radius(int radius) { options_.block_radius = radius; }
 
-  /// Computes the prior and, where that saves work, the ranges; both are valid until the next call. `road(u, v)` is the
-  /// road's disparity at a pixel of the pair, NaN where unknown. Returns false when the image is too small.
-  bool find(const MatchInput& input, FunctionRef<double(double, double)> road);
+  /// Computes the prior and, where that saves work, the ranges; both are valid until the next call. `shift`: that of the
+  /// target, with the road. Returns false when the image is too small.
+  bool find(const MatchInput& input, const PerspectiveShift& shift);
 
   const DisparityPrior& prior() const { return prior_; }
   /// Null when there are too few disparities to save any.
@@ -39,9 +39,8 @@ class CoarseSearch {
     std::vector<float> nearest;         ///< disparity that the target view sees, per column
   };
   void downsample_pair(const MatchInput& input, int factor);
-  void match_rows(const MatchInput& coarse, int first, int last, FunctionRef<double(double, double)> road,
-                  Worker& worker);
-  void finish_row(const MatchInput& coarse, int v, FunctionRef<double(double, double)> road, Worker& worker);
+  void match_rows(const MatchInput& coarse, int first, int last, const PerspectiveShift& shift, Worker& worker);
+  void finish_row(const MatchInput& coarse, int v, const PerspectiveShift& shift, Worker& worker);
   void correct_rows(int first, int last, Worker& worker);
 
   CoarseSearchOptions options_;

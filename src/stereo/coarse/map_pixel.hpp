@@ -30,9 +30,9 @@ ROADSTEREO_HD inline float median_of_rows(float a, float b, float own, float c, 
   return sum == sum ? median_of_five(a, b, c, d, own) : own;
 }
 
-/// Target column that column u with this disparity projects onto.
+/// Target column that column u with this disparity, at least −½, projects onto.
 ROADSTEREO_HD inline int target_column(int u, float disparity) {
-  const int column = u - static_cast<int>(lroundf(disparity));
+  const int column = u - static_cast<int>(disparity + 0.5F);
   return column > 0 ? column : 0;
 }
 

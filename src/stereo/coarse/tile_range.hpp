@@ -32,9 +32,9 @@ ROADSTEREO_HD inline int disparity_bin(float disparity, int bins) {
   return bin < bins ? bin : bins - 1;
 }
 
-/// Target column, coarse pixels, of a disparity in full-size pixels.
+/// Target column, coarse pixels, of a disparity in full-size pixels, at least −½ coarse pixel.
 ROADSTEREO_HD inline int tile_target_column(int u, float disparity, float inverse_factor) {
-  return u - static_cast<int>(lroundf(disparity * inverse_factor));
+  return u - static_cast<int>(disparity * inverse_factor + 0.5F);
 }
 
 /// Pixels that must have matched for a tile's range to be narrowed.

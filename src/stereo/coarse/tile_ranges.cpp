@@ -3,35 +3,44 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.hpp"
 #include "stereo/coarse/tile_range.hpp"
 
 namespace roadstereo {
 
-void TileRanges::count(const Image<float>& coarse, int factor) {
+void TileRanges::count(const Image<float>& coarse, int factor, int threads) {
   const int across = ranges_.reference.width(), down = ranges_.reference.height();
   const std::size_t tiles = ranges_.reference.pixels();
   in_reference_.assign(tiles * bins_, 0);
   in_target_.assign(tiles * bins_, 0);
   const int tile_columns = SearchRanges::tile_columns / factor, tile_rows = SearchRanges::tile_rows / factor;
-  const float inverse_factor = 1.0f / static_cast<float>(factor);
-  for (int v = 0; v < coarse.height(); ++v) {
-    const float* row = coarse.row(v);
-    const TileSpan rows = tiles_of(v, tile_rows, down);
-    for (int u = 0; u < coarse.width(); ++u) {
-      if (std::isnan(row[u])) continue;
-      const auto bin = static_cast<std::size_t>(disparity_bin(row[u], static_cast<int>(bins_)));
-      const auto add = [&](std::vector<std::uint32_t>& counts, int column) {
-        const TileSpan columns = tiles_of(column, tile_columns, across);
-        for (int r = rows.first; r <= rows.last; ++r) {
-          for (int c = columns.first; c <= columns.last; ++c) {
-            const int tile = r * across + c;
-            ++counts[static_cast<std::size_t>(tile) * bins_ + bin];
-          }
-        }
-      };
-      add(in_reference_, u);
-      add(in_target_, tile_target_column(u, row[u], inverse_factor));
+  columns_.resize(static_cast<std::size_t>(coarse.width()));
+  for (int u = 0; u < coarse.width(); ++u) columns_[static_cast<std::size_t>(u)] = tiles_of(u, tile_columns, across);
+  parallel_rows(down, 1, threads, [&](int first, int last, int) {
+    for (int row = first; row < last; ++row) {
+      const int begin = row == 0 ? 0 : std::max(0, row * tile_rows - tile_overlap);
+      const int end = row + 1 == down ? coarse.height() : std::min(coarse.height(), (row + 1) * tile_rows + tile_overlap);
+      const std::size_t counts = static_cast<std::size_t>(row) * static_cast<std::size_t>(across) * bins_;
+      for (int v = begin; v < end; ++v) count_row(coarse.row(v), coarse.width(), factor, counts);
     }
+  });
+}
+
+/// Counts a row of the coarse map in a row of tiles, whose histograms begin at `counts`.
+void TileRanges::count_row(const float* row, int width, int factor, std::size_t counts) {
+  std::uint32_t *const reference = in_reference_.data() + counts, *const target = in_target_.data() + counts;
+  const float inverse_factor = 1.0f / static_cast<float>(factor);
+  for (int u = 0; u < width; ++u) {
+    if (std::isnan(row[u])) continue;
+    const auto bin = static_cast<std::size_t>(disparity_bin(row[u], static_cast<int>(bins_)));
+    const auto add = [&](std::uint32_t* histograms, int column) {
+      const TileSpan tiles = columns_[static_cast<std::size_t>(std::max(0, column))];
+      for (int tile = tiles.first; tile <= tiles.last; ++tile) {
+        ++histograms[static_cast<std::size_t>(tile) * bins_ + bin];
+      }
+    };
+    add(reference, u);
+    add(target, std::min(width - 1, tile_target_column(u, row[u], inverse_factor)));
   }
 }
 
@@ -57,11 +66,11 @@ void TileRanges::choose(const std::vector<std::uint32_t>& counts, Image<SearchRa
   }
 }
 
-void TileRanges::find(const Image<float>& coarse, int factor, int width, int height, int disparities) {
+void TileRanges::find(const Image<float>& coarse, int factor, int width, int height, int disparities, int threads) {
   ranges_.assign(width, height, disparities);
   const int bins = disparities + factor;
   bins_ = static_cast<std::size_t>(bins);
-  count(coarse, factor);
+  count(coarse, factor, threads);
   choose(in_reference_, ranges_.reference, factor, disparities);
   choose(in_target_, ranges_.target, factor, disparities);
 }

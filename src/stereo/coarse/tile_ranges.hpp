@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "roadstereo/matcher.hpp"
+#include "stereo/coarse/tile_range.hpp"
 
 namespace roadstereo {
 
@@ -12,16 +13,18 @@ namespace roadstereo {
 class TileRanges {
  public:
   /// Counts the disparities of the coarse map (full-size pixels, NaN unknown) of a pair downsampled by `factor`.
-  void find(const Image<float>& coarse, int factor, int width, int height, int disparities);
+  void find(const Image<float>& coarse, int factor, int width, int height, int disparities, int threads);
 
   const SearchRanges& ranges() const { return ranges_; }
 
  private:
-  void count(const Image<float>& coarse, int factor);
+  void count(const Image<float>& coarse, int factor, int threads);
+  void count_row(const float* row, int width, int factor, std::size_t counts);
   void choose(const std::vector<std::uint32_t>& counts, Image<SearchRange>& ranges, int factor, int disparities) const;
 
   std::size_t bins_ = 0;                                 ///< of the histogram of a tile
   std::vector<std::uint32_t> in_reference_, in_target_;  ///< histograms of the tiles
+  std::vector<TileSpan> columns_;                        ///< tiles of every column of the coarse map
   SearchRanges ranges_;
 };
 

@@ -23,7 +23,7 @@ struct WindowRow {
 
 /// Prior of winner-take-all: energies at disparity d grow by weight · min(|d − centre|, truncation).
 struct PriorRow {
-  const float* centre = nullptr;  ///< per column of the tile; NaN: unknown; null: no prior
+  const float* centre = nullptr;  ///< per column of the tile, whole strips; NaN: unknown; null: no prior
   float weight = 0;
   float truncation = 0;
 };

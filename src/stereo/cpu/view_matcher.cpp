@@ -109,13 +109,14 @@ PriorRow ViewMatcher::prior_row(const MatchView& view, int v, const Tile& tile) 
   const ImageView<const float>& map = prior.disparity;
   const float* row = map.row(std::min(v / prior.factor, map.height() - 1));
   const auto first = static_cast<float>(tile.range.first);
-  for (int i = tile.first; i < tile.end;) {
-    const int x = i / prior.factor;
-    const int end = x + 1 < map.width() ? std::min(tile.end, (x + 1) * prior.factor) : tile.end;
-    std::fill(prior_.data() + (i - tile.first), prior_.data() + (end - tile.first),
-              row[std::min(x, map.width() - 1)] - first);
-    i = end;
+  const auto at = [&tile](int i) { return static_cast<std::size_t>(i - tile.first); };
+  const int covered = std::min(tile.end, map.width() * prior.factor);  // columns of the tile that the map has
+  for (int i = tile.first, x = i / prior.factor; i < covered; ++x) {
+    const float centre = row[x] - first;
+    for (const int end = std::min(covered, (x + 1) * prior.factor); i < end; ++i) prior_[at(i)] = centre;
   }
+  const float last = row[map.width() - 1] - first;
+  for (int i = std::max(tile.first, covered); i < tile.end; ++i) prior_[at(i)] = last;
   return {.centre = prior_.data(), .weight = prior_weight_, .truncation = prior_truncation_px_};
 }
 

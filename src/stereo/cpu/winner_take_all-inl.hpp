@@ -59,8 +59,20 @@ struct PlainEnergies {
   HWY_INLINE Float at(int p, int d) const { return hn::Load(Floats(), energies + p * pitch + d); }
 };
 
-/// The smallest energy of each of four pixels. Behind the last disparity the energies are infinite up to a whole
-/// vector.
+/// The energies of four pixels whose disparities fill one vector, infinite behind the last: they stay in registers.
+struct HeldEnergies {
+  Float of_pixel[4];
+
+  template <class Energies>
+  HWY_INLINE HeldEnergies(const Energies& energies, int disparities) {
+    const Floats df;
+    const auto searched = hn::FirstN(df, static_cast<std::size_t>(disparities));
+    for (int p = 0; p < 4; ++p) of_pixel[p] = hn::IfThenElse(searched, energies.at(p, 0), hn::Set(df, infinity));
+  }
+  HWY_INLINE Float at(int p, int /*d*/) const { return of_pixel[p]; }
+};
+
+/// The smallest energy of each of four pixels.
 template <class Energies>
 HWY_INLINE void min_energies(const Energies& energies, int disparities, float* smallest) {
   const Floats df;
@@ -74,20 +86,24 @@ HWY_INLINE void min_energies(const Energies& energies, int disparities, float* s
 }
 
 /// The energies of four pixels with what they pay for their distance from the prior.
+template <class Energies>
 struct RegularisedCosts {
-  PlainEnergies plain;
+  const Energies& plain;
   float centre[4], weight[4];
   float truncation;
 
-  HWY_INLINE RegularisedCosts(const AggregationRow& row, const PlainEnergies& energies, int column)
+  HWY_INLINE RegularisedCosts(const AggregationRow& row, const Energies& energies, int column)
       : plain(energies), truncation(row.prior.truncation) {
+    const hn::CappedTag<float, 4> d;
     float smallest[4];
     min_energies(plain, row.disparities, smallest);
-    for (int p = 0; p < 4; ++p) {
-      const float at = column + p < row.end ? row.prior.centre[column + p] : 0.0f;
-      const bool known = at == at;
-      centre[p] = known ? at : 0.0f;
-      weight[p] = known ? row.prior.weight * std::min(1.0f, (smallest[p] + prior_cost_offset) / prior_full_cost) : 0.0f;
+    for (std::size_t p = 0; p < 4; p += hn::Lanes(d)) {
+      const auto at = hn::LoadU(d, row.prior.centre + column + p);
+      const auto known = hn::Eq(at, at);
+      const auto cost = hn::Add(hn::LoadU(d, smallest + p), hn::Set(d, prior_cost_offset));
+      const auto share = hn::Min(hn::Set(d, 1.0f), hn::Div(cost, hn::Set(d, prior_full_cost)));
+      hn::StoreU(hn::IfThenElseZero(known, at), d, centre + p);
+      hn::StoreU(hn::IfThenElseZero(known, hn::Mul(hn::Set(d, row.prior.weight), share)), d, weight + p);
     }
   }
 
@@ -123,18 +139,34 @@ struct StripWinners {
   float before[strip_columns], best[strip_columns], after[strip_columns];
 };
 
+/// Winners of four pixels from column on. Energies behind the last disparity are infinite up to a whole vector.
+HWY_INLINE void find_winners_of_four(const AggregationRow& row, int column, float* energies, std::int32_t* winners) {
+  const int lanes = static_cast<int>(hn::Lanes(Floats()));
+  const PlainEnergies plain{energies, row.pitch};
+  if (row.disparities <= lanes) {
+    const HeldEnergies held(plain, row.disparities);
+    if (row.prior.centre == nullptr) {
+      take_winners(held, lanes, winners);
+    } else {
+      const RegularisedCosts regularised(row, held, column);
+      take_winners(HeldEnergies(regularised, lanes), lanes, winners);
+    }
+    return;
+  }
+  for (int p = 0; p < 4; ++p) {
+    std::fill(energies + p * row.pitch + row.disparities, energies + (p + 1) * row.pitch, infinity);
+  }
+  if (row.prior.centre == nullptr) {
+    take_winners(plain, row.disparities, winners);
+  } else {
+    take_winners(RegularisedCosts(row, plain, column), row.disparities, winners);
+  }
+}
+
 HWY_INLINE void find_winners(const AggregationRow& row, int strip, float* energies, int columns, StripWinners& found) {
   for (int column = 0; column < columns; column += 4) {
     float* of_four = energies + column * row.pitch;
-    for (int p = 0; p < 4; ++p) {
-      std::fill(of_four + p * row.pitch + row.disparities, of_four + (p + 1) * row.pitch, infinity);
-    }
-    const PlainEnergies plain{of_four, row.pitch};
-    if (row.prior.centre == nullptr) {
-      take_winners(plain, row.disparities, found.winner + column);
-    } else {
-      take_winners(RegularisedCosts(row, plain, strip + column), row.disparities, found.winner + column);
-    }
+    find_winners_of_four(row, strip + column, of_four, found.winner + column);
     for (int p = 0; p < 4; ++p) {
       // A winner at an end has no neighbour there: what is read instead is not used.
       const int winner = std::clamp(found.winner[column + p], 1, std::max(1, row.disparities - 2));
