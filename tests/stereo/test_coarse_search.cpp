@@ -21,7 +21,20 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-const PerspectiveShift no_road{.enabled = false};
+PerspectiveShift shift_of(const DisparityPlane& road, double delta_p) {
+  PerspectiveShift shift;
+  shift.road = road;
+  shift.delta_p = delta_p;
+  return shift;
+}
+
+PerspectiveShift no_shift() {
+  PerspectiveShift shift;
+  shift.enabled = false;
+  return shift;
+}
+
+const PerspectiveShift no_road = no_shift();
 
 class SlowCoarseSearchScene : public testing::TestWithParam<const char*> {};
 
@@ -82,8 +95,7 @@ TEST(CoarseSearch, RangesHoldRaisedObject) {
   const auto pair =
       test::textured_pair(256, 192, [](double u, double v) { return u > 80 && u < 128 && v > 30 && v < 70 ? 34 : 20; });
   CoarseSearch search({}, 1);
-  const PerspectiveShift road{.road = {20, 0, 0}, .delta_p = 20};
-  ASSERT_TRUE(search.find({pair.reference, pair.target, nullptr, 48}, road));
+  ASSERT_TRUE(search.find({pair.reference, pair.target, nullptr, 48}, shift_of({20, 0, 0}, 20)));
   const SearchRanges* ranges = search.ranges();
   ASSERT_NE(ranges, nullptr);
   EXPECT_LE(ranges->reference(0, 0).first, 19);
@@ -149,7 +161,7 @@ TEST(CoarseSearch, PriorIsRoadWhereTextureIsMissing) {
     std::fill(pair.target.row(v) + 120 - picture, pair.target.row(v) + 240 - picture, std::int16_t{2000});
   }
   CoarseSearch search({}, 2);
-  ASSERT_TRUE(search.find({pair.reference, pair.target, nullptr, 32}, [](double, double) { return double{road}; }));
+  ASSERT_TRUE(search.find({pair.reference, pair.target, nullptr, 32}, shift_of({road, 0, 0}, road)));
   int inside = 0, outside = 0;
   for_each_inside(search.prior(), 4, 16, [&](double u, double v, float found) {
     // The block and its gradients reach four coarse pixels, and the target's flat region begins at its own edge.
@@ -192,7 +204,7 @@ TEST(CoarseSearch, IsIndependentOfThreads) {
   std::vector<int> first_column(230);
   for (std::size_t v = 0; v < first_column.size(); ++v) first_column[v] = static_cast<int>(v / 8);
   const MatchInput input{pair.reference, pair.target, first_column.data(), 40};
-  const auto road = [](double /*u*/, double v) { return 9 + 0.03 * v; };
+  const PerspectiveShift road = shift_of({9, 0.03, 0}, 40);
   CoarseSearch one({}, 1), three({}, 3);
   ASSERT_TRUE(one.find(input, road));
   ASSERT_TRUE(three.find(input, road));
