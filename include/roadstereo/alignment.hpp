@@ -6,11 +6,21 @@
 
 namespace roadstereo {
 
+/// A line of vertical offsets, pixels: constant + per_column·x + per_row·v at column x of the right image and row v.
+struct RowOffset {
+  double constant_px = 0;
+  double per_column = 0;
+  double per_row = 0;
+
+  double at(double x, double v) const { return constant_px + per_column * x + per_row * v; }
+};
+
 /// Vertical offset v_right − v_left of the matched points of a pair.
 struct RowAlignment {
   double median_px = 0;  ///< median vertical offset, pixels
   double sigma_px = 0;   ///< robust standard deviation (1.4826 · MAD), pixels
   int points = 0;        ///< matched points; with fewer than 20 the offset is unknown
+  RowOffset fit;         ///< robust fit; without slopes where none is significant, 0 where the offset is not
 
   bool known() const { return points >= 20; }
 };

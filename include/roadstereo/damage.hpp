@@ -10,6 +10,7 @@
 #include "roadstereo/calibration.hpp"
 #include "roadstereo/ground_plane.hpp"
 #include "roadstereo/image.hpp"
+#include "roadstereo/perspective_shift.hpp"
 #include "roadstereo/road_model.hpp"
 #include "roadstereo/severity.hpp"
 
@@ -44,7 +45,7 @@ struct DamageInput {
   ImageView<const float> sigma;  ///< standard error of ℓ, pixels; when absent, noise is estimated from `transformed`
   ImageView<const std::int16_t> grey;   ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
   ImageView<const std::int16_t> right;  ///< right image; with `grey`, tells what one camera alone sees from damage
-  double row_offset_px = 0;             ///< the rows of `right` lie this much lower than those of `grey`
+  Misalignment misalignment;            ///< of `right`, as `disparity` has it undone
   std::optional<DisparityPlane> plane;  ///< the road's plane in ℓ; required for metric results
   std::optional<StereoCalibration> calibration;  ///< required for metric results
 };

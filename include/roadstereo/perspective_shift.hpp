@@ -6,15 +6,35 @@
 
 namespace roadstereo {
 
+/// What the rectification left of a wrong pose of the target's camera, small: its rows lie lower, and it is turned
+/// about its optical axis. A point at column x and row v of the view as it should be lies `columns_at` to the right of
+/// that and `rows_at` below it.
+struct Misalignment {
+  double rows_px = 0;    ///< offset of the rows at the principal point, pixels
+  double turn_rad = 0;   ///< clockwise; it moves rows and columns
+  double row_scale = 0;  ///< relative; a wrong lens or tilt, which move columns each in its own way, and are left there
+  double cx_px = 0;      ///< principal point
+  double cy_px = 0;
+
+  ROADSTEREO_HD double columns_at(double v) const { return -turn_rad * (v - cy_px); }
+  ROADSTEREO_HD double rows_at(double x, double v) const {
+    return rows_px + turn_rad * (x - cx_px) + row_scale * (v - cy_px);
+  }
+  /// The plane of the disparities without it, from that of the disparities between the images as they are.
+  ROADSTEREO_HD DisparityPlane undone(const DisparityPlane& plane) const {
+    return {plane.a0 + turn_rad * cy_px, plane.a1 - turn_rad, plane.a2};
+  }
+};
+
 /// Shift of the perspective transformation: the target pixel at column x of the transformed image comes from column
 /// x − at(x, v) of the target image. C++17, for kernels.
 struct PerspectiveShift {
-  DisparityPlane road;       ///< Δu, eq. (4)
-  double delta_p = 0;        ///< δp, pixels: residual disparity of the road
-  int disparities = 1;       ///< D: residual disparities 0 … D−1 are searched
-  bool whole_pixel = false;  ///< shifts are rounded to whole pixels
-  bool enabled = true;       ///< false: every shift is 0
-  double row_offset = 0;     ///< the target's rows lie this much lower than the reference's, pixels; also undone
+  DisparityPlane road;             ///< Δu, eq. (4)
+  double delta_p = 0;              ///< δp, pixels: residual disparity of the road
+  int disparities = 1;             ///< D: residual disparities 0 … D−1 are searched
+  bool whole_pixel = false;        ///< shifts are rounded to whole pixels
+  bool enabled = true;             ///< false: every shift is 0
+  Misalignment misalignment = {};  ///< of the target; also undone
 
   /// max(0, Δu − δp), pixels.
   ROADSTEREO_HD double at(double x, double v) const {

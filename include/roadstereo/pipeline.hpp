@@ -67,7 +67,7 @@ struct StageTimes {
 /// Result for one pair. All maps have the size of the images.
 struct FrameResult {
   GreyImage grey;            ///< the left image
-  GreyImage right;           ///< the right image; its rows lie `shift.row_offset` lower
+  GreyImage right;           ///< the right image; misaligned by `shift.misalignment`
   Image<float> disparity;    ///< ℓ: left-image disparities, pixels, NaN invalid
   Image<float> sigma;        ///< standard error of `disparity`, pixels, NaN where that is invalid
   Image<std::uint8_t> mask;  ///< of `Pipeline::set_mask`, not 0 where pixels are left out; empty without one
@@ -91,7 +91,7 @@ struct PipelineState {
   int height = 0;                   ///< pixels
   std::optional<TrackedRoad> road;  ///< the last frame's road; absent when it had none
   double roll_rad = 0;              ///< ψ(t), start of the descent of ψ(t+1), eq. (24); 0 when not observable
-  double row_offset_px = 0;         ///< of the target's rows; measured whenever the road model is estimated anew
+  Misalignment misalignment;        ///< of the target; measured whenever the road model is estimated anew
 };
 
 /// Runs section 3 of the paper on successive stereo pairs. Keeps the state and the scratch memory between frames. Not

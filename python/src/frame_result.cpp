@@ -57,12 +57,20 @@ void bind_geometry(py::module_& module) {
       .field("pixels", &RollEstimate::pixels, "Disparities used.")
       .field("residual_px", &RollEstimate::residual_px,
              "Standard deviation of the disparities around the model, pixels.");
+  Record<RowOffset>(module, "RowOffset", "A line of vertical offsets.")
+      .field("constant_px", &RowOffset::constant_px, "At column 0 and row 0, pixels.")
+      .field("per_column", &RowOffset::per_column, "Pixels per column of the right image.")
+      .field("per_row", &RowOffset::per_row, "Pixels per row.");
+  Record<Misalignment>(module, "Misalignment", "What the rectification left of a wrong pose of the right camera.")
+      .field("rows_px", &Misalignment::rows_px, "How much lower its rows lie at the principal point, pixels.")
+      .field("turn_rad", &Misalignment::turn_rad, "Turn about its optical axis, clockwise, radians.")
+      .field("row_scale", &Misalignment::row_scale, "Relative difference of the scale of its rows.");
   Record<PerspectiveShift>(module, "PerspectiveShift", "Shift of the perspective transformation.")
       .field("road", &PerspectiveShift::road, "Disparities of the road.")
       .field("delta_p", &PerspectiveShift::delta_p, "Disparity of the road after the shift, pixels.")
       .field("disparities", &PerspectiveShift::disparities, "Number of disparities searched after the shift.")
       .field("enabled", &PerspectiveShift::enabled, "False: nothing was shifted.")
-      .field("row_offset", &PerspectiveShift::row_offset, "Offset of the rows that was undone, pixels.");
+      .field("misalignment", &PerspectiveShift::misalignment, "That of the right image, which was undone.");
   Record<RoadResiduals>(module, "RoadResiduals", "Standard deviations of the transformed disparities, eq. (37).")
       .field("sigma_road_px", &RoadResiduals::sigma_road_px, "σ_d of the road, pixels.")
       .field("sigma_all_px", &RoadResiduals::sigma_all_px, "σ_d of all valid pixels, pixels.")
@@ -70,7 +78,8 @@ void bind_geometry(py::module_& module) {
   Record<RowAlignment>(module, "RowAlignment", "Vertical offset of the matched points of a pair.")
       .field("median_px", &RowAlignment::median_px, "Median of right minus left row, pixels.")
       .field("sigma_px", &RowAlignment::sigma_px, "Robust standard deviation, pixels.")
-      .field("points", &RowAlignment::points, "Matched points; with fewer than 20 the offset is unknown.");
+      .field("points", &RowAlignment::points, "Matched points; with fewer than 20 the offset is unknown.")
+      .field("fit", &RowAlignment::fit, "Robust fit; without slopes where none is significant.");
 }
 
 void bind_times(py::module_& module) {

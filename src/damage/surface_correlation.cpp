@@ -73,10 +73,12 @@ class SurfaceComparison {
     return -0.5F * float{block_pixels} * std::log(std::max(1 - correlation * correlation, min_noise_share));
   }
 
-  /// Right image at column u of the row that belongs to row v; NaN outside.
-  float right_at(float u, int v) const {
+  /// Right image at column x of row v, but for its misalignment; NaN outside.
+  float right_at(float x, int v) const {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-    const double row = v + input_.row_offset_px;
+    const Misalignment& by = input_.misalignment;
+    const double row = v + by.rows_at(double{x}, v);
+    const auto u = static_cast<float>(double{x} + by.columns_at(v));
     const auto first = static_cast<int>(std::floor(row));
     if (first < 1 || first + 2 >= input_.right.height() || !(u >= 1) ||
         !(u < static_cast<float>(input_.right.width() - 2))) {

@@ -54,16 +54,17 @@ void measure_rectification(const FrameResult& frame, const DamageMap& damage,
   if (!fit) return;
   const auto& [offset, scale, turn, right, both] = fit->value;
   health.row_offset_px = fit->focal_px * offset;
-  health.row_correction_px = frame.shift.row_offset;
+  const Misalignment& undone = frame.shift.misalignment;
+  health.row_correction_px = undone.rows_at(fit->right_cx_px, fit->cy_px);
   health.row_scale = scale;
   health.row_turn_rad = turn;
   health.distortion_right = right;
   health.distortion_both = both;
-  const double rest = health.row_offset_px - health.row_correction_px;
   std::vector<double> errors;
   errors.reserve(samples.size());
   for (const RowSample& sample : samples) {
-    errors.push_back(std::abs(rest + fit->slope_px(sample.u, sample.v, -sample.du)));
+    errors.push_back(std::abs(health.row_offset_px + fit->slope_px(sample.u, sample.v, -sample.du) -
+                              undone.rows_at(sample.u + sample.du, sample.v)));
   }
   health.row_error_px = lower_quantile(errors, share);
   health.bowl_px = beyond_quadratic(samples, damage, *fit);

@@ -10,6 +10,7 @@
 #include "core/scratch.hpp"
 #include "pipeline/host_stages.hpp"
 #include "road/rig_prior.hpp"
+#include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/adaptive_support.hpp"
@@ -140,19 +141,32 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   if (options.check_rows) measure_rows(grey);
 }
 
+/// The misalignment that makes the offsets of the rows.
+Misalignment misalignment_of(const RowOffset& rows, int width, int height,
+                             const std::optional<StereoCalibration>& calibration) {
+  const double cx = calibration ? calibration->cx_px + calibration->disparity_offset_px : 0.5 * (width - 1);
+  const double cy = calibration ? calibration->cy_px : 0.5 * (height - 1);
+  return {rows.at(cx, cy), rows.per_column, rows.per_row, cx, cy};
+}
+
 /// Measures the vertical offset of the pair, and keeps it where it is to be corrected.
 void Pipeline::State::measure_rows(const GreyPair& grey) {
   constexpr double max_offset_px = 0.5;
   constexpr double max_spread_px = 1.0;
   result.rows = measure_row_alignment(grey.left, grey.right, threads);
-  carried.row_offset_px = 0;
+  carried.misalignment = {};
   if (!result.rows.known()) return;
-  constexpr double max_correction_px = 2.0;
-  constexpr double min_correction_px = 0.1;
-  const double offset = std::abs(result.rows.median_px);
-  if (options.correct_rows && offset >= min_correction_px && offset <= max_correction_px &&
+  constexpr double min_correction_px = 0.05;  // interpolation between rows blurs: less is not worth it
+  const Misalignment misalignment = misalignment_of(result.rows.fit, width, height, calibration);
+  double largest = 0;
+  for (const int u : {0, width - 1}) {
+    for (const int v : {0, height - 1}) {
+      largest = std::max({largest, std::abs(misalignment.rows_at(u, v)), std::abs(misalignment.columns_at(v))});
+    }
+  }
+  if (options.correct_rows && largest >= min_correction_px && largest <= max_misalignment_px &&
       result.rows.sigma_px <= max_spread_px) {
-    carried.row_offset_px = result.rows.median_px;
+    carried.misalignment = misalignment;
   }
   if (std::abs(result.rows.median_px) > max_offset_px || result.rows.sigma_px > max_spread_px) {
     result.warnings.push_back(format_message("rows-disagree: the rows of the pair do not agree: vertical offset ",
@@ -165,7 +179,8 @@ void Pipeline::State::measure_rows(const GreyPair& grey) {
 MatchInput Pipeline::State::transform_perspective(const GreyPair& pair) {
   const StageTimer timer(result.ms.perspective);
   result.shift = plan_perspective(result.road, calibration, width, height, options.perspective);
-  result.shift.row_offset = carried.row_offset_px;
+  result.shift.misalignment = carried.misalignment;
+  if (result.shift.enabled) result.shift.road = carried.misalignment.undone(result.shift.road);
   return stages->transform_perspective(pair, result.shift);
 }
 
@@ -383,7 +398,7 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
   input.sigma = frame.sigma;
   input.grey = frame.grey;
   input.right = frame.right;
-  input.row_offset_px = frame.shift.row_offset;
+  input.misalignment = frame.shift.misalignment;
   input.plane = frame.geometry.plane;
   input.calibration = calibration;
   find_damage(input, options, threads, result);

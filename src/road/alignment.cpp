@@ -12,6 +12,7 @@
 #include "core/parallel.hpp"
 #include "road/block_alignment.hpp"
 #include "road/plane_fit.hpp"
+#include "road/row_offset_fit.hpp"
 #include "road/strip_correlation.hpp"
 
 namespace roadstereo {
@@ -201,14 +202,17 @@ std::vector<RowSample> sample_row_alignment(ImageView<const std::int16_t> left, 
 
 RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                    int threads) {
+  const std::vector<RowSample> samples = sample_row_alignment(left, right, threads);
   std::vector<double> offsets;
-  for (const RowSample& sample : sample_row_alignment(left, right, threads)) offsets.push_back(sample.dv);
+  offsets.reserve(samples.size());
+  for (const RowSample& sample : samples) offsets.push_back(sample.dv);
   RowAlignment alignment;
   alignment.points = static_cast<int>(offsets.size());
   if (offsets.empty()) return alignment;
   alignment.median_px = upper_median(offsets);
   for (double& offset : offsets) offset -= alignment.median_px;
   alignment.sigma_px = gaussian_mad * upper_median_magnitude(offsets);
+  if (alignment.known()) alignment.fit = fit_row_offset(samples);
   return alignment;
 }
 

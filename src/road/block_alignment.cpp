@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/cholesky.hpp"
+#include "road/cubic.hpp"
 
 namespace roadstereo {
 namespace {
@@ -102,13 +103,14 @@ class LeftBlock {
 bool sample_row(ImageView<const std::int16_t> right, const LeftBlock& block, const Parameters& p, int y, Row& row) {
   const double at_v = block.v() + y + p[1], step = 1 + p[3];
   const double start = block.u() - block.radius() * step + p[0] + p[2] * y, end = start + (block.width() - 1) * step;
-  if (!(at_v >= 0 && at_v < right.height() - 1 && std::min(start, end) >= 0 &&
+  if (!(at_v >= 1 && at_v < right.height() - 2 && std::min(start, end) >= 0 &&
         std::max(start, end) < right.width() - 1))
     return false;
   const int whole_v = static_cast<int>(at_v);
   const auto low = static_cast<float>(at_v - whole_v), mean = static_cast<float>(block.mean());
-  const std::int16_t* above = right.row(whole_v);
-  const std::int16_t* below = right.row(whole_v + 1);
+  const CubicWeights weights = cubic_weights(low);
+  const std::int16_t *before = right.row(whole_v - 1), *above = right.row(whole_v);
+  const std::int16_t *below = right.row(whole_v + 1), *beyond = right.row(whole_v + 2);
   constexpr float unit = 1.0f / grey_scale;
   for (int x = 0; x < block.width(); ++x) {
     const double at_u = start + x * step;
@@ -116,10 +118,13 @@ bool sample_row(ImageView<const std::int16_t> right, const LeftBlock& block, con
     const auto f = static_cast<float>(at_u - whole_u);
     const auto across_above = static_cast<float>(above[whole_u + 1] - above[whole_u]);
     const auto across_below = static_cast<float>(below[whole_u + 1] - below[whole_u]);
-    const float top = static_cast<float>(above[whole_u]) + f * across_above;
-    const float bottom = static_cast<float>(below[whole_u]) + f * across_below;
+    const auto between = [whole_u, f](const std::int16_t* from) {
+      return static_cast<float>(from[whole_u]) + f * static_cast<float>(from[whole_u + 1] - from[whole_u]);
+    };
+    const float top = between(above), bottom = between(below);
     const auto i = static_cast<std::size_t>(x);
-    row.grey[i] = unit * (top + low * (bottom - top)) - mean;
+    // Linear interpolation blurs between two rows and not on one, which would draw the block towards whole rows.
+    row.grey[i] = unit * weighted(weights, between(before), top, bottom, between(beyond)) - mean;
     row.across[i] = unit * (across_above + low * (across_below - across_above));
     row.down[i] = unit * (bottom - top);
     row.residual[i] = block.row(y)[i] - static_cast<float>(p[4]) * row.grey[i] - static_cast<float>(p[5]);

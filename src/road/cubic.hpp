@@ -12,10 +12,12 @@ struct CubicWeights {
 };
 
 /// The weights around the place f, 0 ≤ f < 1.
-ROADSTEREO_HD inline CubicWeights cubic_weights(double f) {
-  const double f2 = f * f, f3 = f2 * f;
-  return {static_cast<float>(-0.5 * f + f2 - 0.5 * f3), static_cast<float>(1 - 2.5 * f2 + 1.5 * f3),
-          static_cast<float>(0.5 * f + 2 * f2 - 1.5 * f3), static_cast<float>(-0.5 * f2 + 0.5 * f3)};
+template <class Real>
+ROADSTEREO_HD inline CubicWeights cubic_weights(Real f) {
+  constexpr Real half = Real(0.5), one_and_half = Real(1.5), two_and_half = Real(2.5);
+  const Real f2 = f * f, f3 = f2 * f;
+  return {static_cast<float>(f2 - half * (f + f3)), static_cast<float>(1 - two_and_half * f2 + one_and_half * f3),
+          static_cast<float>(half * f + 2 * f2 - one_and_half * f3), static_cast<float>(half * (f3 - f2))};
 }
 
 /// What lies between four rows.

@@ -46,23 +46,41 @@ double max_scene_disparity(const RoadModelEstimate& road, int width) {
   return road.max_disparity_px > 0 ? std::min(road.max_disparity_px * 1.1 + 8, largest) : largest;
 }
 
-/// Pixels that cubic interpolation reads beyond the ends of a row: copies of the border.
-constexpr std::ptrdiff_t border = 2;
+/// Pixels that cubic interpolation reads beyond the ends of a row, where the target is misaligned, too: copies of the
+/// border.
+constexpr std::ptrdiff_t border = 2 + static_cast<std::ptrdiff_t>(max_misalignment_px);
 
-/// padded = row v of the image, or what lies between its rows where v is no whole number.
-void copy_with_border(ImageView<const std::int16_t> image, double v, float* padded) {
+/// out[x] = what lies `f_at_first` + x·`f_step` below row v of the image, for x in [0, columns); both are 0 … 1 there.
+void interpolate_rows(ImageView<const std::int16_t> image, int v, int first, int columns, float f_at_first,
+                      float f_step, float* out) {
+  const auto row = [&](int below) { return image.row(std::clamp(v + below, 0, image.height() - 1)) + first; };
+  const std::int16_t *a = row(-1), *b = row(0), *c = row(1), *d = row(2);
+  if (f_at_first == 0 && f_step == 0) {
+    std::copy_n(b, columns, out);
+    return;
+  }
+  for (int x = 0; x < columns; ++x) {
+    const CubicWeights weight = cubic_weights(f_at_first + static_cast<float>(x) * f_step);
+    out[x] = weighted(weight, a[x], b[x], c[x], d[x]);
+  }
+}
+
+/// padded = row v of the view as it should be, in runs of columns that lie between the same two rows of the image.
+void copy_with_border(ImageView<const std::int16_t> image, int v, const Misalignment& misalignment, float* padded) {
   const int width = image.width();
-  const double whole = std::floor(v);
-  const auto row = [&](int below) {
-    return image.row(std::clamp(static_cast<int>(whole) + below, 0, image.height() - 1));
-  };
+  const double slope = misalignment.turn_rad;
   float* out = padded + border;
-  if (v == whole) {
-    std::copy_n(row(0), width, out);
-  } else {
-    const CubicWeights weight = cubic_weights(v - whole);
-    const std::int16_t *a = row(-1), *b = row(0), *c = row(1), *d = row(2);
-    for (int u = 0; u < width; ++u) out[u] = weighted(weight, a[u], b[u], c[u], d[u]);
+  for (int begin = 0; begin < width;) {
+    const double at_begin = misalignment.rows_at(begin, v), whole = std::floor(at_begin);
+    int end = width;
+    if (slope != 0) {
+      const double limit = slope > 0 ? whole + 1 : whole;  // where the next two rows begin
+      const double run = std::ceil((limit - at_begin) / slope);
+      end = run < width - begin ? begin + std::max(1, static_cast<int>(run)) : width;
+    }
+    interpolate_rows(image, v + static_cast<int>(whole), begin, end - begin, static_cast<float>(at_begin - whole),
+                     static_cast<float>(slope), out + begin);
+    begin = end;
   }
   std::fill_n(padded, border, out[0]);
   std::fill_n(out + width, border, out[width - 1]);
@@ -81,16 +99,17 @@ void sample_cubic(const float* row, int whole, float f_at_first, float f_step, i
 /// One row of the transformed target from column `first` on, in runs of columns whose shift has one whole part.
 void transform_row(const float* row, const PerspectiveShift& shift, int v, int first, int width, std::int16_t* out) {
   for (int begin = first; begin < width;) {
-    const double at_begin = shift.at(begin, v);
+    const bool is_shifted = shift.at(begin, v) > 0;
+    const double at_begin = source_shift(shift, begin, v);
     const int whole = static_cast<int>(std::ceil(at_begin));
     int end = begin + 1;
     for (int reach = width - begin; reach > 0; reach /= 2) {
       const auto inside = [&](int x) {
-        return static_cast<int>(std::ceil(shift.at(x, v))) == whole && (shift.at(x, v) > 0) == (at_begin > 0);
+        return static_cast<int>(std::ceil(source_shift(shift, x, v))) == whole && (shift.at(x, v) > 0) == is_shifted;
       };
       while (end + reach <= width && inside(end + reach - 1)) end += reach;
     }
-    const double step = end - begin > 1 ? (shift.at(end - 1, v) - at_begin) / (end - 1 - begin) : 0;
+    const double step = end - begin > 1 ? (source_shift(shift, end - 1, v) - at_begin) / (end - 1 - begin) : 0;
     sample_cubic(row, whole, static_cast<float>(whole - at_begin), static_cast<float>(-step), begin, end, out);
     begin = end;
   }
@@ -154,7 +173,7 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
     for (int v = first_row; v < last_row; ++v) {
       const int first = find_first_column(shift, v, width);
       first_column[static_cast<std::size_t>(v)] = first;
-      copy_with_border(target, v + shift.row_offset, in);
+      copy_with_border(target, v, shift.misalignment, in);
       std::fill_n(transformed.row(v), first, std::int16_t{0});
       transform_row(in, shift, v, first, width, transformed.row(v));
     }

@@ -9,6 +9,14 @@ ROADSTEREO_HD inline bool comes_from_outside(const PerspectiveShift& shift, int 
   return x - shift.at(x, v) < 0;
 }
 
+/// Largest misalignment that is undone, pixels.
+inline constexpr double max_misalignment_px = 2;
+
+/// How far left of column x of the transformed target its source lies in the target, pixels.
+ROADSTEREO_HD inline double source_shift(const PerspectiveShift& shift, int x, int v) {
+  return shift.at(x, v) - shift.misalignment.columns_at(v);
+}
+
 /// First column of row v whose source lies inside the target image; `width` when none does.
 ROADSTEREO_HD inline int find_first_column(const PerspectiveShift& shift, int v, int width) {
   const double tilt = shift.road.a2 < 0.9 ? shift.road.a2 : 0.9;

@@ -14,15 +14,17 @@ namespace {
 
 class CudaPerspective : public test::OnDevice {};
 
-/// Shifts of every kind: sub-pixel, whole pixels, rows with an offset, none, a horizon within the image, one that moves
-/// everything out of it.
+/// Shifts of every kind: sub-pixel, whole pixels, rows with an offset, a turn, none, a horizon within the image, one
+/// that moves everything out of it.
 std::vector<PerspectiveShift> shifts() {
   const DisparityPlane rolled{-2.3, 0.31, -0.043}, level{10.1, 0.2, 0}, far_away{500, 0.1, 0.01};
   return {{rolled, 3.5, 32},
           {rolled, 3.5, 32, true},
-          {level, 6, 24, false, true, 0.3},
-          {rolled, 2, 24, false, true, -1.7},
-          {level, 6, 24, true, true, 1},
+          {level, 6, 24, false, true, {0.3}},
+          {rolled, 2, 24, false, true, {-1.7}},
+          {level, 6, 24, true, true, {1}},
+          {rolled, 2, 24, false, true, {0.2, 0.012, -0.003, 60, 25}},
+          {level, 6, 24, false, false, {0, -0.02, 0, 300, 20}},
           {level, 6, 24, false, false},
           {far_away, 6, 24}};
 }

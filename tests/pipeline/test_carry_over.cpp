@@ -221,10 +221,10 @@ TEST(CarryOver, FramesOfAnotherSizeResetTheState) {
   PipelineState of_another_size;
   of_another_size.width = 2 * width;
   of_another_size.height = 2 * height;
-  of_another_size.row_offset_px = 1;
+  of_another_size.misalignment.rows_px = 1;
   pipeline.restore(of_another_size);
-  EXPECT_EQ(pipeline.process(pair.left.view(), pair.right.view()).shift.row_offset, 0);
-  EXPECT_EQ(pipeline.carried().row_offset_px, 0);
+  EXPECT_EQ(pipeline.process(pair.left.view(), pair.right.view()).shift.misalignment.rows_px, 0);
+  EXPECT_EQ(pipeline.carried().misalignment.rows_px, 0);
 }
 
 }  // namespace

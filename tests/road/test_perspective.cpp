@@ -106,12 +106,41 @@ TEST(TransformTarget, UndoesRowOffsetOfQuadraticTexture) {
     for (const double offset : {0.5, -0.5, 1.5, -2.0, 0.0}) {
       SCOPED_TRACE(offset);
       PerspectiveShift shift = shift_by({6.25, 0.1, 0}, 2);
-      shift.row_offset = offset;
+      shift.misalignment.rows_px = offset;
       GreyImage transformed;
       std::vector<int> first;
       transform_target(target, shift, 2, transformed, first);
       for (int v = 4; v + 4 < height; ++v) {
         for (int x = first[static_cast<std::size_t>(v)]; x < 40; ++x) ASSERT_EQ(transformed(x, v), grey(v + offset));
+      }
+    }
+  }
+}
+
+// The grey levels are a linear function of the place, which cubic interpolation reproduces.
+TEST(TransformTarget, UndoesTurnAndRowScale) {
+  constexpr int width = 60, height = 40;
+  const auto grey = [](double u, double v) { return 200 + 7 * u + 20 * v; };
+  GreyImage target(width, height);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) target(u, v) = static_cast<std::int16_t>(std::lround(grey(u, v)));
+  }
+  for (const double turn : {0.01, -0.01, 0.0}) {
+    for (const double scale : {0.0, 0.005}) {
+      SCOPED_TRACE(turn);
+      PerspectiveShift shift = shift_by({3, 0.05, 0.02}, 0);
+      shift.misalignment = {0.4, turn, scale, 30, 20};
+      GreyImage transformed;
+      std::vector<int> first;
+      transform_target(target, shift, 2, transformed, first);
+      for (int v = 6; v + 6 < height; ++v) {
+        for (int x = first[static_cast<std::size_t>(v)] + 4; x + 4 < width; ++x) {
+          const double ideal = x - (3 + 0.05 * v + 0.02 * x);
+          // A turn by θ moves (x, y) from the principal point by (−θ y, θ x), a scale s of the rows by (0, s y).
+          const double column = ideal - turn * (v - 20);
+          const double row = v + 0.4 + turn * (ideal - 30) + scale * (v - 20);
+          ASSERT_NEAR(transformed(x, v), grey(column, row), 0.6) << x << ", " << v;
+        }
       }
     }
   }
@@ -123,7 +152,7 @@ TEST(TransformTarget, WholeRowOffsetCopiesRows) {
   for (const int offset : {1, -2}) {
     PerspectiveShift shift;
     shift.enabled = false;
-    shift.row_offset = offset;
+    shift.misalignment.rows_px = offset;
     GreyImage transformed;
     std::vector<int> first;
     transform_target(pair.target, shift, 1, transformed, first);

@@ -74,12 +74,21 @@ void each_field(TrackedRoad& road, Visit& visit) {
 }
 
 template <class Visit>
+void each_field(Misalignment& misalignment, Visit& visit) {
+  visit("rows_px", misalignment.rows_px);
+  visit("turn_rad", misalignment.turn_rad);
+  visit("row_scale", misalignment.row_scale);
+  visit("cx_px", misalignment.cx_px);
+  visit("cy_px", misalignment.cy_px);
+}
+
+template <class Visit>
 void each_field(PipelineState& state, Visit& visit) {
   visit("width", state.width);
   visit("height", state.height);
   visit("road", state.road);
   visit("roll_rad", state.roll_rad);
-  visit("row_offset_px", state.row_offset_px);
+  visit("misalignment", state.misalignment);
 }
 
 template <class Visit>

@@ -12,33 +12,28 @@ namespace {
 
 constexpr int row_threads = 128;
 
-/// Rows of the target that a row of the transformed one lies between; one row where it has no offset.
+/// Row v of the target as it should be: a line in the image where that is misaligned.
 struct RowSamples {
-  const std::int16_t *before, *at, *after, *beyond;
-  CubicWeights weights;
-  bool between;
-  int last;  ///< column; beyond it and before the first one the border goes on
+  ImageView<const std::int16_t> image;
+  int v;
+  float offset, slope;  ///< at column 0, and its change with the column
 
-  __device__ void prepare(const ImageView<const std::int16_t>& image, double v) {
-    const double whole = floor(v);
-    const auto row = [&](int below) {
-      const int wanted = static_cast<int>(whole) + below;
-      return image.row(wanted < 0 ? 0 : wanted >= image.height() ? image.height() - 1 : wanted);
-    };
-    before = row(-1);
-    at = row(0);
-    after = row(1);
-    beyond = row(2);
-    weights = cubic_weights(v - whole);
-    between = v != whole;
-    last = image.width() - 1;
+  __device__ void prepare(const ImageView<const std::int16_t>& target, const Misalignment& misalignment, int row) {
+    image = target;
+    v = row;
+    offset = static_cast<float>(misalignment.rows_at(0, row));
+    slope = static_cast<float>(misalignment.turn_rad);
   }
 
   __device__ float operator()(int u) const {
-    const int x = u < 0 ? 0 : u > last ? last : u;
-    if (!between) return static_cast<float>(__ldg(at + x));
-    return weighted(weights, static_cast<float>(__ldg(before + x)), static_cast<float>(__ldg(at + x)),
-                    static_cast<float>(__ldg(after + x)), static_cast<float>(__ldg(beyond + x)));
+    const int x = u < 0 ? 0 : u >= image.width() ? image.width() - 1 : u;
+    const float by = offset + slope * static_cast<float>(x), whole = floorf(by);
+    const auto at = [&](int below) {
+      const int wanted = v + static_cast<int>(whole) + below, last = image.height() - 1;
+      return static_cast<float>(__ldg(image.row(wanted < 0 ? 0 : wanted > last ? last : wanted) + x));
+    };
+    if (by == whole) return at(0);
+    return weighted(cubic_weights(by - whole), at(-1), at(0), at(1), at(2));
   }
 };
 
@@ -46,6 +41,14 @@ struct RowSamples {
 struct PixelShift {
   int whole;
   float part;
+
+  /// The shift of a target that is misaligned by `columns`.
+  __device__ PixelShift less(float columns) const {
+    const float by = -part - columns, up = ceilf(by);
+    return {whole + static_cast<int>(up), up - by};
+  }
+};
+}
 };
 
 /// The shift along the columns of a block, in single precision from its first column.
@@ -76,6 +79,7 @@ struct TransformedPart {
   int first;  ///< column that comes from inside the target
   RowSamples samples;
   ShiftLine shift;
+  float columns;  ///< by which the target is misaligned
 };
 
 /// Double precision is slow on small GPUs: three threads do what needs it, each in a warp of its own.
@@ -88,7 +92,8 @@ __global__ void transform_rows(ImageView<const std::int16_t> target, Perspective
     part.first = find_first_column(shift, v, target.width());
     if (blockIdx.x == 0) first_column[v] = part.first;
   } else if (thread == warp_lanes) {
-    part.samples.prepare(target, v + shift.row_offset);
+    part.samples.prepare(target, shift.misalignment, v);
+    part.columns = static_cast<float>(shift.misalignment.columns_at(v));
   } else if (thread == 2 * warp_lanes) {
     part.shift.prepare(shift, begin, v);
   }
@@ -99,7 +104,9 @@ __global__ void transform_rows(ImageView<const std::int16_t> target, Perspective
     transformed(x, v) = 0;
     return;
   }
-  const PixelShift by = part.shift.uneven ? PixelShift{static_cast<int>(shift.at(x, v)), 0} : part.shift.at(thread);
+  const PixelShift planned =
+      part.shift.uneven ? PixelShift{static_cast<int>(shift.at(x, v)), 0} : part.shift.at(thread);
+  const PixelShift by = planned.less(part.columns);
   const int source = x - by.whole;
   transformed(x, v) = grey_between(part.samples(source - 1), part.samples(source), part.samples(source + 1),
                                    part.samples(source + 2), by.part, white);

@@ -21,13 +21,15 @@ namespace {
 
 constexpr int min_rows = 24;  // of a band
 
-/// The smallest of the first `count` costs, at most `uncorrelated_cost`; in several chains, so that compilers use vectors.
+/// The smallest of the first `count` costs, at most `uncorrelated_cost`; in several chains, so that compilers use
+/// vectors.
 float smallest_cost(const float* costs, int count) {
   std::array<float, 8> smallest{};
   smallest.fill(uncorrelated_cost);
   const int chains = static_cast<int>(smallest.size()), whole = count / chains * chains;
   for (int d = 0; d < whole; d += chains) {
-    for (std::size_t k = 0; k < smallest.size(); ++k) smallest[k] = std::min(smallest[k], costs[d + static_cast<int>(k)]);
+    for (std::size_t k = 0; k < smallest.size(); ++k)
+      smallest[k] = std::min(smallest[k], costs[d + static_cast<int>(k)]);
   }
   for (int d = whole; d < count; ++d) smallest[0] = std::min(smallest[0], costs[d]);
   return *std::min_element(smallest.begin(), smallest.end());

@@ -21,8 +21,8 @@ class CoarseSearch {
   /// Radius of the blocks from now on, coarse pixels; at first that of the options.
   void set_block_radius(int radius) { options_.block_radius = radius; }
 
-  /// Computes the prior and, where that saves work, the ranges; both are valid until the next call. `shift`: that of the
-  /// target, with the road. Returns false when the image is too small.
+  /// Computes the prior and, where that saves work, the ranges; both are valid until the next call. `shift`: that of
+  /// the target, with the road. Returns false when the image is too small.
   bool find(const MatchInput& input, const PerspectiveShift& shift);
 
   const DisparityPrior& prior() const { return prior_; }

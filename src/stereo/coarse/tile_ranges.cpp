@@ -19,7 +19,8 @@ void TileRanges::count(const Image<float>& coarse, int factor, int threads) {
   parallel_rows(down, 1, threads, [&](int first, int last, int) {
     for (int row = first; row < last; ++row) {
       const int begin = row == 0 ? 0 : std::max(0, row * tile_rows - tile_overlap);
-      const int end = row + 1 == down ? coarse.height() : std::min(coarse.height(), (row + 1) * tile_rows + tile_overlap);
+      const int end =
+          row + 1 == down ? coarse.height() : std::min(coarse.height(), (row + 1) * tile_rows + tile_overlap);
       const std::size_t counts = static_cast<std::size_t>(row) * static_cast<std::size_t>(across) * bins_;
       for (int v = begin; v < end; ++v) count_row(coarse.row(v), coarse.width(), factor, counts);
     }

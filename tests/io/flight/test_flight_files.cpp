@@ -70,7 +70,8 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   frame.road = {1.0 / 3, 2.0 / 7, -1e-17};
   frame.warnings = {"a \"quoted\" word", "line\nend"};
   frame.health.row_scale = 1.0 / 3;
-  frame.pipeline_state = {640, 360, TrackedRoad{{1.0 / 3, 1e-300, 5}, 0.1, 0.7}, 1.0 / 7, -0.3};
+  frame.pipeline_state = {
+      640, 360, TrackedRoad{{1.0 / 3, 1e-300, 5}, 0.1, 0.7}, 1.0 / 7, {-0.3, 1e-5, 1.0 / 9, 320.5, 180}};
   const FlightFrame back = read_flight_frame(flight_frame_json(frame));
   EXPECT_EQ(back.index, 7);
   EXPECT_EQ(back.time_s, frame.time_s);
@@ -84,7 +85,10 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   EXPECT_EQ(back.pipeline_state.road->model.a1, 1e-300);
   EXPECT_EQ(back.pipeline_state.road->inlier_share, 0.1);
   EXPECT_EQ(back.pipeline_state.road->correlation, 0.7);
-  EXPECT_EQ(back.pipeline_state.row_offset_px, -0.3);
+  EXPECT_EQ(back.pipeline_state.misalignment.rows_px, -0.3);
+  EXPECT_EQ(back.pipeline_state.misalignment.turn_rad, 1e-5);
+  EXPECT_EQ(back.pipeline_state.misalignment.row_scale, 1.0 / 9);
+  EXPECT_EQ(back.pipeline_state.misalignment.cx_px, 320.5);
   ASSERT_EQ(back.damages.size(), 2U);
   EXPECT_EQ(back.damages[0].metrics->max_depth_m.value, 0.1 / 3);
   EXPECT_EQ(back.damages[0].metrics->severity, Severity::medium);
