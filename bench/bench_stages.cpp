@@ -2,7 +2,6 @@
 
 #include <benchmark/benchmark.h>
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -107,8 +106,7 @@ void register_all() {
   });
   auto* coarse = add("stage/coarse_search", [](benchmark::State& state) {
     CoarseSearch search({}, 0);
-    const auto no_road = [](double, double) { return std::numeric_limits<double>::quiet_NaN(); };
-    run(state, [&](Frame& frame) { search.find(frame.input(), no_road); });
+    run(state, [&](Frame& frame) { search.find(frame.input(), frame.shift); });
   });
   for (const auto& size : sizes) coarse->Args(size);
 
