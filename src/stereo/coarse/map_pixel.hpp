@@ -32,7 +32,8 @@ ROADSTEREO_HD inline float median_of_rows(float a, float b, float own, float c, 
 
 /// Target column that column u with this disparity, at least −½, projects onto.
 ROADSTEREO_HD inline int target_column(int u, float disparity) {
-  const int column = u - static_cast<int>(disparity + 0.5F);
+  // lround would keep loops from being vectorised.
+  const int column = u - static_cast<int>(disparity + 0.5F);  // NOLINT(bugprone-incorrect-roundings)
   return column > 0 ? column : 0;
 }
 

@@ -34,7 +34,8 @@ ROADSTEREO_HD inline int disparity_bin(float disparity, int bins) {
 
 /// Target column, coarse pixels, of a disparity in full-size pixels, at least −½ coarse pixel.
 ROADSTEREO_HD inline int tile_target_column(int u, float disparity, float inverse_factor) {
-  return u - static_cast<int>(disparity * inverse_factor + 0.5F);
+  // lround would keep loops from being vectorised.
+  return u - static_cast<int>(disparity * inverse_factor + 0.5F);  // NOLINT(bugprone-incorrect-roundings)
 }
 
 /// Pixels that must have matched for a tile's range to be narrowed.
