@@ -20,10 +20,7 @@ struct Misalignment {
   ROADSTEREO_HD double rows_at(double x, double v) const {
     return rows_px + turn_rad * (x - cx_px) + row_scale * (v - cy_px);
   }
-  /// The plane of the disparities without it, from that of the disparities between the images as they are.
-  ROADSTEREO_HD DisparityPlane undone(const DisparityPlane& plane) const {
-    return {plane.a0 + turn_rad * cy_px, plane.a1 - turn_rad, plane.a2};
-  }
+  ROADSTEREO_HD bool is_zero() const { return rows_px == 0 && turn_rad == 0 && row_scale == 0; }
 };
 
 /// Shift of the perspective transformation: the target pixel at column x of the transformed image comes from column

@@ -54,6 +54,8 @@ class FrameStages {
   virtual GreyPair convert_to_grey(const FrameView& left, const FrameView& right) = 0;
   /// The pair in host memory.
   virtual GreyPair on_host(const GreyPair& pair) = 0;
+  /// transform_target without a road: the pair without the target's misalignment, valid until `transform_perspective`.
+  virtual GreyPair undo_misalignment(const GreyPair& pair, const Misalignment& misalignment) = 0;
   /// verify_road_model.
   virtual RoadModelEstimate verify_road_model(const GreyPair& pair, const TrackedRoad& previous) = 0;
   /// transform_target, π_tar → π_tar': returns the pair to match, without search ranges and prior.

@@ -8,6 +8,7 @@
 #include "core/parallel.hpp"
 #include "pipeline/pair_checks.hpp"
 #include "road/refinement/refinement_maps.hpp"
+#include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/coarse_search.hpp"
@@ -60,6 +61,11 @@ class HostStages final : public FrameStages {
   }
 
   GreyPair on_host(const GreyPair& pair) override { return pair; }
+
+  GreyPair undo_misalignment(const GreyPair& pair, const Misalignment& misalignment) override {
+    transform_target(pair.right, without_road(misalignment), threads_, transformed_target_, first_column_);
+    return {pair.left, transformed_target_};
+  }
 
   RoadModelEstimate verify_road_model(const GreyPair& pair, const TrackedRoad& previous) override {
     return roadstereo::verify_road_model(pair.left, pair.right, previous, calibration_, options_.road_model, threads_,

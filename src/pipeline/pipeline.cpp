@@ -71,6 +71,7 @@ struct Pipeline::State {
 
   void begin_frame(const FrameView& left, const FrameView& right);
   GreyPair convert_to_grey(const FrameView& left, const FrameView& right);
+  GreyPair undo_misalignment(const GreyPair& pair);
   void estimate_road_model(const GreyPair& pair);
   void measure_rows(const GreyPair& grey);
   MatchInput transform_perspective(const GreyPair& pair);
@@ -113,17 +114,26 @@ GreyPair Pipeline::State::convert_to_grey(const FrameView& left, const FrameView
   return pair;
 }
 
+/// The pair as a road model needs it: an edge along the rows turns an offset of theirs into pixels of disparity.
+GreyPair Pipeline::State::undo_misalignment(const GreyPair& pair) {
+  if (carried.misalignment.is_zero()) return pair;
+  GreyPair aligned = stages->undo_misalignment(pair, carried.misalignment);
+  aligned.mask = pair.mask;
+  return aligned;
+}
+
 /// Road model Δu, eq. (4): the last frame's when it still fits, else from the images.
 void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const StageTimer timer(result.ms.road_model);
   result.rows = {};
   if (carried.road) {
-    result.road = stages->verify_road_model(pair, *carried.road);
+    result.road = stages->verify_road_model(undo_misalignment(pair), *carried.road);
     result.road.correlation = carried.road->correlation;
     if (result.road.has_road()) return;
     result.warnings.push_back(format_message("road-anew: the road model was estimated anew: ", result.road.reason));
   }
-  const GreyPair grey = stages->on_host(pair);
+  if (options.check_rows) measure_rows(stages->on_host(pair));
+  const GreyPair grey = stages->on_host(undo_misalignment(pair));
   result.road =
       roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, pair.mask);
   if (!result.road.has_road()) {
@@ -138,7 +148,6 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
     const std::string disagreement = RigPrior(options.road_model, calibration).disagreement(result.road.model);
     if (!disagreement.empty()) result.warnings.push_back("unexpected-pose: " + disagreement);
   }
-  if (options.check_rows) measure_rows(grey);
 }
 
 /// The misalignment that makes the offsets of the rows.
@@ -180,7 +189,6 @@ MatchInput Pipeline::State::transform_perspective(const GreyPair& pair) {
   const StageTimer timer(result.ms.perspective);
   result.shift = plan_perspective(result.road, calibration, width, height, options.perspective);
   result.shift.misalignment = carried.misalignment;
-  if (result.shift.enabled) result.shift.road = carried.misalignment.undone(result.shift.road);
   return stages->transform_perspective(pair, result.shift);
 }
 

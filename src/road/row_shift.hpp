@@ -12,6 +12,14 @@ ROADSTEREO_HD inline bool comes_from_outside(const PerspectiveShift& shift, int 
 /// Largest misalignment that is undone, pixels.
 inline constexpr double max_misalignment_px = 2;
 
+/// The transformation that undoes only a misalignment.
+inline PerspectiveShift without_road(const Misalignment& misalignment) {
+  PerspectiveShift shift;
+  shift.enabled = false;
+  shift.misalignment = misalignment;
+  return shift;
+}
+
 /// How far left of column x of the transformed target its source lies in the target, pixels.
 ROADSTEREO_HD inline double source_shift(const PerspectiveShift& shift, int x, int v) {
   return shift.at(x, v) - shift.misalignment.columns_at(v);

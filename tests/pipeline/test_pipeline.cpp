@@ -378,6 +378,21 @@ TEST(Pipeline, TurnOfRightCameraIsUndone) {
   EXPECT_LT(median(true), 0.3 * median(false));
 }
 
+// The texture of a street runs towards the horizon, on either side another way: matched in wrong rows, the road rolls.
+TEST(Pipeline, RoadModelIsThatOfAlignedRows) {
+  synth::Scene s = synth::named_scene("street");
+  s.degradation.row_offset_px = -0.6;
+  const synth::SyntheticPair pair = synth::render(s);
+  const auto error = [&](bool correct) {
+    PipelineOptions options = preset("default");
+    options.correct_rows = correct;
+    Pipeline pipeline(options, pair.calibration);
+    const DisparityPlane& road = pipeline.process(pair.left.view(), pair.right.view()).road.model;
+    return std::abs(road.disparity(320, 250) - pair.plane.disparity(320, 250));
+  };
+  EXPECT_LT(error(true), 0.5 * error(false));
+}
+
 struct SigmaFigures {
   const char* scene;
   double above_two;  ///< share of the errors above 2σ: 0.046 of normal ones

@@ -19,6 +19,7 @@
 #include "road/lucas_kanade/settings.hpp"
 #include "road/refinement/cuda/refinement_settings.hpp"
 #include "road/roll_assessment.hpp"
+#include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/cuda/coarse_search.hpp"
@@ -71,6 +72,12 @@ class DeviceStages final : public FrameStages {
     wait_for_pair();
     mark(StageClock::converted);
     return {left_on_host_, right_on_host_};
+  }
+
+  GreyPair undo_misalignment(const GreyPair& pair, const Misalignment& misalignment) override {
+    transform_target(pair.right, without_road(misalignment), static_cast<float>(grey_max), view(target_),
+                     first_column_.data(), stream());
+    return {pair.left, view(target_)};
   }
 
   RoadModelEstimate verify_road_model(const GreyPair& pair, const TrackedRoad& previous) override {

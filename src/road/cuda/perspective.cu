@@ -48,8 +48,6 @@ struct PixelShift {
     return {whole + static_cast<int>(up), up - by};
   }
 };
-}
-};
 
 /// The shift along the columns of a block, in single precision from its first column.
 struct ShiftLine {
