@@ -17,10 +17,11 @@ struct RowOffset {
 
 /// Vertical offset v_right − v_left of the matched points of a pair.
 struct RowAlignment {
-  double median_px = 0;  ///< median vertical offset, pixels
-  double sigma_px = 0;   ///< robust standard deviation (1.4826 · MAD), pixels
-  int points = 0;        ///< matched points; with fewer than 20 the offset is unknown
-  RowOffset fit;         ///< robust fit; without slopes where none is significant, 0 where the offset is not
+  double median_px = 0;     ///< median vertical offset, pixels
+  double sigma_px = 0;      ///< robust standard deviation (1.4826 · MAD), pixels
+  int points = 0;           ///< matched points; with fewer than 20 the offset is unknown
+  double fit_sigma_px = 0;  ///< the same around `fit`, pixels
+  RowOffset fit;            ///< robust fit; without slopes where none is significant, 0 where the offset is not
 
   bool known() const { return points >= 20; }
 };

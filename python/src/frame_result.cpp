@@ -79,6 +79,7 @@ void bind_geometry(py::module_& module) {
       .field("median_px", &RowAlignment::median_px, "Median of right minus left row, pixels.")
       .field("sigma_px", &RowAlignment::sigma_px, "Robust standard deviation, pixels.")
       .field("points", &RowAlignment::points, "Matched points; with fewer than 20 the offset is unknown.")
+      .field("fit_sigma_px", &RowAlignment::fit_sigma_px, "Robust standard deviation around the fit, pixels.")
       .field("fit", &RowAlignment::fit, "Robust fit; without slopes where none is significant.");
 }
 

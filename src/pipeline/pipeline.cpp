@@ -174,7 +174,7 @@ void Pipeline::State::measure_rows(const GreyPair& grey) {
     }
   }
   if (options.correct_rows && largest >= min_correction_px && largest <= max_misalignment_px &&
-      result.rows.sigma_px <= max_spread_px) {
+      result.rows.fit_sigma_px <= max_spread_px) {
     carried.misalignment = misalignment;
   }
   if (std::abs(result.rows.median_px) > max_offset_px || result.rows.sigma_px > max_spread_px) {

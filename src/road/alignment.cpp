@@ -212,7 +212,12 @@ RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView
   alignment.median_px = upper_median(offsets);
   for (double& offset : offsets) offset -= alignment.median_px;
   alignment.sigma_px = gaussian_mad * upper_median_magnitude(offsets);
-  if (alignment.known()) alignment.fit = fit_row_offset(samples);
+  if (!alignment.known()) return alignment;
+  alignment.fit = fit_row_offset(samples);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    offsets[k] = samples[k].dv - alignment.fit.at(samples[k].u + samples[k].du, samples[k].v);
+  }
+  alignment.fit_sigma_px = gaussian_mad * upper_median_magnitude(offsets);
   return alignment;
 }
 

@@ -10,7 +10,7 @@ ROADSTEREO_HD inline bool comes_from_outside(const PerspectiveShift& shift, int 
 }
 
 /// Largest misalignment that is undone, pixels.
-inline constexpr double max_misalignment_px = 2;
+inline constexpr double max_misalignment_px = 8;
 
 /// The transformation that undoes only a misalignment.
 inline PerspectiveShift without_road(const Misalignment& misalignment) {
