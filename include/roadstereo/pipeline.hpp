@@ -30,7 +30,7 @@ struct PipelineOptions {
   int threads = 0;              ///< worker threads; 0 takes all cores
   double white_level = 0;       ///< sample value of white, 0 … 65535; 0 takes 255 or 65535 by the sample type
   bool check_rows = true;       ///< measure whether the rows agree whenever the road model is estimated anew
-  bool correct_rows = true;     ///< undo a constant offset of the rows, up to 2 px, that `check_rows` has measured
+  bool correct_rows = true;     ///< undo the misalignment, up to 8 px, that `check_rows` has measured
   bool narrow_search = true;    ///< search each tile only near the disparities that the coarse search finds there
   RoadModelOptions road_model;
   PerspectiveOptions perspective;

@@ -44,7 +44,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("threads", o.threads, "worker threads; 0 takes all cores");
   visit("white_level", o.white_level, "sample value of white");
   visit("check_rows", o.check_rows, "measure whether the rows of the pair agree");
-  visit("correct_rows", o.correct_rows, "undo the constant offset of the rows that check_rows measures");
+  visit("correct_rows", o.correct_rows, "undo the shift and turn of the right image that check_rows measures");
   visit("narrow_search", o.narrow_search, "search each tile only near what the coarse search finds there");
 
   visit("road_model.with_roll", o.road_model.with_roll, "the model depends on the column too (a2)");
