@@ -41,6 +41,7 @@ PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::opti
 
 /// Shifts the rows of the target image (π_tar → π_tar'), along themselves and by the rows' offset. `first_column[v]`
 /// becomes the first column of the transformed row that lies inside the target image (= width when none does).
+/// Throws Error for a misalignment of more than Misalignment::max_px.
 void transform_target(ImageView<const std::int16_t> target, const PerspectiveShift& shift, int threads,
                       GreyImage& transformed, std::vector<int>& first_column);
 

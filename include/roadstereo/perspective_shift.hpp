@@ -10,6 +10,8 @@ namespace roadstereo {
 /// about its optical axis. A point at column x and row v of the view as it should be lies `columns_at` to the right of
 /// that and `rows_at` below it.
 struct Misalignment {
+  static constexpr double max_px = 8;  ///< largest one that can be undone, pixels
+
   double rows_px = 0;    ///< offset of the rows at the principal point, pixels
   double turn_rad = 0;   ///< clockwise; it moves rows and columns
   double row_scale = 0;  ///< relative; a wrong lens or tilt, which move columns each in its own way, and are left there
@@ -19,6 +21,13 @@ struct Misalignment {
   ROADSTEREO_HD double columns_at(double v) const { return -turn_rad * (v - cy_px); }
   ROADSTEREO_HD double rows_at(double x, double v) const {
     return rows_px + turn_rad * (x - cx_px) + row_scale * (v - cy_px);
+  }
+  /// Returns the largest of |rows_at| and |columns_at| in a W×H image, pixels; NaN where a figure is none.
+  double largest_px(int width, int height) const {
+    const double x = 0.5 * (width - 1), v = 0.5 * (height - 1);
+    const double rows = std::abs(rows_at(x, v)) + std::abs(turn_rad) * x + std::abs(row_scale) * v;
+    const double columns = std::abs(columns_at(v)) + std::abs(turn_rad) * v;
+    return columns > rows ? columns : rows;
   }
   ROADSTEREO_HD bool is_zero() const { return rows_px == 0 && turn_rad == 0 && row_scale == 0; }
 };

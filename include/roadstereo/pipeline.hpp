@@ -92,6 +92,9 @@ struct PipelineState {
   std::optional<TrackedRoad> road;  ///< the last frame's road; absent when it had none
   double roll_rad = 0;              ///< ψ(t), start of the descent of ψ(t+1), eq. (24); 0 when not observable
   Misalignment misalignment;        ///< of the target; measured whenever the road model is estimated anew
+
+  /// Throws Error naming the first value that no frame of this size leaves.
+  void validate() const;
 };
 
 /// Runs section 3 of the paper on successive stereo pairs. Keeps the state and the scratch memory between frames. Not
@@ -123,7 +126,7 @@ class Pipeline {
   /// Returns the state that the next frame starts from.
   const PipelineState& carried() const;
 
-  /// Makes the next frame start from `carried`.
+  /// Makes the next frame start from `carried`. Throws Error when its `validate` does.
   void restore(const PipelineState& carried);
 
   /// Allocates memory and starts threads for frames of this size, so that the first frame takes no longer than later

@@ -7,10 +7,10 @@
 
 #include "core/format_message.hpp"
 #include "core/parallel.hpp"
+#include "core/require_range.hpp"
 #include "core/scratch.hpp"
 #include "pipeline/host_stages.hpp"
 #include "road/rig_prior.hpp"
-#include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/adaptive_support.hpp"
@@ -167,13 +167,8 @@ void Pipeline::State::measure_rows(const GreyPair& grey) {
   if (!result.rows.known()) return;
   constexpr double min_correction_px = 0.05;  // interpolation between rows blurs: less is not worth it
   const Misalignment misalignment = misalignment_of(result.rows.fit, width, height, calibration);
-  double largest = 0;
-  for (const int u : {0, width - 1}) {
-    for (const int v : {0, height - 1}) {
-      largest = std::max({largest, std::abs(misalignment.rows_at(u, v)), std::abs(misalignment.columns_at(v))});
-    }
-  }
-  if (options.correct_rows && largest >= min_correction_px && largest <= max_misalignment_px &&
+  const double largest = misalignment.largest_px(width, height);
+  if (options.correct_rows && largest >= min_correction_px && largest <= Misalignment::max_px &&
       result.rows.fit_sigma_px <= max_spread_px) {
     carried.misalignment = misalignment;
   }
@@ -316,6 +311,21 @@ PipelineOptions adapt_to_scope(PipelineOptions options) {
 
 }  // namespace
 
+void PipelineState::validate() const {
+  constexpr double max_disparity_px = 8192, full_turn_rad = 6.3;
+  if (road) {
+    for (const int u : {0, width}) {
+      for (const int v : {0, height}) {
+        require_range("road", "disparity", road->model.disparity(u, v), -max_disparity_px, max_disparity_px);
+      }
+    }
+    require_range("road", "inlier_share", road->inlier_share, 0.0, 1.0);
+    require_range("road", "correlation", road->correlation, -1.0, 1.0);
+  }
+  require_range("state", "roll_rad", roll_rad, -full_turn_rad, full_turn_rad);
+  require_range("misalignment", "largest_px", misalignment.largest_px(width, height), 0.0, Misalignment::max_px);
+}
+
 Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
     : state_(std::make_unique<State>()) {
   options.validate();
@@ -418,6 +428,7 @@ const PipelineState& Pipeline::carried() const {
 }
 
 void Pipeline::restore(const PipelineState& carried) {
+  carried.validate();
   state_->has_frame = state_->has_maps = false;
   state_->carried = carried;
 }

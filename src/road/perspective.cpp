@@ -48,7 +48,7 @@ double max_scene_disparity(const RoadModelEstimate& road, int width) {
 
 /// Pixels that cubic interpolation reads beyond the ends of a row, where the target is misaligned, too: copies of the
 /// border.
-constexpr std::ptrdiff_t border = 2 + static_cast<std::ptrdiff_t>(max_misalignment_px);
+constexpr std::ptrdiff_t border = 2 + static_cast<std::ptrdiff_t>(Misalignment::max_px);
 
 /// out[x] = what lies `f_at_first` + x·`f_step` below row v of the image, for x in [0, columns); both are 0 … 1 there.
 void interpolate_rows(ImageView<const std::int16_t> image, int v, int first, int columns, float f_at_first,
@@ -164,6 +164,7 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
                       GreyImage& transformed, std::vector<int>& first_column) {
   const int width = target.width();
   const int height = target.height();
+  require_range("misalignment", "largest_px", shift.misalignment.largest_px(width, height), 0.0, Misalignment::max_px);
   transformed.resize(width, height);
   first_column.resize(static_cast<std::size_t>(height));
   const std::size_t padded = static_cast<std::size_t>(width + 2 * border);

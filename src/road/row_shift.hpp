@@ -9,9 +9,6 @@ ROADSTEREO_HD inline bool comes_from_outside(const PerspectiveShift& shift, int 
   return x - shift.at(x, v) < 0;
 }
 
-/// Largest misalignment that is undone, pixels.
-inline constexpr double max_misalignment_px = 8;
-
 /// The transformation that undoes only a misalignment.
 inline PerspectiveShift without_road(const Misalignment& misalignment) {
   PerspectiveShift shift;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "roadstereo/error.hpp"
@@ -225,6 +226,32 @@ TEST(CarryOver, FramesOfAnotherSizeResetTheState) {
   pipeline.restore(of_another_size);
   EXPECT_EQ(pipeline.process(pair.left.view(), pair.right.view()).shift.misalignment.rows_px, 0);
   EXPECT_EQ(pipeline.carried().misalignment.rows_px, 0);
+}
+
+// What a damaged journal may hold: none of it reaches the images.
+TEST(CarryOver, StateThatNoFrameLeavesIsRefused) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Pipeline pipeline;
+  PipelineState state;
+  state.width = width;
+  state.height = height;
+  state.road = TrackedRoad{{1, 0.1, 0}, 0.5, 0.5};
+  EXPECT_NO_THROW(pipeline.restore(state));
+  for (const double a0 : {1e300, -1e300, 1e4, nan}) {
+    PipelineState hostile = state;
+    hostile.road->model.a0 = a0;
+    EXPECT_THROW(pipeline.restore(hostile), Error) << a0;
+  }
+  for (const double rows_px : {8.5, -8.5, 1e300, nan}) {
+    PipelineState hostile = state;
+    hostile.misalignment.rows_px = rows_px;
+    EXPECT_THROW(pipeline.restore(hostile), Error) << rows_px;
+  }
+  for (const double turn : {0.5, nan}) {
+    PipelineState hostile = state;
+    hostile.misalignment.turn_rad = turn;
+    EXPECT_THROW(pipeline.restore(hostile), Error) << turn;
+  }
 }
 
 }  // namespace

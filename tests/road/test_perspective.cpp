@@ -146,6 +146,21 @@ TEST(TransformTarget, UndoesTurnAndRowScale) {
   }
 }
 
+// Eight pixels at the corner of a 61×41 image, whose centre is the principal point: |turn|·30 for rows.
+TEST(TransformTarget, RefusesMisalignmentBeyondItsBorder) {
+  const GreyImage target(61, 41);
+  GreyImage transformed;
+  std::vector<int> first;
+  PerspectiveShift shift;
+  shift.misalignment = {0, 7.9 / 30, 0, 30, 20};
+  EXPECT_NO_THROW(transform_target(target, shift, 1, transformed, first));
+  for (const Misalignment& beyond : {Misalignment{0, -8.1 / 30, 0, 30, 20}, Misalignment{8.1, 0, 0, 30, 20},
+                                     Misalignment{0, 0, 8.1 / 20, 30, 20}, Misalignment{std::nan(""), 0, 0, 30, 20}}) {
+    shift.misalignment = beyond;
+    EXPECT_THROW(transform_target(target, shift, 1, transformed, first), Error);
+  }
+}
+
 TEST(TransformTarget, WholeRowOffsetCopiesRows) {
   constexpr int height = 40;
   const auto pair = test::textured_pair(70, height, [](double, double) { return 3; });
