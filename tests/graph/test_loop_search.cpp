@@ -4,31 +4,21 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <string>
 #include <vector>
 
-#include "odometry/link_estimator.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/loop_search.hpp"
-#include "roadstereo/synth.hpp"
+#include "tests/odometry/known_frame.hpp"
 
 namespace roadstereo {
 namespace {
 
-struct SeenFrame {
-  GreyImage grey;
-  Image<float> disparity, sigma;
-  DisparityPlane plane;
-  RigidMotion pose;  ///< camera to road
-
-  OdometryFrame maps() const { return {grey, disparity, sigma, true, plane}; }
-};
+using test::known_frame;
+using test::KnownFrame;
 
 synth::Scene scene_at(double x_m, double y_m, double yaw_deg) {
-  synth::Scene scene = synth::named_scene("uav");
-  scene.rig.width /= 2;
-  scene.rig.height /= 2;
-  scene.rig.focal_px /= 2;
-  scene.supersampling = 1;
+  synth::Scene scene = test::smaller_scene("uav", 2);
   scene.degradation.noise_grey = 2;
   scene.degradation.noise_seed = static_cast<std::uint32_t>(1000 + 100 * y_m + yaw_deg);
   scene.rig.x_m += x_m;
@@ -37,33 +27,21 @@ synth::Scene scene_at(double x_m, double y_m, double yaw_deg) {
   return scene;
 }
 
-SeenFrame seen(const synth::Scene& scene) {
-  const synth::SyntheticPair pair = synth::render(scene);
-  SeenFrame frame;
-  to_grey(pair.left.view(), 0, frame.grey);
-  frame.disparity.resize(pair.disparity.width(), pair.disparity.height());
-  std::transform(pair.disparity.row(0), pair.disparity.row(0) + pair.disparity.pixels(), frame.disparity.row(0),
-                 [](double d) { return static_cast<float>(d); });
-  frame.sigma.assign(frame.disparity.width(), frame.disparity.height(), 0.05F);
-  frame.plane = pair.plane;
-  frame.pose = motion_of(scene.rig.camera_to_road());
-  return frame;
-}
-
 /// A place, one far from it, and the place again: with this yaw, and this error of its pose.
 class LoopSearchOfPlace : public testing::TestWithParam<double> {};
 
 TEST_P(LoopSearchOfPlace, IsLinked) {
   const double yaw_deg = GetParam();
   const double y_m = std::abs(yaw_deg) > 90 ? 2.6 : 0.25;  // the camera looks ahead of its foot
-  const std::vector<SeenFrame> frames{seen(scene_at(0, 0, 0)), seen(scene_at(0, 12, 0)),
-                                      seen(scene_at(0.15, y_m, yaw_deg))};
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "roadstereo_loops";
+  const std::vector<KnownFrame> frames{known_frame(scene_at(0, 0, 0)), known_frame(scene_at(0, 12, 0)),
+                                       known_frame(scene_at(0.15, y_m, yaw_deg))};
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) /
+                                       ("roadstereo_loops_" + std::to_string(static_cast<int>(yaw_deg)));
   Trajectory trajectory;
   {
     LoopSearch search(scene_at(0, 0, 0).rig.calibration(), folder);
     for (int i = 0; i < 3; ++i) {
-      const SeenFrame& frame = frames[static_cast<std::size_t>(i)];
+      const KnownFrame& frame = frames[static_cast<std::size_t>(i)];
       search.add(i, frame.maps());
       FramePose pose;
       pose.frame = i;
@@ -92,7 +70,7 @@ TEST_P(LoopSearchOfPlace, IsLinked) {
 INSTANTIATE_TEST_SUITE_P(Yaws, LoopSearchOfPlace, testing::Values(0, 25, 180));
 
 TEST(LoopSearch, PlaceThatIsNeverLeftHasNoLoop) {
-  const SeenFrame frame = seen(scene_at(0, 0, 0));
+  const KnownFrame frame = known_frame(scene_at(0, 0, 0));
   LoopSearch search(scene_at(0, 0, 0).rig.calibration(),
                     std::filesystem::path(testing::TempDir()) / "roadstereo_still");
   Trajectory trajectory;

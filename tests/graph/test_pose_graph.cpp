@@ -8,21 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "odometry/rigid_motion.hpp"
+#include "odometry/link_estimator.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pose_graph.hpp"
 
 namespace roadstereo {
 namespace {
-
-std::array<double, 12> matrix_of(const RigidMotion& motion) {
-  std::array<double, 12> matrix{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) matrix[4 * i + j] = motion.rotation[i][j];
-    matrix[4 * i + 3] = motion.translation[i];
-  }
-  return matrix;
-}
 
 std::array<double, 36> diagonal(double variance_m2, double variance_rad2) {
   std::array<double, 36> covariance{};

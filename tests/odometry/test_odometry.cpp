@@ -10,61 +10,14 @@
 #include <vector>
 
 #include "odometry/direct_alignment.hpp"
-#include "odometry/rigid_motion.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/odometry.hpp"
-#include "roadstereo/synth.hpp"
-#include "synth/camera.hpp"
+#include "tests/odometry/known_frame.hpp"
 
 namespace roadstereo {
 namespace {
 
-/// A rendered left image with its exact disparities.
-struct KnownFrame {
-  GreyImage grey;
-  Image<float> disparity;
-  Image<float> sigma;
-  DisparityPlane plane;
-  RigidMotion pose;  ///< camera to road
-
-  OdometryFrame maps() const { return {grey, disparity, sigma, true, plane}; }
-};
-
-RigidMotion pose_of(const synth::Rig& rig) {
-  const synth::Camera camera = synth::left_camera(rig);
-  const std::array axes{camera.right, camera.down, camera.forward};
-  RigidMotion pose;
-  for (std::size_t j = 0; j < 3; ++j) {
-    pose.rotation[0][j] = axes[j].x;
-    pose.rotation[1][j] = axes[j].y;
-    pose.rotation[2][j] = axes[j].z;
-  }
-  pose.translation = {camera.origin.x, camera.origin.y, camera.origin.z};
-  return pose;
-}
-
-KnownFrame known_frame(const synth::Scene& scene) {
-  const synth::SyntheticPair pair = synth::render(scene);
-  KnownFrame frame;
-  to_grey(pair.left.view(), 0, frame.grey);
-  frame.disparity.resize(pair.disparity.width(), pair.disparity.height());
-  std::transform(pair.disparity.row(0), pair.disparity.row(0) + pair.disparity.pixels(), frame.disparity.row(0),
-                 [](double d) { return static_cast<float>(d); });
-  frame.sigma.assign(frame.disparity.width(), frame.disparity.height(), 0.05F);
-  frame.plane = pair.plane;
-  frame.pose = pose_of(scene.rig);
-  return frame;
-}
-
-/// The scene with fewer pixels and one ray for each.
-synth::Scene smaller(const std::string& name, int divisor) {
-  synth::Scene scene = synth::named_scene(name);
-  scene.rig.width /= divisor;
-  scene.rig.height /= divisor;
-  scene.rig.focal_px /= divisor;
-  scene.supersampling = 1;
-  return scene;
-}
+using test::known_frame;
+using test::KnownFrame;
 
 /// Frames of a flight that moves, rolls, pitches and climbs.
 const std::vector<KnownFrame>& flight() {
@@ -72,21 +25,12 @@ const std::vector<KnownFrame>& flight() {
     synth::FlightPath path;
     path.roll_period = path.pitch_period = path.climb_period = 40;
     std::vector<KnownFrame> rendered;
-    synth::Scene scene = smaller("uav", 2);
+    synth::Scene scene = test::smaller_scene("uav", 2);
     scene.degradation.noise_grey = 3;
     for (int i = 0; i < 8; ++i) rendered.push_back(known_frame(synth::flight_frame(scene, path, i)));
     return rendered;
   }();
   return frames;
-}
-
-RigidMotion motion_of(const std::array<double, 12>& matrix) {
-  RigidMotion motion;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) motion.rotation[i][j] = matrix[4 * i + j];
-    motion.translation[i] = matrix[4 * i + 3];
-  }
-  return motion;
 }
 
 /// Error of a pose against that of the first frame.
@@ -104,7 +48,7 @@ double angle(const Twist& error) {
 
 TEST(Odometry, FollowsFlight) {
   const std::vector<KnownFrame>& frames = flight();
-  Odometry odometry(smaller("uav", 2).rig.calibration());
+  Odometry odometry(test::smaller_scene("uav", 2).rig.calibration());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FramePose& pose = odometry.add(static_cast<int>(i), frames[i].maps());
     EXPECT_EQ(pose.piece, 0);
@@ -121,7 +65,7 @@ TEST(Odometry, FollowsFlight) {
 }
 
 TEST(Odometry, StandsStill) {
-  Odometry odometry(smaller("uav", 2).rig.calibration());
+  Odometry odometry(test::smaller_scene("uav", 2).rig.calibration());
   for (int i = 0; i < 3; ++i) {
     const FramePose& pose = odometry.add(i, flight()[0].maps());
     EXPECT_LT(distance(pose_error(pose, flight()[0], flight()[0])), 1e-6);
@@ -130,7 +74,7 @@ TEST(Odometry, StandsStill) {
 
 TEST(Odometry, CovarianceIsThatOfErrors) {
   // The same view with other noise: whatever moves is error.
-  synth::Scene scene = smaller("uav", 2);
+  synth::Scene scene = test::smaller_scene("uav", 2);
   scene.degradation.noise_grey = 6;
   const KnownFrame first = known_frame(scene);
   Vector<6> chi_square{};
@@ -153,8 +97,8 @@ TEST(Odometry, CovarianceIsThatOfErrors) {
 
 TEST(Odometry, FindsJumpByPhaseCorrelation) {
   // Half of the view further, at once: no prediction helps.
-  Odometry odometry(smaller("uav", 2).rig.calibration());
-  synth::Scene scene = smaller("uav", 2);
+  Odometry odometry(test::smaller_scene("uav", 2).rig.calibration());
+  synth::Scene scene = test::smaller_scene("uav", 2);
   const KnownFrame first = known_frame(scene);
   scene.rig.y_m += 0.8;
   scene.rig.x_m += 0.3;
@@ -166,7 +110,7 @@ TEST(Odometry, FindsJumpByPhaseCorrelation) {
 }
 
 TEST(Odometry, CutStartsNewPiece) {
-  synth::Scene elsewhere = smaller("uav", 2);
+  synth::Scene elsewhere = test::smaller_scene("uav", 2);
   elsewhere.road.seed = 99;
   elsewhere.rig.y_m = 50;
   const KnownFrame other = known_frame(elsewhere);
@@ -182,7 +126,7 @@ TEST(Odometry, CutStartsNewPiece) {
 }
 
 TEST(Odometry, BlurredFrameIsLinked) {
-  synth::Scene scene = smaller("uav", 2);
+  synth::Scene scene = test::smaller_scene("uav", 2);
   scene.rig.y_m = 0.1;
   scene.degradation.motion_blur_px = 6;
   const KnownFrame blurred = known_frame(scene);
@@ -194,7 +138,7 @@ TEST(Odometry, BlurredFrameIsLinked) {
 }
 
 TEST(Odometry, FollowsPureRotation) {
-  synth::Scene scene = smaller("uav", 2);
+  synth::Scene scene = test::smaller_scene("uav", 2);
   scene.rig.pitch_deg += 3;
   scene.rig.roll_deg -= 2;
   const KnownFrame turned = known_frame(scene);
@@ -207,7 +151,7 @@ TEST(Odometry, FollowsPureRotation) {
 
 TEST(Odometry, IgnoresWhatMoves) {
   // Two fifths of the picture are a lorry with its own texture, 0.15 m ahead of where it was.
-  synth::Scene lorry = smaller("uav", 2);
+  synth::Scene lorry = test::smaller_scene("uav", 2);
   lorry.road.seed = 99;
   KnownFrame first = flight()[0], second = flight()[1];
   for (KnownFrame* frame : {&first, &second}) {
@@ -226,7 +170,7 @@ TEST(Odometry, IgnoresWhatMoves) {
 TEST(Odometry, FramesWithoutDisparitiesAreNotLinked) {
   KnownFrame nothing = flight()[0];
   std::fill_n(nothing.disparity.row(0), nothing.disparity.pixels(), NAN);
-  Odometry odometry(smaller("uav", 2).rig.calibration());
+  Odometry odometry(test::smaller_scene("uav", 2).rig.calibration());
   for (int i = 0; i < 3; ++i) EXPECT_EQ(odometry.add(i, nothing.maps()).piece, i);
   EXPECT_EQ(odometry.add(3, flight()[0].maps()).piece, 3);
   EXPECT_EQ(odometry.add(4, flight()[1].maps()).piece, 3);
@@ -235,7 +179,7 @@ TEST(Odometry, FramesWithoutDisparitiesAreNotLinked) {
 TEST(Odometry, OffsetAtInfinityIsUndone) {
   // A street, 0.6 m a frame; the right camera is yawed so that disparities are 0.6 px short in the middle.
   constexpr double offset_px = 0.6;
-  synth::Scene scene = smaller("street", 2);
+  synth::Scene scene = test::smaller_scene("street", 2);
   const StereoCalibration calibration = scene.rig.calibration();
   std::vector<KnownFrame> frames;
   for (int i = 0; i < 5; ++i) {
@@ -267,7 +211,7 @@ TEST(Odometry, OffsetAtInfinityIsUndone) {
 
 TEST(Odometry, RejectsInvalidFrames) {
   const KnownFrame& frame = flight()[0];
-  Odometry odometry(smaller("uav", 2).rig.calibration());
+  Odometry odometry(test::smaller_scene("uav", 2).rig.calibration());
   odometry.add(5, frame.maps());
   EXPECT_THROW(odometry.add(5, frame.maps()), Error);
   const Image<float> narrow(10, 10);
@@ -276,7 +220,7 @@ TEST(Odometry, RejectsInvalidFrames) {
   EXPECT_THROW(odometry.add(6, odd), Error);
   OdometryOptions options;
   options.min_overlap = 1.5;
-  EXPECT_THROW(Odometry(smaller("uav", 2).rig.calibration(), options), Error);
+  EXPECT_THROW(Odometry(test::smaller_scene("uav", 2).rig.calibration(), options), Error);
 }
 
 }  // namespace

@@ -337,24 +337,25 @@ TEST(Pipeline, WarnsAboutRowOffset) {
   EXPECT_EQ(warning_code("word"), "");
 }
 
+/// The default preset with rows corrected or not.
+FrameResult process_rows(const synth::SyntheticPair& pair, bool correct) {
+  PipelineOptions options = preset("default");
+  options.correct_rows = correct;
+  Pipeline pipeline(options, pair.calibration);
+  FrameResult result;
+  pipeline.process(pair.left.view(), pair.right.view(), result);
+  return result;
+}
+
 TEST(Pipeline, RowCorrectionHalvesError) {
   synth::Scene s = synth::named_scene("uav");
   s.supersampling = 1;
   s.degradation.row_offset_px = 0.8;
   const synth::SyntheticPair pair = synth::render(s);
-  const auto median = [&](bool correct) {
-    PipelineOptions options = preset("default");
-    options.correct_rows = correct;
-    Pipeline pipeline(options, pair.calibration);
-    const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
-    if (correct) {
-      EXPECT_NEAR(result.shift.misalignment.rows_px, 0.8, 0.1);
-    } else {
-      EXPECT_EQ(result.shift.misalignment.rows_px, 0);
-    }
-    return compare(result.disparity, pair).median;
-  };
-  EXPECT_LT(median(true), 0.5 * median(false));
+  const FrameResult corrected = process_rows(pair, true), raw = process_rows(pair, false);
+  EXPECT_NEAR(corrected.shift.misalignment.rows_px, 0.8, 0.1);
+  EXPECT_EQ(raw.shift.misalignment.rows_px, 0);
+  EXPECT_LT(compare(corrected.disparity, pair).median, 0.5 * compare(raw.disparity, pair).median);
 }
 
 // Turned by 0.05° the rows are 0.28 px apart at either side of 640 columns, and disparities are 0.16 px off at the
@@ -364,18 +365,10 @@ TEST(Pipeline, TurnOfRightCameraIsUndone) {
   s.supersampling = 1;
   s.degradation.row_rotation_deg = 0.05;
   const synth::SyntheticPair pair = synth::render(s);
-  const auto median = [&](bool correct) {
-    PipelineOptions options = preset("default");
-    options.correct_rows = correct;
-    Pipeline pipeline(options, pair.calibration);
-    const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
-    if (correct) {
-      EXPECT_NEAR(std::abs(result.shift.misalignment.turn_rad), 0.05 * std::numbers::pi / 180, 1e-4);
-      EXPECT_NEAR(result.shift.misalignment.rows_px, 0, 0.05);
-    }
-    return compare(result.disparity, pair).median;
-  };
-  EXPECT_LT(median(true), 0.3 * median(false));
+  const FrameResult corrected = process_rows(pair, true), raw = process_rows(pair, false);
+  EXPECT_NEAR(std::abs(corrected.shift.misalignment.turn_rad), 0.05 * std::numbers::pi / 180, 1e-4);
+  EXPECT_NEAR(corrected.shift.misalignment.rows_px, 0, 0.05);
+  EXPECT_LT(compare(corrected.disparity, pair).median, 0.3 * compare(raw.disparity, pair).median);
 }
 
 // The texture of a street runs towards the horizon, on either side another way: matched in wrong rows, the road rolls.
@@ -384,11 +377,7 @@ TEST(Pipeline, RoadModelIsThatOfAlignedRows) {
   s.degradation.row_offset_px = -0.6;
   const synth::SyntheticPair pair = synth::render(s);
   const auto error = [&](bool correct) {
-    PipelineOptions options = preset("default");
-    options.correct_rows = correct;
-    Pipeline pipeline(options, pair.calibration);
-    const DisparityPlane& road = pipeline.process(pair.left.view(), pair.right.view()).road.model;
-    return std::abs(road.disparity(320, 250) - pair.plane.disparity(320, 250));
+    return std::abs(process_rows(pair, correct).road.model.disparity(320, 250) - pair.plane.disparity(320, 250));
   };
   EXPECT_LT(error(true), 0.5 * error(false));
 }

@@ -23,10 +23,8 @@ struct MapPass {
   double time_offset_s = 0;      ///< added to the times of the frames
 };
 
-/// Checked options of a map.
-struct MapPlan {
-  std::vector<MapPass> passes;  ///< at least one; the damage options of the first are those of the map
-  std::filesystem::path output;
+/// Options of a map that need no parsing.
+struct MapOptions {
   std::string crs;    ///< of the trajectories, whose z axis then points up; empty: cameras
   double cell_m = 0;  ///< 0: from the first frame
   std::int64_t every = 1;
@@ -34,6 +32,12 @@ struct MapPlan {
   bool las = false;     ///< whether to write points.las
   bool resume = false;  ///< continues a map that was interrupted
   bool quiet = false;
+};
+
+/// Checked options of a map.
+struct MapPlan : MapOptions {
+  std::vector<MapPass> passes;  ///< at least one; the damage options of the first are those of the map
+  std::filesystem::path output;
 };
 
 }  // namespace roadstereo::cli

@@ -76,7 +76,7 @@ void MapSettings::validate() const {
 
 MapPlan MapSettings::plan() const {
   validate();
-  MapPlan plan;
+  MapPlan plan{*this, {}, output};
   const auto runs = static_cast<std::size_t>(
       std::count_if(source.begin(), source.end(), [](const std::string& name) { return is_flight_folder(name); }));
   if (runs != 0 && runs != source.size()) {
@@ -88,14 +88,6 @@ MapPlan MapSettings::plan() const {
          " days; either each has one --day NAME or none");
   }
   for (std::size_t k = 0; k < day.size(); ++k) plan.passes[k].day = day[k];
-  plan.output = output;
-  plan.crs = crs;
-  plan.cell_m = cell_m;
-  plan.every = every;
-  plan.points = points;
-  plan.las = las;
-  plan.resume = resume;
-  plan.quiet = quiet;
   return plan;
 }
 
