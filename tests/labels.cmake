@@ -1,5 +1,4 @@
-# Labels of the tests, read by CTest after the tests of every program are known. A test has the label of its program and
-# those that its full name says:
+# Labels of the tests, read by CTest. A test has the label of its program and those that its full name says:
 #   RealData  real_data  needs the folder ROADSTEREO_DATA
 #   TwoGpus   two_gpus   needs a second GPU
 #   GStreamer gstreamer  needs GStreamer and its base plugins
@@ -7,7 +6,7 @@
 #   Slow      slow       lasts too long for every change, or under sanitizers
 #   Threads   threads    is about threads: the thread sanitizer runs it
 #   /cuda     engine_cuda  is that of every engine, with the engine cuda
-foreach(program embedded allocations cuda io live flight cli evaluate mapping)
+foreach(program embedded allocations cuda graph io live flight cli dds evaluate mapping)
   foreach(test IN LISTS test_${program}_TESTS)
     set(labels ${program})
     foreach(name_and_label RealData:real_data TwoGpus:two_gpus GStreamer:gstreamer Ogrinfo:ogrinfo Slow:slow
