@@ -21,10 +21,10 @@ REGIONS_PER_SOURCE = 20  # real and false ones of a source weigh as much as so m
 
 def surface_log_odds(significance):
     """As in src/damage/evidence.cpp; it is not fitted."""
-    per_standard_error, even_odds = 4.7, 1.85
+    per_standard_error, even_odds, max_log_odds = 4.7, 1.85, 0.5
     if significance is None:
         return 0.0
-    return min(0.0, per_standard_error * (significance - even_odds))
+    return min(max_log_odds, per_standard_error * (significance - even_odds))
 
 
 def features(region):

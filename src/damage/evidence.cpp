@@ -7,11 +7,12 @@ namespace roadstereo {
 
 namespace {
 
-/// Log-odds of damage against what one camera alone sees, at most 0: the agreement of the pictures shows a surface, not
-/// that it is damage. Fitted to regions of rendered roads with rain, snow and dead pixels (docs/method.md).
+/// Log-odds of damage against what one camera alone sees. They count against it in full and for it by little: the
+/// agreement of the pictures shows a surface, not that it is damage. Fitted to regions of rendered roads with rain,
+/// snow and dead pixels (docs/method.md). A map alone, whose pictures are unknown, has neither.
 double surface_log_odds(double significance) {
-  constexpr double per_standard_error = 4.7, even_odds = 1.85;
-  return std::isnan(significance) ? 0 : std::min(0.0, per_standard_error * (significance - even_odds));
+  constexpr double per_standard_error = 4.7, even_odds = 1.85, max_log_odds = 0.5;
+  return std::isnan(significance) ? 0 : std::min(max_log_odds, per_standard_error * (significance - even_odds));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tests/damage/damage_scene.hpp"
 
@@ -77,8 +78,17 @@ TEST(DamageEvidence, SurfaceThatPicturesContradictIsNoDamage) {
   DamageEvidence evidence{20, 50, 3, 1, 0};
   evidence.surface_significance = -0.15;
   EXPECT_NEAR(evidence.confidence(), 1 / (1 + std::exp(9.4 - before)), 1e-4);
-  evidence.surface_significance = 1.9;
-  EXPECT_DOUBLE_EQ(evidence.confidence(), (DamageEvidence{20, 50, 3, 1, 0}.confidence()));
+  EXPECT_NEAR((DamageEvidence{20, 50, 3, 1, 0}.confidence()), 1 / (1 + std::exp(-before)), 1e-4);
+}
+
+// They rise by 4.7·(1.9 − 1.85), and by 0.5 at most: what both pictures see may still be no damage.
+TEST(DamageEvidence, SurfaceThatPicturesConfirmIsLittleEvidence) {
+  const double before = -9.8 + 2.15 * std::log(50) + 4.4;
+  DamageEvidence evidence{20, 50, 3, 1, 0};
+  for (const auto& [significance, added] : {std::pair{1.9, 0.235}, std::pair{2.5, 0.5}, std::pair{30.0, 0.5}}) {
+    evidence.surface_significance = significance;
+    EXPECT_NEAR(evidence.confidence(), 1 / (1 + std::exp(-before - added)), 1e-4) << significance;
+  }
 }
 
 }  // namespace

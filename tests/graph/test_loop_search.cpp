@@ -35,8 +35,8 @@ TEST_P(LoopSearchOfPlace, IsLinked) {
   const double y_m = std::abs(yaw_deg) > 90 ? 2.6 : 0.25;  // the camera looks ahead of its foot
   const std::vector<KnownFrame> frames{known_frame(scene_at(0, 0, 0)), known_frame(scene_at(0, 12, 0)),
                                        known_frame(scene_at(0.15, y_m, yaw_deg))};
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) /
-                                       ("roadstereo_loops_" + std::to_string(static_cast<int>(yaw_deg)));
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("roadstereo_loops_" + std::to_string(static_cast<int>(yaw_deg)));
   Trajectory trajectory;
   {
     LoopSearch search(scene_at(0, 0, 0).rig.calibration(), folder);

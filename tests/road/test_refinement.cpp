@@ -159,7 +159,8 @@ bool same(const Image<float>& a, const Image<float>& b) {
 
 TEST(Refinement, RadiusZeroIsIdentity) {
   const Image<float> map = uneven(no_road, 0.2), variance(width, height, 0.04F);
-  const RefinementOptions options{.radius = 0};
+  RefinementOptions options{.radius = 0};
+  options.place_sigma_px = 0;
   const Refined refined = refine(map, variance, no_road, options);
   EXPECT_TRUE(same(refined.disparity, map));
   const double single = 0.04 + options.min_sigma_px * options.min_sigma_px;
@@ -183,6 +184,33 @@ TEST(Refinement, KeepsTiltedRoad) {
       }
     }
   }
+}
+
+// A wall of 0.3 px a column and −0.4 px a row above the road adds (place · 0.5)² to the variance; the road itself, and
+// a pixel whose neighbours are unknown or outside, nothing.
+TEST(Refinement, SlopeAddsToSigma) {
+  const DisparityPlane road{40, 0.2, -0.1};
+  const auto sigmas = [&](double across, double down, double place_sigma_px) {
+    Image<float> map(width, height);
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) map(u, v) = static_cast<float>(road.disparity(u, v) + across * u + down * v);
+    }
+    map(30, 20) = nan;
+    RefinementOptions options{.radius = 0};
+    options.place_sigma_px = place_sigma_px;
+    return refine(map, Image<float>(width, height, 0.01F), road, options).sigma;
+  };
+  const Image<float> without = sigmas(0.3, -0.4, 0), on_road = sigmas(0, 0, 2);
+  for (const double place : {1.0, 2.0}) {
+    const Image<float> with = sigmas(0.3, -0.4, place);
+    const auto expected = [&](double slope) { return std::hypot(without(40, 30), place * slope); };
+    EXPECT_NEAR(with(40, 30), expected(0.5), 1e-4);
+    EXPECT_NEAR(with(32, 20), expected(0.4), 1e-4);  // its left neighbour is unknown
+    EXPECT_NEAR(with(30, 22), expected(0.3), 1e-4);  // that above
+    EXPECT_EQ(with(0, 0), without(0, 0));
+    EXPECT_TRUE(std::isnan(with(30, 20)));
+  }
+  EXPECT_NEAR(on_road(40, 30), without(40, 30), 1e-4);
 }
 
 TEST(Refinement, IsIndependentOfThreads) {

@@ -7,6 +7,7 @@
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
 #include "road/refinement/cuda/refinement.hpp"
+#include "road/refinement/slope_error.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -165,6 +166,16 @@ __global__ void refine_untiled(Maps maps, RefinementSettings settings, ImageView
   error(u, v) = pixel.error;
 }
 
+/// Adds the error of slopes to the standard errors.
+__global__ void add_slope_error(ImageView<const float> disparity, SlopeError slopes, ImageView<float> sigma) {
+  constexpr int reach = SlopeError::reach;
+  const int u = static_cast<int>(blockIdx.x * tile_columns + threadIdx.x) + reach;
+  const int v = static_cast<int>(blockIdx.y * thread_rows + threadIdx.y) + reach;
+  if (u >= disparity.width() - reach || v >= disparity.height() - reach) return;
+  sigma(u, v) = slopes.added_to(sigma(u, v), __ldg(&disparity(u - reach, v)), __ldg(&disparity(u + reach, v)),
+                                __ldg(&disparity(u, v - reach)), __ldg(&disparity(u, v + reach)));
+}
+
 std::size_t tile_bytes(int rows, int border) {
   const auto all_rows = static_cast<std::size_t>(rows + 2 * border);
   return all_rows * (sizeof(RowLine) + 3 * static_cast<std::size_t>(tile_columns + 2 * border) * sizeof(float));
@@ -187,6 +198,10 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
            settings, refined, error);
   } else {
     launch("refine_untiled", refine_untiled, {grid(thread_rows), block}, stream, maps, settings, refined, error);
+  }
+  if (settings.pass.is_last && settings.place_sigma_px > 0) {
+    launch("add_slope_error", add_slope_error, {grid(thread_rows), block}, stream, ImageView<const float>(refined),
+           SlopeError(road, settings.place_sigma_px), error);
   }
 }
 
