@@ -60,11 +60,15 @@ Json estimate_json(const RoadModelEstimate& road) {
   return estimate;
 }
 
-Json rows_json(const RowAlignment& rows) {
+Json rows_json(const RowAlignment& rows, const Misalignment& undone) {
   const bool known = rows.known();
   return {{"median_px", known ? json_number(rows.median_px) : Json(nullptr)},
           {"sigma_px", known ? json_number(rows.sigma_px) : Json(nullptr)},
-          {"points", rows.points}};
+          {"points", rows.points},
+          {"undone",
+           {{"rows_px", json_number(undone.rows_px)},
+            {"turn_rad", json_number(undone.turn_rad)},
+            {"row_scale", json_number(undone.row_scale)}}}};
 }
 
 Json times_json(const StageTimes& ms) {
@@ -126,7 +130,7 @@ std::string result_json(const Inspection& inspection) {
   add_plane(document, inspection.plane);
   document["damages"] = inspection.damage.damages.size();  // each is in damages.json
   document["road_noise_px"] = json_number(inspection.damage.noise_px);
-  document["rows"] = rows_json(result.rows);
+  document["rows"] = rows_json(result.rows, result.shift.misalignment);
   document["health"] = health_json(inspection.health);
   document["road"] = estimate_json(result.road);
   document["ms"] = times_json(result.ms);

@@ -379,6 +379,29 @@ std::string ten_bit_pgm(const Frame& frame) {
   return text;
 }
 
+/// `count` rows of the 8-bit image from row `first` on, as PGM.
+std::string pgm_of_rows(const Frame& frame, int first, int count) {
+  const auto row = static_cast<std::ptrdiff_t>(frame.width);
+  return "P5 " + std::to_string(frame.width) + " " + std::to_string(count) + " 255\n" +
+         std::string(frame.bytes.begin() + first * row, frame.bytes.begin() + (first + count) * row);
+}
+
+// The right image without its last rows, beside the left one without its first: what is in row v of the left one is
+// three rows lower in the right one.
+TEST_F(InspectCommand, TellsWhichMisalignmentWasUndone) {
+  constexpr int offset = 3;
+  make_road();
+  const auto left = io::read_frame((folder_ / "road/left.png").string());
+  const auto right = io::read_frame((folder_ / "road/right.png").string());
+  write_text(folder_ / "left.pgm", pgm_of_rows(left, offset, left.height - offset));
+  write_text(folder_ / "right.pgm", pgm_of_rows(right, 0, right.height - offset));
+  ASSERT_EQ(run("inspect left.pgm right.pgm --output result").exit_code, 0);
+  const auto undone = json_file("result/result.json")["rows"]["undone"];
+  EXPECT_NEAR(undone["rows_px"].get<double>(), offset, 0.05);
+  EXPECT_NEAR(undone["turn_rad"].get<double>(), 0, 2e-4);
+  EXPECT_NEAR(undone["row_scale"].get<double>(), 0, 1e-3);
+}
+
 TEST_F(InspectCommand, FindsWhiteLevelUnlessGiven) {
   make_road();
   for (const std::string side : {"left", "right"}) {
