@@ -17,7 +17,7 @@ struct RefinementOptions {
   double max_agreement_sigma_px = 0.6;  ///< upper bound on σ in that test, pixels, min_sigma_px … 10
   double min_sigma_px = 0.02;           ///< standard error of interpolation and calibration, pixels, 0.001 … 1
   double max_sigma_px = 1.4;            ///< disparities with a larger σ become invalid, pixels, above 0
-  double place_sigma_px = 2;  ///< what a slope adds to σ: its change over so many pixels, 0 … 10; 0: nothing
+  int smoothing_px = 6;  ///< standard deviation of all averaging, 0 … 32: what a bent surface adds to σ; 0: nothing
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
@@ -25,9 +25,10 @@ struct RefinementOptions {
 };
 
 /// Writes the refined disparities (pixels) and their standard errors `sigma` (pixels); both are NaN where the disparity
-/// is NaN or its error, without that of slopes, exceeds max_sigma_px. `disparity` (pixels, NaN invalid) and `variance`
-/// (pixels²) are W×H from matching. `road`: road model, 0 where unknown. `effective_samples`: number of pixels that one
-/// disparity rests on; closer neighbours are not independent. Throws Error when the maps differ in size.
+/// is NaN or its error, without that of smoothing, exceeds max_sigma_px. `disparity` (pixels, NaN invalid) and
+/// `variance` (pixels²) are W×H from matching. `road`: road model, 0 where unknown. `effective_samples`: number of
+/// pixels that one disparity rests on; closer neighbours are not independent. Throws Error when the maps differ in
+/// size.
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
                         double effective_samples, const RefinementOptions& options, int threads, Image<float>& refined,
                         Image<float>& sigma);

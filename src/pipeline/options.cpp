@@ -119,8 +119,8 @@ void visit_options(Options& o, Visitor visit) {
         "difference at which a neighbour has no weight, joint standard errors");
   visit("refinement.max_agreement_sigma_px", o.refinement.max_agreement_sigma_px,
         "upper bound on the standard error in that test, pixels");
-  visit("refinement.place_sigma_px", o.refinement.place_sigma_px,
-        "standard error of the place of a disparity, pixels: on slopes it adds to sigma; 0: none");
+  visit("refinement.smoothing_px", o.refinement.smoothing_px,
+        "standard deviation of all averaging, pixels: on bent surfaces it adds to sigma; 0: none");
   visit("refinement.max_sigma_px", o.refinement.max_sigma_px,
         "disparities with a larger standard error are invalid, pixels");
   visit("refinement.min_sigma_px", o.refinement.min_sigma_px,

@@ -160,7 +160,7 @@ bool same(const Image<float>& a, const Image<float>& b) {
 TEST(Refinement, RadiusZeroIsIdentity) {
   const Image<float> map = uneven(no_road, 0.2), variance(width, height, 0.04F);
   RefinementOptions options{.radius = 0};
-  options.place_sigma_px = 0;
+  options.smoothing_px = 0;
   const Refined refined = refine(map, variance, no_road, options);
   EXPECT_TRUE(same(refined.disparity, map));
   const double single = 0.04 + options.min_sigma_px * options.min_sigma_px;
@@ -186,31 +186,34 @@ TEST(Refinement, KeepsTiltedRoad) {
   }
 }
 
-// A wall of 0.3 px a column and −0.4 px a row above the road adds (place · 0.5)² to the variance; the road itself, and
-// a pixel whose neighbours are unknown or outside, nothing.
-TEST(Refinement, SlopeAddsToSigma) {
-  const DisparityPlane road{40, 0.2, -0.1};
-  const auto sigmas = [&](double across, double down, double place_sigma_px) {
+// A surface with the second derivatives 0.02 and −0.01 px: the mean over a window with the standard deviation s is off
+// by ½s² times either. A plane, and a pixel whose neighbours are unknown or outside, has no such error.
+TEST(Refinement, BentSurfaceAddsToSigma) {
+  const auto sigmas = [&](double across, double down, int smoothing_px) {
     Image<float> map(width, height);
     for (int v = 0; v < height; ++v) {
-      for (int u = 0; u < width; ++u) map(u, v) = static_cast<float>(road.disparity(u, v) + across * u + down * v);
+      for (int u = 0; u < width; ++u) {
+        map(u, v) = static_cast<float>(40 + 0.3 * u - 0.2 * v + 0.5 * (across * u * u + down * v * v));
+      }
     }
     map(30, 20) = nan;
     RefinementOptions options{.radius = 0};
-    options.place_sigma_px = place_sigma_px;
-    return refine(map, Image<float>(width, height, 0.01F), road, options).sigma;
+    options.smoothing_px = smoothing_px;
+    return refine(map, Image<float>(width, height, 0.01F), no_road, options).sigma;
   };
-  const Image<float> without = sigmas(0.3, -0.4, 0), on_road = sigmas(0, 0, 2);
-  for (const double place : {1.0, 2.0}) {
-    const Image<float> with = sigmas(0.3, -0.4, place);
-    const auto expected = [&](double slope) { return std::hypot(without(40, 30), place * slope); };
-    EXPECT_NEAR(with(40, 30), expected(0.5), 1e-4);
-    EXPECT_NEAR(with(32, 20), expected(0.4), 1e-4);  // its left neighbour is unknown
-    EXPECT_NEAR(with(30, 22), expected(0.3), 1e-4);  // that above
+  const Image<float> without = sigmas(0.02, -0.01, 0);
+  for (const int s : {4, 6}) {
+    const Image<float> with = sigmas(0.02, -0.01, s);
+    const auto expected = [&](double across, double down) {
+      return std::sqrt(without(40, 30) * without(40, 30) + std::pow(0.5 * s * s, 2) * (across * across + down * down));
+    };
+    EXPECT_NEAR(with(40, 30), expected(0.02, -0.01), 1e-4);
+    EXPECT_NEAR(with(30 + s, 20), expected(0, -0.01), 1e-4);  // its left neighbour is unknown
+    EXPECT_NEAR(with(30, 20 + s), expected(0.02, 0), 1e-4);   // that above
     EXPECT_EQ(with(0, 0), without(0, 0));
     EXPECT_TRUE(std::isnan(with(30, 20)));
+    EXPECT_NEAR(sigmas(0, 0, s)(40, 30), without(40, 30), 1e-5);
   }
-  EXPECT_NEAR(on_road(40, 30), without(40, 30), 1e-4);
 }
 
 TEST(Refinement, IsIndependentOfThreads) {

@@ -7,7 +7,7 @@
 #include "core/scratch.hpp"
 #include "road/refinement/refinement_maps.hpp"
 #include "road/refinement/settings.hpp"
-#include "road/refinement/slope_error.hpp"
+#include "road/refinement/smoothing_error.hpp"
 #include "road/refinement/weighted_mean.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/error.hpp"
@@ -124,9 +124,8 @@ void run_pass(const Maps& maps, const RefinementPass& pass, int threads, Image<f
   });
 }
 
-/// Adds the error of slopes to the standard errors.
-void add_slope_error(ImageView<const float> disparity, const SlopeError& slopes, int threads, Image<float>& sigma) {
-  constexpr int reach = SlopeError::reach;
+/// Adds the error of smoothing to the standard errors.
+void add_smoothing_error(ImageView<const float> disparity, int reach, int threads, Image<float>& sigma) {
   const int width = disparity.width(), height = disparity.height();
   parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {
     for (int v = std::max(first, reach); v < std::min(last, height - reach); ++v) {
@@ -134,7 +133,7 @@ void add_slope_error(ImageView<const float> disparity, const SlopeError& slopes,
       const float* const here = disparity.row(v);
       float* const error = sigma.row(v);
       for (int u = reach; u < width - reach; ++u) {
-        error[u] = slopes.added_to(error[u], here[u - reach], here[u + reach], above[u], below[u]);
+        error[u] = with_smoothing_error(error[u], here[u], here[u - reach] + here[u + reach], above[u] + below[u]);
       }
     }
   });
@@ -148,7 +147,7 @@ void RefinementOptions::validate() const {
   require_range("refinement", "step", step, 1, 16);
   require_range("refinement", "truncation_sigmas", truncation_sigmas, 0.5, 100.0);
   require_range("refinement", "min_sigma_px", min_sigma_px, 0.001, 1.0);
-  require_range("refinement", "place_sigma_px", place_sigma_px, 0.0, 10.0);
+  require_range("refinement", "smoothing_px", smoothing_px, 0, 32);
   require_range("refinement", "max_sigma_px", max_sigma_px, Above{0.0}, unlimited);
   require_range("refinement", "max_agreement_sigma_px", max_agreement_sigma_px, min_sigma_px, 10.0);
 }
@@ -180,7 +179,7 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
     maps.disparity = out.view();
     maps.variance = error.view();
   }
-  if (options.place_sigma_px > 0) add_slope_error(refined, SlopeError(road, options.place_sigma_px), threads, sigma);
+  if (options.smoothing_px > 0) add_smoothing_error(refined, options.smoothing_px, threads, sigma);
 }
 
 }  // namespace roadstereo

@@ -7,7 +7,7 @@
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
 #include "road/refinement/cuda/refinement.hpp"
-#include "road/refinement/slope_error.hpp"
+#include "road/refinement/smoothing_error.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -166,14 +166,14 @@ __global__ void refine_untiled(Maps maps, RefinementSettings settings, ImageView
   error(u, v) = pixel.error;
 }
 
-/// Adds the error of slopes to the standard errors.
-__global__ void add_slope_error(ImageView<const float> disparity, SlopeError slopes, ImageView<float> sigma) {
-  constexpr int reach = SlopeError::reach;
+/// Adds the error of smoothing to the standard errors.
+__global__ void add_smoothing_error(ImageView<const float> disparity, int reach, ImageView<float> sigma) {
   const int u = static_cast<int>(blockIdx.x * tile_columns + threadIdx.x) + reach;
   const int v = static_cast<int>(blockIdx.y * thread_rows + threadIdx.y) + reach;
   if (u >= disparity.width() - reach || v >= disparity.height() - reach) return;
-  sigma(u, v) = slopes.added_to(sigma(u, v), __ldg(&disparity(u - reach, v)), __ldg(&disparity(u + reach, v)),
-                                __ldg(&disparity(u, v - reach)), __ldg(&disparity(u, v + reach)));
+  const float two_across = __ldg(&disparity(u - reach, v)) + __ldg(&disparity(u + reach, v));
+  const float two_down = __ldg(&disparity(u, v - reach)) + __ldg(&disparity(u, v + reach));
+  sigma(u, v) = with_smoothing_error(sigma(u, v), __ldg(&disparity(u, v)), two_across, two_down);
 }
 
 std::size_t tile_bytes(int rows, int border) {
@@ -199,9 +199,9 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
   } else {
     launch("refine_untiled", refine_untiled, {grid(thread_rows), block}, stream, maps, settings, refined, error);
   }
-  if (settings.pass.is_last && settings.place_sigma_px > 0) {
-    launch("add_slope_error", add_slope_error, {grid(thread_rows), block}, stream, ImageView<const float>(refined),
-           SlopeError(road, settings.place_sigma_px), error);
+  if (settings.pass.is_last && settings.smoothing_px > 0) {
+    launch("add_smoothing_error", add_smoothing_error, {grid(thread_rows), block}, stream,
+           ImageView<const float>(refined), settings.smoothing_px, error);
   }
 }
 

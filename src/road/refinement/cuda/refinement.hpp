@@ -12,8 +12,8 @@ namespace roadstereo::cuda {
 struct RefinementSettings {
   RefinementPass pass;
   VarianceBounds bounds{};
-  float worst_sigma = 1.4F;   ///< pixels
-  double place_sigma_px = 0;  ///< RefinementOptions::place_sigma_px
+  float worst_sigma = 1.4F;  ///< pixels
+  int smoothing_px = 0;      ///< RefinementOptions::smoothing_px
 };
 
 /// Enqueues one pass of refine_disparities (roadstereo/refinement.hpp) on the device. `error`: standard errors of the

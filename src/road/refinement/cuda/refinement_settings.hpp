@@ -9,7 +9,7 @@ namespace roadstereo::cuda {
 /// pixels that one disparity rests on before the first pass.
 inline RefinementSettings refinement_settings(const RefinementOptions& options, int index, double effective_samples) {
   return {refinement_pass(options, index, effective_samples), variance_bounds(options),
-          static_cast<float>(options.max_sigma_px), options.place_sigma_px};
+          static_cast<float>(options.max_sigma_px), options.smoothing_px};
 }
 
 }  // namespace roadstereo::cuda
