@@ -76,7 +76,8 @@ void MapSettings::validate() const {
 
 MapPlan MapSettings::plan() const {
   validate();
-  MapPlan plan{*this, {}, output};
+  const MapOptions& options = *this;
+  MapPlan plan{options, {}, output};
   const auto runs = static_cast<std::size_t>(
       std::count_if(source.begin(), source.end(), [](const std::string& name) { return is_flight_folder(name); }));
   if (runs != 0 && runs != source.size()) {
