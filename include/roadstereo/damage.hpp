@@ -43,6 +43,7 @@ struct DamageInput {
   ImageView<const float> transformed;  ///< ℓ', pixels; NaN invalid. Depressions lie below the road, protrusions above
   ImageView<const float> disparity;    ///< ℓ, pixels; required for metric results
   ImageView<const float> sigma;  ///< standard error of ℓ, pixels; when absent, noise is estimated from `transformed`
+  int smoothing_px = 0;          ///< RefinementOptions::smoothing_px of `sigma`; 0: `sigma` is noise alone
   ImageView<const std::int16_t> grey;   ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
   ImageView<const std::int16_t> right;  ///< right image; with `grey`, tells what one camera alone sees from damage
   Misalignment misalignment;            ///< of `right`, as `disparity` has it undone
@@ -96,6 +97,11 @@ struct DamageEvidence {
   /// along the undamaged road; NaN unknown. What one camera alone sees agrees along neither, the texture around it
   /// along the road.
   double surface_significance = std::numeric_limits<double>::quiet_NaN();
+
+  /// Maximum depth in standard errors. Those of noise alone: smoothing only makes a damage shallower. Below 3 the
+  /// damage is unresolvable, unless its mean depth is known better.
+  double depth_significance = 0;
+  bool is_depth_resolved() const { return depth_significance >= min_resolved_sigmas; }
 
   /// Probability that the region is damage, 0 … 1: logistic regression on the evidence (docs/method.md).
   double confidence() const;

@@ -70,6 +70,7 @@ struct FrameResult {
   GreyImage right;           ///< the right image; misaligned by `shift.misalignment`
   Image<float> disparity;    ///< ℓ: left-image disparities, pixels, NaN invalid
   Image<float> sigma;        ///< standard error of `disparity`, pixels, NaN where that is invalid
+  int smoothing_px = 0;      ///< RefinementOptions::smoothing_px, which `sigma` was computed with
   Image<std::uint8_t> mask;  ///< of `Pipeline::set_mask`, not 0 where pixels are left out; empty without one
   Image<float> transformed;  ///< ℓ': the intact road lies at `delta_t`, damage below, bumps above; NaN invalid
   RoadModelEstimate road;    ///< before matching

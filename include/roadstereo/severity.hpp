@@ -22,7 +22,7 @@ const char* name_of(Distress distress);
 /// Severity of a damage by a table of its distress.
 enum class Severity {
   unknown,       ///< no calibration, no table for this distress in the scheme, or the depth cannot be trusted
-  unresolvable,  ///< neither the largest nor the mean depth is three standard errors
+  unresolvable,  ///< neither the largest nor the mean depth is three standard errors of its noise
   uncertain,     ///< no class has more than half of the probability
   minor,         ///< below the table
   low,
@@ -36,13 +36,16 @@ enum class DistressUnit { count, square_metre, metre };
 /// Return "count", "m2" or "m".
 const char* name_of(DistressUnit unit);
 
+/// Number of its standard errors that a depth must have to be resolvable.
+inline constexpr double min_resolved_sigmas = 3;
+
 /// A measured value with its standard error.
 struct Measurement {
   double value = 0;
   double std_error = 0;
 
   /// Whether the value is at least three standard errors.
-  bool is_resolved() const { return value >= 3 * std_error; }
+  bool is_resolved() const { return value >= min_resolved_sigmas * std_error; }
 };
 
 /// Probability of each class of severity, 0 … 1; they sum to 1.

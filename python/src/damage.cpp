@@ -70,7 +70,9 @@ void bind_one_damage(py::module_& module) {
       .field("road_share", &Evidence::road_share, "Share of the band around that is road, 0 … 1.")
       .field("border_share", &Evidence::border_share, "Share of the outline on the border of the image, 0 … 1.")
       .field("surface_significance", &Evidence::surface_significance,
-             "Standard errors by which the images agree better along the measured surface than the road; NaN unknown.");
+             "Standard errors by which the images agree better along the measured surface than the road; NaN unknown.")
+      .field("depth_significance", &Evidence::depth_significance,
+             "Maximum depth, standard errors from noise alone; below 3 the depth is unresolvable.");
   Record<Damage>(module, "Damage", "One damage: a connected component of the left image.")
       .field("id", &Damage::id, "Value in `DamageMap.ids`.")
       .field(

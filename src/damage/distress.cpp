@@ -68,7 +68,7 @@ std::string distress_reason(const DamageMetrics& metrics) {
   return text.str();
 }
 
-void grade(const SeverityScheme& scheme, DamageMetrics& metrics) {
+void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics) {
   constexpr double max_area_error = 0.5;       // relative: two standard errors of the area include 0
   constexpr double section_of_parabola = 1.5;  // maximum over mean depth of a rut's cross-section
   const SeverityTable* const table = scheme.find(metrics.distress);
@@ -89,10 +89,7 @@ void grade(const SeverityScheme& scheme, DamageMetrics& metrics) {
     metrics.severity =
         area_error > max_area_error ? Severity::uncertain : likely_severity(metrics.severity_probabilities);
   }
-  // The mean is a lower bound of the maximum, with a smaller standard error.
-  if (!metrics.max_depth_m.is_resolved() && !metrics.mean_depth_m.is_resolved()) {
-    metrics.severity = Severity::unresolvable;
-  }
+  if (!resolvable) metrics.severity = Severity::unresolvable;
 }
 
 std::string severity_text(const DamageMetrics& metrics) {

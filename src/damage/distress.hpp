@@ -9,7 +9,8 @@ namespace roadstereo {
 /// height, `image_width` in pixels.
 Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double wall_m, int image_width);
 
-/// Set quantity, unit, probabilities and severity by the table of the distress.
-void grade(const SeverityScheme& scheme, DamageMetrics& metrics);
+/// Set quantity, unit, probabilities and severity by the table of the distress. `resolvable`: whether a depth is at
+/// least three of its standard errors.
+void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics);
 
 }  // namespace roadstereo

@@ -7,6 +7,8 @@
 #include "damage/damage_maps.hpp"
 #include "damage/metric_measurement.hpp"
 #include "damage/surface_correlation.hpp"
+#include "road/refinement/smoothing_error.hpp"
+#include "roadstereo/resolution_limits.hpp"
 
 namespace roadstereo {
 namespace {
@@ -32,43 +34,58 @@ void add_pixel(const DamageInput& input, const DamageMap& maps, int u, int v, Pi
   sums.depth += std::abs(maps.depth(u, v));
 }
 
-/// Root mean square of the standard errors of the pixels of a cell; `noise` where there are none, without measurement.
-double cell_sigma(const DamageInput& input, const Cells& cells, int i, int j, double noise) {
+/// Error of smoothing over `reach` pixels at (u, v) of a map; 0 at its border.
+double smoothing_error(ImageView<const float> map, int reach, int u, int v) {
+  const bool inside = u >= reach && v >= reach && u + reach < map.width() && v + reach < map.height();
+  if (reach == 0 || !inside) return 0;
+  return with_smoothing_error(0, map(u, v), map(u - reach, v) + map(u + reach, v),
+                              map(u, v - reach) + map(u, v + reach));
+}
+
+/// Root mean square of the standard errors of the pixels of a cell without their errors of smoothing; `noise` where
+/// there are none, without measurement.
+double cell_noise(const DamageInput& input, const Cells& cells, int i, int j, double noise) {
   if (input.sigma.empty()) return noise;
+  const int reach = input.disparity.empty() ? 0 : input.smoothing_px;
   double sum = 0;
   int count = 0;
   for (int v = j * cells.factor; v < std::min((j + 1) * cells.factor, cells.image_height); ++v) {
     for (int u = i * cells.factor; u < std::min((i + 1) * cells.factor, cells.image_width); ++u) {
       const double sigma = input.sigma(u, v);
       if (!std::isfinite(sigma)) continue;
-      sum += sigma * sigma;
+      const double smoothing = smoothing_error(input.disparity, reach, u, v);
+      sum += sigma * sigma - smoothing * smoothing;
       ++count;
     }
   }
-  return count > 0 ? std::sqrt(sum / count) : noise;
+  return count > 0 ? std::sqrt(std::max(0.0, sum) / count) : noise;
 }
 
-/// Find the smoothed depth cell that is deepest for certain: the one with the largest depth less its standard error, so
-/// that what is measured badly is not the deepest because of that.
-void find_deepest(const DamageInput& input, const Segmentation& segmentation, const Candidate& candidate,
-                  Damage& damage) {
+/// Find the smoothed depth cell that is deepest for certain: the one with the largest depth less its standard error
+/// from noise, so that what is measured badly is not the deepest because of that. Returns that standard error.
+double find_deepest(const DamageInput& input, const Segmentation& segmentation, const Candidate& candidate,
+                    Damage& damage) {
   const float sign = sign_of(candidate.kind);
-  double max_bound = -HUGE_VAL;
+  const Cells& cells = segmentation.cells;
+  const DepthCells& depths = segmentation.depth_cells;
+  double max_bound = -HUGE_VAL, deepest_noise = depths.noise;
+  const int reach = (input.smoothing_px + cells.factor / 2) / cells.factor;
   const CellBox& box = candidate.box();
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
-      const float depth = sign * segmentation.depth_cells.depth(i, j);
-      if (!candidate.cells(i, j) || segmentation.depth_cells.valid(i, j) == 0 || depth <= 0) continue;
-      const Cells& cells = segmentation.cells;
-      const double sigma = cell_sigma(input, cells, i, j, segmentation.depth_cells.noise);
-      if (static_cast<double>(depth) - sigma <= max_bound) continue;
-      max_bound = static_cast<double>(depth) - sigma;
-      damage.max_depth_px = {depth, sigma};
+      const float depth = sign * depths.depth(i, j);
+      if (!candidate.cells(i, j) || depths.valid(i, j) == 0 || depth <= 0) continue;
+      const double noise = cell_noise(input, cells, i, j, depths.noise);
+      if (static_cast<double>(depth) - noise <= max_bound) continue;
+      max_bound = static_cast<double>(depth) - noise;
+      deepest_noise = noise;
+      damage.max_depth_px = {depth, std::hypot(noise, smoothing_error(depths.depth, reach, i, j))};
       // The centre of a cell that the border clips may lie outside the image.
       damage.deepest_px = {std::min(static_cast<int>(cells.middle(i)), cells.image_width - 1),
                            std::min(static_cast<int>(cells.middle(j)), cells.image_height - 1)};
     }
   }
+  return deepest_noise;
 }
 
 /// Measure candidate `k` in pixels.
@@ -94,7 +111,13 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
     damage.measured_share = static_cast<double>(sums.measured) / pixels;
     damage.mean_depth_px = sums.measured > 0 ? sums.depth / static_cast<double>(sums.measured) : 0;
   }
-  find_deepest(input, segmentation, candidate, damage);
+  const double noise = find_deepest(input, segmentation, candidate, damage);
+  damage.mean_depth_px = std::max(0.0, damage.mean_depth_px + sign_of(damage.kind) * offset.value);
+  Measurement& max_depth = damage.max_depth_px;
+  max_depth.value = std::max(max_depth.value + sign_of(damage.kind) * offset.value, damage.mean_depth_px);
+  max_depth.std_error = std::hypot(max_depth.std_error, offset.std_error);
+  const double bias = maps.metric ? sub_pixel_bias_px : 0;
+  damage.evidence.depth_significance = max_depth.value / std::hypot(noise, offset.std_error, bias);
   return damage;
 }
 
@@ -128,10 +151,8 @@ bool is_within_limits(const Damage& damage, const DamageOptions& options) {
   return std::isfinite(area_m2) && area_m2 >= options.min_area_m2 && depth_m >= options.min_depth_m && depth_m <= max_m;
 }
 
-/// Whether the depth is at least three of its standard errors.
 bool is_resolvable(const Damage& damage) {
-  if (damage.metrics) return damage.metrics->severity != Severity::unresolvable;
-  return damage.max_depth_px.is_resolved();
+  return damage.metrics ? damage.metrics->severity != Severity::unresolvable : damage.evidence.is_depth_resolved();
 }
 
 /// Separate damages from candidates, and number the damages by decreasing depth, then the candidates.
@@ -172,11 +193,7 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
   for (std::size_t k = 0; k < segmentation.candidates.size(); ++k) {
     const SurfaceOffset offset =
         offsets.emplace_back(estimate_surface_offset(segmentation, segmentation.candidates[k]));
-    Damage& damage = result.damages.emplace_back(measure_in_pixels(input, segmentation, k, offset, result));
-    damage.mean_depth_px = std::max(0.0, damage.mean_depth_px + sign_of(damage.kind) * offset.value);
-    damage.max_depth_px.value =
-        std::max(damage.max_depth_px.value + sign_of(damage.kind) * offset.value, damage.mean_depth_px);
-    damage.max_depth_px.std_error = std::hypot(damage.max_depth_px.std_error, offset.std_error);
+    result.damages.push_back(measure_in_pixels(input, segmentation, k, offset, result));
   }
   std::optional<FrameGeometry> geometry;
   if (result.metric) geometry.emplace(input);

@@ -155,7 +155,8 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   metrics.outline_m = outline_on_road(geometry, maps, damage);
   const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
   metrics.distress = classify_distress(damage, metrics, SmoothingError::window_radius_px * pixel_m, maps.ids.width());
-  grade(options.severity, metrics);
+  const bool resolvable = damage.evidence.is_depth_resolved() || metrics.mean_depth_m.is_resolved();
+  grade(options.severity, resolvable, metrics);
   return metrics;
 }
 

@@ -137,6 +137,7 @@ std::vector<DamageColumn> pixel_columns() {
           {"road_share", evidence<&DamageEvidence::road_share>},
           {"border_share", evidence<&DamageEvidence::border_share>},
           {"surface_significance", evidence<&DamageEvidence::surface_significance>},
+          {"depth_significance", evidence<&DamageEvidence::depth_significance>},
           {"cut_by_border", [](const Damage& d) -> DamageValue { return d.cut_by_border; }}};
 }
 

@@ -206,7 +206,8 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const Severit
   fused.mean_depth_m = record.mean_depth_m;
   fused.area_m2 = record.area_m2;
   fused.diameter_m = 2 * std::sqrt(record.area_m2.value / std::numbers::pi);
-  grade(severity, fused);
+  const bool resolvable = fused.max_depth_m.is_resolved() || fused.mean_depth_m.is_resolved();
+  grade(severity, resolvable, fused);
   record.severity_probabilities = fused.severity_probabilities;
   record.severity = fused.severity;
   return record;
@@ -216,12 +217,11 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const Severit
 
 std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
                                           const RoadMap& map, const DamageOptions& options) {
-  constexpr double min_std_errors = 3;
   std::vector<RoadDamageRecord> records;
   for (const Group& group : group_findings(sightings, in_map, options.min_confidence)) {
     RoadDamageRecord record = record_of(group, map, options.severity);
-    const bool resolvable = record.max_depth_m.value >= min_std_errors * record.max_depth_m.std_error;
-    if (record.confidence >= options.min_confidence && resolvable) records.push_back(std::move(record));
+    const bool is_damage = record.confidence >= options.min_confidence && record.max_depth_m.is_resolved();
+    if (is_damage) records.push_back(std::move(record));
   }
   std::stable_sort(records.begin(), records.end(),
                    [](const auto& a, const auto& b) { return a.max_depth_m.value > b.max_depth_m.value; });

@@ -222,6 +222,7 @@ DisparityMaps Pipeline::State::restore_disparity(const ResidualMaps& residual) {
 
 ImageView<const float> Pipeline::State::refine(const DisparityMaps& maps) {
   const StageTimer timer(result.ms.refinement);
+  result.smoothing_px = options.refinement.smoothing_px;
   return stages->refine(maps, result.shift.road);
 }
 
@@ -414,6 +415,7 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
   input.transformed = frame.transformed;
   input.disparity = frame.disparity;
   input.sigma = frame.sigma;
+  input.smoothing_px = frame.smoothing_px;
   input.grey = frame.grey;
   input.right = frame.right;
   input.misalignment = frame.shift.misalignment;

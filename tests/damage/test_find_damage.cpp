@@ -276,6 +276,43 @@ TEST(FindDamage, DeepestPointIsInsideImage) {
   EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, 2 * 4 / 46.0, 0.02 * 2 * 4 / 46.0);
 }
 
+/// A paraboloid 2 px deep with a radius of 40 px, seen from above: half of its second difference over 12 px is
+/// 2·12²/40² = 0.18 px along either axis.
+TEST(FindDamage, SmoothingDoesNotMakeDepthUnresolvable) {
+  constexpr int side = 320, smoothing_px = 12;
+  constexpr double depth_px = 2, radius = 40, noise_px = 0.3, bias_px = 0.03, along_axis_px = 0.18;
+  Image<float> transformed(side, side, 30.0F), sigma(side, side, static_cast<float>(noise_px));
+  for (int v = 0; v < side; ++v) {
+    for (int u = 0; u < side; ++u) {
+      const double share = std::pow(std::hypot(u - 160, v - 160) / radius, 2);
+      if (share > 1) continue;
+      transformed(u, v) -= static_cast<float>(depth_px * (1 - share));
+      sigma(u, v) = static_cast<float>(std::hypot(noise_px, along_axis_px, along_axis_px));
+    }
+  }
+  transformed = with_noise(transformed, 0.002);
+  Image<float> disparity = transformed;
+  for (int v = 0; v < side; ++v) {
+    for (int u = 0; u < side; ++u) disparity(u, v) += 20;
+  }
+  DamageInput input;
+  input.transformed = transformed;
+  input.disparity = disparity;
+  input.sigma = sigma;
+  input.plane = DisparityPlane{50, 0, 0};
+  input.calibration = StereoCalibration{1000, 159.5, 159.5, 0.1, 0, side, side};
+  const double total_px = std::hypot(std::hypot(noise_px, along_axis_px, along_axis_px), bias_px);
+  const DamageMap unknown = find_damage(input);
+  input.smoothing_px = smoothing_px;
+  const DamageMap known = find_damage(input);
+  ASSERT_EQ(unknown.damages.size(), 1U);
+  ASSERT_EQ(known.damages.size(), 1U);
+  EXPECT_NEAR(unknown.damages[0].evidence.depth_significance, depth_px / total_px, 0.03 * depth_px / total_px);
+  const double expected = depth_px / std::hypot(noise_px, bias_px);
+  EXPECT_NEAR(known.damages[0].evidence.depth_significance, expected, 0.03 * expected);
+  EXPECT_NEAR(known.damages[0].max_depth_px.std_error, total_px, 0.03 * total_px);
+}
+
 TEST(FindDamage, IntactRoadHasNone) {
   synth::Scene scene = intact_scene();
   for (const double camber : {0.0, 0.02, 0.04}) {
