@@ -18,7 +18,7 @@ def process(*frames, **options):
 def columns(damage):
     """The damage as a row of damages.json."""
     metrics, evidence = damage.metrics, damage.evidence
-    row = {"severity": metrics.severity, "angle_deg": math.degrees(metrics.angle_rad)}
+    row = {"severity": metrics.severity, "angle_deg": round(math.degrees(metrics.angle_rad), 9)}
     for name in ("id", "kind", "confidence", "pixels", "measured_share", "mean_depth_px", "cut_by_border"):
         row[name] = getattr(damage, name)
     for name in ("contrast_sigmas", "significance", "steepness", "road_share", "border_share", "surface_significance",
@@ -47,6 +47,8 @@ class Damage(unittest.TestCase):
         found, written = roadstereo.find_damage(process()), json_file("damages.json")
         self.assertGreater(len(found.damages), 0)
         for name in ("damages", "candidates"):
+            for row in written[name]:
+                row["angle_deg"] = round(row["angle_deg"], 9)
             self.assertEqual([columns(damage) for damage in getattr(found, name)], written[name])
         self.assertEqual(found.noise_px, written["noise_px"])
         self.assertTrue(found.metric)
