@@ -152,9 +152,9 @@ and road_cloud.ply (the road is z = 0). --write selects: disparity, sigma, trans
 report. "files" of result.json says what each file is.
 
 Output of a recording: damages.csv (one row per damage of the road, worst first), candidates.csv, sightings.csv (one row
-per damage and frame), frames.csv, summary.json, report.html, an image of each damage in damages/, and the files selected
-with --write; with --track also segments.csv (every 20 m), flight.gpkg and the same layers as GeoJSON: damages, sightings,
-frames and footprints; with --map also map/ (frames are matched twice). --resume continues after Ctrl-C or a kill.
+per damage and frame), frames.csv, pose.csv (smoothed roll, pitch, height), summary.json, report.html, an image of each
+damage in damages/, and the files selected with --write; with --track also segments.csv (every 20 m), flight.gpkg, the same
+as GeoJSON; with --map also map/ (frames are matched twice). --resume continues after Ctrl-C or a kill.
 
 SOURCE is a folder (left/ right/, image_2/ image_3/, image_0/ image_1/, cam0/data cam1/data, or images named L… and R…),
 a list (.txt or .csv with lines "left right [seconds]"), a video with both views in one image, or a ROS bag (.bag, .mcap,

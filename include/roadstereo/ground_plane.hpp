@@ -19,6 +19,18 @@ struct GroundPlane {
 /// (a2, a1, (a0 + a1·v_o + a2·u_o + doffs)/f)·p = b.
 GroundPlane ground_plane(const DisparityPlane& model, const StereoCalibration& calibration);
 
+/// Standard errors of height and pitch.
+struct GroundPlaneError {
+  double height_m = 0;
+  double pitch_rad = 0;
+};
+
+/// Errors of the plane of a road from which its surface deviates by `deviation_px`, a standard deviation of disparities
+/// over the image: a plane at another part of the road is off by that, and tilted by it over the standard deviation of
+/// the rows and columns.
+GroundPlaneError ground_plane_error(const DisparityPlane& model, const StereoCalibration& calibration,
+                                    double deviation_px);
+
 /// Road coordinates, metres: origin at the foot of the left camera, x to the camera's right, y forward (up in the
 /// image), z up out of the road. All three are unit vectors of the camera frame.
 struct RoadAxes {

@@ -17,5 +17,6 @@
 #include "roadstereo/resolution_limits.hpp"
 #include "roadstereo/road_model.hpp"
 #include "roadstereo/roll.hpp"
+#include "roadstereo/series_smoother.hpp"
 #include "roadstereo/version.hpp"
 #include "roadstereo/warning.hpp"

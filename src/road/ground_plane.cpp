@@ -22,6 +22,24 @@ std::array<double, 3> RoadAxes::to_road(const std::array<double, 3>& point_m) co
   return {dot(x), dot(y), dot(z)};
 }
 
+GroundPlaneError ground_plane_error(const DisparityPlane& model, const StereoCalibration& calibration,
+                                    double deviation_px) {
+  const double row_sigma = calibration.height / std::sqrt(12.0), column_sigma = calibration.width / std::sqrt(12.0);
+  const double by_row = deviation_px / row_sigma, by_column = deviation_px / column_sigma;
+  const GroundPlane plane = ground_plane(model, calibration);
+  const double middle_v = 0.5 * (calibration.height - 1), middle_u = 0.5 * (calibration.width - 1);
+  GroundPlaneError error;
+  for (const DisparityPlane& change :
+       {DisparityPlane{deviation_px, 0, 0}, DisparityPlane{-by_row * middle_v, by_row, 0},
+        DisparityPlane{-by_column * middle_u, 0, by_column}}) {
+    const GroundPlane other =
+        ground_plane({model.a0 + change.a0, model.a1 + change.a1, model.a2 + change.a2}, calibration);
+    error.height_m = std::hypot(error.height_m, other.height_m - plane.height_m);
+    error.pitch_rad = std::hypot(error.pitch_rad, other.pitch_rad - plane.pitch_rad);
+  }
+  return error;
+}
+
 RoadAxes road_axes(const GroundPlane& plane) {
   const std::array<double, 3>& n = plane.normal;
   RoadAxes frame;

@@ -62,7 +62,7 @@ def main():
             folder = pathlib.Path(root) / document
             folder.mkdir()
             print(f"{document}: {run_blocks(document, program, folder)} blocks")
-        names = ("result.json", "damages.json", "damages.csv", "frames.csv", "summary.json", "truth.json")
+        names = ("result.json", "damages.json", "damages.csv", "frames.csv", "pose.csv", "summary.json", "truth.json")
         files = [path for path in pathlib.Path(root).rglob("*") if path.name in names]
         if {path.name for path in files} != set(names):
             sys.exit(f"the blocks made only {sorted({path.name for path in files})}")

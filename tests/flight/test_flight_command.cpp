@@ -88,7 +88,7 @@ class FlightCommand : public CommandTest {
     std::vector<std::vector<std::string>> table;
     for (const std::string& row : rows(output + "/frames.csv")) {
       std::vector<std::string> cells = cells_of(row);
-      cells.erase(cells.begin() + 19, cells.begin() + 21);
+      cells.erase(cells.begin() + 21, cells.begin() + 23);  // matching_ms, damage_ms
       table.push_back(cells);
     }
     return table;
@@ -235,7 +235,8 @@ TEST_F(SlowFlightCommand, ResumesAfterCutJournal) {
     // As a kill leaves it: some frames done, half a line of the next, its file there already, a staging folder.
     fs::remove_all(folder_ / "cut");
     fs::copy(folder_ / "whole", folder_ / "cut", fs::copy_options::recursive);
-    for (const char* result : {"frames.csv", "damages.csv", "sightings.csv", "summary.json", "report.html"}) {
+    for (const char* result :
+         {"frames.csv", "pose.csv", "damages.csv", "sightings.csv", "summary.json", "report.html"}) {
       fs::remove(folder_ / "cut" / result);
     }
     std::string text;

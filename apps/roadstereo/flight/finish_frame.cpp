@@ -1,13 +1,27 @@
 #include "flight/finish_frame.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "find_damage_or_warn.hpp"
 #include "flight/frame_files.hpp"
 #include "flight/frame_messages.hpp"
+#include "roadstereo/ground_plane.hpp"
 #include "stopwatch.hpp"
 
 namespace roadstereo::cli {
 
 namespace {
+
+/// The road's deviation from its plane is what its noise does not explain.
+void record_plane_error(const std::optional<StereoCalibration>& calibration, io::FlightFrame& frame) {
+  if (!calibration || !std::isfinite(frame.height_m)) return;
+  const double noise_px = std::isfinite(frame.noise_px) ? std::min(frame.noise_px, frame.sigma_d_px) : 0;
+  const double deviation_px = std::sqrt(frame.sigma_d_px * frame.sigma_d_px - noise_px * noise_px);
+  const GroundPlaneError error = ground_plane_error(frame.road, *calibration, deviation_px);
+  frame.height_stderr_m = error.height_m;
+  frame.pitch_stderr_rad = error.pitch_rad;
+}
 
 void record_damage(const std::optional<StereoCalibration>& calibration, const DamageOptions& options, FlightJob& job) {
   constexpr int threads = 1;  // the others match the next frame
@@ -15,6 +29,7 @@ void record_damage(const std::optional<StereoCalibration>& calibration, const Da
                           job.frame.warnings)) {
     job.frame.noise_px = job.damage.noise_px;
   }
+  record_plane_error(calibration, job.frame);
   job.frame.damages = job.damage.damages;
   job.frame.candidates = job.damage.candidates;
 }

@@ -44,6 +44,7 @@ int lock_folder(const fs::path& folder) {
 
 /// What a flight writes besides the files of its frames.
 constexpr std::array flight_files = {"frames.csv",
+                                     "pose.csv",
                                      "damages.csv",
                                      "candidates.csv",
                                      "sightings.csv",

@@ -134,6 +134,7 @@ std::vector<std::int64_t> FlightResults::add(const io::FlightFrame& frame) {
   }
   summary_.add(frame);
   frames_csv_ += io::frames_csv_row(frame);
+  poses_.add(frame);
   std::vector<std::int64_t> road_damages = inventory_.add(frame);
   sightings_csv_ += io::sightings_csv_rows(frame, road_damages);
   if (positions_) positions_->add(frame, road_damages);
@@ -199,6 +200,7 @@ std::string FlightResults::write(const FlightSettings& settings, const FlightRun
     files.push_back(text_file("segments.csv", io::segments_csv(segments, damages)));
   }
   files.push_back(text_file("frames.csv", frames_csv_));
+  files.push_back(text_file("pose.csv", poses_.csv()));
   files.push_back(text_file("damages.csv", io::road_damages_csv_names() + io::road_damages_csv_rows(worst)));
   files.push_back(text_file("candidates.csv", io::road_damages_csv_names() + io::road_damages_csv_rows(candidates)));
   files.push_back(text_file("sightings.csv", sightings_csv_));

@@ -11,6 +11,7 @@
 #include "flight/flight_summary.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/flight_report.hpp"
+#include "roadstereo/io/pose_table.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
@@ -44,8 +45,9 @@ class FlightResults {
 
   const io::FlightInventory& inventory() const { return inventory_; }
 
-  /// Writes frames.csv, damages.csv, candidates.csv, sightings.csv, summary.json and report.html, and segments.csv and
-  /// the GIS files if there is a track. Completes the summary; call it once. Returns the text of summary.json.
+  /// Writes frames.csv, pose.csv, damages.csv, candidates.csv, sightings.csv, summary.json and report.html, and
+  /// segments.csv and the GIS files if there is a track. Completes the summary; call it once. Returns the text of
+  /// summary.json.
   std::string write(const FlightSettings& settings, const FlightRun& run, FlightFolder& folder);
 
   const FlightSummary& summary() const { return summary_; }
@@ -66,6 +68,7 @@ class FlightResults {
   std::optional<FlightPositions> positions_;
   std::vector<Thumbnail> thumbnails_;
   std::string frames_csv_;
+  io::PoseTable poses_;
   std::string sightings_csv_;
 };
 

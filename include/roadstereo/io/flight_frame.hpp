@@ -38,6 +38,8 @@ struct FlightFrame {
   DisparityPlane road{unknown, unknown, unknown};  ///< after matching
   double height_m = unknown;                       ///< height of the camera above the road; needs a calibration
   double pitch_rad = unknown;                      ///< optical axis below the road's horizon; needs a calibration
+  double height_stderr_m = unknown;                ///< `ground_plane_error`
+  double pitch_stderr_rad = unknown;
   double sigma_d_px = unknown;                     ///< standard deviation of the transformed disparities on the road
   double valid_share = unknown;                    ///< fraction of pixels with a disparity
   double noise_px = unknown;                       ///< of the intact road

@@ -201,6 +201,8 @@ void each_field(FlightFrame& frame, Visit& visit) {
   visit("road", frame.road);
   visit("height_m", frame.height_m);
   visit("pitch_rad", frame.pitch_rad);
+  visit("height_stderr_m", frame.height_stderr_m);
+  visit("pitch_stderr_rad", frame.pitch_stderr_rad);
   visit("sigma_d_px", frame.sigma_d_px);
   visit("valid_share", frame.valid_share);
   visit("noise_px", frame.noise_px);

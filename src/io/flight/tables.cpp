@@ -39,7 +39,9 @@ std::string frames_csv_names() {
                            "a1",
                            "a2",
                            "height_m",
+                           "height_stderr_m",
                            "pitch_deg",
+                           "pitch_stderr_deg",
                            "sigma_d_px",
                            "road_noise_px",
                            "valid_percent",
@@ -60,7 +62,8 @@ std::string frames_csv_row(const FlightFrame& frame) {
   good ? line.add(frame.roll_observable) : line.add_nothing();
   line.add(road_status(frame)).add(frame.alpha0).add(frame.alpha1);
   line.add(frame.road.a0).add(frame.road.a1).add(frame.road.a2);
-  line.add(frame.height_m).add(frame.pitch_rad * degrees).add(frame.sigma_d_px).add(frame.noise_px);
+  line.add(frame.height_m).add(frame.height_stderr_m);
+  line.add(frame.pitch_rad * degrees).add(frame.pitch_stderr_rad * degrees).add(frame.sigma_d_px).add(frame.noise_px);
   line.add(100 * frame.valid_share);
   good ? line.add(static_cast<std::int64_t>(frame.damages.size())) : line.add_nothing();
   line.add(frame.matching_ms, 2).add(frame.damage_ms, 2).add(remarks(frame));
