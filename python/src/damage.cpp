@@ -96,26 +96,29 @@ py::object damage_map(const py::object& self) {
 }
 
 void bind_damage_map(py::module_& module) {
-  py::class_<DamageMap>(module, "DamageMap",
-                        "Damage of one pair. Its arrays are read-only views, which keep its memory alive.")
-      .def_readonly("damages", &DamageMap::damages, "List of damages, deepest first.")
-      .def_readonly("candidates", &DamageMap::candidates,
-                    "List of unresolvable regions and of those below damage.min_confidence; not in `ids`.")
-      .def_property_readonly("ids", damage_map<&DamageMap::ids>, "Id of the damage, (H, W) uint16; 0: none.")
-      .def_property_readonly("road", damage_map<&DamageMap::road>,
-                             "255 in the road region, damage included; (H, W) uint8.")
-      .def_property_readonly("surface", damage_map<&DamageMap::surface>,
-                             "Transformed disparities of the undamaged road, (H, W) float32, pixels.")
-      .def_property_readonly("depth", damage_map<&DamageMap::depth>,
-                             "Depth below the undamaged road, negative above it, (H, W) float32: metres if `metric`,\n"
-                             "else pixels. NaN in holes outside of damages.")
-      .def_readonly("noise_px", &DamageMap::noise_px, "Robust standard deviation of the intact road, pixels.")
-      .def_readonly("metric", &DamageMap::metric, "Whether `depth` is in metres.")
-      .def_readonly("non_metric_reason", &DamageMap::non_metric_reason, "Why `metric` is False; empty if it is True.")
-      .def("__repr__", [](const DamageMap& map) {
-        return "DamageMap(" + std::to_string(map.damages.size()) + " damages, " +
-               std::to_string(map.candidates.size()) + " candidates)";
-      });
+  const auto type =
+      py::class_<DamageMap>(module, "DamageMap",
+                            "Damage of one pair. Its arrays are read-only views, which keep its memory alive.")
+          .def_readonly("damages", &DamageMap::damages, "List of damages, deepest first.")
+          .def_readonly("candidates", &DamageMap::candidates,
+                        "List of unresolvable regions and of those below damage.min_confidence; not in `ids`.")
+          .def_property_readonly("ids", damage_map<&DamageMap::ids>, "Id of the damage, (H, W) uint16; 0: none.")
+          .def_property_readonly("road", damage_map<&DamageMap::road>,
+                                 "255 in the road region, damage included; (H, W) uint8.")
+          .def_property_readonly("surface", damage_map<&DamageMap::surface>,
+                                 "Transformed disparities of the undamaged road, (H, W) float32, pixels.")
+          .def_property_readonly(
+              "depth", damage_map<&DamageMap::depth>,
+              "Depth below the undamaged road, negative above it, (H, W) float32: metres if `metric`,\n"
+              "else pixels. NaN in holes outside of damages.")
+          .def_readonly("noise_px", &DamageMap::noise_px, "Robust standard deviation of the intact road, pixels.")
+          .def_readonly("metric", &DamageMap::metric, "Whether `depth` is in metres.")
+          .def_readonly("non_metric_reason", &DamageMap::non_metric_reason,
+                        "Why `metric` is False; empty if it is True.");
+  set_repr(type, [](const DamageMap& map) {
+    return "DamageMap(" + std::to_string(map.damages.size()) + " damages, " + std::to_string(map.candidates.size()) +
+           " candidates)";
+  });
 }
 
 std::unique_ptr<DamageMap> find_damage_of(const ProcessedFrame& frame, const py::object& options,

@@ -166,7 +166,7 @@ void add_values(py::class_<ProcessedFrame>& type) {
   type.def_property_readonly("warnings", value_of<&FrameResult::warnings>,
                              "What is wrong with the pair, as sentences.");
   type.def_readonly("calibration", &ProcessedFrame::calibration, "Calibration of the pipeline, or None.");
-  type.def("__repr__", [](const ProcessedFrame& frame) {
+  set_repr(type, [](const ProcessedFrame& frame) {
     const FrameResult& result = frame.result;
     return "FrameResult(" + std::to_string(result.disparity.width()) + "×" + std::to_string(result.disparity.height()) +
            " pixels, road " + name_of(result.road.status) + ")";

@@ -16,6 +16,7 @@
 #include "bindings.hpp"
 #include "calibration.hpp"
 #include "frame_array.hpp"
+#include "record.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::python {
@@ -106,19 +107,22 @@ of these or cannot be opened.)";
 }  // namespace
 
 void bind_frame_source(py::module_& module) {
-  py::class_<PairArrays>(module, "SourcePair", "One unrectified pair of a source, or the reason why it is missing.")
-      .def_readonly("index", &PairArrays::index, "In the source, from 0.")
-      .def_readonly("name", &PairArrays::name, "File name, or the index in six digits.")
-      .def_readonly("time_s", &PairArrays::time_s,
-                    "Seconds since 1970 if known, else since the start of the source; NaN: unknown.")
-      .def_property_readonly("left", frame_of<&PairArrays::left>,
-                             "(H, W), or (H, W, 3 or 4) in the order BGR; uint8 or uint16. Raises Error if `error`.")
-      .def_property_readonly("right", frame_of<&PairArrays::right>, "Like `left`.")
-      .def_readonly("error", &PairArrays::error, "Why the pair is invalid, e.g. unreadable or unpaired; empty: valid.")
-      .def("__repr__", [](const PairArrays& pair) {
-        return "SourcePair(" + std::to_string(pair.index) + ", '" + pair.name + "'" +
-               (pair.error.empty() ? "" : ", " + pair.error) + ")";
-      });
+  const auto pair =
+      py::class_<PairArrays>(module, "SourcePair", "One unrectified pair of a source, or the reason why it is missing.")
+          .def_readonly("index", &PairArrays::index, "In the source, from 0.")
+          .def_readonly("name", &PairArrays::name, "File name, or the index in six digits.")
+          .def_readonly("time_s", &PairArrays::time_s,
+                        "Seconds since 1970 if known, else since the start of the source; NaN: unknown.")
+          .def_property_readonly(
+              "left", frame_of<&PairArrays::left>,
+              "(H, W), or (H, W, 3 or 4) in the order BGR; uint8 or uint16. Raises Error if `error`.")
+          .def_property_readonly("right", frame_of<&PairArrays::right>, "Like `left`.")
+          .def_readonly("error", &PairArrays::error,
+                        "Why the pair is invalid, e.g. unreadable or unpaired; empty: valid.");
+  set_repr(pair, [](const PairArrays& one) {
+    return "SourcePair(" + std::to_string(one.index) + ", '" + one.name + "'" +
+           (one.error.empty() ? "" : ", " + one.error) + ")";
+  });
   py::class_<SharedSource>(module, "FrameSource", "A recording or a camera: an iterator of SourcePair.")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &SharedSource::next)

@@ -13,13 +13,17 @@ namespace roadstereo::python {
 /// Returns "Name(attribute=value, …)".
 std::string attributes_text(const pybind11::object& object, const std::vector<const char*>& attributes);
 
+/// Makes `text`, a function of an object, the repr of its class. A method of pybind11 has no hash, which pprint needs:
+/// a function of Python stands in for it.
+void set_repr(pybind11::handle type, const pybind11::cpp_function& text);
+
 /// Declares a class of read-only attributes. Its repr lists them.
 template <class Value>
 class Record {
  public:
   Record(pybind11::module_& module, const char* name, const char* doc) : class_(module, name, doc) {
-    class_.def("__repr__",
-               [attributes = attributes_](const pybind11::object& self) { return attributes_text(self, *attributes); });
+    set_repr(class_,
+             [attributes = attributes_](const pybind11::object& self) { return attributes_text(self, *attributes); });
   }
 
   /// Adds an attribute: a data member, or a function of the value.

@@ -2,6 +2,7 @@
 
 import gc
 import math
+import pprint
 import unittest
 
 import numpy as np
@@ -139,6 +140,10 @@ class Arrays(unittest.TestCase):
         self.assertEqual(repr(result), "FrameResult(320×180 pixels, road found)")
         plane = result.geometry.plane
         self.assertEqual(repr(plane), f"DisparityPlane(a0={plane.a0!r}, a1={plane.a1!r}, a2={plane.a2!r})")
+
+    def test_pprint_prints_attributes(self):
+        geometry = process().geometry
+        self.assertEqual(pprint.pformat([geometry]), f"[{geometry!r}]")
 
 
 if __name__ == "__main__":
