@@ -25,7 +25,7 @@ FixCurve::FixCurve(std::vector<PositionFix> fixes, double max_gap_s) : fixes_(st
       continue;
     }
     const double before = fixes_[i].time_s - fixes_[a].time_s, after = fixes_[b].time_s - fixes_[i].time_s;
-    tangents_.push_back((after * slope(a, i) + before * slope(i, b)) / (before + after));
+    tangents_.emplace_back((after * slope(a, i) + before * slope(i, b)) / (before + after));
   }
 }
 

@@ -17,7 +17,7 @@ class PlacePair {
  public:
   PlacePair(const MapCells& footprint, const RoadMap& before, const RoadMap& after)
       : cell_before_m_(before.options().cell_m), cell_after_m_(after.options().cell_m) {
-    constexpr int band = static_cast<int>(0.1 / footprint_m + 0.5);
+    const int band = static_cast<int>(std::lround(0.1 / footprint_m));
     int column0 = footprint.front()[0], column1 = column0;
     const int row0 = footprint.front()[1] - band, row1 = footprint.back()[1] + band;
     for (const auto& [column, row] : footprint) {

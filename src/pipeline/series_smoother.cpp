@@ -103,13 +103,13 @@ double median_step(const std::vector<Known>& samples) {
 
 /// Filter with the density of the acceleration that makes the samples likeliest. Returns the scale of the variances.
 double filter_likeliest(const std::vector<Known>& samples, double variance, std::vector<Filtered>& states) {
-  constexpr double first_decade = -9, last_decade = 5, step_decades = 0.25;
-  constexpr double unknown_velocity = 1e8;  // variance, of the samples' one in the square of a step
+  constexpr int first_exponent = -36, last_exponent = 20;  // quarters of a decade
+  constexpr double unknown_velocity = 1e8;                 // variance, of the samples' one in the square of a step
   const double step = median_step(samples), velocity_variance = unknown_velocity * variance / (step * step);
   double best_q = 0;
   Likelihood best{-HUGE_VAL, 1};
-  for (double decade = first_decade; decade <= last_decade; decade += step_decades) {
-    const double q = std::pow(10.0, decade) * variance / (step * step * step);
+  for (int exponent = first_exponent; exponent <= last_exponent; ++exponent) {
+    const double q = std::pow(10.0, 0.25 * exponent) * variance / (step * step * step);
     const Likelihood likelihood = filter(samples, q, velocity_variance, states);
     if (likelihood.log <= best.log) continue;
     best = likelihood;
