@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Everything that can be checked on this machine: what .ci/run has no time for as well. To be run before an issue is called
-# done; it takes about an hour and a half on two cores. CONTRIBUTING.md says which check is for what.
+# done; it takes about two hours on two cores. CONTRIBUTING.md says which check is for what.
 #   scripts/check_all.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
