@@ -38,6 +38,9 @@ changed() {
 # The analyzer follows paths through the embedded library and takes a third of the time there; the sanitizers see what
 # it finds. Elsewhere it mostly follows paths through other libraries.
 if [ "${1:-}" = --all ]; then
+  if cmake --build build/tidy --target help | grep -q roadstereo_dds_types; then
+    cmake --build build/tidy --target roadstereo_dds_types >/dev/null  # a generated header
+  fi
   find src -name '*.cpp' -not -path 'src/io/*' | tidy
   find src/io apps -name '*.cpp' | tidy '--checks=-clang-analyzer-*'
 else

@@ -99,7 +99,7 @@ std::string las_header(std::size_t record_bytes, const std::array<double, 3>& of
   for (std::size_t k = 0; k < 3; ++k) {
     for (const std::int32_t bound : {extent.high[k], extent.low[k]}) out.real(bound * las_scale_m + offset_m[k]);
   }
-  out.zeros(8 + 8 + 4).number(extent.points).number(extent.points).zeros(14 * 8);  // all are first returns
+  out.zeros(8 + 8 + 4).number(extent.points).number(extent.points).zeros(std::size_t{14} * 8);  // all are first returns
   return out.bytes();
 }
 

@@ -96,7 +96,7 @@ SeverityScheme read_severity_scheme(const std::string& name) {
     }
     const Distress distress = distress_of(name, key);
     if (!item.second.IsMap()) fail(name, ": ", key, " must be a map with unit, depth_mm and severity");
-    scheme.tables.push_back(table_of(distress, {name + ": " + key, item.second}));
+    scheme.tables.push_back(table_of(distress, {std::string(name).append(": ").append(key), item.second}));
   }
   scheme.validate();
   return scheme;
