@@ -169,6 +169,13 @@ const MapDamage& best_of(const Group& group) {
   return (*best)->found;
 }
 
+/// Whether the fused depth is resolved, or that of a finding by its noise alone (`DamageEvidence::depth_significance`).
+bool is_depth_resolved(const Group& group, const Measurement& fused) {
+  return fused.is_resolved() || (group.in_map != nullptr && group.in_map->damage.evidence.is_depth_resolved()) ||
+         std::any_of(group.sightings.begin(), group.sightings.end(),
+                     [](auto* one) { return one->found.damage.evidence.is_depth_resolved(); });
+}
+
 RoadDamageRecord record_of(const Group& group, const RoadMap& map, const SeverityScheme& severity) {
   const double view_factor = map.view_factor();
   RoadDamageRecord record;
@@ -206,7 +213,7 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const Severit
   fused.mean_depth_m = record.mean_depth_m;
   fused.area_m2 = record.area_m2;
   fused.diameter_m = 2 * std::sqrt(record.area_m2.value / std::numbers::pi);
-  const bool resolvable = fused.max_depth_m.is_resolved() || fused.mean_depth_m.is_resolved();
+  const bool resolvable = is_depth_resolved(group, fused.max_depth_m) || fused.mean_depth_m.is_resolved();
   grade(severity, resolvable, fused);
   record.severity_probabilities = fused.severity_probabilities;
   record.severity = fused.severity;
@@ -220,7 +227,7 @@ std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sighti
   std::vector<RoadDamageRecord> records;
   for (const Group& group : group_findings(sightings, in_map, options.min_confidence)) {
     RoadDamageRecord record = record_of(group, map, options.severity);
-    const bool is_damage = record.confidence >= options.min_confidence && record.max_depth_m.is_resolved();
+    const bool is_damage = record.confidence >= options.min_confidence && is_depth_resolved(group, record.max_depth_m);
     if (is_damage) records.push_back(std::move(record));
   }
   std::stable_sort(records.begin(), records.end(),

@@ -62,7 +62,7 @@ TEST_F(MapCommand, NamesWhatIsMissing) {
 TEST_F(SlowMapCommand, SaysWhatChangedBetweenDays) {
   for (const std::string scene : {"uav", "flat"}) {
     const Outcome made =
-        run("synth --scene " + scene + " --frames 2 --flight step=0.1 --size 384x216 --output " + scene + " --quiet");
+        run("synth --scene " + scene + " --frames 2 --flight step=0.1 --size 512x288 --output " + scene + " --quiet");
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
   const std::string poses = " --trajectory uav/trajectory_kitti.txt --trajectory flat/trajectory_kitti.txt";
