@@ -43,7 +43,7 @@ struct DamageInput {
   ImageView<const float> transformed;  ///< ℓ', pixels; NaN invalid. Depressions lie below the road, protrusions above
   ImageView<const float> disparity;    ///< ℓ, pixels; required for metric results
   ImageView<const float> sigma;  ///< standard error of ℓ, pixels; when absent, noise is estimated from `transformed`
-  int smoothing_px = 0;          ///< RefinementOptions::smoothing_px of `sigma`; 0: `sigma` is noise alone
+  int smoothing_px = 0;          ///< RefinementOptions::smoothing_px of `sigma`, 0 … 32; 0: `sigma` is noise alone
   ImageView<const std::int16_t> grey;   ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
   ImageView<const std::int16_t> right;  ///< right image; with `grey`, tells what one camera alone sees from damage
   Misalignment misalignment;            ///< of `right`, as `disparity` has it undone

@@ -246,10 +246,26 @@ TEST(FindDamage, InfinityIsInvalidLikeNan) {
   }
 }
 
+/// Metric input of a road at δt = 30 px, seen straight down from 2 m: d = 50 px, f = 1000 px, b = 0.1 m.
+struct FromAbove {
+  Image<float> disparity;
+  DamageInput input;
+
+  explicit FromAbove(const Image<float>& transformed) : disparity(transformed) {
+    const int width = transformed.width(), height = transformed.height();
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) disparity(u, v) += 20;
+    }
+    input.transformed = transformed;
+    input.disparity = disparity;
+    input.plane = DisparityPlane{50, 0, 0};
+    input.calibration = StereoCalibration{1000, 0.5 * (width - 1), 0.5 * (height - 1), 0.1, 0, width, height};
+  }
+};
+
 /// Deepest in the last row of a picture whose cells do not divide it: 1000 = 333·3 + 1.
 TEST(FindDamage, DeepestPointIsInsideImage) {
   constexpr int width = 1300, height = 1000, radius = 90;
-  const StereoCalibration rig{1000, 649.5, 499.5, 0.1, 0, width, height};
   Image<float> transformed(width, height, 30.0F);
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
@@ -258,16 +274,7 @@ TEST(FindDamage, DeepestPointIsInsideImage) {
     }
   }
   transformed = with_noise(transformed, 0.02);
-  Image<float> disparity = transformed;
-  for (int v = 0; v < height; ++v) {
-    for (int u = 0; u < width; ++u) disparity(u, v) += 20;
-  }
-  DamageInput input;
-  input.transformed = transformed;
-  input.disparity = disparity;
-  input.plane = DisparityPlane{50, 0, 0};  // straight down from 2 m
-  input.calibration = rig;
-  const DamageMap map = find_damage(input);
+  const DamageMap map = find_damage(FromAbove(transformed).input);
   ASSERT_EQ(map.damages.size(), 1U);
   EXPECT_TRUE(map.damages[0].cut_by_border);
   EXPECT_LT(map.damages[0].deepest_px[1], height);
@@ -291,16 +298,9 @@ TEST(FindDamage, SmoothingDoesNotMakeDepthUnresolvable) {
     }
   }
   transformed = with_noise(transformed, 0.002);
-  Image<float> disparity = transformed;
-  for (int v = 0; v < side; ++v) {
-    for (int u = 0; u < side; ++u) disparity(u, v) += 20;
-  }
-  DamageInput input;
-  input.transformed = transformed;
-  input.disparity = disparity;
+  FromAbove above(transformed);
+  DamageInput& input = above.input;
   input.sigma = sigma;
-  input.plane = DisparityPlane{50, 0, 0};
-  input.calibration = StereoCalibration{1000, 159.5, 159.5, 0.1, 0, side, side};
   const double total_px = std::hypot(std::hypot(noise_px, along_axis_px, along_axis_px), bias_px);
   const DamageMap unknown = find_damage(input);
   input.smoothing_px = smoothing_px;

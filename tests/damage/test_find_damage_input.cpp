@@ -27,6 +27,15 @@ TEST(FindDamage, RejectsMapsWithoutContent) {
   expect_error([&] { find_in(few); }, "20");
 }
 
+/// A negative reach would read behind the rows.
+TEST(FindDamage, RejectsReachOfSmoothing) {
+  for (const int smoothing_px : {-1, 33}) {
+    DamageInput input = damaged().metric();
+    input.smoothing_px = smoothing_px;
+    expect_error([&] { find_damage(input); }, "smoothing_px");
+  }
+}
+
 TEST(FindDamage, RejectsViewsOfOtherSize) {
   const Image<float> other(640, 359, 1.0F);
   const GreyImage grey(639, 360, 1);
