@@ -7,6 +7,7 @@
 #include "damage/connected_components.hpp"
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
+#include "damage/neighbours.hpp"
 #include "damage/outline.hpp"
 
 namespace roadstereo {
@@ -49,6 +50,7 @@ std::uint8_t label_of(DamageKind kind) {
 struct SearchInput {
   DepthCells& depth_cells;  ///< `remove_outliers` changes it
   const Image<std::uint8_t>& road;
+  const Image<std::uint8_t>& unseen;  ///< 255 in gaps that touch the border of the image: what is not seen, or off road
   const Thresholds& thresholds;
   const ImageEdges& image_edges;
 };
@@ -63,6 +65,15 @@ struct SearchImages {
 
   DepthField field() { return {depth, allowed, visited}; }
 };
+
+/// Mask of the gaps that touch the border of the image.
+Image<std::uint8_t> unseen_cells(const DepthCells& depth_cells) {
+  Image<std::uint8_t> unseen(depth_cells.valid.width(), depth_cells.valid.height(), 0);
+  for (const ConnectedComponent& gap : ConnectedComponents(depth_cells.valid, ConnectedComponents::Foreground::zero)) {
+    if (gap.touches_border) fill_component(gap, 255, unseen);
+  }
+  return unseen;
+}
 
 /// Add to `allowed` the gaps that are enclosed by a depression. A gap that touches the border of the image or lies in
 /// the intact road belongs to none.
@@ -211,15 +222,18 @@ Candidate segment(const SearchInput& input, const ConnectedComponent& core, Dama
   return candidate;
 }
 
-/// Share of the contour of a region, with its cells at the border of the image, that lies on that border.
-double border_share(const BoxMask& region, int columns, int rows) {
+/// Share of the contour of a region, with its cells at the border of the image, that lies on that border or on that of
+/// what is seen: the rim of a damage is not known there.
+double border_share(const BoxMask& region, const Image<std::uint8_t>& unseen) {
+  const int columns = unseen.width(), rows = unseen.height();
   const CellBox& box = region.box();
   double contour = 0;
   double border = 0;
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
       if (!region(i, j)) continue;
-      const bool at_border = i == 0 || j == 0 || i + 1 == columns || j + 1 == rows;
+      bool at_border = i == 0 || j == 0 || i + 1 == columns || j + 1 == rows;
+      for_each_neighbour(i, j, columns, rows, [&](int x, int y) { at_border |= unseen(x, y) != 0; });
       if (!at_border && !is_on_contour(region, i, j, columns, rows)) continue;
       ++contour;
       border += at_border ? 1 : 0;
@@ -274,7 +288,7 @@ void add_evidence(const SearchInput& input, SearchImages& images, Candidate& can
   evidence.contrast_sigmas = (damage.median - around.median) / std::max(around.sigma, input.depth_cells.noise);
   evidence.significance = evidence.contrast_sigmas * std::sqrt(samples);
   evidence.road_share = road_share(input, candidate, images.assigned);
-  evidence.border_share = border_share(candidate.cells, input.road.width(), input.road.height());
+  evidence.border_share = border_share(candidate.cells, input.unseen);
 }
 
 /// Assign the cells of a candidate to its kind.
@@ -353,7 +367,8 @@ void find_kind(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& a
 
 std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road,
                                        const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions) {
-  const SearchInput input{depth_cells, road, thresholds, image_edges};
+  const Image<std::uint8_t> unseen = unseen_cells(depth_cells);
+  const SearchInput input{depth_cells, road, unseen, thresholds, image_edges};
   std::vector<Candidate> found;
   Image<std::uint8_t> assigned(depth_cells.depth.width(), depth_cells.depth.height(), 0);
   find_kind(input, DamageKind::depression, assigned, found);

@@ -179,6 +179,37 @@ TEST(FindDamage, RaggedHoleIsFoundToItsRim) {
   EXPECT_GE(both / one, 0.9);
 }
 
+/// A gap that reaches the border of the image cuts a pothole through its middle: its rim is not known there. The same
+/// cut by a gap that the road encloses is none.
+TEST(FindDamage, GapThatReachesBorderIsBorder) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  DamageOptions options;
+  options.min_confidence = 0;
+  const DamageMap whole = find_damage(damaged().metric(), options);
+  ASSERT_FALSE(whole.damages.empty());
+  const Damage& pothole = whole.damages.front();
+  EXPECT_EQ(pothole.evidence.border_share, 0);
+  const auto [u0, v0, u1, v1] = pothole.box_px;
+  const auto cut = [&](int first_u, int end_u) {
+    Image<float> map = damaged().transformed;
+    for (int v = v0 - 20; v <= v1 + 20; ++v) {
+      for (int u = first_u; u < end_u; ++u) map(u, v) = nan;
+    }
+    DamageInput input = damaged().metric();
+    input.transformed = map;
+    return find_damage(input, options);
+  };
+  const int middle = (u0 + u1) / 2;
+  const DamageMap at_border = cut(0, middle);
+  ASSERT_FALSE(at_border.damages.empty());
+  // The cut is a diameter of what is left, half an ellipse: a share of 1 / (1 + π/2) of a half circle's outline.
+  EXPECT_NEAR(at_border.damages.front().evidence.border_share, 0.39, 0.12);
+  EXPECT_LT(at_border.damages.front().confidence, whole.damages.front().confidence);
+  const DamageMap enclosed = cut(u0 - 20, u0 + 4);
+  ASSERT_FALSE(enclosed.damages.empty());
+  EXPECT_EQ(enclosed.damages.front().evidence.border_share, 0);
+}
+
 TEST(FindDamage, CandidatesAreNotCounted) {
   DamageOptions options;
   options.min_confidence = 1;
