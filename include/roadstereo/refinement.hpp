@@ -16,7 +16,7 @@ struct RefinementOptions {
   double truncation_sigmas = 2.5;       ///< difference with weight 0, joint standard errors, 0.5 … 100
   double max_agreement_sigma_px = 0.6;  ///< upper bound on σ in that test, pixels, min_sigma_px … 10
   double min_sigma_px = 0.02;           ///< standard error of interpolation and calibration, pixels, 0.001 … 1
-  double max_sigma_px = 1.4;            ///< disparities with a larger σ become invalid, pixels, above 0
+  double max_sigma_px = 1.0;            ///< disparities with a larger σ become invalid, pixels, above 0
   int smoothing_px = 6;  ///< standard deviation of all averaging, 0 … 32: what a bent surface adds to σ; 0: nothing
 
   /// Throws Error naming the first option that is out of range.

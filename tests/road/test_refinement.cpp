@@ -48,7 +48,7 @@ TEST(Refinement, ConstantMapKeepsValueWithErrorOfMean) {
     for (int u = 0; u < width; ++u) {
       const double count = taps(u, width, options) * taps(v, height, options);
       ASSERT_EQ(refined.disparity(u, v), 7.25F);
-      ASSERT_NEAR(refined.sigma(u, v), std::sqrt(2.1 * single / std::max(1.0, count * share)), 1e-5);
+      ASSERT_NEAR(refined.sigma(u, v), std::sqrt(single / std::max(1.0, count * share)), 1e-5);
     }
   }
 }
@@ -64,7 +64,7 @@ TEST(Refinement, SecondPassKeepsValueWithErrorOfMean) {
   const double first = (variance + least) / std::max(1.0, 25 * 16.0 / support);
   const double second = (first + least) / std::max(1.0, 25 * 64.0 / (support + 400));
   EXPECT_EQ(refined.disparity(40, 30), 7.25F);
-  EXPECT_NEAR(refined.sigma(40, 30), std::sqrt(2.1 * second), 1e-5);
+  EXPECT_NEAR(refined.sigma(40, 30), std::sqrt(second), 1e-5);
 }
 
 TEST(Refinement, WeightsNeighboursByPrecision) {
@@ -132,8 +132,8 @@ TEST(Refinement, NanStaysNanWithoutWeight) {
   }
   const double single = 0.01 + options.min_sigma_px * options.min_sigma_px;
   EXPECT_EQ(refined.disparity(44, 34), 3.0F);
-  EXPECT_NEAR(refined.sigma(44, 34), std::sqrt(2.1 * single / (8 * 0.16)), 1e-5);
-  EXPECT_NEAR(refined.sigma(46, 34), std::sqrt(2.1 * single / (9 * 0.16)), 1e-5);
+  EXPECT_NEAR(refined.sigma(44, 34), std::sqrt(single / (8 * 0.16)), 1e-5);
+  EXPECT_NEAR(refined.sigma(46, 34), std::sqrt(single / (9 * 0.16)), 1e-5);
 }
 
 /// The disparities of smooth noise around a road, some of them missing.
@@ -167,7 +167,7 @@ TEST(Refinement, RadiusZeroIsIdentity) {
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
       if (!std::isnan(map(u, v))) {
-        ASSERT_NEAR(refined.sigma(u, v), std::sqrt(2.1 * single), 1e-5);
+        ASSERT_NEAR(refined.sigma(u, v), std::sqrt(single), 1e-5);
       }
     }
   }

@@ -48,11 +48,8 @@ struct RefinedPixel {
 /// Refined disparity from the mean height above the road and its precision.
 ROADSTEREO_HD inline RefinedPixel refined_pixel(float disparity, float mean, float precision, float road, bool is_last,
                                                 float worst, float nan) {
-  // Theoretical variances are too small by this factor: the colour weights leave fewer effective samples, and sampling
-  // and the slant of a surface are no noise. Measured on synthetic roads (docs/accuracy.md).
-  constexpr float variance_scale = 2.1F;
   if (!is_last) return {disparity == disparity ? mean + road : nan, 1 / precision};
-  const float error = sqrtf(variance_scale / precision);
+  const float error = 1 / sqrtf(precision);
   const bool known = disparity == disparity && error <= worst;
   return {known ? mean + road : nan, known ? error : nan};
 }

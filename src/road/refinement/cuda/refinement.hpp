@@ -12,7 +12,7 @@ namespace roadstereo::cuda {
 struct RefinementSettings {
   RefinementPass pass;
   VarianceBounds bounds{};
-  float worst_sigma = 1.4F;  ///< pixels
+  float worst_sigma = 1.0F;  ///< pixels
   int smoothing_px = 0;      ///< RefinementOptions::smoothing_px
 };
 
