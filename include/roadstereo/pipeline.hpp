@@ -14,6 +14,7 @@
 #include "roadstereo/image.hpp"
 #include "roadstereo/lucas_kanade.hpp"
 #include "roadstereo/matcher.hpp"
+#include "roadstereo/off_road.hpp"
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/refinement.hpp"
 #include "roadstereo/road_model.hpp"
@@ -38,6 +39,7 @@ struct PipelineOptions {
   MatcherOptions matcher;
   RefinementOptions refinement;
   LucasKanadeOptions lucas_kanade;
+  OffRoadOptions off_road;  ///< where the scope is the road; needs the Lucas–Kanade step
   RollOptions roll;
   DamageOptions damage;  ///< of `Pipeline::find_damage`
 
@@ -55,13 +57,14 @@ struct StageTimes {
   double prepare = 0;  ///< conversion to grey, checks of the pair
   double road_model = 0;
   double perspective = 0;
-  double coarse = 0;      ///< coarse search: disparity range of each tile, prior
-  double match = 0;       ///< cost, aggregation, winner-take-all, left–right check, sub-pixel
-  double refinement = 0;  ///< adding the shift back, smoothing by the standard errors, Lucas–Kanade step
-  double roll = 0;        ///< roll and projection model
-  double transform = 0;   ///< disparity transformation
-  double download = 0;    ///< maps from a device to the host; about 0 with the engines of the host
-  double total = 0;       ///< on the host's clock; so are the other stages, unless DeviceOptions::timing is set
+  double coarse = 0;  ///< coarse search: disparity range of each tile, prior
+  double match = 0;   ///< cost, aggregation, winner-take-all, left–right check, sub-pixel
+  double refinement =
+      0;  ///< adding the shift back, smoothing by the standard errors, Lucas–Kanade step, what is off the road
+  double roll = 0;       ///< roll and projection model
+  double transform = 0;  ///< disparity transformation
+  double download = 0;   ///< maps from a device to the host; about 0 with the engines of the host
+  double total = 0;      ///< on the host's clock; so are the other stages, unless DeviceOptions::timing is set
 };
 
 /// Result for one pair. All maps have the size of the images.

@@ -68,9 +68,11 @@ class FrameStages {
   virtual DisparityMaps restore_disparity(const ResidualMaps& residual, const PerspectiveShift& shift) = 0;
   /// refine_disparities.
   virtual ImageView<const float> refine(const DisparityMaps& maps, const DisparityPlane& road) = 0;
-  /// lucas_kanade: returns the disparity map ℓ.
+  /// lucas_kanade.
   virtual ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,
                                        const PerspectiveShift& shift) = 0;
+  /// reject_off_road, where the step before has run and there is something to reject: returns the disparity map ℓ.
+  virtual ImageView<const float> reject_off_road(ImageView<const float> disparity, const OffRoadOptions& options) = 0;
   /// estimate_roll, when at least `min_share` of the pixels have a disparity. A device that need not return to the host
   /// goes on with the transformation, for which it takes `shift`.
   virtual RollFit estimate_roll(ImageView<const float> disparity, const std::optional<DisparityPlane>& prior,

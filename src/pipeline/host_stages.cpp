@@ -7,6 +7,7 @@
 
 #include "core/parallel.hpp"
 #include "pipeline/pair_checks.hpp"
+#include "road/lucas_kanade/alignment_maps.hpp"
 #include "road/refinement/refinement_maps.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
@@ -109,8 +110,14 @@ class HostStages final : public FrameStages {
                                const PerspectiveShift& shift) override {
     if (options_.lucas_kanade.radius == 0) return disparity;
     const TransformedPair pair{input.reference, input.target, input.first_column, shift};
-    lucas_kanade(pair, disparity, options_.lucas_kanade, threads_, restored_);
+    lucas_kanade(pair, disparity, options_.lucas_kanade, threads_, restored_, correlation_);
     std::swap(disparity_, restored_);
+    return disparity_;
+  }
+
+  ImageView<const float> reject_off_road(ImageView<const float> disparity, const OffRoadOptions& options) override {
+    if (options_.lucas_kanade.radius == 0) return disparity;
+    roadstereo::reject_off_road(correlation_, options, threads_, disparity_, sigma_);
     return disparity_;
   }
 
@@ -171,6 +178,7 @@ class HostStages final : public FrameStages {
   std::vector<int> first_column_;  ///< of the transformed target
   MatchMaps matched_;
   Image<float> restored_;
+  Image<float> correlation_;                      ///< of the cells of the Lucas–Kanade step
   Image<float> disparity_, sigma_, transformed_;  ///< results of the frame; earlier ones after `download`
 };
 

@@ -132,6 +132,9 @@ void visit_options(Options& o, Visitor visit) {
         "expected size of the sub-pixel bias that it corrects, pixels");
   visit("lucas_kanade.max_shift_px", o.lucas_kanade.max_shift_px, "largest change of a disparity by it, pixels");
 
+  visit("off_road.max_sigma_px", o.off_road.max_sigma_px,
+        "largest standard error beside the road where the pictures agree, pixels; a third where they do not; 0: any");
+
   visit("roll.solver", o.roll.solver, "solver of the roll angle");
   visit("roll.initial_lambda", o.roll.initial_lambda, "first learning rate of the descent");
   visit("roll.roll_threshold_rad", o.roll.roll_threshold_rad, "step below which the descent has converged, radians");

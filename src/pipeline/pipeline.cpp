@@ -80,6 +80,7 @@ struct Pipeline::State {
   DisparityMaps restore_disparity(const ResidualMaps& residual);
   ImageView<const float> refine(const DisparityMaps& maps);
   ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity);
+  ImageView<const float> reject_off_road(ImageView<const float> disparity);
   void estimate_roll(ImageView<const float> disparity);
   void transform_disparity(ImageView<const float> disparity);
   void download();
@@ -232,6 +233,13 @@ ImageView<const float> Pipeline::State::align(const MatchInput& input, ImageView
   return stages->align(input, disparity, result.shift);
 }
 
+/// Where only disparities near the road were searched, those of other things are wrong.
+ImageView<const float> Pipeline::State::reject_off_road(ImageView<const float> disparity) {
+  const StageTimer timer(result.ms.refinement);
+  const bool searched_near_road = result.shift.enabled && options.perspective.scope == Scope::road;
+  return stages->reject_off_road(disparity, searched_near_road ? options.off_road : OffRoadOptions{0});
+}
+
 /// Roll angle and projection model, section 3.3.
 void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
   // Of a pair without a road nothing is told but its disparities.
@@ -272,7 +280,8 @@ void Pipeline::State::run_stages(const FrameView& left, const FrameView& right) 
   const ResidualMaps residual = match(input);
   const DisparityMaps restored = restore_disparity(residual);
   const ImageView<const float> refined = refine(restored);
-  const ImageView<const float> disparity = align(input, refined);
+  const ImageView<const float> aligned = align(input, refined);
+  const ImageView<const float> disparity = reject_off_road(aligned);
   estimate_roll(disparity);
   transform_disparity(disparity);
   download();

@@ -27,6 +27,7 @@ PipelineOptions paper_preset() {
   options.matcher.occlusion_sigma_px = 0;
   options.matcher.reject_range_boundary = false;
   options.lucas_kanade.radius = 0;
+  options.off_road.max_sigma_px = 0;
   options.refinement.radius = 0;
   options.refinement.max_sigma_px = 1000;  // the left-right check alone decides
   options.roll.solver = RollSolver::gradient_descent;
@@ -45,6 +46,7 @@ PipelineOptions fast_preset() {
   options.matcher.block_radius = 5;
   options.matcher.aggregation_radius = 0;
   options.lucas_kanade.radius = 0;
+  options.off_road.max_sigma_px = 0;
   options.refinement.radius = 0;
   options.refinement.max_sigma_px = 1000;  // the left-right check alone decides
   return options;
@@ -75,6 +77,7 @@ void PipelineOptions::validate() const {
   coarse_search.validate();
   matcher.validate();
   lucas_kanade.validate();
+  off_road.validate();
   refinement.validate();
   roll.validate();
   damage.validate();

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "road/lucas_kanade/alignment_maps.hpp"
 #include "road/lucas_kanade/cuda/lucas_kanade.hpp"
 #include "road/lucas_kanade/settings.hpp"
 #include "roadstereo/perspective.hpp"
@@ -30,14 +31,22 @@ void expect_step_as_on_host(int width, int height, const PerspectiveShift& shift
       disparity(u, v) = hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(truth(u, v) + 0.3 * noise);
     }
   }
-  lucas_kanade({pair.reference, target, first_column.data(), shift}, disparity, options, 1, expected);
+  Image<float> expected_correlation;
+  lucas_kanade({pair.reference, target, first_column.data(), shift}, disparity, options, 1, expected,
+               expected_correlation);
   const test::DevicePlane<std::int16_t> device_reference(pair.reference), device_target(target);
   const test::DevicePlane<float> device_disparity(disparity), aligned(width, height);
   const cuda::DeviceArray<int> device_columns = test::to_device(first_column);
   cuda::LucasKanade step;
-  step.run({device_reference.view(), device_target.view(), device_columns.data(), shift}, device_disparity.view(),
-           options.radius, alignment_settings(options), aligned.plane(), nullptr);
+  const ImageView<const float> cells =
+      step.run({device_reference.view(), device_target.view(), device_columns.data(), shift}, device_disparity.view(),
+               options.radius, alignment_settings(options), aligned.plane(), nullptr);
   const Image<float> found = aligned.on_host();
+  const std::vector<float> correlation = test::to_host(cells.data(), cells.pixels());
+  ASSERT_EQ(correlation.size(), expected_correlation.pixels());
+  for (std::size_t k = 0; k < correlation.size(); ++k) {
+    ASSERT_NEAR(correlation[k], expected_correlation.row(0)[k], 1e-3) << "cell " << k;
+  }
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
       ASSERT_EQ(std::isnan(found(u, v)), std::isnan(expected(u, v))) << u << ", " << v;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "road/lucas_kanade/alignment_maps.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/lucas_kanade.hpp"
 #include "roadstereo/perspective.hpp"
@@ -125,14 +126,50 @@ TEST(LucasKanade, ChangesByNoMoreThanLimit) {
   EXPECT_NEAR(aligned(80, 30), 6.55, 1e-5);
 }
 
+double prefiltered_level(const GreyImage& image, int x, int y) {
+  constexpr std::array<double, 5> weights{1, 2, 3, 2, 1};
+  double sum = 0;
+  for (int k = -2; k <= 2; ++k) sum += weights[static_cast<std::size_t>(k + 2)] * image(x + k, y);
+  return sum;
+}
+
+/// Pearson's correlation over the window of a cell, at a whole disparity; both variances with that of a grey level.
+double naive_correlation(const test::TexturedPair& pair, int disparity, int column, int line, int radius) {
+  double n = 0, l = 0, t = 0, ll = 0, tt = 0, lt = 0;
+  for (int y = std::max(0, 4 * (line - radius)); y < std::min(height, 4 * (line + radius + 1)); ++y) {
+    for (int x = 4 * (column - radius); x < 4 * (column + radius + 1); ++x) {
+      const double a = prefiltered_level(pair.reference, x, y), b = prefiltered_level(pair.target, x - disparity, y);
+      n += 1;
+      l += a;
+      t += b;
+      ll += a * a;
+      tt += b * b;
+      lt += a * b;
+    }
+  }
+  constexpr double noise = 9.0 * 9 * grey_scale * grey_scale;
+  return (lt / n - l / n * t / n) / std::sqrt((ll / n - l / n * l / n + noise) * (tt / n - t / n * t / n + noise));
+}
+
+TEST(LucasKanade, TellsCorrelationAlongDisparities) {
+  const test::TexturedPair pair = test::textured_pair(width, height, [](double, double) { return 6.0; });
+  for (const int disparity : {6, 7, 11}) {
+    Image<float> aligned, correlation;
+    lucas_kanade({pair.reference, pair.target, nullptr, no_shift()},
+                 Image<float>(width, height, static_cast<float>(disparity)), {}, 1, aligned, correlation);
+    ASSERT_EQ(correlation.width(), width / 4);
+    ASSERT_EQ(correlation.height(), height / 4);
+    for (int j = 0; j < height / 4; j += 3) {
+      for (int i = 10; i < width / 4 - 5; i += 4) {
+        EXPECT_NEAR(correlation(i, j), naive_correlation(pair, disparity, i, j, 2), 2e-4) << i << ", " << j;
+      }
+    }
+    if (disparity == 6) EXPECT_GT(correlation(20, 7), 0.98);
+  }
+}
+
 /// −γ of L − T = α + β T + γ g by least squares over a window of the prefiltered rows, for gradients of equal contrast.
 double naive_shift(const test::TexturedPair& pair, const Image<float>& disparity, int column, int line, int radius) {
-  const auto filtered = [](const GreyImage& image, int x, int y) {
-    constexpr std::array<double, 5> weights{1, 2, 3, 2, 1};
-    double sum = 0;
-    for (int k = -2; k <= 2; ++k) sum += weights[static_cast<std::size_t>(k + 2)] * image(x + k, y);
-    return sum;
-  };
   std::array<std::array<double, 4>, 3> normal{};
   double n = 0, l = 0, ll = 0, t1 = 0, t2 = 0;
   for (int y = std::max(0, 4 * (line - radius)); y < std::min(height, 4 * (line + radius + 1)); ++y) {
@@ -141,12 +178,13 @@ double naive_shift(const test::TexturedPair& pair, const Image<float>& disparity
       const int whole = static_cast<int>(std::floor(at));
       const double f = at - whole;
       std::array<double, 4> t{};
-      for (int k = 0; k < 4; ++k) t[static_cast<std::size_t>(k)] = filtered(pair.target, whole - 1 + k, y);
+      for (int k = 0; k < 4; ++k) t[static_cast<std::size_t>(k)] = prefiltered_level(pair.target, whole - 1 + k, y);
       const double value = ((-0.5 * t[0] + 1.5 * t[1] - 1.5 * t[2] + 0.5 * t[3]) * f * f * f) +
                            ((t[0] - 2.5 * t[1] + 2 * t[2] - 0.5 * t[3]) * f * f) + (0.5 * (t[2] - t[0]) * f) + t[1];
-      const double left = 0.5 * (filtered(pair.reference, x + 1, y) - filtered(pair.reference, x - 1, y));
+      const double left =
+          0.5 * (prefiltered_level(pair.reference, x + 1, y) - prefiltered_level(pair.reference, x - 1, y));
       const double right = 0.5 * ((1 - f) * (t[2] - t[0]) + f * (t[3] - t[1]));
-      const double level = filtered(pair.reference, x, y);
+      const double level = prefiltered_level(pair.reference, x, y);
       const std::array<double, 4> row{1, value / 1e4, 0.5 * (left + right), level - value};
       n += 1;
       l += level;

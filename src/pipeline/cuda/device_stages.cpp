@@ -17,6 +17,7 @@
 #include "road/cuda/verification_assessment.hpp"
 #include "road/lucas_kanade/cuda/lucas_kanade.hpp"
 #include "road/lucas_kanade/settings.hpp"
+#include "road/off_road/cuda/off_road.hpp"
 #include "road/refinement/cuda/refinement_settings.hpp"
 #include "road/roll_assessment.hpp"
 #include "road/row_shift.hpp"
@@ -139,8 +140,15 @@ class DeviceStages final : public FrameStages {
                                const PerspectiveShift& shift) override {
     if (options_.lucas_kanade.radius > 0) {
       const TransformedPair pair{input.reference, input.target, input.first_column, shift};
-      lucas_kanade_.run(pair, disparity, options_.lucas_kanade.radius, alignment_settings(options_.lucas_kanade),
-                        maps_.disparity(), stream());
+      correlation_ = lucas_kanade_.run(pair, disparity, options_.lucas_kanade.radius,
+                                       alignment_settings(options_.lucas_kanade), maps_.disparity(), stream());
+    }
+    return maps_.disparity();
+  }
+
+  ImageView<const float> reject_off_road(ImageView<const float>, const OffRoadOptions& options) override {
+    if (options_.lucas_kanade.radius > 0 && options.max_sigma_px > 0) {
+      off_road_.run(correlation_, static_cast<float>(options.max_sigma_px), maps_.disparity(), maps_.sigma(), stream());
     }
     mark(StageClock::refined);
     if (download_) maps_.download_refined(stream());
@@ -257,6 +265,8 @@ class DeviceStages final : public FrameStages {
   std::optional<CudaCoarseSearch> coarse_search_;
   DeviceMatcher matcher_;
   LucasKanade lucas_kanade_;
+  ImageView<const float> correlation_;  ///< of the cells of that step
+  OffRoad off_road_;
   RoadFit fit_;
   MapSums sums_;
   DisparityTransform transform_;

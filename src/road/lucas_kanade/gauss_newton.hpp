@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/mid_grey.hpp"
+#include "roadstereo/grey_scale.hpp"
 #include "roadstereo/host_device.hpp"
 
 // The Gauss–Newton step of one window, for the host and for kernels. C++17.
@@ -103,6 +104,21 @@ ROADSTEREO_HD inline CellPlace cell_place(int pixel, int cells) {
   return {below < 0 ? 0 : below, below + 1 < cells ? below + 1 : cells - 1, at - static_cast<float>(below)};
 }
 
+/// Number of samples that a window needs.
+constexpr int min_alignment_samples = 6;
+
+/// Correlation of L and T in a window, each with the noise of one grey level; 0 without enough samples.
+template <class Number>
+ROADSTEREO_HD inline float alignment_correlation(const AlignmentSums<Number>& sums) {
+  constexpr float noise = 9.0F * grey_scale, noise_variance = noise * noise;
+  if (!(sums.n >= min_alignment_samples)) return 0.0F;
+  const Number share = 1 / sums.n, t = sums.t * share, r = sums.r * share;
+  const auto tt = static_cast<float>(sums.tt * share - t * t), tr = static_cast<float>(sums.tr * share - t * r);
+  const auto rr = static_cast<float>(sums.rr * share - r * r);
+  const float ll = tt + 2 * tr + rr;  // L = T + (L − T)
+  return (tt + tr) / sqrtf((tt + noise_variance) * (fmaxf(ll, 0.0F) + noise_variance));
+}
+
 struct AlignmentSettings {
   float max_shift;
   float bias_variance;  ///< pixels²
@@ -112,9 +128,9 @@ struct AlignmentSettings {
 /// variance.
 template <class Number>
 ROADSTEREO_HD inline float alignment_shift(const AlignmentSums<Number>& sums, const AlignmentSettings& settings) {
-  constexpr Number min_samples = 6, min_variance = 1;
+  constexpr Number min_variance = 1;
   constexpr Number pixels_per_sample = Number(81) / 19;  // noise that the prefilter has correlated: (Σ w)² / Σ w²
-  if (!(sums.n >= min_samples)) return 0.0F;
+  if (!(sums.n >= min_alignment_samples)) return 0.0F;
   const Number share = 1 / sums.n;
   const Number tt = sums.tt - sums.t * sums.t * share, tg = sums.tg - sums.t * sums.g * share;
   const Number tr = sums.tr - sums.t * sums.r * share, gg = sums.gg - sums.g * sums.g * share;

@@ -9,6 +9,7 @@
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
 #include "core/scratch.hpp"
+#include "road/lucas_kanade/alignment_maps.hpp"
 #include "road/lucas_kanade/sample_rows.hpp"
 #include "road/lucas_kanade/settings.hpp"
 #include "road/row_shift.hpp"
@@ -153,6 +154,12 @@ void LucasKanadeOptions::validate() const {
 
 void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity, const LucasKanadeOptions& options,
                   int threads, Image<float>& aligned) {
+  Image<float> correlation;
+  lucas_kanade(pair, disparity, options, threads, aligned, correlation);
+}
+
+void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity, const LucasKanadeOptions& options,
+                  int threads, Image<float>& aligned, Image<float>& correlation) {
   options.validate();
   const int width = disparity.width(), height = disparity.height();
   for (const ImageView<const std::int16_t>& image : {pair.reference, pair.target}) {
@@ -175,6 +182,7 @@ void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity,
     }
   });
   CellShifts shifts(width, height);
+  correlation.resize(cells.columns, cells.rows);
   const AlignmentSettings settings = alignment_settings(options);
   const std::size_t window_numbers = WindowSums::numbers(cells.columns);
   auto window_memory = scratch_vector<double>(window_numbers * workers);
@@ -182,7 +190,11 @@ void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity,
     WindowSums windows(window_memory.data() + window_numbers * static_cast<std::size_t>(worker), cells.columns);
     for (int j = first; j < last; ++j) {
       windows.add_up(cells, j, options.radius);
-      for (int i = 0; i < cells.columns; ++i) shifts.row(j)[i] = alignment_shift(windows.of_column(i), settings);
+      for (int i = 0; i < cells.columns; ++i) {
+        const AlignmentSums<double> sums = windows.of_column(i);
+        shifts.row(j)[i] = alignment_shift(sums, settings);
+        correlation(i, j) = alignment_correlation(sums);
+      }
       shifts.repeat_outermost(j);
     }
   });

@@ -53,7 +53,7 @@ __global__ void sum_cells(Maps maps, ImageView<AlignmentSums<float>> cells) {
 
 /// One thread a cell: the window around it.
 __global__ void solve_windows(ImageView<const AlignmentSums<float>> cells, int radius, AlignmentSettings settings,
-                              ImageView<float> shifts) {
+                              ImageView<float> shifts, ImageView<float> correlation) {
   const int i = thread_column(), j = thread_row();
   if (i >= cells.width() || j >= cells.height()) return;
   AlignmentSums<float> sums{};
@@ -61,6 +61,7 @@ __global__ void solve_windows(ImageView<const AlignmentSums<float>> cells, int r
     for (int x = max(0, i - radius); x <= min(cells.width() - 1, i + radius); ++x) sums.add(cells(x, y));
   }
   shifts(i, j) = alignment_shift(sums, settings);
+  correlation(i, j) = alignment_correlation(sums);
 }
 
 /// One thread a pixel: the shift between the cells. `scale`: of a disparity over that of a residual disparity.
@@ -83,21 +84,24 @@ dim3 grid_of(int width, int height) {
 
 }  // namespace
 
-void LucasKanade::run(const TransformedPair& pair, ImageView<const float> disparity, int radius,
-                      const AlignmentSettings& settings, ImageView<float> aligned, StreamView stream) {
+ImageView<const float> LucasKanade::run(const TransformedPair& pair, ImageView<const float> disparity, int radius,
+                                        const AlignmentSettings& settings, ImageView<float> aligned,
+                                        StreamView stream) {
   const int columns = alignment_cells(disparity.width()), rows = alignment_cells(disparity.height());
   const std::size_t cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   sums_.reserve(cells);
   shifts_.reserve(cells);
+  correlation_.reserve(cells);
   const ImageView<AlignmentSums<float>> sums(sums_.data(), columns, rows);
-  const ImageView<float> shifts(shifts_.data(), columns, rows);
+  const ImageView<float> shifts(shifts_.data(), columns, rows), correlation(correlation_.data(), columns, rows);
   const dim3 block(block_columns, block_rows);
   launch("lucas_kanade_sums", sum_cells, {grid_of(columns, rows), block, 0}, stream, Maps{pair, disparity}, sums);
   launch("lucas_kanade_solve", solve_windows, {grid_of(columns, rows), block, 0}, stream, sums, radius, settings,
-         shifts);
+         shifts, correlation);
   const float scale = 1 - shift_line(pair.shift, 0).slope;
   launch("lucas_kanade_shift", add_shifts, {grid_of(aligned.width(), aligned.height()), block, 0}, stream, shifts,
          scale, disparity, aligned);
+  return correlation;
 }
 
 }  // namespace roadstereo::cuda

@@ -1,0 +1,151 @@
+#include "roadstereo/off_road.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.hpp"
+#include "core/require_range.hpp"
+#include "core/scratch.hpp"
+#include "road/lucas_kanade/gauss_newton.hpp"
+#include "road/off_road/confirmation.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr int rows_per_band = 8;  // of cells
+
+/// One value per cell, in scratch memory.
+template <class T>
+struct CellMap {
+  int columns, rows;
+  ScratchVector<T> values;
+
+  CellMap(int columns_of_map, int rows_of_map)
+      : columns(columns_of_map),
+        rows(rows_of_map),
+        values(scratch_vector<T>(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows))) {}
+  T* row(int j) { return values.data() + std::ptrdiff_t{j} * columns; }
+  const T* row(int j) const { return values.data() + std::ptrdiff_t{j} * columns; }
+};
+
+void sum_log_sigmas(ImageView<const float> sigma, int threads, CellMap<LogSigmas>& cells) {
+  parallel_rows(cells.rows, rows_per_band, threads, [&](int first, int last, int) {
+    for (int v = first * alignment_cell; v < std::min(last * alignment_cell, sigma.height()); ++v) {
+      const float* const errors = sigma.row(v);
+      LogSigmas* const of_cell = cells.row(v / alignment_cell);
+      for (int u = 0; u < sigma.width(); ++u) of_cell[u / alignment_cell].add({log_sigma(errors[u]), 1});
+    }
+  });
+}
+
+/// Sums of the cells up to confirmation_radius columns away; of all rows around row j.
+void sum_around(const CellMap<LogSigmas>& cells, int j, LogSigmas* of_columns, LogSigmas* sums) {
+  std::fill_n(of_columns, cells.columns, LogSigmas{});
+  for (int y = std::max(0, j - confirmation_radius); y <= std::min(cells.rows - 1, j + confirmation_radius); ++y) {
+    for (int i = 0; i < cells.columns; ++i) of_columns[i].add(cells.row(y)[i]);
+  }
+  for (int i = 0; i < cells.columns; ++i) {
+    sums[i] = {};
+    const int end = std::min(cells.columns, i + confirmation_radius + 1);
+    for (int x = std::max(0, i - confirmation_radius); x < end; ++x) sums[i].add(of_columns[x]);
+  }
+}
+
+void assess_cells(ImageView<const float> sigma, ImageView<const float> correlation, float log2_max_sigma, int threads,
+                  CellMap<CellState>& states) {
+  CellMap<LogSigmas> cells(states.columns, states.rows);
+  sum_log_sigmas(sigma, threads, cells);
+  const auto columns = static_cast<std::size_t>(states.columns);
+  auto memory = scratch_vector<LogSigmas>(2 * columns * static_cast<std::size_t>(resolve_threads(threads)));
+  parallel_rows(states.rows, rows_per_band, threads, [&](int first, int last, int worker) {
+    LogSigmas* const of_columns = memory.data() + 2 * columns * static_cast<std::size_t>(worker);
+    LogSigmas* const sums = of_columns + columns;
+    for (int j = first; j < last; ++j) {
+      sum_around(cells, j, of_columns, sums);
+      for (int i = 0; i < states.columns; ++i) {
+        states.row(j)[i] = assess_cell(sums[i], correlation(i, j), log2_max_sigma);
+      }
+    }
+  });
+}
+
+/// Flood fill from the upper, left and right border through unconfirmed cells and their eight neighbours.
+void connect_with_border(CellMap<CellState>& states) {
+  auto front = scratch_vector<int>();
+  front.reserve(states.values.size());
+  const auto visit = [&](int i, int j) {
+    CellState& state = states.row(j)[i];
+    if (state != unconfirmed) return;
+    state = off_road;
+    front.push_back(j * states.columns + i);
+  };
+  for (int i = 0; i < states.columns; ++i) visit(i, 0);
+  for (int j = 0; j < states.rows; ++j) {
+    visit(0, j);
+    visit(states.columns - 1, j);
+  }
+  while (!front.empty()) {
+    const int i = front.back() % states.columns, j = front.back() / states.columns;
+    front.pop_back();
+    for (int y = std::max(0, j - 1); y <= std::min(states.rows - 1, j + 1); ++y) {
+      for (int x = std::max(0, i - 1); x <= std::min(states.columns - 1, i + 1); ++x) visit(x, y);
+    }
+  }
+}
+
+/// Whether a cell and its eight neighbours are off the road.
+bool is_inner(const CellMap<CellState>& states, int i, int j) {
+  for (int y = std::max(0, j - 1); y <= std::min(states.rows - 1, j + 1); ++y) {
+    for (int x = std::max(0, i - 1); x <= std::min(states.columns - 1, i + 1); ++x) {
+      if (states.row(y)[x] != off_road) return false;
+    }
+  }
+  return true;
+}
+
+void reject_cells(const CellMap<CellState>& states, int threads, Image<float>& disparity, Image<float>& sigma) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  parallel_rows(states.rows, rows_per_band, threads, [&](int first, int last, int) {
+    for (int j = first; j < last; ++j) {
+      const int end_v = std::min((j + 1) * alignment_cell, disparity.height());
+      for (int i = 0; i < states.columns; ++i) {
+        if (!is_inner(states, i, j)) continue;
+        const int u = i * alignment_cell, count = std::min(alignment_cell, disparity.width() - u);
+        for (int v = j * alignment_cell; v < end_v; ++v) {
+          std::fill_n(disparity.row(v) + u, count, nan);
+          std::fill_n(sigma.row(v) + u, count, nan);
+        }
+      }
+    }
+  });
+}
+
+}  // namespace
+
+void OffRoadOptions::validate() const {
+  require_range("off_road", "max_sigma_px", max_sigma_px, 0.0, 10.0);
+}
+
+void reject_off_road(ImageView<const float> correlation, const OffRoadOptions& options, int threads,
+                     Image<float>& disparity, Image<float>& sigma) {
+  options.validate();
+  const int width = disparity.width(), height = disparity.height();
+  const int columns = alignment_cells(width), rows = alignment_cells(height);
+  if (sigma.width() != width || sigma.height() != height) {
+    fail("the disparity map has ", width, "×", height, " pixels and its standard errors ", sigma.width(), "×",
+         sigma.height(), "; they must be equal");
+  }
+  if (correlation.width() != columns || correlation.height() != rows) {
+    fail("the correlation has ", correlation.width(), "×", correlation.height(), " cells; a map of ", width, "×",
+         height, " pixels has ", columns, "×", rows);
+  }
+  if (options.max_sigma_px == 0) return;
+  CellMap<CellState> states(columns, rows);
+  assess_cells(sigma, correlation, std::log2(static_cast<float>(options.max_sigma_px)), threads, states);
+  connect_with_border(states);
+  reject_cells(states, threads, disparity, sigma);
+}
+
+}  // namespace roadstereo
