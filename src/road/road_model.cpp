@@ -161,6 +161,11 @@ RoadModelEstimate assess_planes(const FinePair& pair, std::span<const PlaneHypot
   return estimate;
 }
 
+/// A road may still have evidence: noise that leaves no single block reliable averages out over a plane.
+std::string too_few(int matches) {
+  return format_message("only ", matches, " reliable correspondences in the whole image");
+}
+
 /// Whether exchanging the images explains them far better than the order they came in. Only asked when few pixels of
 /// the downsampled image matched.
 bool look_swapped(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int factor,
@@ -211,14 +216,13 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   }
   RoadModelEstimate estimate;
   estimate.matches = static_cast<int>(matches.size());
-  if (estimate.matches < min_matches) {
-    estimate.reason = format_message("only ", matches.size(), " reliable correspondences in the whole image");
-    return estimate;
+  const bool few_match = estimate.matches < min_matches;
+  if (!few_match) {
+    auto disparities = scratch_vector<double>();
+    disparities.reserve(matches.size());
+    for (const DisparityPoint& p : matches) disparities.push_back(p.d);
+    estimate.max_disparity_px = lower_quantile(disparities, 0.99);
   }
-  auto disparities = scratch_vector<double>();
-  disparities.reserve(matches.size());
-  for (const DisparityPoint& p : matches) disparities.push_back(p.d);
-  estimate.max_disparity_px = lower_quantile(disparities, 0.99);
 
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   // The plane with the most evidence; the next where that is no road after all.
@@ -226,7 +230,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const ScratchVector<PlaneHypothesis> planes =
       search_planes(coarse, limit, RigPrior(options, calibration), max_planes, threads);
   if (planes.empty()) {
-    estimate.reason = "no plane has more evidence for it than against it";
+    estimate.reason = few_match ? too_few(estimate.matches) : "no plane has more evidence for it than against it";
     return estimate;
   }
   const auto assess_in = [&](int downsampling) {
@@ -238,6 +242,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
     const RoadModelEstimate found_coarsely = assess_in(factor);
     if (found_coarsely.has_road()) found = found_coarsely;
   }
+  if (few_match && !found.has_road()) found.reason = too_few(estimate.matches);
   measure_range(matches, found);
   return found;
 }
