@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 SUFFIXES = {".hpp", ".cpp", ".h", ".cu", ".cuh"}
 PUBLIC = "include/roadstereo"
 PIPELINE_HEADERS = {"pipeline.hpp", "options.hpp", "device.hpp", "health.hpp", "lens_spots.hpp",
-                    "opencv.hpp", "roadstereo.hpp"}
+                    "cell_levels.hpp", "static_mask.hpp", "opencv.hpp", "roadstereo.hpp"}
 OPENCV = ("include/roadstereo/opencv.hpp", "src/io", "src/evaluation", "apps", "tests", "examples/opencv")
 
 # Includes that the table does not allow: (file, folder) and the reason. An entry that is not needed is an error.

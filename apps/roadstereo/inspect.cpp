@@ -95,6 +95,7 @@ void reject_flight_options(const FlightSettings& settings) {
   if (settings.trajectory) reject("--trajectory");
   if (settings.map) reject("--map");
   if (settings.candidates) reject("--candidates");
+  if (!settings.auto_mask) reject("--no-auto-mask");
   if (!settings.source_settings.camera_size.empty()) reject("--camera-size");
 }
 
@@ -222,6 +223,9 @@ void add_flight_options(CLI::App& command, FlightSettings& settings) {
       "Estimate the motion of the camera and close loops, with --track in UTM: trajectory_kitti.txt and others");
   command.add_flag("--map", settings.map,
                    "Map of the road along the trajectory, in map/: rasters, damages, profiles (as roadstereo map)");
+  command.add_flag_callback(
+      "--no-auto-mask", [&settings] { settings.auto_mask = false; },
+      "Do not leave out what never moves in the picture, such as a bonnet; nor is it with --mask");
   command.add_flag("--resume", settings.resume, "Continue the flight in the output folder");
   command.add_option("--from", settings.from, "First frame of the recording, from 0")->type_name("N");
   command.add_option("--to", settings.to, "Last frame of the recording, inclusive")->type_name("N");

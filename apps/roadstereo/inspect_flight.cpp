@@ -6,10 +6,12 @@
 #include <memory>
 #include <utility>
 
+#include "auto_mask.hpp"
 #include "flight/flight_results.hpp"
 #include "flight/provenance.hpp"
 #include "flight/run_flight.hpp"
 #include "map/make_map.hpp"
+#include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/version.hpp"
 
@@ -46,6 +48,7 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   std::string text = fmt::format("roadstereo {}: {}\n", version, run.source);
   text += fmt::format("  frames    {} ({} rejected, {} failed), road re-estimated in {}\n", summary.frames,
                       summary.rejected, summary.failed, summary.road_estimated);
+  if (summary.static_mask.share > 0) text += "  mask      " + static_mask_text(summary.static_mask) + "\n";
   text += fmt::format("  damage    {} damages in {} sightings, {} candidates\n", summary.damages, summary.sightings,
                       summary.candidates);
   if (summary.located)
@@ -74,7 +77,8 @@ void require_frames(const FlightSettings& settings, const io::FrameSource& sourc
 /// Maps the flight along its trajectory: its poses are final only now, so the frames are matched again. Returns the
 /// text for the terminal.
 std::string add_map(const FlightSettings& settings, const FlightPlan& plan, const FlightFolder& folder,
-                    const std::string& crs, const StopSignals& stop, FlightRun& run) {
+                    const io::StaticMaskRecord& static_mask, const std::string& crs, const StopSignals& stop,
+                    FlightRun& run) {
   MapPlan map;
   MapPass& pass = map.passes.emplace_back();
   pass.source = settings.source;
@@ -83,7 +87,8 @@ std::string add_map(const FlightSettings& settings, const FlightPlan& plan, cons
   pass.trajectory = (folder.path() / trajectory_file_names().front()).string();
   pass.options = plan.options;
   pass.find_white_level = plan.find_white_level;
-  pass.mask = plan.mask;
+  constexpr int white = 255;
+  pass.mask = static_mask.applied ? read_mask((folder.path() / static_mask_file).string(), white) : plan.mask;
   pass.time_offset_s = settings.track.offset_s;
   map.output = folder.path() / "map";
   map.crs = crs;
@@ -144,7 +149,7 @@ void inspect_flight(FlightSettings settings) {
   }
   std::string map_text;
   if (settings.map && trajectory && run.complete)
-    map_text = add_map(settings, plan, folder, trajectory->crs(), *stop, run);
+    map_text = add_map(settings, plan, folder, results.summary().static_mask, trajectory->crs(), *stop, run);
   stop.reset();  // the next Ctrl-C ends the program
   if (journal.last() && journal.last()->white_level > 0) run.options.white_level = journal.last()->white_level;
   run.source = source.source().description();

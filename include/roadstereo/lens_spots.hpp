@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "roadstereo/cell_levels.hpp"
 #include "roadstereo/image.hpp"
 
 namespace roadstereo {
@@ -36,25 +37,17 @@ class LensWatch {
   };
 
   void begin(int width, int height);
-  void average_cells(ImageView<const std::int16_t> grey);
-  bool has_moved();
-  void add_levels();
   void add_extremes(ImageView<const std::int16_t> grey);
   bool stands_out(int x, int y, int reach) const;
   void find_steady_cells();
   void count_dirt();
   void count_dead_pixels();
 
-  int cell_px_ = 1, width_ = 0, height_ = 0;
-  int frames_ = 0;                 ///< that counted
-  Image<float> cells_;             ///< mean levels of the cells of the frame
-  Image<float> last_;              ///< of the last frame that counted
-  Image<float> mean_;              ///< of every cell over the frames
-  Image<float> variance_;          ///< the same
-  Image<float> deviation_;         ///< its square root
+  CellLevels levels_{0.5};
+  int width_ = 0, height_ = 0;
+  Image<float> deviation_;         ///< of every cell over the frames
   Image<std::uint8_t> steady_;     ///< 1: cell of a place
   std::vector<Extreme> extremes_;  ///< in every frame since the last count
-  std::vector<int> sums_;          ///< over the rows of a cell
   std::vector<int> pending_;       ///< cells of a place whose neighbours are to be looked at
   LensSpots spots_;
 };

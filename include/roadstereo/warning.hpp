@@ -13,6 +13,7 @@ namespace roadstereo {
 ///   unexpected-pose  height or pitch are not what was expected
 ///   rows-disagree    the rows of the pair are shifted: it is not rectified
 ///   few-disparities  too few pixels have a disparity
+///   static-mask      a part of the picture never moves and is ignored from this frame on
 ///   no-damage        damage could not be searched
 ///   values-lost      a file cannot hold all values
 /// and those of `HealthFinding`.

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
-#include <utility>
 
 namespace roadstereo {
 namespace {
@@ -16,63 +14,13 @@ constexpr float grey_level = grey_max / 255.0F;
 }  // namespace
 
 void LensWatch::begin(int width, int height) {
-  constexpr int cells_across = 160;
   width_ = width;
   height_ = height;
-  cell_px_ = std::max(1, width / cells_across);
-  frames_ = 0;
   spots_ = {};
-  const int columns = width / cell_px_, rows = height / cell_px_;
-  for (Image<float>* const cells : {&cells_, &last_, &mean_, &variance_, &deviation_}) cells->assign(columns, rows, 0);
-  steady_.assign(columns, rows, 0);
+  deviation_.assign(levels_.mean().width(), levels_.mean().height(), 0);
+  steady_.assign(deviation_.width(), deviation_.height(), 0);
   extremes_.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) / 2);
-  sums_.resize(static_cast<std::size_t>(width));
   pending_.reserve(steady_.pixels());
-}
-
-void LensWatch::average_cells(ImageView<const std::int16_t> grey) {
-  constexpr int step = 2;  // rows
-  const int rows = (cell_px_ + step - 1) / step;
-  const float scale = 1 / static_cast<float>(rows * cell_px_);
-  for (int y = 0; y < cells_.height(); ++y) {
-    std::fill(sums_.begin(), sums_.end(), 0);
-    for (int v = y * cell_px_; v < (y + 1) * cell_px_; v += step) {
-      const std::int16_t* const level = grey.row(v);
-      int* const sum = sums_.data();
-      for (int u = 0; u < width_; ++u) sum[u] += level[u];
-    }
-    const int* of_cell = sums_.data();
-    for (int x = 0; x < cells_.width(); ++x, of_cell += cell_px_) {
-      cells_(x, y) = scale * static_cast<float>(std::accumulate(of_cell, of_cell + cell_px_, 0));
-    }
-  }
-}
-
-/// Whether more than half of the cells have changed since the last frame that counted.
-bool LensWatch::has_moved() {
-  constexpr float min_change = 2 * grey_level;
-  if (frames_ == 0) return true;
-  std::size_t changed = 0;
-  for (int y = 0; y < cells_.height(); ++y) {
-    const float *now = cells_.row(y), *before = last_.row(y);
-    for (int x = 0; x < cells_.width(); ++x) changed += std::abs(now[x] - before[x]) > min_change ? 1U : 0U;
-  }
-  return 2 * changed > cells_.pixels();
-}
-
-/// Mean and variance over the frames; old ones fade.
-void LensWatch::add_levels() {
-  constexpr int memory_frames = 100;
-  const float weight = 1 / static_cast<float>(std::min(frames_, memory_frames));
-  for (int y = 0; y < cells_.height(); ++y) {
-    const float* const now = last_.row(y);
-    float *const mean = mean_.row(y), *const variance = variance_.row(y);
-    for (int x = 0; x < cells_.width(); ++x) {
-      const float difference = now[x] - mean[x];
-      mean[x] += weight * difference;
-      variance[x] = (1 - weight) * (variance[x] + weight * difference * difference);
-    }
-  }
 }
 
 /// Keeps the pixels that are brighter, or darker, than their four neighbours in this frame, too.
@@ -83,7 +31,7 @@ void LensWatch::add_extremes(ImageView<const std::int16_t> grey) {
     const int across = std::min(level - sign * grey(u - 1, v), level - sign * grey(u + 1, v));
     return std::min({across, level - sign * grey(u, v - 1), level - sign * grey(u, v + 1)});
   };
-  if (frames_ % frames_to_judge != 1) {
+  if (levels_.frames() % frames_to_judge != 1) {
     std::erase_if(extremes_, [&](const Extreme& one) { return brighter_by(one.u, one.v, one.sign) <= margin; });
     return;
   }
@@ -108,7 +56,7 @@ bool LensWatch::stands_out(int x, int y, int reach) const {
     const int column = std::clamp(u, 0, steady_.width() - 1), row = std::clamp(v, 0, steady_.height() - 1);
     const float around = deviation_(column, row);
     deviation += around;
-    contrast += mean_(column, row) - mean_(x, y);
+    contrast += levels_.mean()(column, row) - levels_.mean()(x, y);
     return around > limit;
   };
   for (int i = -reach; i < reach; ++i) {
@@ -123,7 +71,7 @@ bool LensWatch::stands_out(int x, int y, int reach) const {
 void LensWatch::find_steady_cells() {
   constexpr std::array reaches{4, 8};
   for (int y = 0; y < deviation_.height(); ++y) {
-    for (int x = 0; x < deviation_.width(); ++x) deviation_(x, y) = std::sqrt(variance_(x, y));
+    for (int x = 0; x < deviation_.width(); ++x) deviation_(x, y) = std::sqrt(levels_.variance()(x, y));
   }
   for (int y = 1; y + 1 < steady_.height(); ++y) {
     for (int x = 1; x + 1 < steady_.width(); ++x) {
@@ -163,8 +111,8 @@ void LensWatch::count_dirt() {
     if (done <= largest) continue;
     largest = done;
     const auto cells = static_cast<double>(done);
-    spots_.largest_u = cell_px_ * (sum_u / cells + 0.5);
-    spots_.largest_v = cell_px_ * (sum_v / cells + 0.5);
+    spots_.largest_u = levels_.cell_px() * (sum_u / cells + 0.5);
+    spots_.largest_v = levels_.cell_px() * (sum_v / cells + 0.5);
   }
 }
 
@@ -174,8 +122,8 @@ void LensWatch::count_dead_pixels() {
   std::erase_if(extremes_, [&](const Extreme& one) {
     for (const int dv : {-1, 0, 1}) {
       for (const int du : {-1, 0, 1}) {
-        const int x = std::clamp(one.u / cell_px_ + du, 0, deviation_.width() - 1);
-        const int y = std::clamp(one.v / cell_px_ + dv, 0, deviation_.height() - 1);
+        const int x = std::clamp(one.u / levels_.cell_px() + du, 0, deviation_.width() - 1);
+        const int y = std::clamp(one.v / levels_.cell_px() + dv, 0, deviation_.height() - 1);
         if (deviation_(x, y) < min_deviation) return true;
       }
     }
@@ -189,14 +137,11 @@ void LensWatch::count_dead_pixels() {
 }
 
 void LensWatch::add(ImageView<const std::int16_t> grey) {
+  const bool counts = levels_.add(grey);
   if (grey.width() != width_ || grey.height() != height_) begin(grey.width(), grey.height());
-  average_cells(grey);
-  if (!has_moved()) return;
-  ++frames_;
-  std::swap(cells_, last_);
-  add_levels();
+  if (!counts) return;
   add_extremes(grey);
-  if (frames_ % frames_to_judge != 0) return;
+  if (levels_.frames() % frames_to_judge != 0) return;
   spots_ = {};
   find_steady_cells();
   count_dirt();

@@ -8,6 +8,7 @@
 #include "roadstereo/lens_spots.hpp"
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/pipeline.hpp"
+#include "roadstereo/static_mask.hpp"
 #include "roadstereo/synth.hpp"
 #include "tests/stereo/textured_pair.hpp"
 
@@ -48,6 +49,27 @@ TEST(LensWatch, AllocatesForFirstFrameOnly) {
   for (int i = 2; i <= 45; ++i) add(i);
   EXPECT_EQ(allocations()->count - before, 0U);
   EXPECT_FALSE(std::isnan(watch.spots().dirt));
+}
+
+TEST(StaticMask, AllocatesForFirstFrameAndWhenItJudgesOnly) {
+  SKIP_WITHOUT_COUNT();
+  GreyImage frame(320, 180);
+  StaticMask mask;
+  const auto add = [&](int i) {
+    for (int v = 0; v < frame.height(); ++v) {
+      for (int u = 0; u < frame.width(); ++u)
+        frame(u, v) = static_cast<std::int16_t>((i * (7 * u + 13 * v) * v) % grey_max);
+    }
+    return mask.add(frame, frame, std::nullopt);
+  };
+  add(1);
+  std::size_t before = allocations()->count;
+  for (int i = 2; i <= 39; ++i) add(i);
+  EXPECT_EQ(allocations()->count - before, 0U);
+  ASSERT_TRUE(add(40));
+  before = allocations()->count;
+  for (int i = 41; i <= 50; ++i) add(i);
+  EXPECT_EQ(allocations()->count - before, 0U);
 }
 
 class PresetAllocations : public testing::TestWithParam<std::string> {};

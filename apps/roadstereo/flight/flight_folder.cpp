@@ -11,6 +11,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "auto_mask.hpp"
 #include "flight/flight_trajectory.hpp"
 #include "flight/frame_files.hpp"
 #include "roadstereo/error.hpp"
@@ -51,6 +52,7 @@ constexpr std::array flight_files = {"frames.csv",
                                      "segments.csv",
                                      "summary.json",
                                      "report.html",
+                                     static_mask_file,
                                      "frames.geojson",
                                      "footprints.geojson",
                                      "damages.geojson",

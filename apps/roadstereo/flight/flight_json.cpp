@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "auto_mask.hpp"
 #include "finite_values.hpp"
 #include "health_json.hpp"
 #include "json_text.hpp"
@@ -83,17 +84,19 @@ Json flight_health_json(const FlightHealth& health) {
 
 /// What the run was made of, for commands that continue with it. Paths are relative to the output folder; what is no
 /// file, such as a GStreamer pipeline, is as given.
-Json inputs_json(const FlightSettings& settings) {
+Json inputs_json(const FlightSettings& settings, const io::StaticMaskRecord& static_mask) {
   const auto relative = [&](const std::string& name) {
     std::error_code absent;
     return std::filesystem::exists(name, absent) ? std::filesystem::proximate(name, settings.output).string() : name;
   };
+  std::string mask = static_mask.applied ? static_mask_file : "";
+  if (!settings.mask.empty()) mask = relative(settings.mask);
   Json source = Json::array(), calibration = Json::array();
   for (const std::string& name : settings.source) source.push_back(relative(name));
   for (const std::string& name : settings.calibration) calibration.push_back(relative(name));
   return {{"source", source},
           {"calibration", calibration},
-          {"mask", settings.mask.empty() ? "" : relative(settings.mask)},
+          {"mask", mask},
           {"layout", settings.source_settings.layout},
           {"topics", settings.source_settings.topics},
           {"max_time_difference_ms", settings.source_settings.max_time_difference_ms},
@@ -108,7 +111,7 @@ std::string flight_json(const FlightSettings& settings, const FlightRun& run, co
   Json document = {{"version", version}, {"source", settings.source}, {"source_kind", run.source}};
   document["calibration"] = settings.calibration.empty() ? Json(nullptr) : Json(settings.calibration);
   document["calibration_format"] = run.calibration_format.empty() ? Json(nullptr) : Json(run.calibration_format);
-  document["inputs"] = inputs_json(settings);
+  document["inputs"] = inputs_json(settings, summary.static_mask);
   document["from"] = settings.from;
   document["to"] = settings.to ? Json(*settings.to) : Json(nullptr);
   document["every"] = settings.every;
@@ -116,6 +119,7 @@ std::string flight_json(const FlightSettings& settings, const FlightRun& run, co
   document["engine"] = run.engine;
   document["options"] = options_json(run.options);
   document["frames"] = frames_json(summary);
+  document["static_mask"] = static_mask_json(summary.static_mask);
   document["first_time_s"] = json_number(summary.first_time_s);
   document["last_time_s"] = json_number(summary.last_time_s);
   document["damages"] = damages_json(summary, damages, !run.calibration_format.empty());

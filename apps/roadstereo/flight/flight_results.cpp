@@ -7,6 +7,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "auto_mask.hpp"
 #include "finite_values.hpp"
 #include "flight/flight_json.hpp"
 #include "roadstereo/io/flight_tables.hpp"
@@ -60,6 +61,9 @@ std::vector<std::string> notices_of(const FlightRun& run, const FlightSummary& s
   if (!summary.no_position_reason.empty())
     notices.push_back("No frame has a position: " + summary.no_position_reason + ".");
   if (!run.no_map_reason.empty()) notices.push_back("There is no map: " + run.no_map_reason + ".");
+  if (summary.static_mask.share > 0) {
+    notices.push_back(static_mask_text(summary.static_mask) + " (" + static_mask_file + ").");
+  }
   for (const HealthFinding& finding : summary.health.findings()) notices.push_back("Health: " + finding.text + ".");
   const std::int64_t without = summary.rejected + summary.failed;
   if (without == 0) return notices;

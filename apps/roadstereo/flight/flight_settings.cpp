@@ -59,6 +59,7 @@ FlightPlan resolve(const FlightSettings& settings) {
   FlightPlan plan;
   plan.options = make_options(settings);
   plan.mask = read_ignored(settings);
+  plan.auto_mask = settings.auto_mask && settings.mask.empty();
   plan.find_white_level = !sets_white_level(settings.processing);
   plan.source = make_source_options(settings.source_settings);
   for (const std::string& name : settings.write) {

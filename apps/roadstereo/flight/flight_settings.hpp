@@ -30,6 +30,7 @@ struct FlightSettings {
   std::vector<std::string> calibration;
   std::string disparity;  ///< map of one pair that replaces matching; empty: none
   std::string mask;       ///< picture whose white pixels are left out; empty: none
+  bool auto_mask = true;  ///< leaves out what never moves, unless there is a mask
   std::string output;
   ProcessingSettings processing;
   SourceSettings source_settings;
@@ -66,6 +67,7 @@ void require_mask_size(const FlightSettings& settings, const Image<std::uint8_t>
 struct FlightPlan {
   PipelineOptions options;
   Image<std::uint8_t> mask;      ///< not 0 left out; empty: none
+  bool auto_mask = true;         ///< leaves out what never moves
   bool find_white_level = true;  ///< determines it from the first valid pair of a 16-bit source
   io::SourceOptions source;
   std::vector<FrameFile> write;

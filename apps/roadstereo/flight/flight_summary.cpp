@@ -12,6 +12,7 @@ void FlightSummary::add(const io::FlightFrame& frame) {
   constexpr double degrees = 180 / std::numbers::pi;  // in a radian
   ++frames;
   health.add(frame);
+  static_mask = frame.static_mask;
   good += frame.status == io::FrameStatus::good ? 1 : 0;
   rejected += frame.status == io::FrameStatus::rejected ? 1 : 0;
   failed += frame.status == io::FrameStatus::failed ? 1 : 0;

@@ -27,6 +27,7 @@ struct FlightSummary {
   std::vector<std::string> reasons;     ///< first distinct reasons why frames are not good
   double first_time_s = io::FlightFrame::unknown;
   double last_time_s = io::FlightFrame::unknown;
+  io::StaticMaskRecord static_mask;  ///< of the last frame
   FlightHealth health;
   io::FlightCurves curves;  ///< of every frame
   std::vector<double> valid_share;

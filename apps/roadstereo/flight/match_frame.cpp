@@ -2,6 +2,7 @@
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/ground_plane.hpp"
+#include "roadstereo/io/image_file.hpp"
 
 namespace roadstereo::cli {
 
@@ -44,13 +45,22 @@ void begin(FlightJob& job) {
   job.mcap_chunk.clear();
 }
 
+void add_static_mask(const AutoMask& mask, FlightJob& job) {
+  const Image<std::uint8_t>& pixels = mask.mask();
+  job.frame.warnings.push_back(static_mask_warning(mask.record()));
+  job.files.push_back(
+      {static_mask_file, io::encode_png(FrameView::grey8(pixels.row(0), pixels.width(), pixels.height()))});
+}
+
 }  // namespace
 
 void match_frame(Pipeline& pipeline, const std::optional<StereoCalibration>& calibration, PairWatch& watch,
-                 FlightJob& job) {
+                 AutoMask& mask, FlightJob& job) {
   begin(job);
+  bool found_mask = false;
   if (job.frame.status == io::FrameStatus::good) {
     try {
+      found_mask = mask.apply(job.pair.index, job.pair.left.view(), job.pair.right.view(), pipeline);
       pipeline.process(job.pair.left.view(), job.pair.right.view(), job.result);
       record(job.result, calibration, job.frame);
       job.frame.health.spots = watch.add(job.result.grey, job.result.right);
@@ -59,6 +69,8 @@ void match_frame(Pipeline& pipeline, const std::optional<StereoCalibration>& cal
       job.frame.reason = error.what();
     }
   }
+  if (found_mask) add_static_mask(mask, job);
+  job.frame.static_mask = mask.record();
   job.frame.white_level = pipeline.options().white_level;
   job.frame.pipeline_state = pipeline.carried();
 }
@@ -68,6 +80,7 @@ void record_rejected(const std::optional<io::FlightFrame>& before, FlightJob& jo
   if (!before) return;
   job.frame.white_level = before->white_level;
   job.frame.pipeline_state = before->pipeline_state;
+  job.frame.static_mask = before->static_mask;
 }
 
 }  // namespace roadstereo::cli

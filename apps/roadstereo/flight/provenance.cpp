@@ -46,6 +46,7 @@ io::Provenance provenance(const FlightSettings& settings, const PipelineOptions&
                          {"content of the calibration", content_digest(settings.calibration)},
                          {"--mask", settings.mask},
                          {"content of the mask", content_digest(mask)},
+                         {"--no-auto-mask", settings.auto_mask ? "no" : "yes"},
                          {"--severity", settings.processing.severity},
                          {"content of the severities", content_digest(severity_files)},
                          {"--from", std::to_string(settings.from)},

@@ -8,12 +8,14 @@
 #include <thread>
 #include <vector>
 
+#include "auto_mask.hpp"
 #include "first_exception.hpp"
 #include "flight/bounded_queue.hpp"
 #include "flight/finish_frame.hpp"
 #include "flight/flight_job.hpp"
 #include "flight/match_frame.hpp"
 #include "flight/sequencer.hpp"
+#include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_pictures.hpp"
 
@@ -34,6 +36,7 @@ class FlightPipeline {
   void seek(io::FrameSource& source, const std::optional<io::FlightFrame>& last) const;
   void read();
   void match();
+  AutoMask make_mask(const std::optional<io::FlightFrame>& before) const;
   void reject_other_size(io::SourcePair& pair) const;
   void add_to_trajectory(FlightJob& job);
   void finish();
@@ -47,6 +50,7 @@ class FlightPipeline {
   Flight& flight_;
 
   int finishers_;
+  bool from_first_;  ///< reads the frames of an earlier run again
   bool reached_end_ = false;
   int width_ = 0, height_ = 0;          ///< of the first good pair
   BoundedQueue<io::SourcePair> pairs_;  ///< from reader to matcher
@@ -69,10 +73,17 @@ int finisher_count(const PipelineOptions& options) {
   return std::clamp(used_threads(options) / 2, 1, max_finishers);
 }
 
+/// A trajectory needs the frames of an earlier run again, and so does a static mask until it is known.
+bool needs_frames_again(const FlightSettings& settings, const Flight& flight) {
+  const std::optional<io::FlightFrame>& last = flight.journal.last();
+  return settings.trajectory || (flight.plan.auto_mask && last && !last->static_mask.judged);
+}
+
 FlightPipeline::FlightPipeline(const FlightSettings& settings, Flight& flight)
     : settings_(settings),
       flight_(flight),
       finishers_(finisher_count(flight.plan.options)),
+      from_first_(needs_frames_again(settings, flight)),
       pairs_(3),
       matched_(static_cast<std::size_t>(finishers_)),
       free_(static_cast<std::size_t>(2 * finishers_) + 1),
@@ -100,9 +111,9 @@ void FlightPipeline::require_unchanged(const io::FlightFrame& last, const std::o
        last.name, "\" and is now ", again ? "\"" + again->name + "\"" : "missing", "; start again without --resume");
 }
 
-/// Skips to the frame after the last one of an earlier run. A trajectory needs the frames before it again.
+/// Skips to the frame after the last one of an earlier run, unless the frames before it are needed again.
 void FlightPipeline::seek(io::FrameSource& source, const std::optional<io::FlightFrame>& last) const {
-  if (!last || settings_.trajectory) return source.skip(settings_.from);
+  if (!last || from_first_) return source.skip(settings_.from);
   source.skip(last->index);
   require_unchanged(*last, source.next());
   source.skip(settings_.every - 1);
@@ -125,12 +136,24 @@ void FlightPipeline::read() {
   pairs_.close();
 }
 
+/// The mask that an earlier run has found, unless the frames that showed it are matched again.
+AutoMask FlightPipeline::make_mask(const std::optional<io::FlightFrame>& before) const {
+  AutoMask mask(flight_.plan.auto_mask);
+  if (!before || from_first_) return mask;
+  const io::StaticMaskRecord& record = before->static_mask;
+  const int white = 255;
+  mask.restore(record, record.applied ? read_mask((flight_.folder.path() / static_mask_file).string(), white)
+                                      : Image<std::uint8_t>());
+  return mask;
+}
+
 void FlightPipeline::match() {
   const std::optional<io::FlightFrame> before = flight_.journal.last();  // before the journal grows
   std::optional<Pipeline> pipeline;
   PairWatch watch;
+  AutoMask auto_mask = make_mask(before);
   const std::int64_t done = flight_.journal.frames();
-  std::int64_t sequence = settings_.trajectory ? 0 : done;  // the trajectory begins anew, with the same results
+  std::int64_t sequence = from_first_ ? 0 : done;  // a trajectory begins anew, with the same results
   while (std::optional<io::SourcePair> pair = pairs_.take()) {
     std::optional<JobPointer> job = free_.take();
     if (!job) break;
@@ -144,13 +167,19 @@ void FlightPipeline::match() {
       height_ = pair->left.height;
       if (!mask.empty()) pipeline->set_mask(mask);
       warm_up(*pipeline, *pair);
-      if (before && sequence == done) pipeline->restore(before->pipeline_state);
+      if (before && (sequence == done || !settings_.trajectory)) pipeline->restore(before->pipeline_state);
+    }
+    if (!settings_.trajectory && sequence < done) {
+      if (pair->error.empty()) auto_mask.look(pair->left.view(), pair->right.view(), pipeline->options().white_level);
+      ++sequence;
+      free_.put(std::move(*job));
+      continue;
     }
     (*job)->sequence = sequence++;
     (*job)->pair = std::move(*pair);
     if (pipeline) {
       if (settings_.trajectory) reject_other_size((*job)->pair);
-      match_frame(*pipeline, flight_.source.calibration(), watch, **job);
+      match_frame(*pipeline, flight_.source.calibration(), watch, auto_mask, **job);
       add_to_trajectory(**job);
     } else {
       record_rejected(before, **job);

@@ -67,6 +67,11 @@ void LiveBoard::camera_is_back() {
   news_.notify_all();
 }
 
+void LiveBoard::set_static_mask(const io::StaticMaskRecord& mask) {
+  const std::lock_guard lock(mutex_);
+  static_mask_ = mask;
+}
+
 void LiveBoard::set_recording(const RecordingState& recording) {
   const std::lock_guard lock(mutex_);
   recording_ = recording;
@@ -118,6 +123,7 @@ LiveStatus LiveBoard::status_now(std::int64_t after, Clock::time_point now) {
   status.latency = latency_.recent();
   status.counts = counts_;
   status.recording = recording_;
+  status.static_mask = static_mask_;
   status.damages_found = list_.found();
   std::copy_if(list_.entries().begin(), list_.entries().end(), std::back_inserter(status.damages),
                [after](const ListedDamage& listed) { return listed.changed_in > after; });

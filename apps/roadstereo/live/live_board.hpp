@@ -12,6 +12,7 @@
 #include "live/latency_log.hpp"
 #include "live/live_view.hpp"
 #include "live/rate_meter.hpp"
+#include "roadstereo/io/flight_frame.hpp"
 
 namespace roadstereo::cli {
 
@@ -53,6 +54,7 @@ struct LiveStatus {
   LiveCounts counts;
   RecordingState recording;
   std::int64_t damages_found = 0;     ///< of the whole run
+  io::StaticMaskRecord static_mask;   ///< what never moves; frames count those processed
   std::vector<ListedDamage> damages;  ///< newest first: those changed after the given view
 };
 
@@ -70,6 +72,8 @@ class LiveBoard {
 
   void lose_camera(const std::string& reason);
   void camera_is_back();
+
+  void set_static_mask(const io::StaticMaskRecord& mask);
 
   void set_recording(const RecordingState& recording);
 
@@ -100,6 +104,7 @@ class LiveBoard {
   std::condition_variable news_;
   LiveCounts counts_;
   RecordingState recording_;
+  io::StaticMaskRecord static_mask_;
   bool lost_ = false;
   bool ended_ = false;
   std::string message_;

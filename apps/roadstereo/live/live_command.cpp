@@ -30,6 +30,7 @@ struct LiveCommandArguments {
   std::optional<std::uint32_t> dds_domain;
   double max_age_ms = 500;
   bool loop = false;
+  bool auto_mask = true;
   std::int64_t frames = 0;
   double seconds = 0;
   bool json = false;
@@ -42,6 +43,7 @@ LiveOptions live_options(const LiveCommandArguments& arguments) {
   LiveOptions options;
   options.processing.pipeline = make_options(arguments.processing);
   options.processing.find_white_level = !sets_white_level(arguments.processing);
+  options.processing.auto_mask = arguments.auto_mask;
   options.processing.dds_domain = arguments.dds_domain;
   options.capture.rate_hz = arguments.source.rate_hz;
   options.capture.loop = arguments.loop;
@@ -124,6 +126,9 @@ void add_options(CLI::App& command, LiveCommandArguments& arguments) {
       ->type_name("MS")
       ->check(CLI::Range(1.0, 60000.0))
       ->capture_default_str();
+  command.add_flag_callback(
+      "--no-auto-mask", [&arguments] { arguments.auto_mask = false; },
+      "Do not leave out what never moves in the picture, such as a bonnet");
   command.add_flag("--loop", arguments.loop, "Repeat a recording");
   command.add_option("--frames", arguments.frames, "Stop after this number of processed pairs")
       ->type_name("N")

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "auto_mask.hpp"
 #include "json_text.hpp"
 #include "live/memory_use.hpp"
 #include "live/status_json.hpp"
@@ -25,6 +26,8 @@ std::string summary_text(const LiveSummary& summary) {
   text += fmt::format("  {:<10}median {:.1f} ms, 95 %: {:.1f} ms, max {:.1f} ms\n", "latency",
                       summary.latency.median_ms, summary.latency.p95_ms, summary.latency.max_ms);
   text += fmt::format("  {:<10}{} found\n", "damages", summary.status.damages_found);
+  const io::StaticMaskRecord& mask = summary.status.static_mask;
+  if (mask.share > 0) text += fmt::format("  {:<10}{}\n", "mask", static_mask_text(mask));
   const RecordingState& recording = summary.status.recording;
   if (recording.on) {
     text += fmt::format("  {:<10}{} pairs, {} skipped{}{}\n", "recorded", recording.recorded, recording.skipped,
@@ -43,6 +46,7 @@ std::string summary_json(const LiveSummary& summary) {
   json["recorded"] = recording.recorded;
   json["recording_skipped"] = recording.skipped;
   json["recording_message"] = recording.message;
+  json["static_mask"] = static_mask_json(summary.status.static_mask);
   json["damages"] = summary.status.damages_found;
   json["peak_memory_mib"] = json_number(memory_use().peak_mib);
   json["memory_mib"] = json_number(memory_use().now_mib);

@@ -9,7 +9,11 @@ namespace roadstereo::cli {
 
 Processing::Processing(const ProcessingOptions& options, std::unique_ptr<RectifiedSource> rectifier, LiveBoard& board,
                        LatestValue<CapturedPair>& captured)
-    : options_(options), rectifier_(std::move(rectifier)), board_(board), captured_(captured) {
+    : options_(options),
+      rectifier_(std::move(rectifier)),
+      board_(board),
+      captured_(captured),
+      auto_mask_(options.auto_mask) {
   options_.pipeline.validate();
 }
 
@@ -33,14 +37,18 @@ std::optional<Processing::Matched> Processing::match(CapturedPair captured) {
     return std::nullopt;
   }
   Matched matched;
+  const FrameView left = captured.pair.left.view(), right = captured.pair.right.view();
   try {
-    pipeline().process(captured.pair.left.view(), captured.pair.right.view(), matched.result);
+    if (auto_mask_.apply(pairs_++, left, right, pipeline())) board_.set_static_mask(auto_mask_.record());
+    pipeline().process(left, right, matched.result);
   } catch (const SystemError&) {
     throw;
   } catch (const Error& error) {
     board_.count_rejected(error.what());
     return std::nullopt;
   }
+  const bool is_first_masked = auto_mask_.record().share > 0 && auto_mask_.record().frame + 1 == pairs_;
+  if (is_first_masked) matched.result.warnings.push_back(static_mask_warning(auto_mask_.record()));
   matched.spots = watch_.add(matched.result.grey, matched.result.right);
   matched.calibration = rectifier_->calibration();
   matched.captured = std::move(captured);

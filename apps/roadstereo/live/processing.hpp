@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "auto_mask.hpp"
 #include "flight/rectified_source.hpp"
 #include "live/captured_pair.hpp"
 #include "live/latest_value.hpp"
@@ -20,6 +21,7 @@ namespace roadstereo::cli {
 struct ProcessingOptions {
   PipelineOptions pipeline;
   bool find_white_level = true;             ///< determines it from the first pair of a 16-bit source
+  bool auto_mask = true;                    ///< leaves out what never moves
   std::optional<std::uint32_t> dds_domain;  ///< publishes the results there as ROS 2 messages
 };
 
@@ -56,6 +58,8 @@ class Processing {
   LatestValue<CapturedPair>& captured_;
   LatestValue<Matched> matched_;
   std::optional<Pipeline> pipeline_;
+  std::int64_t pairs_ = 0;  ///< that were given to the pipeline
+  AutoMask auto_mask_;
   PairWatch watch_;
   std::optional<LiveMessages> messages_;  ///< of the second stage
 };

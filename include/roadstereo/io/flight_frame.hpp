@@ -20,6 +20,14 @@ enum class FrameStatus {
 };
 const char* name_of(FrameStatus status);
 
+/// What never moves in the picture of a flight, by StaticMask.
+struct StaticMaskRecord {
+  bool judged = false;     ///< whether enough frames have moved to tell
+  std::int64_t frame = 0;  ///< in which it was judged, index in the source
+  double share = 0;        ///< of the picture that never moves, 0 … 1
+  bool applied = false;    ///< whether it is left out from that frame on
+};
+
 /// Record of one frame of a flight, without its maps. NaN: unknown.
 struct FlightFrame {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -52,6 +60,7 @@ struct FlightFrame {
   std::vector<std::string> warnings;
   double white_level = 0;        ///< sample value of white; 0: maximum of the sample type
   PipelineState pipeline_state;  ///< state of the pipeline after this frame
+  StaticMaskRecord static_mask;  ///< as known in this frame
 };
 
 /// Returns the text as JSON files have it: every byte that is not UTF-8 replaced by U+FFFD.

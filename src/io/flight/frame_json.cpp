@@ -186,6 +186,14 @@ void each_field(PairHealth& health, Visit& visit) {
 }
 
 template <class Visit>
+void each_field(StaticMaskRecord& mask, Visit& visit) {
+  visit("judged", mask.judged);
+  visit("frame", mask.frame);
+  visit("share", mask.share);
+  visit("applied", mask.applied);
+}
+
+template <class Visit>
 void each_field(FlightFrame& frame, Visit& visit) {
   visit("frame", frame.index);
   visit("name", frame.name);
@@ -215,6 +223,7 @@ void each_field(FlightFrame& frame, Visit& visit) {
   visit("warnings", frame.warnings);
   visit("white_level", frame.white_level);
   visit("pipeline_state", frame.pipeline_state);
+  visit("static_mask", frame.static_mask);
 }
 
 template <class Value>

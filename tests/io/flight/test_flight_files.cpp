@@ -70,6 +70,7 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   frame.road = {1.0 / 3, 2.0 / 7, -1e-17};
   frame.warnings = {"a \"quoted\" word", "line\nend"};
   frame.health.row_scale = 1.0 / 3;
+  frame.static_mask = {true, 39, 0.1, true};
   frame.pipeline_state = {
       640, 360, TrackedRoad{{1.0 / 3, 1e-300, 5}, 0.1, 0.7}, 1.0 / 7, {-0.3, 1e-5, 1.0 / 9, 320.5, 180}};
   const FlightFrame back = read_flight_frame(flight_frame_json(frame));
@@ -82,6 +83,10 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   EXPECT_EQ(back.road.a2, frame.road.a2);
   EXPECT_TRUE(std::isnan(back.height_m));
   EXPECT_EQ(back.warnings, frame.warnings);
+  EXPECT_TRUE(back.static_mask.judged);
+  EXPECT_EQ(back.static_mask.frame, 39);
+  EXPECT_EQ(back.static_mask.share, 0.1);
+  EXPECT_TRUE(back.static_mask.applied);
   EXPECT_EQ(back.pipeline_state.road->model.a1, 1e-300);
   EXPECT_EQ(back.pipeline_state.road->inlier_share, 0.1);
   EXPECT_EQ(back.pipeline_state.road->correlation, 0.7);
