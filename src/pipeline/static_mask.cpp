@@ -11,7 +11,7 @@ namespace roadstereo {
 namespace {
 
 /// Of the picture that must change for a frame to count: a sky and a bonnet do not.
-constexpr double moving_share = 0.25;
+constexpr double least_moving_share = 0.25;
 
 /// Paints cells into a mask of pixels, grown by a margin.
 class CellPainter {
@@ -72,7 +72,7 @@ void StaticMaskOptions::validate() const {
 }
 
 StaticMask::StaticMask(const StaticMaskOptions& options)
-    : options_(options), left_(moving_share), right_(moving_share) {
+    : options_(options), left_(least_moving_share), right_(least_moving_share) {
   options.validate();
 }
 
@@ -85,8 +85,8 @@ bool StaticMask::add(ImageView<const std::int16_t> left, ImageView<const std::in
   const auto still_left = find_still_cells(left_, options_.max_variance_ratio);
   const auto still_right = find_still_cells(right_, options_.max_variance_ratio);
   if (!still_left || !still_right) {  // anew
-    left_ = CellLevels(moving_share);
-    right_ = CellLevels(moving_share);
+    left_ = CellLevels(least_moving_share);
+    right_ = CellLevels(least_moving_share);
     return false;
   }
   judged_ = true;

@@ -13,16 +13,16 @@
 namespace roadstereo {
 namespace {
 
-constexpr float grey_level = grey_max / 255.0F;
-constexpr float rounding_variance = grey_level * grey_level / 12;  // of 8-bit levels
-constexpr std::size_t min_cells = 12;                              // less is no evidence
-constexpr int window_radius = 3;                                   // cells
+constexpr float one_level = grey_max / 255.0F;
+constexpr float rounding_variance = one_level * one_level / 12;  // of 8-bit levels
+constexpr std::size_t min_still_cells = 12;                      // less is no evidence
+constexpr int texture_radius = 3;                                // cells
 
-using Cells = Image<std::uint8_t>;
+using CellMask = Image<std::uint8_t>;
 
 /// Structure tensor of the mean levels over a window of cells, from differences of cells `reach` to both sides, and the
 /// variance of the same differences over the frames.
-struct Texture {
+struct CellTexture {
   double uu = 0, uv = 0, vv = 0;
   double variance = 0;
   std::size_t cells = 0;
@@ -33,18 +33,18 @@ struct Texture {
     constexpr double min_isotropy = 0.05;
     const double half = 0.5 * (uu + vv), spread = 0.5 * std::hypot(uu - vv, 2 * uv);
     const double least = half - spread, greatest = half + spread;
-    return cells >= min_cells && least >= min_isotropy * greatest && variance <= max_ratio * least;
+    return cells >= min_still_cells && least >= min_isotropy * greatest && variance <= max_ratio * least;
   }
 };
 
 /// Leaves out differences of cells that vary by more than `max_variance`.
-Texture texture_around(const CellLevels& levels, int x, int y, int reach, float max_variance) {
+CellTexture texture_around(const CellLevels& levels, int x, int y, int reach, float max_variance) {
   const Image<float>&mean = levels.mean(), &variance = levels.variance();
-  Texture texture;
-  const int last_u = std::min(mean.width() - 1 - reach, x + window_radius);
-  const int last_v = std::min(mean.height() - 1 - reach, y + window_radius);
-  for (int v = std::max(reach, y - window_radius); v <= last_v; ++v) {
-    for (int u = std::max(reach, x - window_radius); u <= last_u; ++u) {
+  CellTexture texture;
+  const int last_u = std::min(mean.width() - 1 - reach, x + texture_radius);
+  const int last_v = std::min(mean.height() - 1 - reach, y + texture_radius);
+  for (int v = std::max(reach, y - texture_radius); v <= last_v; ++v) {
+    for (int u = std::max(reach, x - texture_radius); u <= last_u; ++u) {
       const std::array around{variance(u - reach, v), variance(u + reach, v), variance(u, v - reach),
                               variance(u, v + reach)};
       if (*std::max_element(around.begin(), around.end()) > max_variance) continue;
@@ -60,10 +60,10 @@ Texture texture_around(const CellLevels& levels, int x, int y, int reach, float 
   return texture;
 }
 
-/// Cells with a lasting texture, fine or coarse, that vary by `max_variance` at most.
-Cells find_lasting_texture(const CellLevels& levels, double max_ratio, float max_variance) {
+/// CellMask with a lasting texture, fine or coarse, that vary by `max_variance` at most.
+CellMask find_lasting_texture(const CellLevels& levels, double max_ratio, float max_variance) {
   constexpr std::array reaches{1, 2, 4};
-  Cells lasting(levels.mean().width(), levels.mean().height(), 0);
+  CellMask lasting(levels.mean().width(), levels.mean().height(), 0);
   for (int y = 0; y < lasting.height(); ++y) {
     for (int x = 0; x < lasting.width(); ++x) {
       if (levels.variance()(x, y) > max_variance) continue;
@@ -78,7 +78,7 @@ Cells find_lasting_texture(const CellLevels& levels, double max_ratio, float max
 
 /// Largest variance over the frames that noise explains, from that of the lasting texture: its first quartile, for some
 /// of that texture moves slowly, and what an estimate from that many frames may be off by. Negative without any.
-float noise_limit(const CellLevels& levels, const Cells& lasting) {
+float noise_limit(const CellLevels& levels, const CellMask& lasting) {
   constexpr float deviations = 5;
   std::vector<float> variances;
   for (int y = 0; y < lasting.height(); ++y) {
@@ -86,18 +86,18 @@ float noise_limit(const CellLevels& levels, const Cells& lasting) {
       if (lasting(x, y) != 0) variances.push_back(levels.variance()(x, y));
     }
   }
-  if (variances.size() < min_cells) return -1;
+  if (variances.size() < min_still_cells) return -1;
   const float typical = select_rank(variances, static_cast<std::ptrdiff_t>(variances.size() / 4));
   return rounding_variance + typical * (1 + deviations * std::sqrt(2 / static_cast<float>(levels.frames())));
 }
 
 /// A part of the quiet cells, and what is beside it.
-struct Neighbours {
+struct BesidePart {
   std::size_t still = 0, moving = 0;
 };
 
-Neighbours look_around(const ConnectedComponent& part, const Cells& candidates, const Cells& still) {
-  Neighbours beside;
+BesidePart look_around(const ConnectedComponent& part, const CellMask& candidates, const CellMask& still) {
+  BesidePart beside;
   const auto look = [&](int x, int y) {
     if (x < 0 || y < 0 || x >= still.width() || y >= still.height() || candidates(x, y) != 0) return;
     ++(still(x, y) != 0 ? beside.still : beside.moving);
@@ -114,9 +114,9 @@ Neighbours look_around(const ConnectedComponent& part, const Cells& candidates, 
 }
 
 /// Quiet cells off sharp edges: an edge that lasts parts a bonnet from a road without texture.
-Cells find_quiet_parts(const CellLevels& levels, double max_ratio, float max_variance) {
+CellMask find_quiet_parts(const CellLevels& levels, double max_ratio, float max_variance) {
   const Image<float>&mean = levels.mean(), &variance = levels.variance();
-  Cells quiet(mean.width(), mean.height(), 0);
+  CellMask quiet(mean.width(), mean.height(), 0);
   const auto column = [&](int x) { return std::clamp(x, 0, mean.width() - 1); };
   const auto row = [&](int y) { return std::clamp(y, 0, mean.height() - 1); };
   for (int y = 0; y < mean.height(); ++y) {
@@ -132,7 +132,7 @@ Cells find_quiet_parts(const CellLevels& levels, double max_ratio, float max_var
 }
 
 /// Adds the parts of which at least half have a lasting texture.
-void complete_parts(const Cells& quiet, Cells& still) {
+void complete_parts(const CellMask& quiet, CellMask& still) {
   for (const ConnectedComponent& part : ConnectedComponents(quiet)) {
     std::size_t lasting = 0;
     for (const CellRun& run : part.runs) {
@@ -143,28 +143,28 @@ void complete_parts(const Cells& quiet, Cells& still) {
 }
 
 /// Adds quiet cells that still ones surround: nearly all of their neighbours are.
-void fill_surrounded(const CellLevels& levels, float max_variance, Cells& still) {
+void fill_surrounded(const CellLevels& levels, float max_variance, CellMask& still) {
   constexpr std::size_t still_to_moving = 10;
-  Cells unknown(still.width(), still.height(), 0);
+  CellMask unknown(still.width(), still.height(), 0);
   for (int y = 0; y < still.height(); ++y) {
     for (int x = 0; x < still.width(); ++x) {
       unknown(x, y) = still(x, y) == 0 && levels.variance()(x, y) <= max_variance ? 255 : 0;
     }
   }
   for (const ConnectedComponent& part : ConnectedComponents(unknown)) {
-    const Neighbours beside = look_around(part, unknown, still);
+    const BesidePart beside = look_around(part, unknown, still);
     if (beside.still > still_to_moving * beside.moving) fill_component(part, 255, still);
   }
 }
 
 /// Removes what is small or apart from the border: what is mounted on a rig reaches in from there.
-void remove_loose(Cells& still) {
+void remove_loose(CellMask& still) {
   for (const ConnectedComponent& part : ConnectedComponents(still)) {
-    if (part.size < min_cells || !part.touches_border) fill_component(part, 0, still);
+    if (part.size < min_still_cells || !part.touches_border) fill_component(part, 0, still);
   }
 }
 
-bool more_moves(const CellLevels& levels, float max_variance, const Cells& still) {
+bool more_moves(const CellLevels& levels, float max_variance, const CellMask& still) {
   std::size_t moving = 0, resting = 0;
   for (int y = 0; y < still.height(); ++y) {
     for (int x = 0; x < still.width(); ++x) {
@@ -178,10 +178,10 @@ bool more_moves(const CellLevels& levels, float max_variance, const Cells& still
 }  // namespace
 
 std::optional<Image<std::uint8_t>> find_still_cells(const CellLevels& levels, double max_variance_ratio) {
-  const Cells lasting = find_lasting_texture(levels, max_variance_ratio, std::numeric_limits<float>::infinity());
+  const CellMask lasting = find_lasting_texture(levels, max_variance_ratio, std::numeric_limits<float>::infinity());
   const float noise = noise_limit(levels, lasting);
   // Again without the cells that move, so that it reaches up to the edge of what is still.
-  Cells still = find_lasting_texture(levels, max_variance_ratio, noise);
+  CellMask still = find_lasting_texture(levels, max_variance_ratio, noise);
   complete_parts(find_quiet_parts(levels, max_variance_ratio, noise), still);
   fill_surrounded(levels, noise, still);
   if (!more_moves(levels, noise, still)) return std::nullopt;
