@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -355,6 +356,44 @@ TEST_F(CudaPipeline, WithoutRoadDisparityIsComplete) {
 }
 
 #if defined(ROADSTEREO_CUDA_EMULATED)
+/// Whichever launch of a following frame fails: nothing is in flight when the exception leaves, and the frame after it
+/// has the bits that it would have had.
+TEST_F(SlowCudaPipeline, FailedLaunchLeavesNothingBehind) {
+  const synth::SyntheticPair pair = frame_of("uav", 0, 2), next = frame_of("uav", 1, 2);
+  Pipeline pipeline(options_of("default", "cuda"), pair.calibration);
+  pipeline.process(pair.left.view(), pair.right.view());
+  const PipelineState carried = pipeline.carried();
+  FrameResult expected, found;
+  pipeline.process(next.left.view(), next.right.view(), expected);
+  ASSERT_EQ(expected.road.status, RoadStatus::tracked);
+  const auto same_bits = [](const Image<float>& a, const Image<float>& b) {
+    return std::memcmp(a.row(0), b.row(0), a.pixels() * sizeof(float)) == 0;
+  };
+  int launches = 0;
+  for (bool failed = true; failed; ++launches) {
+    pipeline.restore(carried);
+    cuda::emulated::fail_after(launches);
+    failed = false;
+    try {
+      pipeline.process(next.left.view(), next.right.view(), found);
+    } catch (const std::runtime_error&) {
+      failed = true;
+      EXPECT_EQ(cuda::emulated::streams_with_copies(), 0) << launches;
+      EXPECT_THROW(pipeline.device_maps(), Error);
+    }
+    cuda::emulated::fail_after(-1);
+    pipeline.restore(carried);
+    pipeline.process(next.left.view(), next.right.view(), found);
+    EXPECT_TRUE(same_bits(found.disparity, expected.disparity)) << launches;
+    EXPECT_TRUE(same_bits(found.sigma, expected.sigma)) << launches;
+    EXPECT_TRUE(same_bits(found.transformed, expected.transformed)) << launches;
+    EXPECT_EQ(found.valid_share, expected.valid_share) << launches;
+    EXPECT_EQ(found.geometry.roll_rad, expected.geometry.roll_rad) << launches;
+    EXPECT_EQ(found.spread.sigma_road_px, expected.spread.sigma_road_px) << launches;
+  }
+  EXPECT_GT(launches, 15);
+}
+
 TEST_F(SlowCudaPipeline, AllocatesNothingAfterFirstFrames) {
   for (const std::string& name : preset_names()) {
     const synth::SyntheticPair pair = frame_of("uav");

@@ -74,17 +74,19 @@ class CudaRoadFit : public test::OnDevice {
     options.solver = solver;
     const RollEstimate device = on_device(map, mask, prior, options);
     const RollEstimate host = estimate_roll(map, view_of(mask), prior, 0, options, 1);
-    EXPECT_NEAR(device.roll_rad, host.roll_rad, 1e-6);
-    EXPECT_NEAR(device.roll_stderr_rad, host.roll_stderr_rad, 1e-4 * host.roll_stderr_rad);
-    EXPECT_NEAR(device.residual_px, host.residual_px, 1e-4 * host.residual_px);
+    EXPECT_LE(std::abs(device.iterations - host.iterations), 1);
+    // The last step is at most a fiftieth of a standard error.
+    const double looser = test::kernels_round_as_host || device.iterations == host.iterations ? 1 : 100;
+    EXPECT_NEAR(device.roll_rad, host.roll_rad, looser * 1e-6);
+    EXPECT_NEAR(device.roll_stderr_rad, host.roll_stderr_rad, looser * 1e-4 * host.roll_stderr_rad);
+    EXPECT_NEAR(device.residual_px, host.residual_px, looser * 1e-4 * host.residual_px);
     EXPECT_EQ(device.roll_observable, host.roll_observable);
     EXPECT_EQ(device.pixels, host.pixels);
-    EXPECT_LE(std::abs(device.iterations - host.iterations), 1);
-    EXPECT_NEAR(device.alpha0, host.alpha0, 1e-5);
-    EXPECT_NEAR(device.alpha1, host.alpha1, 1e-7);
+    EXPECT_NEAR(device.alpha0, host.alpha0, looser * 1e-5);
+    EXPECT_NEAR(device.alpha1, host.alpha1, looser * 1e-7);
     for (const double v : {0.0, map.height() - 1.0}) {
       for (const double u : {0.0, map.width() - 1.0}) {
-        EXPECT_NEAR(device.plane.disparity(u, v), host.plane.disparity(u, v), 1e-5);
+        EXPECT_NEAR(device.plane.disparity(u, v), host.plane.disparity(u, v), looser * 1e-5);
       }
     }
     const DisparityPlane left = test::to_host(fit_->plane(), 1).front();

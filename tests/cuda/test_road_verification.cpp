@@ -56,13 +56,16 @@ void expect_same(const RoadModelEstimate& device, const RoadModelEstimate& host,
   EXPECT_EQ(device.reason, host.reason);
   EXPECT_EQ(device.status, host.status);
   EXPECT_NEAR(device.matches, host.matches, test::kernels_round_as_host ? 0 : 2);
-  EXPECT_NEAR(device.inliers, host.inliers, 1);
-  EXPECT_NEAR(device.residual_px, host.residual_px, 1e-5);
-  EXPECT_NEAR(device.residual_p01_px, host.residual_p01_px, 1e-4);
-  EXPECT_NEAR(device.residual_p99_px, host.residual_p99_px, 1e-4);
+  EXPECT_NEAR(device.inliers, host.inliers, test::kernels_round_as_host ? 1 : 3);
+  // One point more in some hundred moves order statistics and planes.
+  const bool same_points = device.matches == host.matches && device.inliers == host.inliers;
+  const double looser = test::kernels_round_as_host || same_points ? 1 : 100;
+  EXPECT_NEAR(device.residual_px, host.residual_px, looser * 1e-5);
+  EXPECT_NEAR(device.residual_p01_px, host.residual_p01_px, looser * 1e-4);
+  EXPECT_NEAR(device.residual_p99_px, host.residual_p99_px, looser * 1e-4);
   for (const double v : {0.0, pair.left.height() - 1.0}) {
     for (const double u : {0.0, pair.left.width() - 1.0}) {
-      EXPECT_NEAR(device.model.disparity(u, v), host.model.disparity(u, v), 1e-4);
+      EXPECT_NEAR(device.model.disparity(u, v), host.model.disparity(u, v), looser * 1e-4);
     }
   }
 }

@@ -66,19 +66,23 @@ Fitted fit_on_device(const Points& points, const DisparityPlane& start, const Ro
 
 void expect_agreement(const Fitted& device, const IrlsPlaneFit& host, const Points& points) {
   ASSERT_EQ(device.plane.found, 1);
+  EXPECT_LE(std::abs(device.plane.iterations - host.iterations), 1);
+  // The last step is at most a fiftieth of a standard error, at the corners a tenth.
+  const bool same_steps = test::kernels_round_as_host || device.plane.iterations == host.iterations;
+  const double last_step = 0.1 / std::sqrt(static_cast<double>(device.plane.points));
   for (const double v : {0.0, 359.0}) {
     for (const double u : {0.0, 639.0}) {
-      EXPECT_NEAR(device.plane.plane.disparity(u, v), host.plane.disparity(u, v), 2e-6);
+      EXPECT_NEAR(device.plane.plane.disparity(u, v), host.plane.disparity(u, v),
+                  same_steps ? 2e-6 : last_step * host.scale_px);
     }
   }
-  EXPECT_NEAR(device.plane.scale_px, host.scale_px, 1e-5 * host.scale_px);
-  EXPECT_LE(std::abs(device.plane.iterations - host.iterations), 1);
+  EXPECT_NEAR(device.plane.scale_px, host.scale_px, (same_steps ? 1e-5 : last_step) * host.scale_px);
   std::size_t present = 0;
   for (std::size_t i = 0; i < points.d.size(); ++i) {
     if (std::isnan(points.d[i])) {
       EXPECT_EQ(device.weights[i], 0);
     } else {
-      EXPECT_NEAR(device.weights[i], host.weights[present++], 1e-4);
+      EXPECT_NEAR(device.weights[i], host.weights[present++], same_steps ? 1e-4 : last_step);
     }
   }
   EXPECT_EQ(device.plane.points, static_cast<int>(present));

@@ -25,4 +25,7 @@ void fail_after(int launches);
 /// Calls of cudaMalloc and cudaHostAlloc so far, of the whole process.
 std::size_t allocations();
 
+/// Streams of the process that were not waited for since the last copy was enqueued there.
+int streams_with_copies();
+
 }  // namespace roadstereo::cuda::emulated

@@ -9,7 +9,9 @@
 #include "cuda_runtime.h"
 #include "run_kernel.hpp"
 
-struct CUstream_st {};
+struct CUstream_st {
+  std::atomic<bool> has_copies{false};
+};
 struct CUevent_st {
   std::chrono::steady_clock::time_point time{};
   bool recorded = false;
@@ -68,6 +70,12 @@ class Memory {
 
 constexpr int devices = 2;  // so that one can be the wrong one
 thread_local int current_device = 0;
+std::atomic<int> with_copies{0};
+
+void set_copies(cudaStream_t stream, bool copies) {
+  if (stream == nullptr || stream->has_copies.exchange(copies) == copies) return;
+  with_copies += copies ? 1 : -1;
+}
 
 /// One for the process, as a device's memory is.
 Memory& memory() {
@@ -79,6 +87,10 @@ Memory& memory() {
 
 std::size_t roadstereo::cuda::emulated::allocations() {
   return memory().count();
+}
+
+int roadstereo::cuda::emulated::streams_with_copies() {
+  return with_copies;
 }
 
 cudaError_t cudaGetDeviceCount(int* count) {
@@ -139,8 +151,9 @@ cudaError_t cudaPointerGetAttributes(cudaPointerAttributes* attributes, const vo
   *attributes = memory().attributes_of(pointer);
   return cudaSuccess;
 }
-cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind, cudaStream_t) {
+cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind, cudaStream_t stream) {
   std::memcpy(to, from, bytes);
+  set_copies(stream, true);
   return cudaSuccess;
 }
 cudaError_t cudaMemcpy2DAsync(void* to, std::size_t to_pitch, const void* from, std::size_t from_pitch,
@@ -159,10 +172,12 @@ cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) {
   return cudaSuccess;
 }
 cudaError_t cudaStreamDestroy(cudaStream_t stream) {
+  set_copies(stream, false);
   delete stream;
   return cudaSuccess;
 }
-cudaError_t cudaStreamSynchronize(cudaStream_t) {
+cudaError_t cudaStreamSynchronize(cudaStream_t stream) {
+  set_copies(stream, false);
   return cudaSuccess;
 }
 cudaError_t cudaStreamWaitEvent(cudaStream_t, cudaEvent_t, unsigned) {

@@ -11,6 +11,7 @@ namespace roadstereo::cuda {
 namespace {
 
 constexpr int block_columns = 32, block_rows = 8;
+constexpr int pixel_rows = block_rows * alignment_cell;  ///< of a block of cells
 
 /// What is aligned.
 struct Maps {
@@ -32,16 +33,21 @@ __device__ int thread_row() {
   return static_cast<int>(blockIdx.y * block_rows + threadIdx.y);
 }
 
-/// One thread a cell.
+/// One thread a cell. Double precision is slow on small GPUs: the road's line in a row is found once a block.
 __global__ void sum_cells(Maps maps, ImageView<AlignmentSums<float>> cells) {
+  auto* lines = shared_memory<RowLine>();
+  const TransformedPair& pair = maps.pair;
+  const int thread = static_cast<int>(threadIdx.y) * block_columns + static_cast<int>(threadIdx.x);
+  const int top = static_cast<int>(blockIdx.y) * pixel_rows;
+  if (thread < pixel_rows) lines[thread] = shift_line(pair.shift, top + thread);
+  __syncthreads();
   const int i = thread_column(), j = thread_row();
   if (i >= cells.width() || j >= cells.height()) return;
-  const TransformedPair& pair = maps.pair;
   const int width = maps.disparity.width();
   AlignmentSums<float> sums{};
   for (int v = j * alignment_cell; v < min((j + 1) * alignment_cell, maps.disparity.height()); ++v) {
     const int first = pair.first_column != nullptr ? __ldg(pair.first_column + v) : 0;
-    const RowLine road = shift_line(pair.shift, v);
+    const RowLine road = lines[v - top];
     const PrefilteredRow reference{pair.reference.row(v)}, target{pair.target.row(v)};
     for (int u = i * alignment_cell; u < min((i + 1) * alignment_cell, width); ++u) {
       const float residual = without_shift(__ldg(&maps.disparity(u, v)), road, u);
@@ -95,7 +101,8 @@ ImageView<const float> LucasKanade::run(const TransformedPair& pair, ImageView<c
   const ImageView<AlignmentSums<float>> sums(sums_.data(), columns, rows);
   const ImageView<float> shifts(shifts_.data(), columns, rows), correlation(correlation_.data(), columns, rows);
   const dim3 block(block_columns, block_rows);
-  launch("lucas_kanade_sums", sum_cells, {grid_of(columns, rows), block, 0}, stream, Maps{pair, disparity}, sums);
+  launch("lucas_kanade_sums", sum_cells, {grid_of(columns, rows), block, pixel_rows * sizeof(RowLine)}, stream,
+         Maps{pair, disparity}, sums);
   launch("lucas_kanade_solve", solve_windows, {grid_of(columns, rows), block, 0}, stream, sums, radius, settings,
          shifts, correlation);
   const float scale = 1 - shift_line(pair.shift, 0).slope;
