@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "roadstereo/device_profile.hpp"
 
@@ -30,8 +31,8 @@ struct DeviceOptions {
   DeviceTiming timing = DeviceTiming::none;  ///< of the frames from now on
 };
 
-/// The last frame's maps in device memory, rows without padding. They belong to the pipeline; work enqueued in its
-/// stream may read them until the next frame.
+/// A frame's maps in device memory, rows without padding. They stay as they are while a copy of `owner` lives, beyond
+/// the next frames, which are then written elsewhere, and beyond the pipeline.
 struct DeviceMaps {
   int width = 0;                       ///< pixels
   int height = 0;                      ///< pixels
@@ -40,6 +41,9 @@ struct DeviceMaps {
   const float* sigma = nullptr;        ///< standard error of the disparity, pixels, NaN invalid
   const float* transformed = nullptr;  ///< ℓ', pixels, NaN invalid
   CUstream_st* stream = nullptr;       ///< the stream that wrote them
+  int device = 0;  ///< CUDA's number of the GPU; -1 with emulated kernels, whose memory is the host's
+  /// May be released in any thread, also while work on the device still reads the maps.
+  std::shared_ptr<const void> owner;
 };
 
 }  // namespace roadstereo

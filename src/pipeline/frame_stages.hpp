@@ -87,7 +87,7 @@ class FrameStages {
 
   /// Where a device's maps go, and where they are (roadstereo/device.hpp). Throw Error where there is no device.
   virtual void set_device_options(const DeviceOptions& use) = 0;
-  virtual DeviceMaps device_maps() const = 0;
+  virtual DeviceMaps device_maps() = 0;
   virtual DeviceProfile device_profile() const = 0;
   /// Ends what an exception has left undone: a device waits for all that was enqueued.
   virtual void abandon() noexcept {}

@@ -149,7 +149,7 @@ class HostStages final : public FrameStages {
   }
 
   void set_device_options(const DeviceOptions&) override { fail_without_device(); }
-  DeviceMaps device_maps() const override { fail_without_device(); }
+  DeviceMaps device_maps() override { fail_without_device(); }
   DeviceProfile device_profile() const override { fail_without_device(); }
 
  private:

@@ -456,7 +456,7 @@ void Pipeline::set_device_options(const DeviceOptions& use) {
 }
 
 DeviceMaps Pipeline::device_maps() const {
-  const DeviceMaps maps = state_->stages->device_maps();
+  DeviceMaps maps = state_->stages->device_maps();
   if (!state_->has_maps) fail("no frame was processed yet, or the last one was refused or forgotten");
   return maps;
 }

@@ -180,6 +180,48 @@ TEST_F(CudaPipeline, HandsOutPinnedMaps) {
   EXPECT_TRUE(std::isfinite(copy(copy.width() / 2, copy.height() / 2)));
 }
 
+/// Maps that the caller holds are those of their frame, whatever comes after it; released memory serves again.
+TEST_F(CudaPipeline, HeldDeviceMapsStay) {
+  const synth::SyntheticPair pair = frame_of("uav", 0, 2), next = frame_of("uav", 3, 2), larger = frame_of("uav");
+  const auto disparities = [](const DeviceMaps& maps) {
+    return test::to_host(maps.disparity, static_cast<std::size_t>(maps.width) * static_cast<std::size_t>(maps.height));
+  };
+  const auto same_bits = [](const std::vector<float>& a, const std::vector<float>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+  };
+  DeviceMaps held;
+  std::vector<float> expected;
+  {
+    Pipeline pipeline(options_of("fast", "cuda"));
+    EXPECT_THROW(pipeline.device_maps(), Error);
+    pipeline.process(pair.left.view(), pair.right.view());
+    held = pipeline.device_maps();
+    EXPECT_EQ(held.device, cuda::is_emulated ? -1 : 0);
+    EXPECT_EQ(pipeline.device_maps().owner, held.owner);
+    expected = disparities(held);
+    pipeline.process(next.left.view(), next.right.view());
+    const float* second = pipeline.device_maps().disparity;
+    EXPECT_NE(second, held.disparity);
+    EXPECT_FALSE(same_bits(disparities(pipeline.device_maps()), expected));
+    for (int frame = 0; frame < 2; ++frame) pipeline.process(next.left.view(), next.right.view());
+    EXPECT_EQ(pipeline.device_maps().disparity, second);
+    pipeline.process(larger.left.view(), larger.right.view());  // other memory for what is not held
+    EXPECT_TRUE(same_bits(disparities(held), expected));
+  }
+  EXPECT_TRUE(same_bits(disparities(held), expected));  // without the pipeline
+
+  Pipeline pipeline(options_of("fast", "cuda"));
+  std::vector<const float*> places;
+  for (int frame = 0; frame < 4; ++frame) {
+    pipeline.process(pair.left.view(), pair.right.view());
+    held = pipeline.device_maps();  // releases those of the frame before, once they have a successor
+    places.push_back(held.disparity);
+  }
+  EXPECT_NE(places[1], places[0]);
+  EXPECT_EQ(places[2], places[0]);
+  EXPECT_EQ(places[3], places[1]);
+}
+
 /// A following frame waits twice, for the road and for the end, and copies both frames and four maps; of a solver that
 /// takes all disparities, too.
 TEST_F(CudaPipeline, FollowingFrameWaitsTwice) {

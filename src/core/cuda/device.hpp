@@ -4,6 +4,13 @@
 
 namespace roadstereo::cuda {
 
+/// Whether kernels run on the host, in whose memory then all is.
+#if defined(ROADSTEREO_CUDA_EMULATED)
+inline constexpr bool is_emulated = true;
+#else
+inline constexpr bool is_emulated = false;
+#endif
+
 /// The GPU of this process, or why it cannot use one.
 struct Device {
   bool usable = false;

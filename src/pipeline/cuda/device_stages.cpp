@@ -177,14 +177,16 @@ class DeviceStages final : public FrameStages {
     return recorder_->profile();
   }
 
-  DeviceMaps device_maps() const override {
+  DeviceMaps device_maps() override {
     return {width_,
             height_,
             maps_.grey().data(),
             maps_.disparity().data(),
             maps_.sigma().data(),
             maps_.transformed().data(),
-            stream_};
+            stream_,
+            is_emulated ? -1 : device_,
+            maps_.hold()};
   }
 
  private:
@@ -203,7 +205,7 @@ class DeviceStages final : public FrameStages {
   void resize(int width, int height) {
     width_ = width;
     height_ = height;
-    maps_.resize(width, height);
+    maps_.begin(width, height);
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     right_.reserve(pixels);
     target_.reserve(pixels);

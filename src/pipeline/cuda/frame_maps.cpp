@@ -1,5 +1,6 @@
 #include "pipeline/cuda/frame_maps.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace roadstereo::cuda {
@@ -27,12 +28,29 @@ void copy_to_host(const ImageView<T>& from, Image<T>& to, StreamView stream) {
 
 }  // namespace
 
-void FrameMaps::resize(int width, int height) {
+void FrameMaps::begin(int width, int height) {
+  auto free = std::find_if(all_.begin(), all_.end(), [](const std::shared_ptr<Memory>& memory) {
+    return !memory->held.load(std::memory_order_acquire);
+  });
+  if (free == all_.end()) free = all_.insert(all_.end(), std::make_shared<Memory>());
+  memory_ = *free;
+  holder_.reset();
+  // What the holder has enqueued may still read, in a stream that is not known here.
+  if (std::exchange(memory_->was_held, false)) ROADSTEREO_CUDA(cudaDeviceSynchronize());
   width_ = width;
   height_ = height;
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  for (DeviceArray<float>* map : {&disparity_, &sigma_, &transformed_}) map->reserve(pixels);
-  grey_.reserve(pixels);
+  for (DeviceArray<float>* map : {&memory_->disparity, &memory_->sigma, &memory_->transformed}) map->reserve(pixels);
+  memory_->grey.reserve(pixels);
+}
+
+std::shared_ptr<const void> FrameMaps::hold() {
+  if (std::shared_ptr<const void> holder = holder_.lock()) return holder;
+  memory_->held = memory_->was_held = true;
+  std::shared_ptr<const void> holder(
+      memory_.get(), [memory = memory_](const void*) { memory->held.store(false, std::memory_order_release); });
+  holder_ = holder;
+  return holder;
 }
 
 void FrameMaps::download_refined(StreamView stream) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
+#include <vector>
 
 #include "core/cuda/event.hpp"
 #include "core/cuda/memory.hpp"
@@ -14,12 +17,16 @@ namespace roadstereo::cuda {
 /// handed out as they are.
 class FrameMaps {
  public:
-  void resize(int width, int height);
+  /// Begins a frame, in memory that nobody holds.
+  void begin(int width, int height);
 
-  ImageView<float> disparity() const { return {disparity_.data(), width_, height_, width_}; }
-  ImageView<float> sigma() const { return {sigma_.data(), width_, height_, width_}; }
-  ImageView<float> transformed() const { return {transformed_.data(), width_, height_, width_}; }
-  ImageView<std::int16_t> grey() const { return {grey_.data(), width_, height_, width_}; }
+  ImageView<float> disparity() const { return {memory_->disparity.data(), width_, height_, width_}; }
+  ImageView<float> sigma() const { return {memory_->sigma.data(), width_, height_, width_}; }
+  ImageView<float> transformed() const { return {memory_->transformed.data(), width_, height_, width_}; }
+  ImageView<std::int16_t> grey() const { return {memory_->grey.data(), width_, height_, width_}; }
+
+  /// The memory of this frame: until what is returned is released, later frames take other memory.
+  std::shared_ptr<const void> hold();
 
   /// Enqueues the copies of all but ℓ' to the host, beside what `stream` does from now on.
   void download_refined(StreamView stream);
@@ -31,9 +38,18 @@ class FrameMaps {
   void settle() const noexcept { StreamView(copies_.get()).settle(); }
 
  private:
+  /// Device memory of one frame.
+  struct Memory {
+    DeviceArray<float> disparity, sigma, transformed;
+    DeviceArray<std::int16_t> grey;
+    std::atomic<bool> held{false};
+    bool was_held = false;  ///< since a frame began in it
+  };
+
   int width_ = 0, height_ = 0;
-  mutable DeviceArray<float> disparity_, sigma_, transformed_;
-  mutable DeviceArray<std::int16_t> grey_;
+  std::shared_ptr<Memory> memory_ = std::make_shared<Memory>();  ///< of this frame
+  std::vector<std::shared_ptr<Memory>> all_{memory_};            ///< as many as were held at a time, and one
+  std::weak_ptr<const void> holder_;                             ///< of this frame's memory
   Image<float> disparity_on_host_, sigma_on_host_, transformed_on_host_;
   GreyImage grey_on_host_;
   Stream copies_;
