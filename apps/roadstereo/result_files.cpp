@@ -59,11 +59,11 @@ void add_transformed(Inspection& inspection, io::OutputFolder& folder) {
 /// Adds the point cloud in the camera frame and in road axes.
 void add_clouds(Inspection& inspection, io::OutputFolder& folder) {
   if (!inspection.pair.calibration) return;
-  const io::PointCloud cloud = io::cloud_from_disparity(inspection.result.disparity, inspection.pair.left.view(),
-                                                        inspection.options.white_level, *inspection.pair.calibration);
+  const PointCloud cloud = cloud_from_disparity(inspection.result.disparity, inspection.pair.left.view(),
+                                                inspection.options.white_level, *inspection.pair.calibration);
   folder.add("cloud.ply", io::encode_ply(cloud));
   if (!inspection.plane) return;
-  folder.add("road_cloud.ply", io::encode_ply(io::to_road_axes(cloud, road_axes(*inspection.plane))));
+  folder.add("road_cloud.ply", io::encode_ply(to_road_axes(cloud, road_axes(*inspection.plane))));
 }
 
 std::string title_of(const Inspection& inspection) {

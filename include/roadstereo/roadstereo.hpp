@@ -13,6 +13,7 @@
 #include "roadstereo/options.hpp"
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/pipeline.hpp"
+#include "roadstereo/point_cloud.hpp"
 #include "roadstereo/relief.hpp"
 #include "roadstereo/resolution_limits.hpp"
 #include "roadstereo/road_model.hpp"

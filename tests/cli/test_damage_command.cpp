@@ -215,7 +215,7 @@ TEST_F(DamageCommand, InspectWritesDamageAndClouds) {
   const auto damages = nlohmann::json::parse(read_text(folder_ / "out" / "damages.json"));
   EXPECT_GE(damages["damages"].size(), 2U);                                 // two potholes
   EXPECT_GE(damages["damages"].size() + damages["candidates"].size(), 3U);  // and a bump; cracks are narrow
-  const io::PointCloud cloud = io::read_ply((folder_ / "out" / "road_cloud.ply").string());
+  const PointCloud cloud = io::read_ply((folder_ / "out" / "road_cloud.ply").string());
   ASSERT_GT(cloud.points.size(), 100'000U);
   std::vector<float> heights;
   heights.reserve(cloud.points.size());

@@ -21,15 +21,15 @@ using namespace roadstereo;
 class EvaluateScan : public CommandTest {
  protected:
   Outcome run(const std::string& arguments) const { return CommandTest::run("evaluate scan " + arguments); }
-  void write(const std::string& name, const io::PointCloud& cloud) const {
+  void write(const std::string& name, const PointCloud& cloud) const {
     CommandTest::write(name, io::encode_ply(cloud));
   }
 };
 using EvaluateScanRealData = EvaluateScan;
 
 /// An unsymmetric hollow on a grid: millimetres with scale 1.
-io::PointCloud hollow(double scale, double step_mm) {
-  io::PointCloud cloud;
+PointCloud hollow(double scale, double step_mm) {
+  PointCloud cloud;
   const int count = static_cast<int>(40 / step_mm);
   for (int i = -count; i <= count; ++i) {
     for (int j = -count; j <= count; ++j) {
@@ -45,7 +45,7 @@ io::PointCloud hollow(double scale, double step_mm) {
 
 /// Metres against millimetres, turned upside down: (x, y, z) → (x, −y, 1 − z).
 TEST_F(EvaluateScan, CloudIsRegisteredToScan) {
-  io::PointCloud cloud = hollow(1e-3, 1);
+  PointCloud cloud = hollow(1e-3, 1);
   for (auto& [x, y, z] : cloud.points) {
     y = -y;
     z = 1 - z;

@@ -68,7 +68,7 @@ std::vector<ScanFiles> find_scan_frames(const std::string& folder) {
 }
 
 Points read_points(const std::string& path, double to_mm) {
-  const io::PointCloud cloud = io::read_ply(path);
+  const PointCloud cloud = io::read_ply(path);
   Points points;
   points.reserve(cloud.points.size());
   for (const auto& [x, y, z] : cloud.points) points.emplace_back(to_mm * x, to_mm * y, to_mm * z);

@@ -49,8 +49,8 @@ std::vector<std::uint8_t> content_of(FrameFile file, const std::optional<StereoC
     case FrameFile::sheet:
       return sheet_of(job);
     case FrameFile::cloud:
-      return io::encode_ply(io::cloud_from_disparity(job.result.disparity, job.pair.left.view(), job.frame.white_level,
-                                                     calibration.value()));
+      return io::encode_ply(
+          cloud_from_disparity(job.result.disparity, job.pair.left.view(), job.frame.white_level, calibration.value()));
     case FrameFile::overlay:
       return io::encode_png(io::damage_overlay(job.pair.left.view(), job.damage).view());
   }

@@ -1,33 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "roadstereo/calibration.hpp"
-#include "roadstereo/ground_plane.hpp"
-#include "roadstereo/image.hpp"
+#include "roadstereo/point_cloud.hpp"
 
 namespace roadstereo::io {
-
-/// Unordered 3-D points with optional colours.
-struct PointCloud {
-  std::vector<std::array<float, 3>> points;          ///< (x, y, z), metres unless read from a file in another unit
-  std::vector<std::array<std::uint8_t, 3>> colours;  ///< (red, green, blue) per point; empty: no colours
-};
-
-/// Maximum distance of a cloud's points, in baselines: there a disparity error of 0.1 px moves a point by several
-/// metres with any usual camera.
-inline constexpr double farthest_baselines = 250;
-
-/// Triangulates a disparity map: camera frame (x right, y down, z forward), metres, row by row, with the colours of the
-/// left image. Skips pixels without a disparity, with d + doffs ≤ 0, and farther away than
-/// `farthest_baselines` baselines. `white_level` as in to_grey. Throws Error if the sizes differ.
-PointCloud cloud_from_disparity(ImageView<const float> disparity, const FrameView& left, double white_level,
-                                const StereoCalibration& calibration);
-
-/// Transforms the points to road axes, metres: the road is z = 0, depressions have z < 0.
-PointCloud to_road_axes(const PointCloud& cloud, const RoadAxes& road);
 
 /// Encodes a cloud as binary little-endian PLY: float x y z and, with colours, uchar red green blue. Throws Error if
 /// the numbers of points and colours differ.

@@ -7,7 +7,7 @@
 #include "io/quaternion.hpp"
 #include "io/ros/cdr_writer.hpp"
 #include "io/ros/header.hpp"
-#include "roadstereo/io/point_cloud.hpp"
+#include "roadstereo/point_cloud.hpp"
 
 namespace roadstereo::io {
 namespace {

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "roadstereo/calibration.hpp"
+#include "roadstereo/ground_plane.hpp"
+#include "roadstereo/image.hpp"
+
+namespace roadstereo {
+
+/// Unordered 3-D points with optional colours.
+struct PointCloud {
+  std::vector<std::array<float, 3>> points;          ///< (x, y, z), metres unless read from a file in another unit
+  std::vector<std::array<std::uint8_t, 3>> colours;  ///< (red, green, blue) per point; empty: no colours
+};
+
+/// Maximum distance of a cloud's points, in baselines: there a disparity error of 0.1 px moves a point by several
+/// metres with any usual camera.
+inline constexpr double farthest_baselines = 250;
+
+/// Triangulates a disparity map: camera frame (x right, y down, z forward), metres, row by row. Skips pixels without a
+/// disparity, with d + doffs ≤ 0, and farther away than `farthest_baselines` baselines.
+PointCloud cloud_from_disparity(ImageView<const float> disparity, const StereoCalibration& calibration);
+/// The same with the colours of the left image. `white_level` as in to_grey. Throws Error if the sizes differ.
+PointCloud cloud_from_disparity(ImageView<const float> disparity, const FrameView& left, double white_level,
+                                const StereoCalibration& calibration);
+
+/// Transforms the points to road axes, metres: the road is z = 0, depressions have z < 0.
+PointCloud to_road_axes(const PointCloud& cloud, const RoadAxes& road);
+
+}  // namespace roadstereo
