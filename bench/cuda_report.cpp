@@ -97,10 +97,10 @@ void print(const PipelineTimes& times) {
     if (floor > 0) std::printf("   floor %8.4f ms, ratio %5.1f", floor, ms / floor);
     std::printf("\n");
   }
-  std::printf("  %-18s %8s %9s %7s %7s %9s %9s %7s %8s\n", "kernel", "launches", "ms", "blocks", "threads", "occupancy",
+  std::printf("  %-20s %8s %9s %7s %7s %9s %9s %7s %8s\n", "kernel", "launches", "ms", "blocks", "threads", "occupancy",
               "registers", "local B", "shared B");
   for (const KernelProfile& kernel : times.profile.kernels) {
-    std::printf("  %-18s %8d %9.4f %7d %7d %9.2f %9d %7d %8d\n", kernel.name.c_str(), kernel.launches, kernel.ms,
+    std::printf("  %-20s %8d %9.4f %7d %7d %9.2f %9d %7d %8d\n", kernel.name.c_str(), kernel.launches, kernel.ms,
                 kernel.blocks, kernel.threads, kernel.occupancy, kernel.registers, kernel.local_bytes,
                 kernel.shared_bytes);
   }

@@ -29,10 +29,10 @@ std::string timing_line(const Timing& timing) {
 }
 
 std::string device_text(const DeviceProfile& device) {
-  std::string text = fmt::format("\n  {:<18} {:>8} {:>9} {:>7} {:>7} {:>9} {:>9} {:>9} {:>9}\n", "kernel", "launches",
+  std::string text = fmt::format("\n  {:<20} {:>8} {:>9} {:>7} {:>7} {:>9} {:>9} {:>9} {:>9}\n", "kernel", "launches",
                                  "ms", "blocks", "threads", "occupancy", "registers", "local B", "shared B");
   for (const KernelProfile& kernel : device.kernels) {
-    text += fmt::format("  {:<18} {:>8} {:>9.4f} {:>7} {:>7} {:>9.2f} {:>9} {:>9} {:>9}\n", kernel.name,
+    text += fmt::format("  {:<20} {:>8} {:>9.4f} {:>7} {:>7} {:>9.2f} {:>9} {:>9} {:>9}\n", kernel.name,
                         kernel.launches, kernel.ms, kernel.blocks, kernel.threads, kernel.occupancy, kernel.registers,
                         kernel.local_bytes, kernel.shared_bytes);
   }

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
+#include "roadstereo/matcher.hpp"
 #include "tests/cli/road_command_test.hpp"
 
 namespace roadstereo {
@@ -32,6 +34,34 @@ TEST_F(BenchmarkCommand, TakesPairOfFiles) {
       run("benchmark road/left.png road/right.png --calibration road/calibration.yaml --runs 1 --no-peers");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.out.find("SGBM"), std::string::npos);
+}
+
+/// What the device was asked for stands in the text and in JSON.
+TEST_F(BenchmarkCommand, DescribesKernelsOfDevice) {
+  const auto& all = engines();
+  if (std::none_of(all.begin(), all.end(), [](const EngineInfo& engine) { return engine.name == "cuda"; })) {
+    GTEST_SKIP() << "there is no GPU, nor are kernels emulated";
+  }
+  const Outcome outcome =
+      run("benchmark --engine cuda --size 96x64 --disparities 16 --runs 1 --no-peers --json figures.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("pair_to_grey"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(" 2 waits, "), std::string::npos) << outcome.out;
+  const auto device = nlohmann::json::parse(read_text(folder_ / "figures.json"))["device"];
+  EXPECT_EQ(device["waits"], 2);
+  EXPECT_EQ(device["bytes_up"], 2 * 96 * 64);
+  EXPECT_EQ(device["bytes_down"], 16 * 96 * 64);
+  int launches = 0;
+  for (const auto& kernel : device["kernels"]) {
+    launches += kernel["launches"].get<int>();
+    EXPECT_GT(kernel["occupancy"], 0) << kernel;
+    EXPECT_GT(kernel["blocks"], 0) << kernel;
+    for (const char* field : {"ms", "threads", "registers", "local_bytes", "shared_bytes"}) {
+      EXPECT_TRUE(kernel[field].is_number()) << field << ": " << kernel;
+    }
+  }
+  EXPECT_EQ(device["launches"], launches);
+  EXPECT_GT(launches, 15);
 }
 
 TEST_F(BenchmarkCommand, RejectsBadInput) {
