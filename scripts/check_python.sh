@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the Python package in the release tree, runs its tests, checks the types of the example, and tests the wheel in a
-# virtual environment of its own.
+# virtual environment of its own, and the maps of the engine cuda with emulated kernels.
 #   scripts/check_python.sh [BUILD]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -22,4 +22,11 @@ rm -rf "$build/wheel/venv"
 for test in python/tests/test_*.py; do
   (cd / && "$build/wheel/venv/bin/python" -B "$OLDPWD/$test")
 done
+
+options=()
+for part in BUILD_TESTS BUILD_BENCHMARKS EVALUATE GEO CERES GSTREAMER ROS2 DDS; do options+=("-DROADSTEREO_$part=OFF"); done
+cmake -G Ninja -S . -B "$build/emulated" -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DROADSTEREO_CUDA=EMULATED \
+  -DROADSTEREO_PYTHON=ON -DPython3_EXECUTABLE="$python" "${options[@]}"
+cmake --build "$build/emulated" -j "$(nproc)" --target roadstereo_python
+PATH=$build/bin:$PATH PYTHONPATH=$build/emulated/python "$python" -B python/tests/test_device_maps.py
 echo "Python: good."

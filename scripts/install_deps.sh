@@ -23,7 +23,7 @@ case "${1:-}" in
   --checks) packages+=("${checks[@]}") ;;
   --all-checks) packages+=("${checks[@]}" g++-aarch64-linux-gnu qemu-user googletest
                            chromium chromium-driver python3-selenium
-                           pybind11-dev python3-dev python3-numpy python3-matplotlib python3-pil mypy
+                           pybind11-dev libdlpack-dev python3-dev python3-numpy python3-matplotlib python3-pil mypy
                            python3-build python3-setuptools python3-wheel python3-venv
                            "${ros2_checks[@]}") ;;
   *) echo "usage: $0 [--checks|--all-checks]" >&2; exit 2 ;;

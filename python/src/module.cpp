@@ -30,6 +30,9 @@ PYBIND11_MODULE(_roadstereo, module) {
   python::bind_image_files(module);
   python::bind_frame_source(module);
   python::bind_frame_result(module);
+  python::bind_device_maps(module);
   python::bind_pipeline(module);
   python::bind_damage(module);
+  python::bind_odometry(module);
+  python::bind_point_cloud(module);
 }

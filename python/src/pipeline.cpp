@@ -13,6 +13,7 @@
 #include "frame_array.hpp"
 #include "option_values.hpp"
 #include "processed_frame.hpp"
+#include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/options.hpp"
 #include "type_name.hpp"
@@ -59,6 +60,15 @@ class SharedPipeline {
   }
   void reset() {
     call([&] { pipeline_.reset(); });
+  }
+
+  void set_device_options(bool download) {
+    call([&] { pipeline_.set_device_options({.download = download}); });
+  }
+  DeviceMaps device_maps() {
+    DeviceMaps maps;
+    call([&] { maps = pipeline_.device_maps(); });
+    return maps;
   }
 
   py::dict options() const { return option_values(pipeline_.options()); }
@@ -134,6 +144,13 @@ void bind_pipeline(py::module_& module) {
            "They have neither disparity nor damage. None ends it. Raises Error with the engine cuda.")
       .def("warm_up", &SharedPipeline::warm_up, py::arg("width"), py::arg("height"),
            "Allocate memory and start threads for pairs of this size, pixels. Resets the pipeline.")
+      .def("set_device_options", &SharedPipeline::set_device_options, py::kw_only(), py::arg("download") = true,
+           "Engine cuda: leave the maps of later pairs on the GPU (download=False).\n\n"
+           "The arrays of their results are then empty; only `device_maps` has the maps. Raises Error for any other "
+           "engine.")
+      .def("device_maps", &SharedPipeline::device_maps,
+           "Engine cuda: return the maps of the last pair in the memory of the GPU.\n\n"
+           "Raises Error for any other engine, or without a pair.")
       .def("reset", &SharedPipeline::reset, "Make the next pair start without the road of the last one.")
       .def_property_readonly("options", &SharedPipeline::options, "Every option by its key.")
       .def_property_readonly("engine_name", &SharedPipeline::engine_name, "Matching engine in use.")

@@ -20,6 +20,24 @@ class Pairs(unittest.TestCase):
         statuses.append(pipeline.process(*pair()).road.status)
         self.assertEqual(statuses, ["found", "tracked", "tracked", "found"])
 
+    def test_sizes_in_turn(self):
+        left, right = pair()
+        pairs = [(left, right), (left[40:, :240], right[40:, :240]), (left[:150], right[:150])]
+        expected = [roadstereo.Pipeline("default").process(*frames) for frames in pairs]
+        pipeline, results = roadstereo.Pipeline("default"), []
+        for turn in range(6):
+            results.append(pipeline.process(*pairs[turn % 3]))
+        for turn, result in enumerate(results):  # also the first ones are still what they were
+            self.assertEqual(result.disparity.shape, pairs[turn % 3][0].shape)
+            self.assertEqual(result.disparity.tobytes(), expected[turn % 3].disparity.tobytes(), turn)
+            self.assertEqual(result.road.status, "found")
+        of_whole_pair = roadstereo.Calibration(300, 160, 90, 0.25, width=320, height=180)
+        pipeline = roadstereo.Pipeline("default", of_whole_pair)
+        pipeline.process(*pairs[0])
+        with self.assertRaisesRegex(roadstereo.Error, "is for 320×180 pixels, but the images have 320×150"):
+            pipeline.process(*pairs[2])
+        self.assertEqual(pipeline.process(*pairs[0]).road.status, "tracked")
+
     def test_warm_up_leaves_result(self):
         cold, warm = (roadstereo.Pipeline("default", calibration()) for _ in range(2))
         warm.warm_up(320, 180)

@@ -1,0 +1,126 @@
+#include "roadstereo/odometry.hpp"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <type_traits>
+#include <vector>
+
+#include "bindings.hpp"
+#include "processed_frame.hpp"
+#include "record.hpp"
+#include "roadstereo/error.hpp"
+
+namespace roadstereo::python {
+namespace {
+
+namespace py = pybind11;
+
+template <int rows, int columns>
+py::array_t<double> matrix(const std::array<double, rows * columns>& values) {
+  return py::array_t<double>({rows, columns}, values.data());
+}
+
+/// An odometry that any thread may use; calls wait for each other, without the interpreter's lock.
+class SharedOdometry {
+ public:
+  SharedOdometry(const StereoCalibration& calibration, const OdometryOptions& options)
+      : odometry_(calibration, options) {}
+
+  FramePose add(int frame, const ProcessedFrame& processed) {
+    if (processed.result.disparity.empty()) fail("odometry: the maps of frame ", frame, " were left on the device");
+    return call([&] { return odometry_.add(frame, processed.result); });
+  }
+  int reference() {
+    return call([&] { return odometry_.reference(); });
+  }
+  std::vector<FrameLink> links() {
+    return call([&] { return odometry_.links(); });
+  }
+  std::vector<FramePose> trajectory() {
+    return call([&] { return odometry_.trajectory().frames; });
+  }
+
+ private:
+  template <class Function>
+  std::invoke_result_t<Function> call(Function function) {
+    const py::gil_scoped_release release;
+    const std::lock_guard lock(mutex_);
+    return function();
+  }
+
+  std::mutex mutex_;
+  Odometry odometry_;
+};
+
+void bind_poses(py::module_& module) {
+  Record<FramePose>(module, "FramePose", "Pose of the left camera at one frame.")
+      .field("frame", &FramePose::frame, "Index of the frame.")
+      .field("piece", &FramePose::piece, "Piece of the trajectory; frames of different pieces are not linked.")
+      .field(
+          "camera_to_world", [](const FramePose& pose) { return matrix<3, 4>(pose.camera_to_world); },
+          "(3, 4), metres; the world is the camera of the first frame of the piece.")
+      .field(
+          "covariance", [](const FramePose& pose) { return matrix<6, 6>(pose.covariance); },
+          "(6, 6): translation (metres), then rotation vector (radians), in the axes of this camera.");
+  Record<FrameLink>(module, "FrameLink", "Motion between the cameras of two frames.")
+      .field("from_frame", &FrameLink::from, "Index of the earlier frame.")
+      .field("to_frame", &FrameLink::to, "Index of the later frame.")
+      .field(
+          "status", [](const FrameLink& link) { return name_of(link.status); }, "'good' or 'weak'.")
+      .field(
+          "motion", [](const FrameLink& link) { return matrix<3, 4>(link.motion); },
+          "(3, 4), metres: points of the earlier camera to the later one.")
+      .field(
+          "covariance", [](const FrameLink& link) { return matrix<6, 6>(link.covariance); },
+          "(6, 6): translation, then rotation vector, in the axes of the later camera.")
+      .field("correlation", &FrameLink::correlation, "Median NCC of patches of texture, −1 … 1.")
+      .field("overlap", &FrameLink::overlap, "Share of the earlier view that the later one sees, 0 … 1.")
+      .field("offset_px", &FrameLink::offset_px, "Disparity offset at infinity that was undone, pixels.")
+      .field("offset_sd_px", &FrameLink::offset_sd_px, "Its standard error, pixels.")
+      .field("measured_offset_px", &FrameLink::measured_offset_px, "What this link alone tells of it, pixels.")
+      .field("measured_offset_sd_px", &FrameLink::measured_offset_sd_px, "Its standard error, pixels; 0: nothing.");
+}
+
+std::unique_ptr<SharedOdometry> make_odometry(const StereoCalibration& calibration, double min_correlation,
+                                              double weak_correlation, double min_overlap, double reference_overlap,
+                                              bool estimate_offset) {
+  return std::make_unique<SharedOdometry>(
+      calibration, OdometryOptions{min_correlation, weak_correlation, min_overlap, reference_overlap, estimate_offset});
+}
+
+constexpr const char* odometry_doc =
+    R"(Estimates the motion of a rig from frame to frame.
+
+A frame that cannot be linked starts a new piece. Several threads may use one, one after the other.)";
+
+constexpr const char* init_doc =
+    R"(Make an odometry.
+
+min_correlation: below it there is no link; weak_correlation: below it a link is weak; min_overlap: share of the view that
+a link needs; reference_overlap: below it the frame becomes the reference of the next ones; all 0 … 1. estimate_offset:
+estimate and undo an offset of the disparities at infinity.)";
+
+}  // namespace
+
+void bind_odometry(py::module_& module) {
+  bind_poses(module);
+  const OdometryOptions usual;
+  py::class_<SharedOdometry>(module, "Odometry", odometry_doc)
+      .def(py::init(&make_odometry), py::arg("calibration"), py::kw_only(),
+           py::arg("min_correlation") = usual.min_correlation, py::arg("weak_correlation") = usual.weak_correlation,
+           py::arg("min_overlap") = usual.min_overlap, py::arg("reference_overlap") = usual.reference_overlap,
+           py::arg("estimate_offset") = usual.estimate_offset, init_doc)
+      .def("add", &SharedOdometry::add, py::arg("frame"), py::arg("result"),
+           "Add the result of a frame, whose index is above that of the last one; return its pose.\n\n"
+           "Raises Error when sizes differ or the index does not grow.")
+      .def_property_readonly("reference", &SharedOdometry::reference,
+                             "Index of the frame that the next one is aligned with; −1 before the first.")
+      .def_property_readonly("links", &SharedOdometry::links, "Links so far, one per frame that has one.")
+      .def_property_readonly("trajectory", &SharedOdometry::trajectory, "Poses so far, one per frame.");
+}
+
+}  // namespace roadstereo::python
