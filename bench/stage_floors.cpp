@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/cuda/check.hpp"
+#include "road/refinement/settings.hpp"
 #include "stereo/trim_window.hpp"
 
 namespace roadstereo::bench {
@@ -50,6 +51,18 @@ Work coarse_search(const PipelineOptions& options, int width, double pixels, int
   return {.bytes = 4 * pixels + 32 * coarse + (4 + 12 + 24) * costs, .operations = costs * (62 + 5 + 14)};
 }
 
+/// refinement.cu and lucas_kanade.cu.
+Work refinement(const PipelineOptions& options, double pixels) {
+  const double neighbours = 2.0 * (options.refinement.radius / options.refinement.step) + 1;
+  const double window = pass_count(options.refinement) * neighbours * neighbours;
+  const double smoothing = options.refinement.smoothing_px > 0 ? 1 : 0;
+  const double aligned = options.lucas_kanade.radius > 0 ? 1 : 0;
+  const double cells = (2.0 * options.lucas_kanade.radius + 1) * (2.0 * options.lucas_kanade.radius + 1) / 16;
+  return {.bytes = (16 * pass_count(options.refinement) + 12 * smoothing + 17 * aligned) * pixels,
+          .operations = (14 * window + 7 * smoothing + (100 + 10 * cells) * aligned) * pixels,
+          .shared_bytes = 12 * window * pixels};
+}
+
 }  // namespace
 
 Peak device_peak() {
@@ -66,16 +79,12 @@ Peak device_peak() {
 
 StageTimes stage_floors(const PipelineOptions& options, int width, int height, int disparities, const Peak& peak) {
   const double pixels = static_cast<double>(width) * height;
-  const double neighbours = 2.0 * (options.refinement.radius / options.refinement.step) + 1;
   StageTimes floors;
   floors.prepare = Work{.bytes = 6 * pixels, .operations = 16 * pixels}.ms(peak);
   floors.perspective = Work{.bytes = 4 * pixels, .operations = 20 * pixels}.ms(peak);
   floors.coarse = coarse_search(options, width, pixels, disparities).ms(peak);
   floors.match = matching(options.matcher, pixels, disparities).ms(peak);
-  floors.refinement = Work{.bytes = 16 * pixels,
-                           .operations = 14 * neighbours * neighbours * pixels,
-                           .shared_bytes = 12 * neighbours * neighbours * pixels}
-                          .ms(peak);
+  floors.refinement = refinement(options, pixels).ms(peak);
   floors.transform = Work{.bytes = 12 * pixels, .operations = 40 * pixels}.ms(peak);
   return floors;
 }

@@ -95,36 +95,71 @@ struct CellRange {
   int first, end;
 };
 
-/// The means that the moments are taken about.
-struct Means {
-  float u, v;
+/// What one thread solves for the block: double precision is slow on small GPUs.
+struct SolvedMoments {
+  FitMoments moments;
+  double bend_normal;      ///< BendFit::normal
+  float mean_u, mean_v;    ///< that the moments are taken about
+  float level_u, level_v;  ///< LevelDirection
+  float p0, pu, pv, bend;  ///< BendFit
 };
 
-/// Fits the bend of the residuals; `moments` has the sums of the plane.
-__device__ BendFit fit_bend(const SampledMap& sampled, const LevelDirection& level, const float* residuals,
-                            const Means& mean, const FitMoments& moments, FitState& state) {
-  const auto level_u = static_cast<float>(level.u), level_v = static_cast<float>(level.v);
+/// Shared memory of fit_map; the residuals follow.
+struct MapFitState {
+  FitState fit;
+  SolvedMoments solved;
+};
+static_assert(sizeof(MapFitState) + max_fit_points * sizeof(float) <= (48U << 10),
+              "every device has 48 KB for a block");
+
+/// Moments and means from the sums of the plane, about the centre of the map.
+__device__ void solve_moments(const double* s, const SampledMap& sampled, const DisparityPlane& plane,
+                              SolvedMoments& solved) {
+  const double mean_u = s[1] / s[0], mean_v = s[2] / s[0];
+  solved.moments = {
+      s[0], s[4] - mean_u * s[1], s[5] - mean_u * s[2], s[6] - mean_v * s[2], s[7] - s[3] / s[0] * s[3], 0, 0, 0, 0, 0};
+  solved.mean_u = static_cast<float>(mean_u + sampled.width / 2.0);
+  solved.mean_v = static_cast<float>(mean_v + sampled.height / 2.0);
+  const LevelDirection level(plane);
+  solved.level_u = static_cast<float>(level.u);
+  solved.level_v = static_cast<float>(level.v);
+}
+
+/// The bend of the residuals from its sums.
+__device__ void solve_bend(const double* t, SolvedMoments& solved) {
+  FitMoments& moments = solved.moments;
+  const BendFit fit({moments.n, moments.uu, moments.uv, moments.vv, t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7]});
+  moments.bend = fit.bend;
+  solved.bend_normal = fit.normal;
+  solved.p0 = static_cast<float>(fit.p0);
+  solved.pu = static_cast<float>(fit.pu);
+  solved.pv = static_cast<float>(fit.pv);
+  solved.bend = static_cast<float>(fit.bend);
+}
+
+/// Fits the bend of the residuals.
+__device__ void fit_bend(const SampledMap& sampled, const float* residuals, MapFitState& state) {
+  SolvedMoments& solved = state.solved;
   float of_thread[8] = {};
   for (int i = thread(); i < sampled.sample.count(); i += threads()) {
     const float weight = sampled.weights[i];
     if (!(weight > 0)) continue;
-    const float du = sampled.u[i] - mean.u, dv = sampled.v[i] - mean.v;
-    const float s = level_u * du + level_v * dv;
+    const float du = sampled.u[i] - solved.mean_u, dv = sampled.v[i] - solved.mean_v;
+    const float s = solved.level_u * du + solved.level_v * dv;
     const float p = weight * s * s, r = weight * residuals[i];
     const float terms[8] = {p, p * du, p * dv, p * s * s, r, r * du, r * dv, r * s * s};
     for (int k = 0; k < 8; ++k) of_thread[k] += terms[k];
   }
   double own[8];
   for (int k = 0; k < 8; ++k) own[k] = of_thread[k];
-  const double* t = block_sums(own, state.scratch);
-  return BendFit({moments.n, moments.uu, moments.uv, moments.vv, t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7]});
+  const double* t = block_sums(own, state.fit.scratch);
+  if (thread() == 0) solve_bend(t, solved);
+  __syncthreads();
 }
 
 /// Adds up the scores of a cell before they are squared; a thread for each cell, its points in the host's order.
-__device__ void sum_scores(const SampledMap& sampled, const DisparityPlane& plane, const float* residuals,
-                           const Means& mean, FitState& state, FitMoments& moments) {
-  const LevelDirection level(plane);
-  const BendFit bend = fit_bend(sampled, level, residuals, mean, moments, state);
+__device__ void sum_scores(const SampledMap& sampled, const float* residuals, MapFitState& state) {
+  SolvedMoments& solved = state.solved;
   double own[4] = {};
   for (int cell = thread(); cell < cells_per_side * cells_per_side; cell += threads()) {
     const CellRange rows(sampled.sample, sampled.sample.rows, cell / cells_per_side, sampled.height);
@@ -134,11 +169,12 @@ __device__ void sum_scores(const SampledMap& sampled, const DisparityPlane& plan
       for (int column = columns.first; column < columns.end; ++column) {
         const int i = row * sampled.sample.columns + column;
         if (!(sampled.weights[i] > 0)) continue;
-        const float weight = sampled.weights[i], du = sampled.u[i] - mean.u, dv = sampled.v[i] - mean.v;
-        const double rest = bend.rest(level.along(du, dv), du, dv);
+        const float weight = sampled.weights[i], du = sampled.u[i] - solved.mean_u, dv = sampled.v[i] - solved.mean_v;
+        const float s = solved.level_u * du + solved.level_v * dv;
+        const float rest = s * s - solved.p0 - solved.pu * du - solved.pv * dv;
         along_u += weight * residuals[i] * du;
         along_v += weight * residuals[i] * dv;
-        along_bend += weight * static_cast<float>((residuals[i] - bend.bend * rest) * rest);
+        along_bend += weight * (residuals[i] - solved.bend * rest) * rest;
       }
     }
     own[0] += static_cast<double>(along_u) * along_u;
@@ -146,17 +182,20 @@ __device__ void sum_scores(const SampledMap& sampled, const DisparityPlane& plan
     own[2] += static_cast<double>(along_v) * along_v;
     own[3] += static_cast<double>(along_bend) * along_bend;
   }
-  const double* sums = block_sums(own, state.scratch);
+  const double* sums = block_sums(own, state.fit.scratch);
+  if (thread() != 0) return;
+  FitMoments& moments = solved.moments;
   moments.score_uu = sums[0];
   moments.score_uv = sums[1];
   moments.score_vv = sums[2];
-  moments.bend = bend.bend;
-  moments.bend_variance = bend.normal > 0 ? sums[3] / (bend.normal * bend.normal) : 0;
+  const double normal = solved.bend_normal;
+  moments.bend_variance = normal > 0 ? sums[3] / (normal * normal) : 0;
 }
 
-/// `residuals`, in shared memory, receives those of all points. A thread adds up a few points in single precision.
-__device__ FitMoments fit_moments(const SampledMap& sampled, const DisparityPlane& plane, FitState& state,
-                                  float* residuals) {
+/// Leaves the moments in shared memory, for the first thread. `residuals`, in shared memory, receives those of all
+/// points. A thread adds up a few points in single precision.
+__device__ void fit_moments(const SampledMap& sampled, const DisparityPlane& plane, MapFitState& state,
+                            float* residuals) {
   const double centre_u = sampled.width / 2.0, centre_v = sampled.height / 2.0;
   float of_thread[8] = {};
   for (int i = thread(); i < sampled.sample.count(); i += threads()) {
@@ -170,20 +209,18 @@ __device__ FitMoments fit_moments(const SampledMap& sampled, const DisparityPlan
   }
   double own[8];
   for (int k = 0; k < 8; ++k) own[k] = of_thread[k];
-  const double* s = block_sums(own, state.scratch);
-  const double mean_u = s[1] / s[0], mean_v = s[2] / s[0];
-  FitMoments moments{
-      s[0], s[4] - mean_u * s[1], s[5] - mean_u * s[2], s[6] - mean_v * s[2], s[7] - s[3] / s[0] * s[3], 0, 0, 0, 0, 0};
-  sum_scores(sampled, plane, residuals, {static_cast<float>(mean_u + centre_u), static_cast<float>(mean_v + centre_v)},
-             state, moments);
-  return moments;
+  const double* s = block_sums(own, state.fit.scratch);
+  if (thread() == 0) solve_moments(s, sampled, plane, state.solved);
+  __syncthreads();
+  fit_bend(sampled, residuals, state);
+  sum_scores(sampled, residuals, state);
 }
 
 /// `max_iterations` 0 measures the plane as it is.
 __global__ void __launch_bounds__(1024)
     fit_map(MaskedMap map, SampledMap sampled, PlaneSource source, int max_iterations, RoadFitStatistics* statistics,
             RoadFitStatistics* result) {
-  FitState& state = *shared_memory<FitState>();
+  MapFitState& state = *shared_memory<MapFitState>();
   const DisparityPlane start = source.get();
   RoadFitStatistics own{start, {start, 0, 0, 0, 0}, 0, 1, {}};
   take_sample(map, sampled);
@@ -191,16 +228,17 @@ __global__ void __launch_bounds__(1024)
   if (max_iterations > 0) {
     const DevicePoints points{sampled.u, sampled.v, sampled.d, sampled.sample.count()};
     const RobustFit fit{0, true, max_iterations};
-    own.fit = BlockFit(points, fit, state, residuals, sampled.first, sampled.weights).run(start);
+    own.fit = BlockFit(points, fit, state.fit, residuals, sampled.first, sampled.weights).run(start);
     own.plane = own.fit.plane;
     own.points = own.fit.points;
   }
   if (own.fit.found == 0) {
-    own.points = count_all(sampled, state);
-    if (max_iterations > 0) own.has_plane = fit_least_squares(sampled, state, own.plane) ? 1 : 0;
+    own.points = count_all(sampled, state.fit);
+    if (max_iterations > 0) own.has_plane = fit_least_squares(sampled, state.fit, own.plane) ? 1 : 0;
   }
-  if (own.has_plane != 0) own.moments = fit_moments(sampled, own.plane, state, residuals);
+  if (own.has_plane != 0) fit_moments(sampled, own.plane, state, residuals);
   if (thread() != 0) return;
+  if (own.has_plane != 0) own.moments = state.solved.moments;
   *statistics = own;
   *result = own;  // not read back: it lies in the host's memory
 }
@@ -223,8 +261,9 @@ void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_it
     of->reserve(static_cast<std::size_t>(sample.count()));
   }
   const SampledMap sampled{sample, width, height, u_.data(), v_.data(), d_.data(), first_.data(), weights_.data()};
-  launch("fit_map", fit_map, {1, fit_threads(sample.count()), fit_shared_bytes(sample.count())}, stream, map, sampled,
-         plane, max_iterations, statistics_.data(), result_.data());
+  const std::size_t shared_bytes = sizeof(MapFitState) + static_cast<std::size_t>(sample.count()) * sizeof(float);
+  launch("fit_map", fit_map, {1, fit_threads(sample.count()), shared_bytes}, stream, map, sampled, plane,
+         max_iterations, statistics_.data(), result_.data());
 }
 
 }  // namespace roadstereo::cuda
