@@ -97,6 +97,9 @@ void reject_flight_options(const FlightSettings& settings) {
   if (settings.candidates) reject("--candidates");
   if (!settings.auto_mask) reject("--no-auto-mask");
   if (!settings.source_settings.camera_size.empty()) reject("--camera-size");
+  if (!settings.disparity.empty() && !settings.processing.rig_bias.empty()) {
+    fail("--rig-bias is that of matching; the map of --disparity is taken as it is");
+  }
 }
 
 PairFiles pair_files(const FlightSettings& settings) {
@@ -119,6 +122,7 @@ void inspect_pair(const FlightSettings& settings) {
   inspection.pair = read_pair(inspection.files);
   inspection.head = settings.head;
   inspection.mask_file = settings.mask;
+  inspection.rig_bias_file = settings.processing.rig_bias;
   inspection.mask = read_ignored(settings);
   require_mask_size(settings, inspection.mask, inspection.pair.left.width, inspection.pair.left.height);
   if (!sets_white_level(settings.processing)) inspection.options.white_level = inspection.pair.white_level;

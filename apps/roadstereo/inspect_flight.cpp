@@ -54,6 +54,10 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   if (summary.located)
     text += fmt::format("  track     {} of {} frames have a position\n", *summary.located, summary.frames);
   if (!summary.no_position_reason.empty()) text += fmt::format("            {}\n", summary.no_position_reason);
+  if (summary.rig_bias.order > 0) {
+    text += fmt::format("  rig bias  {:.3f} ± {:.3f} px over the road, or its shape: rig_bias.json\n",
+                        summary.rig_bias.rms_px, summary.rig_bias.rms_std_error_px);
+  }
   text += fmt::format("  time      {:.1f} s, {:.1f} frames/s\n", run.seconds, run.frames_per_second);
   for (const std::string& reason : summary.reasons) text += fmt::format("  no result {}\n", reason);
   return text + fmt::format("  report    {}\n", (folder.path() / "report.html").string());
@@ -125,7 +129,8 @@ void inspect_flight(FlightSettings settings) {
   require_calibration(plan, settings.trajectory, source);
   require_frames(settings, source.source());
   FlightFolder folder(settings.output);
-  for (const auto& inputs : {settings.source, settings.calibration, std::vector{settings.track.file}}) {
+  for (const auto& inputs :
+       {settings.source, settings.calibration, std::vector{settings.track.file, settings.processing.rig_bias}}) {
     for (const std::string& input : inputs) folder.protect(input);
   }
   io::FlightJournal journal = open_journal(settings, run.options, folder);
@@ -154,6 +159,7 @@ void inspect_flight(FlightSettings settings) {
   if (journal.last() && journal.last()->white_level > 0) run.options.white_level = journal.last()->white_level;
   run.source = source.source().description();
   run.calibration_format = source.calibration_format();
+  run.calibration = source.calibration();
   run.engine = resolve_engine_name(run.options.engine);
   run.threads = used_threads(run.options);
 

@@ -18,8 +18,9 @@ struct Inspection {
   PairFiles files;
   ReportHead head;
   StereoPair pair;
-  std::string mask_file;     ///< empty: none
-  Image<std::uint8_t> mask;  ///< not 0 left out; empty: none
+  std::string mask_file;      ///< empty: none
+  Image<std::uint8_t> mask;   ///< not 0 left out; empty: none
+  std::string rig_bias_file;  ///< empty: none
   std::string preset;
   PipelineOptions options;
   std::string engine;  ///< name of the engine used; empty with a given disparity map

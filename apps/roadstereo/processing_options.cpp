@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "roadstereo/io/rig_bias_file.hpp"
 #include "roadstereo/io/severity_file.hpp"
 #include "roadstereo/options.hpp"
 #include "settings.hpp"
@@ -46,6 +47,10 @@ void add_processing_options(CLI::App& command, ProcessingSettings& processing) {
       ->allow_extra_args(false)
       ->take_all();
   add_severity_option(command, processing.severity);
+  command
+      .add_option("--rig-bias", processing.rig_bias,
+                  "Disparity error of the rig to be subtracted: rig_bias.json of an inspected recording")
+      ->type_name("FILE");
 }
 
 PipelineOptions make_options(const ProcessingSettings& processing) {
@@ -55,6 +60,7 @@ PipelineOptions make_options(const ProcessingSettings& processing) {
   set_option(options, "perspective.scope", processing.scope);
   apply_settings(processing.settings, options);
   options.damage.severity = io::read_severity_scheme(processing.severity);
+  if (!processing.rig_bias.empty()) options.rig_bias = io::read_rig_bias(processing.rig_bias);
   options.validate();
   return options;
 }

@@ -19,6 +19,7 @@ struct ProcessingSettings {
   int threads = 0;
   std::vector<std::string> settings;  ///< "key=value"
   std::string severity = "d6433";     ///< or a file of severities
+  std::string rig_bias;               ///< file of `io::read_rig_bias`; empty: none
 };
 
 /// Adds --severity.

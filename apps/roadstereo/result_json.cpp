@@ -15,14 +15,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json inputs_json(const PairFiles& files, const std::string& mask) {
+Json inputs_json(const PairFiles& files, const std::string& mask, const std::string& rig_bias) {
   Json calibration = nullptr;
   if (!files.calibration.empty()) calibration = files.calibration;
   return {{"left", files.left},
           {"right", files.right.empty() ? Json(nullptr) : Json(files.right)},
           {"disparity", files.disparity.empty() ? Json(nullptr) : Json(files.disparity)},
           {"calibration", calibration},
-          {"mask", mask.empty() ? Json(nullptr) : Json(mask)}};
+          {"mask", mask.empty() ? Json(nullptr) : Json(mask)},
+          {"rig_bias", rig_bias.empty() ? Json(nullptr) : Json(rig_bias)}};
 }
 
 /// Converts the text of an option to a number, boolean or string.
@@ -119,7 +120,8 @@ Json options_json(const PipelineOptions& options) {
 
 std::string result_json(const Inspection& inspection) {
   const FrameResult& result = inspection.result;
-  Json document = {{"version", version}, {"inputs", inputs_json(inspection.files, inspection.mask_file)}};
+  Json document = {{"version", version},
+                   {"inputs", inputs_json(inspection.files, inspection.mask_file, inspection.rig_bias_file)}};
   document["size"] = {{"width", result.disparity.width()}, {"height", result.disparity.height()}};
   document["preset"] = inspection.preset;
   document["options"] = options_json(inspection.options);

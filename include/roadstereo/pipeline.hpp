@@ -17,6 +17,7 @@
 #include "roadstereo/off_road.hpp"
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/refinement.hpp"
+#include "roadstereo/rig_bias.hpp"
 #include "roadstereo/road_model.hpp"
 #include "roadstereo/roll.hpp"
 
@@ -41,7 +42,8 @@ struct PipelineOptions {
   LucasKanadeOptions lucas_kanade;
   OffRoadOptions off_road;  ///< where the scope is the road; needs the Lucas–Kanade step
   RollOptions roll;
-  DamageOptions damage;  ///< of `Pipeline::find_damage`
+  DamageOptions damage;             ///< of `Pipeline::find_damage`
+  std::optional<RigBias> rig_bias;  ///< what every disparity of the left image is too large by; subtracted
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
@@ -87,6 +89,7 @@ struct FrameResult {
   StageTimes ms;
   double mde_per_s = 0;  ///< millions of disparity evaluations per second: W·H·D / total time
   std::vector<std::string> warnings;
+  std::optional<RigBias> rig_bias;  ///< that `disparity` is without
 };
 
 /// State that one frame hands to the next; a run restored from it gives the same bits. Frames of another size reset it.

@@ -16,6 +16,7 @@
 #include "roadstereo/point_cloud.hpp"
 #include "roadstereo/relief.hpp"
 #include "roadstereo/resolution_limits.hpp"
+#include "roadstereo/rig_bias.hpp"
 #include "roadstereo/road_model.hpp"
 #include "roadstereo/roll.hpp"
 #include "roadstereo/series_smoother.hpp"

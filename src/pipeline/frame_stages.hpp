@@ -71,8 +71,11 @@ class FrameStages {
   /// lucas_kanade.
   virtual ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,
                                        const PerspectiveShift& shift) = 0;
-  /// reject_off_road, where the step before has run and there is something to reject: returns the disparity map ℓ.
+  /// reject_off_road, where the step before has run and there is something to reject.
   virtual ImageView<const float> reject_off_road(ImageView<const float> disparity, const OffRoadOptions& options) = 0;
+  /// Subtracts the bias of the rig, if any: returns the disparity map ℓ.
+  virtual ImageView<const float> subtract_bias(ImageView<const float> disparity,
+                                               const std::optional<RigBias>& bias) = 0;
   /// estimate_roll, when at least `min_share` of the pixels have a disparity. A device that need not return to the host
   /// goes on with the transformation, for which it takes `shift`.
   virtual RollFit estimate_roll(ImageView<const float> disparity, const std::optional<DisparityPlane>& prior,

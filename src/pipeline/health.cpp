@@ -12,10 +12,13 @@
 namespace roadstereo {
 namespace {
 
-/// Largest value of what a quadratic in u and v leaves of the fit's disparity errors at the samples on the road.
-double beyond_quadratic(const std::vector<RowSample>& samples, const DamageMap& damage, const RectificationError& fit) {
+/// Largest value of what a quadratic in u and v leaves of the fit's disparity errors at the samples on the road, less
+/// those that are undone. Without distortion of its own the fit says nothing of what is undone.
+double beyond_quadratic(const std::vector<RowSample>& samples, const DamageMap& damage, const RectificationError& fit,
+                        const std::optional<RigBias>& undone) {
   constexpr std::size_t terms = 6, min_points = 20;
   constexpr double smallest = 1e-10;
+  const bool counts = undone && fit.has_distortion();
   struct Point {
     Vector<terms> row;
     double value;
@@ -26,8 +29,9 @@ double beyond_quadratic(const std::vector<RowSample>& samples, const DamageMap& 
   for (const RowSample& sample : samples) {
     if (damage.road(static_cast<int>(sample.u), static_cast<int>(sample.v)) == 0) continue;
     const double x = sample.u / damage.road.width(), y = sample.v / damage.road.width();
+    const double error = fit.disparity_error_px(sample.u, sample.v, -sample.du);
     const Point& point = points.emplace_back(
-        Point{{1, x, y, x * x, x * y, y * y}, fit.disparity_error_px(sample.u, sample.v, -sample.du)});
+        Point{{1, x, y, x * x, x * y, y * y}, error - (counts ? undone->at(sample.u, sample.v) : 0)});
     for (std::size_t i = 0; i < terms; ++i) {
       b[i] += point.row[i] * point.value;
       for (std::size_t j = 0; j <= i; ++j) a[i][j] += point.row[i] * point.row[j];
@@ -67,7 +71,7 @@ void measure_rectification(const FrameResult& frame, const DamageMap& damage,
                               undone.rows_at(sample.u + sample.du, sample.v)));
   }
   health.row_error_px = lower_quantile(errors, share);
-  health.bowl_px = beyond_quadratic(samples, damage, *fit);
+  health.bowl_px = beyond_quadratic(samples, damage, *fit, frame.rig_bias);
 }
 
 /// Robust standard deviation (MAD), as that of the noise, of the medians of the road's rows around its surface.

@@ -9,6 +9,7 @@
 #include "pipeline/pair_checks.hpp"
 #include "road/lucas_kanade/alignment_maps.hpp"
 #include "road/refinement/refinement_maps.hpp"
+#include "road/rig_bias_field.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
@@ -118,6 +119,21 @@ class HostStages final : public FrameStages {
   ImageView<const float> reject_off_road(ImageView<const float> disparity, const OffRoadOptions& options) override {
     if (options_.lucas_kanade.radius == 0) return disparity;
     roadstereo::reject_off_road(correlation_, options, threads_, disparity_, sigma_);
+    return disparity_;
+  }
+
+  /// In place.
+  ImageView<const float> subtract_bias(ImageView<const float> disparity, const std::optional<RigBias>& bias) override {
+    if (!bias) return disparity;
+    constexpr int rows_per_band = 64;
+    const BiasPolynomial<float> field = bias_polynomial<float>(*bias);
+    parallel_rows(disparity_.height(), rows_per_band, threads_, [&](int first, int last, int) {
+      for (int v = first; v < last; ++v) {
+        const BiasRow<float> of_row = field.row(static_cast<float>(v));
+        float* const row = disparity_.row(v);
+        for (int u = 0; u < disparity_.width(); ++u) row[u] -= of_row.at(static_cast<float>(u));
+      }
+    });
     return disparity_;
   }
 

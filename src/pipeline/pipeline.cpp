@@ -81,6 +81,7 @@ struct Pipeline::State {
   ImageView<const float> refine(const DisparityMaps& maps);
   ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity);
   ImageView<const float> reject_off_road(ImageView<const float> disparity);
+  ImageView<const float> subtract_bias(ImageView<const float> disparity);
   void estimate_roll(ImageView<const float> disparity);
   void transform_disparity(ImageView<const float> disparity);
   void download();
@@ -105,6 +106,7 @@ void Pipeline::State::begin_frame(const FrameView& left, const FrameView& right)
          " like the pair");
   }
   if (calibration) calibration->validate(width, height, "calibration");
+  if (options.rig_bias) options.rig_bias->require_rig(width, height, calibration);
   if (carried.width != width || carried.height != height) carried = {};
 }
 
@@ -240,6 +242,11 @@ ImageView<const float> Pipeline::State::reject_off_road(ImageView<const float> d
   return stages->reject_off_road(disparity, searched_near_road ? options.off_road : OffRoadOptions{0});
 }
 
+ImageView<const float> Pipeline::State::subtract_bias(ImageView<const float> disparity) {
+  const StageTimer timer(result.ms.refinement);
+  return stages->subtract_bias(disparity, options.rig_bias);
+}
+
 /// Roll angle and projection model, section 3.3.
 void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
   // Of a pair without a road nothing is told but its disparities.
@@ -281,7 +288,8 @@ void Pipeline::State::run_stages(const FrameView& left, const FrameView& right) 
   const DisparityMaps restored = restore_disparity(residual);
   const ImageView<const float> refined = refine(restored);
   const ImageView<const float> aligned = align(input, refined);
-  const ImageView<const float> disparity = reject_off_road(aligned);
+  const ImageView<const float> confirmed = reject_off_road(aligned);
+  const ImageView<const float> disparity = subtract_bias(confirmed);
   estimate_roll(disparity);
   transform_disparity(disparity);
   download();
@@ -296,6 +304,7 @@ void Pipeline::State::download() {
 void Pipeline::State::end_frame() {
   result.ms.total = ms_since(begin);
   result.mask = mask;
+  result.rig_bias = options.rig_bias;
   carried.width = width;
   carried.height = height;
   carried.road.reset();

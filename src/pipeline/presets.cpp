@@ -81,6 +81,7 @@ void PipelineOptions::validate() const {
   refinement.validate();
   roll.validate();
   damage.validate();
+  if (rig_bias) rig_bias->validate();
 }
 
 }  // namespace roadstereo

@@ -21,6 +21,8 @@ struct RectificationError {
 
   /// Whether the term differs from 0 by five standard errors.
   bool is_significant(std::size_t term) const;
+  /// Whether one of the distortions does.
+  bool has_distortion() const { return is_significant(terms - 2) || is_significant(terms - 1); }
   /// Vertical offset at (u, v) of the left image, pixels, by the significant terms but the offset.
   double slope_px(double u, double v, double disparity) const;
   /// Disparity error at the same point by the significant distortions, pixels.

@@ -71,6 +71,26 @@ using CudaPipelineTwoGpus = CudaPipeline;
 
 class CudaPreset : public test::OnDevice, public testing::WithParamInterface<std::string> {};
 
+TEST_F(CudaPipeline, SubtractsRigBiasAsHostDoes) {
+  const synth::SyntheticPair pair = frame_of("uav");
+  PipelineOptions on_host = options_of("default", "cpu"), on_device = options_of("default", "cuda");
+  RigBias bias;
+  bias.width = width;
+  bias.height = height;
+  bias.order = 4;
+  bias.value_px = {0.1, 0, 0, 0.5, 0.2, -0.4, 0.3, 0.1, 0.2, -0.6, 0.4, 0.2, 0.1, 0.3, 0.5};
+  bias.region_px = {20, 30, 170, 100};
+  on_host.rig_bias = on_device.rig_bias = bias;
+  Pipeline host(on_host, pair.calibration), device(on_device, pair.calibration);
+  const FrameResult& expected = host.process(pair.left.view(), pair.right.view());
+  const FrameResult& found = device.process(pair.left.view(), pair.right.view());
+  EXPECT_GE(Difference(expected.disparity, found.disparity).same_share, 0.999);
+  EXPECT_NEAR(expected.geometry.alpha0, found.geometry.alpha0, 0.01);
+  Pipeline plain(options_of("default", "cuda"), pair.calibration);
+  EXPECT_LT(Difference(expected.disparity, plain.process(pair.left.view(), pair.right.view()).disparity).same_share,
+            0.1);
+}
+
 TEST_P(CudaPreset, MatchesHostFrameByFrame) {
   const StereoCalibration calibration = frame_of("uav").calibration;
   Pipeline host(options_of(GetParam(), "cpu"), calibration), device(options_of(GetParam(), "cuda"), calibration);

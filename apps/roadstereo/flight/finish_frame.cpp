@@ -29,6 +29,7 @@ void record_damage(const std::optional<StereoCalibration>& calibration, const Da
                           job.frame.warnings)) {
     job.frame.noise_px = job.damage.noise_px;
   }
+  job.frame.rig_bias = measure_rig_bias(job.result, job.damage);
   record_plane_error(calibration, job.frame);
   job.frame.damages = job.damage.damages;
   job.frame.candidates = job.damage.candidates;

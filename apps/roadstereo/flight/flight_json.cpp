@@ -82,6 +82,15 @@ Json flight_health_json(const FlightHealth& health) {
   return document;
 }
 
+Json rig_bias_json(const RigBias& bias) {
+  const bool found = bias.order > 0;
+  return {{"frames", bias.frames},
+          {"order", bias.order},
+          {"rms_px", found ? json_number(bias.rms_px) : Json(nullptr)},
+          {"rms_stderr_px", found ? json_number(bias.rms_std_error_px) : Json(nullptr)},
+          {"file", found ? Json("rig_bias.json") : Json(nullptr)}};
+}
+
 /// What the run was made of, for commands that continue with it. Paths are relative to the output folder; what is no
 /// file, such as a GStreamer pipeline, is as given.
 Json inputs_json(const FlightSettings& settings, const io::StaticMaskRecord& static_mask) {
@@ -97,6 +106,7 @@ Json inputs_json(const FlightSettings& settings, const io::StaticMaskRecord& sta
   return {{"source", source},
           {"calibration", calibration},
           {"mask", mask},
+          {"rig_bias", settings.processing.rig_bias.empty() ? "" : relative(settings.processing.rig_bias)},
           {"layout", settings.source_settings.layout},
           {"topics", settings.source_settings.topics},
           {"max_time_difference_ms", settings.source_settings.max_time_difference_ms},
@@ -130,6 +140,7 @@ std::string flight_json(const FlightSettings& settings, const FlightRun& run, co
   document["matching_ms"] = range_json(summary.matching_ms);
   document["damage_ms"] = range_json(summary.damage_ms);
   document["health"] = flight_health_json(summary.health);
+  document["rig_bias"] = rig_bias_json(summary.rig_bias);
   document["run"] = run_json(run);
   return json_text(document);
 }

@@ -11,6 +11,7 @@
 #include "finite_values.hpp"
 #include "flight/flight_json.hpp"
 #include "roadstereo/io/flight_tables.hpp"
+#include "roadstereo/io/rig_bias_file.hpp"
 #include "roadstereo/io/road_segments.hpp"
 
 namespace roadstereo::cli {
@@ -36,6 +37,13 @@ std::string frames_text(const FlightSummary& summary) {
   return text;
 }
 
+std::string bias_text(const RigBias& bias) {
+  if (bias.order == 0) return fmt::format("no significant field in {} frames", bias.frames);
+  return fmt::format(
+      "{:.3f} ± {:.3f} px (RMS over the road), degree {}, from {} frames; it may be the road's own shape", bias.rms_px,
+      bias.rms_std_error_px, bias.order, bias.frames);
+}
+
 std::vector<std::pair<std::string, std::string>> properties_of(const FlightRun& run, const FlightSummary& summary) {
   std::vector<std::pair<std::string, std::string>> properties{{"Source", run.source}, {"Frames", frames_text(summary)}};
   properties.emplace_back("Damages", fmt::format("{} in {} sightings", summary.damages, summary.sightings));
@@ -46,6 +54,7 @@ std::vector<std::pair<std::string, std::string>> properties_of(const FlightRun& 
   properties.emplace_back("Standard deviation on the road", range_text(summary.curves.sigma_d_px, "px", 3));
   properties.emplace_back("Road model re-estimated",
                           fmt::format("in {} of {} frames", summary.road_estimated, summary.good));
+  properties.emplace_back("Bias of the rig", bias_text(summary.rig_bias));
   properties.emplace_back("Time per frame",
                           fmt::format("{} matching, {} damage", range_text(summary.matching_ms, "ms", 1),
                                       range_text(summary.damage_ms, "ms", 1)));
@@ -139,6 +148,7 @@ std::vector<std::int64_t> FlightResults::add(const io::FlightFrame& frame) {
   summary_.add(frame);
   frames_csv_ += io::frames_csv_row(frame);
   poses_.add(frame);
+  if (frame.rig_bias) rig_bias_.add(*frame.rig_bias);
   std::vector<std::int64_t> road_damages = inventory_.add(frame);
   sightings_csv_ += io::sightings_csv_rows(frame, road_damages);
   if (positions_) positions_->add(frame, road_damages);
@@ -196,6 +206,7 @@ std::string FlightResults::write(const FlightSettings& settings, const FlightRun
     summary_.located = static_cast<std::int64_t>(positions_->located());
     summary_.no_position_reason = positions_->no_position_reason();
   }
+  summary_.rig_bias = rig_bias_.estimate(run.calibration);
   std::string json = flight_json(settings, run, summary_, worst);
   std::vector<StagedFile> files;
   if (positions_) {
@@ -209,6 +220,7 @@ std::string FlightResults::write(const FlightSettings& settings, const FlightRun
   files.push_back(text_file("candidates.csv", io::road_damages_csv_names() + io::road_damages_csv_rows(candidates)));
   files.push_back(text_file("sightings.csv", sightings_csv_));
   files.push_back(text_file("report.html", report(settings, run, folder, damages)));
+  if (summary_.rig_bias.order > 0) files.push_back(text_file("rig_bias.json", io::rig_bias_json(summary_.rig_bias)));
   files.push_back(text_file("summary.json", json));
   folder.write(files);
   return json;

@@ -13,6 +13,7 @@
 #include "roadstereo/io/flight_report.hpp"
 #include "roadstereo/io/pose_table.hpp"
 #include "roadstereo/pipeline.hpp"
+#include "roadstereo/rig_bias.hpp"
 
 namespace roadstereo::cli {
 
@@ -21,8 +22,9 @@ struct FlightRun {
   bool complete = false;           ///< the end of the source was reached
   std::string source;              ///< description of the source
   std::string calibration_format;  ///< empty without a calibration
-  std::string engine;              ///< name of the engine used
-  int threads = 0;                 ///< of matching
+  std::optional<StereoCalibration> calibration;
+  std::string engine;  ///< name of the engine used
+  int threads = 0;     ///< of matching
   PipelineOptions options;
   double seconds = 0;            ///< of this run
   double frames_per_second = 0;  ///< of this run, from the first frame to the last
@@ -69,6 +71,7 @@ class FlightResults {
   std::vector<Thumbnail> thumbnails_;
   std::string frames_csv_;
   io::PoseTable poses_;
+  RigBiasEstimator rig_bias_;
   std::string sightings_csv_;
 };
 

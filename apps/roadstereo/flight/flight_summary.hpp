@@ -8,6 +8,7 @@
 #include "flight/flight_health.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/flight_report.hpp"
+#include "roadstereo/rig_bias.hpp"
 
 namespace roadstereo::cli {
 
@@ -29,6 +30,7 @@ struct FlightSummary {
   double last_time_s = io::FlightFrame::unknown;
   io::StaticMaskRecord static_mask;  ///< of the last frame
   FlightHealth health;
+  RigBias rig_bias;         ///< of all frames; with --rig-bias what that leaves
   io::FlightCurves curves;  ///< of every frame
   std::vector<double> valid_share;
   std::vector<double> matching_ms;

@@ -40,6 +40,7 @@ io::Provenance provenance(const FlightSettings& settings, const PipelineOptions&
   const std::vector<std::string> mask(settings.mask.empty() ? 0 : 1, settings.mask);
   std::vector<std::string> severity_files;
   if (settings.processing.severity != "d6433") severity_files.push_back(settings.processing.severity);
+  const std::string& bias = settings.processing.rig_bias;
   io::Provenance entries{{"version", version},
                          {"source", joined(settings.source)},
                          {"calibration", joined(settings.calibration)},
@@ -49,6 +50,8 @@ io::Provenance provenance(const FlightSettings& settings, const PipelineOptions&
                          {"--no-auto-mask", settings.auto_mask ? "no" : "yes"},
                          {"--severity", settings.processing.severity},
                          {"content of the severities", content_digest(severity_files)},
+                         {"--rig-bias", bias},
+                         {"content of the rig bias", content_digest(std::vector(bias.empty() ? 0 : 1, bias))},
                          {"--from", std::to_string(settings.from)},
                          {"--every", std::to_string(settings.every)},
                          {"--write", joined(settings.write)},

@@ -162,6 +162,9 @@ void FlightPipeline::match() {
       if (flight_.plan.find_white_level) options.white_level = flight_.source.white_level();
       const Image<std::uint8_t>& mask = flight_.plan.mask;
       require_mask_size(settings_, mask, pair->left.width, pair->left.height);
+      if (options.rig_bias) {
+        options.rig_bias->require_rig(pair->left.width, pair->left.height, flight_.source.calibration());
+      }
       pipeline.emplace(options, flight_.source.calibration());
       width_ = pair->left.width;
       height_ = pair->left.height;

@@ -149,7 +149,12 @@ class MapBuilder {
                 std::optional<Pipeline>& pipeline) {
     if (!state_.day) state_.day = day_of(from, pair.time_s);
     if (!pair.error.empty()) return add_reason(pair.error);
-    if (!pipeline) pipeline.emplace(begin_pass(from, source));
+    if (!pipeline) {
+      if (from.options.rig_bias) {
+        from.options.rig_bias->require_rig(pair.left.width, pair.left.height, source.calibration());
+      }
+      pipeline.emplace(begin_pass(from, source));
+    }
     add_frame(pair, pose, *source.calibration(), *pipeline);
     state_.pipeline = pipeline->carried();
   }

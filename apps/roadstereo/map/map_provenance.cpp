@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "flight/provenance.hpp"
+#include "roadstereo/io/rig_bias_file.hpp"
 #include "roadstereo/options.hpp"
 #include "roadstereo/version.hpp"
 
@@ -20,6 +21,8 @@ io::Provenance provenance(const MapPlan& plan) {
     made_with.emplace_back("content of the calibration" + of, content_digest(pass.calibration));
     made_with.emplace_back("content of the trajectory" + of, content_digest({pass.trajectory}));
     made_with.emplace_back("--day" + of, pass.day);
+    made_with.emplace_back("rig bias" + of,
+                           pass.options.rig_bias ? io::rig_bias_json(*pass.options.rig_bias) : std::string());
     for (const OptionText& option : list_options(pass.options)) {
       if (option.key != "threads") made_with.emplace_back(option.key + of, option.value);
     }

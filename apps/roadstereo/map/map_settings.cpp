@@ -32,13 +32,14 @@ std::vector<MapPass> runs_of(const MapSettings& settings) {
          " runs are those of their first cameras, not one; give each run "
          "a --trajectory FILE, all in one world, or --crs if theirs are in that system");
   }
-  const DamageOptions damage = make_options(settings.processing).damage;
+  const PipelineOptions options = make_options(settings.processing);
   std::vector<MapPass> passes;
   for (const std::string& folder : settings.source) {
     passes.push_back(read_run(folder));
     if (!trajectory.empty()) passes.back().trajectory = trajectory[passes.size() - 1];
     passes.back().options.threads = settings.processing.threads;
-    passes.back().options.damage.severity = damage.severity;
+    passes.back().options.damage.severity = options.damage.severity;
+    if (options.rig_bias) passes.back().options.rig_bias = options.rig_bias;
   }
   return passes;
 }

@@ -8,6 +8,7 @@
 #include "flight/flight_trajectory.hpp"
 #include "mask_file.hpp"
 #include "roadstereo/error.hpp"
+#include "roadstereo/io/rig_bias_file.hpp"
 #include "roadstereo/options.hpp"
 #include "source_options.hpp"
 
@@ -54,6 +55,8 @@ MapPass pass_of(const fs::path& folder, const Json& summary) {
   const std::string mask = inputs.at("mask").get<std::string>();
   if (!mask.empty()) pass.mask = read_mask(input_path(folder, mask), 255);
   pass.options = options_of(summary.at("options"));
+  const std::string bias = inputs.at("rig_bias").get<std::string>();
+  if (!bias.empty()) pass.options.rig_bias = io::read_rig_bias(input_path(folder, bias));
   pass.find_white_level = pass.options.white_level == 0;
   return pass;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,8 +56,9 @@ struct FlightFrame {
   double damage_ms = unknown;                      ///< time in find_damage
   std::vector<std::array<double, 2>> footprint_m;  ///< `road_footprint`; empty without a calibration
   PairHealth health;
-  std::vector<Damage> damages;     ///< deepest first
-  std::vector<Damage> candidates;  ///< `DamageMap::candidates`
+  std::optional<RigBiasFrame> rig_bias;  ///< what the frame tells of it
+  std::vector<Damage> damages;           ///< deepest first
+  std::vector<Damage> candidates;        ///< `DamageMap::candidates`
   std::vector<std::string> warnings;
   double white_level = 0;        ///< sample value of white; 0: maximum of the sample type
   PipelineState pipeline_state;  ///< state of the pipeline after this frame

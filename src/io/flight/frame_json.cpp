@@ -194,6 +194,17 @@ void each_field(StaticMaskRecord& mask, Visit& visit) {
 }
 
 template <class Visit>
+void each_field(RigBiasFrame& frame, Visit& visit) {
+  visit("width", frame.width);
+  visit("height", frame.height);
+  visit("region_px", frame.region_px);
+  visit("weight", frame.weight);
+  visit("matrix", frame.matrix);
+  visit("vector", frame.vector);
+  visit("planes", frame.planes);
+}
+
+template <class Visit>
 void each_field(FlightFrame& frame, Visit& visit) {
   visit("frame", frame.index);
   visit("name", frame.name);
@@ -218,6 +229,7 @@ void each_field(FlightFrame& frame, Visit& visit) {
   visit("damage_ms", frame.damage_ms);
   visit("footprint_m", frame.footprint_m);
   visit("health", frame.health);
+  visit("rig_bias", frame.rig_bias);
   visit("damages", frame.damages);
   visit("candidates", frame.candidates);
   visit("warnings", frame.warnings);

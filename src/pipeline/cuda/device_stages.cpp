@@ -11,6 +11,7 @@
 #include "road/cuda/disparity_transform.hpp"
 #include "road/cuda/map_sums.hpp"
 #include "road/cuda/perspective.hpp"
+#include "road/cuda/rig_bias.hpp"
 #include "road/cuda/road_fit.hpp"
 #include "road/cuda/road_verification.hpp"
 #include "road/cuda/roll_assessment.hpp"
@@ -150,6 +151,12 @@ class DeviceStages final : public FrameStages {
     if (options_.lucas_kanade.radius > 0 && options.max_sigma_px > 0) {
       off_road_.run(correlation_, static_cast<float>(options.max_sigma_px), maps_.disparity(), maps_.sigma(), stream());
     }
+    return maps_.disparity();
+  }
+
+  /// In place.
+  ImageView<const float> subtract_bias(ImageView<const float>, const std::optional<RigBias>& bias) override {
+    if (bias) cuda::subtract_bias(bias_polynomial<float>(*bias), maps_.disparity(), stream());
     mark(StageClock::refined);
     if (download_) maps_.download_refined(stream());
     return maps_.disparity();
