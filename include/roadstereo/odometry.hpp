@@ -19,6 +19,7 @@ struct OdometryOptions {
   double min_overlap = 0.15;       ///< share of the view that a link needs, 0 … 1
   double reference_overlap = 0.7;  ///< below it the frame becomes the reference of the next ones, 0 … 1
   bool estimate_offset = true;     ///< estimate and undo an offset of the disparities at infinity
+  int kept_frames = 0;             ///< poses and links that are kept, the last ones, at least; 0: all
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
@@ -76,10 +77,10 @@ class Odometry {
   /// Index of the frame that the next one is aligned with; −1 before the first.
   int reference() const;
 
-  /// Links so far, one per frame that has one.
+  /// Links so far, one per frame that has one; with kept_frames the last ones.
   const std::vector<FrameLink>& links() const;
 
-  /// Poses so far, one per frame that was added.
+  /// Poses so far, one per frame that was added; with kept_frames the last ones.
   const Trajectory& trajectory() const;
 
  private:

@@ -29,6 +29,7 @@ void OdometryOptions::validate() const {
   require_share("weak_correlation", weak_correlation);
   require_share("min_overlap", min_overlap);
   require_share("reference_overlap", reference_overlap);
+  if (kept_frames < 0) fail("kept_frames is ", kept_frames, "; it must be at least 0 (all)");
 }
 
 const char* name_of(LinkStatus status) {
@@ -89,6 +90,13 @@ OffsetPrior Odometry::State::offset_prior() const {
   return {offset_px_, std::sqrt(offset_variance_)};
 }
 
+/// Forgets all but the last ones, now and then.
+template <class List>
+void keep_last(std::size_t kept, List& list) {
+  if (kept == 0 || list.size() < 2 * kept) return;
+  list.erase(list.begin(), list.end() - static_cast<std::ptrdiff_t>(kept));
+}
+
 /// Kalman filter of a random walk. An offset is noticed when it is larger than what matching itself may be off by; from
 /// then on every link estimates it.
 void Odometry::State::measure_offset(const Alignment& alignment) {
@@ -131,6 +139,8 @@ RigidMotion Odometry::State::predicted(int frame) const {
 
 const FramePose& Odometry::State::add(int frame, const OdometryFrame& maps) {
   require_valid(frame, maps);
+  keep_last(static_cast<std::size_t>(estimator.options().kept_frames), trajectory.frames);
+  keep_last(static_cast<std::size_t>(estimator.options().kept_frames), links);
   width_ = maps.grey.width();
   height_ = maps.grey.height();
   pyramid_.build(maps.grey);

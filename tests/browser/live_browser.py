@@ -141,6 +141,24 @@ class Page(unittest.TestCase):
             self.browser.execute_script("return document.querySelector('#list .scroll').scrollWidth"), 336)
         self.assertRegex(self.text("recorded"), r"^\d+ pairs$")
 
+    def test_shows_path_of_camera(self):
+        player = self.open("--serve", "0", "--trajectory")
+        path = "return document.querySelector('#way_map .path').getAttribute('d')"
+        self.wait_until("a path", lambda: (self.browser.execute_script(path) or "").count("L") >= 3)
+        self.assertRegex(self.text("way_length"), r"^\d+\.\d m$")
+        self.assertRegex(self.browser.find_element(By.CSS_SELECTOR, "#way_map .bar text").text, r"^[\d.]+ m$")
+        inside = self.browser.execute_script("""
+            const map = document.querySelector('#way_map'), box = document.querySelector('#way_map .path').getBBox();
+            return box.x >= 0 && box.y >= 0 && box.x + box.width <= 640 && box.y + box.height <= 260;""")
+        self.assertTrue(inside)
+        self.assertEqual(self.errors(), [])
+        _, summary = player.end()
+        self.assertGreater(summary["path_m"], 0)
+
+    def test_hides_path_that_nobody_asked_for(self):
+        self.open("--serve", "0")
+        self.assertFalse(self.browser.find_element(By.ID, "way").is_displayed())
+
     def test_works_with_a_token(self):
         player = self.open("--serve", "0.0.0.0:0")
         self.assertRegex(player.url, r"\?token=[0-9a-f]{32}$")

@@ -15,6 +15,7 @@
 #include "live/live_command.hpp"
 #include "live/live_session.hpp"
 #include "roadstereo/error.hpp"
+#include "synth_files.hpp"
 #include "tests/live/live_test.hpp"
 
 namespace roadstereo::cli {
@@ -78,6 +79,29 @@ TEST_F(LiveSessionFiles, UnstartedSessionLeavesNoRecording) {
     const LiveSession session(options, [] { return source_of({1, 0.001, false, "", -1}); });
   }
   EXPECT_TRUE(files_in(folder_).empty());
+}
+
+TEST_F(LiveSessionFiles, FollowsCamera) {
+  write("rig.yaml", plain_yaml(small_flight().calibration));
+  LiveOptions options;
+  options.max_age_s = 1000;
+  options.calibration = {(folder_ / "rig.yaml").string()};
+  options.processing.trajectory = true;
+  const LiveStatus status = run_session(options, {20, 0.05, false, "", -1});
+  ASSERT_TRUE(status.path);
+  EXPECT_EQ(status.path->pieces, 1);
+  EXPECT_GE(status.path->points_m.size(), 2U);
+  EXPECT_GT(status.path->length_m, 0);
+}
+
+TEST_F(LiveSessionFiles, FollowsNothingWithoutCalibration) {
+  LiveOptions options;
+  options.processing.trajectory = true;
+  LiveSession session(options, [] { return source_of({2, 0.01, false, "", -1}); });
+  session.start();
+  while (!session.finished()) std::this_thread::sleep_for(1ms);
+  EXPECT_THROW(session.end(), Error);
+  EXPECT_EQ(session.board().status().message, "--trajectory needs --calibration");
 }
 
 TEST(LiveSession, ThrowsIfFirstOpeningFails) {

@@ -209,6 +209,23 @@ TEST(Odometry, OffsetAtInfinityIsUndone) {
   EXPECT_LT(with, 0.1 * without);
 }
 
+TEST(Odometry, ForgetsOldFramesOnly) {
+  Odometry all(test::smaller_scene("uav", 2).rig.calibration());
+  OdometryOptions options;
+  options.kept_frames = 2;
+  Odometry few(test::smaller_scene("uav", 2).rig.calibration(), options);
+  for (std::size_t i = 0; i < flight().size(); ++i) {
+    const FramePose& expected = all.add(static_cast<int>(i), flight()[i].maps());
+    const FramePose& pose = few.add(static_cast<int>(i), flight()[i].maps());
+    EXPECT_EQ(pose.camera_to_world, expected.camera_to_world);
+    EXPECT_EQ(pose.covariance, expected.covariance);
+    EXPECT_LE(few.trajectory().frames.size(), 4U);
+    EXPECT_LE(few.links().size(), 4U);
+  }
+  EXPECT_EQ(all.trajectory().frames.size(), flight().size());
+  EXPECT_EQ(few.links().back().to, 7);
+}
+
 TEST(Odometry, RejectsInvalidFrames) {
   const KnownFrame& frame = flight()[0];
   Odometry odometry(test::smaller_scene("uav", 2).rig.calibration());
@@ -220,6 +237,9 @@ TEST(Odometry, RejectsInvalidFrames) {
   EXPECT_THROW(odometry.add(6, odd), Error);
   OdometryOptions options;
   options.min_overlap = 1.5;
+  EXPECT_THROW(Odometry(test::smaller_scene("uav", 2).rig.calibration(), options), Error);
+  options = {};
+  options.kept_frames = -1;
   EXPECT_THROW(Odometry(test::smaller_scene("uav", 2).rig.calibration(), options), Error);
 }
 

@@ -77,6 +77,11 @@ void LiveBoard::set_recording(const RecordingState& recording) {
   recording_ = recording;
 }
 
+void LiveBoard::set_path(SharedPath path) {
+  const std::lock_guard lock(mutex_);
+  path_.swap(path);  // the last one is freed without the lock
+}
+
 void LiveBoard::publish(LiveView view) {
   SharedView removed;  // freed without the lock
   {
@@ -124,6 +129,7 @@ LiveStatus LiveBoard::status_now(std::int64_t after, Clock::time_point now) {
   status.counts = counts_;
   status.recording = recording_;
   status.static_mask = static_mask_;
+  status.path = path_;
   status.damages_found = list_.found();
   std::copy_if(list_.entries().begin(), list_.entries().end(), std::back_inserter(status.damages),
                [after](const ListedDamage& listed) { return listed.changed_in > after; });

@@ -10,6 +10,7 @@
 #include "live/clock.hpp"
 #include "live/damage_list.hpp"
 #include "live/latency_log.hpp"
+#include "live/live_path.hpp"
 #include "live/live_view.hpp"
 #include "live/rate_meter.hpp"
 #include "roadstereo/io/flight_frame.hpp"
@@ -53,6 +54,7 @@ struct LiveStatus {
   LatencyStatistics latency;  ///< of the last frames
   LiveCounts counts;
   RecordingState recording;
+  SharedPath path;                    ///< with --trajectory; null before the first frame that has a place
   std::int64_t damages_found = 0;     ///< of the whole run
   io::StaticMaskRecord static_mask;   ///< what never moves; frames count those processed
   std::vector<ListedDamage> damages;  ///< newest first: those changed after the given view
@@ -76,6 +78,8 @@ class LiveBoard {
   void set_static_mask(const io::StaticMaskRecord& mask);
 
   void set_recording(const RecordingState& recording);
+
+  void set_path(SharedPath path);
 
   /// Numbers the view, measures its latency and publishes it.
   void publish(LiveView view);
@@ -105,6 +109,7 @@ class LiveBoard {
   LiveCounts counts_;
   RecordingState recording_;
   io::StaticMaskRecord static_mask_;
+  SharedPath path_;
   bool lost_ = false;
   bool ended_ = false;
   std::string message_;

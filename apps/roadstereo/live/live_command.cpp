@@ -28,6 +28,7 @@ struct LiveCommandArguments {
   std::string record;
   std::string serve;
   std::optional<std::uint32_t> dds_domain;
+  bool trajectory = false;
   double max_age_ms = 500;
   bool loop = false;
   bool auto_mask = true;
@@ -45,6 +46,7 @@ LiveOptions live_options(const LiveCommandArguments& arguments) {
   options.processing.find_white_level = !sets_white_level(arguments.processing);
   options.processing.auto_mask = arguments.auto_mask;
   options.processing.dds_domain = arguments.dds_domain;
+  options.processing.trajectory = arguments.trajectory;
   options.capture.rate_hz = arguments.source.rate_hz;
   options.capture.loop = arguments.loop;
   options.calibration = arguments.calibration;
@@ -100,6 +102,9 @@ for roadstereo inspect DIR. It never delays processing: if the disk is too slow,
 frame rate, latency, age, and the list of damages. With a HOST (0.0.0.0: all addresses) other machines can open it with
 the token in the printed address. Port 0: any free port.
 
+--trajectory follows the camera from frame to frame; the page shows its path from above. It takes at most 30 % of the time
+and skips frames rather than delay them. A frame that cannot be linked begins a new path.
+
 --dds DOMAIN (ROS_DOMAIN_ID, usually 0) publishes what inspect --write mcap writes (docs/file_formats.md): image, disparities,
 points, damages, odometry and /tf. A message is dropped rather than waited for.
 
@@ -122,6 +127,7 @@ void add_options(CLI::App& command, LiveCommandArguments& arguments) {
   command.add_option("--dds", arguments.dds_domain, "Publish the results to the ROS 2 nodes of this domain, by DDS")
       ->type_name("DOMAIN")
       ->check(CLI::Range(0U, 230U));
+  command.add_flag("--trajectory", arguments.trajectory, "Follow the camera and show its path; needs a calibration");
   command.add_option("--max-age", arguments.max_age_ms, "Maximum age of a pair, ms")
       ->type_name("MS")
       ->check(CLI::Range(1.0, 60000.0))

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "live/recording_folder.hpp"
+#include "lower_priority.hpp"
 #include "roadstereo/error.hpp"
 #include "synth_files.hpp"
 
@@ -41,6 +42,10 @@ LiveSession::LiveSession(const LiveOptions& options, SourceOpener opener) : boar
 
 void LiveSession::start() {
   const auto set_finished = [this] { finished_ = true; };
+  following_ = std::thread([=, this] {
+    lower_priority();
+    failure_.run([this] { processing_->follow(); }, set_finished);
+  });
   finishing_ = std::thread([=, this] { failure_.run([this] { processing_->finish(); }, set_finished); });
   matching_ = std::thread([=, this] { failure_.run([this] { processing_->match(); }, set_finished); });
   capturing_ = std::jthread([=, this](const std::stop_token& stop) {
@@ -66,6 +71,7 @@ void LiveSession::join() {
   capturing_.join();
   matching_.join();
   finishing_.join();
+  following_.join();
   recorder_.reset();
 }
 

@@ -23,7 +23,8 @@ struct LiveOptions {
   std::string record;                    ///< folder; empty: no recording
 };
 
-/// One live run: threads for capture, matching, damage and recording that report to a LiveBoard.
+/// One live run: threads for capture, matching, damage, the path of the camera and recording that report to a
+/// LiveBoard.
 class LiveSession {
  public:
   /// Opens the source. Throws Error if the source, the calibration or the folder of the recording cannot be opened.
@@ -63,6 +64,7 @@ class LiveSession {
   std::jthread capturing_;
   std::thread matching_;
   std::thread finishing_;
+  std::thread following_;
 };
 
 }  // namespace roadstereo::cli

@@ -33,6 +33,11 @@ std::string summary_text(const LiveSummary& summary) {
     text += fmt::format("  {:<10}{} pairs, {} skipped{}{}\n", "recorded", recording.recorded, recording.skipped,
                         recording.message.empty() ? "" : "; ", recording.message);
   }
+  if (const SharedPath& path = summary.status.path) {
+    text += fmt::format(
+        "  {:<10}{:.2f} m since the last of {} pieces began; odometry {:.1f} ms a frame, {:.0f} % of the time\n",
+        "path", path->length_m, path->pieces, path->odometry_ms, 100 * path->share);
+  }
   if (counts.reconnects > 0) text += fmt::format("  {:<10}reconnected {} times\n", "camera", counts.reconnects);
   return text;
 }
@@ -48,6 +53,11 @@ std::string summary_json(const LiveSummary& summary) {
   json["recording_message"] = recording.message;
   json["static_mask"] = static_mask_json(summary.status.static_mask);
   json["damages"] = summary.status.damages_found;
+  const SharedPath& path = summary.status.path;
+  json["path_m"] = path ? json_number(path->length_m) : nullptr;
+  json["path_pieces"] = path ? nlohmann::ordered_json(path->pieces) : nullptr;
+  json["odometry_ms"] = path ? json_number(path->odometry_ms) : nullptr;
+  json["odometry_share"] = path ? json_number(path->share) : nullptr;
   json["peak_memory_mib"] = json_number(memory_use().peak_mib);
   json["memory_mib"] = json_number(memory_use().now_mib);
   return json_text(json);

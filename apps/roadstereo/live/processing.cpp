@@ -21,6 +21,7 @@ Processing::Processing(const ProcessingOptions& options, std::unique_ptr<Rectifi
 Pipeline& Processing::pipeline() {
   if (!pipeline_) {
     if (options_.find_white_level) options_.pipeline.white_level = rectifier_->white_level();
+    if (options_.trajectory && !rectifier_->calibration()) fail("--trajectory needs --calibration");
     pipeline_.emplace(options_.pipeline, rectifier_->calibration());
   }
   return *pipeline_;
@@ -80,7 +81,7 @@ void Processing::publish_messages(const Matched& matched, const DamageMap& map) 
                      matched.result, map);
 }
 
-LiveView Processing::view_of(Matched matched) {
+LiveView Processing::view_of(Matched& matched) {
   LiveView view;
   FrameResult& result = matched.result;
   view.warnings = std::move(result.warnings);
@@ -103,8 +104,35 @@ LiveView Processing::view_of(Matched matched) {
   return view;
 }
 
+/// What the view has left, to the third stage.
+void Processing::hand_over(Matched matched) {
+  if (!options_.trajectory) return;
+  FrameResult& result = matched.result;
+  FollowedFrame frame{std::move(result.grey), std::move(result.disparity), std::move(result.sigma), std::nullopt,
+                      matched.captured.arrival};
+  if (result.roll_found) frame.road = result.geometry.plane;
+  static_cast<void>(followed_.put(std::move(frame)));
+}
+
 void Processing::finish() {
-  while (std::optional<Matched> matched = matched_.take()) board_.publish(view_of(std::move(*matched)));
+  try {
+    while (std::optional<Matched> matched = matched_.take()) {
+      board_.publish(view_of(*matched));
+      hand_over(std::move(*matched));
+    }
+  } catch (...) {
+    followed_.close();
+    throw;
+  }
+  followed_.close();
+}
+
+void Processing::follow() {
+  std::optional<PathFinder> finder;
+  while (const std::optional<FollowedFrame> frame = followed_.take()) {
+    if (!finder) finder.emplace(*rectifier_->calibration());
+    if (SharedPath path = finder->add(*frame)) board_.set_path(std::move(path));
+  }
 }
 
 }  // namespace roadstereo::cli

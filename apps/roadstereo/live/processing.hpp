@@ -12,6 +12,7 @@
 #include "live/latest_value.hpp"
 #include "live/live_board.hpp"
 #include "live/live_messages.hpp"
+#include "live/path_finder.hpp"
 #include "roadstereo/lens_spots.hpp"
 #include "roadstereo/pipeline.hpp"
 
@@ -23,9 +24,10 @@ struct ProcessingOptions {
   bool find_white_level = true;             ///< determines it from the first pair of a 16-bit source
   bool auto_mask = true;                    ///< leaves out what never moves
   std::optional<std::uint32_t> dds_domain;  ///< publishes the results there as ROS 2 messages
+  bool trajectory = false;                  ///< follows the camera
 };
 
-/// Converts captured pairs to views in two stages, which run concurrently on successive pairs.
+/// Converts captured pairs to views in stages, which run concurrently on successive pairs.
 class Processing {
  public:
   /// `rectifier`: only its `rectify` is used. Throws Error if an option is out of range.
@@ -38,6 +40,10 @@ class Processing {
   /// Second stage: finds damage and publishes until the first stage has ended.
   void finish();
 
+  /// Third stage: follows the camera, if asked for, until the second stage has ended. It never delays the others: a
+  /// frame that it cannot take in time is skipped.
+  void follow();
+
  private:
   struct Matched {
     CapturedPair captured;
@@ -49,7 +55,8 @@ class Processing {
   void match_pairs();
   std::optional<Matched> match(CapturedPair captured);
   Pipeline& pipeline();
-  LiveView view_of(Matched matched);
+  LiveView view_of(Matched& matched);
+  void hand_over(Matched matched);
   void publish_messages(const Matched& matched, const DamageMap& map);
 
   ProcessingOptions options_;
@@ -57,6 +64,7 @@ class Processing {
   LiveBoard& board_;
   LatestValue<CapturedPair>& captured_;
   LatestValue<Matched> matched_;
+  LatestValue<FollowedFrame> followed_;
   std::optional<Pipeline> pipeline_;
   std::int64_t pairs_ = 0;  ///< that were given to the pipeline
   AutoMask auto_mask_;

@@ -1,5 +1,6 @@
 #include "live/status_json.hpp"
 
+#include <cmath>
 #include <numbers>
 
 #include "health_json.hpp"
@@ -71,6 +72,16 @@ ordered_json recording_json(const RecordingState& recording) {
   return {{"recorded", recording.recorded}, {"skipped", recording.skipped}, {"message", recording.message}};
 }
 
+ordered_json path_json(const LivePath& path) {
+  constexpr double mm = 1000;  // in a metre
+  ordered_json points = ordered_json::array();
+  for (const auto& [x, y] : path.points_m) points.push_back({std::round(mm * x) / mm, std::round(mm * y) / mm});
+  return {{"points_m", points},
+          {"heading_degrees", json_number(degrees(path.heading_rad))},
+          {"length_m", json_number(path.length_m)},
+          {"pieces", path.pieces}};
+}
+
 }  // namespace
 
 ordered_json counts_json(const LiveCounts& counts) {
@@ -94,10 +105,12 @@ ordered_json status_json(const LiveStatus& status, double max_age_s) {
                     {"latency_ms", latency_json(status.latency)},
                     {"counts", counts_json(status.counts)},
                     {"recording", recording_json(status.recording)},
+                    {"path", nullptr},
                     {"view", nullptr},
                     {"damages_found", status.damages_found},
                     {"damages", ordered_json::array()}};
   if (status.view) json["view"] = view_json(*status.view);
+  if (status.path) json["path"] = path_json(*status.path);
   for (const ListedDamage& listed : status.damages) json["damages"].push_back(damage_json(listed));
   return json;
 }

@@ -89,6 +89,45 @@
     element("height_more").textContent = pitch === null ? "needs a calibration" : looking;
   }
 
+  /** Largest of 1, 2, 5, 10, … metres that is at most `m`. */
+  function roundLength(m) {
+    const unit = 10 ** Math.floor(Math.log10(m));
+    return [5, 2, 1].map((factor) => factor * unit).find((length) => length <= m);
+  }
+
+  /** Draws the path from above with the camera and a scale bar. */
+  function showPath(path) {
+    element("way").hidden = path === null;
+    if (path === null) return;
+    const [width, height, margin, least_m] = [640, 260, 24, 2];
+    const points = path.points_m;
+    const range = (axis) => {
+      const values = points.map((point) => point[axis]);
+      return [Math.min(...values), Math.max(...values)];
+    };
+    const [[west, east], [south, north]] = [range(0), range(1)];
+    const span = (low, high) => Math.max(high - low, least_m);
+    const scale = Math.min((width - 2 * margin) / span(west, east), (height - 3 * margin) / span(south, north));
+    const x = (m) => width / 2 + scale * (m - (west + east) / 2);
+    const y = (m) => height / 2 - margin / 2 - scale * (m - (south + north) / 2);
+    const draw = (selector, d) => document.querySelector(`#way_map ${selector}`).setAttribute("d", d);
+    draw(".path", `M${points.map(([east_m, north_m]) => `${x(east_m).toFixed(1)} ${y(north_m).toFixed(1)}`).join("L")}`);
+    draw(".camera", "M0 -9L6 7L0 4L-6 7Z");
+    const [at_x, at_y] = points[points.length - 1];
+    document.querySelector("#way_map .camera").setAttribute("transform",
+      `translate(${x(at_x).toFixed(1)} ${y(at_y).toFixed(1)}) rotate(${path.heading_degrees})`);
+    const bar_m = roundLength(0.3 * width / scale);
+    const text = document.querySelector("#way_map .bar text");
+    draw(".bar path", `M${margin} ${height - 16}v8h${(bar_m * scale).toFixed(1)}v-8`);
+    text.textContent = `${bar_m} m`;
+    text.setAttribute("x", margin + bar_m * scale + 8);
+    text.setAttribute("y", height - 8);
+    element("way_length").textContent = `${number(path.length_m, 1)} m`;
+    const breaks = path.pieces - 1;
+    element("way_pieces").textContent = breaks === 0 ? ""
+      : `Begun anew ${breaks === 1 ? "once" : `${breaks} times`}: a frame could not be linked to those before it.`;
+  }
+
   function showCounts(state) {
     const { counts, latency_ms: latency, recording } = state;
     const dropped = counts.dropped + counts.too_old;
@@ -182,6 +221,7 @@
     document.body.dataset.frame = state.frame;
     showCounts(state);
     showHorizon(state.view);
+    showPath(state.path);
     if (state.view !== null) {
       showRoll(state.view.roll);
       showHeight(state.view);
