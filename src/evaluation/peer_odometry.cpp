@@ -6,6 +6,8 @@
 #include <opencv2/video/tracking.hpp>
 #include <vector>
 
+#include "evaluation/peer_maps.hpp"
+
 namespace roadstereo::io {
 
 struct OpticalFlowOdometry::State {
@@ -20,11 +22,7 @@ OpticalFlowOdometry::OpticalFlowOdometry(const StereoCalibration& calibration) :
 OpticalFlowOdometry::~OpticalFlowOdometry() = default;
 
 std::optional<std::array<double, 12>> OpticalFlowOdometry::add(const GreyImage& grey, const Image<float>& disparity) {
-  cv::Mat bytes(grey.height(), grey.width(), CV_8U);
-  for (int v = 0; v < grey.height(); ++v) {
-    for (int u = 0; u < grey.width(); ++u)
-      bytes.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(grey(u, v) / grey_scale);
-  }
+  const cv::Mat bytes = grey_bytes(grey);
   const cv::Mat before = state_->grey;
   const Image<float> depths = state_->disparity;
   state_->grey = bytes;
@@ -32,7 +30,7 @@ std::optional<std::array<double, 12>> OpticalFlowOdometry::add(const GreyImage& 
   if (before.empty()) return std::nullopt;
 
   constexpr int max_corners = 2000;
-  constexpr double quality = 0.003, min_distance = 7, max_return_px = 0.5, min_disparity = 2;
+  constexpr double quality = 0.003, min_distance = 7, max_return_px = 0.5;
   std::vector<cv::Point2f> corners, moved, returned;
   cv::goodFeaturesToTrack(before, corners, max_corners, quality, min_distance);
   if (corners.empty()) return std::nullopt;
@@ -45,7 +43,7 @@ std::optional<std::array<double, 12>> OpticalFlowOdometry::add(const GreyImage& 
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (found[i] == 0 || found_back[i] == 0 || cv::norm(corners[i] - returned[i]) > max_return_px) continue;
     const double d = depths(cvRound(corners[i].x), cvRound(corners[i].y));
-    if (!(d > min_disparity)) continue;
+    if (!(d > min_peer_disparity_px)) continue;
     const auto p = state_->calibration.point_m(corners[i].x, corners[i].y, d);
     points.emplace_back(p[0], p[1], p[2]);
     pixels.emplace_back(moved[i]);

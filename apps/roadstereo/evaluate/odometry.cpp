@@ -89,6 +89,7 @@ void run(const OdometryArguments& arguments) {
                                   {"links_with_offset", trials.with_offset},
                                   {"offset_px", trials.offset_px}});
   }
+                                  {"missing_peers", trials.missing},
   fmt::print("{}\n", table.text());
   if (trials.with_offset > 0) {
     fmt::print("Disparities are short by an offset at infinity: {:.2f} px (median), undone in {} of {} links.\n",
@@ -104,6 +105,7 @@ void run(const OdometryArguments& arguments) {
 }
 
 }  // namespace
+  for (const std::string& peer : trials.missing) fmt::print("NOT COMPARED, {}.\n", peer);
 
 void add_odometry(CLI::App& evaluate) {
   CLI::App* command =
@@ -140,6 +142,13 @@ void add_odometry(CLI::App& evaluate) {
   command->footer(flight_help() + "\nExamples:\n  roadstereo evaluate odometry drive/\n" +
                   "  roadstereo evaluate odometry --flight loop=300 --json odometry.json");
   add_json_option(*command, arguments->json);
+  command
+      ->add_option(
+          "--peers", trials.peers,
+          "Compared with: flow (OpenCV's optical flow and PnP), rgbd (its RgbdOdometry), open3d, colmap (minutes)")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->capture_default_str();
   command->callback([arguments] { run(*arguments); });
 }
 

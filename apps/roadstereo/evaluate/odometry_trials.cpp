@@ -1,5 +1,6 @@
 #include "evaluate/odometry_trials.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -7,6 +8,8 @@
 
 #include "evaluate/scratch_folder.hpp"
 #include "evaluation/peer_odometry.hpp"
+#include "evaluation/peer_programs.hpp"
+#include "evaluation/peer_rgbd.hpp"
 #include "finite_values.hpp"
 #include "flight/rectified_source.hpp"
 #include "flight_path.hpp"
@@ -155,18 +158,105 @@ void add_own(Odometry& odometry, int frame, const FrameResult& result, const std
   track.errors_sd.push_back(whitened_rms(error, link.covariance));
 }
 
-/// The same for the peer; without a motion the camera stands still.
-void add_peer(io::OpticalFlowOdometry& odometry, int frame, const FrameResult& result, const std::vector<Pose>& truth,
-              const StereoCalibration& rig, Track& track) {
+/// Odometry of others from frame to frame.
+struct FramePeer {
+  std::string name;
+  std::function<std::optional<std::array<double, 12>>(const FrameResult&)> add;
+  Track track{};
+};
+
+/// The same for a peer; without a motion the camera stands still.
+void add_peer(FramePeer& peer, const FrameResult& result, const std::vector<Pose>& truth,
+              const StereoCalibration& rig) {
+  Track& track = peer.track;
   std::optional<std::array<double, 12>> found;
-  track.times_ms.push_back(time_ms([&] { found = odometry.add(result.grey, result.disparity); }));
-  if (frame == 0) return track.poses.push_back(pose_of(Eigen::Isometry3d::Identity()));
+  track.times_ms.push_back(time_ms([&] { found = peer.add(result); }));
+  if (truth.size() == 1) return track.poses.push_back(pose_of(Eigen::Isometry3d::Identity()));
   const Eigen::Isometry3d motion = found ? isometry(*found) : Eigen::Isometry3d::Identity();
   track.lost += found ? 0 : 1;
   track.poses.push_back(pose_of(isometry(track.poses.back()) * motion.inverse()));
   const Eigen::Isometry3d from = isometry(truth[truth.size() - 2]), to = isometry(truth.back());
   track.errors_px.push_back(link_error_px(motion * (to.inverse() * from).inverse(), result.disparity, rig));
 }
+
+/// Poses of a program, as a track. Where it has none, the camera stands still. Those whose scale is unknown get that of
+/// the truth.
+Track track_of(const io::PeerPoses& peer, const std::vector<Pose>& truth, bool scale_known) {
+  Track track;
+  std::vector<Eigen::Vector3d> from, to;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const auto& found = peer.camera_to_world[i];
+    track.lost += found ? 0 : 1;
+    track.poses.push_back(found ? *found : i > 0 ? track.poses.back() : pose_of(Eigen::Isometry3d::Identity()));
+    if (!found) continue;
+    from.emplace_back(isometry(*found).translation());
+    to.emplace_back(isometry(truth[i]).translation());
+  }
+  track.times_ms = {1000 * peer.seconds / static_cast<double>(truth.size())};
+  if (scale_known || from.size() < 3) return track;
+  Eigen::Matrix3Xd a(3, from.size()), b(3, from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    a.col(static_cast<Eigen::Index>(i)) = from[i];
+    b.col(static_cast<Eigen::Index>(i)) = to[i];
+  }
+  const double scale = std::cbrt(Eigen::umeyama(a, b, true).topLeftCorner<3, 3>().determinant());
+  for (Pose& pose : track.poses) {
+    for (const std::size_t i : {3U, 7U, 11U}) pose[i] *= scale;
+  }
+  return track;
+}
+
+/// The peers that were asked for.
+class Peers {
+ public:
+  Peers(const OdometryTrialOptions& options, const StereoCalibration& rig, const std::filesystem::path& folder)
+      : names_(options.peers), rig_(rig) {
+    if (asked("flow")) {
+      const auto flow = std::make_shared<io::OpticalFlowOdometry>(rig);
+      peers_.push_back({"optical flow, PnP", [flow](const FrameResult& r) { return flow->add(r.grey, r.disparity); }});
+    }
+    if (asked("rgbd") && !io::RgbdOdometry::available()) {
+      missing_.emplace_back("rgbd: this build lacks the module rgbd of libopencv-contrib-dev");
+    } else if (asked("rgbd")) {
+      const auto rgbd = std::make_shared<io::RgbdOdometry>(rig);
+      peers_.push_back(
+          {"OpenCV RgbdOdometry", [rgbd](const FrameResult& r) { return rgbd->add(r.grey, r.disparity); }});
+    }
+    if (asked("open3d") || asked("colmap")) frames_.emplace(folder, rig);
+  }
+
+  void add(const FrameResult& result, const std::vector<Pose>& truth) {
+    for (FramePeer& peer : peers_) add_peer(peer, result, truth, rig_);
+    if (frames_) frames_->add(result.grey, result.disparity);
+  }
+
+  /// Runs the programs, and adds all trials.
+  void finish(const std::vector<Pose>& truth, OdometryTrials& trials) {
+    for (const FramePeer& peer : peers_) trials.methods.push_back(trial_of(peer.name, peer.track, truth));
+    const auto run = [&](const char* name, const char* title, auto program, bool scale_known) {
+      if (!asked(name)) return;
+      try {
+        trials.methods.push_back(trial_of(title, track_of(program(*frames_), truth, scale_known), truth));
+      } catch (const SystemError&) {
+        throw;
+      } catch (const Error& error) {
+        missing_.push_back(std::string(name) + ": " + error.what());
+      }
+    };
+    run("open3d", "Open3D RGB-D", io::run_open3d, true);
+    run("colmap", "COLMAP, scale given", io::run_colmap, false);
+    trials.missing = missing_;
+  }
+
+ private:
+  bool asked(const char* name) const { return std::find(names_.begin(), names_.end(), name) != names_.end(); }
+
+  std::vector<std::string> names_;
+  StereoCalibration rig_;
+  std::vector<FramePeer> peers_;
+  std::optional<io::PeerFrames> frames_;
+  std::vector<std::string> missing_;
+};
 
 /// Errors of the poses against the first one.
 std::vector<double> pose_errors_sd(const Trajectory& trajectory, const std::vector<Pose>& truth) {
@@ -206,7 +296,18 @@ void summarise_offsets(const std::vector<FrameLink>& links, OdometryTrials& tria
 
 }  // namespace
 
+const std::vector<std::string>& peer_odometry_names() {
+  static const std::vector<std::string> names{"flow", "rgbd", "open3d", "colmap"};
+  return names;
+}
+
 void OdometryTrialOptions::validate() const {
+  for (const std::string& peer : peers) {
+    const std::vector<std::string>& names = peer_odometry_names();
+    if (std::find(names.begin(), names.end(), peer) == names.end()) {
+      fail("--peers has \"", peer, "\"; it must be a comma-separated list of flow, rgbd, open3d and colmap");
+    }
+  }
   if (frames < 3 || frames > 100000) fail("--frames is ", frames, "; it must be between 3 and 100000");
 }
 
@@ -218,11 +319,11 @@ OdometryTrials run_odometry_trials(const OdometryTrialOptions& options) {
   apply_settings(options.methods.settings, pipeline_options);
   Pipeline pipeline(pipeline_options, pairs.calibration);
   Odometry odometry(pairs.calibration);
-  io::OpticalFlowOdometry peer(pairs.calibration);
   const ScratchFolder folder;
+  Peers peers(options, pairs.calibration, folder / "peers");
   std::optional<LoopSearch> search;
   if (has_pose_graph()) search.emplace(pairs.calibration, folder / "keyframes");
-  Track own, other;
+  Track own;
   std::vector<Pose> truth;
   std::vector<double> matching_ms;
   Progress progress = Progress::on_terminal(pairs.frames);
@@ -235,14 +336,14 @@ OdometryTrials run_odometry_trials(const OdometryTrialOptions& options) {
     if (search && odometry.reference() == static_cast<int>(i)) {
       search->add(static_cast<int>(i), result, odometry.links().empty() ? 0 : odometry.links().back().offset_px);
     }
-    add_peer(peer, static_cast<int>(i), result, truth, pairs.calibration, other);
+    peers.add(result, truth);
     progress.frame_done();
   }
   OdometryTrials trials;
   trials.methods = {trial_of("roadstereo", own, truth)};
   trials.methods[0].pose_errors_sd = pose_errors_sd(odometry.trajectory(), truth);
   if (search) add_graph(odometry, *search, truth, trials);
-  trials.methods.push_back(trial_of("optical flow, PnP", other, truth));
+  peers.finish(truth, trials);
   trials.matching_ms = median(matching_ms);
   summarise_offsets(odometry.links(), trials);
   return trials;

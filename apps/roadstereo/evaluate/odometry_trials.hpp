@@ -10,6 +10,10 @@
 
 namespace roadstereo::cli {
 
+/// What may be compared: "flow" (OpenCV's optical flow and PnP), "rgbd" (its RgbdOdometry), "open3d" and "colmap",
+/// programs of their own.
+const std::vector<std::string>& peer_odometry_names();
+
 struct OdometryTrialOptions {
   std::string folder;                    ///< recording with poses.txt; empty: a rendered flight
   std::vector<std::string> calibration;  ///< empty: calibration.yaml of the folder
@@ -20,6 +24,7 @@ struct OdometryTrialOptions {
   int supersampling = 1;  ///< rays per pixel and axis of the renderer
   double noise_grey = 2;  ///< of a rendered flight, 8-bit grey levels
   std::string preset = "default";
+  std::vector<std::string> peers{"flow", "rgbd"};  ///< names of peer_odometry_names
   MethodSettings methods;
 
   /// Throws Error naming the first option out of range.
@@ -34,11 +39,12 @@ struct OdometryTrial {
   std::vector<double> link_errors_sd;  ///< RMS of the six whitened errors of a link: 1 if its covariance is right
   std::vector<double> pose_errors_sd;  ///< the same of the poses against the first one
   std::size_t lost = 0;                ///< frames without a link, but the first
-  double median_ms = 0;                ///< of a frame, without matching
+  double median_ms = 0;                ///< of a frame, without matching; of programs the mean
 };
 
 struct OdometryTrials {
-  std::vector<OdometryTrial> methods;  ///< this library, with its pose graph if the build has one, then the peer
+  std::vector<OdometryTrial> methods;  ///< this library, with its pose graph if the build has one, then the peers
+  std::vector<std::string> missing;    ///< peers that were asked for and could not be run: why
   double matching_ms = 0;              ///< median time of Pipeline::process
   double offset_px = 0;                ///< median disparity offset at infinity of the links that undid one
   std::size_t with_offset = 0;         ///< number of those links
