@@ -36,6 +36,30 @@ TEST(TrajectoryScore, OtherWorldFrameIsNoError) {
   EXPECT_NEAR(score.absolute_percent, 0, 1e-9);
 }
 
+// Poses of a sensor that is turned against the camera by 4 mrad about x and 3 mrad about y: the direction of every
+// motion is off by 5 mrad, which is 0.5 % of any piece.
+TEST(TrajectoryScore, TurnOfTruthIsFoundAndTakenOut) {
+  const std::vector<Pose> estimate = straight(1);
+  std::vector<Pose> truth;
+  const Eigen::Matrix3d turn =
+      (Eigen::AngleAxisd(0.004, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(0.003, Eigen::Vector3d::UnitY()))
+          .toRotationMatrix();
+  for (const Pose& pose : estimate) {
+    Eigen::Isometry3d turned = isometry(pose);
+    turned.linear() = turned.linear() * turn.transpose();
+    Pose row{};
+    Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(row.data()) = turned.matrix().topRows<3>();
+    truth.push_back(row);
+  }
+  const TrajectoryScore score = score_trajectory(truth, estimate);
+  EXPECT_NEAR(score.translation_percent, 0.5, 0.001);
+  EXPECT_NEAR(score.axes_turn_rad[0], 0.004, 2e-5);
+  EXPECT_NEAR(score.axes_turn_rad[1], 0.003, 2e-5);
+  EXPECT_LT(score.turned_percent, 0.002);
+  // An error of scale is none of direction.
+  EXPECT_NEAR(score_trajectory(straight(1), straight(1.01)).turned_percent, 1, 1e-6);
+}
+
 TEST(TrajectoryScore, RotationIsPerMetre) {
   // A camera that stays on its path but turns by 0.02° a metre too much.
   const std::vector<Pose> truth = straight(1);

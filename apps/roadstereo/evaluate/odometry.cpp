@@ -23,7 +23,7 @@ struct OdometryArguments {
 
 constexpr const char* odometry_note =
     R"(trans, rot: errors of the motion over pieces of 10, 20, … 50 m of path (short paths: tenths of it), as KITTI odometry
-defines them. ATE: RMS of the positions after a rigid alignment, of the path. link: displacement of the pixels of a frame
+defines them. turned: trans, without the constant turn about x and y between the true poses and the estimated motion. ATE: RMS of the positions after a rigid alignment, of the path. link: displacement of the pixels of a frame
 by the error of its link; roadstereo links to a reference up to several frames before. link/σ, pose/σ: RMS of the
 whitened errors of links, and of poses against the first frame, 1 if their covariances are right. share: of the time of matching.
 )";
@@ -39,6 +39,7 @@ Table odometry_table(const OdometryTrials& trials, const std::string& title) {
               {{"method", "method"},
                {"trans %", "translation_percent"},
                {"rot °/m", "rotation_deg_per_m"},
+               {"turned %", "turned_percent"},
                {"ATE %", "ate_percent"},
                {"link px", "link_median_px"},
                {"95 %", "link_p95_px"},
@@ -50,12 +51,14 @@ Table odometry_table(const OdometryTrials& trials, const std::string& title) {
               {}};
   for (const OdometryTrial& trial : trials.methods) {
     const bool linked = !trial.link_errors_px.empty();
-    table.rows.push_back(
-        {trial.method, Cell(trial.score.translation_percent, 3), Cell(trial.score.rotation_deg_per_m, 4),
-         Cell(trial.score.absolute_percent, 3), Cell(linked ? median(trial.link_errors_px) : NAN, 3),
-         Cell(linked ? quantile(trial.link_errors_px, 0.95) : NAN, 3), Cell(rms(trial.link_errors_sd), 2),
-         Cell(rms(trial.pose_errors_sd), 2), Cell(static_cast<double>(trial.lost), 0),
-         Cell(linked ? trial.median_ms : NAN, 1), Cell(linked ? 100 * trial.median_ms / trials.matching_ms : NAN, 0)});
+    table.rows.push_back({trial.method, Cell(trial.score.translation_percent, 3),
+                          Cell(trial.score.rotation_deg_per_m, 4), Cell(trial.score.turned_percent, 3),
+                          Cell(trial.score.absolute_percent, 3), Cell(linked ? median(trial.link_errors_px) : NAN, 3),
+                          Cell(linked ? quantile(trial.link_errors_px, 0.95) : NAN, 3),
+                          Cell(rms(trial.link_errors_sd), 2), Cell(rms(trial.pose_errors_sd), 2),
+                          Cell(static_cast<double>(trial.lost), 0),
+                          Cell(trial.median_ms > 0 ? trial.median_ms : NAN, 1),
+                          Cell(trial.median_ms > 0 ? 100 * trial.median_ms / trials.matching_ms : NAN, 0)});
   }
   return table;
 }
@@ -83,13 +86,14 @@ void run(const OdometryArguments& arguments) {
     write_report(arguments.json, {{"experiment", "odometry"},
                                   {"rows", table.json()},
                                   {"path_m", trials.methods[0].score.path_m},
+                                  {"axes_turn_rad", trials.methods[0].score.axes_turn_rad},
                                   {"matching_ms", trials.matching_ms},
                                   {"loops", loops_json(trials)},
+                                  {"missing_peers", trials.missing},
                                   {"links", trials.links},
                                   {"links_with_offset", trials.with_offset},
                                   {"offset_px", trials.offset_px}});
   }
-                                  {"missing_peers", trials.missing},
   fmt::print("{}\n", table.text());
   if (trials.with_offset > 0) {
     fmt::print("Disparities are short by an offset at infinity: {:.2f} px (median), undone in {} of {} links.\n",
@@ -101,11 +105,11 @@ void run(const OdometryArguments& arguments) {
                trials.graph->loops_used(), trials.graph->loops.size(), trials.compared, misclosure.before_px,
                misclosure.after_px);
   }
+  for (const std::string& peer : trials.missing) fmt::print("NOT COMPARED, {}.\n", peer);
   fmt::print("{}", odometry_note);
 }
 
 }  // namespace
-  for (const std::string& peer : trials.missing) fmt::print("NOT COMPARED, {}.\n", peer);
 
 void add_odometry(CLI::App& evaluate) {
   CLI::App* command =
@@ -138,10 +142,6 @@ void add_odometry(CLI::App& evaluate) {
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--preset", trials.preset, "default, fast or paper")->type_name("NAME")->capture_default_str();
-  add_method_options(*command, trials.methods);
-  command->footer(flight_help() + "\nExamples:\n  roadstereo evaluate odometry drive/\n" +
-                  "  roadstereo evaluate odometry --flight loop=300 --json odometry.json");
-  add_json_option(*command, arguments->json);
   command
       ->add_option(
           "--peers", trials.peers,
@@ -149,6 +149,10 @@ void add_odometry(CLI::App& evaluate) {
       ->type_name("LIST")
       ->delimiter(',')
       ->capture_default_str();
+  add_method_options(*command, trials.methods);
+  command->footer(flight_help() + "\nExamples:\n  roadstereo evaluate odometry drive/\n" +
+                  "  roadstereo evaluate odometry --flight loop=300 --json odometry.json");
+  add_json_option(*command, arguments->json);
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -34,6 +34,59 @@ std::vector<double> piece_lengths(double path_m) {
   return {unit, 2 * unit, 3 * unit, 4 * unit, 5 * unit};
 }
 
+/// Mean errors over the pieces.
+void score_pieces(const std::vector<Eigen::Isometry3d>& truth, const std::vector<Eigen::Isometry3d>& estimate,
+                  const std::vector<double>& path, TrajectoryScore& score) {
+  double translation = 0, rotation = 0;
+  for (const double length : piece_lengths(path.back())) {
+    std::size_t last = 0;
+    for (std::size_t first = 0; first < truth.size(); ++first) {
+      while (last < truth.size() && path[last] < path[first] + length) ++last;
+      if (last == truth.size()) break;
+      const Eigen::Isometry3d error =
+          (estimate[first].inverse() * estimate[last]).inverse() * (truth[first].inverse() * truth[last]);
+      translation += error.translation().norm() / length;
+      rotation += Eigen::AngleAxisd(error.rotation()).angle() / length;
+      ++score.pieces;
+    }
+  }
+  const double count = static_cast<double>(score.pieces);
+  score.translation_percent = 100 * translation / count;
+  score.rotation_deg_per_m = rotation / count * 180 / std::numbers::pi;
+}
+
+/// Least squares of t − v × t over the translations of single motions, v small and without a part about z.
+Eigen::Vector3d turn_between(const std::vector<Eigen::Isometry3d>& truth,
+                             const std::vector<Eigen::Isometry3d>& estimate) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    const Eigen::Vector3d t = (truth[i - 1].inverse() * truth[i]).translation();
+    const Eigen::Vector3d difference = t - (estimate[i - 1].inverse() * estimate[i]).translation();
+    Eigen::Matrix<double, 3, 2> row;
+    row.col(0) = Eigen::Vector3d::UnitX().cross(t);
+    row.col(1) = Eigen::Vector3d::UnitY().cross(t);
+    normal += row.transpose() * row;
+    right += row.transpose() * difference;
+  }
+  const Eigen::Vector2d turn = normal.ldlt().solve(right);
+  return {turn.x(), turn.y(), 0};
+}
+
+/// Adds the turn and the error without it.
+void score_turned(std::vector<Eigen::Isometry3d> truth, const std::vector<Eigen::Isometry3d>& estimate,
+                  const std::vector<double>& path, TrajectoryScore& score) {
+  const Eigen::Vector3d turn = turn_between(truth, estimate);
+  score.axes_turn_rad = {turn.x(), turn.y()};
+  if (turn.norm() > 0) {
+    const Eigen::AngleAxisd rotation(turn.norm(), turn.normalized());
+    for (Eigen::Isometry3d& pose : truth) pose = pose * rotation;
+  }
+  TrajectoryScore turned;
+  score_pieces(truth, estimate, path, turned);
+  score.turned_percent = turned.translation_percent;
+}
+
 double absolute_error(const std::vector<Eigen::Isometry3d>& truth, const std::vector<Eigen::Isometry3d>& estimate) {
   const auto count = static_cast<Eigen::Index>(truth.size());
   Eigen::Matrix3Xd to(3, count), from(3, count);
@@ -59,22 +112,8 @@ TrajectoryScore score_trajectory(const std::vector<Pose>& truth_poses, const std
   TrajectoryScore score;
   score.path_m = path.back();
   if (!(score.path_m > 0)) fail("the true path has no length");
-  double translation = 0, rotation = 0;
-  for (const double length : piece_lengths(score.path_m)) {
-    std::size_t last = 0;
-    for (std::size_t first = 0; first < truth.size(); ++first) {
-      while (last < truth.size() && path[last] < path[first] + length) ++last;
-      if (last == truth.size()) break;
-      const Eigen::Isometry3d error =
-          (estimate[first].inverse() * estimate[last]).inverse() * (truth[first].inverse() * truth[last]);
-      translation += error.translation().norm() / length;
-      rotation += Eigen::AngleAxisd(error.rotation()).angle() / length;
-      ++score.pieces;
-    }
-  }
-  const double count = static_cast<double>(score.pieces);
-  score.translation_percent = 100 * translation / count;
-  score.rotation_deg_per_m = rotation / count * 180 / std::numbers::pi;
+  score_pieces(truth, estimate, path, score);
+  score_turned(truth, estimate, path, score);
   score.absolute_percent = 100 * absolute_error(truth, estimate) / score.path_m;
   return score;
 }

@@ -19,6 +19,10 @@ struct TrajectoryScore {
   double rotation_deg_per_m = 0;   ///< likewise
   double absolute_percent = 0;     ///< RMS of the positions after a rigid alignment, of the path: ATE
   std::size_t pieces = 0;          ///< number of pieces of the path
+  /// Constant angles about x and y between the axes of the true poses and those in which the estimate moves, radians:
+  /// what a truth of another sensor adds where its place on the vehicle is not known as well.
+  std::array<double, 2> axes_turn_rad{};
+  double turned_percent = 0;  ///< translation_percent without that turn
 };
 
 /// Returns the errors as KITTI odometry defines them, from every frame over 10, 20, … 50 m of path (paths shorter than
