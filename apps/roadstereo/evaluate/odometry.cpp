@@ -23,9 +23,10 @@ struct OdometryArguments {
 
 constexpr const char* odometry_note =
     R"(trans, rot: errors of the motion over pieces of 10, 20, … 50 m of path (short paths: tenths of it), as KITTI odometry
-defines them. turned: trans, without the constant turn about x and y between the true poses and the estimated motion. ATE: RMS of the positions after a rigid alignment, of the path. link: displacement of the pixels of a frame
-by the error of its link; roadstereo links to a reference up to several frames before. link/σ, pose/σ: RMS of the
-whitened errors of links, and of poses against the first frame, 1 if their covariances are right. share: of the time of matching.
+defines them. turned: trans without the constant turn about x and y between the axes of the true poses and the estimated
+motion. ATE: RMS of the positions after a rigid alignment, of the path. link: displacement of the pixels of a frame by the
+error of its link; roadstereo links to a reference up to several frames before. link/σ, pose/σ: RMS of the whitened errors
+of links, and of poses against the first frame, 1 if their covariances are right. share: of the time of matching.
 )";
 
 double rms(const std::vector<double>& values) {

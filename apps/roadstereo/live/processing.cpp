@@ -21,7 +21,6 @@ Processing::Processing(const ProcessingOptions& options, std::unique_ptr<Rectifi
 Pipeline& Processing::pipeline() {
   if (!pipeline_) {
     if (options_.find_white_level) options_.pipeline.white_level = rectifier_->white_level();
-    if (options_.trajectory && !rectifier_->calibration()) fail("--trajectory needs --calibration");
     pipeline_.emplace(options_.pipeline, rectifier_->calibration());
   }
   return *pipeline_;
@@ -37,6 +36,7 @@ std::optional<Processing::Matched> Processing::match(CapturedPair captured) {
     board_.count_rejected(captured.pair.error);
     return std::nullopt;
   }
+  if (options_.trajectory && !rectifier_->calibration()) fail("--trajectory needs --calibration");
   Matched matched;
   const FrameView left = captured.pair.left.view(), right = captured.pair.right.view();
   try {
