@@ -71,7 +71,7 @@ TEST_F(RigBiasCommand, IsTheSameAfterResume) {
 }
 
 TEST_F(RigBiasCommand, IsRefusedForAnotherRig) {
-  make_flight(1);
+  make_flight(2);
   RigBias bias;
   bias.width = 640;
   bias.height = 360;

@@ -150,7 +150,7 @@ echo 0 0 1 0 0 1 0 0 -1 0 0 -1 0.5
 TEST_F(PeerPrograms, SaysWhatOpen3dLacks) {
   add_program("python3", "exit 1\n");
   EXPECT_EQ(complaint(run_open3d, frames(2)), "python3 has no open3d (Debian's package python3-open3d)");
-  add_program("python3", "[ \"$1\" = -c ] && exit 0\n");
+  add_program("python3", "exit 0\n");
   EXPECT_EQ(complaint(run_open3d, frames(3)), "open3d gave 0 motions of 3 frames");
 }
 
