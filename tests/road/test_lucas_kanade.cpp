@@ -164,7 +164,9 @@ TEST(LucasKanade, TellsCorrelationAlongDisparities) {
         EXPECT_NEAR(correlation(i, j), naive_correlation(pair, disparity, i, j, 2), 2e-4) << i << ", " << j;
       }
     }
-    if (disparity == 6) EXPECT_GT(correlation(20, 7), 0.98);
+    if (disparity == 6) {
+      EXPECT_GT(correlation(20, 7), 0.98);
+    }
   }
 }
 

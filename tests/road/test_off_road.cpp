@@ -14,9 +14,7 @@
 namespace roadstereo {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-std::size_t invalid_pixels(const Image<float>& map) {
+std::size_t count_invalid(const Image<float>& map) {
   std::size_t count = 0;
   for (int v = 0; v < map.height(); ++v) {
     for (int u = 0; u < map.width(); ++u) count += std::isnan(map(u, v)) ? 1U : 0U;
@@ -37,12 +35,12 @@ TEST(RejectOffRoad, LimitFollowsCorrelation) {
     for (const double max_sigma_px : {0.5, 1.0}) {
       const double limit = max_sigma_px * std::pow(3, correlation - 1);
       // The logarithm of a float by its bits is up to 0.09 too small: 6 %.
-      EXPECT_EQ(invalid_pixels(reject_uniform(static_cast<float>(0.98 * limit), correlation, max_sigma_px).disparity),
+      EXPECT_EQ(count_invalid(reject_uniform(static_cast<float>(0.98 * limit), correlation, max_sigma_px).disparity),
                 0U)
           << correlation;
       const test::CellMaps rejected = reject_uniform(static_cast<float>(1.08 * limit), correlation, max_sigma_px);
-      EXPECT_EQ(invalid_pixels(rejected.disparity), rejected.disparity.pixels()) << correlation;
-      EXPECT_EQ(invalid_pixels(rejected.sigma), rejected.sigma.pixels()) << correlation;
+      EXPECT_EQ(count_invalid(rejected.disparity), rejected.disparity.pixels()) << correlation;
+      EXPECT_EQ(count_invalid(rejected.sigma), rejected.sigma.pixels()) << correlation;
     }
   }
 }
@@ -65,7 +63,7 @@ TEST(RejectOffRoad, LowerBorderIsRoad) {
   maps.fill(0.1F, 0.9F);
   maps.paint({20, 20, 40, 30}, 2.0F, 0.1F);
   reject_off_road(maps.correlation, {1.0}, 1, maps.disparity, maps.sigma);
-  EXPECT_EQ(invalid_pixels(maps.disparity), 0U);
+  EXPECT_EQ(count_invalid(maps.disparity), 0U);
 }
 
 /// Half of the cells around the edge of a step are unconfirmed: at the edge the geometric mean is that of both sides.
@@ -86,11 +84,11 @@ TEST(RejectOffRoad, PixelsWithoutDisparityCountAsThreePixels) {
     test::CellMaps maps(80, 60);
     maps.fill(0.05F, correlation);
     for (int v = 0; v < 60; ++v) {
-      for (int u = 0; u < 80; u += 2) maps.disparity(u, v) = maps.sigma(u, v) = nan;
+      for (int u = 0; u < 80; u += 2) maps.disparity(u, v) = maps.sigma(u, v) = std::numeric_limits<float>::quiet_NaN();
     }
     // √(0.05·3) = 0.39 pixels: above a third, below one.
     reject_off_road(maps.correlation, {1.0}, 1, maps.disparity, maps.sigma);
-    EXPECT_EQ(invalid_pixels(maps.disparity), correlation == 0 ? 4800U : 2400U);
+    EXPECT_EQ(count_invalid(maps.disparity), correlation == 0 ? 4800U : 2400U);
   }
 }
 
@@ -99,7 +97,7 @@ TEST(RejectOffRoad, SameForAnyThreadCount) {
   test::CellMaps three = one;
   reject_off_road(one.correlation, {1.0}, 1, one.disparity, one.sigma);
   reject_off_road(three.correlation, {1.0}, 3, three.disparity, three.sigma);
-  EXPECT_GT(invalid_pixels(one.disparity), 0U);
+  EXPECT_GT(count_invalid(one.disparity), 0U);
   for (int v = 0; v < one.disparity.height(); ++v) {
     for (int u = 0; u < one.disparity.width(); ++u) {
       ASSERT_EQ(std::isnan(one.disparity(u, v)), std::isnan(three.disparity(u, v))) << u << ", " << v;
