@@ -151,10 +151,9 @@ void inspect(InspectArguments arguments) {
 
 constexpr const char* inspect_footer =
     R"(Output of a pair: disparity.tiff, sigma.tiff (standard error of the disparity, px) and transformed.tiff (32-bit float,
-NaN invalid), disparity.png (16 bit, value / 256 px, 0 invalid), colour maps, sheet.png, result.json, damages.json,
-damages.csv, damage.png (16 bit, ids), overlay.png and report.html; with a calibration also cloud.ply (camera frame, m)
-and road_cloud.ply (the road is z = 0). --write selects: disparity, sigma, transformed, sheet, cloud, damages, overlay,
-report. "files" of result.json says what each file is.
+NaN invalid), disparity.png (16 bit, value / 256 px), sheet.png, result.json, damages.json, damages.csv, damage.png (ids),
+overlay.png, report.html; with a calibration cloud.ply (camera frame, m) and road_cloud.ply (the road is z = 0). --write
+selects: disparity, sigma, transformed, sheet, cloud, damages, overlay, report. result.json says what each file is.
 
 Output of a recording: damages.csv (one row per damage of the road, worst first), candidates.csv, sightings.csv (one row
 per damage and frame), frames.csv, pose.csv (smoothed roll, pitch, height), summary.json, report.html, an image of each
@@ -172,7 +171,6 @@ K.txt. Unrectified images are rectified. Metric results need it.
 
 Examples:
   roadstereo inspect left.png right.png --calibration calibration.yaml --output out
-  roadstereo inspect left.png --disparity map.tiff --calibration calibration.yaml --output out
   roadstereo inspect flight/ --calibration left.yaml --calibration right.yaml --every 5 --write sheet --output out)";
 
 void add_input_options(CLI::App& command, InspectArguments& arguments) {
