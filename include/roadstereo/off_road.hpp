@@ -8,7 +8,7 @@ namespace roadstereo {
 struct OffRoadOptions {
   /// Largest σ there where the pictures agree perfectly, pixels, 0 … 10; a third of it where they do not agree at all.
   /// 0 keeps everything.
-  double max_sigma_px = 0.7;
+  double max_sigma_px = 0.9;
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
