@@ -20,7 +20,7 @@ struct Key {
   const char* meaning;
 };
 
-constexpr std::array<Key, 13> keys{{
+constexpr std::array<Key, 14> keys{{
     {"roll", &FlightPath::roll_deg, "amplitude of the roll, degrees"},
     {"pitch", &FlightPath::pitch_deg, "amplitude of the pitch, degrees"},
     {"climb", &FlightPath::climb_m, "maximum climb above the start, metres"},
@@ -34,6 +34,7 @@ constexpr std::array<Key, 13> keys{{
     {"jump_pitch", &FlightPath::jump_pitch_deg, "change of the pitch at a jump, degrees"},
     {"jump_climb", &FlightPath::jump_climb_m, "change of the height at a jump, metres"},
     {"jump_step", &FlightPath::jump_step_m, "change of the position along the road at a jump, metres"},
+    {"shutter", &FlightPath::shutter_frames, "time from the first row to the last, frames, 0: global shutter"},
 }};
 
 template <class Number>

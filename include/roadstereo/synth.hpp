@@ -106,9 +106,17 @@ struct Degradation {
   std::uint32_t noise_seed = 1;
 };
 
+/// How the pose of a rig changes from the first row of a picture to the last, while its shutters roll; 0: they are
+/// global. The `Rig` is that of the middle row.
+struct ShutterMotion {
+  double x_m = 0, y_m = 0, height_m = 0;            ///< −100 … 100
+  double pitch_deg = 0, roll_deg = 0, yaw_deg = 0;  ///< −45 … 45
+};
+
 struct Scene {
   std::string name;
   Rig rig;
+  ShutterMotion shutter;
   Road road;
   Degradation degradation;
   int supersampling = 3;  ///< rays per pixel and axis, 1 … 8
@@ -137,8 +145,9 @@ struct SyntheticPair {
   Image<std::uint8_t> visible;  ///< 255 where the right camera sees the point, too
   Image<std::uint16_t> labels;  ///< id of the damage at the pixel; 0: none
   Image<std::uint8_t> road;     ///< 255 on the carriageway, damage included; 0 on kerbs, verges, boxes and the bonnet
-  DisparityPlane plane;         ///< exact plane Z = 0 in disparity space: the road without camber, crest and damage
-  double roll_rad = 0;          ///< ψ of that plane as in the paper; 0 if the camera looks straight down
+  DisparityPlane plane;  ///< exact plane Z = 0 in disparity space: the road without camber, crest and damage; with
+                         ///< a shutter that rolls, as the middle row sees it
+  double roll_rad = 0;   ///< ψ of that plane as in the paper; 0 if the camera looks straight down
   std::vector<DamageTruth> damages;
 };
 
@@ -183,6 +192,8 @@ struct FlightPath {
   double jump_pitch_deg = 4;  ///< offset of the pitch, −45 … 45
   double jump_climb_m = 0.3;  ///< offset of the height, −100 … 100
   double jump_step_m = 0;     ///< added along the road at every jump, −1000 … 1000
+  double shutter_frames = 0;  ///< time from the first row of a picture to its last, in periods of the frames; 0: global
+                              ///< shutters; 0 … 1
 
   /// Throws Error naming the first value out of range.
   void validate() const;

@@ -39,6 +39,19 @@ std::array<double, 12> Rig::camera_to_road() const {
   return {x.x, y.x, z.x, origin.x, x.y, y.y, z.y, origin.y, x.z, y.z, z.z, origin.z};
 }
 
+Rig rig_of_row(const Scene& scene, int row) {
+  const ShutterMotion& motion = scene.shutter;
+  Rig rig = scene.rig;
+  const double share = 1.0 * row / (rig.height - 1) - 0.5;
+  rig.x_m += share * motion.x_m;
+  rig.y_m += share * motion.y_m;
+  rig.camera_height_m += share * motion.height_m;
+  rig.pitch_deg += share * motion.pitch_deg;
+  rig.roll_deg += share * motion.roll_deg;
+  rig.yaw_deg += share * motion.yaw_deg;
+  return rig;
+}
+
 Camera left_camera(const Rig& rig) {
   const SineCosine pitch = sine_cosine(rig.pitch_deg);
   const SineCosine roll = sine_cosine(rig.roll_deg);

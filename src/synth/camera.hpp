@@ -48,6 +48,9 @@ struct Camera {
   }
 };
 
+/// The rig while a row of the picture is exposed.
+Rig rig_of_row(const Scene& scene, int row);
+
 Camera left_camera(const Rig& rig);
 
 /// Right camera, with its image shifted down and rotated by the errors of the rectification.
@@ -69,13 +72,14 @@ struct Footprint {
 /// sharpness in both images.
 class FootprintModel {
  public:
+  FootprintModel() = default;
   /// `midpoint_offset_m`: offset of the midpoint from the camera along its x axis.
   FootprintModel(const Camera& camera, double midpoint_offset_m);
   Footprint at(double depth, double u, double v) const;
 
  private:
   Camera camera_;
-  double midpoint_offset_m_;
+  double midpoint_offset_m_ = 0;
   double inverse_depth_per_column_ = 0;  ///< d(1/Z)/du on the plane
   double inverse_depth_per_row_ = 0;     ///< d(1/Z)/dv
 };

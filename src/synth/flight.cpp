@@ -45,6 +45,29 @@ void straight(const FlightPath& path, double frame, Rig& rig) {
   rig.yaw_deg = std::remainder(rig.yaw_deg - turn * 180 / std::numbers::pi, 360.0);
 }
 
+/// Pose of the rig at a time, in frames. Jumps are between frames.
+Rig rig_at(const Scene& scene, const FlightPath& path, double time, std::ptrdiff_t jumps) {
+  const double is_offset = jumps % 2 != 0 ? 1 : 0;
+  Rig rig = scene.rig;
+  rig.y_m += static_cast<double>(jumps) * path.jump_step_m;
+  if (path.loop_period == 0) straight(path, time, rig);
+  if (path.loop_period != 0) circle(path, time, rig);
+  rig.camera_height_m += path.climb_m * raised_cosine(time, path.climb_period) + is_offset * path.jump_climb_m;
+  rig.roll_deg += path.roll_deg * sine_wave(time, path.roll_period) + is_offset * path.jump_roll_deg;
+  rig.pitch_deg += path.pitch_deg * sine_wave(time, path.pitch_period) + is_offset * path.jump_pitch_deg;
+  rig.pitch_deg = std::clamp(rig.pitch_deg, 0.0, 90.0);
+  return rig;
+}
+
+ShutterMotion motion_between(const Rig& first, const Rig& last) {
+  return {last.x_m - first.x_m,
+          last.y_m - first.y_m,
+          last.camera_height_m - first.camera_height_m,
+          last.pitch_deg - first.pitch_deg,
+          last.roll_deg - first.roll_deg,
+          std::remainder(last.yaw_deg - first.yaw_deg, 360.0)};
+}
+
 }  // namespace
 
 void FlightPath::validate() const {
@@ -64,6 +87,7 @@ void FlightPath::validate() const {
   require_in_range("jump_pitch_deg", jump_pitch_deg, -max_deg, max_deg);
   require_in_range("jump_climb_m", jump_climb_m, -max_climb_m, max_climb_m);
   require_in_range("jump_step_m", jump_step_m, -1000, 1000);
+  require_in_range("shutter_frames", shutter_frames, 0, 1);
   for (std::size_t i = 0; i < jumps.size(); ++i) {
     if (jumps[i] < 1) fail("flight: a jump is at frame ", jumps[i], "; it must be at frame 1 or later");
     if (std::count(jumps.begin(), jumps.end(), jumps[i]) > 1)
@@ -74,20 +98,14 @@ void FlightPath::validate() const {
 Scene flight_frame(const Scene& scene, const FlightPath& path, int frame) {
   path.validate();
   if (frame < 0) fail("frame is ", frame, "; it must not be negative");
-  const double t = frame;
+  const double t = frame, half = path.shutter_frames / 2;
   const auto jumps = std::count_if(path.jumps.begin(), path.jumps.end(), [frame](int jump) { return jump <= frame; });
-  const double is_offset = jumps % 2 != 0 ? 1 : 0;
   Scene next = scene;
-  Rig& rig = next.rig;
-  rig.y_m += static_cast<double>(jumps) * path.jump_step_m;
-  if (path.loop_period == 0) straight(path, t, rig);
-  if (path.loop_period != 0) circle(path, t, rig);
-  rig.camera_height_m += path.climb_m * raised_cosine(t, path.climb_period) + is_offset * path.jump_climb_m;
-  rig.roll_deg += path.roll_deg * sine_wave(t, path.roll_period) + is_offset * path.jump_roll_deg;
-  rig.pitch_deg += path.pitch_deg * sine_wave(t, path.pitch_period) + is_offset * path.jump_pitch_deg;
-  rig.pitch_deg = std::clamp(rig.pitch_deg, 0.0, 90.0);
+  next.rig = rig_at(scene, path, t, jumps);
+  if (half > 0)
+    next.shutter = motion_between(rig_at(scene, path, t - half, jumps), rig_at(scene, path, t + half, jumps));
   next.degradation.noise_seed += static_cast<std::uint32_t>(frame);
-  if (frame > 0) rig.validate();
+  if (frame > 0) next.rig.validate();
   return next;
 }
 

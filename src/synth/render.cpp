@@ -1,4 +1,5 @@
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "core/parallel.hpp"
@@ -27,13 +28,14 @@ constexpr double same_point_tolerance = 1e-7;
 /// Renderer of one camera. Owns a ray caster; use one per thread.
 class View {
  public:
-  View(const Road& road, const HeightField& field, const Texture& texture, const Camera& camera,
-       double midpoint_offset_m)
-      : field_(field),
-        texture_(texture),
-        camera_(camera),
-        footprints_(camera, midpoint_offset_m),
-        caster_(field, road.boxes) {}
+  View(const Road& road, const HeightField& field, const Texture& texture)
+      : field_(field), texture_(texture), caster_(field, road.boxes) {}
+
+  /// `midpoint_offset_m`: of FootprintModel.
+  void set_camera(const Camera& camera, double midpoint_offset_m) {
+    camera_ = camera;
+    footprints_ = FootprintModel(camera, midpoint_offset_m);
+  }
 
   /// Irradiance of a pixel: the mean over samples × samples rays, 8-bit grey levels.
   float pixel(int u, int v, int samples) {
@@ -87,12 +89,15 @@ class View {
   RayCaster caster_;
 };
 
+using CameraOfRow = std::function<Camera(int row)>;
+
 Image<float> render_irradiance(const Scene& scene, const HeightField& field, const Texture& texture,
-                               const Camera& camera, double midpoint_offset_m, int threads) {
+                               const CameraOfRow& camera_of, double midpoint_offset_m, int threads) {
   Image<float> irradiance(scene.rig.width, scene.rig.height);
   parallel_rows(scene.rig.height, rows_per_band, threads, [&](int first, int last, int) {
-    View view(scene.road, field, texture, camera, midpoint_offset_m);
+    View view(scene.road, field, texture);
     for (int v = first; v < last; ++v) {
+      view.set_camera(camera_of(v), midpoint_offset_m);
       for (int u = 0; u < scene.rig.width; ++u) irradiance(u, v) = view.pixel(u, v, scene.supersampling);
     }
   });
@@ -103,14 +108,18 @@ Image<float> render_irradiance(const Scene& scene, const HeightField& field, con
 class TruthRenderer {
  public:
   TruthRenderer(const Scene& scene, const HeightField& field)
-      : scene_(scene),
-        field_(field),
-        caster_(field, scene.road.boxes),
-        left_(left_camera(scene.rig)),
-        right_(right_camera(scene.rig, scene.degradation)) {
+      : scene_(scene), field_(field), caster_(field, scene.road.boxes) {
     for (const Kerb& kerb : scene.road.kerbs) right_edge_m_ = std::min(right_edge_m_, kerb.x_m);
   }
 
+  void render_row(int v, SyntheticPair& pair) {
+    const Rig rig = rig_of_row(scene_, v);
+    left_ = left_camera(rig);
+    right_ = right_camera(rig, scene_.degradation);
+    for (int u = 0; u < scene_.rig.width; ++u) render_pixel(u, v, pair);
+  }
+
+ private:
   /// Set disparity, visibility, label and road of a pixel.
   void render_pixel(int u, int v, SyntheticPair& pair) {
     if (is_bonnet(scene_, 0, u, v)) return;
@@ -129,7 +138,6 @@ class TruthRenderer {
     pair.road(u, v) = on_road ? 255 : 0;
   }
 
- private:
   bool is_visible_from_right(const Vec3& point, double depth) {
     const auto [u, v] = right_.project(point);
     if (u < 0 || u > scene_.rig.width - 1 || v < 0 || v > scene_.rig.height - 1 || is_bonnet(scene_, 1, u, v)) {
@@ -155,9 +163,7 @@ void render_truth(const Scene& scene, const HeightField& field, int threads, Syn
   pair.road.assign(width, height, 0);
   parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {
     TruthRenderer renderer(scene, field);
-    for (int v = first; v < last; ++v) {
-      for (int u = 0; u < width; ++u) renderer.render_pixel(u, v, pair);
-    }
+    for (int v = first; v < last; ++v) renderer.render_row(v, pair);
   });
 }
 
@@ -177,8 +183,8 @@ SyntheticPair render(const Scene& scene, int threads) {
   pair.damages = measure_damages(field, scene.road, threads);
   render_truth(scene, field, threads, pair);
   const double half_baseline_m = scene.rig.baseline_m / 2;
-  const Camera left = left_camera(scene.rig);
-  const Camera right = right_camera(scene.rig, degradation);
+  const auto left = [&](int row) { return left_camera(rig_of_row(scene, row)); };
+  const auto right = [&](int row) { return right_camera(rig_of_row(scene, row), degradation); };
   Image<float> left_light = render_irradiance(scene, field, texture, left, half_baseline_m, threads);
   Image<float> right_light = render_irradiance(scene, field, texture, right, -half_baseline_m, threads);
   cover_lens(scene, 0, left_light);

@@ -118,6 +118,16 @@ void check_degradation(const Degradation& degradation) {
   require_in_range("jpeg_quality", degradation.jpeg_quality, 0, 100);
 }
 
+void check_shutter(const ShutterMotion& shutter) {
+  constexpr double max_m = 100, max_deg = 45;
+  require_in_range("shutter: x_m", shutter.x_m, -max_m, max_m);
+  require_in_range("shutter: y_m", shutter.y_m, -max_m, max_m);
+  require_in_range("shutter: height_m", shutter.height_m, -max_m, max_m);
+  require_in_range("shutter: pitch_deg", shutter.pitch_deg, -max_deg, max_deg);
+  require_in_range("shutter: roll_deg", shutter.roll_deg, -max_deg, max_deg);
+  require_in_range("shutter: yaw_deg", shutter.yaw_deg, -max_deg, max_deg);
+}
+
 /// Throws Error if a camera is below the surface or less than 2 cm above it.
 void check_clearance(const Rig& rig, const Road& road) {
   constexpr double min_clearance_m = 0.02;
@@ -157,7 +167,8 @@ void Scene::validate() const {
   check_road(road);
   check_degradation(degradation);
   require_in_range("supersampling", supersampling, 1, 8);
-  check_clearance(rig, road);
+  check_shutter(shutter);
+  for (const int row : {0, rig.height - 1}) check_clearance(rig_of_row(*this, row), road);
 }
 
 }  // namespace roadstereo::synth

@@ -58,6 +58,32 @@ TEST(FlightPath, RollsPitchesAndClimbs) {
   EXPECT_NEAR(half.camera_height_m, scene.rig.camera_height_m + 0.5, 1e-9);
 }
 
+TEST(FlightPath, ShutterRollsBetweenRows) {
+  FlightPath path;
+  path.roll_deg = path.pitch_deg = path.climb_m = 0;
+  path.step_m = 0.2;
+  path.shutter_frames = 0.5;
+  const Scene scene = flight_frame(small_scene("uav"), path, 3);
+  EXPECT_NEAR(scene.shutter.y_m, 0.1, 1e-12);
+  EXPECT_EQ(scene.shutter.roll_deg, 0);
+  const SyntheticPair rolling = render(scene);
+  // The first row is that of a rig half of it behind, the last one that of a rig half of it ahead.
+  const int last = scene.rig.height - 1;
+  for (const auto& [row, shift_m] : {std::pair(0, -0.05), std::pair(last, 0.05)}) {
+    Scene still = scene;
+    still.shutter = {};
+    still.rig.y_m += shift_m;
+    const SyntheticPair global = render(still);
+    for (int u = 0; u < scene.rig.width; ++u) {
+      const auto at = static_cast<std::size_t>(row * scene.rig.width + u);
+      ASSERT_NEAR(rolling.left.bytes[at], global.left.bytes[at], 1) << row << ' ' << u;
+      ASSERT_NEAR(rolling.right.bytes[at], global.right.bytes[at], 1) << row << ' ' << u;
+    }
+  }
+  path.shutter_frames = 1.5;
+  EXPECT_THROW(path.validate(), Error);
+}
+
 TEST(FlightPath, LoopCloses) {
   const Scene scene = small_scene("uav");
   FlightPath path;
