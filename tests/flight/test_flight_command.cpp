@@ -440,7 +440,10 @@ TEST_F(FlightCommand, RejectsBadInput) {
   expect_complaint(run("inspect flight.txt --output out --layout upside-down"), "the layout is \"upside-down\"");
   expect_complaint(run("inspect nowhere --output out"), "nowhere: no such file");
   expect_complaint(run("inspect left/0.png --output out"), "give two images");
-  expect_complaint(run("inspect left/0.png right/0.png --resume --output out"), "--resume is for recordings only");
+  for (const std::string option : {"--resume", "--camera-size 0x0"}) {
+    expect_complaint(run("inspect left/0.png right/0.png " + option + " --output out"),
+                     option.substr(0, option.find(' ')) + " is for recordings only");
+  }
   EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing was begun";
   write("blank.txt", "left/0.png left/0.png\n");
   expect_complaint(run("inspect blank.txt --output out --quiet"), "none of the 1 frames could be matched");

@@ -240,6 +240,34 @@ TEST_F(ImageFile, RejectsTruncatedJpegTiffAndNetpbm) {
   expect_frame_refused(write("c.pgm", "P2 32 32 255\n1 2 x"), "a sample is \"x\"");
 }
 
+/// Largest resident memory of this process since the last call, KiB.
+long peak_memory_kib() {
+  long peak = 0;
+  std::string word;
+  for (std::ifstream status("/proc/self/status"); status >> word;) {
+    if (word == "VmHWM:") status >> peak;
+  }
+  std::ofstream("/proc/self/clear_refs") << 5;  // begins anew
+  return peak;
+}
+
+TEST_F(ImageFile, ClaimsTakeNoMemory) {
+  const std::string ppm = write("claim.ppm", "P6 8192 8192 255\n123456789");  // 192 MiB of samples
+  // 600000 strips, more than an image of the largest size has tiles of 16×16 pixels.
+  constexpr std::size_t offsets = 10 + 5 * 12, counts = 10 + 8 * 12, strips = 600000;
+  std::string many = small_tiff(32, 32, 8, 1, std::string(4 * strips, '\0'));
+  for (const std::size_t entry : {offsets, counts}) {
+    many.replace(entry + 4, 4, "\xc0\x27\x09\0", 4).replace(entry + 8, 4, many, offsets + 8, 4);
+  }
+  const std::string tiff = write("claim.tif", many);
+  many = {};
+  peak_memory_kib();
+  const long before = peak_memory_kib();
+  expect_frame_refused(ppm, "truncated: 201326592 bytes of samples are expected, but there are 9");
+  expect_frame_refused(tiff, "a tag has 600000 values");
+  EXPECT_LT(peak_memory_kib() - before, 32 * 1024);
+}
+
 TEST_F(ImageFile, RejectsSizesAndDepths) {
   expect_frame_refused(write("small.png", cv::Mat(31, 64, CV_8UC1, cv::Scalar(7))), "64×31");
   expect_frame_refused(write("wide.png", cv::Mat(32, 8193, CV_8UC1, cv::Scalar(7))), "8193×32");
