@@ -150,7 +150,7 @@ void inspect_flight(FlightSettings settings) {
   if (trajectory) {
     if (run.complete) trajectory->optimise(settings.track);
     folder.write(trajectory->files());
-    if (const std::optional<HealthFinding> delay = trajectory->exposure_delay()) results.add(*delay);
+    for (const HealthFinding& finding : trajectory->findings()) results.add(finding);
   }
   std::string map_text;
   if (settings.map && trajectory && run.complete)

@@ -47,6 +47,11 @@ struct FrameLink {
   double offset_sd_px = 0;                          ///< its standard error
   double measured_offset_px = 0;                    ///< what this link alone tells of the offset
   double measured_offset_sd_px = 0;                 ///< its standard error, 0: nothing
+  // What this link alone tells of the rig, with a free offset and shutter.
+  double rig_offset_px = 0;     ///< disparity offset at the principal point, pixels; any shape along the rows
+  double rig_offset_sd_px = 0;  ///< its standard error, 0: nothing
+  double shutter = 0;     ///< time from the first row of a picture to the last, by that between both frames; 0: global
+  double shutter_sd = 0;  ///< its standard error, 0: nothing
 };
 
 /// Maps of one frame, W×H.

@@ -12,13 +12,16 @@
 namespace roadstereo {
 namespace {
 
-/// Six of the motion, gain and offset of the grey levels, offset of the disparities.
-constexpr std::size_t unknowns = 9;
-constexpr std::size_t gain_index = 6, brightness_index = 7, offset_index = 8;
+/// Six of the motion, gain and offset of the grey levels, offset of the disparities, by how much that offset grows
+/// towards the sides more than its shape says, shutter.
+constexpr std::size_t unknowns = 11;
+constexpr std::size_t gain_index = 6, brightness_index = 7, offset_index = 8, growth_index = 9, shutter_index = 10;
 constexpr double min_depth_m = 0.05;
 constexpr std::size_t min_points = 50;
 constexpr double smallest = 1e-12;            // of a diagonal element: rounding
 constexpr double unknown_offset_sd_px = 0.5;  // of the offset of a rig of which nothing is known
+// Of what nothing is known, when the rig is examined: offsets in pixels, the shutter by the time between both frames.
+constexpr double any_offset_sd_px = 10, any_shutter_sd = 10;
 
 /// One equation: residual + row·x = 0.
 struct Equation {
@@ -58,6 +61,38 @@ struct State {
   double gain = 1;
   double brightness = 0;
   double offset_px = 0;
+  double growth_px = 0;
+  double shutter = 0;
+
+  /// Offset of the disparity where the shape of an offset has a value.
+  double offset(double shape) const { return offset_px * shape + growth_px * (shape - 1); }
+};
+
+/// Velocity of points at the end of a motion that was a constant one, per duration of the motion.
+class EndVelocity {
+ public:
+  explicit EndVelocity(const RigidMotion& motion) {
+    const Twist twist = twist_of(motion);
+    turn_ = {twist[3], twist[4], twist[5]};
+    const Vector<3>&t = motion.translation, bend = cross(turn_, t);
+    for (std::size_t i = 0; i < 3; ++i) shift_[i] = t[i] - bend[i] / 2;
+  }
+
+  Vector<3> operator()(const Vector<3>& q) const {
+    const Vector<3> turned = cross(turn_, q);
+    return {shift_[0] + turned[0], shift_[1] + turned[1], shift_[2] + turned[2]};
+  }
+
+ private:
+  Vector<3> turn_{}, shift_{};
+};
+
+/// Point of the reference at the present motion.
+struct MovedPoint {
+  Vector<3> q{};        ///< in the current camera frame, metres
+  double u = 0, v = 0;  ///< its pixel
+  double disparity = 0, shape = 0;
+  Vector<3> by_disparity{}, by_shutter{};  ///< derivatives of q
 };
 
 class Linearisation {
@@ -67,25 +102,28 @@ class Linearisation {
         calibration_(calibration),
         samples_(current.pyramid.level(level)),
         scale_(1.0 / (1 << level)),
-        depth_scale_(calibration.focal_px * calibration.baseline_m) {}
+        depth_scale_(calibration.focal_px * calibration.baseline_m),
+        rows_(current.disparity.height() - 1) {}
 
   void build(const std::vector<ReferencePoint>& points, const State& state, Equations& equations) const {
     equations.grey.clear();
     equations.disparity.clear();
     equations.visible = 0;
-    for (const ReferencePoint& point : points) add(point, state, equations);
+    const EndVelocity velocity(state.motion);
+    for (const ReferencePoint& point : points) add(point, state, velocity, equations);
   }
 
  private:
-  void add(const ReferencePoint& point, const State& state, Equations& equations) const {
+  void add(const ReferencePoint& point, const State& state, const EndVelocity& velocity, Equations& equations) const {
     const double shape = offset_shape(calibration_, point.u, point.disparity);
-    const double disparity = point.disparity + state.offset_px * shape + calibration_.disparity_offset_px;
+    const double disparity = point.disparity + state.offset(shape) + calibration_.disparity_offset_px;
     if (!(disparity > 0)) return;
     const double f = calibration_.focal_px;
     const double z = depth_scale_ / disparity;
     const Vector<3> p{(point.u - calibration_.cx_px) / f * z, (point.v - calibration_.cy_px) / f * z, z};
-    const Vector<3> q = state.motion(p);
-    if (!(q[2] > min_depth_m)) return;
+    Vector<3> q = state.motion(p);
+    Vector<3> by_shutter{};
+    if (!end_of_motion(state.shutter, point.v, velocity, q, by_shutter)) return;
     const double u = f * q[0] / q[2] + calibration_.cx_px, v = f * q[1] / q[2] + calibration_.cy_px;
     GreySample sample;
     if (!sample_grey(samples_, (u + 0.5) * scale_ - 0.5, (v + 0.5) * scale_ - 0.5, sample)) return;
@@ -100,40 +138,62 @@ class Linearisation {
     equation.cell = point.cell;
     equation.residual = sample.grey - state.gain * point.grey - state.brightness;
     put_motion(by_q, q, equation);
+    equation.row[shutter_index] = dot(by_q, by_shutter);
     equation.row[gain_index] = -point.grey;
     equation.row[brightness_index] = -1;
     const double by_offset = dot(by_q, by_disparity);
     equation.row[offset_index] = by_offset * shape;
+    equation.row[growth_index] = by_offset * (shape - 1);
     equation.variance = by_offset * by_offset * point.sigma_px * point.sigma_px;
     equations.grey.push_back(equation);
-    add_disparity(point, state, q, {u, v}, by_disparity, shape, disparity, equations);
+    add_disparity(point, state, {q, u, v, disparity, shape, by_disparity, by_shutter}, equations);
   }
 
-  /// The measured disparity at (u, v) against that of q, point to plane.
-  void add_disparity(const ReferencePoint& point, const State& state, const Vector<3>& q,
-                     const std::array<double, 2>& pixel, const Vector<3>& by_disparity, double shape, double disparity,
+  /// Moves a point on to when its row of the current frame is exposed, by the shutter; `by_shutter`: derivative. False
+  /// behind the camera.
+  bool end_of_motion(double shutter, double reference_row, const EndVelocity& velocity, Vector<3>& q,
+                     Vector<3>& by_shutter) const {
+    const Vector<3> start = q;
+    const int passes = shutter != 0 ? 3 : 1;  // the row depends on the time, little
+    for (int i = 0; i < passes; ++i) {
+      if (!(q[2] > min_depth_m)) return false;
+      const Vector<3> speed = velocity(q);
+      const double row = calibration_.focal_px * q[1] / q[2] + calibration_.cy_px;
+      const double later = (row - reference_row) / rows_;
+      for (std::size_t k = 0; k < 3; ++k) {
+        by_shutter[k] = later * speed[k];
+        q[k] = start[k] + shutter * by_shutter[k];
+      }
+    }
+    return q[2] > min_depth_m;
+  }
+
+  /// The measured disparity where a point is seen against that of the point, point to plane.
+  void add_disparity(const ReferencePoint& point, const State& state, const MovedPoint& moved,
                      Equations& equations) const {
     SurfaceSample surface;
-    if (!sample_surface(current_, pixel[0], pixel[1], surface)) return;
+    if (!sample_surface(current_, moved.u, moved.v, surface)) return;
     const double f = calibration_.focal_px;
+    const Vector<3>& q = moved.q;
     // N·p = b for points of the plane around the point of the reference.
-    const Vector<3> plane{
-        point.slope_u, point.slope_v,
-        (disparity - point.slope_u * (point.u - calibration_.cx_px) - point.slope_v * (point.v - calibration_.cy_px)) /
-            f};
+    const Vector<3> plane{point.slope_u, point.slope_v,
+                          (moved.disparity - point.slope_u * (point.u - calibration_.cx_px) -
+                           point.slope_v * (point.v - calibration_.cy_px)) /
+                              f};
     const Vector<3> normal = state.motion.rotated(plane);
     const double towards = dot(normal, q);
     if (!(towards > 0)) return;
-    const double here = offset_shape(calibration_, pixel[0], surface.disparity);
+    const double here = offset_shape(calibration_, moved.u, surface.disparity);
     const double factor = depth_scale_ / (q[2] * towards);
     const Vector<3> by_q{factor * normal[0], factor * normal[1], factor * normal[2]};
     Equation equation;
     equation.cell = point.cell;
-    equation.residual =
-        surface.disparity + state.offset_px * here + calibration_.disparity_offset_px - depth_scale_ / q[2];
+    equation.residual = surface.disparity + state.offset(here) + calibration_.disparity_offset_px - depth_scale_ / q[2];
     put_motion(by_q, q, equation);
-    const double by_offset = dot(by_q, by_disparity);
-    equation.row[offset_index] = here + by_offset * shape;
+    equation.row[shutter_index] = dot(by_q, moved.by_shutter);
+    const double by_offset = dot(by_q, moved.by_disparity);
+    equation.row[offset_index] = here + by_offset * moved.shape;
+    equation.row[growth_index] = here - 1 + by_offset * (moved.shape - 1);
     equation.variance = surface.sigma_px * surface.sigma_px + by_offset * by_offset * point.sigma_px * point.sigma_px;
     equations.disparity.push_back(equation);
   }
@@ -152,6 +212,7 @@ class Linearisation {
   const Image<GreySample>& samples_;
   double scale_;
   double depth_scale_;
+  double rows_;  ///< from the first to the last
 };
 
 /// Tukey's biweight of a standardised residual.
@@ -226,6 +287,13 @@ void divide_weights(std::vector<Equation>& equations, double factor) {
   for (Equation& e : equations) e.weight /= factor;
 }
 
+/// Standard deviations of what is known of these unknowns; 0: all.
+struct Spread {
+  double offset_px = 0;
+  double growth_px = 0;
+  double shutter = 0;
+};
+
 struct NormalEquations {
   Matrix<unknowns> matrix{};
   Vector<unknowns> right{};
@@ -239,6 +307,19 @@ struct NormalEquations {
         for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += weighted * e.row[j];
       }
     }
+  }
+
+  /// An unknown is expected to be `excess` smaller, with a standard deviation; 0: it stays as it is.
+  void expect(std::size_t index, double excess, double sd) {
+    if (sd > 0) {
+      matrix[index][index] += 1 / (sd * sd);
+      right[index] -= excess / (sd * sd);
+      return;
+    }
+    for (std::size_t j = 0; j < index; ++j) matrix[index][j] = 0;
+    for (std::size_t i = index + 1; i < unknowns; ++i) matrix[i][index] = 0;
+    matrix[index][index] = 1;
+    right[index] = 0;
   }
 };
 
@@ -277,6 +358,7 @@ class Aligner {
     double noise = 10;
     weigh(noise);
     fill_covariance(alignment);
+    examine_rig(points, linearisation, noise, alignment);
     alignment.correlation = patch_correlation(reference_, current_, calibration_, state_.motion, state_.offset_px);
     return alignment;
   }
@@ -292,35 +374,33 @@ class Aligner {
     divide_weights(equations_.disparity, correlation_factor(equations_.disparity, sums_));
   }
 
-  NormalEquations normal_equations(double offset_sd_px) const {
+  NormalEquations normal_equations(const Spread& spread) const {
     NormalEquations normal;
     normal.add(equations_.grey);
     normal.add(equations_.disparity);
-    if (offset_sd_px > 0) {
-      const double weight = 1 / (offset_sd_px * offset_sd_px);
-      normal.matrix[offset_index][offset_index] += weight;
-      normal.right[offset_index] -= weight * (state_.offset_px - prior_.mean_px);
-    } else {  // known
-      for (std::size_t j = 0; j < offset_index; ++j) normal.matrix[offset_index][j] = 0;
-      normal.matrix[offset_index][offset_index] = 1;
-      normal.right[offset_index] = 0;
-    }
+    normal.expect(offset_index, state_.offset_px - prior_.mean_px, spread.offset_px);
+    normal.expect(growth_index, state_.growth_px, spread.growth_px);
+    normal.expect(shutter_index, state_.shutter, spread.shutter);
     return normal;
   }
 
   /// One step of Gauss–Newton; returns by how much it moves the points, pixels of the level.
   double step(int level) {
-    NormalEquations normal = normal_equations(prior_.sd_px);
-    factor_in_place(normal.matrix, smallest);
-    const Vector<unknowns> x = solve_factored(normal.matrix, normal.right);
-    state_.motion = rigid_motion({x[0], x[1], x[2], x[3], x[4], x[5]}) * state_.motion;
-    state_.gain += x[gain_index];
-    state_.brightness += x[brightness_index];
-    state_.offset_px += x[offset_index];
+    const Vector<unknowns> x = solved({prior_.sd_px, 0, 0});
+    take(x);
     const double f = calibration_.focal_px;
     const double near_m = calibration_.focal_px * calibration_.baseline_m / typical_disparity();
     const double shift = f * std::hypot(x[0], x[1], x[2]) / near_m + f * std::hypot(x[3], x[4], x[5]);
     return shift / (1 << level);
+  }
+
+  void take(const Vector<unknowns>& x) {
+    state_.motion = rigid_motion({x[0], x[1], x[2], x[3], x[4], x[5]}) * state_.motion;
+    state_.gain += x[gain_index];
+    state_.brightness += x[brightness_index];
+    state_.offset_px += x[offset_index];
+    state_.growth_px += x[growth_index];
+    state_.shutter += x[shutter_index];
   }
 
   double typical_disparity() {
@@ -330,20 +410,51 @@ class Aligner {
   }
 
   void fill_covariance(Alignment& alignment) {
-    const Matrix<unknowns> covariance = sandwich(normal_equations(prior_.sd_px).matrix, prior_.sd_px);
+    const Matrix<unknowns> covariance = sandwich({prior_.sd_px, 0, 0});
     for (std::size_t i = 0; i < 6; ++i) std::copy_n(covariance[i].begin(), 6, alignment.covariance[i].begin());
     alignment.offset_px = state_.offset_px;
     alignment.offset_sd_px = std::sqrt(covariance[offset_index][offset_index]);
     // What one more step with a free offset finds.
-    NormalEquations free = normal_equations(unknown_offset_sd_px);
-    const Matrix<unknowns> free_covariance = sandwich(free.matrix, unknown_offset_sd_px);
-    factor_in_place(free.matrix, smallest);
-    alignment.measured_offset_px = state_.offset_px + solve_factored(free.matrix, free.right)[offset_index];
-    alignment.measured_offset_sd_px = std::sqrt(free_covariance[offset_index][offset_index]);
+    const Spread free_offset{unknown_offset_sd_px, 0, 0};
+    alignment.measured_offset_px = state_.offset_px + solved(free_offset)[offset_index];
+    alignment.measured_offset_sd_px = std::sqrt(sandwich(free_offset)[offset_index][offset_index]);
+  }
+
+  /// What further steps with a free shutter and a free offset of the disparities find. The first step alone overshoots
+  /// by a tenth or more: the gradients of fine texture are too small.
+  void examine_rig(const std::vector<ReferencePoint>& points, const Linearisation& linearisation, double noise,
+                   Alignment& alignment) {
+    constexpr int steps = 6;
+    constexpr double noteworthy_std_errors = 2;
+    const Spread free{any_offset_sd_px, any_offset_sd_px, any_shutter_sd};
+    const State before = state_;
+    for (int i = 0; i < steps; ++i) {
+      if (i > 0) {
+        linearisation.build(points, state_, equations_);
+        if (equations_.grey.size() < min_points) break;
+        weigh(noise);
+      }
+      const Matrix<unknowns> covariance = sandwich(free);
+      take(solved(free));
+      alignment.rig_offset_sd_px = std::sqrt(covariance[offset_index][offset_index]);
+      alignment.shutter_sd = std::sqrt(covariance[shutter_index][shutter_index]);
+      if (std::abs(state_.shutter) < noteworthy_std_errors * alignment.shutter_sd &&
+          std::abs(state_.offset_px) < noteworthy_std_errors * alignment.rig_offset_sd_px)
+        break;
+    }
+    alignment.rig_offset_px = state_.offset_px;
+    alignment.shutter = state_.shutter;
+    state_ = before;
+  }
+
+  Vector<unknowns> solved(const Spread& spread) const {
+    NormalEquations normal = normal_equations(spread);
+    factor_in_place(normal.matrix, smallest);
+    return solve_factored(normal.matrix, normal.right);
   }
 
   /// H⁻¹ (Σ g gᵀ) H⁻¹ with the scores g of the cells.
-  Matrix<unknowns> sandwich(Matrix<unknowns> factor, double offset_sd_px) const {
+  Matrix<unknowns> sandwich(const Spread& spread) const {
     std::vector<Vector<unknowns>> scores(sums_.size());
     const auto add_scores = [&scores](const std::vector<Equation>& equations) {
       for (const Equation& e : equations) {
@@ -353,22 +464,30 @@ class Aligner {
     };
     add_scores(equations_.grey);
     add_scores(equations_.disparity);
+    Matrix<unknowns> factor = normal_equations(spread).matrix;
     factor_in_place(factor, smallest);
     std::size_t used = 0;
     Matrix<unknowns> covariance{};
     for (Vector<unknowns>& score : scores) {
       if (std::all_of(score.begin(), score.end(), [](double s) { return s == 0; })) continue;
       ++used;
-      if (offset_sd_px <= 0) score[offset_index] = 0;
+      if (spread.offset_px <= 0) score[offset_index] = 0;
+      if (spread.growth_px <= 0) score[growth_index] = 0;
+      if (spread.shutter <= 0) score[shutter_index] = 0;
       add_outer(solve_factored(factor, score), covariance);
     }
-    if (offset_sd_px > 0) {
+    const auto add_expectation = [&](std::size_t index, double sd) {
+      if (sd <= 0) return;
       Vector<unknowns> score{};
-      score[offset_index] = 1 / offset_sd_px;
+      score[index] = 1 / sd;
       add_outer(solve_factored(factor, score), covariance);
-    }
+    };
+    add_expectation(offset_index, spread.offset_px);
+    add_expectation(growth_index, spread.growth_px);
+    add_expectation(shutter_index, spread.shutter);
     const double count = static_cast<double>(used);
-    const double small_sample = used > 2 * unknowns ? count / (count - unknowns) : 2;
+    const std::size_t estimated = spread.shutter > 0 ? unknowns : unknowns - 2;
+    const double small_sample = used > 2 * estimated ? count / (count - static_cast<double>(estimated)) : 2;
     for (Vector<unknowns>& row : covariance) {
       for (double& value : row) value *= small_sample;
     }

@@ -22,6 +22,10 @@ struct Alignment {
   double offset_sd_px = 0;
   double measured_offset_px = 0;  ///< what the frames say of it, whatever was known before
   double measured_offset_sd_px = 0;
+  double rig_offset_px = 0;  ///< at the principal point, with a free offset and shutter
+  double rig_offset_sd_px = 0;
+  double shutter = 0;  ///< time from the first row to the last, by that between both frames
+  double shutter_sd = 0;
 };
 
 /// Scale of the disparity offset at column u: a right camera that is yawed by θ shifts disparities by f·θ·(1 + x²).

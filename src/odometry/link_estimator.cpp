@@ -74,6 +74,10 @@ FrameLink frame_link(int from, int to, const Alignment& alignment, const Odometr
   link.offset_sd_px = alignment.offset_sd_px;
   link.measured_offset_px = alignment.measured_offset_px;
   link.measured_offset_sd_px = alignment.measured_offset_sd_px;
+  link.rig_offset_px = alignment.rig_offset_px;
+  link.rig_offset_sd_px = alignment.rig_offset_sd_px;
+  link.shutter = alignment.shutter;
+  link.shutter_sd = alignment.shutter_sd;
   return link;
 }
 

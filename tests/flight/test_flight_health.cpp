@@ -13,9 +13,10 @@ namespace {
 
 class FlightHealthCommand : public CommandTest {
  protected:
-  /// Ids of the findings of the flight in a folder, each followed by a blank.
+  /// Ids of the findings of the flight in a folder, each followed by a blank. Options may follow the folder.
   std::string findings_of(const std::string& source) {
-    const Outcome outcome = run("inspect " + source + " --output " + source + "_out --json");
+    const Outcome outcome =
+        run("inspect " + source + " --output " + source.substr(0, source.find(' ')) + "_out --json");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     health_ = nlohmann::json::parse(outcome.out)["health"];
     std::string ids;
@@ -58,6 +59,31 @@ TEST_F(FlightHealthCommand, NamesSpecksOfOneLens) {
   EXPECT_EQ(health_["frames_with"]["left-spots"], 2);  // from the twentieth frame on
   const std::string report = read_text(folder_ / "flight_out/report.html");
   EXPECT_NE(report.find("the same 6 places of the left picture"), std::string::npos);
+}
+
+TEST_F(FlightHealthCommand, TellsWrongOffsetOfDisparities) {
+  ASSERT_EQ(run("synth --scene uav --size 320x180 --frames 24 --quiet --output flight --flight step=0.5").exit_code, 0);
+  EXPECT_EQ(findings_of("flight --trajectory"), "");
+  const std::string right = read_text(folder_ / "flight/calibration.yaml");
+  for (const int offset_px : {2, -2}) {
+    write("flight/calibration.yaml", right + "disparity_offset_px: " + std::to_string(offset_px) + "\n");
+    ASSERT_NE(findings_of("flight --trajectory").find("disparity-offset"), std::string::npos);
+    const nlohmann::json& finding = health_["findings"][0];
+    EXPECT_NEAR(finding["value"], 2, 0.1);
+    EXPECT_NE(finding["text"].get<std::string>().find(offset_px > 0 ? "too large" : "too small"), std::string::npos);
+  }
+}
+
+TEST_F(FlightHealthCommand, TellsHowLongShutterRolls) {
+  const std::string synth = "synth --scene uav --size 320x180 --frames 24 --rate 20 --quiet --output ";
+  ASSERT_EQ(run(synth + "global --flight step=0.5").exit_code, 0);
+  EXPECT_EQ(findings_of("global --trajectory").find("rolling-shutter"), std::string::npos);
+  ASSERT_EQ(run(synth + "rolling --flight step=0.5,shutter=0.4").exit_code, 0);
+  ASSERT_EQ(findings_of("rolling --trajectory"), "rolling-shutter ");
+  const nlohmann::json& finding = health_["findings"][0];
+  EXPECT_EQ(finding["unit"], "ms");
+  EXPECT_NEAR(finding["value"], 0.4 * 50, 2);
+  EXPECT_NE(read_text(folder_ / "rolling_out/report.html").find("Health: the shutters roll"), std::string::npos);
 }
 
 }  // namespace

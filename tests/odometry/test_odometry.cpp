@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -224,6 +225,41 @@ TEST(Odometry, ForgetsOldFramesOnly) {
   }
   EXPECT_EQ(all.trajectory().frames.size(), flight().size());
   EXPECT_EQ(few.links().back().to, 7);
+}
+
+/// Mean of a number over links.
+double mean_of(const std::vector<FrameLink>& links, const std::function<double(const FrameLink&)>& number) {
+  double sum = 0;
+  for (const FrameLink& link : links) sum += number(link);
+  return sum / static_cast<double>(links.size());
+}
+
+TEST(Odometry, RigIsMeasuredByEveryLink) {
+  constexpr int count = 5;
+  const synth::Scene scene = test::smaller_scene("uav", 2);
+  synth::FlightPath path;
+  path.step_m = 0.3;
+  for (const double shutter : {0.0, 0.4}) {
+    path.shutter_frames = shutter;
+    std::vector<KnownFrame> frames;
+    for (int i = 0; i < count; ++i) frames.push_back(known_frame(synth::flight_frame(scene, path, i)));
+    for (const double offset_px : {0.0, 1.5}) {  // of the calibration
+      StereoCalibration calibration = scene.rig.calibration();
+      calibration.disparity_offset_px = offset_px;
+      Odometry odometry(calibration);
+      for (int i = 0; i < count; ++i) odometry.add(i, frames[static_cast<std::size_t>(i)].maps());
+      const std::vector<FrameLink>& links = odometry.links();
+      ASSERT_EQ(links.size(), std::size_t{count - 1});
+      const double time = mean_of(links, [](const FrameLink& link) { return (link.to - link.from) * link.shutter; });
+      EXPECT_NEAR(time, shutter, 0.03) << offset_px;
+      EXPECT_NEAR(mean_of(links, [](const FrameLink& link) { return link.rig_offset_px; }), -offset_px, 0.05)
+          << shutter;
+      for (const FrameLink& link : links) {
+        EXPECT_LT(link.rig_offset_sd_px, 0.05);
+        EXPECT_LT((link.to - link.from) * link.shutter_sd, 0.1);
+      }
+    }
+  }
 }
 
 TEST(Odometry, RejectsInvalidFrames) {

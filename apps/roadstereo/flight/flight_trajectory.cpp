@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "finite_values.hpp"
+#include "flight/disparity_offset.hpp"
 #include "flight/exposure_delay.hpp"
+#include "flight/rolling_shutter.hpp"
 #include "io/csv.hpp"
 #include "roadstereo/ground_plane.hpp"
 #include "roadstereo/io/local_axes.hpp"
@@ -47,8 +49,10 @@ std::string poses_csv(const Trajectory& trajectory, const std::vector<double>& t
 }
 
 std::string links_csv(const std::vector<FrameLink>& links) {
-  std::string text =
-      fmt::format("from,to,status,correlation,overlap,{},{},offset_px,sd_offset_px\n", matrix_names, deviation_names);
+  std::string text = fmt::format(
+      "from,to,status,correlation,overlap,{},{},offset_px,sd_offset_px,rig_offset_px,sd_rig_offset_px,shutter,sd_"
+      "shutter\n",
+      matrix_names, deviation_names);
   for (const FrameLink& link : links) {
     io::CsvLine line;
     line.add(std::int64_t{link.from}).add(std::int64_t{link.to}).add(name_of(link.status));
@@ -56,6 +60,8 @@ std::string links_csv(const std::vector<FrameLink>& links) {
     add_matrix(link.motion, line);
     add_deviations(link.covariance, line);
     line.add(link.offset_px, 3).add(link.offset_sd_px, 3);
+    line.add(link.rig_offset_px, 3).add(link.rig_offset_sd_px, 3);
+    line.add(link.shutter, 4).add(link.shutter_sd, 4);
     text += line.end();
   }
   return text;
@@ -167,10 +173,18 @@ std::vector<StagedFile> FlightTrajectory::files() const {
           text_file(names[4], loops_csv(graph_.loops))};
 }
 
-std::optional<HealthFinding> FlightTrajectory::exposure_delay() const {
+std::vector<HealthFinding> FlightTrajectory::findings() const {
   std::map<int, double> times_s;
   for (std::size_t i = 0; i < times_s_.size(); ++i) times_s[odometry_.trajectory().frames[i].frame] = times_s_[i];
-  return cli::exposure_delay(odometry_.links(), times_s, calibration_.focal_px);
+  const std::vector<FrameLink>& links = odometry_.links();
+  std::vector<HealthFinding> findings;
+  const auto shutter = rolling_shutter(links, times_s);
+  const auto delay = exposure_delay(links, times_s, calibration_.focal_px);
+  const auto offset = disparity_offset(links);
+  if (offset) findings.push_back(*offset);
+  if (shutter) findings.push_back(*shutter);
+  if (delay && !shutter) findings.push_back(*delay);  // a shutter that rolls bends what the delay is measured from
+  return findings;
 }
 
 std::string FlightTrajectory::summary() const {

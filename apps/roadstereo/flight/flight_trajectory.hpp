@@ -38,8 +38,8 @@ class FlightTrajectory {
   /// Why the track cannot be that of this flight, a sentence; empty without one, or if it can.
   std::string track_contradiction() const { return graph_.track_contradicts ? graph_.track_unused : std::string(); }
 
-  /// A delay between the cameras' exposures, if the links show one.
-  std::optional<HealthFinding> exposure_delay() const;
+  /// What the links show: a wrong offset of the disparities, shutters that roll, a delay between both exposures.
+  std::vector<HealthFinding> findings() const;
 
   /// Returns one line: path, pieces, weak links, offset of the disparities, loops, track.
   std::string summary() const;

@@ -1,0 +1,46 @@
+// A wrong offset of the disparities, from links whose mean and standard error have a closed form.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "flight/disparity_offset.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+constexpr int count = 20;
+
+/// Links of every frame with the next one: an offset, ± `noise`.
+std::vector<FrameLink> links_with(double offset_px, double noise) {
+  std::vector<FrameLink> links;
+  for (int i = 0; i < count; ++i) {
+    FrameLink& link = links.emplace_back();
+    link.from = i;
+    link.to = i + 1;
+    link.rig_offset_px = offset_px + (i % 2 == 0 ? noise : -noise);
+    link.rig_offset_sd_px = 0.05;
+  }
+  return links;
+}
+
+TEST(DisparityOffset, IsMeanOfLinks) {
+  const auto finding = disparity_offset(links_with(-5, 0.8));
+  ASSERT_TRUE(finding.has_value());
+  EXPECT_EQ(finding->id, "disparity-offset");
+  EXPECT_NEAR(finding->value, 5, 1e-9);
+  EXPECT_NEAR(finding->limit, 5 * 0.8 / std::sqrt(count - 1.0), 1e-9);
+  EXPECT_NE(finding->text.find("are 5.00 ± 0.18 px too large"), std::string::npos) << finding->text;
+  EXPECT_NE(disparity_offset(links_with(5, 0.8))->text.find("too small"), std::string::npos);
+}
+
+TEST(DisparityOffset, NeedsFiveStandardErrorsAndHalfAPixel) {
+  EXPECT_FALSE(disparity_offset(links_with(0.49, 0)).has_value());
+  EXPECT_TRUE(disparity_offset(links_with(0.51, 0)).has_value());
+  EXPECT_FALSE(disparity_offset(links_with(0.9, 0.8)).has_value());
+  EXPECT_FALSE(disparity_offset({}).has_value());
+}
+
+}  // namespace
+}  // namespace roadstereo::cli
