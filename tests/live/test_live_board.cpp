@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <future>
 
 #include "live/live_board.hpp"
@@ -63,6 +64,32 @@ TEST(LiveBoard, KeepsLatestViews) {
   for (int i = 0; i < 9; ++i) board.publish(view_of(0));
   EXPECT_EQ(board.view(8)->number, 8);
   EXPECT_EQ(board.view(2)->number, 9) << "gone: the newest";
+}
+
+TEST(RecentHealth, TellsVibrationOfLastPairs) {
+  RecentHealth recent;
+  for (int i = 0; i <= 200; ++i) recent.add(PairHealth{.row_offset_px = i % 2 == 0 ? 0.1 : 0.7});
+  ASSERT_EQ(recent.findings().size(), 1U);
+  EXPECT_EQ(recent.findings()[0].id, "vibration");
+  EXPECT_NEAR(recent.vibration_px(), 1.4826 * 0.6 / std::sqrt(2.0), 1e-9);
+  for (int i = 0; i < 200; ++i) recent.add(PairHealth{.row_offset_px = 0.1});
+  EXPECT_EQ(recent.vibration_px(), 0);
+  EXPECT_TRUE(recent.findings().empty());
+}
+
+TEST(RecentHealth, TellsLostPairsOnceThereAreHundred) {
+  RecentHealth recent;
+  for (int i = 0; i < 2; ++i) recent.add_without_result();
+  for (int i = 0; i < 97; ++i) recent.add(PairHealth{});
+  EXPECT_TRUE(std::isnan(recent.lost_share()));
+  EXPECT_TRUE(recent.findings().empty());
+  recent.add(PairHealth{});
+  EXPECT_DOUBLE_EQ(recent.lost_share(), 0.02);
+  ASSERT_EQ(recent.findings().size(), 1U);
+  EXPECT_EQ(recent.findings()[0].id, "lost-pairs");
+  for (int i = 0; i < 100; ++i) recent.add(PairHealth{});
+  EXPECT_DOUBLE_EQ(recent.lost_share(), 0.01);
+  EXPECT_TRUE(recent.findings().empty()) << "the limit is 1 %";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cmath>
 #include <fstream>
 #include <future>
 #include <new>
@@ -117,7 +118,9 @@ TEST(LiveServer, ServesPageWithSafeHeaders) {
     EXPECT_EQ(file->status, 200) << path;
     EXPECT_GT(file->body.size(), 100U) << path;
   }
-  EXPECT_EQ(bench.client.Get("/secret")->status, 404);
+  for (const char* absent : {"/secret", "/styleXcss", "/rampXpng"}) {
+    EXPECT_EQ(bench.client.Get(absent)->status, 404) << absent;
+  }
 }
 
 TEST(LiveServer, StateHasNewestView) {
@@ -138,6 +141,23 @@ TEST(LiveServer, StateHasNewestView) {
   EXPECT_EQ(state["frame"], 2);
   EXPECT_EQ(state["damages"].size(), 0U) << "the second view told nothing new of it";
   EXPECT_EQ(bench.state("?after=0")["damages"].size(), 1U);
+}
+
+TEST(LiveServer, StateHasHealthOfLastPairs) {
+  Bench bench;
+  for (int i = 0; i < 20; ++i) {
+    LiveView view = small_view();
+    view.health.row_offset_px = i % 2;
+    bench.board.publish(std::move(view));
+  }
+  const nlohmann::json view = bench.state("?after=0")["view"];
+  ASSERT_EQ(view["health"]["findings"].size(), 1U);
+  EXPECT_EQ(view["health"]["findings"][0]["id"], "vibration");
+  EXPECT_EQ(view["health"]["findings"][0]["limit"], 0.5);
+  EXPECT_NEAR(view["health"]["vibration_px"], 1.4826 / std::sqrt(2.0), 1e-9);
+  EXPECT_EQ(view["health"]["lost_share"], nullptr);
+  ASSERT_EQ(view["warnings"].size(), 1U) << "the page shows them";
+  EXPECT_EQ(view["warnings"][0].get<std::string>().rfind("vibration: the offset of the rows", 0), 0U);
 }
 
 TEST(LiveServer, StateWaitsForNextView) {

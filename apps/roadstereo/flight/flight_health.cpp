@@ -1,12 +1,11 @@
 #include "flight/flight_health.hpp"
 
-#include <fmt/core.h>
-
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include "finite_values.hpp"
+#include "series_health.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -68,12 +67,7 @@ PairHealth FlightHealth::typical() const {
 }
 
 double FlightHealth::vibration_px() const {
-  constexpr std::size_t min_steps = 10;
-  const std::vector<double> offsets = known_of(of_frames_, &PairHealth::row_offset_px);
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < offsets.size(); ++i) steps.push_back(std::abs(offsets[i] - offsets[i - 1]));
-  // The difference of two offsets has twice the variance of one.
-  return steps.size() < min_steps ? PairHealth::unknown : 1.4826 * median(steps) / std::sqrt(2.0);
+  return cli::vibration_px(known_of(of_frames_, &PairHealth::row_offset_px));
 }
 
 double FlightHealth::lost_share() const {
@@ -90,23 +84,9 @@ double FlightHealth::lost_share() const {
 
 std::vector<HealthFinding> FlightHealth::findings() const {
   std::vector<HealthFinding> findings = typical().findings();
-  constexpr double max_vibration_px = 0.5, max_lost = 0.01;
-  const double vibration = vibration_px(), lost = lost_share();
-  if (vibration > max_vibration_px) {
-    findings.push_back(
-        {"vibration", vibration, max_vibration_px, "px",
-         fmt::format("the offset of the rows changes by {:.2f} px from frame to frame (limit {} px): a camera "
-                     "vibrates; damp its mount",
-                     vibration, max_vibration_px),
-         false});
-  }
-  if (lost > max_lost) {
-    findings.push_back(
-        {"lost-pairs", lost, max_lost, "",
-         fmt::format("{:.1f} % of the pairs are missing or have no result (limit {} %); see the reasons in "
-                     "frames.csv, and record to a faster disk",
-                     100 * lost, 100 * max_lost),
-         false});
+  const std::string advice = "see the reasons in frames.csv, and record to a faster disk";
+  for (const auto& finding : {vibration_finding(vibration_px()), lost_pairs_finding(lost_share(), advice)}) {
+    if (finding) findings.push_back(*finding);
   }
   findings.insert(findings.end(), of_trajectory_.begin(), of_trajectory_.end());
   return findings;

@@ -45,6 +45,7 @@ void LiveBoard::count_too_old() {
 void LiveBoard::count_rejected(const std::string& reason) {
   const std::lock_guard lock(mutex_);
   ++counts_.rejected;
+  health_.add_without_result();
   if (!lost_ && !ended_) message_ = "the last pair was rejected: " + reason;
 }
 
@@ -91,6 +92,7 @@ void LiveBoard::publish(LiveView view) {
     view.latency_ms = 1000 * seconds_between(view.arrival, now);
     latency_.add(view.latency_ms);
     rate_.add(now);
+    health_.add(view.health);
     list_.add(view);
     if (!lost_ && !ended_) message_.clear();
     views_.push_front(std::make_shared<const LiveView>(std::move(view)));
@@ -130,6 +132,7 @@ LiveStatus LiveBoard::status_now(std::int64_t after, Clock::time_point now) {
   status.recording = recording_;
   status.static_mask = static_mask_;
   status.path = path_;
+  status.health = health_;
   status.damages_found = list_.found();
   std::copy_if(list_.entries().begin(), list_.entries().end(), std::back_inserter(status.damages),
                [after](const ListedDamage& listed) { return listed.changed_in > after; });

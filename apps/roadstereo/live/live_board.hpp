@@ -13,6 +13,7 @@
 #include "live/live_path.hpp"
 #include "live/live_view.hpp"
 #include "live/rate_meter.hpp"
+#include "live/recent_health.hpp"
 #include "roadstereo/io/flight_frame.hpp"
 
 namespace roadstereo::cli {
@@ -54,6 +55,7 @@ struct LiveStatus {
   LatencyStatistics latency;  ///< of the last frames
   LiveCounts counts;
   RecordingState recording;
+  RecentHealth health;                ///< of the last pairs
   SharedPath path;                    ///< with --trajectory; null before the first frame that has a place
   std::int64_t damages_found = 0;     ///< of the whole run
   io::StaticMaskRecord static_mask;   ///< what never moves; frames count those processed
@@ -116,6 +118,7 @@ class LiveBoard {
   std::deque<SharedView> views_;  ///< newest first
   RateMeter rate_;
   LatencyLog latency_;
+  RecentHealth health_;
   DamageList list_;
 };
 

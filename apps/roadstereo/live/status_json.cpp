@@ -49,7 +49,16 @@ ordered_json roll_json(const LiveView& view) {
           {"observable", view.geometry->roll_observable}};
 }
 
-ordered_json view_json(const LiveView& view) {
+/// Of the view, with what only the last pairs together show.
+ordered_json health_of(const LiveView& view, const RecentHealth& recent) {
+  ordered_json json = health_json(view.health);
+  for (const ordered_json& finding : findings_json(recent.findings())) json["findings"].push_back(finding);
+  json["vibration_px"] = json_number(recent.vibration_px());
+  json["lost_share"] = json_number(recent.lost_share());
+  return json;
+}
+
+ordered_json view_json(const LiveView& view, const RecentHealth& recent) {
   ordered_json json{{"name", view.name},
                     {"width", view.left.width},
                     {"height", view.left.height},
@@ -58,8 +67,9 @@ ordered_json view_json(const LiveView& view) {
                     {"height_m", nullptr},
                     {"pitch_degrees", nullptr},
                     {"damages", view.damages.size()},
-                    {"health", health_json(view.health)},
+                    {"health", health_of(view, recent)},
                     {"warnings", view.warnings}};
+  for (const HealthFinding& finding : recent.findings()) json["warnings"].push_back(finding.id + ": " + finding.text);
   if (view.plane) {
     json["height_m"] = json_number(view.plane->height_m);
     json["pitch_degrees"] = json_number(degrees(view.plane->pitch_rad));
@@ -109,7 +119,7 @@ ordered_json status_json(const LiveStatus& status, double max_age_s) {
                     {"view", nullptr},
                     {"damages_found", status.damages_found},
                     {"damages", ordered_json::array()}};
-  if (status.view) json["view"] = view_json(*status.view);
+  if (status.view) json["view"] = view_json(*status.view, status.health);
   if (status.path) json["path"] = path_json(*status.path);
   for (const ListedDamage& listed : status.damages) json["damages"].push_back(damage_json(listed));
   return json;
