@@ -66,13 +66,19 @@ TEST(LiveBoard, KeepsLatestViews) {
   EXPECT_EQ(board.view(2)->number, 9) << "gone: the newest";
 }
 
+PairHealth with_row_offset(double px) {
+  PairHealth health;
+  health.row_offset_px = px;
+  return health;
+}
+
 TEST(RecentHealth, TellsVibrationOfLastPairs) {
   RecentHealth recent;
-  for (int i = 0; i <= 200; ++i) recent.add(PairHealth{.row_offset_px = i % 2 == 0 ? 0.1 : 0.7});
+  for (int i = 0; i <= 200; ++i) recent.add(with_row_offset(i % 2 == 0 ? 0.1 : 0.7));
   ASSERT_EQ(recent.findings().size(), 1U);
   EXPECT_EQ(recent.findings()[0].id, "vibration");
   EXPECT_NEAR(recent.vibration_px(), 1.4826 * 0.6 / std::sqrt(2.0), 1e-9);
-  for (int i = 0; i < 200; ++i) recent.add(PairHealth{.row_offset_px = 0.1});
+  for (int i = 0; i < 200; ++i) recent.add(with_row_offset(0.1));
   EXPECT_EQ(recent.vibration_px(), 0);
   EXPECT_TRUE(recent.findings().empty());
 }
