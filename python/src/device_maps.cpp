@@ -40,7 +40,7 @@ py::capsule dlpack(const DeviceMap& map, const py::object&, const py::object&, c
   if (!dl_device.is_none() && !dl_device.equal(dlpack_device(map))) {
     fail_buffer("a map is handed out on its own device only");
   }
-  if (!copy.is_none() && copy.cast<bool>()) fail_buffer("a map is handed out without a copy only");
+  if (py::bool_(copy)) fail_buffer("a map is handed out without a copy only");
   return dlpack_capsule(map);
 }
 

@@ -28,10 +28,12 @@ py::array_t<double> matrix(const std::array<double, rows * columns>& values) {
 class SharedOdometry {
  public:
   SharedOdometry(const StereoCalibration& calibration, const OdometryOptions& options)
-      : odometry_(calibration, options) {}
+      : calibration_(calibration), odometry_(calibration, options) {}
 
   FramePose add(int frame, const ProcessedFrame& processed) {
     if (processed.result.disparity.empty()) fail("odometry: the maps of frame ", frame, " were left on the device");
+    const Image<float>& disparity = processed.result.disparity;
+    calibration_.validate(disparity.width(), disparity.height(), "calibration");
     return call([&] { return odometry_.add(frame, processed.result); });
   }
   int reference() {
@@ -53,6 +55,7 @@ class SharedOdometry {
   }
 
   std::mutex mutex_;
+  StereoCalibration calibration_;
   Odometry odometry_;
 };
 

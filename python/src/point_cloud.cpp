@@ -28,6 +28,7 @@ py::tuple cloud(const Disparities& disparity, const StereoCalibration& calibrati
   if (disparity.ndim() != 2) fail("disparity has ", disparity.ndim(), " dimensions; it must have 2: (height, width)");
   const ImageView<const float> map(disparity.data(), static_cast<int>(disparity.shape(1)),
                                    static_cast<int>(disparity.shape(0)));
+  calibration.validate(map.width(), map.height(), "calibration");
   if (left.is_none()) return py::make_tuple(triples(cloud_from_disparity(map, calibration).points), py::none());
   const PointCloud coloured = cloud_from_disparity(map, frame_view(left, "left", order), white_level, calibration);
   return py::make_tuple(triples(coloured.points), triples(coloured.colours));

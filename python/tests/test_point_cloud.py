@@ -43,9 +43,17 @@ class Cloud(unittest.TestCase):
         with self.assertRaisesRegex(roadstereo.Error, "disparity has 3 dimensions"):
             roadstereo.cloud_from_disparity(np.zeros((2, 2, 1)), calibration())
         with self.assertRaisesRegex(roadstereo.Error, "they must have the same size"):
-            roadstereo.cloud_from_disparity(np.zeros((2, 2)), calibration(), pair()[0])
+            roadstereo.cloud_from_disparity(np.zeros((180, 320)), calibration(), pair()[0][:90])
+        with self.assertRaisesRegex(roadstereo.Error, "calibration: the baseline is 100; it must be between 0.005 and 10"):
+            roadstereo.cloud_from_disparity(np.zeros((2, 2)), roadstereo.Calibration(100, 1, 0, 100))
         with self.assertRaises(TypeError):
             roadstereo.cloud_from_disparity("disparity.tiff", calibration())
+
+    def test_odd_addresses(self):
+        rig, left = roadstereo.Calibration(100, 1, 0, 0.1), np.full((2, 2), 4080, np.uint16)
+        odd = np.frombuffer(b" " + left.tobytes(), np.uint8)[1:].view(np.uint16).reshape(2, 2)
+        colours = roadstereo.cloud_from_disparity(np.full((2, 2), 5.0), rig, odd, white_level=4080)[1]
+        self.assertTrue((colours == 255).all())
 
 
 if __name__ == "__main__":

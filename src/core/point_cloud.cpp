@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "roadstereo/error.hpp"
 
@@ -30,11 +31,12 @@ void for_each_point(const ImageView<const float>& disparity, const StereoCalibra
 /// Red, green, blue of 8 bits.
 template <class Sample>
 Colour colour_at(const FrameView& frame, float scale, int u, int v) {
-  const auto* bytes = static_cast<const std::uint8_t*>(frame.data) + v * frame.stride_bytes;
-  const Sample* pixel =
-      reinterpret_cast<const Sample*>(bytes) + static_cast<std::ptrdiff_t>(u) * channel_count(frame.order);
+  const auto* row = static_cast<const std::uint8_t*>(frame.data) + v * frame.stride_bytes;
+  const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(u) * channel_count(frame.order);
   const auto narrow = [&](int channel) {
-    return static_cast<std::uint8_t>(std::min(255L, std::lrint(scale * static_cast<float>(pixel[channel]))));
+    Sample sample;
+    std::memcpy(&sample, row + (first + channel) * static_cast<std::ptrdiff_t>(sizeof(Sample)), sizeof(Sample));
+    return static_cast<std::uint8_t>(std::lrint(std::min(255.0F, scale * static_cast<float>(sample))));
   };
   switch (frame.order) {
     case ChannelOrder::grey:
