@@ -6,11 +6,12 @@
 #   Slow      slow       lasts too long for every change, or under sanitizers
 #   Threads   threads    is about threads: the thread sanitizer runs it
 #   /cuda     engine_cuda  is that of every engine, with the engine cuda
+#   OfDevice  engine_cuda  needs the engine cuda
 foreach(program embedded allocations cuda graph io live flight cli dds evaluate mapping)
   foreach(test IN LISTS test_${program}_TESTS)
     set(labels ${program})
     foreach(name_and_label RealData:real_data TwoGpus:two_gpus GStreamer:gstreamer Ogrinfo:ogrinfo Slow:slow
-                           Threads:threads /cuda:engine_cuda)
+                           Threads:threads /cuda:engine_cuda OfDevice:engine_cuda)
       string(REPLACE ":" ";" name_and_label ${name_and_label})
       list(GET name_and_label 0 name)
       if(test MATCHES ${name})
