@@ -6,10 +6,8 @@
 
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,6 +16,7 @@
 #include "frame_array.hpp"
 #include "record.hpp"
 #include "roadstereo/error.hpp"
+#include "serial_calls.hpp"
 
 namespace roadstereo::python {
 namespace {
@@ -40,7 +39,7 @@ class SharedSource {
   explicit SharedSource(std::unique_ptr<io::FrameSource> source) : source_(std::move(source)) {}
 
   PairArrays next() {
-    std::optional<io::SourcePair> pair = call([&] { return source_->next(); });
+    std::optional<io::SourcePair> pair = call_([&] { return source_->next(); });
     if (!pair) throw py::stop_iteration();
     PairArrays arrays{pair->index, std::move(pair->name), pair->time_s, {}, {}, std::move(pair->error)};
     if (arrays.error.empty()) {
@@ -50,29 +49,22 @@ class SharedSource {
     return arrays;
   }
   void skip(std::int64_t pairs) {
-    call([&] { source_->skip(pairs); });
+    call_([&] { source_->skip(pairs); });
   }
   std::optional<std::int64_t> size() {
-    return call([&] { return source_->size(); });
+    return call_([&] { return source_->size(); });
   }
   std::string description() {
-    return call([&] { return source_->description(); });
+    return call_([&] { return source_->description(); });
   }
   py::object calibration() {
-    const auto file = call([&] { return source_->calibration(); });
+    const auto file = call_([&] { return source_->calibration(); });
     return file ? calibration_object(*file) : py::none();
   }
   bool live() const { return source_->live(); }
 
  private:
-  template <class Function>
-  std::invoke_result_t<Function> call(Function function) {
-    const py::gil_scoped_release release;
-    const std::lock_guard lock(mutex_);
-    return function();
-  }
-
-  std::mutex mutex_;
+  SerialCalls call_;
   std::unique_ptr<io::FrameSource> source_;
 };
 

@@ -5,14 +5,13 @@
 
 #include <array>
 #include <memory>
-#include <mutex>
-#include <type_traits>
 #include <vector>
 
 #include "bindings.hpp"
 #include "processed_frame.hpp"
 #include "record.hpp"
 #include "roadstereo/error.hpp"
+#include "serial_calls.hpp"
 
 namespace roadstereo::python {
 namespace {
@@ -34,27 +33,20 @@ class SharedOdometry {
     if (processed.result.disparity.empty()) fail("odometry: the maps of frame ", frame, " were left on the device");
     const Image<float>& disparity = processed.result.disparity;
     calibration_.validate(disparity.width(), disparity.height(), "calibration");
-    return call([&] { return odometry_.add(frame, processed.result); });
+    return call_([&] { return odometry_.add(frame, processed.result); });
   }
   int reference() {
-    return call([&] { return odometry_.reference(); });
+    return call_([&] { return odometry_.reference(); });
   }
   std::vector<FrameLink> links() {
-    return call([&] { return odometry_.links(); });
+    return call_([&] { return odometry_.links(); });
   }
   std::vector<FramePose> trajectory() {
-    return call([&] { return odometry_.trajectory().frames; });
+    return call_([&] { return odometry_.trajectory().frames; });
   }
 
  private:
-  template <class Function>
-  std::invoke_result_t<Function> call(Function function) {
-    const py::gil_scoped_release release;
-    const std::lock_guard lock(mutex_);
-    return function();
-  }
-
-  std::mutex mutex_;
+  SerialCalls call_;
   StereoCalibration calibration_;
   Odometry odometry_;
 };

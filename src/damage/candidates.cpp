@@ -50,6 +50,7 @@ std::uint8_t label_of(DamageKind kind) {
 struct SearchInput {
   DepthCells& depth_cells;  ///< `remove_outliers` changes it
   const Image<std::uint8_t>& road;
+  const ConnectedComponents& gaps;    ///< of the cells without a measurement
   const Image<std::uint8_t>& unseen;  ///< 255 in gaps that touch the border of the image: what is not seen, or off road
   const Thresholds& thresholds;
   const ImageEdges& image_edges;
@@ -67,9 +68,9 @@ struct SearchImages {
 };
 
 /// Mask of the gaps that touch the border of the image.
-Image<std::uint8_t> unseen_cells(const DepthCells& depth_cells) {
-  Image<std::uint8_t> unseen(depth_cells.valid.width(), depth_cells.valid.height(), 0);
-  for (const ConnectedComponent& gap : ConnectedComponents(depth_cells.valid, ConnectedComponents::Foreground::zero)) {
+Image<std::uint8_t> unseen_cells(const ConnectedComponents& gaps, int columns, int rows) {
+  Image<std::uint8_t> unseen(columns, rows, 0);
+  for (const ConnectedComponent& gap : gaps) {
     if (gap.touches_border) fill_component(gap, 255, unseen);
   }
   return unseen;
@@ -77,24 +78,17 @@ Image<std::uint8_t> unseen_cells(const DepthCells& depth_cells) {
 
 /// Add to `allowed` the gaps that are enclosed by a depression. A gap that touches the border of the image or lies in
 /// the intact road belongs to none.
-void include_enclosed_gaps(const DepthCells& depth_cells, const Thresholds& thresholds, Image<std::uint8_t>& allowed) {
-  for (const ConnectedComponent& gap : ConnectedComponents(depth_cells.valid, ConnectedComponents::Foreground::zero)) {
+void include_enclosed_gaps(const SearchInput& input, Image<std::uint8_t>& allowed) {
+  const DepthCells& cells = input.depth_cells;
+  for (const ConnectedComponent& gap : input.gaps) {
     if (gap.touches_border) continue;
     int neighbours = 0;
     int deep = 0;
-    const auto count = [&](int i, int j) {
-      if (depth_cells.valid(i, j) == 0) return;
+    for_each_neighbour(gap, cells.valid.width(), cells.valid.height(), [&](int i, int j) {
+      if (cells.valid(i, j) == 0) return;
       ++neighbours;
-      deep += depth_cells.depth(i, j) > constants.gap_depth_share * thresholds.min_depth(i, j) ? 1 : 0;
-    };
-    for (const CellRun& run : gap.runs) {
-      count(run.first - 1, run.row);
-      count(run.last + 1, run.row);
-      for (int i = run.first; i <= run.last; ++i) {
-        count(i, run.row - 1);
-        count(i, run.row + 1);
-      }
-    }
+      deep += cells.depth(i, j) > constants.gap_depth_share * input.thresholds.min_depth(i, j) ? 1 : 0;
+    });
     if (deep >= constants.min_deep_gap_share * neighbours) fill_component(gap, 255, allowed);
   }
 }
@@ -107,7 +101,7 @@ SearchImages make_search_images(const SearchInput& input, DamageKind kind, Image
     float* const depths = images.depth.row(0);
     for (std::size_t k = 0; k < images.depth.pixels(); ++k) depths[k] = -depths[k];
   } else {
-    include_enclosed_gaps(cells, input.thresholds, images.allowed);
+    include_enclosed_gaps(input, images.allowed);
   }
   return images;
 }
@@ -367,8 +361,9 @@ void find_kind(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& a
 
 std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road,
                                        const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions) {
-  const Image<std::uint8_t> unseen = unseen_cells(depth_cells);
-  const SearchInput input{depth_cells, road, unseen, thresholds, image_edges};
+  const ConnectedComponents gaps(depth_cells.valid, ConnectedComponents::Foreground::zero);
+  const Image<std::uint8_t> unseen = unseen_cells(gaps, road.width(), road.height());
+  const SearchInput input{depth_cells, road, gaps, unseen, thresholds, image_edges};
   std::vector<Candidate> found;
   Image<std::uint8_t> assigned(depth_cells.depth.width(), depth_cells.depth.height(), 0);
   find_kind(input, DamageKind::depression, assigned, found);

@@ -40,6 +40,20 @@ class ConnectedComponents {
   std::vector<ConnectedComponent> components_;
 };
 
+/// Call `visit(column, row)` for the 4-neighbours of the runs of a component that lie in an image of columns×rows
+/// cells: all that surround it, and cells of its own.
+template <class Visit>
+void for_each_neighbour(const ConnectedComponent& component, int columns, int rows, const Visit& visit) {
+  for (const CellRun& run : component.runs) {
+    if (run.first > 0) visit(run.first - 1, run.row);
+    if (run.last + 1 < columns) visit(run.last + 1, run.row);
+    for (int i = run.first; i <= run.last; ++i) {
+      if (run.row > 0) visit(i, run.row - 1);
+      if (run.row + 1 < rows) visit(i, run.row + 1);
+    }
+  }
+}
+
 /// Set the cells of a component to a value.
 void fill_component(const ConnectedComponent& component, std::uint8_t value, Image<std::uint8_t>& mask);
 

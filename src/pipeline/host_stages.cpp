@@ -125,15 +125,7 @@ class HostStages final : public FrameStages {
   /// In place.
   ImageView<const float> subtract_bias(ImageView<const float> disparity, const std::optional<RigBias>& bias) override {
     if (!bias) return disparity;
-    constexpr int rows_per_band = 64;
-    const BiasPolynomial<float> field = bias_polynomial<float>(*bias);
-    parallel_rows(disparity_.height(), rows_per_band, threads_, [&](int first, int last, int) {
-      for (int v = first; v < last; ++v) {
-        const BiasRow<float> of_row = field.row(static_cast<float>(v));
-        float* const row = disparity_.row(v);
-        for (int u = 0; u < disparity_.width(); ++u) row[u] -= of_row.at(static_cast<float>(u));
-      }
-    });
+    roadstereo::subtract_bias(bias_polynomial<float>(*bias), threads_, disparity_);
     return disparity_;
   }
 

@@ -98,18 +98,9 @@ struct BesidePart {
 
 BesidePart look_around(const ConnectedComponent& part, const CellMask& candidates, const CellMask& still) {
   BesidePart beside;
-  const auto look = [&](int x, int y) {
-    if (x < 0 || y < 0 || x >= still.width() || y >= still.height() || candidates(x, y) != 0) return;
-    ++(still(x, y) != 0 ? beside.still : beside.moving);
-  };
-  for (const CellRun& run : part.runs) {
-    look(run.first - 1, run.row);
-    look(run.last + 1, run.row);
-    for (int x = run.first; x <= run.last; ++x) {
-      look(x, run.row - 1);
-      look(x, run.row + 1);
-    }
-  }
+  for_each_neighbour(part, still.width(), still.height(), [&](int x, int y) {
+    if (candidates(x, y) == 0) ++(still(x, y) != 0 ? beside.still : beside.moving);
+  });
   return beside;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/parallel.hpp"
 #include "core/require_range.hpp"
 #include "road/rig_bias_field.hpp"
 #include "roadstereo/error.hpp"
@@ -40,6 +41,17 @@ void RigBias::require_rig(int frame_width, int frame_height,
   if (std::abs(calibration->focal_px - focal_px) <= max_difference * focal_px) return;
   fail("the rig bias is that of a focal length of ", focal_px, " px; the calibration has ", calibration->focal_px,
        " px, and the two may differ by 0.1 %");
+}
+
+void subtract_bias(const BiasPolynomial<float>& bias, int threads, ImageView<float> disparity) {
+  constexpr int rows_per_band = 64;
+  parallel_rows(disparity.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int v = first; v < last; ++v) {
+      const BiasRow<float> of_row = bias.row(static_cast<float>(v));
+      float* const row = disparity.row(v);
+      for (int u = 0; u < disparity.width(); ++u) row[u] -= of_row.at(static_cast<float>(u));
+    }
+  });
 }
 
 }  // namespace roadstereo

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "roadstereo/host_device.hpp"
+#include "roadstereo/image_view.hpp"
 #include "roadstereo/rig_bias.hpp"
 
 namespace roadstereo {
@@ -49,5 +50,8 @@ BiasPolynomial<Real> bias_polynomial(const RigBias& bias) {
   field.last_v = static_cast<Real>(bias.region_px[3]);
   return field;
 }
+
+/// Subtracts the bias from every disparity, in place.
+void subtract_bias(const BiasPolynomial<float>& bias, int threads, ImageView<float> disparity);
 
 }  // namespace roadstereo

@@ -161,7 +161,8 @@ RoadModelEstimate assess_planes(const FinePair& pair, std::span<const PlaneHypot
   return estimate;
 }
 
-/// A road may still have evidence: noise that leaves no single block reliable averages out over a plane.
+/// Why there is no road where few blocks match. That alone decides nothing: noise that leaves no block reliable
+/// averages out over a plane.
 std::string too_few(int matches) {
   return format_message("only ", matches, " reliable correspondences in the whole image");
 }

@@ -6,23 +6,13 @@
 #include <vector>
 
 #include "flight/disparity_offset.hpp"
+#include "tests/flight/alternating_links.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
-constexpr int count = 20;
-
-/// Links of every frame with the next one: an offset, ± `noise`.
 std::vector<FrameLink> links_with(double offset_px, double noise) {
-  std::vector<FrameLink> links;
-  for (int i = 0; i < count; ++i) {
-    FrameLink& link = links.emplace_back();
-    link.from = i;
-    link.to = i + 1;
-    link.rig_offset_px = offset_px + (i % 2 == 0 ? noise : -noise);
-    link.rig_offset_sd_px = 0.05;
-  }
-  return links;
+  return test::alternating_links(&FrameLink::rig_offset_px, &FrameLink::rig_offset_sd_px, offset_px, noise);
 }
 
 TEST(DisparityOffset, IsMeanOfLinks) {
@@ -30,7 +20,7 @@ TEST(DisparityOffset, IsMeanOfLinks) {
   ASSERT_TRUE(finding.has_value());
   EXPECT_EQ(finding->id, "disparity-offset");
   EXPECT_NEAR(finding->value, 5, 1e-9);
-  EXPECT_NEAR(finding->limit, 5 * 0.8 / std::sqrt(count - 1.0), 1e-9);
+  EXPECT_NEAR(finding->limit, 5 * 0.8 / std::sqrt(test::link_count - 1.0), 1e-9);
   EXPECT_NE(finding->text.find("are 5.00 ± 0.18 px too large"), std::string::npos) << finding->text;
   EXPECT_NE(disparity_offset(links_with(5, 0.8))->text.find("too small"), std::string::npos);
 }

@@ -7,29 +7,19 @@
 #include <vector>
 
 #include "flight/rolling_shutter.hpp"
+#include "tests/flight/alternating_links.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
-constexpr int count = 20;
-constexpr double period_s = 0.04;
-
-/// Links of every frame with the next one: `share` of the time between them, ± `noise`.
 std::vector<FrameLink> rolling_links(double share, double noise) {
-  std::vector<FrameLink> links;
-  for (int i = 0; i < count; ++i) {
-    FrameLink& link = links.emplace_back();
-    link.from = i;
-    link.to = i + 1;
-    link.shutter = share + (i % 2 == 0 ? noise : -noise);
-    link.shutter_sd = 0.1;
-  }
-  return links;
+  return test::alternating_links(&FrameLink::shutter, &FrameLink::shutter_sd, share, noise);
 }
 
 std::map<int, double> times() {
+  constexpr double period_s = 0.04;
   std::map<int, double> times;
-  for (int i = 0; i <= count; ++i) times[i] = period_s * i;
+  for (int i = 0; i <= test::link_count; ++i) times[i] = period_s * i;
   return times;
 }
 
@@ -39,7 +29,7 @@ TEST(RollingShutter, IsMeanOfLinksInMilliseconds) {
   EXPECT_EQ(finding->id, "rolling-shutter");
   EXPECT_EQ(finding->unit, "ms");
   EXPECT_NEAR(finding->value, 20, 1e-9);
-  EXPECT_NEAR(finding->limit, 5 * 4 / std::sqrt(count - 1.0), 1e-9);
+  EXPECT_NEAR(finding->limit, 5 * 4 / std::sqrt(test::link_count - 1.0), 1e-9);
   EXPECT_NE(finding->text.find("the last row is exposed 20.00 ± 0.92 ms after the first"), std::string::npos)
       << finding->text;
   EXPECT_FALSE(finding->spoils_depth);
@@ -58,7 +48,7 @@ TEST(RollingShutter, IsInFramesWithoutTimes) {
 }
 
 TEST(RollingShutter, NeedsFiveStandardErrorsOfTenReferences) {
-  const double std_error = 0.1 / std::sqrt(count - 1.0);
+  const double std_error = 0.1 / std::sqrt(test::link_count - 1.0);
   EXPECT_FALSE(rolling_shutter(rolling_links(4.9 * std_error, 0.1), times()).has_value());
   EXPECT_TRUE(rolling_shutter(rolling_links(5.1 * std_error, 0.1), times()).has_value());
   EXPECT_TRUE(rolling_shutter(rolling_links(0.06, 0.001), times()).has_value());
@@ -66,7 +56,7 @@ TEST(RollingShutter, NeedsFiveStandardErrorsOfTenReferences) {
   EXPECT_FALSE(rolling_shutter(rolling_links(1.2, 0.01), times()).has_value()) << "longer than a frame";
   EXPECT_FALSE(rolling_shutter({}, times()).has_value());
   std::vector<FrameLink> links = rolling_links(0.5, 0.1);
-  for (FrameLink& link : links) link.from = link.to > count / 2 ? count / 2 : 0;
+  for (FrameLink& link : links) link.from = link.to > test::link_count / 2 ? test::link_count / 2 : 0;
   EXPECT_FALSE(rolling_shutter(links, times()).has_value()) << "links of two references";
 }
 
