@@ -430,6 +430,11 @@ TEST_F(FlightCommand, LocksOutputFolder) {
   EXPECT_EQ(run("inspect flight.txt --output out --quiet").exit_code, 0);
 }
 
+TEST_F(FlightCommand, NamesLimitOfOpenFiles) {
+  write_list(3);
+  expect_complaint(run("inspect flight.txt --output out --quiet", "prlimit --nofile=5"), 1, "Too many open files");
+}
+
 TEST_F(FlightCommand, RejectsBadInput) {
   write_list(3);
   expect_complaint(run("inspect flight.txt --output out --write everything"), "--write has \"everything\"");
