@@ -235,10 +235,14 @@ ImageView<const float> Pipeline::State::align(const MatchInput& input, ImageView
   return stages->align(input, disparity, result.shift);
 }
 
-/// Where only disparities near the road were searched, those of other things are wrong.
+/// Where only disparities near the road were searched, those of other things are wrong. Where the road's horizon is not
+/// in the picture, a camera looks down on the road, which may be all there is: what is not confirmed is noise.
 ImageView<const float> Pipeline::State::reject_off_road(ImageView<const float> disparity) {
   const StageTimer timer(result.ms.refinement);
-  const bool searched_near_road = result.shift.enabled && options.perspective.scope == Scope::road;
+  const DisparityPlane& road = result.shift.road;
+  const double at_upper_border = std::min(road.disparity(0, 0), road.disparity(disparity.width() - 1, 0));
+  const bool searched_near_road =
+      result.shift.enabled && options.perspective.scope == Scope::road && at_upper_border < 0;
   return stages->reject_off_road(disparity, searched_near_road ? options.off_road : OffRoadOptions{0});
 }
 

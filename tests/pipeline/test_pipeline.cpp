@@ -82,6 +82,20 @@ TEST(PipelineScope, SceneMatchesWhatStandsOnRoad) {
   EXPECT_LT(wrong_or_missing(Scope::scene), 0.5 * wrong_or_missing(Scope::road));
 }
 
+/// With a limit that hardly anything meets: of a street, whose horizon is in the picture, and of a road from the air.
+TEST(PipelineOffRoad, PictureWithoutHorizonKeepsEverything) {
+  PipelineOptions options;
+  options.off_road.max_sigma_px = 0.05;
+  const auto missing = [&](const synth::SyntheticPair& pair) {
+    Pipeline pipeline(options, pair.calibration);
+    return compare(pipeline.process(pair.left.view(), pair.right.view()).disparity, pair).missing;
+  };
+  synth::Scene street = synth::random_wide_scene(12);
+  street.supersampling = 1;
+  EXPECT_GT(missing(synth::render(street)), 0.5);
+  EXPECT_LT(missing(scene("uav")), 0.01);
+}
+
 class PipelinePreset : public testing::TestWithParam<PresetFigures> {};
 
 TEST_P(PipelinePreset, MatchesRoadFromAir) {
