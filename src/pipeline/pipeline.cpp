@@ -241,9 +241,10 @@ ImageView<const float> Pipeline::State::reject_off_road(ImageView<const float> d
   const StageTimer timer(result.ms.refinement);
   const DisparityPlane& road = result.shift.road;
   const double at_upper_border = std::min(road.disparity(0, 0), road.disparity(disparity.width() - 1, 0));
-  const bool searched_near_road =
-      result.shift.enabled && options.perspective.scope == Scope::road && at_upper_border < 0;
-  return stages->reject_off_road(disparity, searched_near_road ? options.off_road : OffRoadOptions{0});
+  const bool horizon_in_picture = at_upper_border < 0;
+  const bool searched_near_road = result.shift.enabled && options.perspective.scope == Scope::road;
+  return stages->reject_off_road(disparity,
+                                 searched_near_road && horizon_in_picture ? options.off_road : OffRoadOptions{0});
 }
 
 ImageView<const float> Pipeline::State::subtract_bias(ImageView<const float> disparity) {
