@@ -41,8 +41,10 @@ struct Frame {
     options.disparities = disparities;
     shift = plan_perspective(road, pair.calibration, width, height, options);
     transform_target(right, shift, 0, target, first_column);
-    make_engine("cpu", 0)->match(input(), MatcherOptions{}, maps);
-    restore_disparity(maps.disparity, shift, 0, disparity);
+    MatcherOptions every_pixel;
+    every_pixel.pixel_step = 1;
+    make_engine("cpu", 0)->match(input(), every_pixel, maps);
+    restore_disparity(maps.disparity, shift, 1, 0, disparity);
     geometry = estimate_roll(disparity, std::nullopt, road.model, 0, {});
     transform_disparity(disparity, geometry, 0, {}, 0, transformed);
   }
@@ -90,7 +92,7 @@ void register_all() {
     verify_road_model(f.left, f.right, {f.road.model, f.road.inlier_share}, f.pair.calibration, {});
   });
   add_stage("transform_target", [](Frame& f) { transform_target(f.right, f.shift, 0, f.target, f.first_column); });
-  add_stage("restore_disparity", [](Frame& f) { restore_disparity(f.maps.disparity, f.shift, 0, f.disparity); });
+  add_stage("restore_disparity", [](Frame& f) { restore_disparity(f.maps.disparity, f.shift, 1, 0, f.disparity); });
   add_stage("roll", [](Frame& f) { estimate_roll(f.disparity, std::nullopt, f.road.model, 0, {}); });
   add_stage("transform_disparity",
             [](Frame& f) { transform_disparity(f.disparity, f.geometry, 0, {}, 0, f.transformed); });

@@ -45,8 +45,9 @@ PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::opti
 void transform_target(ImageView<const std::int16_t> target, const PerspectiveShift& shift, int threads,
                       GreyImage& transformed, std::vector<int>& first_column);
 
-/// Adds the shift Δu − δp back: residual disparities (W×H, pixels, NaN invalid) become those of the original images.
-void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, int threads,
+/// Adds the shift Δu − δp back: residual disparities (pixels, NaN invalid) become those of the original images. Pixel
+/// (x, y) of the maps is `pixel_step`·(x, y) of the image, as in MatcherOptions.
+void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, int pixel_step, int threads,
                        Image<float>& disparity);
 
 }  // namespace roadstereo

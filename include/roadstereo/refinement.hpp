@@ -11,8 +11,8 @@ namespace roadstereo {
 /// variance).
 struct RefinementOptions {
   int passes = 2;   ///< 1 … 3
-  int radius = 10;  ///< of the first window, pixels, 0 … 32; 0 switches the refinement off
-  int step = 5;     ///< distance between its neighbours, pixels, 1 … 16; odd: columns of both parities mix
+  int radius = 12;  ///< of the first window, pixels, 0 … 32; 0 switches the refinement off
+  int step = 6;     ///< distance between its neighbours, pixels, 1 … 16
   double truncation_sigmas = 2.5;       ///< difference with weight 0, joint standard errors, 0.5 … 100
   double max_agreement_sigma_px = 0.6;  ///< upper bound on σ in that test, pixels, min_sigma_px … 10
   double min_sigma_px = 0.02;           ///< standard error of interpolation and calibration, pixels, 0.001 … 1
@@ -26,11 +26,17 @@ struct RefinementOptions {
 
 /// Writes the refined disparities (pixels) and their standard errors `sigma` (pixels); both are NaN where the disparity
 /// is NaN or its error, without that of smoothing, exceeds max_sigma_px. `disparity` (pixels, NaN invalid) and
-/// `variance` (pixels²) are W×H from matching. `road`: road model, 0 where unknown. `effective_samples`: number of
-/// pixels that one disparity rests on; closer neighbours are not independent. Throws Error when the maps differ in
-/// size.
-void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
-                        double effective_samples, const RefinementOptions& options, int threads, Image<float>& refined,
-                        Image<float>& sigma);
+/// `variance` (pixels²) are from matching with this `pixel_step`, 1 or 2. `road`: road model, 0 where unknown.
+/// `effective_samples`: number of pixels that one disparity rests on; closer neighbours are not independent. Throws
+/// Error when the maps differ in size.
+void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, int pixel_step,
+                        const DisparityPlane& road, double effective_samples, const RefinementOptions& options,
+                        int threads, Image<float>& refined, Image<float>& sigma);
+
+/// Fills the pixels between those that were matched with a `pixel_step` of 2: writes W×H maps from those of every
+/// second row and column. Heights above the road model are interpolated linearly; where two neighbours differ by more
+/// than a pixel there is an edge, and the one with the smaller error is taken, as where only one is known.
+void interpolate_disparities(ImageView<const float> disparity, ImageView<const float> sigma, const DisparityPlane& road,
+                             int width, int height, int threads, Image<float>& full, Image<float>& full_sigma);
 
 }  // namespace roadstereo

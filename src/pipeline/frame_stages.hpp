@@ -23,12 +23,20 @@ struct GreyPair {
 struct ResidualMaps {
   ImageView<float> disparity, variance;
   double samples = 0;  ///< effective samples of one disparity
+  int pixel_step = 1;  ///< pixel (x, y) of the maps is pixel_step·(x, y) of the image
 };
 
 /// Disparities of the original images, with their variances from matching (pixels²). NaN invalid.
 struct DisparityMaps {
   ImageView<const float> disparity, variance;
   double samples = 0;  ///< effective samples of one disparity
+  int pixel_step = 1;  ///< likewise
+};
+
+/// Refined disparities and their standard errors, pixels. NaN invalid.
+struct RefinedMaps {
+  ImageView<const float> disparity, sigma;
+  int pixel_step = 1;  ///< likewise
 };
 
 /// Section 3.3.1 on one disparity map.
@@ -67,7 +75,9 @@ class FrameStages {
   /// restore_disparity: adds Δu − δp back.
   virtual DisparityMaps restore_disparity(const ResidualMaps& residual, const PerspectiveShift& shift) = 0;
   /// refine_disparities.
-  virtual ImageView<const float> refine(const DisparityMaps& maps, const DisparityPlane& road) = 0;
+  virtual RefinedMaps refine(const DisparityMaps& maps, const DisparityPlane& road) = 0;
+  /// interpolate_disparities, where not every pixel was matched.
+  virtual ImageView<float> interpolate(const RefinedMaps& maps, const DisparityPlane& road) = 0;
   /// lucas_kanade.
   virtual ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,
                                        const PerspectiveShift& shift) = 0;

@@ -91,19 +91,29 @@ class HostStages final : public FrameStages {
 
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
     engine_->match(input, options, matched_);
-    return {matched_.disparity, matched_.variance, samples_of(options)};
+    return {matched_.disparity, matched_.variance, samples_of(options), step_of(matched_, options)};
   }
 
   DisparityMaps restore_disparity(const ResidualMaps& residual, const PerspectiveShift& shift) override {
-    roadstereo::restore_disparity(residual.disparity, shift, threads_, restored_);
-    return {restored_, residual.variance, residual.samples};
+    roadstereo::restore_disparity(residual.disparity, shift, residual.pixel_step, threads_, restored_);
+    return {restored_, residual.variance, residual.samples, residual.pixel_step};
   }
 
-  ImageView<const float> refine(const DisparityMaps& maps, const DisparityPlane& road) override {
+  RefinedMaps refine(const DisparityMaps& maps, const DisparityPlane& road) override {
     // Nothing else needs these two maps now.
     const RefinementMaps between{matched_.disparity, transformed_};
-    refine_disparities(maps.disparity, maps.variance, road, maps.samples, options_.refinement, threads_, between,
-                       disparity_, sigma_);
+    const bool whole = maps.pixel_step == 1;
+    Image<float>&refined = whole ? disparity_ : refined_, &sigma = whole ? sigma_ : refined_sigma_;
+    refine_disparities(maps.disparity, maps.variance, maps.pixel_step, road, maps.samples, options_.refinement,
+                       threads_, between, refined, sigma);
+    return {refined, sigma, maps.pixel_step};
+  }
+
+  ImageView<float> interpolate(const RefinedMaps& maps, const DisparityPlane& road) override {
+    if (maps.pixel_step > 1) {
+      interpolate_disparities(maps.disparity, maps.sigma, road, left_.width(), left_.height(), threads_, disparity_,
+                              sigma_);
+    }
     return disparity_;
   }
 
@@ -165,6 +175,18 @@ class HostStages final : public FrameStages {
     fail("only a pipeline with the engine cuda keeps its maps on a device");
   }
 
+  /// The pixel_step of the maps: an engine may match every pixel. Throws Error for maps of any other size.
+  int step_of(const MatchMaps& maps, const MatcherOptions& options) const {
+    const int width = maps.disparity.width(), height = maps.disparity.height();
+    if (width == left_.width() && height == left_.height()) return 1;
+    const int columns = matched_pixels(left_.width(), options), rows = matched_pixels(left_.height(), options);
+    if (width != columns || height != rows) {
+      fail("the engine ", options_.engine, " has matched ", width, "×", height, " pixels of an image of ", left_.width(),
+           "×", left_.height(), "; it must be those or ", columns, "×", rows);
+    }
+    return options.pixel_step;
+  }
+
   /// effective_samples, computed where the options have changed only.
   double samples_of(const MatcherOptions& options) {
     if (!(options == sampled_)) {
@@ -186,6 +208,7 @@ class HostStages final : public FrameStages {
   std::vector<int> first_column_;  ///< of the transformed target
   MatchMaps matched_;
   Image<float> restored_;
+  Image<float> refined_, refined_sigma_;          ///< of the matched pixels, where those are not all
   Image<float> correlation_;                      ///< of the cells of the Lucas–Kanade step
   Image<float> disparity_, sigma_, transformed_;  ///< results of the frame; earlier ones after `download`
 };

@@ -89,6 +89,8 @@ void visit_options(Options& o, Visitor visit) {
         "standard error at which the road has half its weight, coarse pixels");
 
   visit("matcher.adapt_support", o.matcher.adapt_support, "larger blocks and a stronger prior where the pair is noisy");
+  visit("matcher.pixel_step", o.matcher.pixel_step,
+        "distance between the pixels that are matched, 1 or 2; those between are interpolated");
   visit("matcher.block_radius", o.matcher.block_radius, "radius of the correlation block, pixels");
   visit("matcher.aggregation_radius", o.matcher.aggregation_radius, "radius of the bilateral window, pixels; 0 is off");
   visit("matcher.aggregation_aspect", o.matcher.aggregation_aspect, "height of the bilateral window over its width");

@@ -78,7 +78,9 @@ struct Pipeline::State {
   MatchInput search_coarsely(const MatchInput& pair);
   ResidualMaps match(const MatchInput& input);
   DisparityMaps restore_disparity(const ResidualMaps& residual);
-  ImageView<const float> refine(const DisparityMaps& maps);
+  RefinedMaps refine(const DisparityMaps& maps);
+  ImageView<const float> interpolate(const RefinedMaps& maps);
+  void leave_out_mask(ImageView<float> disparity, int pixel_step) const;
   ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity);
   ImageView<const float> reject_off_road(ImageView<const float> disparity);
   ImageView<const float> subtract_bias(ImageView<const float> disparity);
@@ -209,12 +211,17 @@ ResidualMaps Pipeline::State::match(const MatchInput& input) {
     matcher.prior_truncation_px = std::min(matcher.prior_truncation_px, truncation_without_road_px);
   }
   const ResidualMaps maps = stages->match(input, matcher);
-  for (int v = 0; v < mask.height(); ++v) {
-    for (int u = 0; u < mask.width(); ++u) {
-      if (mask(u, v) != 0) maps.disparity(u, v) = std::numeric_limits<float>::quiet_NaN();
+  leave_out_mask(maps.disparity, maps.pixel_step);
+  return maps;
+}
+
+void Pipeline::State::leave_out_mask(ImageView<float> disparity, int pixel_step) const {
+  if (mask.empty()) return;
+  for (int y = 0; y < disparity.height(); ++y) {
+    for (int x = 0; x < disparity.width(); ++x) {
+      if (mask(x * pixel_step, y * pixel_step) != 0) disparity(x, y) = std::numeric_limits<float>::quiet_NaN();
     }
   }
-  return maps;
 }
 
 /// Adds Δu − δp back. The left-right check of `match` needs no shift: it cancels there.
@@ -223,10 +230,18 @@ DisparityMaps Pipeline::State::restore_disparity(const ResidualMaps& residual) {
   return stages->restore_disparity(residual, result.shift);
 }
 
-ImageView<const float> Pipeline::State::refine(const DisparityMaps& maps) {
+RefinedMaps Pipeline::State::refine(const DisparityMaps& maps) {
   const StageTimer timer(result.ms.refinement);
   result.smoothing_px = options.refinement.smoothing_px;
   return stages->refine(maps, result.shift.road);
+}
+
+/// Pixels between those that were matched.
+ImageView<const float> Pipeline::State::interpolate(const RefinedMaps& maps) {
+  const StageTimer timer(result.ms.refinement);
+  const ImageView<float> disparity = stages->interpolate(maps, result.shift.road);
+  leave_out_mask(disparity, 1);
+  return disparity;
 }
 
 /// A Lucas–Kanade step undoes the pixel locking of eq. (13).
@@ -291,8 +306,9 @@ void Pipeline::State::run_stages(const FrameView& left, const FrameView& right) 
   const MatchInput input = search_coarsely(transformed);
   const ResidualMaps residual = match(input);
   const DisparityMaps restored = restore_disparity(residual);
-  const ImageView<const float> refined = refine(restored);
-  const ImageView<const float> aligned = align(input, refined);
+  const RefinedMaps refined = refine(restored);
+  const ImageView<const float> interpolated = interpolate(refined);
+  const ImageView<const float> aligned = align(input, interpolated);
   const ImageView<const float> confirmed = reject_off_road(aligned);
   const ImageView<const float> disparity = subtract_bias(confirmed);
   estimate_roll(disparity);

@@ -15,6 +15,7 @@ PipelineOptions paper_preset() {
   options.matcher.prior_weight = 0;  // the costs alone decide
   options.matcher.match_both_views = true;
   options.matcher.adapt_support = false;
+  options.matcher.pixel_step = 1;
   options.matcher.block_radius = 5;  // 120-connected system
   options.matcher.aggregation_radius = 5;
   options.matcher.aggregation_aspect = 1;

@@ -181,23 +181,24 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
   });
 }
 
-void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, int threads,
+void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, int pixel_step, int threads,
                        Image<float>& disparity) {
   disparity.resize(residual.width(), residual.height());
   parallel_rows(residual.height(), rows_per_band, threads, [&](int first_row, int last_row, int) {
-    for (int v = first_row; v < last_row; ++v) {
-      const float* in = residual.row(v);
-      float* out = disparity.row(v);
+    for (int y = first_row; y < last_row; ++y) {
+      const float* in = residual.row(y);
+      float* out = disparity.row(y);
       if (!shift.enabled) {
         std::copy_n(in, residual.width(), out);
         continue;
       }
+      const int v = y * pixel_step;
       if (shift.whole_pixel) {
-        for (int u = 0; u < residual.width(); ++u) out[u] = with_whole_shift(in[u], shift, u, v);
+        for (int x = 0; x < residual.width(); ++x) out[x] = with_whole_shift(in[x], shift, x * pixel_step, v);
         continue;
       }
       const RowLine road = row_line(shift.road, v, shift.delta_p);
-      for (int u = 0; u < residual.width(); ++u) out[u] = with_shift(in[u], road, u);
+      for (int x = 0; x < residual.width(); ++x) out[x] = with_shift(in[x], road, x * pixel_step);
     }
   });
 }

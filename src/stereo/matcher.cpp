@@ -40,6 +40,13 @@ void MatcherOptions::validate() const {
   require_range("matcher", "aggregation_radius", aggregation_radius, 0, 10);
   require_range("matcher", "aggregation_aspect", aggregation_aspect, 0.1, 1.0);
   require_range("matcher", "aggregation_step", aggregation_step, 1, 2);
+  require_range("matcher", "pixel_step", pixel_step, 1, 2);
+  if (pixel_step == 2 && aggregation_radius > 0 && aggregation_step != 2) {
+    fail("matcher.pixel_step is 2, but the taps of the aggregation window are 1 pixel apart (matcher.aggregation_step)");
+  }
+  if (pixel_step == 2 && match_both_views) {
+    fail("matcher.pixel_step is 2, but both views are to be matched (matcher.match_both_views): every pixel is needed");
+  }
   require_range("matcher", "sigma_space", sigma_space, 0.1, 1000.0);
   require_range("matcher", "sigma_colour", sigma_colour, 0.1, 100000.0);
   require_range("matcher", "ncc_noise_sigma", ncc_noise_sigma, 0.0, 50.0);
@@ -106,12 +113,15 @@ void block_first_columns(const MatchInput& input, int block_radius, std::vector<
   }
 }
 
-void project_winners(const Image<std::int16_t>& winner, int v, Image<std::int16_t>& target_winner) {
-  const std::int16_t* from = winner.row(v);
-  std::int16_t* to = target_winner.row(v);
-  std::fill_n(to, winner.width(), std::int16_t{-1});
-  for (int u = 0; u < winner.width(); ++u) {
-    if (from[u] >= 0) to[u - from[u]] = std::max(to[u - from[u]], from[u]);
+void project_winners(const Image<std::int16_t>& winner, int y, int pixel_step, Image<std::int16_t>& target_winner) {
+  const int width = target_winner.width();
+  const std::int16_t* from = winner.row(y);
+  std::int16_t* to = target_winner.row(y);
+  std::fill_n(to, width, std::int16_t{-1});
+  for (int x = 0; x < winner.width(); ++x) {
+    if (from[x] < 0) continue;
+    const int first = x * pixel_step - from[x];
+    for (int t = first; t < std::min(first + pixel_step, width); ++t) to[t] = std::max(to[t], from[x]);
   }
 }
 

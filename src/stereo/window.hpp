@@ -32,8 +32,14 @@ double effective_samples(const MatcherOptions& options);
 /// rectangles, so that the common view of a block begins there.
 void block_first_columns(const MatchInput& input, int block_radius, std::vector<int>& first);
 
-/// Projects row v of the reference's winners into the target view; the largest disparity wins.
-void project_winners(const Image<std::int16_t>& winner, int v, Image<std::int16_t>& target_winner);
+/// Pixels that are matched, of `pixels` along a side.
+inline int matched_pixels(int pixels, const MatcherOptions& options) {
+  return (pixels + options.pixel_step - 1) / options.pixel_step;
+}
+
+/// Projects row y of the reference's winners into the target view, each with the pixels up to the next; the largest
+/// disparity wins.
+void project_winners(const Image<std::int16_t>& winner, int y, int pixel_step, Image<std::int16_t>& target_winner);
 
 /// Settings of finish_disparity.
 FinishSettings finish_settings(const MatcherOptions& options);

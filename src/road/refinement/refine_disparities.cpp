@@ -152,26 +152,27 @@ void RefinementOptions::validate() const {
   require_range("refinement", "max_agreement_sigma_px", max_agreement_sigma_px, min_sigma_px, 10.0);
 }
 
-void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
-                        double effective_samples, const RefinementOptions& options, int threads, Image<float>& refined,
-                        Image<float>& sigma) {
+void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, int pixel_step,
+                        const DisparityPlane& road, double effective_samples, const RefinementOptions& options,
+                        int threads, Image<float>& refined, Image<float>& sigma) {
   Image<float> between_disparity, between_variance;
-  refine_disparities(disparity, variance, road, effective_samples, options, threads,
+  refine_disparities(disparity, variance, pixel_step, road, effective_samples, options, threads,
                      {between_disparity, between_variance}, refined, sigma);
 }
 
-void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
-                        double effective_samples, const RefinementOptions& options, int threads,
-                        const RefinementMaps& between, Image<float>& refined, Image<float>& sigma) {
+void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, int pixel_step,
+                        const DisparityPlane& road, double effective_samples, const RefinementOptions& options,
+                        int threads, const RefinementMaps& between, Image<float>& refined, Image<float>& sigma) {
   options.validate();
   if (variance.width() != disparity.width() || variance.height() != disparity.height()) {
     fail("the disparity map has ", disparity.width(), "×", disparity.height(), " pixels and its variance ",
          variance.width(), "×", variance.height(), "; they must be equal");
   }
-  Maps maps{disparity, variance, road, options};
-  const int passes = pass_count(options);
+  Maps maps{disparity, variance, of_matched_pixels(road, pixel_step), of_matched_pixels(options, pixel_step)};
+  const double samples = of_matched_pixels(effective_samples, pixel_step);
+  const int passes = pass_count(maps.options);
   for (int k = 0; k < passes; ++k) {
-    const RefinementPass pass = refinement_pass(options, k, effective_samples);
+    const RefinementPass pass = refinement_pass(maps.options, k, samples);
     const bool to_result = (passes - 1 - k) % 2 == 0;
     Image<float>& out = to_result ? refined : between.disparity;
     Image<float>& error = to_result ? sigma : between.variance;
@@ -179,7 +180,7 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
     maps.disparity = out.view();
     maps.variance = error.view();
   }
-  if (options.smoothing_px > 0) add_smoothing_error(refined, options.smoothing_px, threads, sigma);
+  if (options.smoothing_px > 0) add_smoothing_error(refined, maps.options.smoothing_px, threads, sigma);
 }
 
 }  // namespace roadstereo

@@ -11,8 +11,8 @@ struct RefinementMaps {
 };
 
 /// As refine_disparities of roadstereo/refinement.hpp, with the caller's maps between passes; they may be of any size.
-void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
-                        double effective_samples, const RefinementOptions& options, int threads,
-                        const RefinementMaps& between, Image<float>& refined, Image<float>& sigma);
+void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, int pixel_step,
+                        const DisparityPlane& road, double effective_samples, const RefinementOptions& options,
+                        int threads, const RefinementMaps& between, Image<float>& refined, Image<float>& sigma);
 
 }  // namespace roadstereo

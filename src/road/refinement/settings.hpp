@@ -11,6 +11,26 @@
 
 namespace roadstereo {
 
+/// The options for maps of every `pixel_step`-th row and column, in pixels of those maps; distances are rounded up.
+inline RefinementOptions of_matched_pixels(const RefinementOptions& options, int pixel_step) {
+  const auto matched = [pixel_step](int pixels) { return (pixels + pixel_step - 1) / pixel_step; };
+  RefinementOptions scaled = options;
+  scaled.step = matched(options.step);
+  scaled.radius = options.radius / options.step * scaled.step;
+  scaled.smoothing_px = matched(options.smoothing_px);
+  return scaled;
+}
+
+/// The road in the coordinates of such maps.
+inline DisparityPlane of_matched_pixels(const DisparityPlane& road, int pixel_step) {
+  return {road.a0, road.a1 * pixel_step, road.a2 * pixel_step};
+}
+
+/// Effective samples of a disparity, in pixels of such maps.
+inline double of_matched_pixels(double effective_samples, int pixel_step) {
+  return effective_samples / (pixel_step * pixel_step);
+}
+
 inline int pass_count(const RefinementOptions& options) {
   return options.radius < options.step ? 1 : options.passes;
 }

@@ -118,8 +118,9 @@ HWY_INLINE void copy_block(const AggregationRow& row, int column, int first_d, f
 }
 
 /// The last disparity at which column i of a window row has a counterpart; negative where there is none.
-HWY_INLINE int last_seen(const WindowRow& window, int i) {
-  return i > window.last_valid ? -1 : i - window.first_visible;
+HWY_INLINE int last_seen(const AggregationRow& row, const WindowRow& window, int i) {
+  const int x = i * row.pixel_step;
+  return x > window.last_valid ? -1 : x - window.first_visible;
 }
 
 /// The same for one vector of disparities of one pixel near the border, over the taps that have a counterpart; infinite
@@ -130,7 +131,7 @@ HWY_INLINE void aggregate_border(const AggregationRow& row, int column, int d, f
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float infinite_energy = hn::Set(df, infinity);
   float* out = energies + (column - row.first) % strip_columns * row.pitch + d;
-  if (d > last_seen(row.centre, column)) {
+  if (d > last_seen(row, row.centre, column)) {
     hn::Store(infinite_energy, df, out);
     return;
   }
@@ -140,7 +141,7 @@ HWY_INLINE void aggregate_border(const AggregationRow& row, int column, int d, f
   for (const WindowRow& window : row.rows) {
     for (int k = -window.half; k <= window.half; ++k, ++weight) {
       const int i = column + k * row.step;
-      const int last = last_seen(window, i);
+      const int last = last_seen(row, window, i);
       if (last < d) continue;
       Float w = hn::Set(df, (*weight)[column]);
       if (last < d + lanes - 1) {
@@ -150,8 +151,12 @@ HWY_INLINE void aggregate_border(const AggregationRow& row, int column, int d, f
       sum = hn::Add(sum, w);
     }
   }
-  const auto seen = hn::RebindMask(df, hn::Lt(disparity, hn::Set(di, last_seen(row.centre, column) + 1)));
+  const auto seen = hn::RebindMask(df, hn::Lt(disparity, hn::Set(di, last_seen(row, row.centre, column) + 1)));
   hn::Store(hn::IfThenElse(seen, hn::Div(energy, sum), infinite_energy), df, out);
+}
+
+HWY_INLINE int floor_divide(int a, int b) {
+  return a / b - (a % b < 0 ? 1 : 0);
 }
 
 /// Columns whose whole window has a counterpart at every disparity below `end_d`.
@@ -161,8 +166,9 @@ struct ColumnRange {
 HWY_INLINE ColumnRange whole_windows(const AggregationRow& row, int end_d) {
   ColumnRange range{row.first, row.end};
   for (const WindowRow& window : row.rows) {
-    range.first = std::max(range.first, window.first_visible + end_d - 1 + row.radius);
-    range.end = std::min(range.end, window.last_valid + 1 - row.radius);
+    const int first_seen = -floor_divide(1 - window.first_visible - end_d, row.pixel_step);
+    range.first = std::max(range.first, first_seen + row.radius);
+    range.end = std::min(range.end, floor_divide(window.last_valid, row.pixel_step) + 1 - row.radius);
   }
   return range;
 }

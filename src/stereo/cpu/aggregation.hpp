@@ -13,12 +13,13 @@ namespace roadstereo::cpu {
 /// Columns that are aggregated together; a tile begins at a multiple of this, so that tiles change no result.
 inline constexpr int strip_columns = 32;
 
-/// One row of the aggregation window: the taps −half … half around the pixel's column, `step` columns apart.
+/// One row of the aggregation window: the taps −half … half around the pixel's column, `step` columns apart. Columns
+/// are counted in matched pixels: column i is pixel_step·i pixels right of the tile's first.
 struct WindowRow {
   const float* costs;  ///< c(p, d) of the row: column i, disparity d at i·pitch + d
   int half;
-  int first_visible;  ///< column i sees the other view from disparity 0 to i − first_visible
-  int last_valid;     ///< last column of the own view
+  int first_visible;  ///< pixel x sees the other view from disparity 0 to x − first_visible
+  int last_valid;     ///< last pixel of the own view
 };
 
 /// Prior of winner-take-all: energies at disparity d grow by weight · min(|d − centre|, truncation).
@@ -34,6 +35,7 @@ struct AggregationRow {
   int end;
   int disparities;
   std::ptrdiff_t pitch;
+  int pixel_step;                         ///< pixels from one column to the next
   int step;                               ///< columns from one tap to the next, 1 or 2
   int radius;                             ///< of the window, columns
   WindowRow centre;                       ///< the window row of the pixels themselves

@@ -100,9 +100,14 @@ void block_statistics(const ColumnSums& sums, int block_radius, int pixels, floa
   }
 }
 
+/// Where the costs of column i begin.
+HWY_INLINE float* costs_of(const CostRow& row, int i, float* cost) {
+  return cost + (i - row.block_radius) / row.step * row.pitch;
+}
+
 /// The costs of the disparities from first_d on, `vectors` vectors of them, along the columns. `block` slides with the
 /// column: Σ over its block of own·other.
-template <int vectors>
+template <int vectors, int step>
 HWY_INLINE void full_block_costs_of(const CostRow& row, int first_d, int first, int end, float* cost) {
   const Ints di;
   const Floats df;
@@ -115,18 +120,22 @@ HWY_INLINE void full_block_costs_of(const CostRow& row, int first_d, int first, 
   for (int i = first - row.block_radius; i < first + row.block_radius; ++i) {
     for (std::size_t k = 0; k < vectors; ++k) block[k] = hn::Add(block[k], hn::Load(di, products(i) + k * lanes));
   }
-  for (int i = first; i < end; ++i) {
+  for (int i = first; i < end; i += step) {
     const std::int32_t* entering = products(i + row.block_radius);
     const std::int32_t* leaving = products(i - row.block_radius);
     const Int own_sum = hn::Set(di, row.own.sum[i]);
     const Float own_mean = hn::Set(df, static_cast<float>(row.own.sum[i]) * inverse_n);
     const Float own_inverse = hn::Set(df, row.own.inverse_deviation[i] * inverse_n);
     const int j = row.origin - i + first_d;
-    float* out = cost + i * row.pitch + first_d;
+    float* out = costs_of(row, i, cost) + first_d;
     for (std::size_t k = 0; k < vectors; ++k) {
       const std::size_t at = k * lanes;
       const Int sum = hn::Add(block[k], hn::Load(di, entering + at));
       block[k] = hn::Sub(sum, hn::Load(di, leaving + at));
+      if constexpr (step == 2) {
+        const auto next = static_cast<std::size_t>(row.pitch) + at;
+        block[k] = hn::Add(block[k], hn::Sub(hn::Load(di, entering + next), hn::Load(di, leaving + next)));
+      }
       const Int whole = hn::Sub(sum, hn::Mul(own_sum, hn::LoadU(di, row.other.mean + j + at)));
       const Float covariance =
           hn::NegMulAdd(own_mean, hn::LoadU(df, row.other.residue + j + at), hn::ConvertTo(df, whole));
@@ -138,26 +147,36 @@ HWY_INLINE void full_block_costs_of(const CostRow& row, int first_d, int first, 
 
 /// The first column at which no disparity below `end_d` clips the block.
 HWY_INLINE int first_whole_column(const CostRow& row, int end_d) {
-  return std::max(row.first, row.first_visible + end_d - 1 + row.block_radius);
+  const int first = std::max(row.first, row.first_visible + end_d - 1 + row.block_radius);
+  return first + (first - row.block_radius) % row.step;
 }
 
-void full_block_costs(const CostRow& row, float* cost) {
+template <int step>
+HWY_INLINE void full_block_costs_with(const CostRow& row, float* cost) {
   const int lanes = static_cast<int>(hn::Lanes(Ints()));
   const int end = std::min(row.end, row.last_valid + 1 - row.block_radius);
   const int first = std::min(end, first_whole_column(row, row.disparities));
   // Near the border every vector of disparities begins where it can.
   for (int d = 0; d < row.disparities; d += lanes) {
     const int begin = first_whole_column(row, std::min(d + lanes, row.disparities));
-    if (begin < first) full_block_costs_of<1>(row, d, begin, first, cost);
+    if (begin < first) full_block_costs_of<1, step>(row, d, begin, first, cost);
   }
   if (first >= end) return;
   int d = 0;
-  for (; d + 3 * lanes < row.disparities; d += 4 * lanes) full_block_costs_of<4>(row, d, first, end, cost);
+  for (; d + 3 * lanes < row.disparities; d += 4 * lanes) full_block_costs_of<4, step>(row, d, first, end, cost);
   if (d + lanes < row.disparities) {
-    full_block_costs_of<2>(row, d, first, end, cost);
+    full_block_costs_of<2, step>(row, d, first, end, cost);
     d += 2 * lanes;
   }
-  if (d < row.disparities) full_block_costs_of<1>(row, d, first, end, cost);
+  if (d < row.disparities) full_block_costs_of<1, step>(row, d, first, end, cost);
+}
+
+void full_block_costs(const CostRow& row, float* cost) {
+  if (row.step == 1) {
+    full_block_costs_with<1>(row, cost);
+  } else {
+    full_block_costs_with<2>(row, cost);
+  }
 }
 
 // For every disparity d whose block is not whole: the block's own columns are max(i − radius, d + first_visible) …
@@ -173,7 +192,7 @@ HWY_INLINE void clipped_block_costs_of(const CostRow& row, const RunningSums& ru
   for (int d = 0; d < row.disparities; d += lanes) {
     if (last == column + radius && column >= first_whole_column(row, std::min(d + lanes, row.disparities))) continue;
     if (d > column - row.first_visible) {
-      hn::Store(hn::Zero(df), df, cost + column * row.pitch + d);
+      hn::Store(hn::Zero(df), df, costs_of(row, column, cost) + d);
       continue;
     }
     const Int first_seen = count_from(d + row.first_visible);  // the own column whose counterpart is the first
@@ -216,19 +235,19 @@ HWY_INLINE void clipped_block_costs_of(const CostRow& row, const RunningSums& ru
     const Float covariance = hn::NegMulAdd(own_exact_mean, hn::ConvertTo(df, other_residue), hn::ConvertTo(df, whole));
     const Float inverse = hn::Mul(hn::Mul(own_inverse, other_inverse), inverse_n);
     const Float result = hn::NegMulAdd(covariance, inverse, one);
-    hn::Store(hn::IfThenElseZero(hn::RebindMask(df, seen), result), df, cost + column * row.pitch + d);
+    hn::Store(hn::IfThenElseZero(hn::RebindMask(df, seen), result), df, costs_of(row, column, cost) + d);
   }
 }
 
 void clipped_block_costs(const CostRow& row, const RunningSums& running, float* cost) {
   const int whole = first_whole_column(row, row.disparities);
   const int right = std::max(whole, row.last_valid + 1 - row.block_radius);
-  for (int i = row.first; i < row.end; ++i) {
+  for (int i = row.first; i < row.end; i += row.step) {
     if (i >= whole && i < right) continue;
     if (i <= row.last_valid) {
       clipped_block_costs_of(row, running, i, cost);
     } else {
-      std::fill_n(cost + i * row.pitch, row.pitch, 0.0f);
+      std::fill_n(costs_of(row, i, cost), row.pitch, 0.0f);
     }
   }
 }

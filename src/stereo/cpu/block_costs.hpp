@@ -50,10 +50,11 @@ struct BlockStatistics {
 void block_statistics(const ColumnSums& sums, int block_radius, int pixels, float noise_variance, int first, int end,
                       const BlockStatistics& out);
 
-/// What the cost kernels see of one row. Costs are wanted of the columns first … end − 1, around which there are
-/// block_radius columns more.
+/// What the cost kernels see of one row. Costs are wanted of every `step`-th of the columns first … end − 1, around
+/// which there are block_radius columns more; those of column i begin at (i − block_radius) / step·pitch.
 struct CostRow {
   int first, end;
+  int step;  ///< 1 or 2
   int first_visible;  ///< column i sees the other view from disparity 0 to i − first_visible
   int last_valid;     ///< last column of the own view
   int block_radius;

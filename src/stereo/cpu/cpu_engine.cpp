@@ -16,14 +16,14 @@ using cpu::MatchView;
 using cpu::Tile;
 using cpu::ViewMatcher;
 
-/// Left–right check, eq. (12), and sub-pixel disparity of row v.
-void finish_row(int v, const FinishSettings& settings, const Image<float>& offset, MatchMaps& maps) {
-  const std::int16_t *winner = maps.winner.row(v), *target_winner = maps.target_winner.row(v);
-  const float* offsets = offset.row(v);
-  float *disparity = maps.disparity.row(v), *variance = maps.variance.row(v);
-  for (int u = 0; u < maps.winner.width(); ++u) {
-    const int met = winner[u] < 0 ? -1 : target_winner[u - winner[u]];
-    disparity[u] = finish_disparity(winner[u], met, offsets[u], settings, variance[u]);
+/// Left–right check, eq. (12), and sub-pixel disparity of row y of the maps.
+void finish_row(int y, int pixel_step, const FinishSettings& settings, const Image<float>& offset, MatchMaps& maps) {
+  const std::int16_t *winner = maps.winner.row(y), *target_winner = maps.target_winner.row(y);
+  const float* offsets = offset.row(y);
+  float *disparity = maps.disparity.row(y), *variance = maps.variance.row(y);
+  for (int x = 0; x < maps.winner.width(); ++x) {
+    const int met = winner[x] < 0 ? -1 : target_winner[x * pixel_step - winner[x]];
+    disparity[x] = finish_disparity(winner[x], met, offsets[x], settings, variance[x]);
   }
 }
 
@@ -40,7 +40,8 @@ void cut_evenly(const MatchView& view, int columns, int disparities, const Match
   // A tile begins by filling its rings, so it should be high.
   const int halo = 2 * (options.block_radius + options.aggregation_radius);
   const int wanted = (4 * threads + 2 * across - 1) / (2 * across);
-  const int rows = std::max(2 * halo, (view.height() + wanted - 1) / wanted);
+  const int most = std::max(2 * halo, (view.height() + wanted - 1) / wanted);
+  const int rows = most + most % options.pixel_step;
   for (int row = 0; row < view.height(); row += rows) {
     for (int column = 0; column < view.width(); column += columns) {
       jobs.push_back({&view,
@@ -80,12 +81,13 @@ class CpuEngine final : public StereoEngine {
     options.validate();
     use(options);
     const int width = input.reference.width();
-    const int height = input.reference.height();
-    maps.winner.resize(width, height);
-    maps.target_winner.resize(width, height);
-    maps.disparity.resize(width, height);
-    maps.variance.resize(width, height);
-    offset_.resize(width, height);
+    const int step = options.pixel_step;
+    const int columns = matched_pixels(width, options), rows = matched_pixels(input.reference.height(), options);
+    maps.winner.resize(columns, rows);
+    maps.target_winner.resize(width, rows);
+    maps.disparity.resize(columns, rows);
+    maps.variance.resize(columns, rows);
+    offset_.resize(columns, rows);
     block_first_columns(input, options.block_radius, first_columns_);
     const MatchView reference(input, MatchView::reference, first_columns_);
     const MatchView target(input, MatchView::target, first_columns_);
@@ -99,21 +101,21 @@ class CpuEngine final : public StereoEngine {
         cut_by_ranges(*view, view == &reference ? input.ranges.reference : input.ranges.target, jobs_);
       }
     }
-    int columns = 0, disparities = 0;
+    int tile_columns = 0, disparities = 0;
     for (const Job& job : jobs_) {
-      columns = std::max(columns, job.tile.end - job.tile.first);
+      tile_columns = std::max(tile_columns, job.tile.end - job.tile.first);
       disparities = std::max(disparities, job.tile.range.count);
     }
-    prepare(columns, disparities);
+    prepare(tile_columns, disparities);
     parallel_for(static_cast<int>(jobs_.size()), threads_, [&](int i, int worker) {
       const Job& job = jobs_[static_cast<std::size_t>(i)];
       matchers_[static_cast<std::size_t>(worker)].match(*job.view, job.tile, maps, offset_);
     });
     const FinishSettings finish = finish_settings(options);
-    parallel_rows(height, 32, threads_, [&](int first, int last, int) {
-      for (int v = first; v < last; ++v) {
-        if (!options.match_both_views) project_winners(maps.winner, v, maps.target_winner);
-        finish_row(v, finish, offset_, maps);
+    parallel_rows(rows, 32, threads_, [&](int first, int last, int) {
+      for (int y = first; y < last; ++y) {
+        if (!options.match_both_views) project_winners(maps.winner, y, step, maps.target_winner);
+        finish_row(y, step, finish, offset_, maps);
       }
     });
   }

@@ -27,10 +27,11 @@ enum Numbers { block_residue, block_deviation, number_rows };
 void TileCosts::prepare(int columns, int disparities, const MatcherOptions& options) {
   const std::ptrdiff_t pitch = padded_disparities(disparities);
   radius_ = options.block_radius;
+  pixel_step_ = options.pixel_step;
   ring_ = 2 * radius_ + 2;
   const double noise = options.ncc_noise_sigma * grey_scale;
   noise_variance_ = static_cast<float>(noise * noise);
-  const std::ptrdiff_t own_columns = columns + 2 * radius_;
+  const std::ptrdiff_t own_columns = std::ptrdiff_t{columns} * pixel_step_ + 2 * radius_;
   const std::ptrdiff_t other_columns = own_columns + pitch + radius_;
   for (const View view : {own, other}) {
     const std::ptrdiff_t width = view == own ? own_columns : other_columns;
@@ -57,7 +58,7 @@ void TileCosts::start(const MatchView& view, int v, int first, int columns, cons
   range_ = range;
   pitch_ = padded_disparities(range.count);
   first_ = first - radius_;
-  columns_ = columns + 2 * radius_;
+  columns_ = (columns - 1) * pixel_step_ + 1 + 2 * radius_;
   other_first_ = view.width() - first_ - columns_ + range.first;
   other_columns_ = columns_ + static_cast<int>(pitch_) + radius_;
   oldest_ = entered_ = std::max(0, v - radius_);
@@ -113,6 +114,7 @@ void TileCosts::compute(int v, float* costs) {
   block_statistics(sums(other), radius_, pixels, noise_variance_, radius_, other_columns_ - radius_, statistics(other));
   const CostRow row{.first = std::max(radius_, -first_),
                     .end = std::min(columns_ - radius_, view_->width() - first_),
+                    .step = pixel_step_,
                     .first_visible = view_->first_visible(v) + range_.first - first_,
                     .last_valid = view_->last_valid(v) - first_,
                     .block_radius = radius_,
@@ -124,8 +126,7 @@ void TileCosts::compute(int v, float* costs) {
                     .products = products_.row(0),
                     .own = statistics(own),
                     .other = statistics(other)};
-  float* cost = costs - radius_ * pitch_;  // the kernels' columns begin a block's radius before the tile
-  full_block_costs(row, cost);
+  full_block_costs(row, costs);
   const bool clipped_left = row.first < row.first_visible + range_.count - 1 + radius_;
   const bool clipped_right = row.end + radius_ > row.last_valid + 1;
   if (!clipped_left && !clipped_right) return;
@@ -135,7 +136,7 @@ void TileCosts::compute(int v, float* costs) {
                        .own_square = views_[own].integers.row(running_square),
                        .other_sum = views_[other].integers.row(running_sum),
                        .other_square = views_[other].integers.row(running_square)},
-                      cost);
+                      costs);
 }
 
 }  // namespace roadstereo::cpu

@@ -14,18 +14,19 @@ struct DisparityRange {
   int count = 0;
 };
 
-/// Computes the matching costs of one view in a tile of columns, row after row, from column sums that slide down the
-/// image. All sums are whole numbers, so that a row's costs do not depend on where the slide began.
+/// Computes the matching costs of the matched pixels of one view in a tile of columns, row after row, from column sums
+/// that slide down the image. All sums are whole numbers, so that a row's costs do not depend on where the slide began.
 class TileCosts {
  public:
   /// Memory for tiles of up to `columns` columns and `disparities` disparities.
   void prepare(int columns, int disparities, const MatcherOptions& options);
 
-  /// Begins at row `v`; `compute` is then called for v, v + 1, …. Costs are wanted of `columns` columns from `first`
-  /// on, which may lie outside the image, and of the disparities of `range`.
+  /// Begins at row `v`; `compute` is then called for v, v + 1, … or, with a pixel_step of 2, v, v + 2, …. Costs are
+  /// wanted of `columns` matched columns from the image's column `first` on, which may lie outside, and of the
+  /// disparities of `range`.
   void start(const MatchView& view, int v, int first, int columns, const DisparityRange& range);
 
-  /// Costs of row v at the columns that lie in the image: column k of the tile begins at costs + k·pitch, with the
+  /// Costs of row v at the columns that lie in the image: matched column k of the tile begins at costs + k·pitch, with the
   /// first disparity of the range. Disparities without a counterpart get 0.
   void compute(int v, float* costs);
 
@@ -49,6 +50,7 @@ class TileCosts {
   DisparityRange range_;
   std::ptrdiff_t pitch_ = 0;
   int radius_ = 0;
+  int pixel_step_ = 1;
   int ring_ = 1;
   float noise_variance_ = 0;
   // Tile coordinates: own column 0 is image column first_, other column 0 is column other_first_ of the backward row.

@@ -13,7 +13,7 @@
 namespace roadstereo::cpu {
 
 /// Tile of a view: rows [first_row, last_row), columns [first, end) in the order of the matcher, and the disparities to
-/// search.
+/// search. Its first row and column are matched ones.
 struct Tile {
   int first_row, last_row;
   int first, end;
@@ -21,13 +21,14 @@ struct Tile {
 };
 
 /// Matches one view tile by tile. Owns the scratch memory of one thread: a ring of cost rows as high as the aggregation
-/// window and as wide as a tile (drawing in match_view.hpp), no volume.
+/// window and as wide as a tile (drawing in match_view.hpp), no volume. Rows y and columns within a tile are counted in
+/// matched pixels.
 class ViewMatcher {
  public:
-  /// Returns the columns of a tile, a multiple of strip_columns: the ring of costs stays in the cache of a core.
+  /// Returns the pixels across a tile, whole strips of matched ones: the ring of costs stays in the cache of a core.
   static int tile_columns(int disparities, const MatcherOptions& options);
 
-  /// Allocates memory for tiles of up to `columns` columns.
+  /// Allocates memory for tiles of up to `columns` pixels across.
   void prepare(int columns, int disparities, const MatcherOptions& options, std::span<const Tap> taps);
 
   /// Writes the winners of a tile of the view into `maps`, for the reference view also their variances and sub-pixel
@@ -35,14 +36,16 @@ class ViewMatcher {
   void match(const MatchView& view, const Tile& tile, MatchMaps& maps, Image<float>& offset);
 
  private:
-  PriorRow prior_row(const MatchView& view, int v, const Tile& tile);
-  void match_row(const MatchView& view, int v, const Tile& tile, MatchMaps& maps, Image<float>& offset);
+  int matched(int pixels) const { return (pixels + pixel_step_ - 1) / pixel_step_; }
+  PriorRow prior_row(const MatchView& view, int y, const Tile& tile);
+  void match_row(const MatchView& view, int y, const Tile& tile, MatchMaps& maps, Image<float>& offset);
   int& half_width(int dv) {
     const int row = dv + rows_;
     return half_widths_[static_cast<std::size_t>(row)];
   }
-  float* cost_row(int v) { return costs_.row(static_cast<std::size_t>(v % ring_)); }
+  float* cost_row(int y) { return costs_.row(static_cast<std::size_t>(y % ring_)); }
 
+  int pixel_step_ = 1;
   int radius_ = 0;  ///< of the window, columns
   int rows_ = 0;    ///< of the window, rows to either side
   int ring_ = 1;

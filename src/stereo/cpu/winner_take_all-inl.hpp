@@ -189,7 +189,7 @@ HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns,
   const int lanes = static_cast<int>(hn::Lanes(di));
   const Float nan = hn::Set(df, std::numeric_limits<float>::quiet_NaN());
   for (int i = 0; i < columns; i += lanes) {
-    const Int column = count_from(strip + i);
+    const Int column = hn::Mul(count_from(strip + i), hn::Set(di, row.pixel_step));
     const Int seen = hn::Min(hn::Sub(column, hn::Set(di, row.centre.first_visible)), hn::Set(di, row.disparities - 1));
     const Int last = hn::IfThenElse(hn::Gt(column, hn::Set(di, row.centre.last_valid)), hn::Set(di, -1), seen);
     const Int winner = hn::LoadU(di, found.winner + i);

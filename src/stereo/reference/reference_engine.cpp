@@ -54,6 +54,8 @@ struct Scene {
 
   int width() const { return input.reference.width(); }
   int height() const { return input.reference.height(); }
+  int columns() const { return matched_pixels(width(), options); }
+  int rows() const { return matched_pixels(height(), options); }
   bool in_reference(int u, int v) const { return u >= 0 && u < width() && v >= 0 && v < height(); }
   /// Whether target pixel (x, v) belongs to what is matched in the blocks around row `block_v`.
   bool in_target(int x, int v, int block_v) const {
@@ -162,9 +164,11 @@ double prior_term(const Scene& scene, const DisparityPriorView& prior, double be
 /// Winner-take-all: the disparity of the smallest cost, −1 where there is none; the smaller disparity wins a tie.
 Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, ImageView<const SearchRange> ranges,
                                  const DisparityPriorView& prior) {
-  Image<std::int16_t> winners(scene.width(), scene.height(), -1);
-  for (int v = 0; v < scene.height(); ++v) {
-    for (int u = 0; u < scene.width(); ++u) {
+  const int step = scene.options.pixel_step;
+  Image<std::int16_t> winners(scene.columns(), scene.rows(), -1);
+  for (int y = 0; y < winners.height(); ++y) {
+    for (int x = 0; x < winners.width(); ++x) {
+      const int u = x * step, v = y * step;
       const SearchRange searched = range_at(ranges, u, v);
       double smallest = std::numeric_limits<double>::infinity();
       for (int d = searched.first; d < searched.end; ++d) {
@@ -175,7 +179,7 @@ Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, I
         const double regularised = energy(u, v, d) + prior_term(scene, prior, smallest, u, v, d);
         if (regularised < best) {
           best = regularised;
-          winners(u, v) = static_cast<std::int16_t>(d);
+          winners(x, y) = static_cast<std::int16_t>(d);
         }
       }
     }
@@ -183,11 +187,11 @@ Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, I
   return winners;
 }
 
-/// Eq. (12). The shift of the perspective transformation depends on the target pixel alone, so it cancels here and the
-/// check on residual disparities is the check on the original ones.
-bool consistent(const MatchMaps& maps, int u, int v, double max_diff_px) {
-  const int d = maps.winner(u, v);
-  return std::abs(d - maps.target_winner(u - d, v)) <= max_diff_px;
+/// Eq. (12) at pixel (x, y) of the maps. The shift of the perspective transformation depends on the target pixel alone,
+/// so it cancels here and the check on residual disparities is the check on the original ones.
+bool consistent(const MatchMaps& maps, int x, int y, const MatcherOptions& options) {
+  const int d = maps.winner(x, y);
+  return std::abs(d - maps.target_winner(x * options.pixel_step - d, y)) <= options.lr_max_diff_px;
 }
 
 /// A sub-pixel disparity and its variance.
@@ -236,20 +240,21 @@ class ReferenceEngine final : public StereoEngine {
     if (options.match_both_views) {
       maps.target_winner = take_winners(scene, aggregate(scene, cost, input.target, 1, threads_), ranges.target, {});
     } else {
-      maps.target_winner.assign(scene.width(), scene.height(), -1);
-      for (int v = 0; v < scene.height(); ++v) project_winners(maps.winner, v, maps.target_winner);
+      maps.target_winner.resize(scene.width(), scene.rows());
+      for (int y = 0; y < scene.rows(); ++y) project_winners(maps.winner, y, options.pixel_step, maps.target_winner);
     }
-    maps.disparity.assign(scene.width(), scene.height(), std::numeric_limits<float>::quiet_NaN());
-    maps.variance.assign(scene.width(), scene.height(), std::numeric_limits<float>::infinity());
-    for (int v = 0; v < scene.height(); ++v) {
-      for (int u = 0; u < scene.width(); ++u) {
-        if (maps.winner(u, v) < 0) continue;
-        const bool occluded = options.left_right_check && !consistent(maps, u, v, options.lr_max_diff_px);
+    maps.disparity.assign(scene.columns(), scene.rows(), std::numeric_limits<float>::quiet_NaN());
+    maps.variance.assign(scene.columns(), scene.rows(), std::numeric_limits<float>::infinity());
+    for (int y = 0; y < scene.rows(); ++y) {
+      for (int x = 0; x < scene.columns(); ++x) {
+        if (maps.winner(x, y) < 0) continue;
+        const bool occluded = options.left_right_check && !consistent(maps, x, y, options);
         if (occluded && options.occlusion_sigma_px == 0) continue;
-        const Refined refined = refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(u, v));
-        maps.disparity(u, v) = static_cast<float>(refined.disparity);
+        const int u = x * options.pixel_step, v = y * options.pixel_step;
+        const Refined refined = refine(scene, energy_ref, range_at(ranges.reference, u, v), u, v, maps.winner(x, y));
+        maps.disparity(x, y) = static_cast<float>(refined.disparity);
         const double added_variance = occluded ? options.occlusion_sigma_px * options.occlusion_sigma_px : 0;
-        maps.variance(u, v) = static_cast<float>(refined.variance + added_variance);
+        maps.variance(x, y) = static_cast<float>(refined.variance + added_variance);
       }
     }
   }

@@ -1,0 +1,67 @@
+#include <algorithm>
+
+#include "core/parallel.hpp"
+#include "road/refinement/between_pixels.hpp"
+#include "roadstereo/refinement.hpp"
+
+namespace roadstereo {
+namespace {
+
+constexpr int rows_per_band = 32;
+
+/// A row of a map of disparities and of their errors.
+struct MapRow {
+  const float *disparity, *sigma;
+
+  MapPixel at(int x) const { return {disparity[x], sigma[x]}; }
+};
+
+/// Writes a row of all pixels from one of every second.
+void fill_row(const MapRow& row, int columns, float half_rise, int width, float* disparity, float* sigma) {
+  const auto write = [&](int u, const MapPixel& pixel) {
+    disparity[u] = pixel.disparity;
+    sigma[u] = pixel.sigma;
+  };
+  for (int x = 0; x + 1 < columns; ++x) {
+    write(2 * x, row.at(x));
+    write(2 * x + 1, between_pixels(row.at(x), row.at(x + 1), half_rise));
+  }
+  const MapPixel last = row.at(columns - 1);
+  write(2 * columns - 2, last);
+  if (2 * columns - 1 < width) write(2 * columns - 1, {last.disparity + half_rise, last.sigma});
+}
+
+}  // namespace
+
+void interpolate_disparities(ImageView<const float> disparity, ImageView<const float> sigma, const DisparityPlane& road,
+                             int width, int height, int threads, Image<float>& full, Image<float>& full_sigma) {
+  full.resize(width, height);
+  full_sigma.resize(width, height);
+  const auto across = static_cast<float>(road.a2), down = static_cast<float>(road.a1);
+  parallel_rows(disparity.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int y = first; y < last; ++y) {
+      fill_row({disparity.row(y), sigma.row(y)}, disparity.width(), across, width, full.row(2 * y),
+               full_sigma.row(2 * y));
+    }
+  });
+  parallel_rows(height / 2, rows_per_band, threads, [&](int first, int last, int) {
+    for (int y = first; y < last; ++y) {
+      const int v = 2 * y + 1;
+      const MapRow above{full.row(v - 1), full_sigma.row(v - 1)};
+      float *const to = full.row(v), *const error = full_sigma.row(v);
+      if (v + 1 == height) {
+        for (int u = 0; u < width; ++u) to[u] = above.disparity[u] + down;
+        std::copy_n(above.sigma, width, error);
+        continue;
+      }
+      const MapRow below{full.row(v + 1), full_sigma.row(v + 1)};
+      for (int u = 0; u < width; ++u) {
+        const MapPixel pixel = between_pixels(above.at(u), below.at(u), down);
+        to[u] = pixel.disparity;
+        error[u] = pixel.sigma;
+      }
+    }
+  });
+}
+
+}  // namespace roadstereo
