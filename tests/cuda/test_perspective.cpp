@@ -69,7 +69,7 @@ TEST_F(CudaPerspective, AddedShiftMatchesHost) {
   const test::DevicePlane<float> in(residual), out(width, height);
   for (const PerspectiveShift& shift : shifts()) {
     Image<float> expected;
-    restore_disparity(residual, shift, 1, expected);
+    restore_disparity(residual, shift, 1, 1, expected);
     cuda::restore_disparity(in.view(), shift, out.plane(), nullptr);
     const Image<float> found = out.on_host();
     for (int v = 0; v < height; ++v) {

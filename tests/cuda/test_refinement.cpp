@@ -53,8 +53,8 @@ void expect_equal(const Image<float>& found, const Image<float>& expected) {
 void expect_as_on_host(int width, int height, const PerspectiveShift& shift, const RefinementOptions& options) {
   const Maps maps(width, height);
   Image<float> full, refined, sigma;
-  restore_disparity(maps.residual, shift, 1, full);
-  refine_disparities(full, maps.variance, shift.road, support, options, 1, refined, sigma);
+  restore_disparity(maps.residual, shift, 1, 1, full);
+  refine_disparities(full, maps.variance, 1, shift.road, support, options, 1, refined, sigma);
   const test::DevicePlane<float> disparity(full), variance(maps.variance);
   const test::DevicePlane<float> device_refined(width, height), device_sigma(width, height);
   const test::DevicePlane<float> between_disparity(width, height), between_variance(width, height);

@@ -182,7 +182,7 @@ TEST(AddShift, UndoesTransformation) {
   const PerspectiveShift shift = shift_by({12.25, 0.31, -0.02}, 6);
   Image<float> residual(50, 30, 2.5F), disparity;
   residual(7, 7) = std::numeric_limits<float>::quiet_NaN();
-  restore_disparity(residual, shift, 2, disparity);
+  restore_disparity(residual, shift, 1, 2, disparity);
   // The target column that was matched, x = u − k, came from column x − shift(x) of the target: d = u − that.
   for (int v = 0; v < 30; ++v) {
     for (int u = 0; u < 50; ++u) {

@@ -24,7 +24,7 @@ struct Refined {
 Refined refine(const Image<float>& disparity, const Image<float>& variance, const DisparityPlane& road = no_road,
                const RefinementOptions& options = {}, int threads = 1) {
   Refined refined;
-  refine_disparities(disparity, variance, road, support, options, threads, refined.disparity, refined.sigma);
+  refine_disparities(disparity, variance, 1, road, support, options, threads, refined.disparity, refined.sigma);
   return refined;
 }
 

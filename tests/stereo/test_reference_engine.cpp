@@ -42,6 +42,7 @@ double pearson_cost(const GreyImage& ref, const GreyImage& tar, int u, int v, in
 TEST(ReferenceEngine, WinnerAndParabolaFollowCosts) {
   const auto pair = test::textured_pair(60, 40, [](double, double v) { return 4 + 0.05 * v; });
   MatcherOptions options;
+  options.pixel_step = 1;
   options.block_radius = 3;
   options.aggregation_radius = 0;
   options.ncc_noise_sigma = 0;
@@ -72,6 +73,7 @@ TEST(ReferenceEngine, WinnerAndParabolaFollowCosts) {
 TEST(ReferenceEngine, AggregationIsBilateralMeanOfCosts) {
   const auto pair = test::textured_pair(60, 40, [](double, double v) { return 5 + 0.04 * v; });
   MatcherOptions options;
+  options.pixel_step = 1;
   options.block_radius = 2;
   options.aggregation_step = 1;
   options.aggregation_radius = 1;
@@ -130,6 +132,7 @@ struct Repeating {
   /// What every pixel far from the border takes.
   int winner(float prior, double slope, double reach) const {
     MatcherOptions options;
+    options.pixel_step = 1;
     options.aggregation_radius = 0;
     options.prior_weight = slope;
     options.prior_truncation_px = reach;
@@ -160,6 +163,7 @@ TEST(ReferenceEngine, PriorIsTruncated) {
   const auto pair = test::textured_pair(100, 30, [](double, double) { return 3; });
   const DisparityPrior prior{Image<float>(100, 30, 11.0F), 1};
   MatcherOptions options;
+  options.pixel_step = 1;
   options.left_right_check = false;
   MatchMaps maps;
   const auto winner = [&](double slope, double reach) {
@@ -193,6 +197,7 @@ TEST(ReferenceEngine, VarianceMatchesNoise) {
   auto pair = test::textured_pair(
       260, 120, [](double, double) { return 6; }, 5);
   MatcherOptions options;
+  options.pixel_step = 1;
   options.block_radius = 4;
   options.aggregation_radius = 0;
   options.ncc_noise_sigma = 0;
@@ -218,6 +223,7 @@ TEST(ReferenceEngine, VarianceMatchesNoise) {
 TEST(MatcherOptions, RejectsValuesOutOfRange) {
   const auto refused = [](auto change) {
     MatcherOptions options;
+    options.pixel_step = 1;
     change(options);
     EXPECT_THROW(options.validate(), Error);
   };
@@ -232,6 +238,7 @@ TEST(ReferenceEngine, LeftRightCheckRemovesInconsistentPixels) {
   // Left half at 3 px, right half at 12 px: the strip that the right camera cannot see is 9 px wide.
   const auto pair = test::textured_pair(120, 40, [](double u, double) { return u < 60 ? 3 : 12; });
   MatcherOptions options;
+  options.pixel_step = 1;
   options.block_radius = 2;
   options.aggregation_radius = 2;
   options.occlusion_sigma_px = 0;
@@ -269,6 +276,7 @@ TEST(ReferenceEngine, GainAndOffsetHaveNoEffect) {
     for (int u = 0; u < 80; ++u) darker(u, v) = static_cast<std::int16_t>(pair.target(u, v) / 2 + 100);
   }
   MatcherOptions options;
+  options.pixel_step = 1;
   options.aggregation_radius = 0;
   options.ncc_noise_sigma = 0;
   MatchMaps a, b;

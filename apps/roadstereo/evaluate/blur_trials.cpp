@@ -57,7 +57,7 @@ Image<float> match_baseline(const StereoPair& pair, const PerspectiveShift& shif
   matcher.set_pair(grey.reference, grey.target);
   matcher.match();
   Image<float> disparity;
-  restore_disparity(matcher.disparity(), shift, threads, disparity);
+  restore_disparity(matcher.disparity(), shift, 1, threads, disparity);
   return disparity;
 }
 

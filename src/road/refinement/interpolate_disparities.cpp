@@ -13,22 +13,22 @@ constexpr int rows_per_band = 32;
 struct MapRow {
   const float *disparity, *sigma;
 
-  MapPixel at(int x) const { return {disparity[x], sigma[x]}; }
+  RefinedPixel at(int x) const { return {disparity[x], sigma[x]}; }
 };
 
 /// Writes a row of all pixels from one of every second.
 void fill_row(const MapRow& row, int columns, float half_rise, int width, float* disparity, float* sigma) {
-  const auto write = [&](int u, const MapPixel& pixel) {
+  const auto write = [&](int u, const RefinedPixel& pixel) {
     disparity[u] = pixel.disparity;
-    sigma[u] = pixel.sigma;
+    sigma[u] = pixel.error;
   };
   for (int x = 0; x + 1 < columns; ++x) {
     write(2 * x, row.at(x));
     write(2 * x + 1, between_pixels(row.at(x), row.at(x + 1), half_rise));
   }
-  const MapPixel last = row.at(columns - 1);
+  const RefinedPixel last = row.at(columns - 1);
   write(2 * columns - 2, last);
-  if (2 * columns - 1 < width) write(2 * columns - 1, {last.disparity + half_rise, last.sigma});
+  if (2 * columns - 1 < width) write(2 * columns - 1, {last.disparity + half_rise, last.error});
 }
 
 }  // namespace
@@ -56,9 +56,9 @@ void interpolate_disparities(ImageView<const float> disparity, ImageView<const f
       }
       const MapRow below{full.row(v + 1), full_sigma.row(v + 1)};
       for (int u = 0; u < width; ++u) {
-        const MapPixel pixel = between_pixels(above.at(u), below.at(u), down);
+        const RefinedPixel pixel = between_pixels(above.at(u), below.at(u), down);
         to[u] = pixel.disparity;
-        error[u] = pixel.sigma;
+        error[u] = pixel.error;
       }
     }
   });

@@ -91,6 +91,7 @@ bool CoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift) 
   for (Image<float>* map : {&along_rows_, &prior_.disparity}) map->resize(reference_.width(), reference_.height());
 
   MatcherOptions block;
+  block.pixel_step = 1;
   block.block_radius = options_.block_radius;
   block.ncc_noise_sigma = options_.ncc_noise_sigma;
   for (Worker& worker : workers_) {

@@ -127,7 +127,7 @@ HWY_INLINE void full_block_costs_of(const CostRow& row, int first_d, int first, 
     const Float own_mean = hn::Set(df, static_cast<float>(row.own.sum[i]) * inverse_n);
     const Float own_inverse = hn::Set(df, row.own.inverse_deviation[i] * inverse_n);
     const int j = row.origin - i + first_d;
-    float* out = costs_of(row, i, cost) + first_d;
+    float* out = cost + (i - row.block_radius) / step * row.pitch + first_d;
     for (std::size_t k = 0; k < vectors; ++k) {
       const std::size_t at = k * lanes;
       const Int sum = hn::Add(block[k], hn::Load(di, entering + at));
