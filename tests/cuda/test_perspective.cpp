@@ -70,7 +70,7 @@ TEST_F(CudaPerspective, AddedShiftMatchesHost) {
   for (const PerspectiveShift& shift : shifts()) {
     Image<float> expected;
     restore_disparity(residual, shift, 1, 1, expected);
-    cuda::restore_disparity(in.view(), shift, out.plane(), nullptr);
+    cuda::restore_disparity(in.view(), shift, 1, out.plane(), nullptr);
     const Image<float> found = out.on_host();
     for (int v = 0; v < height; ++v) {
       for (int u = 0; u < width; ++u) {

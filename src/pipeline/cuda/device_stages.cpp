@@ -19,6 +19,7 @@
 #include "road/lucas_kanade/cuda/lucas_kanade.hpp"
 #include "road/lucas_kanade/settings.hpp"
 #include "road/off_road/cuda/off_road.hpp"
+#include "road/refinement/cuda/interpolation.hpp"
 #include "road/refinement/cuda/refinement_settings.hpp"
 #include "road/roll_assessment.hpp"
 #include "road/row_shift.hpp"
@@ -110,29 +111,41 @@ class DeviceStages final : public FrameStages {
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
     const DeviceMatchMaps& matched = matcher_.match(input, options, stream());
     mark(StageClock::matched);
-    return {matched.disparity, matched.variance, effective_samples(options)};
+    return {matched.disparity, matched.variance, effective_samples(options), options.pixel_step};
   }
 
   /// In place.
   DisparityMaps restore_disparity(const ResidualMaps& residual, const PerspectiveShift& shift) override {
-    cuda::restore_disparity(residual.disparity, shift, residual.disparity, stream());
-    return {residual.disparity, residual.variance, residual.samples};
+    cuda::restore_disparity(residual.disparity, shift, residual.pixel_step, residual.disparity, stream());
+    return {residual.disparity, residual.variance, residual.samples, residual.pixel_step};
   }
 
-  ImageView<const float> refine(const DisparityMaps& maps, const DisparityPlane& road) override {
-    const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    const ImageView<float> between_disparity(between_.data(), width_, height_);
-    const ImageView<float> between_variance(between_.data() + pixels, width_, height_);
+  RefinedMaps refine(const DisparityMaps& maps, const DisparityPlane& road) override {
+    const int columns = maps.disparity.width(), rows = maps.disparity.height(), step = maps.pixel_step;
+    const auto between = [&](std::ptrdiff_t index) {
+      return ImageView<float>(between_.data() + index * columns * rows, columns, rows);
+    };
+    const ImageView<float> last = step == 1 ? maps_.disparity() : between(2);
+    const ImageView<float> last_error = step == 1 ? maps_.sigma() : between(3);
+    const RefinementOptions options = of_matched_pixels(options_.refinement, step);
+    const double samples = of_matched_pixels(maps.samples, step);
     DisparityMaps from = maps;
-    const int passes = pass_count(options_.refinement);
+    const int passes = pass_count(options);
     for (int k = 0; k < passes; ++k) {
       const bool to_result = (passes - 1 - k) % 2 == 0;
-      const ImageView<float> refined = to_result ? maps_.disparity() : between_disparity;
-      const ImageView<float> error = to_result ? maps_.sigma() : between_variance;
-      cuda::refine_disparities(from.disparity, from.variance, road,
-                               refinement_settings(options_.refinement, k, maps.samples), refined, error, stream());
+      const ImageView<float> refined = to_result ? last : between(0);
+      const ImageView<float> error = to_result ? last_error : between(1);
+      cuda::refine_disparities(from.disparity, from.variance, of_matched_pixels(road, step),
+                               refinement_settings(options, k, samples), refined, error, stream());
       from.disparity = refined;
       from.variance = error;
+    }
+    return {last, last_error, step};
+  }
+
+  ImageView<float> interpolate(const RefinedMaps& maps, const DisparityPlane& road) override {
+    if (maps.pixel_step > 1) {
+      interpolate_disparities(maps.disparity, maps.sigma, road, maps_.disparity(), maps_.sigma(), stream());
     }
     return maps_.disparity();
   }
@@ -217,7 +230,8 @@ class DeviceStages final : public FrameStages {
     right_.reserve(pixels);
     target_.reserve(pixels);
     first_column_.reserve(static_cast<std::size_t>(height));
-    between_.reserve(2 * pixels);
+    // With every second pixel and row matched four maps take no more, but for an image one pixel wide.
+    between_.reserve(2 * (pixels + static_cast<std::size_t>(width) + static_cast<std::size_t>(height) + 1));
   }
 
   /// Waits for the device. Throws Error where the grey levels cannot be those of a pair.
@@ -267,7 +281,7 @@ class DeviceStages final : public FrameStages {
   DeviceArray<std::int16_t> right_, target_;
   PinnedArray<std::int16_t> right_downloaded_;
   DeviceArray<int> first_column_;
-  DeviceArray<float> between_;  ///< disparities and variances between two passes of the refinement
+  DeviceArray<float> between_;  ///< disparities and variances between two passes of the refinement, and after the last
   GreyImage left_on_host_, right_on_host_;
   Image<float> disparity_on_host_;
   RoadVerification verification_;

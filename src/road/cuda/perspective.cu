@@ -116,16 +116,17 @@ struct RestoredPart {
   float whole_shift;  ///< of every pixel, where shifts are whole pixels and do not change along a row
 };
 
-__global__ void restore_rows(ImageView<const float> residual, PerspectiveShift shift, ImageView<float> disparity) {
+__global__ void restore_rows(ImageView<const float> residual, PerspectiveShift shift, int pixel_step,
+                             ImageView<float> disparity) {
   auto& part = *shared_memory<RestoredPart>();
-  const int u = static_cast<int>(blockIdx.x) * row_threads + static_cast<int>(threadIdx.x);
-  const int v = static_cast<int>(blockIdx.y);
+  const int x = static_cast<int>(blockIdx.x) * row_threads + static_cast<int>(threadIdx.x);
+  const int y = static_cast<int>(blockIdx.y), u = x * pixel_step, v = y * pixel_step;
   if (threadIdx.x == 0) part = {row_line(shift.road, v, shift.delta_p), static_cast<float>(shift.at(0, v))};
   __syncthreads();
-  if (u >= residual.width()) return;
-  const float own = residual(u, v);
+  if (x >= residual.width()) return;
+  const float own = residual(x, y);
   const bool even = !shift.enabled || (shift.whole_pixel && shift.road.a2 == 0);
-  disparity(u, v) = even                ? own + part.whole_shift
+  disparity(x, y) = even                ? own + part.whole_shift
                     : shift.whole_pixel ? with_whole_shift(own, shift, u, v)
                                         : with_shift(own, part.road, u);
 }
@@ -143,11 +144,11 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
          white, transformed, first_column);
 }
 
-void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, ImageView<float> disparity,
-                       StreamView stream) {
+void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, int pixel_step,
+                       ImageView<float> disparity, StreamView stream) {
   launch("restore_rows", restore_rows,
          {row_blocks(residual.width(), residual.height()), row_threads, sizeof(RestoredPart)}, stream, residual, shift,
-         disparity);
+         pixel_step, disparity);
 }
 
 }  // namespace roadstereo::cuda

@@ -15,7 +15,7 @@ void transform_target(ImageView<const std::int16_t> target, const PerspectiveShi
                       ImageView<std::int16_t> transformed, int* first_column, StreamView stream);
 
 /// restore_disparity of roadstereo/perspective.hpp on the device. `disparity` may be `residual`.
-void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, ImageView<float> disparity,
-                       StreamView stream);
+void restore_disparity(ImageView<const float> residual, const PerspectiveShift& shift, int pixel_step,
+                       ImageView<float> disparity, StreamView stream);
 
 }  // namespace roadstereo::cuda

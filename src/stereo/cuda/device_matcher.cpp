@@ -28,6 +28,7 @@ void DeviceMatcher::use(const MatcherOptions& options, StreamView stream) {
     settings_.window_half_height = std::max(settings_.window_half_height, taps[i].dv);
   }
   const double sigma_colour = options.sigma_colour * grey_scale, noise = options.ncc_noise_sigma * grey_scale;
+  settings_.pixel_step = options.pixel_step;
   settings_.block_radius = options.block_radius;
   settings_.noise_variance = static_cast<float>(noise * noise);
   settings_.taps = taps_on_device_.data();
@@ -40,7 +41,7 @@ void DeviceMatcher::use(const MatcherOptions& options, StreamView stream) {
   options_ = options;
 }
 
-void DeviceMatcher::reserve(int width, int height) {
+void DeviceMatcher::reserve(int width, int height, int columns, int rows) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   for (std::size_t side = 0; side < 2; ++side) {
     column_sums_[side].reserve(pixels);
@@ -50,13 +51,14 @@ void DeviceMatcher::reserve(int width, int height) {
   }
   first_columns_.reserve(static_cast<std::size_t>(height));
   sums_.first_columns = first_columns_.data();
-  offset_.reserve(pixels);
-  disparity_.reserve(pixels);
-  variance_.reserve(pixels);
-  winner_.reserve(pixels);
-  target_winner_.reserve(pixels);
-  maps_ = {ImageView(disparity_.data(), width, height), ImageView(variance_.data(), width, height),
-           ImageView(winner_.data(), width, height), ImageView(target_winner_.data(), width, height)};
+  const std::size_t matched = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  offset_.reserve(matched);
+  disparity_.reserve(matched);
+  variance_.reserve(matched);
+  winner_.reserve(matched);
+  target_winner_.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(rows));
+  maps_ = {ImageView(disparity_.data(), columns, rows), ImageView(variance_.data(), columns, rows),
+           ImageView(winner_.data(), columns, rows), ImageView(target_winner_.data(), width, rows)};
 }
 
 ViewToMatch DeviceMatcher::view_of(const MatchInput& input, bool mirrored) const {
@@ -82,12 +84,13 @@ ViewToMatch DeviceMatcher::view_of(const MatchInput& input, bool mirrored) const
 const DeviceMatchMaps& DeviceMatcher::match(const MatchInput& input, const MatcherOptions& options, StreamView stream) {
   const int width = input.reference.width(), height = input.reference.height();
   use(options, stream);
-  reserve(width, height);
+  const int columns = matched_pixels(width, options), rows = matched_pixels(height, options);
+  reserve(width, height, columns, rows);
   const ViewLaunch plan = plan_view_launch(settings_, width, height, input.disparities, multiprocessors_);
   energies_.reserve(static_cast<std::size_t>(plan.blocks) * plan.energies_per_block);
 
   const ImageView<const std::int16_t> images[2]{input.reference, input.target};
-  const ImageView offset(offset_.data(), width, height);
+  const ImageView offset(offset_.data(), columns, rows);
   sum_blocks(images, input.first_column, options.block_radius, settings_.noise_variance, sums_, stream);
   match_view(view_of(input, false), settings_, taps_.data(), plan, energies_.data(),
              {maps_.winner, offset, maps_.variance}, stream);
@@ -96,7 +99,7 @@ const DeviceMatchMaps& DeviceMatcher::match(const MatchInput& input, const Match
                stream);
   }
   finish_rows(maps_.winner, maps_.target_winner, offset, finish_settings(options), !options.match_both_views,
-              maps_.disparity, maps_.variance, stream);
+              options.pixel_step, maps_.disparity, maps_.variance, stream);
   return maps_;
 }
 

@@ -29,7 +29,7 @@ class DeviceMatcher {
 
  private:
   void use(const MatcherOptions& options, StreamView stream);
-  void reserve(int width, int height);
+  void reserve(int width, int height, int columns, int rows);
   ViewToMatch view_of(const MatchInput& input, bool mirrored) const;
 
   int multiprocessors_;

@@ -16,6 +16,7 @@ struct MapRow {
   const float* offsets;
   float *disparities, *variances;
   int width;
+  int pixel_step;
 };
 
 /// Finishes a thread's pixels from `begin` on; `projected` are the target's winners.
@@ -33,7 +34,7 @@ __device__ void finish_pixels(const MapRow& row, int begin, const int* projected
   for (int k = 0; k < at_once; ++k) {
     const int u = begin + k * threads;
     if (u >= row.width) break;
-    const int of_target = winners[k] >= 0 ? projected[u - winners[k]] : -1;
+    const int of_target = winners[k] >= 0 ? projected[u * row.pixel_step - winners[k]] : -1;
     float variance = variances[k];
     row.disparities[u] = finish_disparity(winners[k], of_target, offsets[k], settings, variance);
     if (variance != variances[k]) row.variances[u] = variance;
@@ -42,34 +43,35 @@ __device__ void finish_pixels(const MapRow& row, int begin, const int* projected
 
 /// A block to a row: of the winners that meet in a target pixel the largest occludes the others.
 __global__ void finish_row(ImageView<const std::int16_t> winner, ImageView<std::int16_t> target_winner,
-                           ImageView<const float> offset, FinishSettings settings, bool project,
+                           ImageView<const float> offset, FinishSettings settings, bool project, int pixel_step,
                            ImageView<float> disparity, ImageView<float> variance) {
   int* projected = shared_memory<int>();
-  const int v = static_cast<int>(blockIdx.x), width = winner.width();
+  const int v = static_cast<int>(blockIdx.x), width = target_winner.width();
   const int first = static_cast<int>(threadIdx.x);
-  const MapRow row{winner.row(v), offset.row(v), disparity.row(v), variance.row(v), width};
+  const MapRow row{winner.row(v), offset.row(v), disparity.row(v), variance.row(v), winner.width(), pixel_step};
   std::int16_t* target = target_winner.row(v);
   for (int x = first; x < width; x += threads) projected[x] = project ? -1 : target[x];
   __syncthreads();
   if (project) {
-    for (int u = first; u < width; u += threads) {
-      const int own = __ldg(row.winners + u);
-      if (own >= 0) atomicMax(&projected[u - own], own);
+    for (int u = first; u < row.width; u += threads) {
+      const int own = __ldg(row.winners + u), met = u * pixel_step - own;
+      if (own >= 0) atomicMax(&projected[met], own);
+      if (own >= 0 && pixel_step > 1 && met + 1 < width) atomicMax(&projected[met + 1], own);
     }
     __syncthreads();
     for (int x = first; x < width; x += threads) target[x] = static_cast<std::int16_t>(projected[x]);
   }
-  for (int u = first; u < width; u += at_once * threads) finish_pixels(row, u, projected, settings);
+  for (int u = first; u < row.width; u += at_once * threads) finish_pixels(row, u, projected, settings);
 }
 
 }  // namespace
 
 void finish_rows(ImageView<const std::int16_t> winner, ImageView<std::int16_t> target_winner,
-                 ImageView<const float> offset, const FinishSettings& settings, bool project,
+                 ImageView<const float> offset, const FinishSettings& settings, bool project, int pixel_step,
                  ImageView<float> disparity, ImageView<float> variance, StreamView stream) {
-  const std::size_t shared = sizeof(int) * static_cast<std::size_t>(winner.width());
+  const std::size_t shared = sizeof(int) * static_cast<std::size_t>(target_winner.width());
   launch("finish_row", finish_row, {static_cast<unsigned>(winner.height()), threads, shared}, stream, winner,
-         target_winner, offset, settings, project, disparity, variance);
+         target_winner, offset, settings, project, pixel_step, disparity, variance);
 }
 
 }  // namespace roadstereo::cuda

@@ -6,7 +6,7 @@
 #include "stereo/cuda/match_view/tile.hpp"
 #include "stereo/cuda/match_view/winner_take_all.hpp"
 
-// A block of threads matches one tile of 32×12 pixels, four disparities at a time: column sums of products slide down
+// A block of threads matches one tile of 32×12 matched pixels, four disparities at a time: column sums of products slide down
 // the tile and its halo, costs replace them in shared memory, and every thread aggregates its own pixel with weights
 // that it computed once. The weight of the prior depends on the smallest energy, so that the energies of a tile are
 // kept in a slice of global memory that is written and read by the same thread and stays in L2.
@@ -29,7 +29,7 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
   const int latest_first =
       latest_first_column(view, tile, reinterpret_cast<int*>(products + tile.halo_rows * tile.product_columns));
   const int x = static_cast<int>(threadIdx.x) % tile_columns, y = static_cast<int>(threadIdx.x) / tile_columns;
-  const int i = tile.first_i + x, v = tile.first_v + y;
+  const int i = tile.first_i + x * tile.step, v = tile.first_v + y * tile.step;
   const bool wanted = x < tile.columns && v < view.own.height();
   PixelEnergies energies(energies_of_block, tile.range);
   PixelWeights<max_taps> weights{};
@@ -43,8 +43,8 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
     }
     weights.inverse_sum = 1 / sum;
   }
-  const int4* centre =
-      products + (y + settings.window_half_height) * tile.product_columns + x + settings.window_half_width;
+  const int4* centre = products + (y + settings.window_half_height / tile.step) * tile.product_columns + x +
+                       settings.window_half_width / tile.step;
   for (int d = tile.range.first; d < tile.range.end; d += chunk) {
     sum_products(view, tile, settings.block_radius, d, products);
     __syncthreads();
@@ -70,8 +70,8 @@ template <int max_taps>
 __global__ void __launch_bounds__(threads, max_taps <= taps_of_default ? 2 : 1)
     match_tiles(ViewToMatch view, ViewSettings settings, TapOffsets<max_taps> offsets, float* energies,
                 std::size_t energies_per_block, ViewWinners winners) {
-  const int across = (view.own.width() + tile_columns - 1) / tile_columns;
-  const int tiles = across * ((view.own.height() + tile_rows - 1) / tile_rows);
+  const int tiles = tiles_along(view.own.width(), settings, tile_columns) *
+                    tiles_along(view.own.height(), settings, tile_rows);
   for (int index = static_cast<int>(blockIdx.x); index < tiles; index += static_cast<int>(gridDim.x)) {
     const Tile tile = locate_tile(view, settings, index);
     match_tile<max_taps>(view, settings, offsets, tile, energies + blockIdx.x * energies_per_block, winners);
@@ -82,10 +82,11 @@ __global__ void __launch_bounds__(threads, max_taps <= taps_of_default ? 2 : 1)
 template <int max_taps>
 void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
                   const ViewLaunch& plan, float* energies, const ViewWinners& winners, StreamView stream) {
-  const int columns = tile_columns + 2 * (settings.window_half_width + settings.block_radius);
+  const int columns = product_columns(settings), step = settings.pixel_step;
   TapOffsets<max_taps> offsets{};
   for (int t = 0; max_taps > 0 && t < settings.tap_count; ++t) {
-    offsets.bytes[t] = (taps_on_host[t].dv * columns + taps_on_host[t].du) * static_cast<int>(sizeof(int4));
+    const int costs_away = taps_on_host[t].dv / step * columns + taps_on_host[t].du / step;
+    offsets.bytes[t] = costs_away * static_cast<int>(sizeof(int4));
   }
   launch("match_tiles", match_tiles<max_taps>, {static_cast<unsigned>(plan.blocks), threads, plan.shared_bytes}, stream,
          view, settings, offsets, energies, plan.energies_per_block, winners);
@@ -101,14 +102,13 @@ ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height,
   // The number of disparities follows the road: a few more in the next frame need no new memory.
   const int with_reserve = reserve * static_cast<int>(blocks_for(disparities, reserve));
   plan.energies_per_block = static_cast<std::size_t>(threads) * static_cast<std::size_t>(with_reserve);
-  const int tiles = ((width + tile_columns - 1) / tile_columns) * ((height + tile_rows - 1) / tile_rows);
+  const int tiles = tiles_along(width, settings, tile_columns) * tiles_along(height, settings, tile_rows);
   const auto room = static_cast<int>(max_energies / plan.energies_per_block);
   const int resident = blocks_per_multiprocessor * multiprocessors;
   plan.blocks = tiles < resident ? tiles : resident;
   plan.blocks = plan.blocks < room ? plan.blocks : room;
-  const int rows = tile_rows + 2 * settings.window_half_height;
-  const int columns = tile_columns + 2 * (settings.window_half_width + settings.block_radius);
-  plan.shared_bytes = sizeof(int4) * static_cast<std::size_t>(rows * columns + 1);
+  const int rows = halo_size(tile_rows, settings.window_half_height, settings);
+  plan.shared_bytes = sizeof(int4) * static_cast<std::size_t>(rows * product_columns(settings) + 1);
   return plan;
 }
 

@@ -35,6 +35,7 @@ struct ViewToMatch {
 };
 
 struct ViewSettings {
+  int pixel_step;  ///< distance between the pixels that are matched, along rows and columns
   int block_radius;
   float noise_variance;
   const WindowTap* taps;  ///< in device memory
@@ -47,7 +48,7 @@ struct ViewSettings {
   float prior_truncation_px;
 };
 
-/// Output for a view: winners (−1 where nothing can match), their offsets to the minimum, NaN without two neighbours,
+/// Output for the matched pixels of a view: winners (−1 where nothing can match), their offsets to the minimum, NaN without two neighbours,
 /// and their variances.
 struct ViewWinners {
   ImageView<std::int16_t> winner;

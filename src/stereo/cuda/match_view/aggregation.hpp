@@ -80,7 +80,8 @@ __device__ Aggregate aggregate_clipped(const ViewToMatch& view, const ViewSettin
   } else {
     for (int t = 0; t < settings.tap_count; ++t) {
       const WindowTap tap = settings.taps[t];
-      add_clipped(centre[tap.dv * tile.product_columns + tap.du], tap_weight(view, settings, tap, i, v, grey), sums);
+      const int4& costs = centre[tap.dv / tile.step * tile.product_columns + tap.du / tile.step];
+      add_clipped(costs, tap_weight(view, settings, tap, i, v, grey), sums);
     }
   }
   return sums;

@@ -92,12 +92,12 @@ __device__ inline float4 four_costs(const ViewToMatch& view, const CostRow& row,
   return costs;
 }
 
-/// Replaces the products by the costs, a warp to a row: all its lanes have read before one writes.
+/// Replaces the products by the costs of the matched pixels, a warp to a row: all its lanes have read before one writes.
 __device__ inline void make_costs(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile, int d,
                                   int4* products) {
   const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
   for (int y = warp; y < tile.halo_rows; y += warps) {
-    const int v = tile.halo_v + y, height = view.own.height();
+    const int v = tile.halo_v + y * tile.step, height = view.own.height();
     const bool inside = v >= 0 && v < height;
     int4* row = products + y * tile.product_columns;
     CostRow cost_row{v, settings.block_radius, 0, 0, 0, -1, nullptr, nullptr, row};
@@ -109,11 +109,11 @@ __device__ inline void make_costs(const ViewToMatch& view, const ViewSettings& s
       cost_row.first_visible = first_visible(view, v);
       cost_row.last_valid = last_valid(view, v);
     }
-    const int i = tile.halo_i + lane;
+    const int i = tile.halo_i + lane * tile.step;
     const bool second = lane + 32 < tile.halo_columns;
     const float4 near = four_costs(view, cost_row, settings.noise_variance, tile.halo_i, i, d);
     float4 far = make_float4(missing_cost, missing_cost, missing_cost, missing_cost);
-    if (second) far = four_costs(view, cost_row, settings.noise_variance, tile.halo_i, i + 32, d);
+    if (second) far = four_costs(view, cost_row, settings.noise_variance, tile.halo_i, i + 32 * tile.step, d);
     __syncwarp();
     row[lane] =
         make_int4(__float_as_int(near.x), __float_as_int(near.y), __float_as_int(near.z), __float_as_int(near.w));

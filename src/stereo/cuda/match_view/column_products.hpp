@@ -55,7 +55,7 @@ __device__ inline Strip strip_of_thread(const Tile& tile) {
 /// Whether the blocks of the tile's halo, and what they are compared with, lie inside both images.
 __device__ inline bool products_inside(const ViewToMatch& view, const Tile& tile, int radius, int d) {
   const int first_i = tile.halo_i - radius;
-  return tile.halo_v >= radius && tile.halo_v + tile.halo_rows + radius <= view.own.height() &&
+  return tile.halo_v >= radius && tile.halo_v + (tile.halo_rows - 1) * tile.step + radius < view.own.height() &&
          first_i - d - (chunk - 1) >= 0 && first_i + tile.product_columns <= view.own.width();
 }
 
@@ -81,7 +81,7 @@ __device__ inline void sum_products_inside(const ViewToMatch& view, const Tile& 
                                            int4* products) {
   const Strip strip = strip_of_thread(tile);
   if (strip.first >= strip.end) return;
-  const int i = tile.halo_i - radius + strip.column, v = tile.halo_v + strip.first - radius;
+  const int i = tile.halo_i - radius + strip.column, v = tile.halo_v + strip.first * tile.step - radius;
   // In memory the disparities grow with the columns of a mirrored view, and against those of the other.
   const int others = view.mirrored ? image_column(view, i - d) : i - d - (chunk - 1);
   RowOfPixels entering{view.own.row(v) + image_column(view, i), view.other.row(v) + others, view.own.stride(),
@@ -94,6 +94,10 @@ __device__ inline void sum_products_inside(const ViewToMatch& view, const Tile& 
     products[y * tile.product_columns + strip.column] =
         view.mirrored ? sums : make_int4(sums.w, sums.z, sums.y, sums.x);
     leaving.add_and_advance<-1>(sums);
+    if (tile.step > 1 && y + 1 < strip.end) {
+      entering.add_and_advance<1>(sums);
+      leaving.add_and_advance<-1>(sums);
+    }
   }
 }
 
@@ -103,15 +107,21 @@ __device__ inline void sum_products_at_border(const ViewToMatch& view, const Til
   const Strip strip = strip_of_thread(tile);
   const ColumnProducts column_products(view, tile.halo_i - radius + strip.column, d);
   int4 sums = make_int4(0, 0, 0, 0);
-  for (int y = strip.first - radius; y < strip.first + radius; ++y) column_products.add(tile.halo_v + y, 1, sums);
+  const int first_v = tile.halo_v + strip.first * tile.step;
+  for (int v = first_v - radius; v < first_v + radius; ++v) column_products.add(v, 1, sums);
   for (int y = strip.first; y < strip.end; ++y) {
-    column_products.add(tile.halo_v + y + radius, 1, sums);
+    const int v = tile.halo_v + y * tile.step;
+    column_products.add(v + radius, 1, sums);
     products[y * tile.product_columns + strip.column] = sums;
-    column_products.add(tile.halo_v + y - radius, -1, sums);
+    column_products.add(v - radius, -1, sums);
+    if (tile.step == 1) continue;
+    column_products.add(v + 1 + radius, 1, sums);
+    column_products.add(v + 1 - radius, -1, sums);
   }
 }
 
-/// products[y][c]: sums over the rows of the blocks around row y, at column c and the disparities d … d + 3.
+/// products[y][c]: sums over the rows of the blocks around row y of the halo, at pixel c across it and the disparities
+/// d … d + 3.
 __device__ inline void sum_products(const ViewToMatch& view, const Tile& tile, int radius, int d, int4* products) {
   if (products_inside(view, tile, radius, d)) {
     sum_products_inside(view, tile, radius, d, products);

@@ -57,15 +57,16 @@ __device__ inline int take_winner(const ViewToMatch& view, const ViewSettings& s
 __device__ inline void choose(const ViewToMatch& view, const ViewSettings& settings, const PixelEnergies& energies,
                               int u, int v, const ViewWinners& winners) {
   const int winner = take_winner(view, settings, energies, u, v);
-  winners.winner(u, v) = static_cast<std::int16_t>(winner);
+  const int x = u / settings.pixel_step, y = v / settings.pixel_step;
+  winners.winner(x, y) = static_cast<std::int16_t>(winner);
   if (winners.offset.empty()) return;
   SubPixel sub_pixel{NAN, INFINITY};
   const bool bracketed = winner > energies.first() && winner + 1 < energies.end() && energies(winner + 1) < INFINITY;
   if (bracketed) {
     sub_pixel = fit_parabola(energies(winner - 1), energies(winner), energies(winner + 1), settings.effective_samples);
   }
-  winners.offset(u, v) = sub_pixel.offset;
-  winners.variance(u, v) = sub_pixel.variance;
+  winners.offset(x, y) = sub_pixel.offset;
+  winners.variance(x, y) = sub_pixel.variance;
 }
 
 }  // namespace roadstereo::cuda
