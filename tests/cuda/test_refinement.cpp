@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "road/refinement/cuda/interpolation.hpp"
 #include "road/refinement/cuda/refinement.hpp"
 #include "road/refinement/cuda/refinement_settings.hpp"
 #include "roadstereo/perspective.hpp"
@@ -90,6 +91,20 @@ TEST_F(CudaRefinement, EveryWindowSizeMatchesHost) {
         RefinementOptions{.radius = 32, .step = 16}}) {
     SCOPED_TRACE(options.radius);
     expect_as_on_host(33, 35, shift, options);
+  }
+}
+
+TEST_F(CudaRefinement, InterpolationMatchesHost) {
+  const DisparityPlane road{12, 0.31, -0.07};
+  for (const auto& [width, height] : {std::pair{129, 47}, {128, 46}, {1, 1}, {3, 2}}) {
+    const Maps maps((width + 1) / 2, (height + 1) / 2);
+    Image<float> full, sigma;
+    interpolate_disparities(maps.residual, maps.variance, road, width, height, 1, full, sigma);
+    const test::DevicePlane<float> residual(maps.residual), variance(maps.variance);
+    const test::DevicePlane<float> device_full(width, height), device_sigma(width, height);
+    cuda::interpolate_disparities(residual.view(), variance.view(), road, device_full.plane(), device_sigma.plane(),
+                                  nullptr);
+    expect_equal(device_full.on_host(), full);
   }
 }
 
