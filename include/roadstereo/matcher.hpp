@@ -16,9 +16,10 @@ enum class WindowShape { square, disc };
 
 /// Options of section 3.2: matching cost, aggregation, winner-take-all, left–right check, sub-pixel disparity.
 struct MatcherOptions {
-  bool adapt_support = true;   ///< larger blocks and more weight of the prior where the pair is noisy
+  bool adapt_support = true;  ///< larger blocks and more weight of the prior where the pair is noisy
   /// Distance between the pixels that are matched, along rows and columns, 1 or 2: neighbours share most of their
-  /// window. Those between are interpolated. 2 needs an `aggregation_step` of 2 (or no aggregation) and one matched view.
+  /// window. Those between are interpolated. 2 needs an `aggregation_step` of 2 (or no aggregation) and one matched
+  /// view.
   int pixel_step = 2;
   int block_radius = 2;        ///< N⁺ is (2r+1)² pixels, 1 … 10; the paper's 120-connected system is 5
   int aggregation_radius = 8;  ///< radius of the bilateral window, pixels, 0 … 10; 0 switches aggregation off
@@ -104,8 +105,8 @@ struct MatchInput {
 struct MatchMaps {
   Image<float> disparity;  ///< sub-pixel; NaN invalid, as what fails the left–right check with occlusion_sigma_px 0
   Image<std::int16_t> winner;  ///< winner-take-all on the reference volume; −1 where nothing can match
-  /// Winner-take-all on the target volume, or the reference's winners projected; −1 likewise. All columns of the target,
-  /// every s-th row.
+  /// Winner-take-all on the target volume, or the reference's winners projected; −1 likewise. All columns of the
+  /// target, every s-th row.
   Image<std::int16_t> target_winner;
   Image<float> variance;  ///< variance of `disparity` from the costs alone, pixels²; infinite where undetermined
 };

@@ -181,8 +181,8 @@ class HostStages final : public FrameStages {
     if (width == left_.width() && height == left_.height()) return 1;
     const int columns = matched_pixels(left_.width(), options), rows = matched_pixels(left_.height(), options);
     if (width != columns || height != rows) {
-      fail("the engine ", options_.engine, " has matched ", width, "×", height, " pixels of an image of ", left_.width(),
-           "×", left_.height(), "; it must be those or ", columns, "×", rows);
+      fail("the engine ", options_.engine, " has matched ", width, "×", height, " pixels of an image of ",
+           left_.width(), "×", left_.height(), "; it must be those or ", columns, "×", rows);
     }
     return options.pixel_step;
   }

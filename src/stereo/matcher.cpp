@@ -42,7 +42,8 @@ void MatcherOptions::validate() const {
   require_range("matcher", "aggregation_step", aggregation_step, 1, 2);
   require_range("matcher", "pixel_step", pixel_step, 1, 2);
   if (pixel_step == 2 && aggregation_radius > 0 && aggregation_step != 2) {
-    fail("matcher.pixel_step is 2, but the taps of the aggregation window are 1 pixel apart (matcher.aggregation_step)");
+    fail(
+        "matcher.pixel_step is 2, but the taps of the aggregation window are 1 pixel apart (matcher.aggregation_step)");
   }
   if (pixel_step == 2 && match_both_views) {
     fail("matcher.pixel_step is 2, but both views are to be matched (matcher.match_both_views): every pixel is needed");

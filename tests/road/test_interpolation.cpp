@@ -120,8 +120,8 @@ TEST(Interpolation, RefinementOfEverySecondPixelHasSameNeighbours) {
   Image<float> all, all_sigma, matched, matched_sigma;
   refine_disparities(disparity, variance, 1, road, 100, options, 1, all, all_sigma);
   refine_disparities(every_second(width, height, [&](int u, int v) { return disparity(u, v); }),
-                     every_second(width, height, [&](int u, int v) { return variance(u, v); }), 2, road, 100, options, 2,
-                     matched, matched_sigma);
+                     every_second(width, height, [&](int u, int v) { return variance(u, v); }), 2, road, 100, options,
+                     2, matched, matched_sigma);
   for (int y = 0; y < matched.height(); ++y) {
     for (int x = 0; x < matched.width(); ++x) {
       ASSERT_NEAR(matched(x, y), all(2 * x, 2 * y), 2e-5) << x << ", " << y;

@@ -54,7 +54,7 @@ void block_statistics(const ColumnSums& sums, int block_radius, int pixels, floa
 /// which there are block_radius columns more; those of column i begin at (i − block_radius) / step·pitch.
 struct CostRow {
   int first, end;
-  int step;  ///< 1 or 2
+  int step;           ///< 1 or 2
   int first_visible;  ///< column i sees the other view from disparity 0 to i − first_visible
   int last_valid;     ///< last column of the own view
   int block_radius;

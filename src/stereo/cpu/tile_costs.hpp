@@ -26,8 +26,8 @@ class TileCosts {
   /// disparities of `range`.
   void start(const MatchView& view, int v, int first, int columns, const DisparityRange& range);
 
-  /// Costs of row v at the columns that lie in the image: matched column k of the tile begins at costs + k·pitch, with the
-  /// first disparity of the range. Disparities without a counterpart get 0.
+  /// Costs of row v at the columns that lie in the image: matched column k of the tile begins at costs + k·pitch, with
+  /// the first disparity of the range. Disparities without a counterpart get 0.
   void compute(int v, float* costs);
 
   /// Elements from one column to the next: the disparities, padded for vectors.

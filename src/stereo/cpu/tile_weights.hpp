@@ -11,9 +11,9 @@
 
 namespace roadstereo::cpu {
 
-/// The weights ω of the matched pixels of one view in a tile of columns, row after row. ω(p, q) = ω(q, p): only the taps
-/// behind the pixel are computed, those before it were computed as its neighbours' taps. Rows and columns are counted
-/// in matched pixels.
+/// The weights ω of the matched pixels of one view in a tile of columns, row after row. ω(p, q) = ω(q, p): only the
+/// taps behind the pixel are computed, those before it were computed as its neighbours' taps. Rows and columns are
+/// counted in matched pixels.
 class TileWeights {
  public:
   /// Memory for tiles of up to `columns` columns.

@@ -6,10 +6,10 @@
 #include "stereo/cuda/match_view/tile.hpp"
 #include "stereo/cuda/match_view/winner_take_all.hpp"
 
-// A block of threads matches one tile of 32×12 matched pixels, four disparities at a time: column sums of products slide down
-// the tile and its halo, costs replace them in shared memory, and every thread aggregates its own pixel with weights
-// that it computed once. The weight of the prior depends on the smallest energy, so that the energies of a tile are
-// kept in a slice of global memory that is written and read by the same thread and stays in L2.
+// A block of threads matches one tile of 32×12 matched pixels, four disparities at a time: column sums of products
+// slide down the tile and its halo, costs replace them in shared memory, and every thread aggregates its own pixel with
+// weights that it computed once. The weight of the prior depends on the smallest energy, so that the energies of a tile
+// are kept in a slice of global memory that is written and read by the same thread and stays in L2.
 //
 // Floor per pixel and disparity, T taps, blocks of (2r+1)², halo s = (32 + 2R)(12 + 2R')/384 times the tile:
 //   products 4s operations, block sums (2r+1)s, costs 8s, aggregation T, choice 6;
@@ -70,8 +70,8 @@ template <int max_taps>
 __global__ void __launch_bounds__(threads, max_taps <= taps_of_default ? 2 : 1)
     match_tiles(ViewToMatch view, ViewSettings settings, TapOffsets<max_taps> offsets, float* energies,
                 std::size_t energies_per_block, ViewWinners winners) {
-  const int tiles = tiles_along(view.own.width(), settings, tile_columns) *
-                    tiles_along(view.own.height(), settings, tile_rows);
+  const int tiles =
+      tiles_along(view.own.width(), settings, tile_columns) * tiles_along(view.own.height(), settings, tile_rows);
   for (int index = static_cast<int>(blockIdx.x); index < tiles; index += static_cast<int>(gridDim.x)) {
     const Tile tile = locate_tile(view, settings, index);
     match_tile<max_taps>(view, settings, offsets, tile, energies + blockIdx.x * energies_per_block, winners);

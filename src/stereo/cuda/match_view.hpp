@@ -48,8 +48,8 @@ struct ViewSettings {
   float prior_truncation_px;
 };
 
-/// Output for the matched pixels of a view: winners (−1 where nothing can match), their offsets to the minimum, NaN without two neighbours,
-/// and their variances.
+/// Output for the matched pixels of a view: winners (−1 where nothing can match), their offsets to the minimum, NaN
+/// without two neighbours, and their variances.
 struct ViewWinners {
   ImageView<std::int16_t> winner;
   ImageView<float> offset;  ///< empty: not written, nor the variance

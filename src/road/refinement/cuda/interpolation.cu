@@ -54,7 +54,7 @@ __global__ void interpolate_four(Maps maps) {
 
 void interpolate_disparities(ImageView<const float> disparity, ImageView<const float> sigma, const DisparityPlane& road,
                              ImageView<float> full, ImageView<float> full_sigma, StreamView stream) {
-  const Maps maps{disparity,  sigma, full, full_sigma, static_cast<float>(road.a2), static_cast<float>(road.a1)};
+  const Maps maps{disparity, sigma, full, full_sigma, static_cast<float>(road.a2), static_cast<float>(road.a1)};
   launch("interpolate_four", interpolate_four,
          {dim3(blocks_for(disparity.width(), block_columns), blocks_for(disparity.height(), block_rows)),
           dim3(block_columns, block_rows)},

@@ -92,7 +92,8 @@ __device__ inline float4 four_costs(const ViewToMatch& view, const CostRow& row,
   return costs;
 }
 
-/// Replaces the products by the costs of the matched pixels, a warp to a row: all its lanes have read before one writes.
+/// Replaces the products by the costs of the matched pixels, a warp to a row: all its lanes have read before one
+/// writes.
 __device__ inline void make_costs(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile, int d,
                                   int4* products) {
   const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
