@@ -25,7 +25,8 @@ struct Work {
   }
 };
 
-/// match_view.cu, per pixel and disparity; block_sums.cu and finish_rows.cu per pixel.
+/// match_view.cu, per matched pixel and disparity, but column sums of products per pixel; block_sums.cu and
+/// finish_rows.cu per pixel.
 Work matching(const MatcherOptions& options, double pixels, int disparities) {
   constexpr double tile_columns = 32, tile_rows = 12;
   int across = 0, down = 0;
@@ -34,12 +35,14 @@ Work matching(const MatcherOptions& options, double pixels, int disparities) {
     across = std::max(across, tap.du);
     down = std::max(down, tap.dv);
   }
-  const double surroundings = (tile_columns + 2 * across) * (tile_rows + 2 * down) / (tile_columns * tile_rows);
+  const double step = options.pixel_step, rows = tile_rows + 2 * down / step, halo = tile_columns + 2 * across / step;
+  const double surroundings = halo * rows / (tile_columns * tile_rows);
   const double block = 2 * options.block_radius + 1, window = static_cast<double>(taps.size());
-  const double views = options.match_both_views ? 2 : 1, costs = views * pixels * disparities;
+  const double views = options.match_both_views ? 2 : 1;
+  const double costs = views * pixels / (step * step) * disparities;
   return {.bytes = pixels * (2 * 26 + 22),
-          .operations = costs * (surroundings * (4 + block + 8) + window + 6),
-          .shared_bytes = costs * 4 * ((block + 2) * surroundings + window)};
+          .operations = costs * (surroundings * (4 * step * step + block + 8) + window + 6),
+          .shared_bytes = costs * 4 * ((block + 1 + step) * surroundings + window)};
 }
 
 /// stereo/coarse/cuda/*.cu, with the pair at half its size, or less.
@@ -51,16 +54,19 @@ Work coarse_search(const PipelineOptions& options, int width, double pixels, int
   return {.bytes = 4 * pixels + 32 * coarse + (4 + 12 + 24) * costs, .operations = costs * (62 + 5 + 14)};
 }
 
-/// refinement.cu and lucas_kanade.cu.
+/// refinement.cu of the matched pixels, interpolation.cu and lucas_kanade.cu.
 Work refinement(const PipelineOptions& options, double pixels) {
+  const double refined = pixels / (options.matcher.pixel_step * options.matcher.pixel_step);
+  const double between = options.matcher.pixel_step > 1 ? 1 : 0;
   const double neighbours = 2.0 * (options.refinement.radius / options.refinement.step) + 1;
   const double window = pass_count(options.refinement) * neighbours * neighbours;
   const double smoothing = options.refinement.smoothing_px > 0 ? 1 : 0;
   const double aligned = options.lucas_kanade.radius > 0 ? 1 : 0;
   const double cells = (2.0 * options.lucas_kanade.radius + 1) * (2.0 * options.lucas_kanade.radius + 1) / 16;
-  return {.bytes = (16 * pass_count(options.refinement) + 12 * smoothing + 17 * aligned) * pixels,
-          .operations = (14 * window + 7 * smoothing + (100 + 10 * cells) * aligned) * pixels,
-          .shared_bytes = 12 * window * pixels};
+  return {.bytes = (16 * pass_count(options.refinement) + 12 * smoothing) * refined +
+                   (10 * between + 17 * aligned) * pixels,
+          .operations = (14 * window + 7 * smoothing) * refined + (100 + 10 * cells) * aligned * pixels,
+          .shared_bytes = 12 * window * refined};
 }
 
 }  // namespace

@@ -11,12 +11,13 @@
 // weights that it computed once. The weight of the prior depends on the smallest energy, so that the energies of a tile
 // are kept in a slice of global memory that is written and read by the same thread and stays in L2.
 //
-// Floor per pixel and disparity, T taps, blocks of (2r+1)², halo s = (32 + 2R)(12 + 2R')/384 times the tile:
-//   products 4s operations, block sums (2r+1)s, costs 8s, aggregation T, choice 6;
-//   shared memory 4 ((2r+3)s + T) bytes; global memory 8 bytes of energies, in L2.
-// Default (r 2, R 8, R' 4, T 25, s 2.5): 74 operations, 170 bytes of shared memory. 640×360, D 32: 0.54 G operations
-// and 1.25 GB, for which an H200 (132 multiprocessors, 1.7 GHz, 128 lanes and 128 bytes a cycle each) needs 19 and 44
-// µs: the floor is 44 µs, less by as much as the search ranges leave out. Paper (r 5, R = R' 4, T 57, s 2.1, two
+// Floor per matched pixel and disparity, T taps, blocks of (2r+1)², every p-th pixel matched, halo s = (32 + 2R/p)(12 +
+// 2R'/p)/384 times the tile:
+//   products 4p²s operations, block sums (2r+1)s, costs 8s, aggregation T, choice 6;
+//   shared memory 4 ((2r+2+p)s + T) bytes; global memory 8 bytes of energies, in L2.
+// Default (r 2, R 8, R' 4, T 25, p 2, s 1.7): 79 operations, 154 bytes of shared memory. 640×360, D 32: 0.15 G operations
+// and 0.28 GB, for which an H200 (132 multiprocessors, 1.7 GHz, 128 lanes and 128 bytes a cycle each) needs 5 and 10
+// µs: the floor is 10 µs, less by as much as the search ranges leave out. Paper (r 5, R = R' 4, T 57, p 1, s 2.1, two
 // views): 170 µs.
 
 namespace roadstereo::cuda {
