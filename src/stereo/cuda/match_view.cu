@@ -15,10 +15,10 @@
 // 2R'/p)/384 times the tile:
 //   products 4p²s operations, block sums (2r+1)s, costs 8s, aggregation T, choice 6;
 //   shared memory 4 ((2r+2+p)s + T) bytes; global memory 8 bytes of energies, in L2.
-// Default (r 2, R 8, R' 4, T 25, p 2, s 1.7): 79 operations, 154 bytes of shared memory. 640×360, D 32: 0.15 G operations
-// and 0.28 GB, for which an H200 (132 multiprocessors, 1.7 GHz, 128 lanes and 128 bytes a cycle each) needs 5 and 10
-// µs: the floor is 10 µs, less by as much as the search ranges leave out. Paper (r 5, R = R' 4, T 57, p 1, s 2.1, two
-// views): 170 µs.
+// Default (r 2, R 8, R' 4, T 25, p 2, s 1.7): 79 operations, 154 bytes of shared memory. 640×360, D 32: 0.15 G
+// operations and 0.28 GB, for which an H200 (132 multiprocessors, 1.7 GHz, 128 lanes and 128 bytes a cycle each) needs
+// 5 and 10 µs: the floor is 10 µs, less by as much as the search ranges leave out. Paper (r 5, R = R' 4, T 57, p 1,
+// s 2.1, two views): 170 µs.
 
 namespace roadstereo::cuda {
 namespace {
