@@ -63,8 +63,8 @@ Work refinement(const PipelineOptions& options, double pixels) {
   const double smoothing = options.refinement.smoothing_px > 0 ? 1 : 0;
   const double aligned = options.lucas_kanade.radius > 0 ? 1 : 0;
   const double cells = (2.0 * options.lucas_kanade.radius + 1) * (2.0 * options.lucas_kanade.radius + 1) / 16;
-  return {.bytes = (16 * pass_count(options.refinement) + 12 * smoothing) * refined +
-                   (10 * between + 17 * aligned) * pixels,
+  return {.bytes =
+              (16 * pass_count(options.refinement) + 12 * smoothing) * refined + (10 * between + 17 * aligned) * pixels,
           .operations = (14 * window + 7 * smoothing) * refined + (100 + 10 * cells) * aligned * pixels,
           .shared_bytes = 12 * window * refined};
 }
