@@ -7,17 +7,17 @@
 namespace roadstereo {
 namespace {
 
-constexpr int rows_per_band = 32;
+constexpr int rows_at_once = 32;
 
 /// A row of a map of disparities and of their errors.
-struct MapRow {
+struct MatchedRow {
   const float *disparity, *sigma;
 
   RefinedPixel at(int x) const { return {disparity[x], sigma[x]}; }
 };
 
 /// Writes a row of all pixels from one of every second.
-void fill_row(const MapRow& row, int columns, float half_rise, int width, float* disparity, float* sigma) {
+void fill_between(const MatchedRow& row, int columns, float half_rise, int width, float* disparity, float* sigma) {
   const auto write = [&](int u, const RefinedPixel& pixel) {
     disparity[u] = pixel.disparity;
     sigma[u] = pixel.error;
@@ -38,23 +38,23 @@ void interpolate_disparities(ImageView<const float> disparity, ImageView<const f
   full.resize(width, height);
   full_sigma.resize(width, height);
   const auto across = static_cast<float>(road.a2), down = static_cast<float>(road.a1);
-  parallel_rows(disparity.height(), rows_per_band, threads, [&](int first, int last, int) {
+  parallel_rows(disparity.height(), rows_at_once, threads, [&](int first, int last, int) {
     for (int y = first; y < last; ++y) {
-      fill_row({disparity.row(y), sigma.row(y)}, disparity.width(), across, width, full.row(2 * y),
-               full_sigma.row(2 * y));
+      fill_between({disparity.row(y), sigma.row(y)}, disparity.width(), across, width, full.row(2 * y),
+                   full_sigma.row(2 * y));
     }
   });
-  parallel_rows(height / 2, rows_per_band, threads, [&](int first, int last, int) {
+  parallel_rows(height / 2, rows_at_once, threads, [&](int first, int last, int) {
     for (int y = first; y < last; ++y) {
       const int v = 2 * y + 1;
-      const MapRow above{full.row(v - 1), full_sigma.row(v - 1)};
+      const MatchedRow above{full.row(v - 1), full_sigma.row(v - 1)};
       float *const to = full.row(v), *const error = full_sigma.row(v);
       if (v + 1 == height) {
         for (int u = 0; u < width; ++u) to[u] = above.disparity[u] + down;
         std::copy_n(above.sigma, width, error);
         continue;
       }
-      const MapRow below{full.row(v + 1), full_sigma.row(v + 1)};
+      const MatchedRow below{full.row(v + 1), full_sigma.row(v + 1)};
       for (int u = 0; u < width; ++u) {
         const RefinedPixel pixel = between_pixels(above.at(u), below.at(u), down);
         to[u] = pixel.disparity;
