@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
@@ -45,6 +46,31 @@ TEST(RegisterEngine, PipelineUsesIt) {
   EXPECT_EQ(result.disparity(100, 50), 7.25F);
   EXPECT_EQ(result.disparity(result.disparity.width() - 1, result.disparity.height() - 1), 7.25F);
   EXPECT_NEAR(result.sigma(100, 50), 0.1F, 0.1F);  // of the variance
+}
+
+/// Has maps of a quarter of the image.
+class SmallMapsEngine final : public StereoEngine {
+ public:
+  void match(const MatchInput& input, const MatcherOptions& /*options*/, MatchMaps& maps) override {
+    maps.disparity.assign(input.reference.width() / 4, input.reference.height(), 7.0F);
+    maps.variance.assign(input.reference.width() / 4, input.reference.height(), 0.01F);
+  }
+};
+
+TEST(RegisterEngine, MapsOfAnotherSizeAreRefused) {
+  register_engine({"small", "", false, [](int /*threads*/) { return std::make_unique<SmallMapsEngine>(); }});
+  const synth::SyntheticPair pair = synth::render(synth::named_scene("demo"));
+  PipelineOptions options = preset("default");
+  options.engine = "small";
+  Pipeline pipeline(options, pair.calibration);
+  try {
+    pipeline.process(pair.left.view(), pair.right.view());
+    FAIL();
+  } catch (const Error& error) {
+    const std::string size = std::to_string(pair.left.width) + "×" + std::to_string(pair.left.height);
+    EXPECT_NE(std::string(error.what()).find("small has matched"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find(size), std::string::npos) << error.what();
+  }
 }
 
 TEST(RegisterEngine, RejectsNamesThatAreTaken) {
