@@ -31,7 +31,7 @@ void TileCosts::prepare(int columns, int disparities, const MatcherOptions& opti
   ring_ = 2 * radius_ + 2;
   const double noise = options.ncc_noise_sigma * grey_scale;
   noise_variance_ = static_cast<float>(noise * noise);
-  const std::ptrdiff_t own_columns = std::ptrdiff_t{columns} * pixel_step_ + 2 * radius_;
+  const std::ptrdiff_t own_columns = std::ptrdiff_t{columns} * pixel_step_ + std::ptrdiff_t{2} * radius_;
   const std::ptrdiff_t other_columns = own_columns + pitch + radius_;
   for (const View view : {own, other}) {
     const std::ptrdiff_t width = view == own ? own_columns : other_columns;

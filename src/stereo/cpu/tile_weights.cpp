@@ -44,7 +44,7 @@ const float* TileWeights::grey_row(int y) {
     const std::int16_t* samples = samples_.row(0);
     view_->copy_own(loaded_ * pixel_step_, first_ * pixel_step_, columns_ * pixel_step_, samples_.row(0));
     float* grey = grey_.row(static_cast<std::size_t>(loaded_ % ring_));
-    for (int k = 0; k < columns_; ++k) grey[k] = samples[k * pixel_step_];
+    for (int k = 0; k < columns_; ++k) grey[k] = samples[std::ptrdiff_t{k} * pixel_step_];
   }
   return grey_.row(static_cast<std::size_t>(y % ring_));
 }
