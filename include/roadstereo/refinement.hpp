@@ -36,6 +36,7 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
 /// Fills the pixels between those that were matched with a `pixel_step` of 2: writes W×H maps from those of every
 /// second row and column. Heights above the road model are interpolated linearly; where two neighbours differ by more
 /// than a pixel there is an edge, and the one with the smaller error is taken, as where only one is known.
+/// Throws Error when the maps do not have (W + 1)/2 × (H + 1)/2 pixels.
 void interpolate_disparities(ImageView<const float> disparity, ImageView<const float> sigma, const DisparityPlane& road,
                              int width, int height, int threads, Image<float>& full, Image<float>& full_sigma);
 

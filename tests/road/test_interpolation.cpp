@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "roadstereo/error.hpp"
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/refinement.hpp"
@@ -103,6 +104,17 @@ TEST(Interpolation, RestoredPixelsHaveShiftOfTheirPlaceInImage) {
   }
 }
 
+TEST(Interpolation, MapsOfAnotherSizeAreRefused) {
+  const Image<float> map(6, 3, 4.0F), narrow(5, 3, 4.0F);
+  EXPECT_NO_THROW(interpolate(map, map, {}, 11, 5));
+  EXPECT_THROW(interpolate(map, map, {}, 13, 5), Error);
+  EXPECT_THROW(interpolate(map, map, {}, 12, 7), Error);
+  EXPECT_THROW(interpolate(map, narrow, {}, 12, 6), Error);
+  EXPECT_THROW(interpolate({}, {}, {}, 0, 0), Error);
+  Image<float> refined, sigma;
+  EXPECT_THROW(refine_disparities(map, map, 0, {}, 100, {}, 1, refined, sigma), Error);
+}
+
 // The window's neighbours are twice as far apart in the image as in the map: with even distances they are the same.
 TEST(Interpolation, RefinementOfEverySecondPixelHasSameNeighbours) {
   constexpr int width = 85, height = 73;
@@ -133,15 +145,15 @@ TEST(Interpolation, RefinementOfEverySecondPixelHasSameNeighbours) {
 TEST(MatcherOptions, EverySecondPixelNeedsTapsTwoApartAndOneView) {
   MatcherOptions options;
   options.aggregation_step = 1;
-  EXPECT_THROW(options.validate(), std::exception);
+  EXPECT_THROW(options.validate(), Error);
   options.aggregation_radius = 0;
   EXPECT_NO_THROW(options.validate());
   options.match_both_views = true;
-  EXPECT_THROW(options.validate(), std::exception);
+  EXPECT_THROW(options.validate(), Error);
   options.pixel_step = 1;
   EXPECT_NO_THROW(options.validate());
   options.pixel_step = 3;
-  EXPECT_THROW(options.validate(), std::exception);
+  EXPECT_THROW(options.validate(), Error);
 }
 
 }  // namespace

@@ -230,8 +230,8 @@ class DeviceStages final : public FrameStages {
     right_.reserve(pixels);
     target_.reserve(pixels);
     first_column_.reserve(static_cast<std::size_t>(height));
-    // With every second pixel and row matched four maps take no more, but for an image one pixel wide.
-    between_.reserve(2 * (pixels + static_cast<std::size_t>(width) + static_cast<std::size_t>(height) + 1));
+    const auto matched = [](int side) { return static_cast<std::size_t>(side + 1) / 2; };  // of every second pixel
+    between_.reserve(std::max(2 * pixels, 4 * matched(width) * matched(height)));
   }
 
   /// Waits for the device. Throws Error where the grey levels cannot be those of a pair.
@@ -281,7 +281,8 @@ class DeviceStages final : public FrameStages {
   DeviceArray<std::int16_t> right_, target_;
   PinnedArray<std::int16_t> right_downloaded_;
   DeviceArray<int> first_column_;
-  DeviceArray<float> between_;  ///< disparities and variances between two passes of the refinement, and after the last
+  /// Disparities and variances between two passes of the refinement; of every second pixel after the last, too.
+  DeviceArray<float> between_;
   GreyImage left_on_host_, right_on_host_;
   Image<float> disparity_on_host_;
   RoadVerification verification_;

@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "road/refinement/between_pixels.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/refinement.hpp"
 
 namespace roadstereo {
@@ -35,6 +36,13 @@ void fill_between(const MatchedRow& row, int columns, float half_rise, int width
 
 void interpolate_disparities(ImageView<const float> disparity, ImageView<const float> sigma, const DisparityPlane& road,
                              int width, int height, int threads, Image<float>& full, Image<float>& full_sigma) {
+  const int columns = (width + 1) / 2, rows = (height + 1) / 2;
+  for (const ImageView<const float>& map : {disparity, sigma}) {
+    if (width < 1 || height < 1 || map.width() != columns || map.height() != rows) {
+      fail("a map of every second pixel has ", map.width(), "×", map.height(), " pixels; for an image of ", width, "×",
+           height, " it must have ", columns, "×", rows);
+    }
+  }
   full.resize(width, height);
   full_sigma.resize(width, height);
   const auto across = static_cast<float>(road.a2), down = static_cast<float>(road.a1);

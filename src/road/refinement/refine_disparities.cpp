@@ -164,6 +164,7 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
                         const DisparityPlane& road, double effective_samples, const RefinementOptions& options,
                         int threads, const RefinementMaps& between, Image<float>& refined, Image<float>& sigma) {
   options.validate();
+  require_range("matcher", "pixel_step", pixel_step, 1, 2);
   if (variance.width() != disparity.width() || variance.height() != disparity.height()) {
     fail("the disparity map has ", disparity.width(), "×", disparity.height(), " pixels and its variance ",
          variance.width(), "×", variance.height(), "; they must be equal");

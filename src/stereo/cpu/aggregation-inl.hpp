@@ -155,6 +155,7 @@ HWY_INLINE void aggregate_border(const AggregationRow& row, int column, int d, f
   hn::Store(hn::IfThenElse(seen, hn::Div(energy, sum), infinite_energy), df, out);
 }
 
+/// a / b rounded down, for b > 0; −floor_divide(−a, b) is rounded up.
 HWY_INLINE int floor_divide(int a, int b) {
   return a / b - (a % b < 0 ? 1 : 0);
 }

@@ -40,8 +40,8 @@ void cut_evenly(const MatchView& view, int columns, int disparities, const Match
   // A tile begins by filling its rings, so it should be high.
   const int halo = 2 * (options.block_radius + options.aggregation_radius);
   const int wanted = (4 * threads + 2 * across - 1) / (2 * across);
-  const int most = std::max(2 * halo, (view.height() + wanted - 1) / wanted);
-  const int rows = most + most % options.pixel_step;
+  const int at_least = std::max(2 * halo, (view.height() + wanted - 1) / wanted);
+  const int rows = at_least + at_least % options.pixel_step;  // a tile begins at a matched row
   for (int row = 0; row < view.height(); row += rows) {
     for (int column = 0; column < view.width(); column += columns) {
       jobs.push_back({&view,
