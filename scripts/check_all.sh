@@ -43,6 +43,7 @@ part ./scripts/check_tidy.sh --all
 part ./scripts/check_install.sh
 part ./scripts/check_python.sh
 part ./scripts/make_packages.sh
+part ./scripts/check_packages.sh
 # Without precompiled headers: a source includes what it uses.
 part ./scripts/check_sanitizers.sh asan-all -DROADSTEREO_WERROR=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
 part ./scripts/check_sanitizers.sh tsan -DROADSTEREO_WERROR=ON

@@ -21,7 +21,7 @@ ros2_checks=(ament-cmake-xmllint ament-cmake-lint-cmake ament-cmake-flake8 ament
 case "${1:-}" in
   "") ;;
   --checks) packages+=("${checks[@]}") ;;
-  --all-checks) packages+=("${checks[@]}" g++-aarch64-linux-gnu qemu-user googletest
+  --all-checks) packages+=("${checks[@]}" g++-aarch64-linux-gnu qemu-user googletest mmdebstrap
                            chromium chromium-driver python3-selenium
                            pybind11-dev libdlpack-dev python3-dev python3-numpy python3-matplotlib python3-pil mypy
                            python3-build python3-setuptools python3-wheel python3-venv

@@ -4,6 +4,7 @@
 
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// A line of vertical offsets, pixels: constant + per_column·x + per_row·v at column x of the right image and row v.
@@ -42,3 +43,4 @@ RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView
                                    int threads = 0);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

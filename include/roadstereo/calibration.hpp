@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Calibration of a rectified stereo rig: two pinhole cameras with common rows.
@@ -31,3 +32,4 @@ struct StereoCalibration {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Grey levels of one view of a recording in square cells, 160 across: mean and variance of each over the frames that
@@ -40,3 +41,4 @@ class CellLevels {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -1,5 +1,6 @@
 #pragma once
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Options of the coarse search: NCC block matching on the downsampled pair, scanline optimisation (1-D semi-global
@@ -23,3 +24,4 @@ struct CoarseSearchOptions {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 #include "roadstereo/damage.hpp"
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Depth profile of a damage along a straight line of the image. Depths are relative to the undamaged road: positive
@@ -29,3 +30,4 @@ CrossSection extract_cross_section(const DamageMap& map, const Damage& damage, I
                                    const std::optional<StereoCalibration>& calibration = {});
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -14,6 +14,7 @@
 #include "roadstereo/road_model.hpp"
 #include "roadstereo/severity.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Side of the road's surface; `Distress` tells what it is.
@@ -152,3 +153,4 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
 DamageMap make_empty_damage_map(int width, int height, const std::string& reason);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 
 struct CUstream_st;
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// What a device's clock measures. Each time costs the device about a microsecond.
@@ -47,3 +48,4 @@ struct DeviceMaps {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// A kernel in a frame.
@@ -29,3 +30,4 @@ struct DeviceProfile {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

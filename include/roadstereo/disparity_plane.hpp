@@ -2,6 +2,7 @@
 
 #include "roadstereo/uncontracted.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Plane in disparity space: d(u, v) = a0 + a1·v + a2·u, pixels; exact for a plane in space. With a2 = 0 it is Δu(v) of
@@ -18,3 +19,4 @@ struct DisparityPlane {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Bad input or a failed operation. The message is one sentence for a person: it names the file or the
@@ -29,3 +30,4 @@ template <class E = Error, class... Parts>
 }
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -1,5 +1,6 @@
 #pragma once
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 // Grey levels of matching: sixteenths of an 8-bit level, 0 … 4080, whatever the depth of the camera.
@@ -7,3 +8,4 @@ inline constexpr int grey_scale = 16;              ///< steps per 8-bit grey lev
 inline constexpr int grey_max = 255 * grey_scale;  ///< value of white
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

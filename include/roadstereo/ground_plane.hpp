@@ -6,6 +6,7 @@
 #include "roadstereo/calibration.hpp"
 #include "roadstereo/road_model.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Road plane in space, camera frame (x right, y down, z forward): n·p = height.
@@ -50,3 +51,4 @@ std::vector<std::array<double, 2>> road_footprint(const DisparityPlane& model, c
                                                   int width, int height);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 #include "roadstereo/lens_spots.hpp"
 #include "roadstereo/pipeline.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Something out of order with a rig.
@@ -70,3 +71,4 @@ PairHealth measure_health(const FrameResult& frame, const DamageMap& damage,
 void withhold_severity(const PairHealth& health, DamageMap& damage);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 #include "roadstereo/image_memory.hpp"
 #include "roadstereo/image_view.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Image that owns its pixels, without padding between rows.
@@ -110,3 +111,4 @@ using GreyImage = Image<std::int16_t>;
 void to_grey(const FrameView& frame, double white_level, GreyImage& grey);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 #include <new>
 #include <type_traits>
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Memory of images that is not the heap's, such as pinned memory, which a device copies to at full speed. It outlives
@@ -54,3 +55,4 @@ class ImageAllocator {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 
 #include "roadstereo/host_device.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// View of a rectangle of pixels that it does not own, on the host or on a device: row-major, `(u, v)` = (column, row),
@@ -41,3 +42,4 @@ class ImageView {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 #include "roadstereo/cell_levels.hpp"
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Places of a view that keep their grey levels while the picture around them changes. NaN: unknown yet, or none.
@@ -71,3 +72,4 @@ class PairWatch {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 #include "roadstereo/odometry.hpp"
 #include "roadstereo/pose_graph.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Finds places that a recording shows again, in whatever direction: frames far apart in time whose views of the road
@@ -42,3 +43,4 @@ class LoopSearch {
 PoseGraphResult close_loops(PoseGraphInput input, LoopSearch& search, const PoseGraphOptions& options = {});
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

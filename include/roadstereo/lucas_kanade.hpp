@@ -3,6 +3,7 @@
 #include "roadstereo/image.hpp"
 #include "roadstereo/transformed_pair.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Options of the Lucas–Kanade step.
@@ -29,3 +30,4 @@ void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity,
                   int threads, Image<float>& aligned);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

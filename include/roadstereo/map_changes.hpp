@@ -7,6 +7,7 @@
 
 #include "roadstereo/map_inventory.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// What became of a damage between two days.
@@ -40,3 +41,4 @@ std::vector<DamageChange> compare_damage(std::span<const RoadDamageRecord> befor
                                          std::span<const RoadDamageRecord> after, const RoadMap& map_after);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 #include "roadstereo/damage.hpp"
 #include "roadstereo/road_map.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Cells of a map, sorted by row, then by column.
@@ -33,3 +34,4 @@ std::vector<MapDamage> locate_damage(const DamageMap& found, const DisparityPlan
                                      const StereoCalibration& calibration, const RigidTransform& camera_to_map);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 
 #include "roadstereo/map_damage.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// One damage in one frame of a pass.
@@ -42,3 +43,4 @@ std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sighti
                                           const RoadMap& map, const DamageOptions& options);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -9,6 +9,7 @@
 #include "roadstereo/image.hpp"
 #include "roadstereo/search_range.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Shape of the aggregation window.
@@ -160,3 +161,4 @@ std::unique_ptr<StereoEngine> make_engine(const std::string& name, int threads);
 std::string resolve_engine_name(const std::string& name);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

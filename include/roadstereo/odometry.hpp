@@ -9,6 +9,7 @@
 #include "roadstereo/image_view.hpp"
 #include "roadstereo/trajectory.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 struct FrameResult;
@@ -94,3 +95,4 @@ class Odometry {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

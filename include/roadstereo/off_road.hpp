@@ -2,6 +2,7 @@
 
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Options of the rejection of disparities beside the road.
@@ -28,3 +29,4 @@ void reject_off_road(ImageView<const float> correlation, const OffRoadOptions& o
                      Image<float>& disparity, Image<float>& sigma);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -19,6 +19,7 @@
 #include "roadstereo/image.hpp"
 #include "roadstereo/pipeline.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::opencv {
 
 /// Returns a view of a matrix of 8 or 16 bits with 1 (grey), 3 (BGR) or 4 (BGRA) channels, which may be a part of a
@@ -177,3 +178,4 @@ class StereoMatcher final : public cv::StereoMatcher {
 };
 
 }  // namespace roadstereo::opencv
+#pragma GCC visibility pop

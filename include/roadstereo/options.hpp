@@ -5,6 +5,7 @@
 
 #include "roadstereo/pipeline.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// One option of the pipeline by its name, as `--set key=value` and result.json spell it.
@@ -22,3 +23,4 @@ std::vector<OptionText> list_options(const PipelineOptions& options);
 void set_option(PipelineOptions& options, const std::string& key, const std::string& value);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 #include "roadstereo/perspective_shift.hpp"
 #include "roadstereo/road_model.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Sampling of the target image when its rows are shifted.
@@ -51,3 +52,4 @@ void restore_disparity(ImageView<const float> residual, const PerspectiveShift& 
                        Image<float>& disparity);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

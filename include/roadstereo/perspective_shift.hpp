@@ -4,6 +4,7 @@
 
 #include "roadstereo/disparity_plane.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// What the rectification left of a wrong pose of the target's camera, small: its rows lie lower, and it is turned
@@ -52,3 +53,4 @@ struct PerspectiveShift {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -21,6 +21,7 @@
 #include "roadstereo/road_model.hpp"
 #include "roadstereo/roll.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 struct DeviceOptions;
@@ -174,3 +175,4 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
                  const DamageOptions& options, int threads, DamageMap& result);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -2,6 +2,7 @@
 
 #include "roadstereo/damage.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Rectangle of pixels; the last column u1 and row v1 are inside.
@@ -16,3 +17,4 @@ struct PixelBox {
 PixelBox box_with_margin(const DamageMap& map, const Damage& damage, double share, int min_px);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 #include "roadstereo/ground_plane.hpp"
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Unordered 3-D points with optional colours.
@@ -31,3 +32,4 @@ PointCloud cloud_from_disparity(ImageView<const float> disparity, const FrameVie
 PointCloud to_road_axes(const PointCloud& cloud, const RoadAxes& road);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 #include "roadstereo/odometry.hpp"
 #include "roadstereo/trajectory.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 // Pose graph: nonlinear least squares over the poses of all frames, weighted by covariance, with robust losses. Needs a
@@ -97,3 +98,4 @@ struct PoseGraphResult {
 PoseGraphResult optimise_poses(const PoseGraphInput& input, const PoseGraphOptions& options = {});
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -3,6 +3,7 @@
 #include "roadstereo/image.hpp"
 #include "roadstereo/road_model.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Options of the refinement: a mean over the neighbours, weighted by their variances and by their agreement with the
@@ -41,3 +42,4 @@ void interpolate_disparities(ImageView<const float> disparity, ImageView<const f
                              int width, int height, int threads, Image<float>& full, Image<float>& full_sigma);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 #include "roadstereo/damage.hpp"
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Depth of a damage and its surroundings on a grid, sampled row by row from the image. All four images have one size.
@@ -26,3 +27,4 @@ Relief extract_relief(const DamageMap& map, const Damage& damage, ImageView<cons
                       const std::optional<StereoCalibration>& calibration, int max_points);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

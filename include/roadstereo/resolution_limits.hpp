@@ -9,6 +9,7 @@
 #include "roadstereo/damage.hpp"
 #include "roadstereo/matcher.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Pose of the left camera over a planar road, without roll.
@@ -106,3 +107,4 @@ class ResolutionLimits {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 
 #include "roadstereo/calibration.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 struct DamageMap;
@@ -94,3 +95,4 @@ class RigBiasEstimator {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -12,6 +12,7 @@
 #include "roadstereo/disparity_plane.hpp"
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Rigid transformation: 3×4, row-major, metres.
@@ -132,3 +133,4 @@ double suggested_cell_m(const DisparityPlane& road, const StereoCalibration& cal
 RigidTransform camera_to_road(const DisparityPlane& road, const StereoCalibration& calibration);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 #include "roadstereo/disparity_plane.hpp"
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Value of RoadModelOptions::pitch_deg that expects none.
@@ -79,3 +80,4 @@ RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageVie
                                     ImageView<const std::uint8_t> mask = {});
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

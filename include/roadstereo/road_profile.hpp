@@ -7,6 +7,7 @@
 #include "roadstereo/damage.hpp"
 #include "roadstereo/road_map.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 struct LaneOptions {
@@ -74,3 +75,4 @@ struct LaneProfiles {
 LaneProfiles measure_lane(const RoadMap& map, std::span<const std::array<double, 2>> path, const LaneOptions& options);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

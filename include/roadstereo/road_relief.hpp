@@ -2,6 +2,7 @@
 
 #include "roadstereo/road_map.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Reads cells with heights above a smooth reference of the road instead of z = 0. The reference at a node of a grid of
@@ -10,3 +11,4 @@ namespace roadstereo {
 MapRaster read_relief(const RoadMap& map, const MapBox& box);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 #include "roadstereo/image.hpp"
 #include "roadstereo/road_model.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Minimiser of the energy E_t min(ψ), eq. (23).
@@ -64,3 +65,4 @@ struct RoadResiduals {
 RoadResiduals measure_residuals(ImageView<const float> transformed, double delta_t, int threads = 0);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

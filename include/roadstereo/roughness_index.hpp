@@ -3,6 +3,7 @@
 #include <array>
 #include <span>
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 // International Roughness Index (ASTM E1926, World Bank Technical Paper 46): mean suspension motion of the golden
@@ -27,3 +28,4 @@ double roughness_index(std::span<const double> heights_m, double spacing_m);
 double roughness_noise_floor(double std_error_m, double spacing_m);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Disparities first ≤ d < end. C++17, for kernels.
@@ -13,3 +14,4 @@ struct SearchRange {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 
 #include "roadstereo/severity.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// One measurement of a series.
@@ -23,3 +24,4 @@ struct SeriesSample {
 std::vector<Measurement> smooth_series(std::span<const SeriesSample> samples);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Kind of damage by its measured shape, in the words of ASTM D6433.
@@ -100,3 +101,4 @@ Severity likely_severity(const SeverityProbabilities& probabilities);
 std::string severity_range(const SeverityProbabilities& probabilities);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

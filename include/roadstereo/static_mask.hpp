@@ -7,6 +7,7 @@
 #include "roadstereo/disparity_plane.hpp"
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 struct StaticMaskOptions {
@@ -50,3 +51,4 @@ class StaticMask {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

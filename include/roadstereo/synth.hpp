@@ -9,6 +9,7 @@
 #include "roadstereo/image.hpp"
 #include "roadstereo/road_model.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::synth {
 
 /// Pose and optics of a rig over the road. Road frame: X to the right, Y forward along the road, Z up, metres. The left
@@ -204,3 +205,4 @@ struct FlightPath {
 Scene flight_frame(const Scene& scene, const FlightPath& path, int frame);
 
 }  // namespace roadstereo::synth
+#pragma GCC visibility pop

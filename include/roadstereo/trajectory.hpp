@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Pose of the rectified left camera (x right, y down, z forward) at one frame.
@@ -22,3 +23,4 @@ struct Trajectory {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

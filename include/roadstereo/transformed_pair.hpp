@@ -7,6 +7,7 @@
 
 // C++17, for kernels.
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// A stereo pair after the perspective transformation of the target.
@@ -17,3 +18,4 @@ struct TransformedPair {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 
 // Products that compilers must not contract with a sum into a fused multiply-add (FMA), which rounds once instead of
 // twice: for results that are equal to the bit on GPUs, ARM and x86.
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 // Prevents FMA contraction on the host: the empty asm makes the product opaque to the optimiser.
@@ -41,3 +42,4 @@ ROADSTEREO_HD inline double uncontracted_product(double a, double b) {
 #undef ROADSTEREO_KEEP_PRODUCT
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Returns the code of a warning, the word before its first colon; empty if it has none. The codes are
@@ -24,3 +25,4 @@ constexpr std::string_view warning_code(std::string_view warning) {
 }
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

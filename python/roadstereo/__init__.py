@@ -22,12 +22,15 @@ from ._roadstereo import (
     FrameResult,
     FrameSource,
     GroundPlane,
+    MapDamage,
+    MapRaster,
     Measurement,
     Misalignment,
     Odometry,
     PerspectiveShift,
     Pipeline,
     Rectifier,
+    RoadMap,
     RoadModelEstimate,
     RoadResiduals,
     RollEstimate,
@@ -38,6 +41,7 @@ from ._roadstereo import (
     StageTimes,
     StereoRig,
     __version__,
+    camera_to_road,
     cloud_from_disparity,
     describe_options,
     engine_names,
@@ -48,6 +52,7 @@ from ._roadstereo import (
     read_calibration,
     read_disparity,
     read_frame,
+    suggested_cell_m,
 )
 
 __all__ = [
@@ -65,12 +70,15 @@ __all__ = [
     "FrameResult",
     "FrameSource",
     "GroundPlane",
+    "MapDamage",
+    "MapRaster",
     "Measurement",
     "Misalignment",
     "Odometry",
     "PerspectiveShift",
     "Pipeline",
     "Rectifier",
+    "RoadMap",
     "RoadModelEstimate",
     "RoadResiduals",
     "RollEstimate",
@@ -81,6 +89,7 @@ __all__ = [
     "StageTimes",
     "StereoRig",
     "__version__",
+    "camera_to_road",
     "cloud_from_disparity",
     "describe_options",
     "engine_names",
@@ -91,6 +100,7 @@ __all__ = [
     "read_calibration",
     "read_disparity",
     "read_frame",
+    "suggested_cell_m",
 ]
 
 for _name in __all__:

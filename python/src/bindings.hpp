@@ -14,5 +14,6 @@ void bind_image_files(pybind11::module_& module);
 void bind_odometry(pybind11::module_& module);
 void bind_pipeline(pybind11::module_& module);
 void bind_point_cloud(pybind11::module_& module);
+void bind_road_map(pybind11::module_& module);
 
 }  // namespace roadstereo::python

@@ -35,4 +35,5 @@ PYBIND11_MODULE(_roadstereo, module) {
   python::bind_damage(module);
   python::bind_odometry(module);
   python::bind_point_cloud(module);
+  python::bind_road_map(module);
 }

@@ -3,6 +3,7 @@
 #include "core/full_resolution.hpp"
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Downsamples by the mean of factor × factor pixels. The rest at the right and bottom is dropped. Pixel (x, y) of it
@@ -13,3 +14,4 @@ GreyImage downsample(ImageView<const std::int16_t> image, int factor);
 void downsample(ImageView<const std::int16_t> image, int factor, ImageView<std::int16_t> small);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -2,6 +2,7 @@
 
 #include "core/function_ref.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Returns the number of worker threads: `threads`, or all cores for 0. Throws Error when negative or above 1024.
@@ -16,3 +17,4 @@ void parallel_for(int count, int threads, FunctionRef<void(int, int)> body);
 void parallel_rows(int rows, int rows_per_band, int threads, FunctionRef<void(int, int, int)> body);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

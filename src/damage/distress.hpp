@@ -2,6 +2,7 @@
 
 #include "roadstereo/damage.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Decide the distress of a damage from its metrics: side, slope of the wall, elongation, direction, height. `wall_m`
@@ -14,3 +15,4 @@ Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, d
 void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

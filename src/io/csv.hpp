@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Builds a line of RFC 4180 CSV.
@@ -28,3 +29,4 @@ class CsvLine {
 };
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

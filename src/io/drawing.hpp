@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Foreground and background of all drawings, BGR.
@@ -44,3 +45,4 @@ Ticks round_ticks(double lowest, double highest, int max_count);
 std::string number_text(double value, int decimals);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Reads a whole file. Throws Error naming it if it is missing, not a regular file, unreadable, empty, or larger than
@@ -11,3 +12,4 @@ namespace roadstereo::io {
 std::vector<std::uint8_t> read_file(const std::string& path, std::size_t max_bytes);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Wraps the samples of a frame without copying. Do not write to it: OpenCV has no const matrix.
@@ -19,3 +20,4 @@ Frame frame_from(const cv::Mat& mat, ChannelOrder order);
 cv::Mat to_bgr(const FrameView& frame, double white_level);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

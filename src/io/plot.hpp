@@ -6,6 +6,7 @@
 
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Points of one plot line. NaN interrupts it; so does, on a logarithmic axis, what is not positive.
@@ -31,3 +32,4 @@ struct Panel {
 Frame draw_plot(const Panel& panel, int width, int height);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

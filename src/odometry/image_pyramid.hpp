@@ -5,6 +5,7 @@
 
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Grey level and its gradient at a pixel: 8-bit grey levels, and per pixel of the level.
@@ -31,3 +32,4 @@ class ImagePyramid {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

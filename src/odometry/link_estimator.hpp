@@ -9,6 +9,7 @@
 #include "odometry/reference_points.hpp"
 #include "roadstereo/odometry.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// What is kept of a frame that others are aligned with.
@@ -64,3 +65,4 @@ RigidMotion motion_of(const std::array<double, 12>& matrix);
 std::array<double, 36> carried(const RigidMotion& motion, const std::array<double, 36>& c);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

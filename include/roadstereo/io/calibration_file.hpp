@@ -7,6 +7,7 @@
 
 #include "roadstereo/calibration.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Calibration of an unrectified stereo rig. Matrices are row-major.
@@ -53,3 +54,4 @@ struct CalibrationFile {
 CalibrationFile read_calibration(const std::string& path, const std::string& second_path = "");
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -3,6 +3,7 @@
 #include "roadstereo/damage.hpp"
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Draws the outline, id and depth of every damage on the image (8 bit). Colours show the severity, or the kind if
@@ -10,3 +11,4 @@ namespace roadstereo::io {
 Frame damage_overlay(const FrameView& picture, const DamageMap& map);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 #include "roadstereo/damage.hpp"
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Input of `damage_report`. Maps and image have the size of `map`; empty ones are absent.
@@ -34,3 +35,4 @@ std::string damage_report(const DamageReportInput& input);
 Frame damage_background(const DamageReportInput& input);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 
 #include "roadstereo/damage.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 // One row per damage, deepest first. Both files have the same columns, named with their units. Unknown values are empty
@@ -16,3 +17,4 @@ std::string damages_json(const DamageMap& map);
 std::string damages_csv(const DamageMap& map);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -11,6 +11,7 @@
 #include "roadstereo/health.hpp"
 #include "roadstereo/pipeline.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Result of processing one frame of a flight.
@@ -75,3 +76,4 @@ std::string flight_frame_json(const FlightFrame& frame);
 FlightFrame read_flight_frame(const std::string& json);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 #include "roadstereo/io/flight_frame.hpp"
 #include "roadstereo/io/track.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// One damage of the road, seen in one or several frames of a flight: the record behind every table, GIS layer and
@@ -64,3 +65,4 @@ class FlightInventory {
 };
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 
 #include "roadstereo/io/flight_frame.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Inputs and options of a flight as names and values. A flight is resumed only with identical ones.
@@ -54,3 +55,4 @@ class FlightJournal {
 void read_flight_journal(const std::filesystem::path& file, const std::function<void(const FlightFrame&)>& visit);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

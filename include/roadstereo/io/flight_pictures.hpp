@@ -7,6 +7,7 @@
 #include "roadstereo/image.hpp"
 #include "roadstereo/io/damage_report.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Encodes a thumbnail of the left image with the outlines of its damages as JPEG, at most `width` pixels wide.
@@ -21,3 +22,4 @@ std::vector<std::uint8_t> damage_picture(const FrameView& left, const DamageMap&
 std::string road_damage_section(const DamageReportInput& input, const Damage& damage, std::int64_t id);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

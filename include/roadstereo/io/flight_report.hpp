@@ -11,6 +11,7 @@
 #include "roadstereo/io/road_segments.hpp"
 #include "roadstereo/map_inventory.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Time series of a flight, one value per frame; NaN: unknown.
@@ -61,3 +62,4 @@ struct FlightReportInput {
 std::string flight_report(const FlightReportInput& input);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

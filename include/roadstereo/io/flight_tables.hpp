@@ -6,6 +6,7 @@
 
 #include "roadstereo/io/flight_frame.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 // CSV tables of a flight, line by line (RFC 4180: CRLF). Unknown values are empty.
@@ -21,3 +22,4 @@ std::string sightings_csv_names();
 std::string sightings_csv_rows(const FlightFrame& frame, const std::vector<std::int64_t>& road_damages);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

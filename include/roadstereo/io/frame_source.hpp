@@ -10,6 +10,7 @@
 #include "roadstereo/image.hpp"
 #include "roadstereo/io/calibration_file.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Arrangement of both views in one image.
@@ -95,3 +96,4 @@ std::unique_ptr<FrameSource> open_source(const std::vector<std::string>& names, 
 bool is_recording(const std::string& name);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

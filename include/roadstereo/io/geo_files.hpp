@@ -12,6 +12,7 @@
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/track.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// One frame in the GIS files. NaN: unknown.
@@ -76,3 +77,4 @@ std::string road_damages_csv_names();
 std::string road_damages_csv_rows(std::span<const RoadDamage> damages);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

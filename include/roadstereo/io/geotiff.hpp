@@ -6,6 +6,7 @@
 
 #include "roadstereo/road_map.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Where a map lies in the world.
@@ -36,3 +37,4 @@ void write_geotiff(const std::filesystem::path& file, MapLayer layer, const MapB
                    const MapReference& reference, const ReadMap& read);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

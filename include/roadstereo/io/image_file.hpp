@@ -6,6 +6,7 @@
 
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Reads PNG, JPEG, TIFF or PGM/PPM; 8 or 16 bit; grey or colour.
@@ -35,3 +36,4 @@ std::vector<std::uint8_t> encode_png(const FrameView& frame);
 Frame with_jpeg_loss(const Frame& frame, int quality);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

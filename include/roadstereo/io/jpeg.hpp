@@ -5,9 +5,11 @@
 
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Encodes an 8-bit frame as JPEG, `quality` 1 … 100. A frame wider than `max_width` pixels is downsampled to it.
 std::vector<std::uint8_t> encode_jpeg(const FrameView& frame, int quality, int max_width);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 #include "roadstereo/io/track.hpp"
 #include "roadstereo/pose_graph.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Axes at the first fix of a track, x east, y north, z up, metres, and the UTM zone around it (WGS84). In UTM lengths
@@ -34,3 +35,4 @@ class LocalAxes {
 };
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 #include "roadstereo/io/geotiff.hpp"
 #include "roadstereo/map_inventory.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Draws a map for reports, as JPEG: the orthophoto, below it the heights above the smooth reference of the road, both
@@ -18,3 +19,4 @@ std::vector<std::uint8_t> map_picture(const MapBox& bounds, const MapReference& 
                                       const ReadMap& relief, std::span<const RoadDamageRecord> damages);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 
 #include "roadstereo/io/geotiff.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Writes the cells of a map as binary little-endian PLY: double x y z in the coordinates of `reference`, metres, float
@@ -19,3 +20,4 @@ void write_map_las(const std::filesystem::path& file, const MapBox& bounds, cons
                    const ReadMap& read);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

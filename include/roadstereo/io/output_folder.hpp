@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Writes a set of files atomically: files are staged in a hidden folder inside the output folder and moved by
@@ -49,3 +50,4 @@ class OutputFolder {
 };
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

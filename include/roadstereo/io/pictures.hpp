@@ -6,6 +6,7 @@
 #include "roadstereo/image.hpp"
 #include "roadstereo/roll.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Range and label of a colour map.
@@ -35,3 +36,4 @@ Frame result_sheet(const FrameView& left, ImageView<const float> disparity, Imag
                    double delta_t, const std::optional<RollEstimate>& geometry, const std::string& title);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 
 #include "roadstereo/point_cloud.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Encodes a cloud as binary little-endian PLY: float x y z and, with colours, uchar red green blue. Throws Error if
@@ -12,3 +13,4 @@ namespace roadstereo::io {
 std::vector<std::uint8_t> encode_ply(const PointCloud& cloud);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

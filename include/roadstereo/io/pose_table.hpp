@@ -6,6 +6,7 @@
 
 #include "roadstereo/io/flight_frame.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Roll, pitch and height of the frames of a recording, smoothed over time (`smooth_series`).
@@ -28,3 +29,4 @@ class PoseTable {
 };
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 #include "roadstereo/image.hpp"
 #include "roadstereo/io/calibration_file.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// A rectified pair and its calibration. Every pixel has image content (no black borders).
@@ -40,3 +41,4 @@ class Rectifier {
 RectifiedPair rectify(const Frame& left, const Frame& right, const StereoRig& rig);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

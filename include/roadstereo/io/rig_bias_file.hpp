@@ -4,6 +4,7 @@
 
 #include "roadstereo/rig_bias.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Returns the text of a file of the field, JSON. Numbers are read back bit for bit.
@@ -13,3 +14,4 @@ std::string rig_bias_json(const RigBias& bias);
 RigBias read_rig_bias(const std::string& path);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 
 #include "roadstereo/io/geo_files.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// A stretch of the road between two stations. NaN: unknown.
@@ -29,3 +30,4 @@ std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::sp
 std::string segments_csv(std::span<const RoadSegment> segments, std::span<const RoadDamage> damages);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

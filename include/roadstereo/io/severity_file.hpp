@@ -4,6 +4,7 @@
 
 #include "roadstereo/severity.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Reads tables of severities: "d6433", or a YAML file with `name` and one map per distress (pothole, depression, rut,
@@ -17,3 +18,4 @@ namespace roadstereo::io {
 SeverityScheme read_severity_scheme(const std::string& name);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

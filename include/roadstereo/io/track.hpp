@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 // Positions of the left camera from a GNSS track, WGS84, angles in degrees. The receiver is assumed at the camera.
@@ -88,3 +89,4 @@ std::optional<GeoPosition> offset_position(const GeoPosition& from, double right
 double distance_m(const GeoPosition& from, const GeoPosition& to);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 
 #include "roadstereo/trajectory.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Reads a trajectory as KITTI has it: one line of 12 numbers per frame, the 3×4 matrix from the camera of the frame to
@@ -24,3 +25,4 @@ std::string tum_trajectory(const Trajectory& trajectory, int piece, const std::v
 int longest_piece(const Trajectory& trajectory);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

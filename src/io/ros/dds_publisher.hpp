@@ -8,6 +8,7 @@
 
 #include "io/ros/topic.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Writers of topics in one domain: reliable, volatile, keeping the last message. Not thread-safe.
@@ -32,3 +33,4 @@ class DdsPublisher {
 };
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -11,6 +11,7 @@
 #include "io/ros/topic.hpp"
 #include "roadstereo/disparity_plane.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Pose of the left camera in the frame `odom`.
@@ -39,3 +40,4 @@ std::vector<RosTopic> flight_topics(bool calibrated, bool with_odometry);
 std::vector<TopicMessage> flight_messages(const RosFrame& frame);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 
 #include "io/ros/topic.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 inline constexpr std::string_view mcap_compression = "zstd";
@@ -20,3 +21,4 @@ std::vector<std::uint8_t> mcap_chunk(std::span<const TopicMessage> messages);
 std::uint32_t mcap_checksum(std::span<const std::uint8_t> bytes);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -11,6 +11,7 @@
 
 #include "io/ros/topic.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 class McapBytes;
@@ -65,3 +66,4 @@ class McapWriter {
 };
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 #include "roadstereo/disparity_plane.hpp"
 #include "roadstereo/trajectory.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Poses in the frame `odom`: the axes of `road_axes` at the first frame of each piece of the trajectory that has a
@@ -26,3 +27,4 @@ class RoadOdometry {
 };
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop
