@@ -92,7 +92,7 @@ constexpr const char* odometry_doc =
 
 A frame that cannot be linked starts a new piece. Several threads may use one, one after the other.)";
 
-constexpr const char* init_doc =
+constexpr const char* odometry_init_doc =
     R"(Make an odometry.
 
 min_correlation: below it there is no link; weak_correlation: below it a link is weak; min_overlap: share of the view that
@@ -108,7 +108,7 @@ void bind_odometry(py::module_& module) {
       .def(py::init(&make_odometry), py::arg("calibration"), py::kw_only(),
            py::arg("min_correlation") = usual.min_correlation, py::arg("weak_correlation") = usual.weak_correlation,
            py::arg("min_overlap") = usual.min_overlap, py::arg("reference_overlap") = usual.reference_overlap,
-           py::arg("estimate_offset") = usual.estimate_offset, init_doc)
+           py::arg("estimate_offset") = usual.estimate_offset, odometry_init_doc)
       .def("add", &SharedOdometry::add, py::arg("frame"), py::arg("result"),
            "Add the result of a frame, whose index is above that of the last one; return its pose.\n\n"
            "Raises Error when sizes differ or the index does not grow.")

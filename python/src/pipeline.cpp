@@ -103,7 +103,7 @@ constexpr const char* pipeline_doc =
 The road is tracked from pair to pair. Several threads may use one pipeline, one after the other; pipelines of different
 threads run in parallel, without the interpreter's lock.)";
 
-constexpr const char* init_doc =
+constexpr const char* pipeline_init_doc =
     R"(Make a pipeline.
 
 preset is "default", "fast" or "paper". Without a calibration nothing is metric. Options have the keys of the command
@@ -136,7 +136,7 @@ void bind_pipeline(py::module_& module) {
       "Return what each option does, by its key, with its unit.");
   py::class_<SharedPipeline>(module, "Pipeline", pipeline_doc)
       .def(py::init(&make_pipeline), py::arg("preset") = "default", py::arg("calibration") = py::none(),
-           py::arg("options") = py::none(), init_doc)
+           py::arg("options") = py::none(), pipeline_init_doc)
       .def("process", &SharedPipeline::process, py::arg("left"), py::arg("right"), py::arg("order") = "bgr",
            process_doc)
       .def("set_mask", &SharedPipeline::set_mask, py::arg("mask"),

@@ -29,19 +29,19 @@ namespace roadstereo::python {
 namespace {
 
 namespace py = pybind11;
-using Pose = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using PoseArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-const StereoCalibration& calibration_of(const ProcessedFrame& frame) {
+const StereoCalibration& map_calibration(const ProcessedFrame& frame) {
   if (!frame.calibration) fail("the result has no calibration; a map needs one");
   return *frame.calibration;
 }
 
-const DisparityPlane& plane_of(const ProcessedFrame& frame) {
+const DisparityPlane& road_plane(const ProcessedFrame& frame) {
   if (!frame.result.roll_found) fail("the result has no road; a map needs one");
   return frame.result.geometry.plane;
 }
 
-RigidTransform transform_of(const Pose& pose) {
+RigidTransform transform_of(const PoseArray& pose) {
   const bool square = pose.ndim() == 2 && pose.shape(0) == 4 && pose.shape(1) == 4;
   if (!square && !(pose.ndim() == 2 && pose.shape(0) == 3 && pose.shape(1) == 4)) {
     fail("camera_to_map has another shape than (3, 4) or (4, 4)");
@@ -56,7 +56,7 @@ class SharedRoadMap {
  public:
   SharedRoadMap(const std::filesystem::path& folder, const RoadMapOptions& options) : map_(folder, options) {}
 
-  std::size_t add(const ProcessedFrame& frame, const Pose& camera_to_map, const py::object& left,
+  std::size_t add(const ProcessedFrame& frame, const PoseArray& camera_to_map, const py::object& left,
                   const std::string& order) {
     const FrameResult& result = frame.result;
     const GreyImage& grey = result.grey;
@@ -64,8 +64,8 @@ class SharedRoadMap {
                   result.sigma,
                   FrameView::grey16(reinterpret_cast<const std::uint16_t*>(grey.row(0)), grey.width(), grey.height()),
                   static_cast<double>(grey_max),
-                  plane_of(frame),
-                  calibration_of(frame),
+                  road_plane(frame),
+                  map_calibration(frame),
                   transform_of(camera_to_map)};
     if (!left.is_none()) {
       seen.image = frame_view(left, "left", order);
@@ -90,8 +90,8 @@ class SharedRoadMap {
   RoadMap map_;
 };
 
-std::unique_ptr<SharedRoadMap> make_map(const std::filesystem::path& folder, double cell_m, double max_above_m,
-                                        double max_below_m, int threads) {
+std::unique_ptr<SharedRoadMap> make_road_map(const std::filesystem::path& folder, double cell_m, double max_above_m,
+                                             double max_below_m, int threads) {
   RoadMapOptions options;
   options.cell_m = cell_m;
   options.max_above_m = max_above_m;
@@ -100,7 +100,7 @@ std::unique_ptr<SharedRoadMap> make_map(const std::filesystem::path& folder, dou
   return std::make_unique<SharedRoadMap>(folder, options);
 }
 
-py::array_t<double> matrix(const RigidTransform& transform) {
+py::array_t<double> map_matrix(const RigidTransform& transform) {
   return py::array_t<double>({3, 4}, transform.data());
 }
 
@@ -148,13 +148,13 @@ constexpr const char* map_doc =
 
 Frames are fused cell by cell. Several threads may use one, one after the other.)";
 
-constexpr const char* init_doc =
+constexpr const char* map_init_doc =
     R"(Make a map, which keeps its tiles in a folder and removes them at the end.
 
 cell_m: side of a cell, metres; suggested_cell_m names one. max_above_m, max_below_m: points higher above or deeper below
 the frame's road are left out. threads: 0 takes all cores.)";
 
-constexpr const char* add_doc =
+constexpr const char* map_add_doc =
     R"(Fuse a frame; return the number of cells that it measures.
 
 camera_to_map is (3, 4) or (4, 4), metres, z up. The picture of the map is that of left, an array as `process` takes it, or
@@ -171,11 +171,11 @@ void bind_road_map(py::module_& module) {
              "From the map's x axis to its longer side, positive towards y, radians.");
   const RoadMapOptions usual;
   py::class_<SharedRoadMap>(module, "RoadMap", map_doc)
-      .def(py::init(&make_map), py::arg("folder"), py::kw_only(), py::arg("cell_m") = usual.cell_m,
+      .def(py::init(&make_road_map), py::arg("folder"), py::kw_only(), py::arg("cell_m") = usual.cell_m,
            py::arg("max_above_m") = usual.max_above_m, py::arg("max_below_m") = usual.max_below_m,
-           py::arg("threads") = usual.threads, init_doc)
+           py::arg("threads") = usual.threads, map_init_doc)
       .def("add", &SharedRoadMap::add, py::arg("result"), py::arg("camera_to_map"), py::arg("left") = py::none(),
-           py::arg("order") = "bgr", add_doc)
+           py::arg("order") = "bgr", map_add_doc)
       .def("read", &SharedRoadMap::read, py::arg("box") = py::none(),
            "Return the cells of a box [i0, j0, columns, rows], or all; those outside the map are empty.")
       .def("find_damage", &find_damage_in, py::arg("options") = py::none(),
@@ -184,13 +184,13 @@ void bind_road_map(py::module_& module) {
       .def_property_readonly("cell_m", &SharedRoadMap::cell_m, "Side of a cell, metres.");
   module.def(
       "camera_to_road",
-      [](const ProcessedFrame& frame) { return matrix(camera_to_road(plane_of(frame), calibration_of(frame))); },
+      [](const ProcessedFrame& frame) { return map_matrix(camera_to_road(road_plane(frame), map_calibration(frame))); },
       py::arg("result"),
       "Return the transformation from the camera to axes on its road, (3, 4): origin at the foot of the camera, x to\n"
       "its right, y ahead, z up. Raises Error for a result without a road or a calibration.");
   module.def(
       "suggested_cell_m",
-      [](const ProcessedFrame& frame) { return suggested_cell_m(plane_of(frame), calibration_of(frame)); },
+      [](const ProcessedFrame& frame) { return suggested_cell_m(road_plane(frame), map_calibration(frame)); },
       py::arg("result"), "Return a side of cells for a map of such frames, metres.");
 }
 
