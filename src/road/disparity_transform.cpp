@@ -41,19 +41,32 @@ float lowest_of_row(const float* row, int width) {
   return *std::min_element(lowest.begin(), lowest.end());
 }
 
-/// Sums of the residuals of a row whose magnitude is at most `limit`.
-Spread spread_of_row(const float* row, int width, double delta_t, double limit) {
-  std::array<double, chains> n{}, sum{}, squares{};
+/// Sums of the residuals of a row.
+struct RowSpread {
+  Spread all{}, road{};  ///< of the road: those whose magnitude is at most a limit
+};
+
+RowSpread spread_of_row(const float* row, int width, double delta_t, double limit) {
+  struct Chains {
+    std::array<double, chains> n{}, sum{}, squares{};
+
+    void add(std::size_t k, bool counts, double residual) {
+      const double counted = counts ? residual : 0;
+      n[k] += counts ? 1 : 0;
+      sum[k] += counted;
+      squares[k] += counted * counted;
+    }
+  } all, road;
   for_each_column(width, [&](int u, std::size_t k) {
-    const double residual = row[u] - delta_t;
-    const bool counts = std::abs(residual) <= limit;  // false for NaN
-    const double counted = counts ? residual : 0;
-    n[k] += counts ? 1 : 0;
-    sum[k] += counted;
-    squares[k] += counted * counted;
+    const double residual = row[u] - delta_t, magnitude = std::abs(residual);
+    all.add(k, magnitude <= std::numeric_limits<double>::infinity(), residual);  // false for NaN
+    road.add(k, magnitude <= limit, residual);
   });
-  Spread spread{};
-  for (std::size_t k = 0; k < chains; ++k) spread.add(Spread{n[k], sum[k], squares[k]});
+  RowSpread spread;
+  for (std::size_t k = 0; k < chains; ++k) {
+    spread.all.add(Spread{all.n[k], all.sum[k], all.squares[k]});
+    spread.road.add(Spread{road.n[k], road.sum[k], road.squares[k]});
+  }
   return spread;
 }
 
@@ -93,20 +106,14 @@ RoadResiduals measure_residuals(ImageView<const float> transformed, double delta
   std::erase_if(residuals, [](double r) { return std::abs(r) > spread_nearest_px; });
   const double limit = spread_limit(upper_median_magnitude(residuals));
 
-  struct Row {
-    Spread all{}, road{};
-  };
-  auto rows = scratch_vector<Row>(static_cast<std::size_t>(transformed.height()));
+  auto rows = scratch_vector<RowSpread>(static_cast<std::size_t>(transformed.height()));
   parallel_rows(transformed.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
-      const float* const values = transformed.row(v);
-      rows[static_cast<std::size_t>(v)] = {
-          spread_of_row(values, transformed.width(), delta_t, std::numeric_limits<double>::infinity()),
-          spread_of_row(values, transformed.width(), delta_t, limit)};
+      rows[static_cast<std::size_t>(v)] = spread_of_row(transformed.row(v), transformed.width(), delta_t, limit);
     }
   });
   Spread all{}, road{};
-  for (const Row& row : rows) {
+  for (const RowSpread& row : rows) {
     all.add(row.all);
     road.add(row.road);
   }

@@ -123,7 +123,7 @@ Totals of_shortest_paths(const Row& row) {
   return totals;
 }
 
-/// The disparities that optimise_scanline takes. Its scratch memory is full of what must not matter.
+/// The disparities that optimise_scanline takes. Beside its guards, its scratch memory is full of what must not matter.
 std::vector<float> taken(const Row& row) {
   constexpr std::ptrdiff_t grid = 16;
   const std::ptrdiff_t pitch = (row.disparities() + grid - 1) / grid * grid;
@@ -131,6 +131,7 @@ std::vector<float> taken(const Row& row) {
   const auto costs = hwy::AllocateAligned<float>(static_cast<std::size_t>(row.columns() * pitch));
   const auto scratch = hwy::AllocateAligned<float>(size);
   std::fill_n(scratch.get(), size, -1000.0F);
+  guard_scanline_scratch(row.columns(), pitch, row.disparities(), scratch.get());
   for (int u = 0; u < row.columns(); ++u) {
     float* column = costs.get() + u * pitch;
     std::fill_n(column, pitch, -1000.0F);

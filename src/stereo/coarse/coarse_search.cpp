@@ -13,6 +13,7 @@
 #include "stereo/coarse/coarse_map.hpp"
 #include "stereo/coarse/coarse_size.hpp"
 #include "stereo/coarse/road_plausibility.hpp"
+#include "stereo/coarse/road_weights.hpp"
 #include "stereo/coarse/scanline.hpp"
 #include "stereo/window.hpp"
 
@@ -20,28 +21,6 @@ namespace roadstereo {
 namespace {
 
 constexpr int min_rows = 24;  // of a band
-
-/// The smallest of the first `count` costs, at most `uncorrelated_cost`; in several chains, so that compilers use
-/// vectors.
-float smallest_cost(const float* costs, int count) {
-  std::array<float, 8> smallest{};
-  smallest.fill(uncorrelated_cost);
-  const int chains = static_cast<int>(smallest.size()), whole = count / chains * chains;
-  for (int d = 0; d < whole; d += chains) {
-    for (std::size_t k = 0; k < smallest.size(); ++k)
-      smallest[k] = std::min(smallest[k], costs[d + static_cast<int>(k)]);
-  }
-  for (int d = whole; d < count; ++d) smallest[0] = std::min(smallest[0], costs[d]);
-  return *std::min_element(smallest.begin(), smallest.end());
-}
-
-/// Plausibility of the road from the costs of a pixel.
-float road_plausibility(const float* costs, int count, float road) {
-  const NearRoad near = near_road(road, count);
-  float at_road = uncorrelated_cost;
-  for (int d = near.first; d < near.end; ++d) at_road = std::min(at_road, costs[d]);
-  return cost_plausibility(at_road, smallest_cost(costs, count));
-}
 
 }  // namespace
 
@@ -103,6 +82,7 @@ bool CoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift) 
     worker.weight.resize(static_cast<std::size_t>(reference_.width()));
     worker.nearest.reserve(static_cast<std::size_t>(reference_.width()));
     worker.scratch.resize(1, 0, static_cast<std::ptrdiff_t>(scanline_scratch(reference_.width(), pitch)));
+    guard_scanline_scratch(reference_.width(), pitch, coarse.disparities, worker.scratch.row(0));
   }
   // A band begins by filling its sums, so it should be high.
   const int rows = std::max(min_rows, (reference_.height() + 4 * threads_ - 1) / (4 * threads_));
@@ -133,17 +113,15 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
 void CoarseSearch::finish_row(const MatchInput& coarse, int v, const PerspectiveShift& shift, Worker& worker) {
   const int width = reference_.width();
   const std::vector<float>& texture_uncertainty = worker.texture.next();
-  const int first_seen = block_first_column_[static_cast<std::size_t>(v)];
   for (int u = 0; u < width; ++u) {
     const auto column = static_cast<std::size_t>(u);
     worker.centre[column] = coarse_road(shift, u, v, prior_.factor, std::numeric_limits<float>::quiet_NaN());
     worker.weight[column] = static_cast<float>(options_.road_prior_weight) * texture_uncertainty[column];
-    const int count = std::min(coarse.disparities, u - first_seen + 1);
-    if (std::isnan(worker.centre[column]) || count <= 0 || texture_uncertainty[column] < min_uncertainty) continue;
-    worker.weight[column] *=
-        road_plausibility(worker.row.row(0) + u * worker.costs.pitch(), count, worker.centre[column]);
   }
-  optimise_scanline({worker.row.row(0), worker.costs.pitch(), width, coarse.disparities, first_seen},
+  const ScanlineCosts row{worker.row.row(0), worker.costs.pitch(), width, coarse.disparities,
+                          block_first_column_[static_cast<std::size_t>(v)]};
+  apply_road_plausibility(row, worker.centre.data(), texture_uncertainty.data(), worker.weight.data());
+  optimise_scanline(row,
                     {worker.centre.data(), worker.weight.data(), static_cast<float>(options_.road_prior_truncation_px)},
                     {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)},
                     uncorrelated_cost, worker.scratch.row(0), along_rows_.row(v));

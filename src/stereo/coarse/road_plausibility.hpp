@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 #include "core/full_resolution.hpp"
 #include "roadstereo/perspective_shift.hpp"
 
@@ -21,7 +19,7 @@ struct NearRoad {
 
 ROADSTEREO_HD inline NearRoad near_road(float road, int count) {
   constexpr int near = 2;
-  const int centre = static_cast<int>(lroundf(road));
+  const int centre = static_cast<int>(road + 0.5F);  // NOLINT(bugprone-incorrect-roundings): not negative
   const int first = centre - near < 0 ? 0 : centre - near > count ? count : centre - near;
   const int wanted = centre + near + 1;
   return {first, wanted < first ? first : wanted > count ? count : wanted};

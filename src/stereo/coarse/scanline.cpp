@@ -6,6 +6,29 @@
 
 #include "stereo/coarse/path_winner.hpp"
 
+#ifndef ROADSTEREO_SCANLINE_PATH_MEMORY
+#define ROADSTEREO_SCANLINE_PATH_MEMORY  // once for all instruction sets
+namespace roadstereo {
+namespace {
+
+/// Where the totals of the paths are kept.
+struct PathMemory {
+  std::ptrdiff_t pitch;   ///< disparities and guards
+  float* last_totals[2];  ///< totals of the paths from the right, of the last two columns alternately
+  float* forward;         ///< totals of the paths from the left, `pitch` elements a column
+  float* backward;        ///< costs of the paths from the right, without the column's own
+
+  PathMemory(int columns, std::ptrdiff_t disparities, float* scratch)
+      : pitch(disparities + scanline_guard),
+        last_totals{scratch + scanline_guard, scratch + scanline_guard + pitch},
+        forward(last_totals[1] + pitch),
+        backward(forward + columns * pitch) {}
+};
+
+}  // namespace
+}  // namespace roadstereo
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "stereo/coarse/scanline.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for every instruction set
@@ -54,30 +77,6 @@ HWY_INLINE Float transition_cost(const PathEnd& end, int d, Float step, Float ju
   const Float stay = hn::Sub(hn::LoadU(df, at), end.cheapest);
   const Float change = hn::Sub(hn::Min(hn::LoadU(df, at - 1), hn::LoadU(df, at + 1)), end.cheapest);
   return hn::Min(hn::Min(stay, hn::Add(change, step)), jump);
-}
-
-/// Where the totals of the paths are kept.
-struct PathMemory {
-  float* forward;         ///< totals of the paths from the left, `pitch` elements a column
-  float* backward;        ///< costs of the paths from the right, without the column's own
-  float* last_totals[2];  ///< totals of the paths from the right, of the last two columns alternately
-  std::ptrdiff_t pitch;   ///< disparities and guards
-};
-
-HWY_INLINE PathMemory layout_scratch(const ScanlineCosts& row, float* scratch) {
-  PathMemory memory{};
-  memory.pitch = row.pitch + scanline_guard;
-  memory.last_totals[0] = scratch + scanline_guard;
-  memory.last_totals[1] = memory.last_totals[0] + memory.pitch;
-  memory.forward = memory.last_totals[1] + memory.pitch;
-  memory.backward = memory.forward + row.columns * memory.pitch;
-  for (float* column = memory.last_totals[0]; column < memory.backward; column += memory.pitch) {
-    std::fill(column - scanline_guard, column, infinite_cost);
-    // The paths' totals are written by whole vectors, which may end with the last disparity.
-    std::fill(column + row.disparities, column + row.pitch, infinite_cost);
-  }
-  std::fill_n(memory.backward - scanline_guard, scanline_guard, infinite_cost);
-  return memory;
 }
 
 /// One step from the left and one from the right in each turn: two chains that hide each other's latency.
@@ -143,7 +142,7 @@ HWY_INLINE float take_winner(const float* forward, const float* backward, int co
 void optimise_scanline(const ScanlineCosts& row, const ScanlinePrior& prior, const ScanlinePenalties& penalties,
                        float uncorrelated_cost, float* scratch, float* disparity) {
   complete_costs(row, prior, uncorrelated_cost);
-  const PathMemory memory = layout_scratch(row, scratch);
+  const PathMemory memory(row.columns, row.pitch, scratch);
   aggregate_scanlines(row, penalties, memory);
   for (int u = 0; u < row.columns; ++u) {
     const int count = std::min(row.disparities, u - row.first_seen + 1);
@@ -163,6 +162,17 @@ HWY_EXPORT(optimise_scanline);
 
 std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch) {
   return static_cast<std::size_t>((2 * columns + 2) * (pitch + scanline_guard) + scanline_guard);
+}
+
+void guard_scanline_scratch(int columns, std::ptrdiff_t pitch, int disparities, float* scratch) {
+  constexpr float infinite_cost = std::numeric_limits<float>::infinity();
+  const PathMemory memory(columns, pitch, scratch);
+  for (float* column = memory.last_totals[0]; column < memory.backward; column += memory.pitch) {
+    std::fill(column - scanline_guard, column, infinite_cost);
+    // The paths' totals are written by whole vectors, which may end with the last disparity.
+    std::fill(column + disparities, column + pitch, infinite_cost);
+  }
+  std::fill_n(memory.backward - scanline_guard, scanline_guard, infinite_cost);
 }
 
 void optimise_scanline(const ScanlineCosts& row, const ScanlinePrior& prior, const ScanlinePenalties& penalties,

@@ -36,9 +36,12 @@ inline constexpr std::ptrdiff_t scanline_guard = 16;
 /// Returns the elements of scratch memory, aligned for vectors, that optimise_scanline needs.
 std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch);
 
+/// Writes the guards in scratch memory, which optimise_scanline leaves as they are: once for all rows of this size.
+void guard_scanline_scratch(int columns, std::ptrdiff_t pitch, int disparities, float* scratch);
+
 /// Writes for every column the disparity with the smallest total cost of all paths along the row through it, with the
 /// fraction of eq. (13) on the total costs; NaN where the column has no counterpart. Disparities without a counterpart
-/// cost `uncorrelated_cost` and never win.
+/// cost `uncorrelated_cost` and never win. `scratch` has its guards.
 void optimise_scanline(const ScanlineCosts& row, const ScanlinePrior& prior, const ScanlinePenalties& penalties,
                        float uncorrelated_cost, float* scratch, float* disparity);
 
