@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -23,7 +24,7 @@ using ScanlineTarget = test::EveryTarget;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr double uncorrelated_cost = 0.75;
 
-/// One row: cost[u][d] without priors, and what optimise_scanline is told besides.
+/// One row: cost[u][d] without priors, and what optimise_scanlines is told besides.
 struct Row {
   std::vector<std::vector<float>> cost;
   std::vector<float> centre, weight;
@@ -123,24 +124,55 @@ Totals of_shortest_paths(const Row& row) {
   return totals;
 }
 
-/// The disparities that optimise_scanline takes. Beside its guards, its scratch memory is full of what must not matter.
-std::vector<float> taken(const Row& row) {
-  constexpr std::ptrdiff_t grid = 16;
-  const std::ptrdiff_t pitch = (row.disparities() + grid - 1) / grid * grid;
-  const std::size_t size = scanline_scratch(row.columns(), pitch);
-  const auto costs = hwy::AllocateAligned<float>(static_cast<std::size_t>(row.columns() * pitch));
-  const auto scratch = hwy::AllocateAligned<float>(size);
-  std::fill_n(scratch.get(), size, -1000.0F);
-  guard_scanline_scratch(row.columns(), pitch, row.disparities(), scratch.get());
-  for (int u = 0; u < row.columns(); ++u) {
-    float* column = costs.get() + u * pitch;
-    std::fill_n(column, pitch, -1000.0F);
-    std::copy(row.cost[static_cast<std::size_t>(u)].begin(), row.cost[static_cast<std::size_t>(u)].end(), column);
+/// A row with its memory, which beside the guards is full of what must not matter.
+struct RowInMemory {
+  explicit RowInMemory(const Row& of) : row(of), disparity(of.cost.size()) {
+    constexpr std::ptrdiff_t grid = 16;
+    pitch = (row.disparities() + grid - 1) / grid * grid;
+    const std::size_t size = scanline_scratch(row.columns(), pitch);
+    costs = hwy::AllocateAligned<float>(static_cast<std::size_t>(row.columns() * pitch));
+    scratch = hwy::AllocateAligned<float>(size);
+    std::fill_n(scratch.get(), size, -1000.0F);
+    guard_scanline_scratch(row.columns(), pitch, row.disparities(), scratch.get());
   }
-  std::vector<float> disparity(row.cost.size());
-  optimise_scanline({costs.get(), pitch, row.columns(), row.disparities(), row.first_seen},
-                    {row.centre.data(), row.weight.data(), row.truncation}, row.penalties,
-                    static_cast<float>(uncorrelated_cost), scratch.get(), disparity.data());
+  Scanline scanline() {
+    for (int u = 0; u < row.columns(); ++u) {
+      const std::vector<float>& cost = row.cost[static_cast<std::size_t>(u)];
+      std::fill_n(costs.get() + u * pitch, pitch, -1000.0F);
+      std::copy(cost.begin(), cost.end(), costs.get() + u * pitch);
+    }
+    return {{costs.get(), pitch, row.columns(), row.disparities(), row.first_seen},
+            {row.centre.data(), row.weight.data(), row.truncation},
+            scratch.get(),
+            disparity.data()};
+  }
+
+  const Row& row;
+  std::ptrdiff_t pitch;
+  hwy::AlignedFreeUniquePtr<float[]> costs, scratch;
+  std::vector<float> disparity;
+};
+
+void expect_same(const std::vector<float>& a, const std::vector<float>& b) {
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0);
+}
+
+/// The disparities that optimise_scanlines takes: alone, and the same bits beside a row of any other content.
+std::vector<float> taken(const Row& row) {
+  const auto cost = static_cast<float>(uncorrelated_cost);
+  Row reversed = row;
+  std::reverse(reversed.cost.begin(), reversed.cost.end());
+  RowInMemory own(row), other(reversed);
+  const Scanline alone = own.scanline();
+  optimise_scanlines(&alone, 1, row.penalties, cost);
+  std::vector<float> disparity = own.disparity;
+  const Scanline other_alone = other.scanline();
+  optimise_scanlines(&other_alone, 1, row.penalties, cost);
+  const std::vector<float> of_other = other.disparity;
+  const Scanline both[] = {own.scanline(), other.scanline()};
+  optimise_scanlines(both, 2, row.penalties, cost);
+  expect_same(own.disparity, disparity);
+  expect_same(other.disparity, of_other);
   return disparity;
 }
 

@@ -77,12 +77,14 @@ bool CoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift) 
     worker.costs.prepare(reference_.width(), coarse.disparities, block);
     worker.texture.prepare(reference_.width());
     const std::ptrdiff_t pitch = cpu::padded_disparities(coarse.disparities);
-    worker.row.resize(1, 0, reference_.width() * pitch);
-    worker.centre.resize(static_cast<std::size_t>(reference_.width()));
-    worker.weight.resize(static_cast<std::size_t>(reference_.width()));
+    worker.costs_of_row.resize(2, 0, reference_.width() * pitch);
+    worker.scratch.resize(2, 0, static_cast<std::ptrdiff_t>(scanline_scratch(reference_.width(), pitch)));
+    for (std::size_t k = 0; k < 2; ++k) {
+      worker.centre[k].resize(static_cast<std::size_t>(reference_.width()));
+      worker.weight[k].resize(static_cast<std::size_t>(reference_.width()));
+      guard_scanline_scratch(reference_.width(), pitch, coarse.disparities, worker.scratch.row(k));
+    }
     worker.nearest.reserve(static_cast<std::size_t>(reference_.width()));
-    worker.scratch.resize(1, 0, static_cast<std::ptrdiff_t>(scanline_scratch(reference_.width(), pitch)));
-    guard_scanline_scratch(reference_.width(), pitch, coarse.disparities, worker.scratch.row(0));
   }
   // A band begins by filling its sums, so it should be high.
   const int rows = std::max(min_rows, (reference_.height() + 4 * threads_ - 1) / (4 * threads_));
@@ -103,28 +105,37 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
   const cpu::MatchView view(coarse, cpu::MatchView::reference, block_first_column_);
   worker.costs.start(view, first, 0, view.width(), {0, coarse.disparities});
   worker.texture.start(coarse.reference, first, texture_uncertainty_options(options_));
-  for (int v = first; v < last; ++v) {
-    worker.costs.compute(v, worker.row.row(0));
-    finish_row(coarse, v, shift, worker);
+  const ScanlinePenalties penalties{static_cast<float>(options_.step_penalty),
+                                    static_cast<float>(options_.jump_penalty)};
+  const auto truncation = static_cast<float>(options_.road_prior_truncation_px);
+  for (int v = first; v < last; v += 2) {
+    std::array<Scanline, 2> rows;
+    const int count = std::min(2, last - v);
+    for (int k = 0; k < count; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      float* const costs = worker.costs_of_row.row(at);
+      worker.costs.compute(v + k, costs);
+      rows[at] = {{costs, worker.costs.pitch(), reference_.width(), coarse.disparities,
+                   block_first_column_[static_cast<std::size_t>(v + k)]},
+                  {worker.centre[at].data(), worker.weight[at].data(), truncation},
+                  worker.scratch.row(at),
+                  along_rows_.row(v + k)};
+      weigh_road(rows[at].costs, v + k, shift, worker.texture.next(), worker.centre[at], worker.weight[at]);
+    }
+    optimise_scanlines(rows.data(), count, penalties, uncorrelated_cost);
   }
 }
 
-/// Optimises the scanline of row v, with the road as prior where texture is weak.
-void CoarseSearch::finish_row(const MatchInput& coarse, int v, const PerspectiveShift& shift, Worker& worker) {
-  const int width = reference_.width();
-  const std::vector<float>& texture_uncertainty = worker.texture.next();
-  for (int u = 0; u < width; ++u) {
+/// The road as prior of row v where texture is weak.
+void CoarseSearch::weigh_road(const ScanlineCosts& row, int v, const PerspectiveShift& shift,
+                              const std::vector<float>& texture_uncertainty, std::vector<float>& centre,
+                              std::vector<float>& weight) const {
+  for (int u = 0; u < row.columns; ++u) {
     const auto column = static_cast<std::size_t>(u);
-    worker.centre[column] = coarse_road(shift, u, v, prior_.factor, std::numeric_limits<float>::quiet_NaN());
-    worker.weight[column] = static_cast<float>(options_.road_prior_weight) * texture_uncertainty[column];
+    centre[column] = coarse_road(shift, u, v, prior_.factor, std::numeric_limits<float>::quiet_NaN());
+    weight[column] = static_cast<float>(options_.road_prior_weight) * texture_uncertainty[column];
   }
-  const ScanlineCosts row{worker.row.row(0), worker.costs.pitch(), width, coarse.disparities,
-                          block_first_column_[static_cast<std::size_t>(v)]};
-  apply_road_plausibility(row, worker.centre.data(), texture_uncertainty.data(), worker.weight.data());
-  optimise_scanline(row,
-                    {worker.centre.data(), worker.weight.data(), static_cast<float>(options_.road_prior_truncation_px)},
-                    {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)},
-                    uncorrelated_cost, worker.scratch.row(0), along_rows_.row(v));
+  apply_road_plausibility(row, centre.data(), texture_uncertainty.data(), weight.data());
 }
 
 /// The prior from what the rows found, each on its own.

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "roadstereo/coarse_search.hpp"
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/perspective_shift.hpp"
+#include "stereo/coarse/scanline.hpp"
 #include "stereo/coarse/texture_uncertainty.hpp"
 #include "stereo/coarse/tile_ranges.hpp"
 #include "stereo/cpu/padded_rows.hpp"
@@ -34,13 +36,15 @@ class CoarseSearch {
   struct Worker {
     cpu::TileCosts costs;
     TextureUncertainty texture;
-    cpu::PaddedRows<float> row, scratch;
-    std::vector<float> centre, weight;  ///< of the road, per column
-    std::vector<float> nearest;         ///< disparity that the target view sees, per column
+    cpu::PaddedRows<float> costs_of_row, scratch;      ///< two rows each
+    std::array<std::vector<float>, 2> centre, weight;  ///< of the road, per column
+    std::vector<float> nearest;                        ///< disparity that the target view sees, per column
   };
   void downsample_pair(const MatchInput& input, int factor);
   void match_rows(const MatchInput& coarse, int first, int last, const PerspectiveShift& shift, Worker& worker);
-  void finish_row(const MatchInput& coarse, int v, const PerspectiveShift& shift, Worker& worker);
+  void weigh_road(const ScanlineCosts& row, int v, const PerspectiveShift& shift,
+                  const std::vector<float>& texture_uncertainty, std::vector<float>& centre,
+                  std::vector<float>& weight) const;
   void correct_rows(int first, int last, Worker& worker);
 
   CoarseSearchOptions options_;

@@ -79,28 +79,28 @@ HWY_INLINE Float transition_cost(const PathEnd& end, int d, Float step, Float ju
   return hn::Min(hn::Min(stay, hn::Add(change, step)), jump);
 }
 
-/// One step from the left and one from the right in each turn: two chains that hide each other's latency.
-HWY_INLINE void aggregate_scanlines(const ScanlineCosts& row, const ScanlinePenalties& penalties,
-                                    const PathMemory& memory) {
-  const Floats df;
-  const int lanes = static_cast<int>(hn::Lanes(df));
-  const Float step = hn::Set(df, penalties.step), jump = hn::Set(df, penalties.jump);
-  const int last = row.columns - 1;
-  PathEnd forward{memory.forward, hn::Zero(df)}, backward{memory.last_totals[0], hn::Zero(df)};
-  std::copy_n(row.costs, row.pitch, memory.forward);
-  std::copy_n(row.costs + last * row.pitch, row.pitch, memory.last_totals[0]);
-  std::fill_n(memory.backward + last * memory.pitch, row.pitch, 0.0f);
-  forward.cheapest = hn::Set(df, *std::min_element(memory.forward, memory.forward + row.disparities));
-  backward.cheapest = hn::Set(df, *std::min_element(memory.last_totals[0], memory.last_totals[0] + row.disparities));
-  for (int u = 1; u < row.columns; ++u) {
-    const int w = last - u;
-    const float *cost_forward = row.costs + u * row.pitch, *cost_backward = row.costs + w * row.pitch;
-    float *to_forward = memory.forward + u * memory.pitch, *to_backward = memory.last_totals[u % 2];
-    float* path_backward = memory.backward + w * memory.pitch;
+/// The two paths of a row: from the left to column u, and from the right to column columns − 1 − u.
+class RowPaths {
+ public:
+  RowPaths(const ScanlineCosts& row, const PathMemory& memory) : row_(row), memory_(memory) {
+    const int last = row.columns - 1;
+    std::copy_n(row.costs, row.pitch, memory.forward);
+    std::copy_n(row.costs + last * row.pitch, row.pitch, memory.last_totals[0]);
+    std::fill_n(memory.backward + last * memory.pitch, row.pitch, 0.0f);
+    forward_ = start(memory.forward);
+    backward_ = start(memory.last_totals[0]);
+  }
+
+  HWY_INLINE void step(int u, Float step, Float jump) {
+    const Floats df;
+    const int w = row_.columns - 1 - u;
+    const float *cost_forward = row_.costs + u * row_.pitch, *cost_backward = row_.costs + w * row_.pitch;
+    float *to_forward = memory_.forward + u * memory_.pitch, *to_backward = memory_.last_totals[u % 2];
+    float* path_backward = memory_.backward + w * memory_.pitch;
     Float min_forward = hn::Set(df, infinite_cost), min_backward = min_forward;
-    for (int d = 0; d < row.disparities; d += lanes) {
-      const Float total = hn::Add(hn::Load(df, cost_forward + d), transition_cost(forward, d, step, jump));
-      const Float path_cost = transition_cost(backward, d, step, jump);
+    for (int d = 0; d < row_.disparities; d += static_cast<int>(hn::Lanes(df))) {
+      const Float total = hn::Add(hn::Load(df, cost_forward + d), transition_cost(forward_, d, step, jump));
+      const Float path_cost = transition_cost(backward_, d, step, jump);
       const Float total_backward = hn::Add(hn::Load(df, cost_backward + d), path_cost);
       hn::Store(total, df, to_forward + d);
       hn::Store(path_cost, df, path_backward + d);
@@ -108,10 +108,19 @@ HWY_INLINE void aggregate_scanlines(const ScanlineCosts& row, const ScanlinePena
       min_forward = hn::Min(min_forward, total);
       min_backward = hn::Min(min_backward, total_backward);
     }
-    forward = {to_forward, hn::MinOfLanes(df, min_forward)};
-    backward = {to_backward, hn::MinOfLanes(df, min_backward)};
+    forward_ = {to_forward, hn::MinOfLanes(df, min_forward)};
+    backward_ = {to_backward, hn::MinOfLanes(df, min_backward)};
   }
-}
+
+ private:
+  HWY_INLINE PathEnd start(const float* totals) const {
+    return {totals, hn::Set(Floats(), *std::min_element(totals, totals + row_.disparities))};
+  }
+
+  const ScanlineCosts& row_;
+  const PathMemory& memory_;
+  PathEnd forward_, backward_;
+};
 
 /// Returns the smallest of the first `count` totals of a column, with its fraction. `totals` is scratch memory.
 HWY_INLINE float take_winner(const float* forward, const float* backward, int count, float* totals) {
@@ -139,11 +148,7 @@ HWY_INLINE float take_winner(const float* forward, const float* backward, int co
   return winner_with_fraction(winner, count, before, totals[winner], after);
 }
 
-void optimise_scanline(const ScanlineCosts& row, const ScanlinePrior& prior, const ScanlinePenalties& penalties,
-                       float uncorrelated_cost, float* scratch, float* disparity) {
-  complete_costs(row, prior, uncorrelated_cost);
-  const PathMemory memory(row.columns, row.pitch, scratch);
-  aggregate_scanlines(row, penalties, memory);
+HWY_INLINE void take_winners(const ScanlineCosts& row, const PathMemory& memory, float* disparity) {
   for (int u = 0; u < row.columns; ++u) {
     const int count = std::min(row.disparities, u - row.first_seen + 1);
     disparity[u] = count > 0 ? take_winner(memory.forward + u * memory.pitch, memory.backward + u * memory.pitch, count,
@@ -152,13 +157,38 @@ void optimise_scanline(const ScanlineCosts& row, const ScanlinePrior& prior, con
   }
 }
 
+PathMemory memory_of(const Scanline& row) {
+  return {row.costs.columns, row.costs.pitch, row.scratch};
+}
+
+void optimise_scanlines(const Scanline* rows, int count, const ScanlinePenalties& penalties, float uncorrelated_cost) {
+  const Floats df;
+  const Float step = hn::Set(df, penalties.step), jump = hn::Set(df, penalties.jump);
+  for (int k = 0; k < count; ++k) complete_costs(rows[k].costs, rows[k].prior, uncorrelated_cost);
+  const int columns = rows[0].costs.columns;
+  const PathMemory first_memory = memory_of(rows[0]), second_memory = memory_of(rows[count - 1]);
+  RowPaths first(rows[0].costs, first_memory);
+  // A step of every path in each turn: chains that hide each other's latency.
+  if (count == 1) {
+    for (int u = 1; u < columns; ++u) first.step(u, step, jump);
+  } else {
+    RowPaths second(rows[1].costs, second_memory);
+    for (int u = 1; u < columns; ++u) {
+      first.step(u, step, jump);
+      second.step(u, step, jump);
+    }
+  }
+  take_winners(rows[0].costs, first_memory, rows[0].disparity);
+  if (count > 1) take_winners(rows[1].costs, second_memory, rows[1].disparity);
+}
+
 }  // namespace roadstereo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace roadstereo {
 
-HWY_EXPORT(optimise_scanline);
+HWY_EXPORT(optimise_scanlines);
 
 std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch) {
   return static_cast<std::size_t>((2 * columns + 2) * (pitch + scanline_guard) + scanline_guard);
@@ -175,9 +205,8 @@ void guard_scanline_scratch(int columns, std::ptrdiff_t pitch, int disparities, 
   std::fill_n(memory.backward - scanline_guard, scanline_guard, infinite_cost);
 }
 
-void optimise_scanline(const ScanlineCosts& row, const ScanlinePrior& prior, const ScanlinePenalties& penalties,
-                       float uncorrelated_cost, float* scratch, float* disparity) {
-  HWY_DYNAMIC_DISPATCH(optimise_scanline)(row, prior, penalties, uncorrelated_cost, scratch, disparity);
+void optimise_scanlines(const Scanline* rows, int count, const ScanlinePenalties& penalties, float uncorrelated_cost) {
+  HWY_DYNAMIC_DISPATCH(optimise_scanlines)(rows, count, penalties, uncorrelated_cost);
 }
 
 }  // namespace roadstereo

@@ -33,16 +33,24 @@ struct ScanlinePenalties {
 /// Guard elements of infinite cost before and behind the disparities of a column.
 inline constexpr std::ptrdiff_t scanline_guard = 16;
 
-/// Returns the elements of scratch memory, aligned for vectors, that optimise_scanline needs.
+/// Returns the elements of scratch memory, aligned for vectors, that a row needs.
 std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch);
 
-/// Writes the guards in scratch memory, which optimise_scanline leaves as they are: once for all rows of this size.
+/// Writes the guards in scratch memory, which optimise_scanlines leaves as they are: once for all rows of this size.
 void guard_scanline_scratch(int columns, std::ptrdiff_t pitch, int disparities, float* scratch);
 
-/// Writes for every column the disparity with the smallest total cost of all paths along the row through it, with the
-/// fraction of eq. (13) on the total costs; NaN where the column has no counterpart. Disparities without a counterpart
-/// cost `uncorrelated_cost` and never win. `scratch` has its guards.
-void optimise_scanline(const ScanlineCosts& row, const ScanlinePrior& prior, const ScanlinePenalties& penalties,
-                       float uncorrelated_cost, float* scratch, float* disparity);
+/// One row of pixels.
+struct Scanline {
+  ScanlineCosts costs;
+  ScanlinePrior prior;
+  float* scratch;    ///< with its guards
+  float* disparity;  ///< result
+};
+
+/// Writes for every column of one or two rows of the same size the disparity with the smallest total cost of all paths
+/// along its row through it, with the fraction of eq. (13) on the total costs; NaN where the column has no counterpart.
+/// Disparities without a counterpart cost `uncorrelated_cost` and never win. Two rows take less time than one after the
+/// other: their paths hide each other's latency.
+void optimise_scanlines(const Scanline* rows, int count, const ScanlinePenalties& penalties, float uncorrelated_cost);
 
 }  // namespace roadstereo
