@@ -15,7 +15,9 @@ namespace roadstereo {
 namespace {
 
 constexpr int rows_per_band = 64;
-constexpr std::size_t chains = 8;  ///< of sums along a row, one a column in turn, so that compilers use vectors
+// Chains of minima and of sums along a row, one a column in turn, so that compilers use vectors; the sums of two
+// spreads fit into registers.
+constexpr std::size_t minima = 8, sums = 4;
 
 void subtract_road(ImageView<const float> disparity, const DisparityPlane& plane, int v, float* out) {
   const float* in = disparity.row(v);
@@ -24,7 +26,7 @@ void subtract_road(ImageView<const float> disparity, const DisparityPlane& plane
 }
 
 /// Calls `visit(u, chain)` for the columns of a row.
-template <class Visit>
+template <std::size_t chains, class Visit>
 void for_each_column(int width, Visit&& visit) {
   int u = 0;
   for (; u + static_cast<int>(chains) <= width; u += static_cast<int>(chains)) {
@@ -35,9 +37,9 @@ void for_each_column(int width, Visit&& visit) {
 
 /// The smallest value of a row; infinite where there is none.
 float lowest_of_row(const float* row, int width) {
-  std::array<float, chains> lowest{};
+  std::array<float, minima> lowest{};
   lowest.fill(std::numeric_limits<float>::infinity());
-  for_each_column(width, [&](int u, std::size_t k) { lowest[k] = row[u] < lowest[k] ? row[u] : lowest[k]; });
+  for_each_column<minima>(width, [&](int u, std::size_t k) { lowest[k] = row[u] < lowest[k] ? row[u] : lowest[k]; });
   return *std::min_element(lowest.begin(), lowest.end());
 }
 
@@ -48,7 +50,7 @@ struct RowSpread {
 
 RowSpread spread_of_row(const float* row, int width, double delta_t, double limit) {
   struct Chains {
-    std::array<double, chains> n{}, sum{}, squares{};
+    std::array<double, sums> n{}, sum{}, squares{};
 
     void add(std::size_t k, bool counts, double residual) {
       const double counted = counts ? residual : 0;
@@ -57,13 +59,13 @@ RowSpread spread_of_row(const float* row, int width, double delta_t, double limi
       squares[k] += counted * counted;
     }
   } all, road;
-  for_each_column(width, [&](int u, std::size_t k) {
+  for_each_column<sums>(width, [&](int u, std::size_t k) {
     const double residual = row[u] - delta_t, magnitude = std::abs(residual);
     all.add(k, magnitude <= std::numeric_limits<double>::infinity(), residual);  // false for NaN
     road.add(k, magnitude <= limit, residual);
   });
   RowSpread spread;
-  for (std::size_t k = 0; k < chains; ++k) {
+  for (std::size_t k = 0; k < sums; ++k) {
     spread.all.add(Spread{all.n[k], all.sum[k], all.squares[k]});
     spread.road.add(Spread{road.n[k], road.sum[k], road.squares[k]});
   }
