@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/grey_weights.hpp"
 #include "core/parallel.hpp"
 #include "pipeline/pair_checks.hpp"
 #include "road/lucas_kanade/alignment_maps.hpp"
@@ -29,12 +30,14 @@ bool has_contrast(const GreyImage& image) {
 }
 
 double valid_share(ImageView<const float> map) {
-  std::size_t valid = 0;
+  double valid = 0;
   for (int v = 0; v < map.height(); ++v) {
     const float* row = map.row(v);
-    for (int u = 0; u < map.width(); ++u) valid += std::isnan(row[u]) ? 0U : 1U;
+    int of_row = 0;
+    for (int u = 0; u < map.width(); ++u) of_row += std::isnan(row[u]) ? 0 : 1;
+    valid += of_row;
   }
-  return static_cast<double>(valid) / static_cast<double>(map.pixels());
+  return valid / static_cast<double>(map.pixels());
 }
 
 class HostStages final : public FrameStages {
@@ -52,11 +55,13 @@ class HostStages final : public FrameStages {
   }
 
   GreyPair convert_to_grey(const FrameView& left, const FrameView& right) override {
-    to_grey(left, options_.white_level, left_);
-    to_grey(right, options_.white_level, right_);
+    for (const FrameView* frame : {&left, &right}) grey_weights(*frame, options_.white_level);  // left is named first
     PairContents contents;
-    contents.left = {has_contrast(left_), left_(0, 0)};
-    contents.right = {has_contrast(right_), right_(0, 0)};
+    parallel_for(2, threads_, [&](int side, int) {
+      GreyImage& grey = side == 0 ? left_ : right_;
+      to_grey(side == 0 ? left : right, options_.white_level, grey);
+      (side == 0 ? contents.left : contents.right) = {has_contrast(grey), grey(0, 0)};
+    });
     contents.equal = left_ == right_;
     require_pair(contents);
     return {left_, right_};

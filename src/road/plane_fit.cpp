@@ -9,21 +9,6 @@
 
 namespace roadstereo {
 
-void PlaneSums::add(const DisparityPoint& point, double weight) {
-  const double u = point.u - origin_u_;
-  const double v = point.v - origin_v_;
-  s_.n += weight;
-  s_.u += weight * u;
-  s_.v += weight * v;
-  s_.d += weight * point.d;
-  s_.uu += weight * u * u;
-  s_.uv += weight * u * v;
-  s_.vv += weight * v * v;
-  s_.ud += weight * u * point.d;
-  s_.vd += weight * v * point.d;
-  s_.dd += weight * point.d * point.d;
-}
-
 void PlaneSums::add(const PlaneSums& other) {
   s_.n += other.s_.n;
   s_.u += other.s_.u;

@@ -26,7 +26,19 @@ class PlaneSums {
   explicit PlaneSums(double origin_u = 0, double origin_v = 0, const RawSums& sums = {})
       : origin_u_(origin_u), origin_v_(origin_v), s_(sums) {}
 
-  void add(const DisparityPoint& point, double weight = 1);
+  void add(const DisparityPoint& point, double weight = 1) {
+    const double u = point.u - origin_u_, v = point.v - origin_v_;
+    s_.n += weight;
+    s_.u += weight * u;
+    s_.v += weight * v;
+    s_.d += weight * point.d;
+    s_.uu += weight * u * u;
+    s_.uv += weight * u * v;
+    s_.vv += weight * v * v;
+    s_.ud += weight * u * point.d;
+    s_.vd += weight * v * point.d;
+    s_.dd += weight * point.d * point.d;
+  }
   void add(const PlaneSums& other);
 
   DeviationSums deviations() const { return deviations_of(s_, origin_u_, origin_v_); }
