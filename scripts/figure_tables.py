@@ -346,6 +346,24 @@ def benchmarks(results):
                     table) + ["", f"Measured on {', '.join(dates)}, {', '.join(sorted(machines))}."]
 
 
+def raw_pairs(results):
+    """Times of the pipeline beside OpenCV's matchers on the pair without the perspective transformation."""
+    table, machines, dates = [], set(), set()
+    for name, result in results.items():
+        if not name.startswith("raw "):
+            continue
+        machines.add(f"{result['threads']} threads of {result['cpu']}")
+        dates.add(results["dates"][name])
+        peers = {peer["name"]: peer for peer in result["peers"]}
+        table.append([name.removeprefix("raw "), f"{result['width']}×{result['height']}", str(result["disparities"]),
+                      number(result["total"]["median_ms"], 1), str(result["raw_disparities"]),
+                      *(f"{number(peers[peer]['median_ms'], 1)} ({number(peers[peer]['ratio'], 2)})" for peer in OPENCV)])
+    if not table:
+        return None
+    return markdown(["pair", "pixels", "D", "total ms", "D of OpenCV", *(f"{peer} ms (ratio)" for peer in OPENCV)], table) + [
+        "", f"Measured on {', '.join(sorted(dates))}, {', '.join(sorted(machines))}."]
+
+
 def span(values, decimals):
     return f"{number(min(values), decimals)}–{number(max(values), decimals)}"
 

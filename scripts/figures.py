@@ -63,8 +63,14 @@ EXPERIMENTS |= {
     f"benchmark {preset} {size}": "benchmark --preset {} --size {} --disparities {}".format(preset, *size.split())
     for preset in PRESETS for size in SIZES
 }
+EXPERIMENTS |= {
+    "raw 000003": "benchmark {data}/kitti2015/image_2/000003_10.png {data}/kitti2015/image_3/000003_10.png --disparities 0"
+                  " --raw-disparities 128",
+    "raw p1_01": "benchmark {data}/potholes/left/p1_01.png {data}/potholes/right/p1_01.png --calibration"
+                 " {data}/potholes/calibration_p12.yaml --disparities 0 --raw-disparities 224",
+}
 # Of these a figure is not compared: times, and variants that are worse on purpose.
-UNCHECKED = ("ablation", "benchmark", "lambda")
+UNCHECKED = ("ablation", "benchmark", "lambda", "raw")
 # What the tables do not need: values of single frames and trials.
 LEFT_OUT = {"trials", "frames", "bins", "damage_bins", "found_regions", "times", "common", "common_damage", "best_visible",
             "best_damage", "version", "peak_memory_bytes"}
@@ -95,7 +101,7 @@ def run(program, data, name):
     """The JSON of one experiment; None where its data are missing."""
     arguments = EXPERIMENTS[name].format(data=data).split()
     folders = [pathlib.Path(argument) for argument in arguments if argument.startswith(str(data))]
-    if not all(folder.is_dir() for folder in folders):
+    if not all(folder.exists() for folder in folders):
         print(f"{name}: left out, there is no {folders[0]}")
         return None
     print(f"{name} …", flush=True)

@@ -32,6 +32,7 @@ struct BenchmarkArguments {
   int threads = 0;
   int runs = 30;
   bool no_peers = false;
+  int raw_disparities = 0;
   std::string json;
 };
 
@@ -94,9 +95,13 @@ BenchmarkReport measure(const BenchmarkArguments& arguments) {
 
   std::vector<io::PeerMatcher> baselines;
   if (!arguments.no_peers) {
-    const PeerPair grey = peer_pair(pair, result.shift);
+    report.raw_disparities = arguments.raw_disparities;
+    const bool raw = arguments.raw_disparities > 0;
+    PerspectiveShift none;
+    none.enabled = false;
+    const PeerPair grey = peer_pair(pair, raw ? none : result.shift);
     for (const std::string& name : io::peer_names()) {
-      baselines.emplace_back(name, report.disparities);
+      baselines.emplace_back(name, raw ? arguments.raw_disparities : report.disparities);
       baselines.back().set_pair(grey.reference, grey.target);
       baselines.back().match();
       report.baselines.push_back({name, {}});
@@ -141,6 +146,10 @@ void benchmark(const BenchmarkArguments& arguments) {
   if (arguments.runs < 1 || arguments.runs > 100000) {
     fail("--runs is ", arguments.runs, "; it must be between 1 and 100000");
   }
+  constexpr int most_disparities = 1024;
+  if (arguments.raw_disparities < 0 || arguments.raw_disparities > most_disparities) {
+    fail("--raw-disparities is ", arguments.raw_disparities, "; it must be between 0 and ", most_disparities);
+  }
   const BenchmarkReport report = measure(arguments);
   if (!arguments.json.empty()) write_json(arguments.json, report_json(report));
   fmt::print("{}", report_text(report));
@@ -149,12 +158,13 @@ void benchmark(const BenchmarkArguments& arguments) {
 constexpr const char* benchmark_footer =
     R"(Measures the time of every stage of the pipeline on frames whose road model is known from the previous frame,
 alternating with OpenCV's matchers on the same frames and disparities. Without LEFT and RIGHT a synthetic road is used.
+With --raw-disparities OpenCV's matchers get the pair without the perspective transformation, and the disparities that it needs.
 With the engine cuda it adds the kernels of a frame, with times and occupancy, launches, waits and bytes copied.
 
 Examples:
   roadstereo benchmark
   roadstereo benchmark --size 1242x375 --disparities 64 --preset fast --json result.json
-  roadstereo benchmark left.png right.png --calibration calibration.yaml)";
+  roadstereo benchmark left.png right.png --calibration calibration.yaml --disparities 0 --raw-disparities 128)";
 
 }  // namespace
 
@@ -183,6 +193,10 @@ void add_benchmark(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--runs", arguments->runs, "Number of runs")->type_name("N")->capture_default_str();
   command->add_flag("--no-peers", arguments->no_peers, "Skip OpenCV's matchers");
+  command
+      ->add_option("--raw-disparities", arguments->raw_disparities,
+                   "OpenCV's matchers search so many disparities of the pair as it is; 0: the transformed pair")
+      ->type_name("D");
   command->add_option("--json", arguments->json, "Also write the results to this JSON file")->type_name("FILE");
   command->callback([arguments] { benchmark(*arguments); });
 }

@@ -93,8 +93,11 @@ std::string report_text(const BenchmarkReport& report) {
   for (const Timing& stage : report.stages) text += timing_line(stage) + "\n";
   text += timing_line(report.total) + fmt::format("   {:.0f} Mde/s\n", report.mde_per_s());
   text += timing_line(report.first) + "   road model estimated\n";
-  if (!report.baselines.empty())
-    text += fmt::format("\n  {:<14} {:>9} {:>9} {:>9}   total / OpenCV\n", "OpenCV", "median", "min", "max");
+  if (!report.baselines.empty()) {
+    const std::string heading =
+        report.raw_disparities > 0 ? fmt::format("OpenCV, D {}", report.raw_disparities) : "OpenCV";
+    text += fmt::format("\n  {:<14} {:>9} {:>9} {:>9}   total / OpenCV\n", heading, "median", "min", "max");
+  }
   for (const Timing& peer : report.baselines) {
     text += timing_line(peer) + fmt::format("   {:.2f}\n", report.total.median() / peer.median());
   }
@@ -124,6 +127,7 @@ std::string report_json(const BenchmarkReport& report) {
   document["total"] = timing_json(report.total);
   document["first_frame"] = timing_json(report.first);
   document["mde_per_s"] = report.mde_per_s();
+  if (report.raw_disparities > 0) document["raw_disparities"] = report.raw_disparities;
   document["peers"] = nlohmann::ordered_json::array();
   for (const Timing& peer : report.baselines) {
     nlohmann::ordered_json entry = timing_json(peer);

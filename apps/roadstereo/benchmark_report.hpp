@@ -29,6 +29,7 @@ struct BenchmarkReport {
   Timing total{"total", {}};
   Timing first{"first frame", {}};  ///< road model estimated
   std::vector<Timing> baselines;
+  int raw_disparities = 0;  ///< that OpenCV's matchers search in the pair as it is; 0: in the transformed pair
   std::optional<double> allocations;         ///< per frame
   std::optional<DeviceProfile> device;       ///< of a frame of its own, with the engine cuda
   std::optional<std::size_t> scratch_bytes;  ///< maximum in use, minus the use before the pipeline was created

@@ -36,6 +36,19 @@ TEST_F(BenchmarkCommand, TakesPairOfFiles) {
   EXPECT_EQ(outcome.out.find("SGBM"), std::string::npos);
 }
 
+TEST_F(BenchmarkCommand, ComparesWithOpenCvOnPairAsItIs) {
+  make_road();
+  const Outcome outcome =
+      run("benchmark road/left.png road/right.png --calibration road/calibration.yaml --disparities 0 "
+          "--raw-disparities 64 --runs 1 --json figures.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("OpenCV, D 64"), std::string::npos) << outcome.out;
+  const auto figures = nlohmann::json::parse(read_text(folder_ / "figures.json"));
+  EXPECT_EQ(figures["raw_disparities"], 64);
+  EXPECT_LT(figures["disparities"], 64);
+  EXPECT_EQ(figures["peers"].size(), 4U);
+}
+
 /// What the device was asked for stands in the text and in JSON.
 TEST_F(BenchmarkCommand, DescribesKernelsOfDevice) {
   const auto& all = engines();
@@ -69,6 +82,7 @@ TEST_F(BenchmarkCommand, RejectsBadInput) {
   expect_complaint(run("benchmark --runs 0"), 2, "--runs");
   expect_complaint(run("benchmark left.png"), 2, "LEFT and RIGHT");
   expect_complaint(run("benchmark --preset slow"), 2, "slow");
+  expect_complaint(run("benchmark --raw-disparities -1"), 2, "--raw-disparities is -1");
 }
 
 }  // namespace
