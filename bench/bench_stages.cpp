@@ -57,10 +57,15 @@ void report(benchmark::State& state, const Frame& frame) {
                          benchmark::Counter::kIsIterationInvariantRate);
 }
 
-/// Runs `stage(frame)` on a frame of the size and disparities in the benchmark's arguments.
+/// A frame of the size and disparities in the benchmark's arguments.
+Frame make_frame(const benchmark::State& state) {
+  return {static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), static_cast<int>(state.range(2))};
+}
+
+/// Runs `stage(frame)`.
 template <class Stage>
 void run(benchmark::State& state, const Stage& stage) {
-  Frame frame(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), static_cast<int>(state.range(2)));
+  Frame frame = make_frame(state);
   for (auto _ : state) stage(frame);
   report(state, frame);
 }
@@ -70,6 +75,17 @@ void match(benchmark::State& state, const std::string& preset_name, int threads)
   const auto engine = make_engine("cpu", threads);
   const MatcherOptions options = preset(preset_name).matcher;
   run(state, [&](Frame& frame) { engine->match(frame.input(), options, frame.maps); });
+}
+
+/// Damage of what the pipeline makes of the frame, with the memory of an earlier result.
+void damage(benchmark::State& state) {
+  Frame frame = make_frame(state);
+  PipelineOptions options = preset("default");
+  options.perspective.disparities = frame.shift.disparities;
+  Pipeline pipeline(options, frame.pair.calibration);
+  const FrameResult& result = pipeline.process(frame.pair.left.view(), frame.pair.right.view());
+  for (auto _ : state) find_damage(result, frame.pair.calibration, options.damage, 1, frame.damage);
+  report(state, frame);
 }
 
 template <class Body>
@@ -96,16 +112,8 @@ void register_all() {
   add_stage("roll", [](Frame& f) { estimate_roll(f.disparity, std::nullopt, f.road.model, 0, {}); });
   add_stage("transform_disparity",
             [](Frame& f) { transform_disparity(f.disparity, f.geometry, 0, {}, 0, f.transformed); });
-  add_stage("damage", [](Frame& f) {
-    DamageInput input;
-    input.transformed = f.transformed;
-    input.disparity = f.disparity;
-    input.grey = f.left;
-    input.right = f.right;
-    input.plane = f.geometry.plane;
-    input.calibration = f.pair.calibration;
-    find_damage(input, {}, 1, f.damage);
-  });
+  auto* damages = add("stage/damage", damage);
+  for (const auto& size : sizes) damages->Args(size);
   auto* coarse = add("stage/coarse_search", [](benchmark::State& state) {
     CoarseSearch search({}, 0);
     run(state, [&](Frame& frame) { search.find(frame.input(), frame.shift); });

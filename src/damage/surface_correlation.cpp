@@ -34,6 +34,55 @@ float correlation(const Block& one, const Block& other) {
                        : std::numeric_limits<float>::quiet_NaN();
 }
 
+/// A row of the right image, but for its misalignment.
+class RightRow {
+ public:
+  RightRow(const DamageInput& input, int v) : image_(input.right), misalignment_(input.misalignment), v_(v) {
+    if (misalignment_.turn_rad == 0) place_ = place_at(0);
+  }
+
+  /// Column x; NaN outside.
+  float at(float x) const {
+    if (misalignment_.turn_rad == 0) return sample(place_, x);
+    return sample(place_at(x), static_cast<float>(double{x} + misalignment_.columns_at(v_)));
+  }
+
+ private:
+  /// Between which rows it lies, and where.
+  struct Place {
+    int first = 0;
+    bool is_whole = true;
+    CubicWeights down{};
+  };
+
+  Place place_at(float x) const {
+    const double row = v_ + misalignment_.rows_at(double{x}, v_), whole = std::floor(row);
+    return {static_cast<int>(whole), row == whole, cubic_weights(static_cast<float>(row - whole))};
+  }
+
+  float sample(const Place& place, float u) const {
+    if (place.first < 1 || place.first + 2 >= image_.height() || !(u >= 1) ||
+        !(u < static_cast<float>(image_.width() - 2))) {
+      return std::numeric_limits<float>::quiet_NaN();
+    }
+    const int column = static_cast<int>(u);
+    const CubicWeights across = cubic_weights(u - static_cast<float>(column));
+    if (place.is_whole) return in_row(place.first, column, across);
+    return weighted(place.down, in_row(place.first - 1, column, across), in_row(place.first, column, across),
+                    in_row(place.first + 1, column, across), in_row(place.first + 2, column, across));
+  }
+
+  float in_row(int v, int column, const CubicWeights& weight) const {
+    const std::int16_t* const at = image_.row(v) + column;
+    return weighted(weight, at[-1], at[0], at[1], at[2]);
+  }
+
+  ImageView<const std::int16_t> image_;
+  const Misalignment& misalignment_;
+  int v_;
+  Place place_;
+};
+
 /// Compares two surfaces by blocks of both images.
 class SurfaceComparison {
  public:
@@ -47,18 +96,20 @@ class SurfaceComparison {
   /// from their correlations, truncated and scaled to [−1, 1]; 0 if either is unknown.
   float vote(int u, int v, float surface) const {
     constexpr float max_log_ratio = 2;  // an object that one camera alone sees counts no more than a block of the road
-    Block left, measured, road;
-    std::size_t k = 0;
     if (u < block_radius || v < block_radius || u + block_radius >= input_.grey.width() ||
         v + block_radius >= input_.grey.height()) {
       return 0;
     }
+    Block left, measured, road;
+    std::size_t k = 0;
     for (int y = v - block_radius; y <= v + block_radius; ++y) {
+      const RightRow row(input_, y);
       for (int x = u - block_radius; x <= u + block_radius; ++x, ++k) {
         const float at = static_cast<float>(x) - input_.disparity(x, y);
         left[k] = input_.grey(x, y);
-        measured[k] = right_at(at, y);
-        road[k] = right_at(at - (surface - input_.transformed(x, y)), y);
+        measured[k] = row.at(at);
+        road[k] = row.at(at - (surface - input_.transformed(x, y)));
+        if (std::isnan(measured[k] + road[k])) return 0;
       }
     }
     const float along_measured = correlation(left, measured), along_road = correlation(left, road);
@@ -71,29 +122,6 @@ class SurfaceComparison {
   static float log_likelihood(float correlation) {
     constexpr float min_noise_share = 1e-4F;
     return -0.5F * float{block_pixels} * std::log(std::max(1 - correlation * correlation, min_noise_share));
-  }
-
-  /// Right image at column x of row v, but for its misalignment; NaN outside.
-  float right_at(float x, int v) const {
-    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-    const Misalignment& by = input_.misalignment;
-    const double row = v + by.rows_at(double{x}, v);
-    const auto u = static_cast<float>(double{x} + by.columns_at(v));
-    const auto first = static_cast<int>(std::floor(row));
-    if (first < 1 || first + 2 >= input_.right.height() || !(u >= 1) ||
-        !(u < static_cast<float>(input_.right.width() - 2))) {
-      return nan;
-    }
-    const int column = static_cast<int>(u);
-    const CubicWeights across = cubic_weights(double{u} - column);
-    if (row == first) return in_row(first, column, across);
-    return weighted(cubic_weights(row - first), in_row(first - 1, column, across), in_row(first, column, across),
-                    in_row(first + 1, column, across), in_row(first + 2, column, across));
-  }
-
-  float in_row(int v, int column, const CubicWeights& weight) const {
-    const std::int16_t* const at = input_.right.row(v) + column;
-    return weighted(weight, at[-1], at[0], at[1], at[2]);
   }
 
   const DamageInput& input_;
