@@ -33,21 +33,26 @@ std::optional<IrlsPlaneFit> fit_plane_irls(std::span<const DisparityPoint> point
                                            double start_scale_px, bool with_roll, int max_iterations) {
   if (points.size() < 3) return std::nullopt;
   IrlsPlaneFit fit{start, start_scale_px, 0, scratch_vector<double>(points.size())};
+  auto residuals = scratch_vector<double>(points.size());
+  const auto measure_from = [&](const DisparityPlane& plane) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      residuals[i] = points[i].d - plane.disparity(points[i].u, points[i].v);
+  };
   auto near = scratch_vector<double>();
   near.reserve(points.size());
+  measure_from(start);
   for (fit.iterations = 1; fit.iterations <= max_iterations; ++fit.iterations) {
     PlaneSums sums(points.front().u, points.front().v);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const DisparityPoint& p = points[i];
-      fit.weights[i] = tukey_weight((p.d - fit.plane.disparity(p.u, p.v)) / (tukey * fit.scale_px));
-      if (fit.weights[i] > 0) sums.add(p, fit.weights[i]);
+      fit.weights[i] = tukey_weight(residuals[i] / (tukey * fit.scale_px));
+      if (fit.weights[i] > 0) sums.add(points[i], fit.weights[i]);
     }
     const std::optional<DisparityPlane> plane = sums.plane(with_roll);
     if (!plane) return std::nullopt;
     // The scale comes from the residuals in the window that is left, so that it narrows onto the road.
+    measure_from(*plane);
     near.clear();
-    for (const DisparityPoint& p : points) {
-      const double residual = p.d - plane->disparity(p.u, p.v);
+    for (const double residual : residuals) {
       if (std::abs(residual) < tukey * fit.scale_px) near.push_back(residual);
     }
     const double scale = narrowed_scale(upper_median_magnitude(near), fit.scale_px);

@@ -1,10 +1,36 @@
 #include "stereo/coarse/texture_uncertainty.hpp"
 
+#include <algorithm>
+#include <numeric>
+
 namespace roadstereo {
+namespace {
+
+/// Sums of the numbers up to `radius` away, as far as there are any.
+void sum_windows(const std::vector<std::int32_t>& numbers, int radius, std::vector<std::int32_t>& sums) {
+  const auto count = static_cast<int>(numbers.size());
+  const std::int32_t* const at = numbers.data();
+  std::int32_t* const to = sums.data();
+  std::int32_t sum = std::accumulate(at, at + std::min(radius, count), 0);
+  int u = 0;
+  for (; u < std::min(radius, count); ++u) to[u] = sum += u + radius < count ? at[u + radius] : 0;
+  for (; u + radius < count; ++u) {
+    to[u] = sum += at[u + radius];
+    sum -= at[u - radius];
+  }
+  for (; u < count; ++u) {
+    to[u] = sum;
+    sum -= at[u - radius];
+  }
+}
+
+}  // namespace
 
 void TextureUncertainty::prepare(int columns) {
   squares_.reserve(static_cast<std::size_t>(columns));
   products_.reserve(static_cast<std::size_t>(columns));
+  window_squares_.reserve(static_cast<std::size_t>(columns));
+  window_products_.reserve(static_cast<std::size_t>(columns));
   texture_uncertainty_.reserve(static_cast<std::size_t>(columns));
 }
 
@@ -16,6 +42,8 @@ void TextureUncertainty::start(ImageView<const std::int16_t> image, int first_ro
   const auto columns = static_cast<std::size_t>(image.width());
   squares_.assign(columns, 0);
   products_.assign(columns, 0);
+  window_squares_.resize(columns);
+  window_products_.resize(columns);
   texture_uncertainty_.resize(columns);
   for (int v = first_row - options.block_radius; v < first_row + options.block_radius; ++v) add_row(v, 1);
 }
@@ -37,20 +65,11 @@ void TextureUncertainty::add_row(int v, int sign) {
 const std::vector<float>& TextureUncertainty::next() {
   const int radius = options_.block_radius;
   add_row(row_ + radius, 1);
-  const int width = image_.width();
   const UncertaintyParams terms = uncertainty_params(options_);
-  std::int32_t squares = 0, products = 0;
-  const auto slide = [&](int u, std::int32_t sign) {
-    if (u < 0 || u >= width) return;
-    const auto column = static_cast<std::size_t>(u);
-    squares += sign * squares_[column];
-    products += sign * products_[column];
-  };
-  for (int u = 0; u < radius; ++u) slide(u, 1);
-  for (int u = 0; u < width; ++u) {
-    slide(u + radius, 1);
-    texture_uncertainty_[static_cast<std::size_t>(u)] = texture_uncertainty(squares, products, terms);
-    slide(u - radius, -1);
+  sum_windows(squares_, radius, window_squares_);
+  sum_windows(products_, radius, window_products_);
+  for (std::size_t u = 0; u < texture_uncertainty_.size(); ++u) {
+    texture_uncertainty_[u] = texture_uncertainty(window_squares_[u], window_products_[u], terms);
   }
   add_row(row_ - radius, -1);
   ++row_;

@@ -52,6 +52,7 @@ class TextureUncertainty {
   TextureUncertaintyOptions options_;
   int row_ = 0;
   std::vector<std::int32_t> squares_, products_;  ///< per column: Σ gu², Σ gu gv over the rows of a block
+  std::vector<std::int32_t> window_squares_, window_products_;  ///< the same over the blocks
   std::vector<float> texture_uncertainty_;
 };
 
