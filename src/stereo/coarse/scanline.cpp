@@ -80,47 +80,46 @@ HWY_INLINE Float transition_cost(const PathEnd& end, int d, Float step, Float ju
 }
 
 /// The two paths of a row: from the left to column u, and from the right to column columns − 1 − u.
-class RowPaths {
- public:
-  RowPaths(const ScanlineCosts& row, const PathMemory& memory) : row_(row), memory_(memory) {
-    const int last = row.columns - 1;
-    std::copy_n(row.costs, row.pitch, memory.forward);
-    std::copy_n(row.costs + last * row.pitch, row.pitch, memory.last_totals[0]);
-    std::fill_n(memory.backward + last * memory.pitch, row.pitch, 0.0f);
-    forward_ = start(memory.forward);
-    backward_ = start(memory.last_totals[0]);
-  }
-
-  HWY_INLINE void step(int u, Float step, Float jump) {
-    const Floats df;
-    const int w = row_.columns - 1 - u;
-    const float *cost_forward = row_.costs + u * row_.pitch, *cost_backward = row_.costs + w * row_.pitch;
-    float *to_forward = memory_.forward + u * memory_.pitch, *to_backward = memory_.last_totals[u % 2];
-    float* path_backward = memory_.backward + w * memory_.pitch;
-    Float min_forward = hn::Set(df, infinite_cost), min_backward = min_forward;
-    for (int d = 0; d < row_.disparities; d += static_cast<int>(hn::Lanes(df))) {
-      const Float total = hn::Add(hn::Load(df, cost_forward + d), transition_cost(forward_, d, step, jump));
-      const Float path_cost = transition_cost(backward_, d, step, jump);
-      const Float total_backward = hn::Add(hn::Load(df, cost_backward + d), path_cost);
-      hn::Store(total, df, to_forward + d);
-      hn::Store(path_cost, df, path_backward + d);
-      hn::Store(total_backward, df, to_backward + d);
-      min_forward = hn::Min(min_forward, total);
-      min_backward = hn::Min(min_backward, total_backward);
-    }
-    forward_ = {to_forward, hn::MinOfLanes(df, min_forward)};
-    backward_ = {to_backward, hn::MinOfLanes(df, min_backward)};
-  }
-
- private:
-  HWY_INLINE PathEnd start(const float* totals) const {
-    return {totals, hn::Set(Floats(), *std::min_element(totals, totals + row_.disparities))};
-  }
-
-  const ScanlineCosts& row_;
-  const PathMemory& memory_;
-  PathEnd forward_, backward_;
+struct RowPaths {
+  const ScanlineCosts& row;
+  const PathMemory& memory;
+  PathEnd forward, backward;
 };
+
+HWY_INLINE PathEnd start_path(const float* totals, int disparities) {
+  return {totals, hn::Set(Floats(), *std::min_element(totals, totals + disparities))};
+}
+
+HWY_INLINE RowPaths start_paths(const ScanlineCosts& row, const PathMemory& memory) {
+  const int last = row.columns - 1;
+  std::copy_n(row.costs, row.pitch, memory.forward);
+  std::copy_n(row.costs + last * row.pitch, row.pitch, memory.last_totals[0]);
+  std::fill_n(memory.backward + last * memory.pitch, row.pitch, 0.0f);
+  return {row, memory, start_path(memory.forward, row.disparities), start_path(memory.last_totals[0], row.disparities)};
+}
+
+HWY_INLINE void extend_paths(int u, Float step, Float jump, RowPaths& paths) {
+  const Floats df;
+  const ScanlineCosts& row = paths.row;
+  const PathMemory& memory = paths.memory;
+  const int w = row.columns - 1 - u;
+  const float *cost_forward = row.costs + u * row.pitch, *cost_backward = row.costs + w * row.pitch;
+  float *to_forward = memory.forward + u * memory.pitch, *to_backward = memory.last_totals[u % 2];
+  float* path_backward = memory.backward + w * memory.pitch;
+  Float min_forward = hn::Set(df, infinite_cost), min_backward = min_forward;
+  for (int d = 0; d < row.disparities; d += static_cast<int>(hn::Lanes(df))) {
+    const Float total = hn::Add(hn::Load(df, cost_forward + d), transition_cost(paths.forward, d, step, jump));
+    const Float path_cost = transition_cost(paths.backward, d, step, jump);
+    const Float total_backward = hn::Add(hn::Load(df, cost_backward + d), path_cost);
+    hn::Store(total, df, to_forward + d);
+    hn::Store(path_cost, df, path_backward + d);
+    hn::Store(total_backward, df, to_backward + d);
+    min_forward = hn::Min(min_forward, total);
+    min_backward = hn::Min(min_backward, total_backward);
+  }
+  paths.forward = {to_forward, hn::MinOfLanes(df, min_forward)};
+  paths.backward = {to_backward, hn::MinOfLanes(df, min_backward)};
+}
 
 /// Returns the smallest of the first `count` totals of a column, with its fraction. `totals` is scratch memory.
 HWY_INLINE float take_winner(const float* forward, const float* backward, int count, float* totals) {
@@ -167,15 +166,15 @@ void optimise_scanlines(const Scanline* rows, int count, const ScanlinePenalties
   for (int k = 0; k < count; ++k) complete_costs(rows[k].costs, rows[k].prior, uncorrelated_cost);
   const int columns = rows[0].costs.columns;
   const PathMemory first_memory = memory_of(rows[0]), second_memory = memory_of(rows[count - 1]);
-  RowPaths first(rows[0].costs, first_memory);
+  RowPaths first = start_paths(rows[0].costs, first_memory);
   // A step of every path in each turn: chains that hide each other's latency.
   if (count == 1) {
-    for (int u = 1; u < columns; ++u) first.step(u, step, jump);
+    for (int u = 1; u < columns; ++u) extend_paths(u, step, jump, first);
   } else {
-    RowPaths second(rows[1].costs, second_memory);
+    RowPaths second = start_paths(rows[1].costs, second_memory);
     for (int u = 1; u < columns; ++u) {
-      first.step(u, step, jump);
-      second.step(u, step, jump);
+      extend_paths(u, step, jump, first);
+      extend_paths(u, step, jump, second);
     }
   }
   take_winners(rows[0].costs, first_memory, rows[0].disparity);
