@@ -64,6 +64,12 @@ std::size_t peak_memory_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * kilobyte;
 }
 
+/// OpenCV searches multiples of 16.
+int rounded_for_peers(int disparities) {
+  constexpr int grid = 16;
+  return (disparities + grid - 1) / grid * grid;
+}
+
 /// Runs the pipeline and OpenCV's matchers alternately for equal conditions; the first run of each is not counted.
 BenchmarkReport measure(const BenchmarkArguments& arguments) {
   const StereoPair pair = make_pair(arguments);
@@ -95,13 +101,18 @@ BenchmarkReport measure(const BenchmarkArguments& arguments) {
 
   std::vector<io::PeerMatcher> baselines;
   if (!arguments.no_peers) {
-    report.raw_disparities = arguments.raw_disparities;
     const bool raw = arguments.raw_disparities > 0;
+    const int peer_disparities = rounded_for_peers(raw ? arguments.raw_disparities : report.disparities);
+    if (peer_disparities >= report.width) {
+      fail("OpenCV's matchers cannot search ", peer_disparities, " disparities in ", report.width,
+           " columns; --no-peers leaves them out");
+    }
+    if (raw) report.raw_disparities = peer_disparities;
     PerspectiveShift none;
     none.enabled = false;
     const PeerPair grey = peer_pair(pair, raw ? none : result.shift);
     for (const std::string& name : io::peer_names()) {
-      baselines.emplace_back(name, raw ? arguments.raw_disparities : report.disparities);
+      baselines.emplace_back(name, peer_disparities);
       baselines.back().set_pair(grey.reference, grey.target);
       baselines.back().match();
       report.baselines.push_back({name, {}});
@@ -195,7 +206,8 @@ void add_benchmark(CLI::App& app) {
   command->add_flag("--no-peers", arguments->no_peers, "Skip OpenCV's matchers");
   command
       ->add_option("--raw-disparities", arguments->raw_disparities,
-                   "OpenCV's matchers search so many disparities of the pair as it is; 0: the transformed pair")
+                   "OpenCV's matchers search so many disparities of the pair as it is, a multiple of 16; 0: of the "
+                   "transformed pair")
       ->type_name("D");
   command->add_option("--json", arguments->json, "Also write the results to this JSON file")->type_name("FILE");
   command->callback([arguments] { benchmark(*arguments); });

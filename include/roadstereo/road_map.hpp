@@ -23,6 +23,9 @@ RigidTransform compose(const RigidTransform& second, const RigidTransform& first
 /// Returns the inverse.
 RigidTransform inverse(const RigidTransform& transform);
 
+/// Largest column or row of a cell, and least but for the sign: about 5000 km at 1 cm.
+inline constexpr int max_map_cell = 1 << 29;
+
 /// Rectangle of cells of a map. Cell (i, j) covers i … i + 1 times j … j + 1 cell sizes along x and y.
 struct MapBox {
   int i0 = 0, j0 = 0;  ///< first column and row
@@ -66,7 +69,7 @@ struct MapFrame {
   double white_level = 0;            ///< sample value of white, as in to_grey
   DisparityPlane road;               ///< plane of the road in ℓ
   StereoCalibration calibration;
-  RigidTransform camera_to_map{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  RigidTransform camera_to_map{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< rotation and translation; z up
 };
 
 /// What continues a map with the tiles in its folder.
@@ -86,8 +89,9 @@ struct SavedMap {
 /// converge and get no height. The result does not depend on the number of threads.
 class RoadMap {
  public:
-  /// Keeps its tiles in `folder`, which it creates, and removes. Throws Error for options out of range, and if the
-  /// folder cannot be written to.
+  /// Keeps its tiles in `folder`, which it creates, and removes them at the end. Tiles that an earlier map has left
+  /// there are removed at once. Throws Error for options out of range, if the folder holds anything else, and if it
+  /// cannot be written to.
   RoadMap(const std::filesystem::path& folder, const RoadMapOptions& options);
   /// Continues a map from `saved` and the tiles that it names. Throws Error if a tile is missing.
   RoadMap(const std::filesystem::path& folder, const RoadMapOptions& options, const SavedMap& saved);
@@ -96,7 +100,8 @@ class RoadMap {
   RoadMap& operator=(RoadMap&&) noexcept;
 
   /// Fuses a frame. Returns the number of cells that it measures. Throws Error for an image without a size in common
-  /// with the disparities, SystemError if a tile cannot be written.
+  /// with the disparities, for a transformation that is not rigid and for one that leads too far from the origin
+  /// (`max_map_cell`), SystemError if a tile cannot be written.
   std::size_t add(const MapFrame& frame);
 
   /// Writes all tiles to the folder and returns what continues the map. The files of the last save stay until `commit`,
@@ -108,8 +113,11 @@ class RoadMap {
 
   /// Returns the smallest box with all tiles; empty without any.
   MapBox bounds() const;
+  /// Returns the boxes of the tiles.
+  std::vector<MapBox> tile_boxes() const;
 
-  /// Reads cells; those outside the map are empty.
+  /// Reads cells; those outside the map are empty. Throws Error for a box of negative size, with more than 2²⁸ cells,
+  /// or beyond `max_map_cell`.
   MapRaster read(const MapBox& box) const;
 
   const RoadMapOptions& options() const;
@@ -125,7 +133,7 @@ class RoadMap {
 };
 
 /// Returns a cell size for a camera over a road, metres: the geometric mean of the ground sampling distances in the
-/// nearest quarter of the road in view, rounded down to 1, 2 or 5 times a power of ten.
+/// nearest quarter of the road in view, rounded down to 1, 2 or 5 times a power of ten; one that a map can have.
 double suggested_cell_m(const DisparityPlane& road, const StereoCalibration& calibration);
 
 /// Returns the transformation from a camera to axes on its road: origin at the foot of the camera, x to its right, y

@@ -499,7 +499,7 @@ class MapDamage:
 class RoadMap:
     def __init__(
         self,
-        folder: _Path,
+        folder: _Path | None = ...,
         *,
         cell_m: float = ...,
         max_above_m: float = ...,

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -31,9 +32,19 @@ namespace {
 namespace py = pybind11;
 using PoseArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-const StereoCalibration& map_calibration(const ProcessedFrame& frame) {
+StereoCalibration map_calibration(const ProcessedFrame& frame) {
   if (!frame.calibration) fail("the result has no calibration; a map needs one");
-  return *frame.calibration;
+  StereoCalibration calibration = *frame.calibration;
+  if (calibration.width == 0) calibration.width = frame.result.disparity.width();
+  if (calibration.height == 0) calibration.height = frame.result.disparity.height();
+  return calibration;
+}
+
+/// A new folder for tiles, where none is named.
+std::filesystem::path temporary_folder() {
+  std::string name = (std::filesystem::temp_directory_path() / "roadstereo_map_XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) fail(name, ": this folder cannot be made");
+  return name;
 }
 
 const DisparityPlane& road_plane(const ProcessedFrame& frame) {
@@ -90,14 +101,15 @@ class SharedRoadMap {
   RoadMap map_;
 };
 
-std::unique_ptr<SharedRoadMap> make_road_map(const std::filesystem::path& folder, double cell_m, double max_above_m,
-                                             double max_below_m, int threads) {
+std::unique_ptr<SharedRoadMap> make_road_map(const std::optional<std::filesystem::path>& folder, double cell_m,
+                                             double max_above_m, double max_below_m, int threads) {
   RoadMapOptions options;
   options.cell_m = cell_m;
   options.max_above_m = max_above_m;
   options.max_below_m = max_below_m;
   options.threads = threads;
-  return std::make_unique<SharedRoadMap>(folder, options);
+  options.validate();
+  return std::make_unique<SharedRoadMap>(folder ? *folder : temporary_folder(), options);
 }
 
 py::array_t<double> map_matrix(const RigidTransform& transform) {
@@ -151,13 +163,14 @@ Frames are fused cell by cell. Several threads may use one, one after the other.
 constexpr const char* map_init_doc =
     R"(Make a map, which keeps its tiles in a folder and removes them at the end.
 
+folder: new, or with nothing but tiles that another map has left, which are removed; by default a temporary one.
 cell_m: side of a cell, metres; suggested_cell_m names one. max_above_m, max_below_m: points higher above or deeper below
 the frame's road are left out. threads: 0 takes all cores.)";
 
 constexpr const char* map_add_doc =
     R"(Fuse a frame; return the number of cells that it measures.
 
-camera_to_map is (3, 4) or (4, 4), metres, z up. The picture of the map is that of left, an array as `process` takes it, or
+camera_to_map is (3, 4) or (4, 4), a rigid motion, metres, z up. The picture of the map is that of left, an array as `process` takes it, or
 without one the grey levels of the result. Raises Error for a result without a road or a calibration, or another size.)";
 
 }  // namespace
@@ -171,13 +184,15 @@ void bind_road_map(py::module_& module) {
              "From the map's x axis to its longer side, positive towards y, radians.");
   const RoadMapOptions usual;
   py::class_<SharedRoadMap>(module, "RoadMap", map_doc)
-      .def(py::init(&make_road_map), py::arg("folder"), py::kw_only(), py::arg("cell_m") = usual.cell_m,
+      .def(py::init(&make_road_map), py::arg("folder") = py::none(), py::kw_only(), py::arg("cell_m") = usual.cell_m,
            py::arg("max_above_m") = usual.max_above_m, py::arg("max_below_m") = usual.max_below_m,
            py::arg("threads") = usual.threads, map_init_doc)
       .def("add", &SharedRoadMap::add, py::arg("result"), py::arg("camera_to_map"), py::arg("left") = py::none(),
            py::arg("order") = "bgr", map_add_doc)
       .def("read", &SharedRoadMap::read, py::arg("box") = py::none(),
-           "Return the cells of a box [i0, j0, columns, rows], or all; those outside the map are empty.")
+           "Return the cells of a box [i0, j0, columns, rows], or of `bounds`; those outside the map are empty. It "
+           "takes\n"
+           "13 bytes a cell. Raises Error for a box of negative size or of more than 2²⁸ cells.")
       .def("find_damage", &find_damage_in, py::arg("options") = py::none(),
            "Find damage in the heights of the map. The options are those of `find_damage`.")
       .def_property_readonly("bounds", &SharedRoadMap::bounds, "Smallest box with all cells: [i0, j0, columns, rows].")

@@ -24,7 +24,7 @@ class RoadMap(unittest.TestCase):
         cls.poses = [to_map @ np.vstack([pose, [0, 0, 0, 1]]) for pose in poses]
 
     def new_map(self, **options):
-        return roadstereo.RoadMap(FOLDER / "tiles", **{"cell_m": 0.02, **options})
+        return roadstereo.RoadMap(**{"cell_m": 0.02, **options})
 
     def points_in_map(self):
         """The triangulated points of the first frame, (N, 3), and their grey levels."""
@@ -81,8 +81,31 @@ class RoadMap(unittest.TestCase):
         self.assertLess(np.hypot(*(np.array(nearest.at_m) - place)), 0.3)
         self.assertAlmostEqual(nearest.damage.metrics.max_depth_m.value, deepest.metrics.max_depth_m.value, delta=0.02)
 
+    def test_cell_is_suggested_without_size_of_calibration(self):
+        values = self.calibration
+        sizeless = roadstereo.Calibration(values.focal_px, values.cx_px, values.cy_px, values.baseline_m)
+        result = roadstereo.Pipeline("default", sizeless).process(self.pairs[0].left, self.pairs[0].right)
+        self.assertEqual(roadstereo.suggested_cell_m(result), roadstereo.suggested_cell_m(self.results[0]))
+
+    def test_folder_of_others_is_left_alone(self):
+        mine = FOLDER / "mine"
+        mine.mkdir()
+        (mine / "notes.txt").write_text("mine", encoding="utf-8")
+        with self.assertRaisesRegex(roadstereo.Error, "holds notes.txt"):
+            roadstereo.RoadMap(mine)
+        self.assertTrue((mine / "notes.txt").exists())
+        road = roadstereo.RoadMap(FOLDER / "named")
+        self.assertTrue((FOLDER / "named").is_dir())
+        del road
+        self.assertFalse((FOLDER / "named").exists())
+
     def test_refused(self):
         road = self.new_map()
+        with self.assertRaisesRegex(roadstereo.Error, "camera_to_map is no rigid motion"):
+            road.add(self.results[0], 1000 * self.poses[0][:3])
+        for box in ([0, 0, -1, 5], [0, 0, 100000, 100000]):
+            with self.assertRaisesRegex(roadstereo.Error, "a box has"):
+                road.read(box)
         with self.assertRaisesRegex(roadstereo.Error, r"camera_to_map has another shape than \(3, 4\) or \(4, 4\)"):
             road.add(self.results[0], np.eye(3))
         with self.assertRaisesRegex(roadstereo.Error, "cell_m is 0"):

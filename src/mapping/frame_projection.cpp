@@ -134,7 +134,10 @@ MapBox FrameProjection::footprint() const {
     }
   }
   if (!(x0 <= x1)) return {};
-  const auto cell = [&](double metres) { return static_cast<int>(std::floor(metres / options_.cell_m)); };
+  constexpr double outside = max_map_cell + 1;  // which a map refuses
+  const auto cell = [&](double metres) {
+    return static_cast<int>(std::clamp(std::floor(metres / options_.cell_m), -outside, outside));
+  };
   return {cell(x0), cell(y0), cell(x1) - cell(x0) + 1, cell(y1) - cell(y0) + 1};
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 
 #include "core/order_statistics.hpp"
 #include "roadstereo/error.hpp"
@@ -43,7 +44,8 @@ double median_sigma(const Image<float>& sigma) {
 
 /// Virtual rig: cell = Z/f, and `scale` pixels of disparity per metre of height, f·b/Z².
 StereoCalibration virtual_rig(int side, double cell_m, double scale) {
-  constexpr double max_baseline_m = 9, min_baseline_m = 0.01, max_focal_widths = 40, min_focal_widths = 0.5;
+  constexpr double most_m = 9, min_baseline_m = 0.01, max_focal_widths = 40, min_focal_widths = 0.5;
+  const double max_baseline_m = std::min(most_m, 0.9 * side * cell_m);  // the disparity offset stays below the width
   StereoCalibration rig;
   rig.width = rig.height = side;
   rig.cx_px = rig.cy_px = 0.5 * (side - 1);
@@ -141,6 +143,27 @@ void add_finding(MapDamage finding, std::vector<MapDamage>& findings) {
   findings.push_back(std::move(finding));
 }
 
+/// Windows of side × side cells, half of which overlap the next, that have tiles, row by row.
+std::vector<MapBox> windows_of(const RoadMap& map, int side) {
+  const MapBox bounds = map.bounds();
+  const int step = side / 2, i0 = bounds.i0 - side / 4, j0 = bounds.j0 - side / 4;
+  const auto first_with = [&](int at, int start) { return at < start + side ? 0 : (at - start - side) / step + 1; };
+  std::set<std::array<int, 2>> places;  // row and column of the window
+  for (const MapBox& tile : map.tile_boxes()) {
+    for (int row = first_with(tile.j0, j0); j0 + row * step < tile.j0 + tile.rows; ++row) {
+      for (int column = first_with(tile.i0, i0); i0 + column * step < tile.i0 + tile.columns; ++column) {
+        places.insert({row, column});
+      }
+    }
+  }
+  std::vector<MapBox> windows;
+  for (const auto& [row, column] : places) windows.push_back({i0 + column * step, j0 + row * step, side, side});
+  std::erase_if(windows, [&](const MapBox& box) {  // which the one before holds
+    return box.i0 >= bounds.i0 + bounds.columns - side / 4 || box.j0 >= bounds.j0 + bounds.rows - side / 4;
+  });
+  return windows;
+}
+
 }  // namespace
 
 std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& options) {
@@ -148,22 +171,18 @@ std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& 
   constexpr double min_side_m = 4;
   const double cell_m = map.options().cell_m;
   const int side = std::max(min_side, static_cast<int>(std::ceil(min_side_m / cell_m / 2)) * 2);
-  const MapBox bounds = map.bounds();
   std::vector<MapDamage> findings;
   WindowView view;
   DamageMap found;
-  for (int j = bounds.j0 - side / 4; j < bounds.j0 + bounds.rows - side / 4; j += side / 2) {
-    for (int i = bounds.i0 - side / 4; i < bounds.i0 + bounds.columns - side / 4; i += side / 2) {
-      const MapBox box{i, j, side, side};
-      if (!make_view(map, box, view)) continue;
-      try {
-        find_damage(view.input, options, map.options().threads, found);
-      } catch (const Error&) {  // too little of it lies on one surface
-        continue;
-      }
-      for (const Damage& damage : found.damages) {
-        if (damage.metrics) add_finding(map_damage(damage, found, box, cell_m), findings);
-      }
+  for (const MapBox& box : windows_of(map, side)) {
+    if (!make_view(map, box, view)) continue;
+    try {
+      find_damage(view.input, options, map.options().threads, found);
+    } catch (const Error&) {  // too little of it lies on one surface
+      continue;
+    }
+    for (const Damage& damage : found.damages) {
+      if (damage.metrics) add_finding(map_damage(damage, found, box, cell_m), findings);
     }
   }
   return findings;

@@ -29,6 +29,25 @@ struct TileRange {
         row1(floor_divide(box.j0 + box.rows - 1, side)) {}
 };
 
+constexpr double min_cell_m = 0.0005, max_cell_m = 10;
+
+/// Rows of a rotation, and a translation that is finite.
+void require_rigid(const RigidTransform& t) {
+  constexpr double tolerance = 1e-3;
+  const auto dot = [&](std::size_t a, std::size_t b) {
+    return t[4 * a] * t[4 * b] + t[4 * a + 1] * t[4 * b + 1] + t[4 * a + 2] * t[4 * b + 2];
+  };
+  const double determinant =
+      t[0] * (t[5] * t[10] - t[6] * t[9]) - t[1] * (t[4] * t[10] - t[6] * t[8]) + t[2] * (t[4] * t[9] - t[5] * t[8]);
+  double error = std::abs(determinant - 1);
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b <= a; ++b) error = std::max(error, std::abs(dot(a, b) - (a == b ? 1 : 0)));
+  }
+  if (error <= tolerance && std::isfinite(t[3] + t[7] + t[11])) return;
+  fail("camera_to_map is no rigid motion in finite metres: its rotation is off by ", error, "; at most ", tolerance,
+       " are allowed");
+}
+
 void require_frame(const MapFrame& frame) {
   const int width = frame.disparity.width(), height = frame.disparity.height();
   if (width < 2 || height < 2) fail("the disparity map has ", width, "×", height, " pixels; it must have at least 2×2");
@@ -41,6 +60,21 @@ void require_frame(const MapFrame& frame) {
          " like the disparity map");
   }
   frame.calibration.validate(width, height, "calibration");
+  require_rigid(frame.camera_to_map);
+}
+
+void require_box(const MapBox& box) {
+  constexpr std::int64_t max_cells = std::int64_t{1} << 28;
+  const auto is_inside = [](std::int64_t first, std::int64_t count) {
+    return first >= -max_map_cell && first + count <= max_map_cell;
+  };
+  if (box.columns >= 0 && box.rows >= 0 && is_inside(box.i0, box.columns) && is_inside(box.j0, box.rows) &&
+      std::int64_t{box.columns} * box.rows <= max_cells) {
+    return;
+  }
+  fail("a box has ", box.columns, "×", box.rows, " cells from (", box.i0, ", ", box.j0,
+       ") on; it must have none that is negative, at most ", max_cells, ", and lie between ", -max_map_cell, " and ",
+       max_map_cell);
 }
 
 std::uint8_t byte_of(float grey) {
@@ -50,7 +84,7 @@ std::uint8_t byte_of(float grey) {
 }  // namespace
 
 void RoadMapOptions::validate() const {
-  require_range("map", "cell_m", cell_m, 0.0005, 10.0);
+  require_range("map", "cell_m", cell_m, min_cell_m, max_cell_m);
   require_range("map", "tile_cells", tile_cells, 16, 1024);
   require_range("map", "max_tiles", max_tiles, 4, 1 << 20);
   require_range("map", "max_above_m", max_above_m, 0.0, 100.0);
@@ -90,6 +124,7 @@ std::size_t RoadMap::add(const MapFrame& frame) {
   const FrameProjection projection(frame, options);
   const MapBox box = projection.footprint();
   if (box.empty()) return 0;
+  require_box(box);
   constexpr int rows_per_band = 8;
   const int side = options.tile_cells;
   const TileRange range(box, side);
@@ -155,7 +190,17 @@ MapBox RoadMap::bounds() const {
   return {column0 * side, row0 * side, (column1 - column0 + 1) * side, (row1 - row0 + 1) * side};
 }
 
+std::vector<MapBox> RoadMap::tile_boxes() const {
+  const int side = state_->options.tile_cells;
+  std::vector<MapBox> boxes;
+  for (const auto& [key, generation] : state_->store.keys()) {
+    boxes.push_back({key.first * side, key.second * side, side, side});
+  }
+  return boxes;
+}
+
 MapRaster RoadMap::read(const MapBox& box) const {
+  require_box(box);
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   MapRaster raster;
   raster.box = box;
@@ -222,7 +267,7 @@ double suggested_cell_m(const DisparityPlane& road, const StereoCalibration& cal
   std::nth_element(sizes.begin(), nearest, sizes.end());
   const double power = std::pow(10.0, std::floor(std::log10(*nearest)));
   const double digit = *nearest / power;
-  return power * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
+  return std::clamp(power * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1), min_cell_m, max_cell_m);
 }
 
 RigidTransform camera_to_road(const DisparityPlane& road, const StereoCalibration& calibration) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <regex>
 #include <set>
 #include <string>
 #include <system_error>
@@ -14,13 +15,35 @@ namespace roadstereo {
 
 static_assert(std::is_trivially_copyable_v<MapCell>);
 
-TileStore::TileStore(std::filesystem::path folder, int tile_cells, int max_tiles, const Saved& saved)
-    : folder_(std::move(folder)),
+namespace {
+
+/// Whether a file has the name of a tile: column_row.generation.
+bool is_tile(const std::filesystem::path& file) {
+  static const std::regex name("-?[0-9]+_-?[0-9]+\\.[0-9]+");
+  return std::regex_match(file.filename().string(), name);
+}
+
+/// The tiles in a folder. Throws Error if it holds anything else, which is somebody's.
+std::vector<std::filesystem::path> only_tiles(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> tiles;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (!is_tile(entry.path())) {
+      fail("folder ", folder.string(), " holds ", entry.path().filename().string(),
+           "; the folder of a map must be new, or hold nothing but its tiles");
+    }
+    tiles.push_back(entry.path());
+  }
+  return tiles;
+}
+
+}  // namespace
+
+TileStore::TileStore(const std::filesystem::path& folder, int tile_cells, int max_tiles, const Saved& saved)
+    : folder_(std::filesystem::absolute(folder)),
       cells_per_tile_(static_cast<std::size_t>(tile_cells) * static_cast<std::size_t>(tile_cells)),
       max_tiles_(static_cast<std::size_t>(max_tiles)),
       known_(saved) {
   std::error_code error;
-  if (saved.empty()) std::filesystem::remove_all(folder_, error);
   std::filesystem::create_directories(folder_, error);
   if (error) fail<SystemError>("cannot write to folder ", folder_.string(), ": ", error.message());
   std::set<std::filesystem::path> needed;
@@ -32,8 +55,8 @@ TileStore::TileStore(std::filesystem::path folder, int tile_cells, int max_tiles
     if (error) fail(file(key, generation).string(), ": this tile is missing");
     if (found != bytes) fail(file(key, generation).string(), ": this tile has ", found, " bytes, but needs ", bytes);
   }
-  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
-    if (needed.find(entry.path()) == needed.end()) superseded_.push_back(entry.path());
+  for (std::filesystem::path& tile : only_tiles(folder_)) {
+    if (needed.find(tile) == needed.end()) superseded_.push_back(std::move(tile));
   }
   commit();
 }
@@ -41,7 +64,11 @@ TileStore::TileStore(std::filesystem::path folder, int tile_cells, int max_tiles
 TileStore::~TileStore() {
   if (keep_) return;
   std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
+  for (const auto& [key, generation] : known_) {
+    if (generation > 0) std::filesystem::remove(file(key, generation), ignored);
+  }
+  commit();
+  std::filesystem::remove(folder_, ignored);  // unless somebody has put something there
 }
 
 std::filesystem::path TileStore::file(const Key& key, int generation) const {

@@ -12,7 +12,7 @@
 namespace roadstereo {
 
 /// Cache of tiles, least recently used: at most `max_tiles` are in memory, the others are files in a folder of their
-/// own, which is removed at the end. A file belongs to a generation: after a save, tiles are written to new files, so
+/// own, which are removed at the end. A file belongs to a generation: after a save, tiles are written to new files, so
 /// that those of the save stay as they are until the next one is committed.
 class TileStore {
  public:
@@ -23,7 +23,8 @@ class TileStore {
   using Saved = std::map<Key, int>;
 
   /// Begins an empty store, or one with the tiles of a save; files of later generations are removed.
-  TileStore(std::filesystem::path folder, int tile_cells, int max_tiles, const Saved& saved = {});
+  /// Throws Error if the folder holds anything but tiles.
+  TileStore(const std::filesystem::path& folder, int tile_cells, int max_tiles, const Saved& saved = {});
   ~TileStore();
   TileStore(const TileStore&) = delete;
   TileStore& operator=(const TileStore&) = delete;

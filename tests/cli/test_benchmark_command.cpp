@@ -82,6 +82,8 @@ TEST_F(BenchmarkCommand, RejectsBadInput) {
   expect_complaint(run("benchmark --runs 0"), 2, "--runs");
   expect_complaint(run("benchmark left.png"), 2, "LEFT and RIGHT");
   expect_complaint(run("benchmark --preset slow"), 2, "slow");
+  expect_complaint(run("benchmark --size 100x100 --raw-disparities 128"), 2, "128 disparities in 100 columns");
+  expect_complaint(run("benchmark --size 100x100 --disparities 97"), 2, "112 disparities in 100 columns");
   expect_complaint(run("benchmark --raw-disparities -1"), 2, "--raw-disparities is -1");
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -210,6 +211,81 @@ TEST_F(RoadMapTest, RemovesItsFolder) {
   EXPECT_FALSE(fs::exists(folder_));
 }
 
+// What a map did not write it neither removes nor takes for its own.
+TEST_F(RoadMapTest, LeavesFilesOfOthersAlone) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "3_-4.1") << "a tile of an earlier map";
+  {
+    RoadMapOptions few = options();
+    few.max_tiles = 4;
+    RoadMap map(folder_, few);
+    EXPECT_FALSE(fs::exists(folder_ / "3_-4.1"));
+    map.add(TestFrame(looking_down(0, 0, 2), {}, 0, 1).frame);
+    EXPECT_FALSE(fs::is_empty(folder_));
+    std::ofstream(folder_ / "note.txt") << "mine";
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "note.txt"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+  try {
+    const RoadMap map(folder_, options());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("holds note.txt"), std::string::npos) << error.what();
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "note.txt"));
+  fs::remove_all(folder_);
+}
+
+TEST_F(RoadMapTest, KeepsToItsFolderWhenTheProcessMoves) {
+  fs::create_directories(folder_);
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_);
+  {
+    RoadMap map("tiles", options());
+    fs::create_directories("elsewhere/tiles");
+    fs::current_path("elsewhere");
+    map.add(TestFrame(looking_down(0, 0, 2), {}, 0, 1).frame);
+  }
+  EXPECT_TRUE(fs::exists("tiles"));
+  EXPECT_FALSE(fs::exists(folder_ / "tiles"));
+  fs::current_path(before);
+  fs::remove_all(folder_);
+}
+
+TEST_F(RoadMapTest, RejectsMotionsThatAreNotRigidOrLeadTooFar) {
+  RoadMap map(folder_, options());
+  const RigidTransform good = looking_down(0, 0, 2);
+  for (const double factor : {2.0, 0.5, -1.0, std::nan("")}) {
+    TestFrame view(good, {}, 0, 1);
+    for (const std::size_t k : {0, 1, 2, 4, 5, 6, 8, 9, 10}) view.frame.camera_to_map[k] *= factor;
+    EXPECT_THROW(map.add(view.frame), Error) << factor;
+  }
+  TestFrame mirrored(good, {}, 0, 1);
+  for (const std::size_t k : {0, 4, 8}) mirrored.frame.camera_to_map[k] *= -1;
+  EXPECT_THROW(map.add(mirrored.frame), Error);
+  for (const double x : {std::nan(""), 1e300, 1e7, -1e7}) {
+    TestFrame view(good, {}, 0, 1);
+    view.frame.camera_to_map[3] = x;
+    EXPECT_THROW(map.add(view.frame), Error) << x;
+  }
+  EXPECT_TRUE(map.bounds().empty());
+}
+
+TEST_F(RoadMapTest, RejectsImpossibleBoxes) {
+  const RoadMap map(folder_, options());
+  for (const MapBox& box : {MapBox{0, 0, -1, 5}, MapBox{0, 0, 5, -1}, MapBox{0, 0, 100'000, 100'000},
+                            MapBox{2'147'483'000, 0, 1000, 1}, MapBox{-2'147'483'647, 0, 1, 1}}) {
+    EXPECT_THROW(map.read(box), Error) << box.i0 << " " << box.columns << " " << box.rows;
+  }
+}
+
+TEST_F(RoadMapTest, SuggestsCellsThatMapsCanHave) {
+  const TestFrame view(looking_down(0, 0, 2), {}, 0, 1);
+  StereoCalibration fine = view.frame.calibration;
+  fine.focal_px *= 1000;
+  EXPECT_DOUBLE_EQ(suggested_cell_m({view.frame.road.a0 * 1000, 0, 0}, fine), 0.0005);
+}
+
 TEST_F(RoadMapTest, RejectsWrongSizesAndPoses) {
   RoadMap map(folder_, options());
   TestFrame view(looking_down(0, 0, 2), {}, 0, 1);
@@ -241,6 +317,26 @@ TEST_F(RoadMapTest, DamageThatNoFrameResolvesIsFoundInMap) {
   const Measurement& area = found[0].damage.metrics->area_m2;
   EXPECT_NEAR(area.value, 3.1416 * 0.25 * 0.25, 2 * area.std_error);
   EXPECT_NEAR(static_cast<double>(found[0].footprint.size()) * footprint_m * footprint_m, area.value, 0.03);
+}
+
+// Damage a long way apart, in cells finer than a pixel; what lies between costs nothing.
+TEST_F(RoadMapTest, FindsDamageInFineCellsFarApart) {
+  const Step step{0.1, 0.05, 0.25, 0.05};
+  RoadMapOptions fine = options();
+  fine.cell_m = 0.004;
+  RoadMap map(folder_, fine);
+  constexpr double far = 50'000;
+  for (const double x : {0.0, far}) {
+    const Step there{x + step.x, x + step.y, step.radius_m, step.depth_m};
+    map.add(TestFrame(looking_down(x, x, 2), there, 0.02, 1).frame);
+  }
+  const std::vector<MapDamage> found = find_map_damage(map, {});
+  ASSERT_EQ(found.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(found[k].at_m[0] - (k == 0 ? 0 : far), step.x, 0.02);
+    EXPECT_NEAR(found[k].at_m[1] - (k == 0 ? 0 : far), step.y, 0.02);
+    EXPECT_NEAR(found[k].damage.metrics->max_depth_m.value, step.depth_m, 0.005);
+  }
 }
 
 }  // namespace
