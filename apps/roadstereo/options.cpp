@@ -45,7 +45,7 @@ std::string range_of(const OptionText& option) {
 void print_options(const OptionsArguments& arguments) {
   auto list = nlohmann::ordered_json::array();
   for (const OptionText& option : list_options(preset(arguments.preset))) {
-    if (option.key.substr(0, option.key.find('.')) != arguments.group && !arguments.group.empty()) continue;
+    if (!option.key.starts_with(arguments.group)) continue;
     const std::string range = range_of(option);
     list.push_back(
         {{"key", option.key}, {"value", option.value}, {"description", option.description}, {"range", range}});
@@ -53,7 +53,7 @@ void print_options(const OptionsArguments& arguments) {
     fmt::print("{:<38} {:<12} {}{}{}\n", option.key, option.value, option.description, range.empty() ? "" : "; ",
                range);
   }
-  if (list.empty()) fail("there is no option of the group '", arguments.group, "'; see roadstereo options");
+  if (list.empty()) fail("there is no option that starts with '", arguments.group, "'; see roadstereo options");
   if (arguments.json) fmt::print("{}\n", list.dump(2));
 }
 

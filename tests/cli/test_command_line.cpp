@@ -60,6 +60,9 @@ TEST_F(CommandLine, OptionsOfOneGroupHaveTheirRanges) {
     EXPECT_NE(matcher.out.find(part), std::string::npos) << part;
   }
   EXPECT_NE(run("options coarse_search").out.find("; 2, 4 or 8, or 0 to derive it\n"), std::string::npos);
+  const std::string one = run("options matcher.block_radius").out;
+  EXPECT_TRUE(one.starts_with("matcher.block_radius ")) << one;
+  EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), 1);
   expect_complaint(run("options matching"), "matching");
   expect_complaint(run("options --preset best"), "best");
 }
