@@ -34,7 +34,7 @@ std::string range_of(const OptionText& option) {
       set_option(options, option.key, impossible);
       options.validate();
     } catch (const Error& error) {
-      const std::string range = part_after(error.what(), "it must be ");
+      std::string range = part_after(error.what(), "it must be ");
       if (!range.empty()) return range;
       words = part_after(error.what(), "it takes ");
     }

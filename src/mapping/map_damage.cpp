@@ -157,6 +157,7 @@ std::vector<MapBox> windows_of(const RoadMap& map, int side) {
     }
   }
   std::vector<MapBox> windows;
+  windows.reserve(places.size());
   for (const auto& [row, column] : places) windows.push_back({i0 + column * step, j0 + row * step, side, side});
   std::erase_if(windows, [&](const MapBox& box) {  // which the one before holds
     return box.i0 >= bounds.i0 + bounds.columns - side / 4 || box.j0 >= bounds.j0 + bounds.rows - side / 4;
