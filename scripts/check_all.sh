@@ -47,6 +47,7 @@ part ./scripts/check_packages.sh
 # Without precompiled headers: a source includes what it uses.
 part ./scripts/check_sanitizers.sh asan-all -DROADSTEREO_WERROR=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
 part ./scripts/check_sanitizers.sh tsan -DROADSTEREO_WERROR=ON
+part ./scripts/check_tbb_threads.sh
 part preset emulated
 part preset standalone -DROADSTEREO_GTEST_SOURCE=/usr/src/googletest \
   -DROADSTEREO_HIGHWAY_SOURCE="${ROADSTEREO_HIGHWAY_SOURCE:-}"
