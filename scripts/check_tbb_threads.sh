@@ -17,7 +17,7 @@ if [ ! -d "$tbb/installed" ]; then
   (cd "$tbb" && apt-get "${lists[@]}" source --download-only -qq onetbb)
   mkdir -p "$tbb/source"
   tar xf "$tbb"/onetbb_*.orig.tar.* -C "$tbb/source" --strip-components=1
-  cmake -G Ninja -S "$tbb/source" -B "$tbb/build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_SANITIZE=thread -DTBB_TEST=OFF \
+  cmake -G Ninja -S "$tbb/source" -B "$tbb/build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_SANITIZE=thread -DTBB_TEST=OFF -DTBB_STRICT=OFF \
     -DCMAKE_INSTALL_PREFIX="$tbb/installed"
   cmake --build "$tbb/build" -j "$(nproc)"
   cmake --install "$tbb/build" >/dev/null
