@@ -81,7 +81,12 @@ void TileStore::write_file(Tile& tile) {
   stream.write(reinterpret_cast<const char*>(tile.cells.data()),
                static_cast<std::streamsize>(tile.cells.size() * sizeof(MapCell)));
   stream.close();
-  if (!stream) fail<SystemError>(path.string(), ": cannot be written: ", std::generic_category().message(errno));
+  if (!stream) {
+    const int cause = errno;
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);  // half a tile
+    fail<SystemError>(path.string(), ": cannot be written: ", std::generic_category().message(cause));
+  }
   int& generation = known_[tile.key];
   if (generation > 0 && generation < generation_) superseded_.push_back(file(tile.key, generation));
   generation = generation_;
