@@ -64,12 +64,6 @@ std::size_t peak_memory_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * kilobyte;
 }
 
-/// OpenCV searches multiples of 16.
-int rounded_for_peers(int disparities) {
-  constexpr int grid = 16;
-  return (disparities + grid - 1) / grid * grid;
-}
-
 /// Runs the pipeline and OpenCV's matchers alternately for equal conditions; the first run of each is not counted.
 BenchmarkReport measure(const BenchmarkArguments& arguments) {
   const StereoPair pair = make_pair(arguments);
@@ -102,17 +96,17 @@ BenchmarkReport measure(const BenchmarkArguments& arguments) {
   std::vector<io::PeerMatcher> baselines;
   if (!arguments.no_peers) {
     const bool raw = arguments.raw_disparities > 0;
-    const int peer_disparities = rounded_for_peers(raw ? arguments.raw_disparities : report.disparities);
-    if (peer_disparities >= report.width) {
-      fail("OpenCV's matchers cannot search ", peer_disparities, " disparities in ", report.width,
+    const int searched = io::peer_disparities(raw ? arguments.raw_disparities : report.disparities);
+    if (searched >= report.width) {
+      fail("OpenCV's matchers cannot search ", searched, " disparities in ", report.width,
            " columns; --no-peers leaves them out");
     }
-    if (raw) report.raw_disparities = peer_disparities;
+    if (raw) report.raw_disparities = searched;
     PerspectiveShift none;
     none.enabled = false;
     const PeerPair grey = peer_pair(pair, raw ? none : result.shift);
     for (const std::string& name : io::peer_names()) {
-      baselines.emplace_back(name, peer_disparities);
+      baselines.emplace_back(name, searched);
       baselines.back().set_pair(grey.reference, grey.target);
       baselines.back().match();
       report.baselines.push_back({name, {}});

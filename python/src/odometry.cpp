@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "map_array.hpp"
 #include "processed_frame.hpp"
 #include "record.hpp"
 #include "roadstereo/error.hpp"
@@ -17,11 +18,6 @@ namespace roadstereo::python {
 namespace {
 
 namespace py = pybind11;
-
-template <int rows, int columns>
-py::array_t<double> matrix(const std::array<double, rows * columns>& values) {
-  return py::array_t<double>({rows, columns}, values.data());
-}
 
 /// An odometry that any thread may use; calls wait for each other, without the interpreter's lock.
 class SharedOdometry {

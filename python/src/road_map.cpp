@@ -112,10 +112,6 @@ std::unique_ptr<SharedRoadMap> make_road_map(const std::optional<std::filesystem
   return std::make_unique<SharedRoadMap>(folder ? *folder : temporary_folder(), options);
 }
 
-py::array_t<double> map_matrix(const RigidTransform& transform) {
-  return py::array_t<double>({3, 4}, transform.data());
-}
-
 std::vector<MapDamage> find_damage_in(SharedRoadMap& map, const py::object& options, const py::kwargs& keywords) {
   PipelineOptions all = preset("default");
   set_options(all, options, keywords);
@@ -199,7 +195,9 @@ void bind_road_map(py::module_& module) {
       .def_property_readonly("cell_m", &SharedRoadMap::cell_m, "Side of a cell, metres.");
   module.def(
       "camera_to_road",
-      [](const ProcessedFrame& frame) { return map_matrix(camera_to_road(road_plane(frame), map_calibration(frame))); },
+      [](const ProcessedFrame& frame) {
+        return matrix<3, 4>(camera_to_road(road_plane(frame), map_calibration(frame)));
+      },
       py::arg("result"),
       "Return the transformation from the camera to axes on its road, (3, 4): origin at the foot of the camera, x to\n"
       "its right, y ahead, z up. Raises Error for a result without a road or a calibration.");

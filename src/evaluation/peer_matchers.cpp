@@ -46,9 +46,13 @@ struct PeerMatcher::State {
   cv::Mat reference, target, disparity;
 };
 
-PeerMatcher::PeerMatcher(const std::string& name, int disparities) : state_(std::make_unique<State>()) {
+int peer_disparities(int disparities) {
   constexpr int grid = 16;
-  state_->matcher = make_matcher(name, (disparities + grid - 1) / grid * grid);
+  return (disparities + grid - 1) / grid * grid;
+}
+
+PeerMatcher::PeerMatcher(const std::string& name, int disparities) : state_(std::make_unique<State>()) {
+  state_->matcher = make_matcher(name, peer_disparities(disparities));
 }
 PeerMatcher::~PeerMatcher() = default;
 PeerMatcher::PeerMatcher(PeerMatcher&&) noexcept = default;

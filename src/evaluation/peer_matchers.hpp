@@ -11,6 +11,9 @@ namespace roadstereo::io {
 /// OpenCV's matchers that a user would pick instead: "SGBM", "3WAY", "HH4", "BM".
 const std::vector<std::string>& peer_names();
 
+/// Returns how many disparities a matcher of OpenCV searches when it is asked for so many: a multiple of 16.
+int peer_disparities(int disparities);
+
 /// One of OpenCV's matchers with its usual settings, for comparison on the same frames.
 class PeerMatcher {
  public:

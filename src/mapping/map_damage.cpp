@@ -143,25 +143,24 @@ void add_finding(MapDamage finding, std::vector<MapDamage>& findings) {
   findings.push_back(std::move(finding));
 }
 
-/// Windows of side × side cells, half of which overlap the next, that have tiles, row by row.
+/// Windows of side × side cells, half of which overlap the next, that have tiles, row by row. The last of a row or
+/// column is the one that holds the border with a quarter to spare.
 std::vector<MapBox> windows_of(const RoadMap& map, int side) {
   const MapBox bounds = map.bounds();
   const int step = side / 2, i0 = bounds.i0 - side / 4, j0 = bounds.j0 - side / 4;
+  const int i1 = bounds.i0 + bounds.columns - side / 4, j1 = bounds.j0 + bounds.rows - side / 4;
   const auto first_with = [&](int at, int start) { return at < start + side ? 0 : (at - start - side) / step + 1; };
-  std::set<std::array<int, 2>> places;  // row and column of the window
+  std::set<std::array<int, 2>> corners;  // row and column of the first cell
   for (const MapBox& tile : map.tile_boxes()) {
-    for (int row = first_with(tile.j0, j0); j0 + row * step < tile.j0 + tile.rows; ++row) {
-      for (int column = first_with(tile.i0, i0); i0 + column * step < tile.i0 + tile.columns; ++column) {
-        places.insert({row, column});
+    for (int j = j0 + first_with(tile.j0, j0) * step; j < std::min(tile.j0 + tile.rows, j1); j += step) {
+      for (int i = i0 + first_with(tile.i0, i0) * step; i < std::min(tile.i0 + tile.columns, i1); i += step) {
+        corners.insert({j, i});
       }
     }
   }
   std::vector<MapBox> windows;
-  windows.reserve(places.size());
-  for (const auto& [row, column] : places) windows.push_back({i0 + column * step, j0 + row * step, side, side});
-  std::erase_if(windows, [&](const MapBox& box) {  // which the one before holds
-    return box.i0 >= bounds.i0 + bounds.columns - side / 4 || box.j0 >= bounds.j0 + bounds.rows - side / 4;
-  });
+  windows.reserve(corners.size());
+  for (const auto& [j, i] : corners) windows.push_back({i, j, side, side});
   return windows;
 }
 
