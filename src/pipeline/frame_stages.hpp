@@ -68,8 +68,12 @@ class FrameStages {
   virtual RoadModelEstimate verify_road_model(const GreyPair& pair, const TrackedRoad& previous) = 0;
   /// transform_target, π_tar → π_tar': returns the pair to match, without search ranges and prior.
   virtual MatchInput transform_perspective(const GreyPair& pair, const PerspectiveShift& shift) = 0;
-  /// CoarseSearch with blocks of `block_radius`: returns `pair` with search ranges and prior.
-  virtual MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift, int block_radius) = 0;
+  /// CoarseSearch: returns `pair` with search ranges and prior.
+  virtual MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift,
+                                     const CoarseSearchOptions& options) = 0;
+  /// CoarseSearch for all that the pair shows: returns the disparities, empty where the images are too small.
+  virtual DisparityPriorView search_scene(const MatchInput& pair, const PerspectiveShift& shift,
+                                          const CoarseSearchOptions& options) = 0;
   /// Section 3.2: cost, aggregation, winner-take-all, left-right check, sub-pixel disparity.
   virtual ResidualMaps match(const MatchInput& input, const MatcherOptions& options) = 0;
   /// restore_disparity: adds Δu − δp back.
@@ -81,8 +85,9 @@ class FrameStages {
   /// lucas_kanade.
   virtual ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,
                                        const PerspectiveShift& shift) = 0;
-  /// reject_off_road, where the step before has run and there is something to reject.
-  virtual ImageView<const float> reject_off_road(ImageView<const float> disparity, const OffRoadOptions& options) = 0;
+  /// reject_off_road, where the step before has run, and reject_inconsistent, where there is a map of the scene.
+  virtual ImageView<const float> reject_off_road(ImageView<const float> disparity, const DisparityPriorView& scene,
+                                                 const PerspectiveShift& shift, const OffRoadOptions& options) = 0;
   /// Subtracts the bias of the rig, if any: returns the disparity map ℓ.
   virtual ImageView<const float> subtract_bias(ImageView<const float> disparity,
                                                const std::optional<RigBias>& bias) = 0;

@@ -52,6 +52,7 @@ class HostStages final : public FrameStages {
     if (options.narrow_search || options.matcher.prior_weight > 0) {
       coarse_search_.emplace(options.coarse_search, options.threads);
     }
+    if (options.off_road.check_scene) scene_search_.emplace(options.coarse_search, options.threads);
   }
 
   GreyPair convert_to_grey(const FrameView& left, const FrameView& right) override {
@@ -84,14 +85,21 @@ class HostStages final : public FrameStages {
     return {pair.left, transformed_target_, first_column_.data(), shift.disparities, {}, {}};
   }
 
-  MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift, int block_radius) override {
+  MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift,
+                             const CoarseSearchOptions& options) override {
     MatchInput input = pair;
     if (!coarse_search_) return input;
-    coarse_search_->set_block_radius(block_radius);
+    coarse_search_->set_options(options);
     if (!coarse_search_->find(pair, shift)) return input;
     if (options_.narrow_search && coarse_search_->ranges() != nullptr) input.ranges = coarse_search_->ranges()->views();
     input.prior = coarse_search_->prior().view();
     return input;
+  }
+
+  DisparityPriorView search_scene(const MatchInput& pair, const PerspectiveShift& shift,
+                                  const CoarseSearchOptions& options) override {
+    scene_search_->set_options(options);
+    return scene_search_->find_prior(pair, shift) ? scene_search_->prior().view() : DisparityPriorView{};
   }
 
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
@@ -131,9 +139,11 @@ class HostStages final : public FrameStages {
     return disparity_;
   }
 
-  ImageView<const float> reject_off_road(ImageView<const float> disparity, const OffRoadOptions& options) override {
+  ImageView<const float> reject_off_road(ImageView<const float> disparity, const DisparityPriorView& scene,
+                                         const PerspectiveShift& shift, const OffRoadOptions& options) override {
     if (options_.lucas_kanade.radius == 0) return disparity;
     roadstereo::reject_off_road(correlation_, options, threads_, disparity_, sigma_);
+    if (!scene.disparity.empty()) reject_inconsistent(scene, shift, threads_, disparity_, sigma_);
     return disparity_;
   }
 
@@ -207,7 +217,7 @@ class HostStages final : public FrameStages {
   std::optional<StereoCalibration> calibration_;
   int threads_;
   std::unique_ptr<StereoEngine> engine_;
-  std::optional<CoarseSearch> coarse_search_;
+  std::optional<CoarseSearch> coarse_search_, scene_search_;
 
   GreyImage left_, right_, transformed_target_;
   std::vector<int> first_column_;  ///< of the transformed target

@@ -75,6 +75,7 @@ struct Pipeline::State {
   void estimate_road_model(const GreyPair& pair);
   void measure_rows(const GreyPair& grey);
   MatchInput transform_perspective(const GreyPair& pair);
+  CoarseSearchOptions coarse_options(int factor, int block_radius) const;
   MatchInput search_coarsely(const MatchInput& pair);
   ResidualMaps match(const MatchInput& input);
   DisparityMaps restore_disparity(const ResidualMaps& residual);
@@ -82,7 +83,9 @@ struct Pipeline::State {
   ImageView<const float> interpolate(const RefinedMaps& maps);
   void leave_out_mask(ImageView<float> disparity, int pixel_step) const;
   ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity);
-  ImageView<const float> reject_off_road(ImageView<const float> disparity);
+  bool can_see_off_road() const;
+  DisparityPriorView search_scene(const MatchInput& pair);
+  ImageView<const float> reject_off_road(ImageView<const float> disparity, const DisparityPriorView& scene);
   ImageView<const float> subtract_bias(ImageView<const float> disparity);
   void estimate_roll(ImageView<const float> disparity);
   void transform_disparity(ImageView<const float> disparity);
@@ -192,13 +195,21 @@ MatchInput Pipeline::State::transform_perspective(const GreyPair& pair) {
   return stages->transform_perspective(pair, result.shift);
 }
 
+/// The coarse search at a given size, with blocks for the noise that is left there.
+CoarseSearchOptions Pipeline::State::coarse_options(int factor, int block_radius) const {
+  CoarseSearchOptions coarse = options.coarse_search;
+  coarse.factor = factor;
+  coarse.block_radius = options.matcher.adapt_support
+                            ? adapt_radius(block_radius, downsampled_correlation(result.road.correlation, factor))
+                            : block_radius;
+  return coarse;
+}
+
 MatchInput Pipeline::State::search_coarsely(const MatchInput& pair) {
   const StageTimer timer(result.ms.coarse);
-  const int radius = options.coarse_search.block_radius;
-  if (!options.matcher.adapt_support) return stages->search_coarsely(pair, result.shift, radius);
-  const double correlation =
-      downsampled_correlation(result.road.correlation, coarse_factor(options.coarse_search, pair.reference.width()));
-  return stages->search_coarsely(pair, result.shift, adapt_radius(radius, correlation));
+  return stages->search_coarsely(
+      pair, result.shift,
+      coarse_options(coarse_factor(options.coarse_search, width), options.coarse_search.block_radius));
 }
 
 /// Section 3.2. Masked pixels have no disparity. Without a road model the prior rests on its rows alone, and its
@@ -250,16 +261,37 @@ ImageView<const float> Pipeline::State::align(const MatchInput& input, ImageView
   return stages->align(input, disparity, result.shift);
 }
 
-/// Where only disparities near the road were searched, those of other things are wrong. Where the road's horizon is not
-/// in the picture, a camera looks down on the road, which may be all there is: what is not confirmed is noise.
-ImageView<const float> Pipeline::State::reject_off_road(ImageView<const float> disparity) {
-  const StageTimer timer(result.ms.refinement);
+/// Whether only disparities near the road are searched in a picture that shows other things, too. Where the road's
+/// horizon is not in it, a camera looks down on the road, which may be all there is: what is not confirmed is noise.
+bool Pipeline::State::can_see_off_road() const {
   const DisparityPlane& road = result.shift.road;
-  const double at_upper_border = std::min(road.disparity(0, 0), road.disparity(disparity.width() - 1, 0));
-  const bool horizon_in_picture = at_upper_border < 0;
-  const bool searched_near_road = result.shift.enabled && options.perspective.scope == Scope::road;
-  return stages->reject_off_road(disparity,
-                                 searched_near_road && horizon_in_picture ? options.off_road : OffRoadOptions{0});
+  const bool horizon_in_picture = std::min(road.disparity(0, 0), road.disparity(width - 1, 0)) < 0;
+  return result.shift.enabled && options.perspective.scope == Scope::road && horizon_in_picture &&
+         options.off_road.max_sigma_px > 0;
+}
+
+/// Disparities of all that the picture shows, up to that of what stands on the nearest road in it. Without the road as
+/// prior, in blocks as small as can be: the search is to tell what is not the road.
+DisparityPriorView Pipeline::State::search_scene(const MatchInput& pair) {
+  constexpr int max_factor = 8, block_radius = 1;
+  if (!can_see_off_road() || !options.off_road.check_scene) return {};
+  const StageTimer timer(result.ms.coarse);
+  CoarseSearchOptions coarse =
+      coarse_options(std::min(max_factor, 2 * coarse_factor(options.coarse_search, width)), block_radius);
+  coarse.road_prior_weight = 0;
+  const DisparityPlane& road = result.shift.road;
+  const double nearest = std::max(road.disparity(0, height - 1), road.disparity(width - 1, height - 1));
+  MatchInput whole = pair;
+  whole.disparities = static_cast<int>(std::clamp(result.shift.delta_p + nearest, 1.0, width / 4.0)) + 1;
+  return stages->search_scene(whole, result.shift, coarse);
+}
+
+/// What is given off the road is right, or absent.
+ImageView<const float> Pipeline::State::reject_off_road(ImageView<const float> disparity,
+                                                        const DisparityPriorView& scene) {
+  const StageTimer timer(result.ms.refinement);
+  return stages->reject_off_road(disparity, scene, result.shift,
+                                 can_see_off_road() ? options.off_road : OffRoadOptions{0});
 }
 
 ImageView<const float> Pipeline::State::subtract_bias(ImageView<const float> disparity) {
@@ -304,12 +336,13 @@ void Pipeline::State::run_stages(const FrameView& left, const FrameView& right) 
   estimate_road_model(pair);
   const MatchInput transformed = transform_perspective(pair);
   const MatchInput input = search_coarsely(transformed);
+  const DisparityPriorView whole_scene = search_scene(transformed);
   const ResidualMaps residual = match(input);
   const DisparityMaps restored = restore_disparity(residual);
   const RefinedMaps refined = refine(restored);
   const ImageView<const float> interpolated = interpolate(refined);
   const ImageView<const float> aligned = align(input, interpolated);
-  const ImageView<const float> confirmed = reject_off_road(aligned);
+  const ImageView<const float> confirmed = reject_off_road(aligned, whole_scene);
   const ImageView<const float> disparity = subtract_bias(confirmed);
   estimate_roll(disparity);
   transform_disparity(disparity);

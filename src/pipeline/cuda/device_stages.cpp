@@ -47,6 +47,7 @@ class DeviceStages final : public FrameStages {
                const Device& device)
       : options_(options), calibration_(calibration), device_(device.index), matcher_(device.multiprocessors) {
     if (options.narrow_search || options.matcher.prior_weight > 0) coarse_search_.emplace(options.coarse_search);
+    if (options.off_road.check_scene) scene_search_.emplace(options.coarse_search);
   }
   /// Memory goes only when no kernel uses it any more. The stream may be the caller's.
   ~DeviceStages() override { DeviceStages::abandon(); }
@@ -97,15 +98,24 @@ class DeviceStages final : public FrameStages {
     return {pair.left, view(target_), first_column_.data(), shift.disparities, {}, {}};
   }
 
-  MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift, int block_radius) override {
+  MatchInput search_coarsely(const MatchInput& pair, const PerspectiveShift& shift,
+                             const CoarseSearchOptions& options) override {
     MatchInput input = pair;
-    if (coarse_search_) coarse_search_->set_block_radius(block_radius);
+    if (coarse_search_) coarse_search_->set_options(options);
     if (coarse_search_ && coarse_search_->find(pair, shift, stream())) {
       if (options_.narrow_search) input.ranges = coarse_search_->ranges();
       input.prior = coarse_search_->prior();
     }
     mark(StageClock::searched);
     return input;
+  }
+
+  DisparityPriorView search_scene(const MatchInput& pair, const PerspectiveShift& shift,
+                                  const CoarseSearchOptions& options) override {
+    scene_search_->set_options(options);
+    const bool found = scene_search_->find_prior(pair, shift, stream());
+    mark(StageClock::searched);
+    return found ? scene_search_->prior() : DisparityPriorView{};
   }
 
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
@@ -160,9 +170,13 @@ class DeviceStages final : public FrameStages {
     return maps_.disparity();
   }
 
-  ImageView<const float> reject_off_road(ImageView<const float>, const OffRoadOptions& options) override {
+  ImageView<const float> reject_off_road(ImageView<const float>, const DisparityPriorView& scene,
+                                         const PerspectiveShift& shift, const OffRoadOptions& options) override {
     if (options_.lucas_kanade.radius > 0 && options.max_sigma_px > 0) {
       off_road_.run(correlation_, static_cast<float>(options.max_sigma_px), maps_.disparity(), maps_.sigma(), stream());
+      if (!scene.disparity.empty()) {
+        off_road_.run({scene, shift}, maps_.disparity(), maps_.sigma(), stream());
+      }
     }
     return maps_.disparity();
   }
@@ -286,7 +300,7 @@ class DeviceStages final : public FrameStages {
   GreyImage left_on_host_, right_on_host_;
   Image<float> disparity_on_host_;
   RoadVerification verification_;
-  std::optional<CudaCoarseSearch> coarse_search_;
+  std::optional<CudaCoarseSearch> coarse_search_, scene_search_;
   DeviceMatcher matcher_;
   LucasKanade lucas_kanade_;
   ImageView<const float> correlation_;  ///< of the cells of that step

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
-#include "core/scratch.hpp"
 #include "road/lucas_kanade/gauss_newton.hpp"
+#include "road/off_road/cell_map.hpp"
 #include "road/off_road/confirmation.hpp"
 #include "roadstereo/error.hpp"
 
@@ -15,20 +14,6 @@ namespace roadstereo {
 namespace {
 
 constexpr int rows_per_band = 8;  // of cells
-
-/// One value per cell, in scratch memory.
-template <class T>
-struct CellMap {
-  int columns, rows;
-  ScratchVector<T> values;
-
-  CellMap(int columns_of_map, int rows_of_map)
-      : columns(columns_of_map),
-        rows(rows_of_map),
-        values(scratch_vector<T>(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows))) {}
-  T* row(int j) { return values.data() + std::ptrdiff_t{j} * columns; }
-  const T* row(int j) const { return values.data() + std::ptrdiff_t{j} * columns; }
-};
 
 void sum_log_sigmas(ImageView<const float> sigma, int threads, CellMap<LogSigmas>& cells) {
   parallel_rows(cells.rows, rows_per_band, threads, [&](int first, int last, int) {
@@ -71,30 +56,6 @@ void assess_cells(ImageView<const float> sigma, ImageView<const float> correlati
   });
 }
 
-/// Flood fill from the upper, left and right border through unconfirmed cells and their eight neighbours.
-void connect_with_border(CellMap<CellState>& states) {
-  auto front = scratch_vector<int>();
-  front.reserve(states.values.size());
-  const auto visit = [&](int i, int j) {
-    CellState& state = states.row(j)[i];
-    if (state != unconfirmed) return;
-    state = off_road;
-    front.push_back(j * states.columns + i);
-  };
-  for (int i = 0; i < states.columns; ++i) visit(i, 0);
-  for (int j = 0; j < states.rows; ++j) {
-    visit(0, j);
-    visit(states.columns - 1, j);
-  }
-  while (!front.empty()) {
-    const int i = front.back() % states.columns, j = front.back() / states.columns;
-    front.pop_back();
-    for (int y = std::max(0, j - 1); y <= std::min(states.rows - 1, j + 1); ++y) {
-      for (int x = std::max(0, i - 1); x <= std::min(states.columns - 1, i + 1); ++x) visit(x, y);
-    }
-  }
-}
-
 /// Whether a cell and its eight neighbours are off the road.
 bool is_inner(const CellMap<CellState>& states, int i, int j) {
   for (int y = std::max(0, j - 1); y <= std::min(states.rows - 1, j + 1); ++y) {
@@ -103,23 +64,6 @@ bool is_inner(const CellMap<CellState>& states, int i, int j) {
     }
   }
   return true;
-}
-
-void reject_cells(const CellMap<CellState>& states, int threads, Image<float>& disparity, Image<float>& sigma) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  parallel_rows(states.rows, rows_per_band, threads, [&](int first, int last, int) {
-    for (int j = first; j < last; ++j) {
-      const int end_v = std::min((j + 1) * alignment_cell, disparity.height());
-      for (int i = 0; i < states.columns; ++i) {
-        if (!is_inner(states, i, j)) continue;
-        const int u = i * alignment_cell, count = std::min(alignment_cell, disparity.width() - u);
-        for (int v = j * alignment_cell; v < end_v; ++v) {
-          std::fill_n(disparity.row(v) + u, count, nan);
-          std::fill_n(sigma.row(v) + u, count, nan);
-        }
-      }
-    }
-  });
 }
 
 }  // namespace
@@ -133,10 +77,7 @@ void reject_off_road(ImageView<const float> correlation, const OffRoadOptions& o
   options.validate();
   const int width = disparity.width(), height = disparity.height();
   const int columns = alignment_cells(width), rows = alignment_cells(height);
-  if (sigma.width() != width || sigma.height() != height) {
-    fail("the disparity map has ", width, "×", height, " pixels and its standard errors ", sigma.width(), "×",
-         sigma.height(), "; they must be equal");
-  }
+  require_equal_sizes(disparity, sigma);
   if (correlation.width() != columns || correlation.height() != rows) {
     fail("the correlation has ", correlation.width(), "×", correlation.height(), " cells; a map of ", width, "×",
          height, " pixels has ", columns, "×", rows);
@@ -145,7 +86,8 @@ void reject_off_road(ImageView<const float> correlation, const OffRoadOptions& o
   CellMap<CellState> states(columns, rows);
   assess_cells(sigma, correlation, std::log2(static_cast<float>(options.max_sigma_px)), threads, states);
   connect_with_border(states);
-  reject_cells(states, threads, disparity, sigma);
+  reject_cells(
+      columns, rows, threads, [&](int i, int j) { return is_inner(states, i, j); }, disparity, sigma);
 }
 
 }  // namespace roadstereo

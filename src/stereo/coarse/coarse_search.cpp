@@ -59,6 +59,15 @@ void CoarseSearch::downsample_pair(const MatchInput& input, int factor) {
 }
 
 bool CoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift) {
+  if (!find_prior(input, shift)) return false;
+  if (input.disparities < min_ranged_disparities) return true;
+  tile_ranges_.find(prior_.disparity, prior_.factor, input.reference.width(), input.reference.height(),
+                    input.disparities, threads_);
+  ranges_found_ = true;
+  return true;
+}
+
+bool CoarseSearch::find_prior(const MatchInput& input, const PerspectiveShift& shift) {
   const int width = input.reference.width(), height = input.reference.height();
   ranges_found_ = false;
   if (!coarse_search_pays(width, height)) return false;
@@ -94,9 +103,6 @@ bool CoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift) 
   parallel_rows(reference_.height(), rows, threads_, [&](int first, int last, int worker) {
     correct_rows(first, last, workers_[static_cast<std::size_t>(worker)]);
   });
-  if (input.disparities < min_ranged_disparities) return true;
-  tile_ranges_.find(prior_.disparity, prior_.factor, width, height, input.disparities, threads_);
-  ranges_found_ = true;
   return true;
 }
 

@@ -20,12 +20,14 @@ class CoarseSearch {
  public:
   CoarseSearch(const CoarseSearchOptions& options, int threads);
 
-  /// Radius of the blocks from now on, coarse pixels; at first that of the options.
-  void set_block_radius(int radius) { options_.block_radius = radius; }
+  /// Options from now on.
+  void set_options(const CoarseSearchOptions& options) { options_ = options; }
 
   /// Computes the prior and, where that saves work, the ranges; both are valid until the next call. `shift`: that of
   /// the target, with the road. Returns false when the image is too small.
   bool find(const MatchInput& input, const PerspectiveShift& shift);
+  /// The same without the ranges.
+  bool find_prior(const MatchInput& input, const PerspectiveShift& shift);
 
   const DisparityPrior& prior() const { return prior_; }
   /// Null when there are too few disparities to save any.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/full_resolution.hpp"
+#include "core/shifted_road.hpp"
 #include "roadstereo/perspective_shift.hpp"
 
 namespace roadstereo {
@@ -33,14 +34,7 @@ ROADSTEREO_HD inline float cost_plausibility(float at_road, float smallest) {
   return plausibility < 0.0F ? 0.0F : plausibility > 1.0F ? 1.0F : plausibility;
 }
 
-/// Disparity of the road after the shift, full-size pixels; `invalid` above the horizon and without a road.
-ROADSTEREO_HD inline double shifted_road(const PerspectiveShift& shift, double u, double v, double invalid) {
-  const double disparity = shift.enabled ? shift.road.disparity(u, v) : -1;
-  if (disparity < 0) return invalid;
-  return disparity < shift.delta_p ? disparity : shift.delta_p;
-}
-
-/// The same at a pixel of the downsampled pair, coarse pixels.
+/// shifted_road at a pixel of the downsampled pair, coarse pixels.
 ROADSTEREO_HD inline float coarse_road(const PerspectiveShift& shift, int u, int v, int factor, float invalid) {
   const double road =
       shifted_road(shift, to_full_resolution(u, factor), to_full_resolution(v, factor), static_cast<double>(invalid));

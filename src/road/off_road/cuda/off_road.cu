@@ -119,6 +119,15 @@ __global__ void connect_with_border(ImageView<CellState> states) {
   }
 }
 
+__device__ void reject_cell(int i, int j, ImageView<float> disparity, ImageView<float> sigma) {
+  for (int v = j * alignment_cell; v < min((j + 1) * alignment_cell, disparity.height()); ++v) {
+    for (int u = i * alignment_cell; u < min((i + 1) * alignment_cell, disparity.width()); ++u) {
+      disparity(u, v) = nanf("");
+      sigma(u, v) = nanf("");
+    }
+  }
+}
+
 /// One thread a cell: its pixels become invalid when it and its eight neighbours are off the road.
 __global__ void reject_cells(ImageView<const CellState> states, ImageView<float> disparity, ImageView<float> sigma) {
   const int i = thread_column(), j = thread_row();
@@ -128,12 +137,24 @@ __global__ void reject_cells(ImageView<const CellState> states, ImageView<float>
       if (states(x, y) != off_road) return;
     }
   }
-  for (int v = j * alignment_cell; v < min((j + 1) * alignment_cell, disparity.height()); ++v) {
-    for (int u = i * alignment_cell; u < min((i + 1) * alignment_cell, disparity.width()); ++u) {
-      disparity(u, v) = nanf("");
-      sigma(u, v) = nanf("");
-    }
-  }
+  reject_cell(i, j, disparity, sigma);
+}
+
+/// One thread a cell.
+__global__ void compare_cells(CoarseScene scene, ImageView<const float> disparity, ImageView<CellEvidence> evidence,
+                              ImageView<CellState> states) {
+  const int i = thread_column(), j = thread_row();
+  if (i >= states.width() || j >= states.height()) return;
+  evidence(i, j) = assess_consistency(scene, cell_residual(disparity, scene.shift, i, j), i, j);
+  states(i, j) = evidence(i, j) == CellEvidence::on_road ? confirmed : unconfirmed;
+}
+
+/// One thread a cell.
+__global__ void reject_contradicted(ImageView<const CellEvidence> evidence, ImageView<const CellState> states,
+                                    ImageView<float> disparity, ImageView<float> sigma) {
+  const int i = thread_column(), j = thread_row();
+  if (i >= states.width() || j >= states.height()) return;
+  if (is_contradicted(evidence, states, i, j, states.width(), states.height())) reject_cell(i, j, disparity, sigma);
 }
 
 }  // namespace
@@ -154,6 +175,22 @@ void OffRoad::run(ImageView<const float> correlation, float max_sigma_px, ImageV
   launch("off_road_connect", connect_with_border, {dim3(1), dim3(connecting_threads), sizeof(int)}, stream, states);
   launch("off_road_reject", reject_cells, {grid, block, 0}, stream, ImageView<const CellState>(states), disparity,
          sigma);
+}
+
+void OffRoad::run(const CoarseScene& scene, ImageView<float> disparity, ImageView<float> sigma, StreamView stream) {
+  const int columns = alignment_cells(disparity.width()), rows = alignment_cells(disparity.height());
+  const std::size_t cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  evidence_.reserve(cells);
+  states_.reserve(cells);
+  const ImageView<CellEvidence> evidence(evidence_.data(), columns, rows);
+  const ImageView<CellState> states(states_.data(), columns, rows);
+  const dim3 grid(blocks_for(columns, block_columns), blocks_for(rows, block_rows));
+  const dim3 block(block_columns, block_rows);
+  launch("scene_compare", compare_cells, {grid, block, 0}, stream, scene, ImageView<const float>(disparity), evidence,
+         states);
+  launch("scene_connect", connect_with_border, {dim3(1), dim3(connecting_threads), sizeof(int)}, stream, states);
+  launch("scene_reject", reject_contradicted, {grid, block, 0}, stream, ImageView<const CellEvidence>(evidence),
+         ImageView<const CellState>(states), disparity, sigma);
 }
 
 }  // namespace roadstereo::cuda

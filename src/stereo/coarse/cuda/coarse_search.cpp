@@ -33,6 +33,12 @@ RoadPrior road_prior(const CoarseSearchOptions& options, const PerspectiveShift&
 }  // namespace
 
 bool CudaCoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift, StreamView stream) {
+  if (!find_prior(input, shift, stream)) return false;
+  if (input.disparities >= min_ranged_disparities) find_ranges(input, stream);
+  return true;
+}
+
+bool CudaCoarseSearch::find_prior(const MatchInput& input, const PerspectiveShift& shift, StreamView stream) {
   ranges_ = {};
   width_ = height_ = 0;
   const int width = input.reference.width(), height = input.reference.height();
@@ -45,7 +51,6 @@ bool CudaCoarseSearch::find(const MatchInput& input, const PerspectiveShift& shi
   for (int row = 0; row < height_; row += shape.rows) match_band(pair, shift, shape, row, stream);
   correct_rows(ImageView<const float>(along_rows_.data(), width_, height_), factor_,
                ImageView(prior_.data(), width_, height_), stream);
-  if (input.disparities >= min_ranged_disparities) find_ranges(input, stream);
   return true;
 }
 

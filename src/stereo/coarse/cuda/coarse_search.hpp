@@ -24,12 +24,14 @@ class CudaCoarseSearch {
   explicit CudaCoarseSearch(const CoarseSearchOptions& options, std::ptrdiff_t max_numbers = usual_numbers)
       : options_(options), max_numbers_(max_numbers) {}
 
-  /// Radius of the blocks from now on, coarse pixels; at first that of the options.
-  void set_block_radius(int radius) { options_.block_radius = radius; }
+  /// Options from now on; they must be valid.
+  void set_options(const CoarseSearchOptions& options) { options_ = options; }
 
   /// Enqueues the search of `input`, which lies in device memory. Returns false, without prior and ranges, when the
   /// image is too small.
   bool find(const MatchInput& input, const PerspectiveShift& shift, StreamView stream);
+  /// The same without the ranges.
+  bool find_prior(const MatchInput& input, const PerspectiveShift& shift, StreamView stream);
 
   DisparityPriorView prior() const { return {ImageView<const float>(prior_.data(), width_, height_), factor_}; }
   /// Empty when there are too few disparities to save any.
