@@ -96,6 +96,23 @@ TEST(PipelineOffRoad, PictureWithoutHorizonKeepsEverything) {
   EXPECT_LT(missing(scene("uav")), 0.01);
 }
 
+/// Of a street in which vehicles and houses fill half of the image, what is given and wrong by more than 1 px.
+TEST(PipelineOffRoad, SearchOfSceneTellsVehiclesFromRoad) {
+  synth::Scene street = synth::random_wide_scene(12);
+  street.supersampling = 1;
+  const synth::SyntheticPair pair = synth::render(street);
+  const auto wrong = [&](bool check_scene) {
+    PipelineOptions options;
+    options.off_road.check_scene = check_scene;
+    Pipeline pipeline(options, pair.calibration);
+    return compare(pipeline.process(pair.left.view(), pair.right.view()).disparity, pair).share_above_1px;
+  };
+  const double checked = wrong(true), unchecked = wrong(false);
+  RecordProperty("checked", std::to_string(checked));
+  RecordProperty("unchecked", std::to_string(unchecked));
+  EXPECT_LT(checked, 0.5 * unchecked);
+}
+
 class PipelinePreset : public testing::TestWithParam<PresetFigures> {};
 
 TEST_P(PipelinePreset, MatchesRoadFromAir) {

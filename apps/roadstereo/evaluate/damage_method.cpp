@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "find_damage_or_warn.hpp"
 #include "given_disparity.hpp"
 
 namespace roadstereo::cli {
@@ -12,12 +13,23 @@ std::vector<DamageMethod> damage_methods(const std::string& preset, const std::v
   return methods;
 }
 
+namespace {
+
+/// None where there is no road, as `inspect` reports it.
+void find_damage_or_none(const StereoPair& pair, const DamageOptions& options, FrameDamage& found) {
+  PairHealth health;
+  std::vector<std::string> warnings;
+  find_damage_or_warn(found.frame, pair.calibration, options, 0, found.map, health, warnings);
+}
+
+}  // namespace
+
 FrameDamage find_damage_of(const DamageMethod& method, const StereoPair& pair, const std::string& frame) {
   FrameDamage found;
   if (!method.maps) {
     Pipeline pipeline(preset(method.name), pair.calibration);
     pipeline.process(pair.left.view(), pair.right.view(), found.frame);
-    find_damage(found.frame, pair.calibration, pipeline.options().damage, 0, found.map);
+    find_damage_or_none(pair, pipeline.options().damage, found);
     return found;
   }
   Inspection inspection;
@@ -26,7 +38,7 @@ FrameDamage find_damage_of(const DamageMethod& method, const StereoPair& pair, c
   inspection.pair.disparity = read_given_map(*method.maps, frame, pair.left.width, pair.left.height);
   use_given_disparity(inspection);
   found.frame = std::move(inspection.result);
-  find_damage(found.frame, pair.calibration, inspection.options.damage, 0, found.map);
+  find_damage_or_none(pair, inspection.options.damage, found);
   return found;
 }
 

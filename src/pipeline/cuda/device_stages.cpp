@@ -175,7 +175,7 @@ class DeviceStages final : public FrameStages {
     if (options_.lucas_kanade.radius > 0 && options.max_sigma_px > 0) {
       off_road_.run(correlation_, static_cast<float>(options.max_sigma_px), maps_.disparity(), maps_.sigma(), stream());
       if (!scene.disparity.empty()) {
-        off_road_.run({scene, shift}, maps_.disparity(), maps_.sigma(), stream());
+        off_road_.run({scene.disparity, scene.factor, shift}, maps_.disparity(), maps_.sigma(), stream());
       }
     }
     return maps_.disparity();

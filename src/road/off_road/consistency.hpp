@@ -7,7 +7,6 @@
 #include "road/off_road/confirmation.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/image_view.hpp"
-#include "roadstereo/matcher.hpp"
 
 // Consistency of a cell of 4×4 pixels with a coarse disparity map of the whole scene, for the host and for kernels.
 // C++17.
@@ -24,7 +23,8 @@ enum class CellEvidence : std::uint8_t {
 
 /// The coarse map, of residual disparities, and the shift that they are residuals of.
 struct CoarseScene {
-  DisparityPriorView map;
+  ImageView<const float> residual;
+  int factor;  ///< a pixel of the map covers factor × factor pixels of the image
   PerspectiveShift shift;
 };
 
@@ -56,13 +56,13 @@ ROADSTEREO_HD inline CellEvidence assess_consistency(const CoarseScene& scene, f
   constexpr int columns_around = 4, rows_around = 1;
   constexpr float resolution = 0.5F, road_thickness = 1.0F / 3;  // coarse pixels, to either side
   constexpr double centre = 0.5 * (alignment_cell - 1);
-  const ImageView<const float>& map = scene.map.disparity;
+  const ImageView<const float>& map = scene.residual;
   if (residual != residual) return CellEvidence::unknown;
-  const auto factor = static_cast<float>(scene.map.factor);
+  const auto factor = static_cast<float>(scene.factor);
   const auto road =
       static_cast<float>(shifted_road(scene.shift, i * alignment_cell + centre, j * alignment_cell + centre, -1.0));
   const bool near_road = road >= 0 && is_within(residual - road, road_thickness * factor);
-  const int x = i * alignment_cell / scene.map.factor, y = j * alignment_cell / scene.map.factor;
+  const int x = i * alignment_cell / scene.factor, y = j * alignment_cell / scene.factor;
   const int dx = near_road ? columns_around : 0, dy = near_road ? rows_around : 0;
   bool known = false;
   for (int b = y - dy < 0 ? 0 : y - dy; b <= y + dy && b < map.height(); ++b) {

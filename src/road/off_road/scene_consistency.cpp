@@ -35,7 +35,7 @@ void reject_inconsistent(const DisparityPriorView& coarse, const PerspectiveShif
   const int columns = alignment_cells(width), rows = alignment_cells(height);
   CellMap<CellEvidence> evidence(columns, rows);
   CellMap<CellState> states(columns, rows);
-  compare_cells({coarse, shift}, disparity, threads, evidence, states);
+  compare_cells({coarse.disparity, coarse.factor, shift}, disparity, threads, evidence, states);
   connect_with_border(states);
   reject_cells(
       columns, rows, threads, [&](int i, int j) { return is_contradicted(evidence, states, i, j, columns, rows); },
