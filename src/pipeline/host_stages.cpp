@@ -48,11 +48,11 @@ class HostStages final : public FrameStages {
         samples_(effective_samples(options.matcher)),
         calibration_(calibration),
         threads_(resolve_threads(options.threads)),
-        engine_(make_engine(options.engine, options.threads)) {
+        engine_(make_engine(options.engine, options.threads)),
+        scene_search_(options.coarse_search, options.threads) {
     if (options.narrow_search || options.matcher.prior_weight > 0) {
       coarse_search_.emplace(options.coarse_search, options.threads);
     }
-    if (options.off_road.check_scene) scene_search_.emplace(options.coarse_search, options.threads);
   }
 
   GreyPair convert_to_grey(const FrameView& left, const FrameView& right) override {
@@ -98,8 +98,8 @@ class HostStages final : public FrameStages {
 
   DisparityPriorView search_scene(const MatchInput& pair, const PerspectiveShift& shift,
                                   const CoarseSearchOptions& options) override {
-    scene_search_->set_options(options);
-    return scene_search_->find_prior(pair, shift) ? scene_search_->prior().view() : DisparityPriorView{};
+    scene_search_.set_options(options);
+    return scene_search_.find_prior(pair, shift) ? scene_search_.prior().view() : DisparityPriorView{};
   }
 
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
@@ -142,8 +142,7 @@ class HostStages final : public FrameStages {
   ImageView<const float> reject_off_road(ImageView<const float> disparity, const DisparityPriorView& scene,
                                          const PerspectiveShift& shift, const OffRoadOptions& options) override {
     if (options_.lucas_kanade.radius == 0) return disparity;
-    roadstereo::reject_off_road(correlation_, options, threads_, disparity_, sigma_);
-    if (!scene.disparity.empty()) reject_inconsistent(scene, shift, threads_, disparity_, sigma_);
+    roadstereo::reject_off_road(correlation_, scene, shift, options, threads_, disparity_, sigma_);
     return disparity_;
   }
 
@@ -217,7 +216,8 @@ class HostStages final : public FrameStages {
   std::optional<StereoCalibration> calibration_;
   int threads_;
   std::unique_ptr<StereoEngine> engine_;
-  std::optional<CoarseSearch> coarse_search_, scene_search_;
+  std::optional<CoarseSearch> coarse_search_;
+  CoarseSearch scene_search_;
 
   GreyImage left_, right_, transformed_target_;
   std::vector<int> first_column_;  ///< of the transformed target

@@ -136,8 +136,6 @@ void visit_options(Options& o, Visitor visit) {
 
   visit("off_road.max_sigma_px", o.off_road.max_sigma_px,
         "largest standard error beside the road where the pictures agree, pixels; a third where they do not; 0: any");
-  visit("off_road.check_scene", o.off_road.check_scene,
-        "also reject what a coarse search of the whole scene contradicts");
 
   visit("roll.solver", o.roll.solver, "solver of the roll angle");
   visit("roll.initial_lambda", o.roll.initial_lambda, "first learning rate of the descent");

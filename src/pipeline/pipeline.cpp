@@ -274,7 +274,7 @@ bool Pipeline::State::can_see_off_road() const {
 /// prior, in blocks as small as can be: the search is to tell what is not the road.
 DisparityPriorView Pipeline::State::search_scene(const MatchInput& pair) {
   constexpr int max_factor = 8, block_radius = 1;
-  if (!can_see_off_road() || !options.off_road.check_scene) return {};
+  if (!can_see_off_road()) return {};
   const StageTimer timer(result.ms.coarse);
   CoarseSearchOptions coarse =
       coarse_options(std::min(max_factor, 2 * coarse_factor(options.coarse_search, width)), block_radius);
@@ -290,8 +290,8 @@ DisparityPriorView Pipeline::State::search_scene(const MatchInput& pair) {
 ImageView<const float> Pipeline::State::reject_off_road(ImageView<const float> disparity,
                                                         const DisparityPriorView& scene) {
   const StageTimer timer(result.ms.refinement);
-  return stages->reject_off_road(disparity, scene, result.shift,
-                                 can_see_off_road() ? options.off_road : OffRoadOptions{0});
+  if (scene.disparity.empty()) return disparity;
+  return stages->reject_off_road(disparity, scene, result.shift, options.off_road);
 }
 
 ImageView<const float> Pipeline::State::subtract_bias(ImageView<const float> disparity) {

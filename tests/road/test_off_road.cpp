@@ -1,118 +1,179 @@
-// Rejection of disparities beside the road: maps whose cells are confirmed or not by the closed form of the limit.
+// Rejection of disparities beside the road: maps whose cells are on the road, contradicted or unconfirmed by
+// construction and by the closed form of the limit of σ.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <string>
-#include <vector>
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/off_road.hpp"
-#include "tests/road/cell_maps.hpp"
+#include "tests/road/street_maps.hpp"
 
 namespace roadstereo {
 namespace {
 
-std::size_t count_invalid(const Image<float>& map) {
-  std::size_t count = 0;
-  for (int v = 0; v < map.height(); ++v) {
-    for (int u = 0; u < map.width(); ++u) count += std::isnan(map(u, v)) ? 1U : 0U;
-  }
-  return count;
-}
+using Cells = test::StreetMaps::Cells;
 
-/// Disparity and σ of a map of one σ, after the rejection.
-test::CellMaps reject_uniform(float sigma, float correlation, double max_sigma_px) {
-  test::CellMaps maps(80, 60);
-  maps.fill(sigma, correlation);
-  reject_off_road(maps.correlation, {max_sigma_px}, 1, maps.disparity, maps.sigma);
+test::StreetMaps reject(test::StreetMaps maps, double max_sigma_px = 1, int threads = 1) {
+  reject_off_road(maps.correlation, maps.scene.view(), maps.shift, {max_sigma_px}, threads, maps.disparity, maps.sigma);
   return maps;
 }
 
-TEST(RejectOffRoad, LimitFollowsCorrelation) {
+/// Whether every pixel of the cells is invalid, or none.
+testing::AssertionResult all_are(const test::StreetMaps& maps, const Cells& cells, bool invalid) {
+  testing::AssertionResult result = testing::AssertionSuccess();
+  maps.for_pixels(cells, [&](int u, int v) {
+    if (std::isnan(maps.disparity(u, v)) == invalid && std::isnan(maps.sigma(u, v)) == invalid) return;
+    result = testing::AssertionFailure() << "at " << u << ", " << v;
+  });
+  return result;
+}
+
+/// The logarithm of a float by its bits is up to 0.09 too small: 6 %.
+TEST(RejectOffRoad, LimitOfSigmaFollowsCorrelation) {
   for (const float correlation : {-0.5F, 0.0F, 0.4F, 0.8F, 1.0F}) {
     for (const double max_sigma_px : {0.5, 1.0}) {
       const double limit = max_sigma_px * std::pow(3, correlation - 1);
-      // The logarithm of a float by its bits is up to 0.09 too small: 6 %.
-      EXPECT_EQ(count_invalid(reject_uniform(static_cast<float>(0.98 * limit), correlation, max_sigma_px).disparity),
-                0U)
-          << correlation;
-      const test::CellMaps rejected = reject_uniform(static_cast<float>(1.08 * limit), correlation, max_sigma_px);
-      EXPECT_EQ(count_invalid(rejected.disparity), rejected.disparity.pixels()) << correlation;
-      EXPECT_EQ(count_invalid(rejected.sigma), rejected.sigma.pixels()) << correlation;
+      for (const double of_limit : {0.98, 1.08}) {
+        test::StreetMaps street(80, 64, 4);
+        street.forget_scene();
+        street.paint_sigma(street.all(), static_cast<float>(of_limit * limit), correlation);
+        EXPECT_TRUE(all_are(reject(street, max_sigma_px), street.all(), of_limit > 1)) << correlation;
+      }
     }
   }
 }
 
-TEST(RejectOffRoad, KeepsWhatRoadEncloses) {
-  test::CellMaps maps(400, 200);
-  maps.fill(0.1F, 0.9F);
-  maps.paint({40, 15, 60, 30}, 2.0F, 0.1F);  // cells: 160 × 60 pixels inside
-  maps.paint({0, 20, 14, 35}, 2.0F, 0.1F);   // at the left border
-  reject_off_road(maps.correlation, {1.0}, 1, maps.disparity, maps.sigma);
-  EXPECT_FALSE(std::isnan(maps.disparity(200, 90)));
-  EXPECT_TRUE(std::isnan(maps.disparity(2, 110)));
-  EXPECT_TRUE(std::isnan(maps.sigma(2, 110)));
-  EXPECT_FALSE(std::isnan(maps.disparity(120, 110)));
-  EXPECT_FALSE(std::isnan(maps.disparity(2, 20)));
-}
-
-TEST(RejectOffRoad, LowerBorderIsRoad) {
-  test::CellMaps maps(200, 120);
-  maps.fill(0.1F, 0.9F);
-  maps.paint({20, 20, 40, 30}, 2.0F, 0.1F);
-  reject_off_road(maps.correlation, {1.0}, 1, maps.disparity, maps.sigma);
-  EXPECT_EQ(count_invalid(maps.disparity), 0U);
-}
-
-/// Half of the cells around the edge of a step are unconfirmed: at the edge the geometric mean is that of both sides.
-TEST(RejectOffRoad, OutermostCellsStay) {
+/// At the edge of a step the geometric mean is that of both sides.
+TEST(RejectOffRoad, SigmaIsThatOfTheSurroundings) {
   constexpr float low = 0.125F, high = 2.0F;  // powers of two: their logarithms are exact
-  test::CellMaps maps(400, 80);
-  maps.fill(low, 0.5F);
-  maps.paint({0, 0, 50, 20}, high, 0.5F);  // columns of cells 0 to 49
+  test::StreetMaps street(400, 80, 4);
+  street.forget_scene();
+  street.paint_sigma(street.all(), low, 0.5F);
+  street.paint_sigma({0, 0, 50, 20}, high, 0.5F);
   // log2 of the limit: log2(3)·(0.5 − 1) = −0.79. Of nine columns k are low: 1 − 4 k/9 > −0.79 up to k = 4, so that
-  // column 49 (whose window has 45 … 53) is unconfirmed, 50 (five low ones) is not, and 49 is an outermost cell.
-  reject_off_road(maps.correlation, {1.0}, 1, maps.disparity, maps.sigma);
-  EXPECT_TRUE(std::isnan(maps.disparity(4 * 48 + 3, 40)));
-  EXPECT_FALSE(std::isnan(maps.disparity(4 * 49, 40)));
+  // column 49 (whose window has 45 … 53) is unconfirmed, and 50 (five low ones) is not.
+  const test::StreetMaps maps = reject(street);
+  EXPECT_TRUE(all_are(maps, {0, 0, 50, 20}, true));
+  EXPECT_TRUE(all_are(maps, {50, 0, 100, 20}, false));
 }
 
 TEST(RejectOffRoad, PixelsWithoutDisparityCountAsThreePixels) {
   for (const float correlation : {0.0F, 1.0F}) {
-    test::CellMaps maps(80, 60);
-    maps.fill(0.05F, correlation);
-    for (int v = 0; v < 60; ++v) {
-      for (int u = 0; u < 80; u += 2) maps.disparity(u, v) = maps.sigma(u, v) = std::numeric_limits<float>::quiet_NaN();
+    test::StreetMaps street(80, 64, 4);
+    street.forget_scene();
+    street.paint_sigma(street.all(), 0.05F, correlation);
+    for (int v = 0; v < 64; ++v) {
+      for (int u = 0; u < 80; u += 2) street.disparity(u, v) = street.sigma(u, v) = test::StreetMaps::nan;
     }
     // √(0.05·3) = 0.39 pixels: above a third, below one.
-    reject_off_road(maps.correlation, {1.0}, 1, maps.disparity, maps.sigma);
-    EXPECT_EQ(count_invalid(maps.disparity), correlation == 0 ? 4800U : 2400U);
+    EXPECT_EQ(std::isnan(reject(street).disparity(1, 1)), correlation == 0);
   }
+}
+
+/// Noise: what is the road for both searches stays.
+TEST(RejectOffRoad, RoadNeedsNoSmallSigma) {
+  test::StreetMaps street(400, 240, 4);
+  street.paint_sigma(street.all(), 2, 0);
+  const test::StreetMaps maps = reject(street);
+  EXPECT_TRUE(all_are(maps, {0, 0, 100, 24}, true));
+  EXPECT_TRUE(all_are(maps, {0, 25, 100, 60}, false));
+}
+
+/// A vehicle that was matched as the road behind it, from above the horizon (cells 24) to the road.
+TEST(RejectOffRoad, RejectsWhatSceneContradicts) {
+  for (const int factor : {4, 8}) {
+    test::StreetMaps street(400, 240, factor);
+    street.paint_scene({40, 20, 60, 40}, 30);
+    const test::StreetMaps maps = reject(street);
+    // Within four coarse columns and a row of its edges the road is as good a match of the scene.
+    const int columns = factor, row = factor / 4;
+    EXPECT_TRUE(all_are(maps, {40 + columns, 25, 60 - columns, 40 - row}, true)) << factor;
+    EXPECT_TRUE(all_are(maps, {0, 41, 100, 60}, false)) << factor;
+    EXPECT_TRUE(all_are(maps, {0, 25, 39, 60}, false)) << factor;
+    EXPECT_TRUE(all_are(maps, {61, 25, 100, 60}, false)) << factor;
+  }
+}
+
+/// Of an unconfirmed cell only the next coarse column counts.
+TEST(RejectOffRoad, UnconfirmedRoadIsComparedNearby) {
+  test::StreetMaps street(400, 240, 4);
+  street.paint_scene({40, 20, 60, 40}, 30);
+  street.paint_sigma(street.all(), 2, 0);
+  const test::StreetMaps maps = reject(street);
+  EXPECT_TRUE(all_are(maps, {41, 26, 59, 40}, true));
+  EXPECT_TRUE(all_are(maps, {0, 41, 100, 60}, false));
+}
+
+/// Above the horizon nothing is road: the coarse pixel of the cell alone counts, and the cells beside a contradicted
+/// one go with it.
+TEST(RejectOffRoad, NeighboursOfContradictedCellsGo) {
+  test::StreetMaps street(400, 240, 4);
+  street.paint_scene({40, 8, 60, 16}, 30);
+  const test::StreetMaps maps = reject(street);
+  EXPECT_TRUE(all_are(maps, {39, 7, 61, 17}, true));
+  EXPECT_TRUE(all_are(maps, {0, 0, 39, 24}, false));
+  EXPECT_TRUE(all_are(maps, {0, 17, 100, 24}, false));
+}
+
+TEST(RejectOffRoad, KeepsWhatRoadEncloses) {
+  test::StreetMaps street(400, 240, 4);
+  street.paint_scene({40, 35, 60, 45}, 30);
+  street.paint_scene({30, 50, 50, 60}, 30);  // at the lower border
+  EXPECT_TRUE(all_are(reject(street), street.all(), false));
+  const test::Maze maze(413, 331);
+  const test::StreetMaps maps = reject(maze.maps);
+  EXPECT_TRUE(all_are(maps, maze.reached, true));
+  EXPECT_TRUE(all_are(maps, maze.enclosed, false));
+}
+
+/// Half a coarse pixel: of 4 pixels, 2. Above the horizon, and where the residual disparity of the road is the same in
+/// all rows: elsewhere that of the row above or below may agree.
+TEST(RejectOffRoad, ToleratesHalfACoarsePixel) {
+  for (const float offset : {-1.9F, 1.9F, -2.1F, 2.1F}) {
+    test::StreetMaps street(400, 240, 4);
+    street.paint_scene(street.all(), offset);
+    const test::StreetMaps maps = reject(street);
+    EXPECT_TRUE(all_are(maps, {0, 0, 100, 24}, std::abs(offset) > 2)) << offset;
+    EXPECT_TRUE(all_are(maps, {0, 34, 100, 60}, std::abs(offset) > 2)) << offset;
+  }
+}
+
+TEST(RejectOffRoad, ZeroKeepsEverything) {
+  test::StreetMaps street(400, 240, 4);
+  street.paint_scene(street.all(), 30);
+  street.paint_sigma(street.all(), 3, 0);
+  EXPECT_TRUE(all_are(reject(street, 0), street.all(), false));
 }
 
 TEST(RejectOffRoad, SameForAnyThreadCount) {
-  test::CellMaps one = test::maze(317, 203);
-  test::CellMaps three = one;
-  reject_off_road(one.correlation, {1.0}, 1, one.disparity, one.sigma);
-  reject_off_road(three.correlation, {1.0}, 3, three.disparity, three.sigma);
-  EXPECT_GT(count_invalid(one.disparity), 0U);
-  for (int v = 0; v < one.disparity.height(); ++v) {
-    for (int u = 0; u < one.disparity.width(); ++u) {
-      ASSERT_EQ(std::isnan(one.disparity(u, v)), std::isnan(three.disparity(u, v))) << u << ", " << v;
-    }
-  }
+  const test::Maze maze(413, 331);
+  const test::StreetMaps one = reject(maze.maps, 1, 1), three = reject(maze.maps, 1, 3);
+  one.for_pixels(one.all(), [&](int u, int v) {
+    ASSERT_EQ(std::isnan(one.disparity(u, v)), std::isnan(three.disparity(u, v))) << u << ", " << v;
+  });
 }
 
 TEST(RejectOffRoad, RefusesMapsOfOtherSizes) {
-  test::CellMaps maps(80, 60);
-  maps.fill(0.1F, 0.9F);
-  Image<float> narrow(79, 60, 0.1F);
-  EXPECT_THROW(reject_off_road(maps.correlation, {1.0}, 1, maps.disparity, narrow), Error);
-  const Image<float> few(19, 15, 0.9F);
-  EXPECT_THROW(reject_off_road(few, {1.0}, 1, maps.disparity, maps.sigma), Error);
-  EXPECT_THROW(reject_off_road(maps.correlation, {-1}, 1, maps.disparity, maps.sigma), Error);
+  const auto message = [](const test::StreetMaps& maps) {
+    try {
+      reject(maps);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  test::StreetMaps street(400, 240, 4);
+  street.sigma.resize(399, 240);
+  EXPECT_NE(message(street).find("399×240"), std::string::npos) << message(street);
+  street = test::StreetMaps(400, 240, 4);
+  street.correlation.resize(99, 60);
+  EXPECT_NE(message(street).find("99×60 cells"), std::string::npos) << message(street);
+  street = test::StreetMaps(400, 240, 4);
+  street.scene.factor = 8;
+  EXPECT_NE(message(street).find("100×60 pixels of 8×8"), std::string::npos) << message(street);
+  EXPECT_THROW(reject(test::StreetMaps(400, 240, 4), -1), Error);
 }
 
 }  // namespace

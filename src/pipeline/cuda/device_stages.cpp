@@ -45,9 +45,12 @@ class DeviceStages final : public FrameStages {
   /// The device must be usable: members already take memory of it.
   DeviceStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration,
                const Device& device)
-      : options_(options), calibration_(calibration), device_(device.index), matcher_(device.multiprocessors) {
+      : options_(options),
+        calibration_(calibration),
+        device_(device.index),
+        scene_search_(options.coarse_search),
+        matcher_(device.multiprocessors) {
     if (options.narrow_search || options.matcher.prior_weight > 0) coarse_search_.emplace(options.coarse_search);
-    if (options.off_road.check_scene) scene_search_.emplace(options.coarse_search);
   }
   /// Memory goes only when no kernel uses it any more. The stream may be the caller's.
   ~DeviceStages() override { DeviceStages::abandon(); }
@@ -112,10 +115,10 @@ class DeviceStages final : public FrameStages {
 
   DisparityPriorView search_scene(const MatchInput& pair, const PerspectiveShift& shift,
                                   const CoarseSearchOptions& options) override {
-    scene_search_->set_options(options);
-    const bool found = scene_search_->find_prior(pair, shift, stream());
+    scene_search_.set_options(options);
+    const bool found = scene_search_.find_prior(pair, shift, stream());
     mark(StageClock::searched);
-    return found ? scene_search_->prior() : DisparityPriorView{};
+    return found ? scene_search_.prior() : DisparityPriorView{};
   }
 
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
@@ -172,11 +175,9 @@ class DeviceStages final : public FrameStages {
 
   ImageView<const float> reject_off_road(ImageView<const float>, const DisparityPriorView& scene,
                                          const PerspectiveShift& shift, const OffRoadOptions& options) override {
-    if (options_.lucas_kanade.radius > 0 && options.max_sigma_px > 0) {
-      off_road_.run(correlation_, static_cast<float>(options.max_sigma_px), maps_.disparity(), maps_.sigma(), stream());
-      if (!scene.disparity.empty()) {
-        off_road_.run({scene.disparity, scene.factor, shift}, maps_.disparity(), maps_.sigma(), stream());
-      }
+    if (options_.lucas_kanade.radius > 0) {
+      off_road_.run({scene.disparity, scene.factor, shift}, correlation_, static_cast<float>(options.max_sigma_px),
+                    maps_.disparity(), maps_.sigma(), stream());
     }
     return maps_.disparity();
   }
@@ -300,7 +301,8 @@ class DeviceStages final : public FrameStages {
   GreyImage left_on_host_, right_on_host_;
   Image<float> disparity_on_host_;
   RoadVerification verification_;
-  std::optional<CudaCoarseSearch> coarse_search_, scene_search_;
+  std::optional<CudaCoarseSearch> coarse_search_;
+  CudaCoarseSearch scene_search_;
   DeviceMatcher matcher_;
   LucasKanade lucas_kanade_;
   ImageView<const float> correlation_;  ///< of the cells of that step

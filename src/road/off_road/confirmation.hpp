@@ -1,21 +1,16 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 
-#include "roadstereo/host_device.hpp"
+#include "core/shifted_road.hpp"
+#include "road/lucas_kanade/gauss_newton.hpp"
+#include "road/row_shift.hpp"
+#include "roadstereo/image_view.hpp"
 
-// What confirms the disparities of a cell, for the host and for kernels. C++17.
+// What confirms or contradicts the disparities of a cell of 4×4 pixels, for the host and for kernels. C++17.
 
 namespace roadstereo {
-
-/// States of a cell.
-enum CellState : std::uint8_t {
-  confirmed = 0,
-  unconfirmed = 1,
-  off_road = 2,  ///< unconfirmed, and connected with the border
-};
 
 /// Cells to either side whose standard errors count.
 constexpr int confirmation_radius = 4;
@@ -43,10 +38,94 @@ ROADSTEREO_HD inline int log_sigma(float sigma) {
 }
 
 /// Whether the pictures confirm a cell whose surroundings have these standard errors and this correlation.
-ROADSTEREO_HD inline CellState assess_cell(const LogSigmas& sigmas, float correlation, float log2_max_sigma) {
+ROADSTEREO_HD inline bool is_confirmed(const LogSigmas& sigmas, float correlation, float log2_max_sigma) {
   constexpr float log2_of_3 = 1.5849625F, steps = 256;
   const float mean = static_cast<float>(sigmas.sum) / (steps * static_cast<float>(sigmas.count));
-  return mean > log2_max_sigma + log2_of_3 * (correlation - 1) ? unconfirmed : confirmed;
+  return mean <= log2_max_sigma + log2_of_3 * (correlation - 1);
+}
+
+/// A coarse map of residual disparities of all that a pair shows, and the shift that they are residuals of.
+struct CoarseScene {
+  ImageView<const float> residual;
+  int factor;  ///< a pixel of the map covers factor × factor pixels of the image
+  PerspectiveShift shift;
+};
+
+/// Mean residual disparity of a cell; NaN where no pixel has one.
+ROADSTEREO_HD inline float cell_residual(ImageView<const float> disparity, const PerspectiveShift& shift, int i,
+                                         int j) {
+  float sum = 0;
+  int count = 0;
+  for (int v = j * alignment_cell; v < (j + 1) * alignment_cell && v < disparity.height(); ++v) {
+    const RowLine line = shift_line(shift, v);
+    for (int u = i * alignment_cell; u < (i + 1) * alignment_cell && u < disparity.width(); ++u) {
+      const float d = disparity(u, v);
+      if (d != d) continue;
+      sum += without_shift(d, line, u);
+      ++count;
+    }
+  }
+  return sum / static_cast<float>(count);
+}
+
+/// States of a cell.
+enum CellState : std::uint8_t {
+  on_road = 0,       ///< its disparity is that of the road, and that of the scene
+  plausible = 1,     ///< nothing speaks against it
+  unconfirmed = 2,   ///< not is_confirmed
+  contradicted = 3,  ///< the scene has another disparity there
+};
+/// Added to the state of a cell that cells on the road do not enclose.
+constexpr int outside = 4;
+
+ROADSTEREO_HD inline bool is_within(float difference, float tolerance) {
+  return difference > -tolerance && difference < tolerance;
+}
+
+/// Coarse pixels to either side that may confirm a cell at the height of the road: blocks of the coarse search that
+/// cover an edge take the disparity of its nearer side, above all along the row.
+struct Around {
+  int columns, rows;
+};
+
+/// Compares the mean residual disparity of a cell with the coarse map, whose resolution is half a coarse pixel.
+ROADSTEREO_HD inline CellState assess_cell(const CoarseScene& scene, float residual, bool confirmed, int i, int j) {
+  constexpr Around if_confirmed{4, 1}, if_unconfirmed{1, 0}, off_road{0, 0};
+  constexpr float resolution = 0.5F, road_thickness = 1.0F / 3;  // coarse pixels, to either side
+  constexpr double centre = 0.5 * (alignment_cell - 1);
+  const CellState otherwise = confirmed ? plausible : unconfirmed;
+  const ImageView<const float>& map = scene.residual;
+  if (residual != residual) return otherwise;
+  const auto factor = static_cast<float>(scene.factor);
+  const auto road =
+      static_cast<float>(shifted_road(scene.shift, i * alignment_cell + centre, j * alignment_cell + centre, -1.0));
+  const bool near_road = road >= 0 && is_within(residual - road, road_thickness * factor);
+  const int x = i * alignment_cell / scene.factor, y = j * alignment_cell / scene.factor;
+  const Around around = !near_road ? off_road : confirmed ? if_confirmed : if_unconfirmed;
+  bool known = false;
+  for (int b = y > around.rows ? y - around.rows : 0; b <= y + around.rows && b < map.height(); ++b) {
+    for (int a = x > around.columns ? x - around.columns : 0; a <= x + around.columns && a < map.width(); ++a) {
+      const float found = map(a, b);
+      if (found != found) continue;
+      known = true;
+      if (is_within(found - residual, resolution * factor)) return near_road ? on_road : otherwise;
+    }
+  }
+  return known ? contradicted : otherwise;
+}
+
+/// Whether cell (i, j) is rejected, after the flood fill: what lies beside a contradicted cell goes with it, since
+/// there the edge of a thing was matched wrongly.
+ROADSTEREO_HD inline bool is_rejected(ImageView<const CellState> states, int i, int j) {
+  const int state = states(i, j);
+  if (state < outside) return false;
+  if (state != outside + plausible) return true;
+  for (int y = j > 0 ? j - 1 : 0; y <= j + 1 && y < states.height(); ++y) {
+    for (int x = i > 0 ? i - 1 : 0; x <= i + 1 && x < states.width(); ++x) {
+      if (states(x, y) == outside + contradicted) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace roadstereo

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
-#include "road/lucas_kanade/gauss_newton.hpp"
-#include "road/off_road/cell_map.hpp"
+#include "core/scratch.hpp"
 #include "road/off_road/confirmation.hpp"
 #include "roadstereo/error.hpp"
 
@@ -14,6 +14,20 @@ namespace roadstereo {
 namespace {
 
 constexpr int rows_per_band = 8;  // of cells
+
+/// One value per cell, in scratch memory.
+template <class T>
+struct CellMap {
+  int columns, rows;
+  ScratchVector<T> values;
+
+  CellMap(int columns_of_map, int rows_of_map)
+      : columns(columns_of_map),
+        rows(rows_of_map),
+        values(scratch_vector<T>(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows))) {}
+  T* row(int j) { return values.data() + std::ptrdiff_t{j} * columns; }
+  const T* row(int j) const { return values.data() + std::ptrdiff_t{j} * columns; }
+};
 
 void sum_log_sigmas(ImageView<const float> sigma, int threads, CellMap<LogSigmas>& cells) {
   parallel_rows(cells.rows, rows_per_band, threads, [&](int first, int last, int) {
@@ -38,8 +52,8 @@ void sum_around(const CellMap<LogSigmas>& cells, int j, LogSigmas* of_columns, L
   }
 }
 
-void assess_cells(ImageView<const float> sigma, ImageView<const float> correlation, float log2_max_sigma, int threads,
-                  CellMap<CellState>& states) {
+void assess_cells(const CoarseScene& scene, ImageView<const float> correlation, ImageView<const float> disparity,
+                  ImageView<const float> sigma, float log2_max_sigma, int threads, CellMap<CellState>& states) {
   CellMap<LogSigmas> cells(states.columns, states.rows);
   sum_log_sigmas(sigma, threads, cells);
   const auto columns = static_cast<std::size_t>(states.columns);
@@ -50,20 +64,73 @@ void assess_cells(ImageView<const float> sigma, ImageView<const float> correlati
     for (int j = first; j < last; ++j) {
       sum_around(cells, j, of_columns, sums);
       for (int i = 0; i < states.columns; ++i) {
-        states.row(j)[i] = assess_cell(sums[i], correlation(i, j), log2_max_sigma);
+        const bool confirmed = is_confirmed(sums[i], correlation(i, j), log2_max_sigma);
+        states.row(j)[i] = assess_cell(scene, cell_residual(disparity, scene.shift, i, j), confirmed, i, j);
       }
     }
   });
 }
 
-/// Whether a cell and its eight neighbours are off the road.
-bool is_inner(const CellMap<CellState>& states, int i, int j) {
-  for (int y = std::max(0, j - 1); y <= std::min(states.rows - 1, j + 1); ++y) {
-    for (int x = std::max(0, i - 1); x <= std::min(states.columns - 1, i + 1); ++x) {
-      if (states.row(y)[x] != off_road) return false;
+/// Flood fill from the upper, left and right border through cells that are not on the road and their eight neighbours.
+void mark_outside(CellMap<CellState>& states) {
+  auto front = scratch_vector<int>();
+  front.reserve(states.values.size());
+  const auto visit = [&](int i, int j) {
+    CellState& state = states.row(j)[i];
+    if (state == on_road || state >= outside) return;
+    state = static_cast<CellState>(state + outside);
+    front.push_back(j * states.columns + i);
+  };
+  for (int i = 0; i < states.columns; ++i) visit(i, 0);
+  for (int j = 0; j < states.rows; ++j) {
+    visit(0, j);
+    visit(states.columns - 1, j);
+  }
+  while (!front.empty()) {
+    const int i = front.back() % states.columns, j = front.back() / states.columns;
+    front.pop_back();
+    for (int y = std::max(0, j - 1); y <= std::min(states.rows - 1, j + 1); ++y) {
+      for (int x = std::max(0, i - 1); x <= std::min(states.columns - 1, i + 1); ++x) visit(x, y);
     }
   }
-  return true;
+}
+
+void reject_cells(const CellMap<CellState>& states, int threads, Image<float>& disparity, Image<float>& sigma) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const ImageView<const CellState> view(states.values.data(), states.columns, states.rows);
+  parallel_rows(states.rows, rows_per_band, threads, [&](int first, int last, int) {
+    for (int j = first; j < last; ++j) {
+      const int end_v = std::min((j + 1) * alignment_cell, disparity.height());
+      for (int i = 0; i < states.columns; ++i) {
+        if (!is_rejected(view, i, j)) continue;
+        const int u = i * alignment_cell, count = std::min(alignment_cell, disparity.width() - u);
+        for (int v = j * alignment_cell; v < end_v; ++v) {
+          std::fill_n(disparity.row(v) + u, count, nan);
+          std::fill_n(sigma.row(v) + u, count, nan);
+        }
+      }
+    }
+  });
+}
+
+void require_sizes(ImageView<const float> correlation, const DisparityPriorView& scene,
+                   ImageView<const float> disparity, ImageView<const float> sigma) {
+  const int width = disparity.width(), height = disparity.height();
+  const int columns = alignment_cells(width), rows = alignment_cells(height);
+  if (sigma.width() != width || sigma.height() != height) {
+    fail("the disparity map has ", width, "×", height, " pixels and its standard errors ", sigma.width(), "×",
+         sigma.height(), "; they must be equal");
+  }
+  if (correlation.width() != columns || correlation.height() != rows) {
+    fail("the correlation has ", correlation.width(), "×", correlation.height(), " cells; a map of ", width, "×",
+         height, " pixels has ", columns, "×", rows);
+  }
+  if (scene.factor < alignment_cell || scene.disparity.width() != width / scene.factor ||
+      scene.disparity.height() != height / scene.factor) {
+    fail("the map of the scene has ", scene.disparity.width(), "×", scene.disparity.height(), " pixels of ",
+         scene.factor, "×", scene.factor, "; a map of ", width, "×", height, " pixels needs ⌊W/s⌋×⌊H/s⌋ of s×s, s ≥ ",
+         alignment_cell);
+  }
 }
 
 }  // namespace
@@ -72,22 +139,16 @@ void OffRoadOptions::validate() const {
   require_range("off_road", "max_sigma_px", max_sigma_px, 0.0, 10.0);
 }
 
-void reject_off_road(ImageView<const float> correlation, const OffRoadOptions& options, int threads,
-                     Image<float>& disparity, Image<float>& sigma) {
+void reject_off_road(ImageView<const float> correlation, const DisparityPriorView& scene, const PerspectiveShift& shift,
+                     const OffRoadOptions& options, int threads, Image<float>& disparity, Image<float>& sigma) {
   options.validate();
-  const int width = disparity.width(), height = disparity.height();
-  const int columns = alignment_cells(width), rows = alignment_cells(height);
-  require_equal_sizes(disparity, sigma);
-  if (correlation.width() != columns || correlation.height() != rows) {
-    fail("the correlation has ", correlation.width(), "×", correlation.height(), " cells; a map of ", width, "×",
-         height, " pixels has ", columns, "×", rows);
-  }
+  require_sizes(correlation, scene, disparity, sigma);
   if (options.max_sigma_px == 0) return;
-  CellMap<CellState> states(columns, rows);
-  assess_cells(sigma, correlation, std::log2(static_cast<float>(options.max_sigma_px)), threads, states);
-  connect_with_border(states);
-  reject_cells(
-      columns, rows, threads, [&](int i, int j) { return is_inner(states, i, j); }, disparity, sigma);
+  CellMap<CellState> states(correlation.width(), correlation.height());
+  assess_cells({scene.disparity, scene.factor, shift}, correlation, disparity, sigma,
+               std::log2(static_cast<float>(options.max_sigma_px)), threads, states);
+  mark_outside(states);
+  reject_cells(states, threads, disparity, sigma);
 }
 
 }  // namespace roadstereo

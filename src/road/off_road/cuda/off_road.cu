@@ -1,11 +1,10 @@
-// Floor: 4 bytes a pixel to read σ, 8 to write where cells are rejected: 1 to 3 MB for 640×360. The connection with the
-// border is one block of threads, which costs latency: some 20 cycles a cell and sweep along the rows and the columns,
-// two to five sweeps; nothing where no cell at the border is unconfirmed.
+// Floor: 8 bytes a pixel to read σ and disparity, 8 to write where cells are rejected: 2 to 4 MB for 640×360. The flood
+// fill from the border is one block of threads, which costs latency: some 20 cycles a cell and sweep along the rows and
+// the columns, two to five sweeps.
 
 #include <cmath>
 
 #include "core/cuda/launch.hpp"
-#include "road/lucas_kanade/gauss_newton.hpp"
 #include "road/off_road/cuda/off_road.hpp"
 
 namespace roadstereo::cuda {
@@ -34,9 +33,9 @@ __global__ void sum_log_sigmas(ImageView<const float> sigma, ImageView<LogSigmas
   cells(i, j) = sums;
 }
 
-/// One thread a cell: the window around it.
-__global__ void assess_cells(ImageView<const LogSigmas> cells, ImageView<const float> correlation, float log2_max_sigma,
-                             ImageView<CellState> states) {
+/// One thread a cell: the window around it, and the scene.
+__global__ void assess_cells(CoarseScene scene, ImageView<const LogSigmas> cells, ImageView<const float> correlation,
+                             ImageView<const float> disparity, float log2_max_sigma, ImageView<CellState> states) {
   const int i = thread_column(), j = thread_row();
   if (i >= cells.width() || j >= cells.height()) return;
   LogSigmas sums;
@@ -45,7 +44,16 @@ __global__ void assess_cells(ImageView<const LogSigmas> cells, ImageView<const f
       sums.add(cells(x, y));
     }
   }
-  states(i, j) = assess_cell(sums, __ldg(&correlation(i, j)), log2_max_sigma);
+  const bool confirmed = is_confirmed(sums, __ldg(&correlation(i, j)), log2_max_sigma);
+  states(i, j) = assess_cell(scene, cell_residual(disparity, scene.shift, i, j), confirmed, i, j);
+}
+
+/// Cells that the flood fill can reach.
+__device__ bool is_open(CellState state) {
+  return state != on_road && state < outside;
+}
+__device__ void mark(CellState& state) {
+  state = static_cast<CellState>(state + outside);
 }
 
 /// States along a row or a column of cells.
@@ -56,22 +64,22 @@ struct Line {
   int cells;
   bool has_before, has_behind;  ///< whether there are lines on either side
 
-  /// A cell, or one of the two beside it across the line, is off the road.
+  /// A cell, or one of the two beside it across the line, is outside.
   __device__ bool touches(int k) const {
     const CellState* const cell = at + k * step;
-    return *cell == off_road || (has_before && cell[-across] == off_road) || (has_behind && cell[across] == off_road);
+    return *cell >= outside || (has_before && cell[-across] >= outside) || (has_behind && cell[across] >= outside);
   }
 };
 
-/// Carries `off_road` along a line, forward and back, from its cells and those beside it. Returns whether a cell has
+/// Carries `outside` along a line, forward and back, from its cells and those beside it. Returns whether a cell has
 /// changed.
 __device__ bool sweep(const Line& line) {
   bool changed = false;
   const auto visit = [&](int k) {
     CellState& cell = line.at[k * line.step];
-    if (cell != unconfirmed) return;
+    if (!is_open(cell)) return;
     if (line.touches(k) || (k > 0 && line.touches(k - 1)) || (k + 1 < line.cells && line.touches(k + 1))) {
-      cell = off_road;
+      mark(cell);
       changed = true;
     }
   };
@@ -80,20 +88,20 @@ __device__ bool sweep(const Line& line) {
   return changed;
 }
 
-__device__ void mark(CellState& cell) {
-  if (cell == unconfirmed) cell = off_road;
+__device__ void mark_border(CellState& cell) {
+  if (is_open(cell)) mark(cell);
 }
 
 /// One block of threads: flood fill from the upper, left and right border, by sweeps until nothing changes. Every
 /// second row and column takes part at a time, so that no thread reads what another one writes.
-__global__ void connect_with_border(ImageView<CellState> states) {
+__global__ void mark_outside(ImageView<CellState> states) {
   const int columns = states.width(), rows = states.height();
   const int thread = static_cast<int>(threadIdx.x);
-  for (int i = thread; i < columns; i += connecting_threads) mark(states(i, 0));
+  for (int i = thread; i < columns; i += connecting_threads) mark_border(states(i, 0));
   __syncthreads();
   for (int j = thread; j < rows; j += connecting_threads) {
-    mark(states(0, j));
-    mark(states(columns - 1, j));
+    mark_border(states(0, j));
+    if (columns > 1) mark_border(states(columns - 1, j));
   }
   __syncthreads();
   int* const has_changed = shared_memory<int>();  // in the last sweeps, of any thread
@@ -119,7 +127,10 @@ __global__ void connect_with_border(ImageView<CellState> states) {
   }
 }
 
-__device__ void reject_cell(int i, int j, ImageView<float> disparity, ImageView<float> sigma) {
+/// One thread a cell: its pixels become invalid where it is rejected.
+__global__ void reject_cells(ImageView<const CellState> states, ImageView<float> disparity, ImageView<float> sigma) {
+  const int i = thread_column(), j = thread_row();
+  if (i >= states.width() || j >= states.height() || !is_rejected(states, i, j)) return;
   for (int v = j * alignment_cell; v < min((j + 1) * alignment_cell, disparity.height()); ++v) {
     for (int u = i * alignment_cell; u < min((i + 1) * alignment_cell, disparity.width()); ++u) {
       disparity(u, v) = nanf("");
@@ -128,39 +139,10 @@ __device__ void reject_cell(int i, int j, ImageView<float> disparity, ImageView<
   }
 }
 
-/// One thread a cell: its pixels become invalid when it and its eight neighbours are off the road.
-__global__ void reject_cells(ImageView<const CellState> states, ImageView<float> disparity, ImageView<float> sigma) {
-  const int i = thread_column(), j = thread_row();
-  if (i >= states.width() || j >= states.height()) return;
-  for (int y = max(0, j - 1); y <= min(states.height() - 1, j + 1); ++y) {
-    for (int x = max(0, i - 1); x <= min(states.width() - 1, i + 1); ++x) {
-      if (states(x, y) != off_road) return;
-    }
-  }
-  reject_cell(i, j, disparity, sigma);
-}
-
-/// One thread a cell.
-__global__ void compare_cells(CoarseScene scene, ImageView<const float> disparity, ImageView<CellEvidence> evidence,
-                              ImageView<CellState> states) {
-  const int i = thread_column(), j = thread_row();
-  if (i >= states.width() || j >= states.height()) return;
-  evidence(i, j) = assess_consistency(scene, cell_residual(disparity, scene.shift, i, j), i, j);
-  states(i, j) = evidence(i, j) == CellEvidence::on_road ? confirmed : unconfirmed;
-}
-
-/// One thread a cell.
-__global__ void reject_contradicted(ImageView<const CellEvidence> evidence, ImageView<const CellState> states,
-                                    ImageView<float> disparity, ImageView<float> sigma) {
-  const int i = thread_column(), j = thread_row();
-  if (i >= states.width() || j >= states.height()) return;
-  if (is_contradicted(evidence, states, i, j, states.width(), states.height())) reject_cell(i, j, disparity, sigma);
-}
-
 }  // namespace
 
-void OffRoad::run(ImageView<const float> correlation, float max_sigma_px, ImageView<float> disparity,
-                  ImageView<float> sigma, StreamView stream) {
+void OffRoad::run(const CoarseScene& scene, ImageView<const float> correlation, float max_sigma_px,
+                  ImageView<float> disparity, ImageView<float> sigma, StreamView stream) {
   const int columns = correlation.width(), rows = correlation.height();
   const std::size_t cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   sigmas_.reserve(cells);
@@ -170,27 +152,11 @@ void OffRoad::run(ImageView<const float> correlation, float max_sigma_px, ImageV
   const dim3 grid(blocks_for(columns, block_columns), blocks_for(rows, block_rows));
   const dim3 block(block_columns, block_rows);
   launch("off_road_sigmas", sum_log_sigmas, {grid, block, 0}, stream, ImageView<const float>(sigma), sigmas);
-  launch("off_road_assess", assess_cells, {grid, block, 0}, stream, ImageView<const LogSigmas>(sigmas), correlation,
-         std::log2(max_sigma_px), states);
-  launch("off_road_connect", connect_with_border, {dim3(1), dim3(connecting_threads), sizeof(int)}, stream, states);
+  launch("off_road_assess", assess_cells, {grid, block, 0}, stream, scene, ImageView<const LogSigmas>(sigmas),
+         correlation, ImageView<const float>(disparity), std::log2(max_sigma_px), states);
+  launch("off_road_outside", mark_outside, {dim3(1), dim3(connecting_threads), sizeof(int)}, stream, states);
   launch("off_road_reject", reject_cells, {grid, block, 0}, stream, ImageView<const CellState>(states), disparity,
          sigma);
-}
-
-void OffRoad::run(const CoarseScene& scene, ImageView<float> disparity, ImageView<float> sigma, StreamView stream) {
-  const int columns = alignment_cells(disparity.width()), rows = alignment_cells(disparity.height());
-  const std::size_t cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-  evidence_.reserve(cells);
-  states_.reserve(cells);
-  const ImageView<CellEvidence> evidence(evidence_.data(), columns, rows);
-  const ImageView<CellState> states(states_.data(), columns, rows);
-  const dim3 grid(blocks_for(columns, block_columns), blocks_for(rows, block_rows));
-  const dim3 block(block_columns, block_rows);
-  launch("scene_compare", compare_cells, {grid, block, 0}, stream, scene, ImageView<const float>(disparity), evidence,
-         states);
-  launch("scene_connect", connect_with_border, {dim3(1), dim3(connecting_threads), sizeof(int)}, stream, states);
-  launch("scene_reject", reject_contradicted, {grid, block, 0}, stream, ImageView<const CellEvidence>(evidence),
-         ImageView<const CellState>(states), disparity, sigma);
 }
 
 }  // namespace roadstereo::cuda
