@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "damage/cell_box.hpp"
+#include "damage/kept_maps.hpp"
 
 namespace roadstereo {
 
@@ -36,7 +37,7 @@ class ConnectedComponents {
   auto end() const { return components_.end(); }
 
  private:
-  std::vector<CellRun> runs_;  ///< component by component
+  KeptList<CellRun> runs_ = kept_list<CellRun>();  ///< component by component
   std::vector<ConnectedComponent> components_;
 };
 
