@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/order_statistics.hpp"
+#include "core/binned_selection.hpp"
 
 namespace roadstereo {
 
@@ -17,9 +17,9 @@ struct RobustNormal {
 /// Estimate the distribution of a sample; `values` are overwritten. An empty sample gives zeros.
 inline RobustNormal robust_normal(std::vector<float>& values) {
   if (values.empty()) return {};
-  const float median = upper_median(values);
+  const float median = binned_median(values);
   for (float& value : values) value = std::abs(value - median);
-  return {median, gaussian_mad * upper_median(values), values.size()};
+  return {median, gaussian_mad * binned_median(values), values.size()};
 }
 
 /// Value at equal distance from both medians in standard deviations; the middle where both sigmas are 0.
