@@ -6,6 +6,7 @@
 
 #include "damage/connected_components.hpp"
 #include "damage/contours.hpp"
+#include "damage/kept_maps.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
 #include "damage/outline.hpp"
@@ -69,7 +70,7 @@ struct SearchImages {
 
 /// Mask of the gaps that touch the border of the image.
 Image<std::uint8_t> unseen_cells(const ConnectedComponents& gaps, int columns, int rows) {
-  Image<std::uint8_t> unseen(columns, rows, 0);
+  auto unseen = kept_map<std::uint8_t>(columns, rows, 0);
   for (const ConnectedComponent& gap : gaps) {
     if (gap.touches_border) fill_component(gap, 255, unseen);
   }
@@ -95,21 +96,22 @@ void include_enclosed_gaps(const SearchInput& input, Image<std::uint8_t>& allowe
 
 SearchImages make_search_images(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& assigned) {
   const DepthCells& cells = input.depth_cells;
-  SearchImages images{cells.depth, cells.valid, Image<std::uint8_t>(cells.depth.width(), cells.depth.height(), 0),
-                      assigned};
-  if (kind == DamageKind::protrusion) {
-    float* const depths = images.depth.row(0);
-    for (std::size_t k = 0; k < images.depth.pixels(); ++k) depths[k] = -depths[k];
-  } else {
-    include_enclosed_gaps(input, images.allowed);
-  }
+  const int width = cells.depth.width(), height = cells.depth.height();
+  SearchImages images{kept_map<float>(width, height), kept_map<std::uint8_t>(width, height),
+                      kept_map<std::uint8_t>(width, height, 0), assigned};
+  const float sign = sign_of(kind);
+  const float* const depth = cells.depth.row(0);
+  float* const signed_depth = images.depth.row(0);
+  for (std::size_t k = 0; k < images.depth.pixels(); ++k) signed_depth[k] = sign * depth[k];
+  std::copy_n(cells.valid.row(0), cells.valid.pixels(), images.allowed.row(0));
+  if (kind == DamageKind::depression) include_enclosed_gaps(input, images.allowed);
   return images;
 }
 
 /// Mask of the allowed cells deeper than the threshold.
 Image<std::uint8_t> core_cells(const SearchImages& images, const Thresholds& thresholds) {
   const int width = images.depth.width();
-  Image<std::uint8_t> cores(width, images.depth.height());
+  auto cores = kept_map<std::uint8_t>(width, images.depth.height());
   std::vector<float> min_depths(static_cast<std::size_t>(width));
   for (int j = 0; j < images.depth.height(); ++j) {
     thresholds.min_depths(j, min_depths.data());
@@ -145,8 +147,10 @@ void for_each_impossible(const SearchInput& input, const ConnectedComponent& cor
 bool overlaps_other(const Candidate& candidate, const Image<std::uint8_t>& assigned) {
   const CellBox& box = candidate.box();
   for (int j = box.first_row; j <= box.last_row; ++j) {
-    for (int i = box.first_column; i <= box.last_column; ++i) {
-      const std::uint8_t label = candidate.cells(i, j) ? assigned(i, j) : std::uint8_t{0};
+    const std::uint8_t* const cells = candidate.cells.cells().row(j - box.first_row);
+    const std::uint8_t* const labels = assigned.row(j) + box.first_column;
+    for (int i = 0; i < box.columns(); ++i) {
+      const int label = cells[i] & labels[i];  // cells are 0 or 255
       if (label == label_of(candidate.kind) || label == obstacle_label) return true;
     }
   }
@@ -159,13 +163,12 @@ void update_extent(Candidate& candidate, const Image<std::uint8_t>& assigned) {
   CellBox box;
   candidate.size = 0;
   for (int j = around.first_row; j <= around.last_row; ++j) {
-    for (int i = around.first_column; i <= around.last_column; ++i) {
-      if (!candidate.cells(i, j)) continue;
-      if (assigned(i, j) != 0) {
-        candidate.cells.set(i, j, false);
-        continue;
-      }
-      box.add(i, j);
+    std::uint8_t* const cells = candidate.cells.cells().row(j - around.first_row);
+    const std::uint8_t* const labels = assigned.row(j) + around.first_column;
+    for (int i = 0; i < around.columns(); ++i) {
+      if (labels[i] != 0) cells[i] = 0;
+      if (cells[i] == 0) continue;
+      box.add(around.first_column + i, j);
       ++candidate.size;
     }
   }
@@ -270,8 +273,9 @@ void add_evidence(const SearchInput& input, SearchImages& images, Candidate& can
   std::vector<float> inside;
   const CellBox& box = candidate.box();
   for (int j = box.first_row; j <= box.last_row; ++j) {
+    const std::uint8_t* const is_inside = candidate.cells.cells().row(j - box.first_row);
     for (int i = box.first_column; i <= box.last_column; ++i) {
-      if (candidate.cells(i, j)) inside.push_back(images.depth(i, j));
+      if (is_inside[i - box.first_column] != 0) inside.push_back(images.depth(i, j));
     }
   }
   const RobustNormal damage = robust_normal(inside);
@@ -321,7 +325,12 @@ void remove_outliers(const SearchInput& input, const ConnectedComponent& core, D
 /// Whether the floor of a core is deeper, or higher, than a damage can be.
 bool is_obstacle(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images) {
   const CellRun& first = core.runs.front();
-  return floor_depth(images.field(), core) > max_depth(first.first, first.row, kind, input.thresholds);
+  const float limit = max_depth(first.first, first.row, kind, input.thresholds);
+  const bool is_deep = std::any_of(core.runs.begin(), core.runs.end(), [&](const CellRun& run) {
+    const float* const row = images.depth.row(run.row);
+    return std::any_of(row + run.first, row + run.last + 1, [limit](float depth) { return depth > limit; });
+  });
+  return is_deep && floor_depth(images.field(), core) > limit;
 }
 
 /// Segment the region around a core and add it to `found` if it is large enough and surrounded by road.
@@ -365,7 +374,7 @@ std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std:
   const Image<std::uint8_t> unseen = unseen_cells(gaps, road.width(), road.height());
   const SearchInput input{depth_cells, road, gaps, unseen, thresholds, image_edges};
   std::vector<Candidate> found;
-  Image<std::uint8_t> assigned(depth_cells.depth.width(), depth_cells.depth.height(), 0);
+  auto assigned = kept_map<std::uint8_t>(road.width(), road.height(), 0);
   find_kind(input, DamageKind::depression, assigned, found);
   if (protrusions) find_kind(input, DamageKind::protrusion, assigned, found);
   return found;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "damage/kept_maps.hpp"
+
 namespace roadstereo {
 namespace {
 
@@ -33,13 +35,18 @@ class ComponentBranch {
  public:
   ComponentBranch(const DepthField& field, const ConnectedComponent& seeds,
                   const std::array<float, contour_level_count>& levels, const CellBox& within)
-      : field_(field), levels_(levels), box_(within), level_counts_(within.columns(), within.rows(), 0) {
+      : field_(field),
+        levels_(levels),
+        box_(within),
+        level_counts_(kept_map<std::uint8_t>(within.columns(), within.rows(), 0)) {
     for (const CellRun& run : seeds.runs) {
       for (int i = run.first; i <= run.last; ++i) visit(i, run.row, contour_level_count);
     }
     for (int k = contour_level_count; k > 0; --k) flood_level(k);
   }
 
+  /// Numbers of levels of row j of the box.
+  const std::uint8_t* level_counts(int j) const { return level_counts_.row(j - box_.first_row); }
   /// Number of levels, from the lowest, whose component contains the cell; 0 outside the box.
   int level_count(int i, int j) const {
     return box_.contains(i, j) ? level_counts_(i - box_.first_column, j - box_.first_row) : 0;
@@ -115,10 +122,11 @@ std::array<ContourStatistics, contour_level_count> measure_contours(
   const ComponentBranch branch(field, seeds, levels, within);
   std::array<ContourSums, contour_level_count> sums{};
   for (int j = within.first_row; j <= within.last_row; ++j) {
+    const std::uint8_t* const counts = branch.level_counts(j);
     for (int i = within.first_column; i <= within.last_column; ++i) {
-      const int count = branch.level_count(i, j);
+      const int count = counts[i - within.first_column];
       if (count == 0) continue;
-      for (int k = 0; k < count; ++k) ++sums[static_cast<std::size_t>(k)].area;
+      ++sums[static_cast<std::size_t>(count - 1)].area;
       // The cell is on the contour of every component that does not contain all of its neighbours.
       int min_count = count;
       for_each_neighbour(i, j, field.depth.width(), field.depth.height(), [&](int column, int row) {
@@ -132,6 +140,8 @@ std::array<ContourStatistics, contour_level_count> measure_contours(
       }
     }
   }
+  // So far the area of each level is what it adds to that of the next higher one.
+  for (std::size_t k = contour_level_count - 1; k > 0; --k) sums[k - 1].area += sums[k].area;
   std::array<ContourStatistics, contour_level_count> contours;
   std::transform(sums.begin(), sums.end(), contours.begin(), [](const ContourSums& sum) { return sum.statistics(); });
   return contours;

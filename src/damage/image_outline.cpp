@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "damage/contours.hpp"
+#include "damage/kept_maps.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
 #include "damage/robust_normal.hpp"
@@ -20,52 +21,59 @@ struct BoxMap {
   float operator()(int i, int j) const { return values(i - box.first_column, j - box.first_row); }
 };
 
-/// Distribution of the cells of `included` that are not in `excluded` (may be null). Robust, since one wall of a dark
-/// hole may be sunlit.
+/// Distribution of the cells of `included` that are not in `excluded` (may be null), all of one box. Robust, since one
+/// wall of a dark hole may be sunlit.
 RobustNormal tone_of(const BoxMap& grey, const BoxMask& included, const BoxMask* excluded) {
-  const CellBox& box = grey.box;
   std::vector<float> values;
-  for (int j = box.first_row; j <= box.last_row; ++j) {
-    for (int i = box.first_column; i <= box.last_column; ++i) {
-      if (included(i, j) && (excluded == nullptr || !(*excluded)(i, j))) values.push_back(grey(i, j));
-    }
+  const float* const grey_levels = grey.values.row(0);
+  const std::uint8_t* const is_included = included.cells().row(0);
+  const std::uint8_t* const is_excluded = excluded == nullptr ? nullptr : excluded->cells().row(0);
+  for (std::size_t k = 0; k < grey.values.pixels(); ++k) {
+    if (is_included[k] != 0 && (is_excluded == nullptr || is_excluded[k] == 0)) values.push_back(grey_levels[k]);
   }
   return robust_normal(values);
 }
 
-/// Mean grey levels of the cells of a box, 1/16 grey level.
-BoxMap grey_cells(const ImageEdges& image_edges, const CellBox& box) {
+/// Mean grey levels of a row of cells from `first` on, 1/16 grey level.
+void read_grey_row(const ImageEdges& image_edges, int first, int count, int row, std::vector<int>& sums, float* means) {
   const int factor = image_edges.factor;
-  BoxMap cells{box, Image<float>(box.columns(), box.rows())};
-  for (int j = 0; j < box.rows(); ++j) {
-    const int first_v = (box.first_row + j) * factor;
-    const int end_v = std::min(first_v + factor, image_edges.grey.height());
-    for (int i = 0; i < box.columns(); ++i) {
-      const int first_u = (box.first_column + i) * factor;
-      const int end_u = std::min(first_u + factor, image_edges.grey.width());
-      int sum = 0;
-      for (int v = first_v; v < end_v; ++v) {
-        for (int u = first_u; u < end_u; ++u) sum += image_edges.grey(u, v);
-      }
-      cells.values(i, j) = static_cast<float>(sum) / static_cast<float>((end_u - first_u) * (end_v - first_v));
-    }
+  const int first_u = first * factor, columns = std::min(count * factor, image_edges.grey.width() - first_u);
+  const int first_v = row * factor, end_v = std::min(first_v + factor, image_edges.grey.height());
+  sums.assign(static_cast<std::size_t>(columns), 0);
+  for (int v = first_v; v < end_v; ++v) {
+    const std::int16_t* const grey = image_edges.grey.row(v) + first_u;
+    for (int u = 0; u < columns; ++u) sums[static_cast<std::size_t>(u)] += grey[u];
   }
-  return cells;
+  for (int i = 0; i < count; ++i) {
+    const int end = std::min((i + 1) * factor, columns);
+    int sum = 0;
+    for (int u = i * factor; u < end; ++u) sum += sums[static_cast<std::size_t>(u)];
+    means[i] = static_cast<float>(sum) / static_cast<float>((end - i * factor) * (end_v - first_v));
+  }
 }
 
-/// Grey levels after a 3×3 box filter, which suppresses single stones.
+/// Grey levels of the cells of a box after a 3×3 box filter, which suppresses single stones. The border of the image is
+/// replicated.
 BoxMap smooth_grey_cells(const ImageEdges& image_edges, const CellBox& box, int columns, int rows) {
-  const BoxMap grey = grey_cells(image_edges, box.grown(1, columns, rows));
-  BoxMap result{box, Image<float>(box.columns(), box.rows())};
-  for (int j = box.first_row; j <= box.last_row; ++j) {
-    for (int i = box.first_column; i <= box.last_column; ++i) {
-      float sum = 0;
-      for (int dj = -1; dj <= 1; ++dj) {
-        for (int di = -1; di <= 1; ++di) {
-          sum += grey(std::clamp(i + di, 0, columns - 1), std::clamp(j + dj, 0, rows - 1));
-        }
-      }
-      result.values(i - box.first_column, j - box.first_row) = sum / 9;
+  const CellBox around = box.grown(1, columns, rows);
+  const int width = box.columns(), height = box.rows();
+  auto grey = kept_map<float>(width + 2, height + 2);  // with a margin of one cell
+  std::vector<int> sums;
+  for (int j = around.first_row; j <= around.last_row; ++j) {
+    float* const row = grey.row(j - box.first_row + 1);
+    read_grey_row(image_edges, around.first_column, around.columns(), j, sums,
+                  row + (around.first_column - box.first_column + 1));
+    if (around.first_column == box.first_column) row[0] = row[1];
+    if (around.last_column == box.last_column) row[width + 1] = row[width];
+  }
+  if (around.first_row == box.first_row) std::copy_n(grey.row(1), width + 2, grey.row(0));
+  if (around.last_row == box.last_row) std::copy_n(grey.row(height), width + 2, grey.row(height + 1));
+  BoxMap result{box, kept_map<float>(width, height)};
+  for (int j = 0; j < height; ++j) {
+    const float *const a = grey.row(j), *const b = grey.row(j + 1), *const c = grey.row(j + 2);
+    float* const smooth = result.values.row(j);
+    for (int i = 0; i < width; ++i) {
+      smooth[i] = (a[i] + a[i + 1] + a[i + 2] + b[i] + b[i + 1] + b[i + 2] + c[i] + c[i + 1] + c[i + 2]) / 9;
     }
   }
   return result;

@@ -7,6 +7,7 @@
 
 #include "core/order_statistics.hpp"
 #include "damage/contours.hpp"
+#include "damage/kept_maps.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
 #include "damage/robust_normal.hpp"
@@ -31,18 +32,28 @@ CellBox search_box(const DepthField& field, const ConnectedComponent& seeds) {
   return seeds.box.grown(size + 16, field.depth.width(), field.depth.height());
 }
 
-/// Median depth of the allowed cells between two distances from a region; 0 if there is none.
-float median_around(const DepthField& field, const BoxMask& region, int near, int far) {
+/// Depths of the allowed cells between two distances from a region.
+std::vector<float> depths_between(const DepthField& field, const BoxMask& region, int near, int far) {
   const CellBox around = region.box().grown(far, field.depth.width(), field.depth.height());
   const BoxMask inner = dilate(region, near, around);
   const BoxMask outer = dilate(region, far, around);
   std::vector<float> depths;
   for (int j = around.first_row; j <= around.last_row; ++j) {
-    for (int i = around.first_column; i <= around.last_column; ++i) {
-      if (outer(i, j) && !inner(i, j) && field.allowed(i, j) != 0) depths.push_back(field.depth(i, j));
+    const std::uint8_t* const is_inner = inner.cells().row(j - around.first_row);
+    const std::uint8_t* const is_outer = outer.cells().row(j - around.first_row);
+    const float* const depth = field.depth.row(j) + around.first_column;
+    const std::uint8_t* const allowed = field.allowed.row(j) + around.first_column;
+    for (int i = 0; i < around.columns(); ++i) {
+      if ((is_outer[i] & ~is_inner[i] & allowed[i]) != 0) depths.push_back(depth[i]);
     }
   }
-  return depths.empty() ? 0 : upper_median(depths);
+  return depths;
+}
+
+/// Median depth of the allowed cells between two distances from a region; 0 if there is none.
+float median_around(const DepthField& field, const BoxMask& region, int near, int far) {
+  const std::vector<float> depths = depths_between(field, region, near, far);
+  return depths.empty() ? 0 : binned_median(depths);
 }
 
 /// Depth halfway between the floor and the surroundings: the edge of a step that was smoothed. A wide hollow around a
@@ -86,15 +97,7 @@ RobustNormal depths_around(const DepthField& field, const BoxMask& region, int n
   constexpr int min_band_cells = 3;
   const double radius = std::sqrt(static_cast<double>(cell_count(region)) / std::numbers::pi);
   const int far_cells = near_cells + std::max(min_band_cells, static_cast<int>(band_radii * radius));
-  const CellBox wide = region.box().grown(far_cells, field.depth.width(), field.depth.height());
-  const BoxMask near = dilate(region, near_cells, wide);
-  const BoxMask far = dilate(region, far_cells, wide);
-  std::vector<float> around;
-  for (int j = wide.first_row; j <= wide.last_row; ++j) {
-    for (int i = wide.first_column; i <= wide.last_column; ++i) {
-      if (far(i, j) && !near(i, j) && field.allowed(i, j) != 0) around.push_back(field.depth(i, j));
-    }
-  }
+  std::vector<float> around = depths_between(field, region, near_cells, far_cells);
   return robust_normal(around);
 }
 
@@ -116,27 +119,37 @@ float floor_depth(const DepthField& field, const ConnectedComponent& seeds) {
 
 BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, float level) {
   const int columns = field.depth.width();
-  const int rows = field.depth.height();
   CellBox box;
-  std::vector<CellIndex> cells;
-  const auto visit = [&](int i, int j) {
-    if (field.visited(i, j) != 0 || field.allowed(i, j) == 0 || field.depth(i, j) <= level) return;
-    field.visited(i, j) = 255;
-    box.add(i, j);
-    cells.push_back({i, j});
+  KeptList<CellRun> runs = kept_list<CellRun>();
+  // Adds the runs of a row that have a cell from `first` to `last`.
+  const auto add_runs = [&](int row, int first, int last) {
+    const float* const depth = field.depth.row(row);
+    const std::uint8_t* const allowed = field.allowed.row(row);
+    std::uint8_t* const visited = field.visited.row(row);
+    const auto is_open = [&](int i) { return visited[i] == 0 && allowed[i] != 0 && depth[i] > level; };
+    for (int i = first; i <= last; ++i) {
+      if (!is_open(i)) continue;
+      CellRun run{row, i, i};
+      while (run.first > 0 && is_open(run.first - 1)) --run.first;
+      while (run.last + 1 < columns && is_open(run.last + 1)) ++run.last;
+      std::fill(visited + run.first, visited + run.last + 1, std::uint8_t{255});
+      box.add_run(row, run.first, run.last);
+      runs.push_back(run);
+      i = run.last + 1;
+    }
   };
-  for (const CellRun& run : seeds.runs) {
-    for (int i = run.first; i <= run.last; ++i) visit(i, run.row);
-  }
+  for (const CellRun& run : seeds.runs) add_runs(run.row, run.first, run.last);
   std::size_t next = 0;
-  while (next < cells.size()) {
-    const CellIndex cell = cells[next++];
-    for_each_neighbour(cell.column, cell.row, columns, rows, visit);
+  while (next < runs.size()) {
+    const CellRun run = runs[next++];
+    if (run.row > 0) add_runs(run.row - 1, run.first, run.last);
+    if (run.row + 1 < field.depth.height()) add_runs(run.row + 1, run.first, run.last);
   }
   BoxMask region(box);
-  for (const CellIndex& cell : cells) {
-    region.set(cell.column, cell.row);
-    field.visited(cell.column, cell.row) = 0;
+  for (const CellRun& run : runs) {
+    const int count = run.last - run.first + 1;
+    std::fill_n(region.cells().row(run.row - box.first_row) + (run.first - box.first_column), count, std::uint8_t{255});
+    std::fill_n(field.visited.row(run.row) + run.first, count, std::uint8_t{0});
   }
   return region;
 }
