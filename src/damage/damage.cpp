@@ -1,10 +1,13 @@
 #include "roadstereo/damage.hpp"
 
+#include <algorithm>
 #include <limits>
 
+#include "core/parallel.hpp"
 #include "core/require_range.hpp"
 #include "damage/candidates.hpp"
 #include "damage/cells.hpp"
+#include "damage/damage_maps.hpp"
 #include "damage/depth_cells.hpp"
 #include "damage/measurement.hpp"
 #include "damage/road_region.hpp"
@@ -48,18 +51,39 @@ std::string reason_for_pixels(const DamageInput& input) {
 
 /// Fit the road surface and find the road region by alternating between them.
 void find_road(const Cells& cells, const SurfaceCoordinates& coordinates, RoadSurface& surface,
-               Image<std::uint8_t>& road) {
-  surface = fit_road_surface(cells, coordinates);
-  road = find_road_region(cells, surface);
+               Image<std::uint8_t>& road, int threads) {
+  surface = fit_road_surface(cells, coordinates, threads);
+  road = find_road_region(cells, surface, threads);
   for (const Sampling sampling : {Sampling::coarse, Sampling::fine}) {
-    surface = refit_road_surface(cells, coordinates, road, surface, sampling);
-    road = find_road_region(cells, surface);
+    surface = refit_road_surface(cells, coordinates, road, surface, sampling, threads);
+    road = find_road_region(cells, surface, threads);
   }
 }
 
 ImageEdges make_image_edges(const DamageInput& input, const Cells& cells) {
   constexpr int window_radius_px = SmoothingError::window_radius_px;
   return {input.grey, cells.factor, (window_radius_px + cells.factor - 1) / cells.factor};
+}
+
+/// Find the candidates, and fill the maps of `result` regardless of them meanwhile.
+void search_and_fill(const DamageInput& input, const DamageOptions& options, const Thresholds& thresholds,
+                     DepthCells& depth_cells, int threads, Segmentation& segmentation,
+                     std::optional<FrameGeometry>& geometry, DamageMap& result) {
+  constexpr int rows_per_band = 64;
+  const int width = input.transformed.width(), height = input.transformed.height();
+  resize_maps(width, height, result);
+  const int bands = (height + rows_per_band - 1) / rows_per_band;
+  parallel_for(bands + 2, threads, [&](int task, int) {
+    if (task == 0) {
+      segmentation.candidates = find_candidates(depth_cells, segmentation.road, thresholds,
+                                                make_image_edges(input, segmentation.cells), options.protrusions);
+    } else if (task == 1) {
+      if (result.metric) geometry.emplace(input);
+    } else {
+      const int first = (task - 2) * rows_per_band;
+      fill_road_rows(input, segmentation, first, std::min(first + rows_per_band, height), result);
+    }
+  });
 }
 
 }  // namespace
@@ -96,20 +120,20 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
   require_input(input);
   Cells cells = make_cells(input.transformed, input.sigma,
                            cell_factor(input.transformed.width(), input.transformed.height()), threads);
-  const SurfaceCoordinates coordinates = surface_coordinates(cells, input);
+  const SurfaceCoordinates coordinates = surface_coordinates(cells, input, threads);
   RoadSurface surface;
   Image<std::uint8_t> road;
-  find_road(cells, coordinates, surface, road);
-  if (move_unsupported_cells(input, surface, threads, cells)) find_road(cells, coordinates, surface, road);
-  DepthCells depth_cells = make_depth_cells(cells, surface);
+  find_road(cells, coordinates, surface, road, threads);
+  if (move_unsupported_cells(input, surface, threads, cells)) find_road(cells, coordinates, surface, road, threads);
+  DepthCells depth_cells = make_depth_cells(cells, surface, threads);
   result.non_metric_reason = reason_for_pixels(input);
   result.metric = result.non_metric_reason.empty();
   result.noise_px = surface.noise;
   const Thresholds thresholds(input, options, cells, coordinates, depth_cells.noise, result.metric);
-  std::vector<Candidate> candidates =
-      find_candidates(depth_cells, road, thresholds, make_image_edges(input, cells), options.protrusions);
-  const Segmentation segmentation{cells, surface, road, depth_cells, std::move(candidates)};
-  measure_damage(input, options, segmentation, threads, result);
+  Segmentation segmentation{cells, surface, road, depth_cells, {}};
+  std::optional<FrameGeometry> geometry;
+  search_and_fill(input, options, thresholds, depth_cells, threads, segmentation, geometry, result);
+  measure_damage(input, options, segmentation, geometry, threads, result);
 }
 
 }  // namespace roadstereo

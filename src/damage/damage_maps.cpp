@@ -5,19 +5,18 @@
 #include <limits>
 #include <vector>
 
-#include "core/parallel.hpp"
 #include "damage/cell_interpolation.hpp"
+#include "damage/kept_maps.hpp"
 #include "damage/morphology.hpp"
 
 namespace roadstereo {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr int rows_per_band = 16;
 
 /// Indicator function of a region on the cells of a box: 1 inside, 0 outside.
 Image<float> indicator_of(const BoxMask& region, const CellBox& box) {
-  Image<float> indicator(box.columns(), box.rows());
+  auto indicator = kept_map<float>(box.columns(), box.rows());
   for (int j = 0; j < indicator.height(); ++j) {
     for (int i = 0; i < indicator.width(); ++i) {
       indicator(i, j) = region(box.first_column + i, box.first_row + j) ? 1.0F : 0.0F;
@@ -46,10 +45,59 @@ void rasterise(const Cells& cells, const Candidate& candidate, std::uint16_t id,
   }
 }
 
-/// Depth cells in which islands, cells inside a damage no deeper than its outline, and gaps are interpolated.
-Image<float> depth_without_islands(const Segmentation& segmentation) {
-  Image<float> depth = segmentation.depth_cells.depth;
-  Image<std::uint8_t> valid = segmentation.depth_cells.valid;
+/// Upsample a row of cells by replication.
+void replicate_row(const std::uint8_t* cells, int factor, int width, std::uint8_t* pixels) {
+  for (int i = 0, u = 0; u < width; ++i) {
+    for (const int end = std::min(u + factor, width); u < end; ++u) pixels[u] = cells[i];
+  }
+}
+
+}  // namespace
+
+PixelBox pixel_box(const Candidate& candidate, const Cells& cells) {
+  const CellBox box = padded_box(candidate, cells);
+  return {box.first_column * cells.factor, box.first_row * cells.factor,
+          std::min((box.last_column + 1) * cells.factor, cells.image_width) - 1,
+          std::min((box.last_row + 1) * cells.factor, cells.image_height) - 1};
+}
+
+void resize_maps(int width, int height, DamageMap& result) {
+  result.ids.resize(width, height);
+  result.road.resize(width, height);
+  result.surface.resize(width, height);
+  result.depth.resize(width, height);
+}
+
+void fill_road_rows(const DamageInput& input, const Segmentation& segmentation, int first, int last,
+                    DamageMap& result) {
+  const int width = input.transformed.width();
+  const int factor = segmentation.cells.factor;
+  constexpr float max_finite = std::numeric_limits<float>::max();
+  RowUpsampler surfaces(segmentation.surface.value, factor, width);
+  for (int v = first; v < last; ++v) {
+    std::fill_n(result.ids.row(v), width, std::uint16_t{0});
+    if (v == first || v % factor == 0) {
+      replicate_row(segmentation.road.row(v / factor), factor, width, result.road.row(v));
+    } else {
+      std::copy_n(result.road.row(v - 1), width, result.road.row(v));
+    }
+    const float* const measured = input.transformed.row(v);
+    float* const surface = result.surface.row(v);
+    float* const depth = result.depth.row(v);
+    surfaces.read(v, surface);
+    for (int u = 0; u < width; ++u) {
+      const float below = surface[u] - measured[u];
+      depth[u] = std::abs(measured[u]) <= max_finite ? below : nan;
+    }
+  }
+}
+
+Image<float> depth_without_islands(const Segmentation& segmentation, int threads) {
+  const Image<float>& measured = segmentation.depth_cells.depth;
+  auto depth = kept_map<float>(measured.width(), measured.height());
+  auto valid = kept_map<std::uint8_t>(measured.width(), measured.height());
+  std::copy_n(measured.row(0), measured.pixels(), depth.row(0));
+  std::copy_n(segmentation.depth_cells.valid.row(0), valid.pixels(), valid.row(0));
   bool has_islands = false;
   for (const Candidate& candidate : segmentation.candidates) {
     const float sign = sign_of(candidate.kind);
@@ -63,45 +111,19 @@ Image<float> depth_without_islands(const Segmentation& segmentation) {
       }
     }
   }
-  if (has_islands) fill_gaps(depth, valid);
+  if (has_islands) fill_gaps(depth, valid, threads);
   return depth;
 }
 
-/// Upsample a row of cells by replication.
-void replicate_row(const std::uint8_t* cells, int factor, int width, std::uint8_t* pixels) {
-  for (int i = 0, u = 0; u < width; ++i) {
-    for (const int end = std::min(u + factor, width); u < end; ++u) pixels[u] = cells[i];
+void rasterise(const Segmentation& segmentation, Image<std::uint16_t>& ids) {
+  for (std::size_t k = 0; k < segmentation.candidates.size(); ++k) {
+    rasterise(segmentation.cells, segmentation.candidates[k], static_cast<std::uint16_t>(k + 1), ids);
   }
 }
 
-/// Fill road, surface and measured depth, regardless of damage.
-void fill_road_maps(const DamageInput& input, const Segmentation& segmentation, int threads, DamageMap& result) {
-  const int width = input.transformed.width();
-  const int factor = segmentation.cells.factor;
-  constexpr float max_finite = std::numeric_limits<float>::max();
-  parallel_rows(input.transformed.height(), rows_per_band, threads, [&](int first, int last, int) {
-    RowUpsampler surfaces(segmentation.surface.value, factor, width);
-    for (int v = first; v < last; ++v) {
-      if (v == first || v % factor == 0) {
-        replicate_row(segmentation.road.row(v / factor), factor, width, result.road.row(v));
-      } else {
-        std::copy_n(result.road.row(v - 1), width, result.road.row(v));
-      }
-      const float* const measured = input.transformed.row(v);
-      float* const surface = result.surface.row(v);
-      float* const depth = result.depth.row(v);
-      surfaces.read(v, surface);
-      for (int u = 0; u < width; ++u) {
-        const float below = surface[u] - measured[u];
-        depth[u] = std::abs(measured[u]) <= max_finite ? below : nan;
-      }
-    }
-  });
-}
-
-/// Add a damage to the road region, and interpolate its holes, outliers and islands.
-void fill_damage(const Segmentation& segmentation, const Candidate& candidate, std::uint16_t id,
-                 const Image<float>& interpolated, DamageMap& result) {
+void fill_damage(const Segmentation& segmentation, std::size_t k, const Image<float>& interpolated, DamageMap& result) {
+  const Candidate& candidate = segmentation.candidates[k];
+  const auto id = static_cast<std::uint16_t>(k + 1);
   const Cells& cells = segmentation.cells;
   const float sign = sign_of(candidate.kind);
   const PixelBox box = pixel_box(candidate, cells);
@@ -115,32 +137,6 @@ void fill_damage(const Segmentation& segmentation, const Candidate& candidate, s
       const float inside = interpolate_bilinear(interpolated, cells.factor, u, v);
       if (std::isnan(depth) || is_gap || sign * inside > candidate.level) depth = inside;
     }
-  }
-}
-
-}  // namespace
-
-PixelBox pixel_box(const Candidate& candidate, const Cells& cells) {
-  const CellBox box = padded_box(candidate, cells);
-  return {box.first_column * cells.factor, box.first_row * cells.factor,
-          std::min((box.last_column + 1) * cells.factor, cells.image_width) - 1,
-          std::min((box.last_row + 1) * cells.factor, cells.image_height) - 1};
-}
-
-void fill_maps(const DamageInput& input, const Segmentation& segmentation, int threads, DamageMap& result) {
-  const int width = input.transformed.width();
-  const int height = input.transformed.height();
-  result.ids.assign(width, height, 0);
-  result.road.resize(width, height);
-  result.surface.resize(width, height);
-  result.depth.resize(width, height);
-  fill_road_maps(input, segmentation, threads, result);
-  if (segmentation.candidates.empty()) return;
-  const Image<float> interpolated = depth_without_islands(segmentation);
-  for (std::size_t k = 0; k < segmentation.candidates.size(); ++k) {
-    const auto id = static_cast<std::uint16_t>(k + 1);
-    rasterise(segmentation.cells, segmentation.candidates[k], id, result.ids);
-    fill_damage(segmentation, segmentation.candidates[k], id, interpolated, result);
   }
 }
 

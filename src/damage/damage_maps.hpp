@@ -8,9 +8,21 @@ namespace roadstereo {
 /// Bounding box of the pixels of a candidate, with a margin of one cell.
 PixelBox pixel_box(const Candidate& candidate, const Cells& cells);
 
-/// Fill the maps of `result` at full resolution: ids, road, surface, and depth in pixels of ℓ'. Outlines run between
-/// the centres of cells. Inside a damage, holes and cells no deeper than the outline are interpolated from their
-/// surroundings.
-void fill_maps(const DamageInput& input, const Segmentation& segmentation, int threads, DamageMap& result);
+/// Give the maps their size.
+void resize_maps(int width, int height, DamageMap& result);
+
+/// Fill the rows `first` … `last` − 1 of the maps regardless of damage: no ids, road, surface, and measured depth in
+/// pixels of ℓ'.
+void fill_road_rows(const DamageInput& input, const Segmentation& segmentation, int first, int last, DamageMap& result);
+
+/// Depth cells in which islands, cells inside a damage no deeper than its outline, and gaps are interpolated.
+Image<float> depth_without_islands(const Segmentation& segmentation, int threads);
+
+/// Fill the ids of all candidates: the number of the candidate from 1 on. Outlines run between the centres of cells.
+void rasterise(const Segmentation& segmentation, Image<std::uint16_t>& ids);
+
+/// Add candidate `k` to the road region. Its holes and the cells no deeper than the outline take the depths
+/// `interpolated` from their surroundings.
+void fill_damage(const Segmentation& segmentation, std::size_t k, const Image<float>& interpolated, DamageMap& result);
 
 }  // namespace roadstereo

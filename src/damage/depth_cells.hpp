@@ -12,10 +12,10 @@ struct DepthCells {
   double noise = 0;           ///< robust standard deviation of a cell of the intact road, pixels
 };
 
-DepthCells make_depth_cells(const Cells& cells, const RoadSurface& surface);
+DepthCells make_depth_cells(const Cells& cells, const RoadSurface& surface, int threads);
 
 /// Push–pull interpolation (Gortler et al., "The Lumigraph", 1996): replaces the cells where `valid` is 0 by means of
 /// ever larger neighbourhoods. At least one cell must be valid.
-void fill_gaps(Image<float>& values, const Image<std::uint8_t>& valid);
+void fill_gaps(Image<float>& values, const Image<std::uint8_t>& valid, int threads);
 
 }  // namespace roadstereo

@@ -8,10 +8,6 @@
 namespace roadstereo {
 namespace {
 
-double dot(const FrameGeometry::Point& one, const FrameGeometry::Point& other) {
-  return one[0] * other[0] + one[1] * other[1] + one[2] * other[2];
-}
-
 /// Estimate δt of ℓ' = ℓ − road + δt (eq. (29), disparity_transformation): median over every seventh pixel and row.
 double estimate_delta_t(const DamageInput& input) {
   constexpr int step = 7;
@@ -34,19 +30,6 @@ FrameGeometry::FrameGeometry(const DamageInput& input)
       ground_plane_(ground_plane(*input.plane, *input.calibration)),
       axes_(road_axes(ground_plane_)),
       delta_t_(estimate_delta_t(input)) {}
-
-double FrameGeometry::pixel_area(const Point& road) const {
-  const double f = calibration_.focal_px;
-  return road[2] * road[2] * road[2] / (f * f * dot(ground_plane_.normal, road));
-}
-
-double FrameGeometry::depth_between(const Point& road, const Point& measured) const {
-  return dot(ground_plane_.normal, measured) - dot(ground_plane_.normal, road);
-}
-
-double FrameGeometry::metres_per_pixel(const Point& measured, double disparity) const {
-  return dot(ground_plane_.normal, measured) / (disparity + calibration_.disparity_offset_px);
-}
 
 void FrameGeometry::depths_to_metres(int v, int width, const float* surface, float* depths) const {
   // On the line of sight of a pixel n·P = h·D / (d + doffs), with D = d + doffs of the plane at that pixel.

@@ -25,11 +25,16 @@ class FrameGeometry {
     return {on_road[0], on_road[1]};
   }
   /// Area of the road in one pixel, m², where its line of sight meets the road at `road`: Z³ / (f²·n·P).
-  double pixel_area(const Point& road) const;
+  double pixel_area(const Point& road) const {
+    const double f = calibration_.focal_px;
+    return road[2] * road[2] * road[2] / (f * f * distance(road));
+  }
   /// Depth along the road's normal from `road` to `measured`, two points of one line of sight.
-  double depth_between(const Point& road, const Point& measured) const;
+  double depth_between(const Point& road, const Point& measured) const { return distance(measured) - distance(road); }
   /// Depth along the road's normal per pixel of disparity at `measured`, metres: n·P / (d + doffs).
-  double metres_per_pixel(const Point& measured, double disparity) const;
+  double metres_per_pixel(const Point& measured, double disparity) const {
+    return distance(measured) / (disparity + calibration_.disparity_offset_px);
+  }
   const RoadAxes& axes() const { return axes_; }
   double focal_px() const { return calibration_.focal_px; }
 
@@ -38,6 +43,12 @@ class FrameGeometry {
   void depths_to_metres(int v, int width, const float* surface, float* depths) const;
 
  private:
+  /// n·P: distance along the road's normal.
+  double distance(const Point& point) const {
+    const Point& n = ground_plane_.normal;
+    return n[0] * point[0] + n[1] * point[1] + n[2] * point[2];
+  }
+
   StereoCalibration calibration_;
   DisparityPlane disparity_plane_;
   GroundPlane ground_plane_;

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 
+#include "core/parallel.hpp"
 #include "damage/damage_maps.hpp"
 #include "damage/metric_measurement.hpp"
+#include "damage/pixel_runs.hpp"
 #include "damage/surface_correlation.hpp"
 #include "road/refinement/smoothing_error.hpp"
 #include "roadstereo/resolution_limits.hpp"
@@ -16,22 +20,28 @@ namespace {
 /// Sums over the pixels of one damage. Depths are in pixels of ℓ'.
 struct PixelSums {
   Damage damage;
-  double u = 0, v = 0, depth = 0;
+  std::int64_t u = 0, v = 0;
+  double depth = 0;
   std::size_t measured = 0;
 };
 
-void add_pixel(const DamageInput& input, const DamageMap& maps, int u, int v, PixelSums& sums) {
+/// Add the pixels `first` … `last` of row v.
+void add_run(const DamageInput& input, const DamageMap& maps, int v, int first, int last, PixelSums& sums) {
   Damage& damage = sums.damage;
-  if (damage.pixels == 0) damage.box_px = {u, v, u, v};
-  damage.box_px = {std::min(damage.box_px[0], u), std::min(damage.box_px[1], v), std::max(damage.box_px[2], u),
+  if (damage.pixels == 0) damage.box_px = {first, v, last, v};
+  damage.box_px = {std::min(damage.box_px[0], first), std::min(damage.box_px[1], v), std::max(damage.box_px[2], last),
                    std::max(damage.box_px[3], v)};
-  ++damage.pixels;
-  sums.u += u;
-  sums.v += v;
-  if (u == 0 || v == 0 || u + 1 == maps.ids.width() || v + 1 == maps.ids.height()) damage.cut_by_border = true;
-  if (!std::isfinite(input.transformed(u, v))) return;
-  ++sums.measured;
-  sums.depth += std::abs(maps.depth(u, v));
+  const int count = last - first + 1;
+  damage.pixels += static_cast<std::size_t>(count);
+  sums.u += static_cast<std::int64_t>(first + last) * count / 2;
+  sums.v += static_cast<std::int64_t>(v) * count;
+  if (first == 0 || v == 0 || last + 1 == maps.ids.width() || v + 1 == maps.ids.height()) damage.cut_by_border = true;
+  const float *const transformed = input.transformed.row(v), *const depth = maps.depth.row(v);
+  for (int u = first; u <= last; ++u) {
+    if (!std::isfinite(transformed[u])) continue;
+    ++sums.measured;
+    sums.depth += std::abs(depth[u]);
+  }
 }
 
 /// Error of smoothing over `reach` pixels at (u, v) of a map; 0 at its border.
@@ -75,6 +85,7 @@ double find_deepest(const DamageInput& input, const Segmentation& segmentation, 
     for (int i = box.first_column; i <= box.last_column; ++i) {
       const float depth = sign * depths.depth(i, j);
       if (!candidate.cells(i, j) || depths.valid(i, j) == 0 || depth <= 0) continue;
+      if (depth <= max_bound) continue;  // whatever its noise
       const double noise = cell_noise(input, cells, i, j, depths.noise);
       if (static_cast<double>(depth) - noise <= max_bound) continue;
       max_bound = static_cast<double>(depth) - noise;
@@ -100,14 +111,11 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   const PixelBox box = pixel_box(candidate, segmentation.cells);
   damage.evidence.surface_significance = surface_significance(input, maps, damage.id, box, offset.value);
   damage.confidence = damage.evidence.confidence();
-  for (int v = box.v0; v <= box.v1; ++v) {
-    for (int u = box.u0; u <= box.u1; ++u) {
-      if (maps.ids(u, v) == damage.id) add_pixel(input, maps, u, v, sums);
-    }
-  }
+  for_each_run(maps.ids, damage.id, box,
+               [&](int v, int first, int last) { add_run(input, maps, v, first, last, sums); });
   if (damage.pixels > 0) {
     const auto pixels = static_cast<double>(damage.pixels);
-    damage.centroid_px = {sums.u / pixels, sums.v / pixels};
+    damage.centroid_px = {static_cast<double>(sums.u) / pixels, static_cast<double>(sums.v) / pixels};
     damage.measured_share = static_cast<double>(sums.measured) / pixels;
     damage.mean_depth_px = sums.measured > 0 ? sums.depth / static_cast<double>(sums.measured) : 0;
   }
@@ -121,19 +129,15 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   return damage;
 }
 
-/// Replace the id of every pixel by `new_id[id]`. `damages` bound the rows to visit.
-void relabel(const std::vector<Damage>& damages, const std::vector<std::uint16_t>& new_id, Image<std::uint16_t>& ids) {
-  int top = ids.height();
-  int bottom = -1;
+/// Box around all damages; empty without pixels.
+PixelBox box_around(const std::vector<Damage>& damages) {
+  PixelBox box{std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), -1, -1};
   for (const Damage& damage : damages) {
     if (damage.pixels == 0) continue;
-    top = std::min(top, damage.box_px[1]);
-    bottom = std::max(bottom, damage.box_px[3]);
+    const auto& [u0, v0, u1, v1] = damage.box_px;
+    box = {std::min(box.u0, u0), std::min(box.v0, v0), std::max(box.u1, u1), std::max(box.v1, v1)};
   }
-  for (int v = top; v <= bottom; ++v) {
-    std::uint16_t* const row = ids.row(v);
-    for (int u = 0; u < ids.width(); ++u) row[u] = new_id[row[u]];
-  }
+  return box;
 }
 
 double depth_of(const Damage& damage) {
@@ -155,15 +159,15 @@ bool is_resolvable(const Damage& damage) {
   return damage.metrics ? damage.metrics->severity != Severity::unresolvable : damage.evidence.is_depth_resolved();
 }
 
-/// Separate damages from candidates, and number the damages by decreasing depth, then the candidates.
-void separate_candidates(const DamageOptions& options, DamageMap& result) {
+/// Separate damages from candidates, and number the damages by decreasing depth, then the candidates. Returns the new
+/// id of each old one in `result.ids`, 0 for those of candidates.
+std::vector<std::uint16_t> separate_candidates(const DamageOptions& options, DamageMap& result) {
   std::vector<Damage> measured = std::move(result.damages);
   result.damages.clear();
   result.candidates.clear();
   std::stable_sort(measured.begin(), measured.end(),
                    [](const Damage& one, const Damage& other) { return depth_of(one) > depth_of(other); });
   std::vector<std::uint16_t> new_id(measured.size() + 1, 0);
-  const std::vector<Damage> all = measured;
   for (Damage& damage : measured) {
     if (!is_within_limits(damage, options)) continue;
     const bool is_damage =
@@ -179,27 +183,42 @@ void separate_candidates(const DamageOptions& options, DamageMap& result) {
   }
   int id = static_cast<int>(result.damages.size());
   for (Damage& candidate : result.candidates) candidate.id = ++id;
-  relabel(all, new_id, result.ids);
+  return new_id;
 }
 
 }  // namespace
 
 void measure_damage(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
-                    int threads, DamageMap& result) {
-  fill_maps(input, segmentation, threads, result);
-  result.damages.clear();
-  std::vector<SurfaceOffset> offsets;
-  offsets.reserve(segmentation.candidates.size());
-  for (std::size_t k = 0; k < segmentation.candidates.size(); ++k) {
-    const SurfaceOffset offset =
-        offsets.emplace_back(estimate_surface_offset(segmentation, segmentation.candidates[k]));
-    result.damages.push_back(measure_in_pixels(input, segmentation, k, offset, result));
+                    const std::optional<FrameGeometry>& geometry, int threads, DamageMap& result) {
+  constexpr int rows_per_band = 32;
+  const auto count = static_cast<int>(segmentation.candidates.size());
+  result.damages.assign(segmentation.candidates.size(), {});
+  if (count > 0) {
+    rasterise(segmentation, result.ids);
+    const Image<float> interpolated = depth_without_islands(segmentation, threads);
+    parallel_for(count, threads, [&](int index, int) {
+      const auto k = static_cast<std::size_t>(index);
+      fill_damage(segmentation, k, interpolated, result);
+      const SurfaceOffset offset = estimate_surface_offset(segmentation, segmentation.candidates[k]);
+      Damage& damage = result.damages[k] = measure_in_pixels(input, segmentation, k, offset, result);
+      if (geometry && damage.pixels > 0) {
+        damage.metrics = compute_metrics(input, options, *geometry, offset, result, damage);
+      }
+    });
   }
-  std::optional<FrameGeometry> geometry;
-  if (result.metric) geometry.emplace(input);
-  if (geometry) measure_in_metres(input, options, *geometry, offsets, result);
-  separate_candidates(options, result);
-  if (geometry) depth_to_metres(*geometry, threads, result);
+  const PixelBox all = box_around(result.damages);
+  const std::vector<std::uint16_t> new_id = separate_candidates(options, result);
+  parallel_rows(result.ids.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int v = std::max(first, all.v0); v <= std::min(last - 1, all.v1); ++v) {
+      std::uint16_t* const ids = result.ids.row(v);
+      for (int u = all.u0; u <= all.u1; ++u) {
+        if (ids[u] != 0) ids[u] = new_id[ids[u]];
+      }
+    }
+    for (int v = first; geometry && v < last; ++v) {
+      geometry->depths_to_metres(v, result.ids.width(), result.surface.row(v), result.depth.row(v));
+    }
+  });
 }
 
 }  // namespace roadstereo

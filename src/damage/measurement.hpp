@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "damage/candidates.hpp"
 #include "damage/depth_cells.hpp"
+#include "damage/frame_geometry.hpp"
 #include "damage/road_surface.hpp"
 
 namespace roadstereo {
@@ -17,9 +19,10 @@ struct Segmentation {
   std::vector<Candidate> candidates;
 };
 
-/// Fill the maps of `result` at full resolution and measure every candidate, in metres if `result.metric` is set.
-/// Candidates that are not deep enough are removed; the others are numbered by decreasing depth.
+/// Measure every candidate, in metres if there is a `geometry`, and complete the maps of `result`, which
+/// `fill_road_rows` has filled. Candidates that are not deep enough are removed; the others are numbered by decreasing
+/// depth.
 void measure_damage(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
-                    int threads, DamageMap& result);
+                    const std::optional<FrameGeometry>& geometry, int threads, DamageMap& result);
 
 }  // namespace roadstereo

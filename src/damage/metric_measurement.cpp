@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "core/order_statistics.hpp"
-#include "core/parallel.hpp"
 #include "damage/distress.hpp"
 #include "damage/morphology.hpp"
 #include "damage/oriented_box.hpp"
+#include "damage/pixel_runs.hpp"
 #include "damage/road_outline.hpp"
 #include "damage/smoothing_error.hpp"
 #include "roadstereo/resolution_limits.hpp"
@@ -38,37 +38,70 @@ bool is_on_rim(const Image<std::uint16_t>& ids, int u, int v) {
          ids(u + 1, v) != id || ids(u, v - 1) != id || ids(u, v + 1) != id;
 }
 
+/// Values of neighbouring pixels of a row, computed together.
+struct PixelValues {
+  static constexpr int max_count = 32;
+  template <class Value>
+  using Row = std::array<Value, max_count>;
+
+  Row<double> area, depth_share, volume, metres_per_pixel;
+  Row<double> x, y, z;  ///< on the road
+};
+
+/// Values of the pixels from (u, v) on. The surface is raised by `offset`, pixels of ℓ'.
+void compute_values(const FrameGeometry& geometry, const DamageMap& maps, double offset, double max_depth, int u, int v,
+                    int count, PixelValues& values) {
+  const double f = geometry.focal_px();
+  const float *const surface = maps.surface.row(v) + u, *const depths = maps.depth.row(v) + u;
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double road_disparity = geometry.road_disparity(u + i, v, surface[i] + offset);
+    const double depth = depths[i] + offset;
+    const double disparity = road_disparity - depth;
+    const Point road = geometry.point(u + i, v, road_disparity);
+    const Point point = geometry.point(u + i, v, disparity);
+    values.area[k] = geometry.pixel_area(road);
+    values.depth_share[k] = depth / max_depth;
+    values.volume[k] = (point[2] * point[2] * point[2] - road[2] * road[2] * road[2]) / (3 * f * f);
+    values.metres_per_pixel[k] = values.area[k] * geometry.metres_per_pixel(point, disparity);
+    values.x[k] = road[0];
+    values.y[k] = road[1];
+    values.z[k] = road[2];
+  }
+}
+
 /// Sum over the pixels of a damage. Its surface is raised by `offset`, pixels of ℓ'.
 MetricSums sum_pixels(const DamageInput& input, const FrameGeometry& geometry, const DamageMap& maps,
                       const Damage& damage, double offset) {
   MetricSums sums;
-  const double f = geometry.focal_px();
   const double max_depth = sign_of(damage.kind) * damage.max_depth_px.value;
-  for (int v = damage.box_px[1]; v <= damage.box_px[3]; ++v) {
-    for (int u = damage.box_px[0]; u <= damage.box_px[2]; ++u) {
-      if (maps.ids(u, v) != damage.id) continue;
-      const double road_disparity = geometry.road_disparity(u, v, maps.surface(u, v) + offset);
-      const double disparity = road_disparity - (maps.depth(u, v) + offset);
-      const Point road = geometry.point(u, v, road_disparity);
-      const Point point = geometry.point(u, v, disparity);
-      const double area = geometry.pixel_area(road);
-      const double depth_share = (maps.depth(u, v) + offset) / max_depth;
-      sums.area += area;
-      if (depth_share > 0.25) sums.quarter_m2 += area;
-      if (depth_share > 0.75) sums.three_quarters_m2 += area;
-      sums.volume += (point[2] * point[2] * point[2] - road[2] * road[2] * road[2]) / (3 * f * f);
-      for (std::size_t k = 0; k < 3; ++k) sums.centroid[k] += area * road[k];
-      sums.metres_per_pixel += area * geometry.metres_per_pixel(point, disparity);
-      if (!input.sigma.empty() && std::isfinite(input.sigma(u, v))) {
-        sums.variance += static_cast<double>(input.sigma(u, v)) * input.sigma(u, v);
-        ++sums.sigma_pixels;
-      }
-      if (!is_on_rim(maps.ids, u, v)) continue;
-      const Point on_road = geometry.axes().to_road(road);
-      sums.rim.push_back({on_road[0], on_road[1]});
-      sums.perimeter += std::sqrt(area);
+  PixelValues values;
+  const auto add_pixel = [&](int u, int v, std::size_t k) {
+    const double area = values.area[k];
+    const Point road{values.x[k], values.y[k], values.z[k]};
+    sums.area += area;
+    if (values.depth_share[k] > 0.25) sums.quarter_m2 += area;
+    if (values.depth_share[k] > 0.75) sums.three_quarters_m2 += area;
+    sums.volume += values.volume[k];
+    for (std::size_t axis = 0; axis < 3; ++axis) sums.centroid[axis] += area * road[axis];
+    sums.metres_per_pixel += values.metres_per_pixel[k];
+    if (!input.sigma.empty() && std::isfinite(input.sigma(u, v))) {
+      sums.variance += static_cast<double>(input.sigma(u, v)) * input.sigma(u, v);
+      ++sums.sigma_pixels;
     }
-  }
+    if (!is_on_rim(maps.ids, u, v)) return;
+    const Point on_road = geometry.axes().to_road(road);
+    sums.rim.push_back({on_road[0], on_road[1]});
+    sums.perimeter += std::sqrt(area);
+  };
+  const auto& [u0, v0, u1, v1] = damage.box_px;
+  for_each_run(maps.ids, damage.id, {u0, v0, u1, v1}, [&](int v, int first, int last) {
+    for (int u = first; u <= last; u += PixelValues::max_count) {
+      const int count = std::min(last + 1 - u, PixelValues::max_count);
+      compute_values(geometry, maps, offset, max_depth, u, v, count, values);
+      for (int i = 0; i < count; ++i) add_pixel(u + i, v, static_cast<std::size_t>(i));
+    }
+  });
   return sums;
 }
 
@@ -119,7 +152,34 @@ void set_standard_errors(const MetricSums& sums, const SurfaceOffset& offset, do
   metrics.volume_m3.std_error = std::hypot(sums.area * mean_m, smoothing.volume(metrics.volume_m3.value));
 }
 
-/// Compute the metric properties of one damage.
+}  // namespace
+
+SurfaceOffset estimate_surface_offset(const Segmentation& segmentation, const Candidate& candidate) {
+  constexpr int inner_margin = 3;          // cells; closer to the rim the disparity of the wall is smoothed
+  constexpr float max_sigmas = 3;          // deeper cells are other damage or a hollow
+  constexpr double effective_samples = 6;  // independent undulations of the road on the ring
+  const DepthCells& depth_cells = segmentation.depth_cells;
+  const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
+  const int outer_margin = inner_margin + std::max(3, static_cast<int>(0.4 * radius));
+  const CellBox box = candidate.box().grown(outer_margin, segmentation.cells.width(), segmentation.cells.height());
+  const BoxMask inner = dilate(candidate.cells, inner_margin, box);
+  const BoxMask outer = dilate(candidate.cells, outer_margin, box);
+  std::vector<double> values;
+  const float max_depth = max_sigmas * static_cast<float>(depth_cells.noise);
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      if (!outer(i, j) || inner(i, j) || depth_cells.valid(i, j) == 0) continue;
+      const float depth = depth_cells.depth(i, j);
+      if (std::abs(depth) <= max_depth) values.push_back(-depth);
+    }
+  }
+  constexpr std::size_t min_cells = 20;
+  if (values.size() < min_cells) return {0, depth_cells.noise};
+  const double median = upper_median(values);
+  for (double& value : values) value = std::abs(value - median);
+  return {median, gaussian_mad * upper_median(values) / std::sqrt(effective_samples)};
+}
+
 DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
                               const SurfaceOffset& offset, const DamageMap& maps, Damage& damage) {
   const MetricSums sums = sum_pixels(input, geometry, maps, damage, offset.value);
@@ -158,51 +218,6 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   const bool resolvable = damage.evidence.is_depth_resolved() || metrics.mean_depth_m.is_resolved();
   grade(options.severity, resolvable, metrics);
   return metrics;
-}
-
-}  // namespace
-
-SurfaceOffset estimate_surface_offset(const Segmentation& segmentation, const Candidate& candidate) {
-  constexpr int inner_margin = 3;          // cells; closer to the rim the disparity of the wall is smoothed
-  constexpr float max_sigmas = 3;          // deeper cells are other damage or a hollow
-  constexpr double effective_samples = 6;  // independent undulations of the road on the ring
-  const DepthCells& depth_cells = segmentation.depth_cells;
-  const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
-  const int outer_margin = inner_margin + std::max(3, static_cast<int>(0.4 * radius));
-  const CellBox box = candidate.box().grown(outer_margin, segmentation.cells.width(), segmentation.cells.height());
-  const BoxMask inner = dilate(candidate.cells, inner_margin, box);
-  const BoxMask outer = dilate(candidate.cells, outer_margin, box);
-  std::vector<double> values;
-  const float max_depth = max_sigmas * static_cast<float>(depth_cells.noise);
-  for (int j = box.first_row; j <= box.last_row; ++j) {
-    for (int i = box.first_column; i <= box.last_column; ++i) {
-      if (!outer(i, j) || inner(i, j) || depth_cells.valid(i, j) == 0) continue;
-      const float depth = depth_cells.depth(i, j);
-      if (std::abs(depth) <= max_depth) values.push_back(-depth);
-    }
-  }
-  constexpr std::size_t min_cells = 20;
-  if (values.size() < min_cells) return {0, depth_cells.noise};
-  const double median = upper_median(values);
-  for (double& value : values) value = std::abs(value - median);
-  return {median, gaussian_mad * upper_median(values) / std::sqrt(effective_samples)};
-}
-
-void measure_in_metres(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
-                       const std::vector<SurfaceOffset>& offsets, DamageMap& result) {
-  for (std::size_t k = 0; k < offsets.size(); ++k) {
-    Damage& damage = result.damages[k];
-    if (damage.pixels > 0) damage.metrics = compute_metrics(input, options, geometry, offsets[k], result, damage);
-  }
-}
-
-void depth_to_metres(const FrameGeometry& geometry, int threads, DamageMap& result) {
-  constexpr int rows_per_band = 16;
-  parallel_rows(result.depth.height(), rows_per_band, threads, [&](int first, int last, int) {
-    for (int v = first; v < last; ++v) {
-      geometry.depths_to_metres(v, result.depth.width(), result.surface.row(v), result.depth.row(v));
-    }
-  });
 }
 
 }  // namespace roadstereo

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "damage/frame_geometry.hpp"
 #include "damage/measurement.hpp"
 
@@ -16,11 +14,9 @@ struct SurfaceOffset {
 /// Estimate the offset as the median over a ring of intact road around the candidate.
 SurfaceOffset estimate_surface_offset(const Segmentation& segmentation, const Candidate& candidate);
 
-/// Fill the metric properties of every damage. `offsets` has one element per damage; `result.depth` is in pixels of ℓ'.
-void measure_in_metres(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
-                       const std::vector<SurfaceOffset>& offsets, DamageMap& result);
-
-/// Convert `result.depth` in place from pixels of ℓ' to metres along the road's normal.
-void depth_to_metres(const FrameGeometry& geometry, int threads, DamageMap& result);
+/// Compute the metric properties of a damage, and its standard error of the depth in pixels. The depths of `maps` are
+/// in pixels of ℓ'.
+DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
+                              const SurfaceOffset& offset, const DamageMap& maps, Damage& damage);
 
 }  // namespace roadstereo

@@ -2,13 +2,24 @@
 
 #include <algorithm>
 #include <bit>
-#include <vector>
+
+#include "core/parallel.hpp"
+#include "damage/kept_maps.hpp"
 
 namespace roadstereo {
 namespace {
 
 void unite_with(const std::uint8_t* other, int count, std::uint8_t* cells) {
   for (int i = 0; i < count; ++i) cells[i] |= other[i];
+}
+
+void copy_inverted(const std::uint8_t* cells, std::uint8_t inverse, int count, std::uint8_t* copies) {
+  for (int i = 0; i < count; ++i) copies[i] = cells[i] ^ inverse;
+}
+
+/// Unite every cell of a line with the one `shift` cells after it.
+void unite_shifted(const std::uint8_t* cells, int shift, int count, std::uint8_t* united) {
+  for (int i = 0; i < count; ++i) united[i] = cells[i] | cells[i + shift];
 }
 
 /// Unite `count` neighbours along a line by doubling, in log2(count) steps: calls `step(shift)` for shifts of 1, 2, 4 …
@@ -20,57 +31,58 @@ void unite_by_doubling(int count, const Step& step) {
   if (count > power) step(count - power);
 }
 
-Image<std::uint8_t> dilate_rows(const Image<std::uint8_t>& mask, int radius) {
-  const int width = mask.width();
+/// Dilate the rows `first` … `end` − 1.
+void dilate_rows(Image<std::uint8_t>& lines, int first, int end, int radius) {
+  const int width = lines.width();
   const int padded = width + 2 * radius;
-  Image<std::uint8_t> dilated(width, mask.height());
-  std::vector<std::uint8_t> line(static_cast<std::size_t>(padded));
-  std::vector<std::uint8_t> next(line.size());
-  for (int j = 0; j < mask.height(); ++j) {
+  auto line = kept_list<std::uint8_t>(static_cast<std::size_t>(padded)), next = line;
+  for (int j = first; j < end; ++j) {
     std::fill(line.begin(), line.end(), std::uint8_t{0});
-    std::copy_n(mask.row(j), width, line.begin() + radius);
+    std::copy_n(lines.row(j), width, line.begin() + radius);
+    int count = padded;
     unite_by_doubling(2 * radius + 1, [&](int shift) {
-      next = line;
-      unite_with(next.data() + shift, padded - shift, line.data());
+      count -= shift;
+      unite_shifted(line.data(), shift, count, next.data());
+      line.swap(next);
     });
-    std::copy_n(line.begin(), width, dilated.row(j));
+    std::copy_n(line.begin(), width, lines.row(j));
   }
-  return dilated;
 }
 
-Image<std::uint8_t> dilate_columns(const Image<std::uint8_t>& mask, int radius) {
-  Image<std::uint8_t> lines(mask.width(), mask.height() + 2 * radius, 0);
-  std::copy_n(mask.row(0), mask.pixels(), lines.row(radius));
-  unite_by_doubling(2 * radius + 1, [&](int shift) {
-    for (int j = 0; j + shift < lines.height(); ++j) unite_with(lines.row(j + shift), lines.width(), lines.row(j));
+/// Dilate a mask, or its inverse, and invert the result again.
+Image<std::uint8_t> dilate(const Image<std::uint8_t>& mask, int radius, std::uint8_t inverse, int threads) {
+  constexpr int rows_per_band = 64;
+  const int width = mask.width(), height = mask.height();
+  auto dilated = kept_map<std::uint8_t>(width, height);
+  parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {
+    auto lines = kept_map<std::uint8_t>(width, last - first + 2 * radius, 0);
+    const int top = std::max(0, first - radius), bottom = std::min(height, last + radius);
+    for (int j = top; j < bottom; ++j) copy_inverted(mask.row(j), inverse, width, lines.row(j - first + radius));
+    dilate_rows(lines, top - first + radius, bottom - first + radius, radius);
+    unite_by_doubling(2 * radius + 1, [&](int shift) {
+      for (int j = 0; j + shift < lines.height(); ++j) unite_with(lines.row(j + shift), width, lines.row(j));
+    });
+    for (int j = first; j < last; ++j) copy_inverted(lines.row(j - first), inverse, width, dilated.row(j));
   });
-  Image<std::uint8_t> dilated(mask.width(), mask.height());
-  std::copy_n(lines.row(0), dilated.pixels(), dilated.row(0));
   return dilated;
-}
-
-Image<std::uint8_t> inverted(Image<std::uint8_t> mask) {
-  std::uint8_t* const cells = mask.row(0);
-  for (std::size_t k = 0; k < mask.pixels(); ++k) cells[k] = static_cast<std::uint8_t>(~cells[k]);
-  return mask;
 }
 
 }  // namespace
 
-Image<std::uint8_t> dilate(const Image<std::uint8_t>& mask, int radius) {
-  return dilate_columns(dilate_rows(mask, radius), radius);
+Image<std::uint8_t> dilate(const Image<std::uint8_t>& mask, int radius, int threads) {
+  return dilate(mask, radius, 0, threads);
 }
 
-Image<std::uint8_t> erode(const Image<std::uint8_t>& mask, int radius) {
-  return inverted(dilate(inverted(mask), radius));
+Image<std::uint8_t> erode(const Image<std::uint8_t>& mask, int radius, int threads) {
+  return dilate(mask, radius, 255, threads);
 }
 
 BoxMask dilate(const BoxMask& mask, int radius, const CellBox& box) {
-  return {box, dilate(mask.cropped(box).cells(), radius)};
+  return {box, dilate(mask.cropped(box).cells(), radius, 1)};
 }
 
 BoxMask erode(const BoxMask& mask, int radius, const CellBox& box) {
-  return {box, erode(mask.cropped(box).cells(), radius)};
+  return {box, erode(mask.cropped(box).cells(), radius, 1)};
 }
 
 }  // namespace roadstereo

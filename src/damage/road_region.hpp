@@ -8,6 +8,6 @@ namespace roadstereo {
 /// Find the road region: cells within 3 standard deviations of the surface that belong to its largest connected
 /// component after a morphological opening. Verges and walls of the same height are separate components. 255 inside;
 /// holes of more than 30 cells, such as damage, stay 0.
-Image<std::uint8_t> find_road_region(const Cells& cells, const RoadSurface& surface);
+Image<std::uint8_t> find_road_region(const Cells& cells, const RoadSurface& surface, int threads);
 
 }  // namespace roadstereo

@@ -5,8 +5,11 @@
 #include <cmath>
 #include <vector>
 
+#include "core/binned_selection.hpp"
 #include "core/cholesky.hpp"
 #include "core/order_statistics.hpp"
+#include "core/parallel.hpp"
+#include "damage/kept_maps.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -76,16 +79,6 @@ Shorth shorth_of(Values values) {
   return {0.5 * (values[best] + values[best + count]), 0.5 * (values[best + count] - values[best])};
 }
 
-/// Standard deviation from the MAD of the residuals of magnitude up to `max_residual`; 0 if there are none.
-double robust_sigma(const Values& residuals, double max_residual) {
-  std::vector<float> magnitudes;
-  magnitudes.reserve(residuals.size());
-  for (const double residual : residuals) {
-    if (std::abs(residual) <= max_residual) magnitudes.push_back(static_cast<float>(std::abs(residual)));
-  }
-  return magnitudes.empty() ? 0 : gaussian_mad * static_cast<double>(upper_median(magnitudes));
-}
-
 /// Normal equations of a weighted fit.
 struct NormalEquations {
   Matrix<quadratic_term_count> matrix{};
@@ -137,6 +130,8 @@ SamplePair roots_of_weights(SamplePair residuals) {
 /// The 36 elements of t·tᵀ are scale² times only 15 different monomials x^a·y^b, a + b ≤ 4, so their moments are
 /// accumulated instead, for two samples at a time, and the matrix is assembled at the end. Moments 0 … 5 belong to the
 /// terms, 6 … 14 to x³, x²y, xy², y³, x⁴, x³y, x²y², xy³, y⁴.
+/// Of the first three terms only, the moments from 6 on are not needed.
+template <std::size_t count>
 NormalEquations accumulate(const Samples& samples, double max_residual) {
   constexpr std::size_t moment_count = 15;
   std::array<SamplePair, moment_count> moments{};
@@ -153,6 +148,7 @@ NormalEquations accumulate(const Samples& samples, double max_residual) {
       moments[i] += wss * basis[i];
       right[i] += wsv * basis[i];
     }
+    if constexpr (count == plane_term_count) continue;
     const SamplePair wxx = wss * xx, wxy = wss * xy, wyy = wss * yy;
     const std::array<SamplePair, moment_count - quadratic_term_count> higher{
         wxx * x, wxx * y, wyy * x, wyy * y, wxx * xx, wxx * xy, wxx * yy, wxy * yy, wyy * yy};
@@ -180,18 +176,25 @@ double quadratic(const Coefficients& c, double x, double y, double scale) {
 }
 
 /// Iteratively reweighted least squares (IRLS) with the first `count` terms. Updates the residuals and their standard
-/// deviation `sigma`, which at most halves in one iteration.
+/// deviation `sigma`, from the MAD, which at most halves in one iteration.
 template <std::size_t count>
 Coefficients fit_irls(Samples& samples, int iterations, double& sigma) {
   constexpr double tukey_sigmas = 4.7;  // 95 % efficiency on normal residuals
   constexpr double max_sigmas = 3;      // of the residuals from which sigma is estimated
   Coefficients solution{};
+  std::vector<float> magnitudes(samples.size());
+  BinnedSelection selection;
   for (int i = 0; i < iterations; ++i) {
-    solution = solve<count>(accumulate(samples, tukey_sigmas * sigma));
+    solution = solve<count>(accumulate<count>(samples, tukey_sigmas * sigma));
+    const double max_residual = max_sigmas * sigma;
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      samples.residual[k] = samples.value[k] - quadratic(solution, samples.x[k], samples.y[k], samples.scale[k]);
+      const double residual = samples.value[k] - quadratic(solution, samples.x[k], samples.y[k], samples.scale[k]);
+      const double magnitude = std::abs(residual);
+      samples.residual[k] = residual;
+      magnitudes[k] = static_cast<float>(magnitude <= max_residual ? magnitude : HUGE_VAL);
     }
-    const double estimate = robust_sigma(samples.residual, max_sigmas * sigma);
+    const std::size_t inliers = selection.bin(magnitudes, 0, static_cast<float>(max_residual));
+    const double estimate = inliers > 0 ? gaussian_mad * double{selection.select(inliers / 2)} : 0;
     sigma = std::max(estimate, 0.5 * sigma);
     if (estimate == 0) break;
   }
@@ -200,23 +203,26 @@ Coefficients fit_irls(Samples& samples, int iterations, double& sigma) {
 
 /// Evaluate the surface at every cell.
 RoadSurface evaluate(const Coefficients& solution, double noise, const Cells& cells,
-                     const SurfaceCoordinates& coordinates) {
+                     const SurfaceCoordinates& coordinates, int threads) {
+  constexpr int rows_per_band = 32;
   RoadSurface surface;
   surface.noise = noise;
-  surface.value.resize(cells.width(), cells.height());
-  for (int j = 0; j < cells.height(); ++j) {
-    const float *x = coordinates.x.row(j), *y = coordinates.y.row(j), *scale = coordinates.scale.row(j);
-    float* value = surface.value.row(j);
-    for (int i = 0; i < cells.width(); ++i) {
-      value[i] = static_cast<float>(quadratic(solution, double{x[i]}, double{y[i]}, double{scale[i]}));
+  surface.value = kept_map<float>(cells.width(), cells.height());
+  parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int j = first; j < last; ++j) {
+      const float *x = coordinates.x.row(j), *y = coordinates.y.row(j), *scale = coordinates.scale.row(j);
+      float* value = surface.value.row(j);
+      for (int i = 0; i < cells.width(); ++i) {
+        value[i] = static_cast<float>(quadratic(solution, double{x[i]}, double{y[i]}, double{scale[i]}));
+      }
     }
-  }
+  });
   return surface;
 }
 
 }  // namespace
 
-RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates) {
+RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates, int threads) {
   constexpr int plane_iterations = 6;
   constexpr int quadratic_iterations = 8;
   constexpr double min_relative_sigma = 1e-3;
@@ -226,16 +232,17 @@ RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coord
   double sigma = std::max({start.half_width, min_relative_sigma * std::abs(start.middle), 1e-9});
   fit_irls<plane_term_count>(samples, plane_iterations, sigma);
   const Coefficients solution = fit_irls<quadratic_term_count>(samples, quadratic_iterations, sigma);
-  return evaluate(solution, sigma, cells, coordinates);
+  return evaluate(solution, sigma, cells, coordinates, threads);
 }
 
 RoadSurface refit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
-                               const Image<std::uint8_t>& region, const RoadSurface& earlier, Sampling sampling) {
+                               const Image<std::uint8_t>& region, const RoadSurface& earlier, Sampling sampling,
+                               int threads) {
   constexpr int iterations = 6;
   Samples samples = sample_cells(cells, coordinates, &region, &earlier, sampling);
   double sigma = std::max(earlier.noise, 1e-9);
   const Coefficients solution = fit_irls<quadratic_term_count>(samples, iterations, sigma);
-  return evaluate(solution, sigma, cells, coordinates);
+  return evaluate(solution, sigma, cells, coordinates, threads);
 }
 
 }  // namespace roadstereo

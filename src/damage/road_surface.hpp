@@ -13,7 +13,7 @@ struct SurfaceCoordinates {
 };
 
 /// Coordinates from the plane and the calibration if both are given, else from the image.
-SurfaceCoordinates surface_coordinates(const Cells& cells, const DamageInput& input);
+SurfaceCoordinates surface_coordinates(const Cells& cells, const DamageInput& input, int threads);
 
 /// Undamaged road: a quadratic in the coordinates of the road, times `scale`. A plane does not fit a camber.
 struct RoadSurface {
@@ -27,10 +27,11 @@ enum class Sampling { coarse, fine };
 /// Fit the road surface by iteratively reweighted least squares (IRLS) with Tukey weights to a coarse sample, first a
 /// plane, then a quadratic. Starts from the shorth of the values, the shortest interval that contains a third of them.
 /// Throws Error when fewer than 32 samples are valid.
-RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates);
+RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates, int threads);
 
 /// Refit the quadratic by IRLS to the cells where `region` is not 0, starting from an earlier fit. Throws likewise.
 RoadSurface refit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
-                               const Image<std::uint8_t>& region, const RoadSurface& earlier, Sampling sampling);
+                               const Image<std::uint8_t>& region, const RoadSurface& earlier, Sampling sampling,
+                               int threads);
 
 }  // namespace roadstereo

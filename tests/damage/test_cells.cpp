@@ -31,7 +31,7 @@ TEST(InterpolateGaps, RestoresLinearField) {
         if (known(i, j) == 0) values(i, j) = none;
       }
     }
-    fill_gaps(values, known);
+    fill_gaps(values, known, 1);
     const double rise = 2 * radius * std::hypot(across, down);  // of the field over the gap
     double worst = 0;
     for (int j = 0; j < 71; ++j) {
@@ -51,7 +51,7 @@ TEST(InterpolateGaps, OneKnownCellFillsMap) {
   Image<std::uint8_t> known(33, 20, 0);
   values(31, 2) = 4.5F;
   known(31, 2) = 255;
-  fill_gaps(values, known);
+  fill_gaps(values, known, 1);
   for (int j = 0; j < 20; ++j) {
     for (int i = 0; i < 33; ++i) ASSERT_NEAR(values(i, j), 4.5, 1e-5);
   }

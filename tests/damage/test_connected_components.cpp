@@ -135,8 +135,8 @@ TEST_P(RandomMasks, FillEnclosedMatchesBruteForce) {
 TEST_P(RandomMasks, GrowAndShrinkMatchBruteForce) {
   const Image<std::uint8_t> cells = mask();
   for (const int radius : {0, 1, 2, 5, 60}) {
-    const Image<std::uint8_t> grown = dilate(cells, radius);
-    const Image<std::uint8_t> shrunk = erode(cells, radius);
+    const Image<std::uint8_t> grown = dilate(cells, radius, 1);
+    const Image<std::uint8_t> shrunk = erode(cells, radius, 1);
     for (int j = 0; j < cells.height(); ++j) {
       for (int i = 0; i < cells.width(); ++i) {
         bool any = false, all = true;

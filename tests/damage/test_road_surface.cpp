@@ -36,7 +36,7 @@ TEST(SurfaceCoordinates, ScaleIsDisparityPerMetre) {
   DamageInput input;
   input.calibration = tilted_rig();
   input.plane = tilted_road;
-  const SurfaceCoordinates c = surface_coordinates(cells, input);
+  const SurfaceCoordinates c = surface_coordinates(cells, input, 1);
   const GroundPlane plane = ground_plane(tilted_road, tilted_rig());
   const RoadAxes frame = road_axes(plane);
   constexpr double lift_m = 1e-5;
@@ -67,7 +67,7 @@ struct QuadraticRoad {
     cells.factor = 1;
     cells.value.assign(300, 200, 30.0F);
     truth.assign(300, 200, 0);
-    coordinates = surface_coordinates(cells, input);
+    coordinates = surface_coordinates(cells, input, 1);
     for (int j = 0; j < 200; ++j) {
       for (int i = 0; i < 300; ++i) {
         const double x = coordinates.x(i, j), y = coordinates.y(i, j);
@@ -105,7 +105,7 @@ constexpr std::array<double, 6> camber_px{0, 0.3, -0.2, -0.5, 0.15, 0.25};
 TEST(RoadSurface, IsExactDespiteOneSidedOutliers) {
   for (const bool metric : {true, false}) {
     const QuadraticRoad road(metric ? calibrated() : DamageInput{}, metric ? camber_m : camber_px, 0, 0.3);
-    EXPECT_LT(road.worst(fit_road_surface(road.cells, road.coordinates)), 1e-4) << metric;
+    EXPECT_LT(road.worst(fit_road_surface(road.cells, road.coordinates, 1)), 1e-4) << metric;
   }
 }
 
@@ -121,15 +121,15 @@ TEST(RoadSurface, ErrorIsThatOfNoise) {
       EXPECT_LT(road.worst(surface), 4 * 3 * noise * std::sqrt(6 / samples)) << metric << ", step " << step;
       EXPECT_NEAR(surface.noise, noise, 3 * 1.17 / std::sqrt(samples) * noise) << metric << ", step " << step;
     };
-    const RoadSurface coarse = fit_road_surface(road.cells, road.coordinates);
+    const RoadSurface coarse = fit_road_surface(road.cells, road.coordinates, 1);
     check(coarse, 7);
-    check(refit_road_surface(road.cells, road.coordinates, everywhere, coarse, Sampling::fine), 4);
+    check(refit_road_surface(road.cells, road.coordinates, everywhere, coarse, Sampling::fine, 1), 4);
   }
 }
 
 TEST(RoadSurface, FitsRegionOnly) {
   QuadraticRoad road({}, camber_px, 0, 0);
-  RoadSurface earlier = fit_road_surface(road.cells, road.coordinates);
+  RoadSurface earlier = fit_road_surface(road.cells, road.coordinates, 1);
   earlier.noise = 0.1;
   Image<std::uint8_t> region(300, 200, 255);
   for (int j = 0; j < 200; ++j) {
@@ -138,20 +138,20 @@ TEST(RoadSurface, FitsRegionOnly) {
       road.cells.value(i, j) += 0.3F;  // two thirds of the picture, within the reach of the weights
     }
   }
-  EXPECT_LT(road.worst(refit_road_surface(road.cells, road.coordinates, region, earlier, Sampling::fine)), 1e-3);
+  EXPECT_LT(road.worst(refit_road_surface(road.cells, road.coordinates, region, earlier, Sampling::fine, 1)), 1e-3);
   region.assign(300, 200, 0);
-  EXPECT_THROW(refit_road_surface(road.cells, road.coordinates, region, earlier, Sampling::fine), Error);
+  EXPECT_THROW(refit_road_surface(road.cells, road.coordinates, region, earlier, Sampling::fine, 1), Error);
 }
 
 /// Of a single row of cells nothing can be said across it; along it the fit is exact.
 TEST(RoadSurface, SingleRowIsFittedAlongIt) {
   constexpr int only = 102;
   const QuadraticRoad road({}, camber_px, 0, 0);
-  RoadSurface earlier = fit_road_surface(road.cells, road.coordinates);
+  RoadSurface earlier = fit_road_surface(road.cells, road.coordinates, 1);
   earlier.noise = 0.1;
   Image<std::uint8_t> region(300, 200, 0);
   for (int i = 0; i < 300; ++i) region(i, only) = 255;
-  const RoadSurface surface = refit_road_surface(road.cells, road.coordinates, region, earlier, Sampling::fine);
+  const RoadSurface surface = refit_road_surface(road.cells, road.coordinates, region, earlier, Sampling::fine, 1);
   for (int i = 0; i < 300; ++i) {
     ASSERT_NEAR(surface.value(i, only), road.truth(i, only), 1e-4) << i;
     ASSERT_NEAR(surface.value(i, 0), road.truth(i, only), 1e-4) << i;
