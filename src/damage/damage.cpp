@@ -49,15 +49,14 @@ std::string reason_for_pixels(const DamageInput& input) {
   return {};
 }
 
-/// Fit the road surface and find the road region by alternating between them.
-void find_road(const Cells& cells, const SurfaceCoordinates& coordinates, RoadSurface& surface,
-               Image<std::uint8_t>& road, int threads) {
-  surface = fit_road_surface(cells, coordinates, threads);
-  road = find_road_region(cells, surface, threads);
+/// Fit the road surface by alternating between it and the road region.
+RoadSurface find_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates, int threads) {
+  RoadSurface surface = fit_road_surface(cells, coordinates, threads);
   for (const Sampling sampling : {Sampling::coarse, Sampling::fine}) {
-    surface = refit_road_surface(cells, coordinates, road, surface, sampling, threads);
-    road = find_road_region(cells, surface, threads);
+    const Image<std::uint8_t> region = find_road_region(cells, surface, threads);
+    surface = refit_road_surface(cells, coordinates, region, surface, sampling, threads);
   }
+  return surface;
 }
 
 ImageEdges make_image_edges(const DamageInput& input, const Cells& cells) {
@@ -121,10 +120,11 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
   Cells cells = make_cells(input.transformed, input.sigma,
                            cell_factor(input.transformed.width(), input.transformed.height()), threads);
   const SurfaceCoordinates coordinates = surface_coordinates(cells, input, threads);
-  RoadSurface surface;
-  Image<std::uint8_t> road;
-  find_road(cells, coordinates, surface, road, threads);
-  if (move_unsupported_cells(input, surface, threads, cells)) find_road(cells, coordinates, surface, road, threads);
+  RoadSurface surface = find_road_surface(cells, coordinates, threads);
+  if (move_unsupported_cells(input, surface, threads, cells)) {
+    surface = find_road_surface(cells, coordinates, threads);
+  }
+  const Image<std::uint8_t> road = find_road_region(cells, surface, threads);
   DepthCells depth_cells = make_depth_cells(cells, surface, threads);
   result.non_metric_reason = reason_for_pixels(input);
   result.metric = result.non_metric_reason.empty();
