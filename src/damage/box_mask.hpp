@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "damage/cell_box.hpp"
-#include "damage/kept_maps.hpp"
 
 namespace roadstereo {
 
@@ -13,7 +12,7 @@ class BoxMask {
  public:
   BoxMask() = default;
   /// All cells are 0.
-  explicit BoxMask(const CellBox& box) : BoxMask(box, kept_map<std::uint8_t>(box.columns(), box.rows(), 0)) {}
+  explicit BoxMask(const CellBox& box) : BoxMask(box, Image<std::uint8_t>(box.columns(), box.rows(), 0)) {}
   /// `cells` has the size of the box.
   BoxMask(const CellBox& box, Image<std::uint8_t> cells) : box_(box), cells_(std::move(cells)) {}
 

@@ -6,7 +6,6 @@
 
 #include "damage/connected_components.hpp"
 #include "damage/contours.hpp"
-#include "damage/kept_maps.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
 #include "damage/outline.hpp"
@@ -70,7 +69,7 @@ struct SearchImages {
 
 /// Mask of the gaps that touch the border of the image.
 Image<std::uint8_t> unseen_cells(const ConnectedComponents& gaps, int columns, int rows) {
-  auto unseen = kept_map<std::uint8_t>(columns, rows, 0);
+  Image<std::uint8_t> unseen(columns, rows, 0);
   for (const ConnectedComponent& gap : gaps) {
     if (gap.touches_border) fill_component(gap, 255, unseen);
   }
@@ -97,8 +96,8 @@ void include_enclosed_gaps(const SearchInput& input, Image<std::uint8_t>& allowe
 SearchImages make_search_images(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& assigned) {
   const DepthCells& cells = input.depth_cells;
   const int width = cells.depth.width(), height = cells.depth.height();
-  SearchImages images{kept_map<float>(width, height), kept_map<std::uint8_t>(width, height),
-                      kept_map<std::uint8_t>(width, height, 0), assigned};
+  SearchImages images{Image<float>(width, height), Image<std::uint8_t>(width, height),
+                      Image<std::uint8_t>(width, height, 0), assigned};
   const float sign = sign_of(kind);
   const float* const depth = cells.depth.row(0);
   float* const signed_depth = images.depth.row(0);
@@ -111,7 +110,7 @@ SearchImages make_search_images(const SearchInput& input, DamageKind kind, Image
 /// Mask of the allowed cells deeper than the threshold.
 Image<std::uint8_t> core_cells(const SearchImages& images, const Thresholds& thresholds) {
   const int width = images.depth.width();
-  auto cores = kept_map<std::uint8_t>(width, images.depth.height());
+  Image<std::uint8_t> cores(width, images.depth.height());
   std::vector<float> min_depths(static_cast<std::size_t>(width));
   for (int j = 0; j < images.depth.height(); ++j) {
     thresholds.min_depths(j, min_depths.data());
@@ -374,7 +373,7 @@ std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std:
   const Image<std::uint8_t> unseen = unseen_cells(gaps, road.width(), road.height());
   const SearchInput input{depth_cells, road, gaps, unseen, thresholds, image_edges};
   std::vector<Candidate> found;
-  auto assigned = kept_map<std::uint8_t>(road.width(), road.height(), 0);
+  Image<std::uint8_t> assigned(road.width(), road.height(), 0);
   find_kind(input, DamageKind::depression, assigned, found);
   if (protrusions) find_kind(input, DamageKind::protrusion, assigned, found);
   return found;

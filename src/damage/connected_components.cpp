@@ -39,9 +39,8 @@ class RunForest {
     for (std::size_t k = 0; k < runs.size(); ++k) parent[k] = parent[parent[k]];
   }
 
-  KeptList<CellRun> runs = kept_list<CellRun>();
-  KeptList<std::uint32_t> parent =
-      kept_list<std::uint32_t>();  ///< of each run; after construction the root of its component
+  std::vector<CellRun> runs;
+  std::vector<std::uint32_t> parent;  ///< of each run; after construction the root of its component
 
  private:
   void add_row(const std::uint8_t* row, int j, int width, bool nonzero) {
@@ -84,8 +83,8 @@ class RunForest {
 ConnectedComponents::ConnectedComponents(const Image<std::uint8_t>& mask, Foreground foreground) {
   const RunForest forest(mask, foreground);
   const std::size_t count = forest.runs.size();
-  KeptList<std::uint32_t> label = kept_list<std::uint32_t>(count);  // component of each run
-  KeptList<std::size_t> run_count = kept_list<std::size_t>();       // of each component
+  std::vector<std::uint32_t> label(count);  // component of each run
+  std::vector<std::size_t> run_count;       // of each component
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t root = forest.parent[k];
     label[k] = root == k ? static_cast<std::uint32_t>(run_count.size()) : label[root];
@@ -94,7 +93,7 @@ ConnectedComponents::ConnectedComponents(const Image<std::uint8_t>& mask, Foregr
   }
   runs_.resize(count);
   components_.resize(run_count.size());
-  KeptList<std::size_t> next = kept_list<std::size_t>(run_count.size());  // place of the next run of each component
+  std::vector<std::size_t> next(run_count.size());  // place of the next run of each component
   std::size_t begin = 0;
   for (std::size_t c = 0; c < run_count.size(); ++c) {
     components_[c].runs = {runs_.data() + begin, run_count[c]};

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "damage/cell_box.hpp"
-#include "damage/kept_maps.hpp"
 
 namespace roadstereo {
 
@@ -37,7 +36,7 @@ class ConnectedComponents {
   auto end() const { return components_.end(); }
 
  private:
-  KeptList<CellRun> runs_ = kept_list<CellRun>();  ///< component by component
+  std::vector<CellRun> runs_;  ///< component by component
   std::vector<ConnectedComponent> components_;
 };
 

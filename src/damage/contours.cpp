@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "damage/kept_maps.hpp"
-
 namespace roadstereo {
 namespace {
 
@@ -38,7 +36,7 @@ class ComponentBranch {
       : field_(field),
         levels_(levels),
         box_(within),
-        level_counts_(kept_map<std::uint8_t>(within.columns(), within.rows(), 0)) {
+        level_counts_(Image<std::uint8_t>(within.columns(), within.rows(), 0)) {
     for (const CellRun& run : seeds.runs) {
       for (int i = run.first; i <= run.last; ++i) visit(i, run.row, contour_level_count);
     }

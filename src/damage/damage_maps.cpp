@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "damage/cell_interpolation.hpp"
-#include "damage/kept_maps.hpp"
 #include "damage/morphology.hpp"
 
 namespace roadstereo {
@@ -16,7 +15,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Indicator function of a region on the cells of a box: 1 inside, 0 outside.
 Image<float> indicator_of(const BoxMask& region, const CellBox& box) {
-  auto indicator = kept_map<float>(box.columns(), box.rows());
+  Image<float> indicator(box.columns(), box.rows());
   for (int j = 0; j < indicator.height(); ++j) {
     for (int i = 0; i < indicator.width(); ++i) {
       indicator(i, j) = region(box.first_column + i, box.first_row + j) ? 1.0F : 0.0F;
@@ -94,8 +93,8 @@ void fill_road_rows(const DamageInput& input, const Segmentation& segmentation, 
 
 Image<float> depth_without_islands(const Segmentation& segmentation, int threads) {
   const Image<float>& measured = segmentation.depth_cells.depth;
-  auto depth = kept_map<float>(measured.width(), measured.height());
-  auto valid = kept_map<std::uint8_t>(measured.width(), measured.height());
+  Image<float> depth(measured.width(), measured.height());
+  Image<std::uint8_t> valid(measured.width(), measured.height());
   std::copy_n(measured.row(0), measured.pixels(), depth.row(0));
   std::copy_n(segmentation.depth_cells.valid.row(0), valid.pixels(), valid.row(0));
   bool has_islands = false;

@@ -6,7 +6,6 @@
 
 #include "core/parallel.hpp"
 #include "damage/cell_interpolation.hpp"
-#include "damage/kept_maps.hpp"
 
 namespace roadstereo {
 namespace {
@@ -17,7 +16,7 @@ constexpr int cell_rows_per_band = 32;
 struct PyramidLevel {
   Image<float> sum, weight;
 
-  PyramidLevel(int width, int height) : sum(kept_map(width, height, 0.0F)), weight(kept_map(width, height, 0.0F)) {}
+  PyramidLevel(int width, int height) : sum(Image(width, height, 0.0F)), weight(Image(width, height, 0.0F)) {}
 };
 
 /// Add pairs of neighbouring cells of a row to the cells of the next coarser level.
@@ -174,8 +173,8 @@ void fill_gaps(Image<float>& values, const Image<std::uint8_t>& valid, int threa
 DepthCells make_depth_cells(const Cells& cells, const RoadSurface& surface, int threads) {
   DepthCells result;
   result.noise = surface.noise;
-  result.depth = kept_map<float>(cells.width(), cells.height());
-  result.valid = kept_map<std::uint8_t>(cells.width(), cells.height());
+  result.depth = Image<float>(cells.width(), cells.height());
+  result.valid = Image<std::uint8_t>(cells.width(), cells.height());
   parallel_rows(cells.height(), cell_rows_per_band, threads,
                 [&](int first, int last, int) { fill_rows(cells, surface, first, last, result); });
   fill_gaps(result.depth, result.valid, threads);

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "damage/contours.hpp"
-#include "damage/kept_maps.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
 #include "damage/robust_normal.hpp"
@@ -57,7 +56,7 @@ void read_grey_row(const ImageEdges& image_edges, int first, int count, int row,
 BoxMap smooth_grey_cells(const ImageEdges& image_edges, const CellBox& box, int columns, int rows) {
   const CellBox around = box.grown(1, columns, rows);
   const int width = box.columns(), height = box.rows();
-  auto grey = kept_map<float>(width + 2, height + 2);  // with a margin of one cell
+  Image<float> grey(width + 2, height + 2);  // with a margin of one cell
   std::vector<int> sums;
   for (int j = around.first_row; j <= around.last_row; ++j) {
     float* const row = grey.row(j - box.first_row + 1);
@@ -68,7 +67,7 @@ BoxMap smooth_grey_cells(const ImageEdges& image_edges, const CellBox& box, int 
   }
   if (around.first_row == box.first_row) std::copy_n(grey.row(1), width + 2, grey.row(0));
   if (around.last_row == box.last_row) std::copy_n(grey.row(height), width + 2, grey.row(height + 1));
-  BoxMap result{box, kept_map<float>(width, height)};
+  BoxMap result{box, Image<float>(width, height)};
   for (int j = 0; j < height; ++j) {
     const float *const a = grey.row(j), *const b = grey.row(j + 1), *const c = grey.row(j + 2);
     float* const smooth = result.values.row(j);

@@ -4,7 +4,6 @@
 #include <bit>
 
 #include "core/parallel.hpp"
-#include "damage/kept_maps.hpp"
 
 namespace roadstereo {
 namespace {
@@ -35,7 +34,8 @@ void unite_by_doubling(int count, const Step& step) {
 void dilate_rows(Image<std::uint8_t>& lines, int first, int end, int radius) {
   const int width = lines.width();
   const int padded = width + 2 * radius;
-  auto line = kept_list<std::uint8_t>(static_cast<std::size_t>(padded)), next = line;
+  std::vector<std::uint8_t> line(static_cast<std::size_t>(padded));
+  std::vector<std::uint8_t> next(static_cast<std::size_t>(padded));
   for (int j = first; j < end; ++j) {
     std::fill(line.begin(), line.end(), std::uint8_t{0});
     std::copy_n(lines.row(j), width, line.begin() + radius);
@@ -53,9 +53,9 @@ void dilate_rows(Image<std::uint8_t>& lines, int first, int end, int radius) {
 Image<std::uint8_t> dilate(const Image<std::uint8_t>& mask, int radius, std::uint8_t inverse, int threads) {
   constexpr int rows_per_band = 64;
   const int width = mask.width(), height = mask.height();
-  auto dilated = kept_map<std::uint8_t>(width, height);
+  Image<std::uint8_t> dilated(width, height);
   parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {
-    auto lines = kept_map<std::uint8_t>(width, last - first + 2 * radius, 0);
+    Image<std::uint8_t> lines(width, last - first + 2 * radius, 0);
     const int top = std::max(0, first - radius), bottom = std::min(height, last + radius);
     for (int j = top; j < bottom; ++j) copy_inverted(mask.row(j), inverse, width, lines.row(j - first + radius));
     dilate_rows(lines, top - first + radius, bottom - first + radius, radius);

@@ -7,7 +7,6 @@
 
 #include "core/order_statistics.hpp"
 #include "damage/contours.hpp"
-#include "damage/kept_maps.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
 #include "damage/robust_normal.hpp"
@@ -120,7 +119,7 @@ float floor_depth(const DepthField& field, const ConnectedComponent& seeds) {
 BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, float level) {
   const int columns = field.depth.width();
   CellBox box;
-  KeptList<CellRun> runs = kept_list<CellRun>();
+  std::vector<CellRun> runs;
   // Adds the runs of a row that have a cell from `first` to `last`.
   const auto add_runs = [&](int row, int first, int last) {
     const float* const depth = field.depth.row(row);

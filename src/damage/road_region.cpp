@@ -5,7 +5,6 @@
 
 #include "core/parallel.hpp"
 #include "damage/connected_components.hpp"
-#include "damage/kept_maps.hpp"
 #include "damage/morphology.hpp"
 
 namespace roadstereo {
@@ -20,7 +19,7 @@ Image<std::uint8_t> cells_near_surface(const Cells& cells, const RoadSurface& su
   constexpr int rows_per_band = 64;
   constexpr double max_sigmas = 3;
   const auto max_distance = static_cast<float>(max_sigmas * surface.noise);
-  auto near = kept_map<std::uint8_t>(cells.width(), cells.height());
+  Image<std::uint8_t> near(cells.width(), cells.height());
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int j = first; j < last; ++j) {
       mark_near(cells.value.row(j), surface.value.row(j), max_distance, cells.width(), near.row(j));
@@ -32,7 +31,7 @@ Image<std::uint8_t> cells_near_surface(const Cells& cells, const RoadSurface& su
 /// Largest connected component of a mask.
 Image<std::uint8_t> largest_component(const Image<std::uint8_t>& mask) {
   const ConnectedComponents components(mask);
-  auto result = kept_map<std::uint8_t>(mask.width(), mask.height(), 0);
+  Image<std::uint8_t> result(mask.width(), mask.height(), 0);
   const auto largest = std::max_element(components.begin(), components.end(),
                                         [](const auto& one, const auto& other) { return one.size < other.size; });
   if (largest != components.end()) fill_component(*largest, 255, result);

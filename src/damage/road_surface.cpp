@@ -9,7 +9,6 @@
 #include "core/cholesky.hpp"
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
-#include "damage/kept_maps.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -207,7 +206,7 @@ RoadSurface evaluate(const Coefficients& solution, double noise, const Cells& ce
   constexpr int rows_per_band = 32;
   RoadSurface surface;
   surface.noise = noise;
-  surface.value = kept_map<float>(cells.width(), cells.height());
+  surface.value = Image<float>(cells.width(), cells.height());
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int j = first; j < last; ++j) {
       const float *x = coordinates.x.row(j), *y = coordinates.y.row(j), *scale = coordinates.scale.row(j);

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "damage/kept_maps.hpp"
 #include "damage/smoothing_error.hpp"
 #include "road/cubic.hpp"
 
@@ -271,7 +270,7 @@ class VoteIntegral {
                int threads)
       : columns_(cells.width()),
         rows_(cells.height()),
-        sums_(kept_map(blocks_before(columns_) + 1, blocks_before(rows_) + 1, VoteSums{})) {
+        sums_(Image(blocks_before(columns_) + 1, blocks_before(rows_) + 1, VoteSums{})) {
     constexpr int rows_per_band = 8;
     const SurfaceComparison comparison(input);
     parallel_rows(blocks_before(rows_), rows_per_band, threads, [&](int first, int last, int) {
