@@ -84,7 +84,7 @@ void damage(benchmark::State& state) {
   options.perspective.disparities = frame.shift.disparities;
   Pipeline pipeline(options, frame.pair.calibration);
   const FrameResult& result = pipeline.process(frame.pair.left.view(), frame.pair.right.view());
-  for (auto _ : state) find_damage(result, frame.pair.calibration, options.damage, 1, frame.damage);
+  for (auto _ : state) find_damage(result, frame.pair.calibration, options.damage, 0, frame.damage);
   report(state, frame);
 }
 

@@ -174,6 +174,7 @@ class SurfaceComparison {
   void vote(int v, std::span<const int> u, std::span<const float> surface, std::span<float> votes) const {
     std::fill(votes.begin(), votes.end(), 0.0F);
     if (v < block_radius || v + block_radius >= input_.grey.height()) return;
+    if (input_.grey.width() <= 2 * block_radius) return;
     for (std::size_t first = 0; first < u.size(); first += max_lanes) vote_lanes(v, u, surface, first, votes);
   }
 
