@@ -195,9 +195,15 @@ MatchInput Pipeline::State::transform_perspective(const GreyPair& pair) {
   return stages->transform_perspective(pair, result.shift);
 }
 
-/// The coarse search at a given size, with blocks for the noise that is left there.
+/// The coarse search at a given size, with blocks for the noise that is left there. In a scene the road is one surface
+/// of many: its prior has less weight. Frames of KITTI: with 0.3 the disparities off the road are pulled to it, with 0
+/// one in a hundred on the road is lost.
 CoarseSearchOptions Pipeline::State::coarse_options(int factor, int block_radius) const {
+  constexpr double max_prior_weight_of_scene = 0.1;
   CoarseSearchOptions coarse = options.coarse_search;
+  if (options.perspective.scope == Scope::scene) {
+    coarse.road_prior_weight = std::min(coarse.road_prior_weight, max_prior_weight_of_scene);
+  }
   coarse.factor = factor;
   coarse.block_radius = options.matcher.adapt_support
                             ? adapt_radius(block_radius, downsampled_correlation(result.road.correlation, factor))
@@ -370,20 +376,6 @@ void Pipeline::State::end_frame() {
   has_frame = has_maps = true;
 }
 
-namespace {
-
-/// In a scene the road is one surface of many: its prior has less weight. Frames of KITTI: with 0.3 the disparities off
-/// the road are pulled to it, with 0 one in a hundred on the road is lost.
-PipelineOptions adapt_to_scope(PipelineOptions options) {
-  constexpr double max_road_prior_weight = 0.1;
-  if (options.perspective.scope == Scope::scene) {
-    options.coarse_search.road_prior_weight = std::min(options.coarse_search.road_prior_weight, max_road_prior_weight);
-  }
-  return options;
-}
-
-}  // namespace
-
 void PipelineState::validate() const {
   constexpr double max_disparity_px = 8192, full_turn_rad = 6.3;
   if (road) {
@@ -407,7 +399,7 @@ Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCal
   state_->calibration = calibration;
   state_->engine_name = resolve_engine_name(options.engine);
   state_->threads = resolve_threads(options.threads);
-  state_->stages = make_stages(state_->engine_name, adapt_to_scope(options), calibration);
+  state_->stages = make_stages(state_->engine_name, options, calibration);
 }
 
 Pipeline::~Pipeline() = default;

@@ -25,6 +25,7 @@ std::vector<Variant> default_variants() {
       {"no sub-pixel parabola", "default", {"matcher.sub_pixel=false"}},
       {"range ends dropped", "default", {"matcher.reject_range_boundary=true"}},
       {"no refinement", "default", {"refinement.radius=0"}},
+      {"all kept off the road", "default", {"off_road.max_sigma_px=0"}},
   };
 }
 
