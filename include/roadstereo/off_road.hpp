@@ -22,12 +22,11 @@ struct OffRoadOptions {
 /// road are searched, so that a house front or a vehicle takes a wrong one. Cells of 4×4 pixels are compared with
 /// `scene`, the map of a coarse search for all that the pair shows, of ⌊W/s⌋×⌊H/s⌋ pixels of s×s, s ≥ 4: residual
 /// disparities of the pair with that `shift`, pixels, NaN unknown. A cell is
-/// - on the road when its mean residual is within s/3 of the road's, and within s/2 of that of a pixel of `scene`
-/// around
-///   it, up to four columns and a row away;
-/// - contradicted when it differs by more than s/2 from those (off the road, from that of its own pixel);
 /// - unconfirmed when the geometric mean of σ around it (36×36 pixels) exceeds max_sigma_px · 3^(ρ − 1), ρ the
-///   correlation.
+///   correlation;
+/// - on the road when its mean residual is within s/3 of the road's, and within s/2 of that of a pixel of `scene` up to
+///   four columns and a row away, if it is unconfirmed one column;
+/// - contradicted when it differs by more than s/2 from those (at another height, from that of its own pixel).
 /// Contradicted and unconfirmed cells and the neighbours of contradicted ones are rejected, but for those that cells on
 /// the road and the lower border enclose, such as the dark wall of a pothole.
 ///

@@ -85,7 +85,7 @@ class FrameStages {
   /// lucas_kanade.
   virtual ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,
                                        const PerspectiveShift& shift) = 0;
-  /// reject_off_road, where the step before has run.
+  /// reject_off_road; the step before must have run.
   virtual ImageView<const float> reject_off_road(ImageView<const float> disparity, const DisparityPriorView& scene,
                                                  const PerspectiveShift& shift, const OffRoadOptions& options) = 0;
   /// Subtracts the bias of the rig, if any: returns the disparity map ℓ.

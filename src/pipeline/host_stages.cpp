@@ -139,9 +139,9 @@ class HostStages final : public FrameStages {
     return disparity_;
   }
 
-  ImageView<const float> reject_off_road(ImageView<const float> disparity, const DisparityPriorView& scene,
+  /// In place.
+  ImageView<const float> reject_off_road(ImageView<const float>, const DisparityPriorView& scene,
                                          const PerspectiveShift& shift, const OffRoadOptions& options) override {
-    if (options_.lucas_kanade.radius == 0) return disparity;
     roadstereo::reject_off_road(correlation_, scene, shift, options, threads_, disparity_, sigma_);
     return disparity_;
   }

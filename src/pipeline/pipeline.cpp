@@ -273,7 +273,7 @@ bool Pipeline::State::can_see_off_road() const {
   const DisparityPlane& road = result.shift.road;
   const bool horizon_in_picture = std::min(road.disparity(0, 0), road.disparity(width - 1, 0)) < 0;
   return result.shift.enabled && options.perspective.scope == Scope::road && horizon_in_picture &&
-         options.off_road.max_sigma_px > 0;
+         options.off_road.max_sigma_px > 0 && options.lucas_kanade.radius > 0;
 }
 
 /// Disparities of all that the picture shows, up to that of what stands on the nearest road in it. Without the road as

@@ -175,10 +175,8 @@ class DeviceStages final : public FrameStages {
 
   ImageView<const float> reject_off_road(ImageView<const float>, const DisparityPriorView& scene,
                                          const PerspectiveShift& shift, const OffRoadOptions& options) override {
-    if (options_.lucas_kanade.radius > 0) {
-      off_road_.run({scene.disparity, scene.factor, shift}, correlation_, static_cast<float>(options.max_sigma_px),
-                    maps_.disparity(), maps_.sigma(), stream());
-    }
+    off_road_.run({scene.disparity, scene.factor, shift}, correlation_, static_cast<float>(options.max_sigma_px),
+                  maps_.disparity(), maps_.sigma(), stream());
     return maps_.disparity();
   }
 

@@ -122,7 +122,7 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
       float* const costs = worker.costs_of_row.row(at);
       worker.costs.compute(v + k, costs);
       rows[at] = {{costs, worker.costs.pitch(), reference_.width(), coarse.disparities,
-                   block_first_column_[static_cast<std::size_t>(v + k)]},
+                   block_first_column_[static_cast<std::size_t>(v) + at]},
                   {worker.centre[at].data(), worker.weight[at].data(), truncation},
                   worker.scratch.row(at),
                   along_rows_.row(v + k)};
