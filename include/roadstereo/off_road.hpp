@@ -23,7 +23,7 @@ struct OffRoadOptions {
 /// `scene`, the map of a coarse search for all that the pair shows, of ⌊W/s⌋×⌊H/s⌋ pixels of s×s, s ≥ 4: residual
 /// disparities of the pair with that `shift`, pixels, NaN unknown. A cell is
 /// - unconfirmed when the geometric mean of σ around it (36×36 pixels) exceeds max_sigma_px · 3^(ρ − 1), ρ the
-///   correlation;
+///   correlation; above the horizon only where it does not agree with `scene`;
 /// - on the road when its mean residual is within s/3 of the road's, and within s/2 of that of a pixel of `scene` up to
 ///   four columns and a row away, if it is unconfirmed one column;
 /// - contradicted when it differs by more than s/2 from those (at another height, from that of its own pixel).

@@ -72,13 +72,14 @@ TEST(RejectOffRoad, PixelsWithoutDisparityCountAsThreePixels) {
   }
 }
 
-/// Noise: what is the road for both searches stays.
-TEST(RejectOffRoad, RoadNeedsNoSmallSigma) {
+/// Noise: what is the road for both searches stays, and what both see above the horizon (cells 24).
+TEST(RejectOffRoad, AgreementNeedsNoSmallSigma) {
   test::StreetMaps street(400, 240, 4);
   street.paint_sigma(street.all(), 2, 0);
-  const test::StreetMaps maps = reject(street);
-  EXPECT_TRUE(all_are(maps, {0, 0, 100, 24}, true));
-  EXPECT_TRUE(all_are(maps, {0, 25, 100, 60}, false));
+  EXPECT_TRUE(all_are(reject(street), {0, 0, 100, 24}, false));
+  EXPECT_TRUE(all_are(reject(street), {0, 25, 100, 60}, false));
+  street.forget_scene();
+  EXPECT_TRUE(all_are(reject(street), street.all(), true));
 }
 
 /// A vehicle that was matched as the road behind it, from above the horizon (cells 24) to the road.

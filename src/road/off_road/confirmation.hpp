@@ -88,7 +88,8 @@ struct Around {
   int columns, rows;
 };
 
-/// Compares the mean residual disparity of a cell with the coarse map, whose resolution is half a coarse pixel.
+/// Compares the mean residual disparity of a cell with the coarse map, whose resolution is half a coarse pixel. Above
+/// the horizon, where the fine search has no road to fall back on, agreement confirms whatever the standard error.
 ROADSTEREO_HD inline CellState assess_cell(const CoarseScene& scene, float residual, bool confirmed, int i, int j) {
   constexpr Around if_confirmed{4, 1}, if_unconfirmed{1, 0}, off_road{0, 0};
   constexpr float resolution = 0.5F, road_thickness = 1.0F / 3;  // coarse pixels, to either side
@@ -99,7 +100,8 @@ ROADSTEREO_HD inline CellState assess_cell(const CoarseScene& scene, float resid
   const auto factor = static_cast<float>(scene.factor);
   const auto road =
       static_cast<float>(shifted_road(scene.shift, i * alignment_cell + centre, j * alignment_cell + centre, -1.0));
-  const bool near_road = road >= 0 && is_within(residual - road, road_thickness * factor);
+  const bool above_horizon = road < 0;
+  const bool near_road = !above_horizon && is_within(residual - road, road_thickness * factor);
   const int x = i * alignment_cell / scene.factor, y = j * alignment_cell / scene.factor;
   const Around around = !near_road ? off_road : confirmed ? if_confirmed : if_unconfirmed;
   bool known = false;
@@ -108,7 +110,8 @@ ROADSTEREO_HD inline CellState assess_cell(const CoarseScene& scene, float resid
       const float found = map(a, b);
       if (found != found) continue;
       known = true;
-      if (is_within(found - residual, resolution * factor)) return near_road ? on_road : otherwise;
+      if (is_within(found - residual, resolution * factor))
+        return near_road ? on_road : above_horizon ? plausible : otherwise;
     }
   }
   return known ? contradicted : otherwise;
