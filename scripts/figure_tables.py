@@ -205,13 +205,14 @@ flight = needs("flight")(flight_table)
 flight_jumps = needs("flight_jumps")(flight_table)
 
 
-@needs("odometry_drive", "odometry_flight")
-def odometry(drive, flight):
-    table = [[f"{name}, {result['path_m']:.0f} m", row["method"], number(row["translation_percent"], 3),
+@needs("odometry_drive")
+def odometry(drive):
+    table = [[row["method"].strip(), number(row["translation_percent"], 3), number(row["turned_percent"], 3),
               number(row["rotation_deg_per_m"], 4), number(row["ate_percent"], 3), number(row["link_median_px"], 3),
               number(row["link_p95_px"], 3)]
-             for name, result in (("drive", drive), ("flight", flight)) for row in result["rows"]]
-    return markdown(["", "", "translation %", "rotation °/m", "ATE %", "link px", "95 %"], table)
+             for row in drive["rows"]]
+    return markdown([f"drive, {drive['path_m']:.0f} m", "translation %", "turned %", "rotation °/m", "ATE %", "link px",
+                     "95 %"], table)
 
 
 @needs("middlebury")
