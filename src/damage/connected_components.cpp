@@ -93,17 +93,17 @@ ConnectedComponents::ConnectedComponents(const Image<std::uint8_t>& mask, Foregr
   }
   runs_.resize(count);
   components_.resize(run_count.size());
-  std::vector<std::size_t> next(run_count.size());  // place of the next run of each component
-  std::size_t begin = 0;
+  std::vector<CellRun*> next(run_count.size());
+  CellRun* begin = runs_.data();
   for (std::size_t c = 0; c < run_count.size(); ++c) {
-    components_[c].runs = {runs_.data() + begin, run_count[c]};
+    components_[c].runs = {begin, run_count[c]};
     next[c] = begin;
     begin += run_count[c];
   }
   for (std::size_t k = 0; k < count; ++k) {
     const CellRun& run = forest.runs[k];
     ConnectedComponent& component = components_[label[k]];
-    runs_[next[label[k]]++] = run;
+    *next[label[k]]++ = run;
     component.size += static_cast<std::size_t>(run.last - run.first + 1);
     component.box.add_run(run.row, run.first, run.last);
   }

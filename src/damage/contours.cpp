@@ -33,10 +33,7 @@ class ComponentBranch {
  public:
   ComponentBranch(const DepthField& field, const ConnectedComponent& seeds,
                   const std::array<float, contour_level_count>& levels, const CellBox& within)
-      : field_(field),
-        levels_(levels),
-        box_(within),
-        level_counts_(Image<std::uint8_t>(within.columns(), within.rows(), 0)) {
+      : field_(field), levels_(levels), box_(within), level_counts_(within.columns(), within.rows(), 0) {
     for (const CellRun& run : seeds.runs) {
       for (int i = run.first; i <= run.last; ++i) visit(i, run.row, contour_level_count);
     }

@@ -16,7 +16,7 @@ constexpr int cell_rows_per_band = 32;
 struct PyramidLevel {
   Image<float> sum, weight;
 
-  PyramidLevel(int width, int height) : sum(Image(width, height, 0.0F)), weight(Image(width, height, 0.0F)) {}
+  PyramidLevel(int width, int height) : sum(width, height), weight(width, height) {}
 };
 
 /// Add pairs of neighbouring cells of a row to the cells of the next coarser level.
@@ -173,8 +173,8 @@ void fill_gaps(Image<float>& values, const Image<std::uint8_t>& valid, int threa
 DepthCells make_depth_cells(const Cells& cells, const RoadSurface& surface, int threads) {
   DepthCells result;
   result.noise = surface.noise;
-  result.depth = Image<float>(cells.width(), cells.height());
-  result.valid = Image<std::uint8_t>(cells.width(), cells.height());
+  result.depth.resize(cells.width(), cells.height());
+  result.valid.resize(cells.width(), cells.height());
   parallel_rows(cells.height(), cell_rows_per_band, threads,
                 [&](int first, int last, int) { fill_rows(cells, surface, first, last, result); });
   fill_gaps(result.depth, result.valid, threads);

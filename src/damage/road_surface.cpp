@@ -206,7 +206,7 @@ RoadSurface evaluate(const Coefficients& solution, double noise, const Cells& ce
   constexpr int rows_per_band = 32;
   RoadSurface surface;
   surface.noise = noise;
-  surface.value = Image<float>(cells.width(), cells.height());
+  surface.value.resize(cells.width(), cells.height());
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int j = first; j < last; ++j) {
       const float *x = coordinates.x.row(j), *y = coordinates.y.row(j), *scale = coordinates.scale.row(j);

@@ -13,9 +13,9 @@ namespace {
 /// Image coordinates, −1 … 1, and scale 1.
 SurfaceCoordinates image_coordinates(const Cells& cells) {
   SurfaceCoordinates c;
-  c.x = Image<float>(cells.width(), cells.height());
-  c.y = Image<float>(cells.width(), cells.height());
-  c.scale = Image(cells.width(), cells.height(), 1.0F);
+  c.x.resize(cells.width(), cells.height());
+  c.y.resize(cells.width(), cells.height());
+  c.scale.assign(cells.width(), cells.height(), 1.0F);
   for (int j = 0; j < cells.height(); ++j) {
     for (int i = 0; i < cells.width(); ++i) {
       c.x(i, j) = static_cast<float>(2.0 * i / cells.width() - 1);
@@ -47,9 +47,9 @@ SurfaceCoordinates road_coordinates(const Cells& cells, const DisparityPlane& mo
   constexpr double max_row_m = 1;  // maximum length of the road in one row of pixels
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   SurfaceCoordinates c;
-  c.x = Image<float>(cells.width(), cells.height());
-  c.y = Image<float>(cells.width(), cells.height());
-  c.scale = Image<float>(cells.width(), cells.height());
+  c.x.resize(cells.width(), cells.height());
+  c.y.resize(cells.width(), cells.height());
+  c.scale.resize(cells.width(), cells.height());
   const GroundPlane plane = ground_plane(model, calibration);
   const RoadAxes axes = road_axes(plane);
   const std::array<double, 3> camera = axes.to_road({0, 0, 0});

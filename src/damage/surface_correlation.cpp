@@ -269,9 +269,7 @@ class VoteIntegral {
 
   VoteIntegral(const DamageInput& input, const Cells& cells, const RoadSurface& surface, float max_distance,
                int threads)
-      : columns_(cells.width()),
-        rows_(cells.height()),
-        sums_(Image(blocks_before(columns_) + 1, blocks_before(rows_) + 1, VoteSums{})) {
+      : columns_(cells.width()), rows_(cells.height()), sums_(blocks_before(columns_) + 1, blocks_before(rows_) + 1) {
     constexpr int rows_per_band = 8;
     const SurfaceComparison comparison(input);
     parallel_rows(blocks_before(rows_), rows_per_band, threads, [&](int first, int last, int) {
