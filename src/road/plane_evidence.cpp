@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "core/full_resolution.hpp"
 #include "core/parallel.hpp"
+#include "road/downsampled_plane.hpp"
 
 namespace roadstereo {
 namespace {
@@ -17,89 +17,23 @@ constexpr double beyond_margin = 1.5;       ///< pixels of the downsampled image
 constexpr double full_weight_share = 0.15;  ///< of the largest disparity, from where a cell counts in full: the far
                                             ///< road is a small patch that any surface there supports
 constexpr double base_row_weight = 0.2;     ///< of the uppermost row; the lowest has this and 1
-constexpr double tilt_penalty = 0.5;        ///< share of the score that a plane at the limit of the tilt loses
 constexpr double max_slope = 0.3;           ///< disparity per column
 constexpr double slope_step = 2.0;          ///< pixels of disparity at the left and right border
 constexpr int bottom_steps = 40, top_steps = 56;
 constexpr int row_step = 2;          ///< every second row of cells is enough to find a line
 constexpr double lowest_top = -0.6;  ///< disparity of the uppermost row, as a share of the largest
 
-/// What the cells say to planes, in pixels of the downsampled image.
-class EvidenceGrid {
- public:
-  explicit EvidenceGrid(const CoarseMatches& coarse)
-      : rows_(coarse.evidence.rows()),
-        columns_(coarse.evidence.columns()),
-        disparities_(coarse.evidence.disparities()),
-        first_row_(coarse.first_row),
-        values_(scratch_vector<float>(static_cast<std::size_t>(rows_ * columns_) *
-                                      static_cast<std::size_t>(disparities_))) {
-    const double full_weight = 1.0 / (full_weight_share * disparities_);
-    for (int r = 0; r < rows_; ++r) {
-      const double lower = row(r) / coarse.height;
-      const double weight = base_row_weight + lower * lower;
-      for (int c = 0; c < columns_; ++c) {
-        const float *support = coarse.evidence.support(r, c), *beyond = coarse.evidence.beyond(r, c);
-        float* value = values_.data() + at(r, c);
-        for (int d = 0; d < disparities_; ++d) {
-          const double before = d - beyond_margin;
-          const int whole = static_cast<int>(std::floor(before));
-          const double share = before - whole;
-          const double below = whole < 0 ? 0 : (1 - share) * beyond[whole] + share * beyond[whole + 1];
-          value[d] = static_cast<float>(weight * (std::min(1.0, d * full_weight) * support[d] - beyond_weight * below));
-        }
-      }
-    }
-  }
-
-  int rows() const { return rows_; }
-  int columns() const { return columns_; }
-  int disparities() const { return disparities_; }
-  double row(int r) const { return first_row_ + evidence_rows * (r + 0.5) - 0.5; }
-  double column(int c) const { return evidence_columns * (c + 0.5) - 0.5; }
-  double middle_column() const { return 0.5 * (column(0) + column(columns_ - 1)); }
-  const float* values(int r, int c) const { return values_.data() + at(r, c); }
-
-  /// Score of the plane d = a0 + a1·v + a2·u of the downsampled image.
-  double score(const DisparityPlane& plane) const {
-    double sum = 0;
-    const auto last = static_cast<float>(disparities_ - 1);
-    const auto step = static_cast<float>(plane.a2 * evidence_columns);
-    for (int r = 0; r < rows_; ++r) {
-      const auto first = static_cast<float>(plane.disparity(column(0), row(r)));
-      float of_row = 0;
-      for (int c = 0; c < columns_; ++c) {
-        const float d = first + step * static_cast<float>(c);
-        if (d <= 0 || d >= last) continue;
-        const int whole = static_cast<int>(d);
-        const float* value = values(r, c) + whole;
-        of_row += value[0] + (d - static_cast<float>(whole)) * (value[1] - value[0]);
-      }
-      sum += of_row;
-    }
-    return sum;
-  }
-
- private:
-  std::size_t at(int r, int c) const {
-    return static_cast<std::size_t>(r * columns_ + c) * static_cast<std::size_t>(disparities_);
-  }
-
-  int rows_, columns_, disparities_, first_row_;
-  ScratchVector<float> values_;
-};
-
 /// A plane by its disparities at the left and right end of the lowest row of cells and in the middle of the uppermost.
 struct ThreePoints {
   std::array<double, 3> d;  ///< bottom left, bottom right, top centre
 
-  DisparityPlane plane(const EvidenceGrid& grid) const {
+  DisparityPlane plane(const PlaneEvidence& grid) const {
     const double left = grid.column(0), right = grid.column(grid.columns() - 1);
     const double top = grid.row(0), bottom = grid.row(grid.rows() - 1);
     const double a2 = right > left ? (d[1] - d[0]) / (right - left) : 0;
     const double middle = 0.5 * (d[0] + d[1]);
     const double a1 = bottom > top ? (middle - d[2]) / (bottom - top) : 0;
-    return {middle - a1 * bottom - a2 * grid.middle_column(), a1, a2};
+    return plane_to_full_size({middle - a1 * bottom - a2 * grid.middle_column(), a1, a2}, grid.factor());
   }
 };
 
@@ -109,18 +43,11 @@ struct Candidate {
   double weight = 1;  ///< of the score in comparisons
 };
 
-/// The plane of the downsampled image in the coordinates of the full-size one.
-DisparityPlane to_full_size(const DisparityPlane& plane, int factor) {
-  // u = factor·u' + offset, d = factor·d'
-  const double offset = to_full_resolution(0, factor);
-  return {factor * plane.a0 - (plane.a1 + plane.a2) * offset, plane.a1, plane.a2};
-}
-
 /// Rows of the grid with the columns summed along one slope: the v-disparity image sheared by it.
 class ShearedRows {
  public:
   /// `values` is memory for rows × disparities values.
-  ShearedRows(const EvidenceGrid& grid, double slope, float* values)
+  ShearedRows(const PlaneEvidence& grid, double slope, float* values)
       : disparities_(grid.disparities()), values_(values) {
     std::fill_n(values_, size(grid), 0.0f);
     for (int c = 0; c < grid.columns(); ++c) {
@@ -136,7 +63,7 @@ class ShearedRows {
     }
   }
 
-  static std::size_t size(const EvidenceGrid& grid) {
+  static std::size_t size(const PlaneEvidence& grid) {
     return static_cast<std::size_t>(grid.rows()) * static_cast<std::size_t>(grid.disparities());
   }
   const float* row(int r) const { return values_ + static_cast<std::ptrdiff_t>(r) * disparities_; }
@@ -147,8 +74,8 @@ class ShearedRows {
 };
 
 /// The best lines of one slope, one for each disparity of the lowest row.
-void search_lines(const EvidenceGrid& grid, const ShearedRows& sheared, double slope, int factor,
-                  const TiltLimit& limit, Candidate* best) {
+void search_lines(const PlaneEvidence& grid, const ShearedRows& sheared, double slope, const TiltLimit& limit,
+                  Candidate* best) {
   const double span = slope * (grid.column(grid.columns() - 1) - grid.middle_column());
   const int last_row = grid.rows() - 1;
   for (int b = 0; b < bottom_steps; ++b) {
@@ -164,16 +91,17 @@ void search_lines(const EvidenceGrid& grid, const ShearedRows& sheared, double s
         if (d > 0 && d < grid.disparities()) sum += sheared.row(r)[d];
       }
       if (static_cast<double>(sum) <= best[b].score) continue;
-      if (limit.can_be_road(to_full_size(points.plane(grid), factor))) best[b] = {points, sum, 1};
+      if (limit.can_be_road(points.plane(grid))) best[b] = {points, sum, 1};
     }
   }
 }
 
 /// Coordinate descent over the three points with a step that is halved.
-void refine_plane(const EvidenceGrid& grid, int factor, const TiltLimit& limit, Candidate& candidate) {
+void refine_plane(const PlaneEvidence& grid, const TiltLimit& limit, Candidate& candidate) {
   constexpr double first_step = 1.0;
   constexpr int halvings = 4;
-  candidate.score = grid.score(candidate.points.plane(grid));
+  const auto score = [&](const DisparityPlane& plane) { return limit.level_weight(plane) * grid.of_plane(plane); };
+  candidate.score = score(candidate.points.plane(grid));
   double step = first_step;
   for (int halving = 0; halving < halvings; ++halving, step /= 2) {
     for (bool moved = true; moved;) {
@@ -183,8 +111,8 @@ void refine_plane(const EvidenceGrid& grid, int factor, const TiltLimit& limit, 
           Candidate next = candidate;
           next.points.d[i] += change;
           const DisparityPlane plane = next.points.plane(grid);
-          next.score = grid.score(plane);
-          if (next.score <= candidate.score || !limit.can_be_road(to_full_size(plane, factor))) continue;
+          next.score = score(plane);
+          if (next.score <= candidate.score || !limit.can_be_road(plane)) continue;
           candidate = next;
           moved = true;
         }
@@ -198,12 +126,6 @@ bool nearly_equal(const ThreePoints& a, const ThreePoints& b, double tolerance) 
     if (std::abs(a.d[i] - b.d[i]) > tolerance) return false;
   }
   return true;
-}
-
-/// Rigs hang level: of two planes with like evidence the one less tilted is the road.
-void penalise_tilt(const EvidenceGrid& grid, int factor, const TiltLimit& limit, Candidate& candidate) {
-  const double tilt = limit.relative_tilt(to_full_size(candidate.points.plane(grid), factor));
-  candidate.score *= 1 - tilt_penalty * tilt * tilt;
 }
 
 /// The best candidates that differ, best first.
@@ -223,10 +145,56 @@ ScratchVector<Candidate> choose(ScratchVector<Candidate>& candidates, std::size_
 
 }  // namespace
 
-ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const TiltLimit& limit, const RigPrior& prior,
+PlaneEvidence::PlaneEvidence(const CoarseMatches& coarse)
+    : rows_(coarse.evidence.rows()),
+      columns_(coarse.evidence.columns()),
+      disparities_(coarse.evidence.disparities()),
+      first_row_(coarse.first_row),
+      factor_(coarse.factor),
+      pixels_(coarse.pixels()),
+      values_(
+          scratch_vector<float>(static_cast<std::size_t>(rows_ * columns_) * static_cast<std::size_t>(disparities_))) {
+  const double full_weight = 1.0 / (full_weight_share * disparities_);
+  for (int r = 0; r < rows_; ++r) {
+    const double lower = row(r) / coarse.height;
+    const double weight = base_row_weight + lower * lower;
+    for (int c = 0; c < columns_; ++c) {
+      const float *support = coarse.evidence.support(r, c), *beyond = coarse.evidence.beyond(r, c);
+      float* value = values_.data() + at(r, c);
+      for (int d = 0; d < disparities_; ++d) {
+        const double before = d - beyond_margin;
+        const int whole = static_cast<int>(std::floor(before));
+        const double share = before - whole;
+        const double below = whole < 0 ? 0 : (1 - share) * beyond[whole] + share * beyond[whole + 1];
+        value[d] = static_cast<float>(weight * (std::min(1.0, d * full_weight) * support[d] - beyond_weight * below));
+      }
+    }
+  }
+}
+
+double PlaneEvidence::of_plane(const DisparityPlane& full_size) const {
+  const DisparityPlane plane = downsample_plane(full_size, factor_);
+  double sum = 0;
+  const auto last = static_cast<float>(disparities_ - 1);
+  const auto step = static_cast<float>(plane.a2 * evidence_columns);
+  for (int r = 0; r < rows_; ++r) {
+    const auto first = static_cast<float>(plane.disparity(column(0), row(r)));
+    float of_row = 0;
+    for (int c = 0; c < columns_; ++c) {
+      const float d = first + step * static_cast<float>(c);
+      if (d <= 0 || d >= last) continue;
+      const int whole = static_cast<int>(d);
+      const float* value = values(r, c) + whole;
+      of_row += value[0] + (d - static_cast<float>(whole)) * (value[1] - value[0]);
+    }
+    sum += of_row;
+  }
+  return sum / pixels_;
+}
+
+ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& grid, const TiltLimit& limit, const RigPrior& prior,
                                              int max_planes, int threads) {
   auto planes = scratch_vector<PlaneHypothesis>();
-  const EvidenceGrid grid(coarse);
   if (grid.rows() < 2 || grid.columns() < 2 || grid.disparities() < 4) return planes;
   const double half_width = 0.5 * (grid.column(grid.columns() - 1) - grid.column(0));
   const int slopes = static_cast<int>(max_slope * half_width / slope_step);
@@ -235,23 +203,24 @@ ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const 
   parallel_for(2 * slopes + 1, threads, [&](int i, int worker) {
     const double slope = (i - slopes) * slope_step / half_width;
     const ShearedRows rows(grid, slope, sheared.data() + static_cast<std::size_t>(worker) * ShearedRows::size(grid));
-    search_lines(grid, rows, slope, coarse.factor, limit,
-                 candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
+    search_lines(grid, rows, slope, limit, candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
   });
-  const auto weigh = [&](Candidate& candidate) {
-    if (candidate.score > 0) candidate.weight = prior.weight(to_full_size(candidate.points.plane(grid), coarse.factor));
-  };
-  std::for_each(candidates.begin(), candidates.end(), weigh);
+  for (Candidate& candidate : candidates) {
+    if (candidate.score <= 0) continue;
+    const DisparityPlane plane = candidate.points.plane(grid);
+    candidate.weight = limit.level_weight(plane) * prior.weight(plane);
+  }
   constexpr std::size_t refined = 8;
   ScratchVector<Candidate> best = choose(candidates, refined, 2 * slope_step);
   parallel_for(static_cast<int>(best.size()), threads, [&](int i, int) {
     Candidate& candidate = best[static_cast<std::size_t>(i)];
-    refine_plane(grid, coarse.factor, limit, candidate);
-    penalise_tilt(grid, coarse.factor, limit, candidate);
-    weigh(candidate);
+    refine_plane(grid, limit, candidate);
+    const DisparityPlane plane = candidate.points.plane(grid);
+    candidate.score = grid.of_plane(plane);
+    candidate.weight = limit.level_weight(plane) * prior.weight(plane);
   });
   for (const Candidate& candidate : choose(best, static_cast<std::size_t>(max_planes), slope_step)) {
-    planes.push_back({to_full_size(candidate.points.plane(grid), coarse.factor), candidate.score});
+    planes.push_back({candidate.points.plane(grid), candidate.score});
   }
   return planes;
 }

@@ -10,15 +10,42 @@ namespace roadstereo {
 /// A plane and what the whole picture says to it.
 struct PlaneHypothesis {
   DisparityPlane plane;  ///< in full-size pixels
-  double score = 0;      ///< evidence for the plane less evidence below it
+  double evidence = 0;   ///< PlaneEvidence::of_plane, less where the plane is tilted
+};
+
+/// What the cells of a downsampled pair say to planes. A plane gains where the pixels support its disparity and loses
+/// where they lie beyond it, for nothing but damage lies below a road; lower rows count more.
+class PlaneEvidence {
+ public:
+  explicit PlaneEvidence(const CoarseMatches& coarse);
+
+  int rows() const { return rows_; }
+  int columns() const { return columns_; }
+  int disparities() const { return disparities_; }
+  int factor() const { return factor_; }
+  double row(int r) const { return first_row_ + evidence_rows * (r + 0.5) - 0.5; }
+  double column(int c) const { return evidence_columns * (c + 0.5) - 0.5; }
+  double middle_column() const { return 0.5 * (column(0) + column(columns_ - 1)); }
+  const float* values(int r, int c) const { return values_.data() + at(r, c); }
+
+  /// Mean evidence for a plane per pixel, about −1 … 2. The plane is in full-size pixels.
+  double of_plane(const DisparityPlane& plane) const;
+
+ private:
+  std::size_t at(int r, int c) const {
+    return static_cast<std::size_t>(r * columns_ + c) * static_cast<std::size_t>(disparities_);
+  }
+
+  int rows_, columns_, disparities_, first_row_, factor_;
+  double pixels_;
+  ScratchVector<float> values_;
 };
 
 /// Search planes by total evidence: a Hough transform over slope along the columns and a line in v-disparity space,
 /// then a local search. Nothing has to be matched pixel by pixel: where noise or defocus leave a single block
-/// undecided, the sum over all of them still decides. A plane gains where the pixels support its disparity and loses
-/// where they lie beyond it, for nothing but damage lies below a road; lower rows count more. Best first, at most
-/// `max_planes`, and none of them nearly equal. `limit` rejects walls, `prior` weighs the score in that order.
-ScratchVector<PlaneHypothesis> search_planes(const CoarseMatches& coarse, const TiltLimit& limit, const RigPrior& prior,
-                                             int max_planes, int threads);
+/// undecided, the sum over all of them still decides. Best first, at most `max_planes`, and none of them nearly equal.
+/// `limit` rejects walls and lowers the evidence of what is tilted, `prior` weighs it in that order.
+ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
+                                             const RigPrior& prior, int max_planes, int threads);
 
 }  // namespace roadstereo

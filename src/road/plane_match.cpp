@@ -73,12 +73,13 @@ std::optional<double> best_residual(const StripCorrelations& correlations, int r
 class PlaneSearch {
  public:
   PlaneSearch(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, const DisparityPlane& plane,
-              int range_px, const MaskedBlocks& masked)
+              int range_px, float min_deviation, const MaskedBlocks& masked)
       : left_(left),
         right_(right),
         plane_(plane),
         masked_(masked),
         range_(range_px),
+        min_deviation_(min_deviation),
         extent_(plane_search_extent(plane.a1, plane.a2, range_px)) {}
 
   /// Correlations of the block at (u, v) with the residuals +range … −range; false where there is no texture, the
@@ -87,9 +88,9 @@ class PlaneSearch {
     if (!search_in_view(u, plane_.disparity(u, v), extent_, left_.width())) return false;
     if (masked_.contains(u, v, plane_block_half_width, plane_block_half_height)) return false;
     const CorrelationBlock block(left_, u, v, plane_block_half_width, plane_block_half_height);
-    if (block.deviation < plane_match_min_deviation) return false;
+    if (block.deviation < min_deviation_) return false;
     sample_around(right_, block, u, v, plane_, range_, strip);
-    correlate_strip(block, strip, 2 * range_ + 1, plane_match_min_deviation, correlations);
+    correlate_strip(block, strip, 2 * range_ + 1, min_deviation_, correlations);
     return true;
   }
 
@@ -103,6 +104,7 @@ class PlaneSearch {
   DisparityPlane plane_;
   const MaskedBlocks& masked_;
   int range_;
+  float min_deviation_;
   double extent_;
 };
 
@@ -135,7 +137,7 @@ PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<con
                                const MaskedBlocks& masked) {
   const SampleGrid grid = sample_grid(left.width(), left.height(), range_px, places);
   if (std::abs(plane.a2) >= plane_match_max_slant) return {};
-  const PlaneSearch search(left, right, plane, range_px, masked);
+  const PlaneSearch search(left, right, plane, range_px, plane_match_min_deviation, masked);
   auto points = scratch_vector<DisparityPoint>(static_cast<std::size_t>(grid.places()));
   auto near = scratch_vector<float>(static_cast<std::size_t>(grid.places()));
   auto rows = scratch_vector<RowCount>(static_cast<std::size_t>(grid.rows));
@@ -164,9 +166,11 @@ PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageVi
                                      const DisparityPlane& plane, int range_px, int places, int threads,
                                      const MaskedBlocks& masked) {
   constexpr int cell = 5;  // samples along each side
+  // What a single block hides in noise the mean of a cell shows.
+  constexpr float cell_min_deviation = plane_match_min_deviation / 2;
   const SampleGrid grid = sample_grid(left.width(), left.height(), range_px, places);
   if (std::abs(plane.a2) >= plane_match_max_slant) return {};
-  const PlaneSearch search(left, right, plane, range_px, masked);
+  const PlaneSearch search(left, right, plane, range_px, cell_min_deviation, masked);
   const int cell_rows = (grid.rows + cell - 1) / cell, cell_columns = (grid.columns + cell - 1) / cell;
   auto points =
       scratch_vector<DisparityPoint>(static_cast<std::size_t>(cell_rows) * static_cast<std::size_t>(cell_columns));

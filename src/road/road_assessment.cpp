@@ -10,6 +10,8 @@
 namespace roadstereo {
 namespace {
 
+/// Standard deviation of the sine of a rig's tilt, as a share of that of the limit.
+constexpr double level_tilt = 0.33;
 /// A tracked road must explain this much of what it explained in the last frame.
 constexpr double min_share_of_last = 0.6;
 constexpr double min_share = 0.1;  ///< in any case
@@ -55,10 +57,11 @@ bool TiltLimit::can_be_road(const DisparityPlane& plane) const {
   return length > 0 && std::abs(plane.a2) <= max_sine_ * length && plane.a1 >= -max_sine_ * length;
 }
 
-double TiltLimit::relative_tilt(const DisparityPlane& plane) const {
+double TiltLimit::level_weight(const DisparityPlane& plane) const {
   const double depth = (plane.disparity(cx_, cy_) + offset_) / focal_;
   const double length = std::hypot(plane.a1, plane.a2, depth);
-  return length > 0 ? std::abs(plane.a2) / (length * max_sine_) : 1;
+  const double tilt = length > 0 ? std::abs(plane.a2) / (length * max_sine_ * level_tilt) : 1 / level_tilt;
+  return std::exp(-0.5 * tilt * tilt);
 }
 
 std::string assess_plane_fit(const PlaneFitStatistics& fit, const TiltLimit& limit, RoadModelEstimate& estimate) {

@@ -15,8 +15,8 @@ class TiltLimit {
 
   bool can_be_road(const DisparityPlane& plane) const;
 
-  /// Sine of the sideways tilt as a share of that of the limit, 0 … 1 for what can be a road.
-  double relative_tilt(const DisparityPlane& plane) const;
+  /// Rigs hang level: of two planes with like evidence the one less tilted is the road. Above 0 … 1.
+  double level_weight(const DisparityPlane& plane) const;
 
  private:
   double focal_, cx_, cy_, offset_, max_sine_;

@@ -1,6 +1,7 @@
 #include "roadstereo/road_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -8,6 +9,7 @@
 #include "core/format_message.hpp"
 #include "core/require_range.hpp"
 #include "road/coarse_match.hpp"
+#include "road/downsampled_plane.hpp"
 #include "road/masked_blocks.hpp"
 #include "road/plane_evidence.hpp"
 #include "road/plane_fit.hpp"
@@ -19,12 +21,6 @@
 
 namespace roadstereo {
 namespace {
-
-/// The same plane in the coordinates of the image downsampled by `factor`.
-DisparityPlane downsample_plane(const DisparityPlane& plane, int factor) {
-  const double centre = to_full_resolution(0, factor);
-  return {plane.disparity(centre, centre) / factor, plane.a1, plane.a2};
-}
 
 ScratchVector<DisparityPoint> points_to_full_resolution(ScratchVector<DisparityPoint> points, int factor) {
   for (DisparityPoint& p : points) p = {to_full_resolution(p.u, factor), to_full_resolution(p.v, factor), p.d * factor};
@@ -115,46 +111,65 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneM
   return result;
 }
 
-/// Replace a plane by that which most of the image around it supports, by RANSAC over cells of equal size. Single
-/// blocks match where the texture is: on a pavement or a verge rather than on a smooth road, so that the plane tips
-/// over.
-void fit_evenly(const FinePair& pair, const TiltLimit& limit, bool with_roll, int threads, DisparityPlane& plane) {
+/// The plane that most of the image around `plane` supports, by RANSAC over cells of equal size; `plane` where there is
+/// none. Single blocks match where the texture is: on a pavement or a verge rather than on a smooth road, so that the
+/// plane tips over.
+DisparityPlane fit_evenly(const FinePair& pair, const DisparityPlane& plane, const TiltLimit& limit, bool with_roll,
+                          int threads) {
   const int factor = pair.factor();
   const int places = static_cast<int>(pair.left().pixels() / (std::size_t{even_spacing_px} * even_spacing_px));
   const PlaneMatches found = match_cells_along_plane(pair.left(), pair.right(), downsample_plane(plane, factor),
                                                      even_range_px, places, threads, pair.masked());
   const auto points = points_to_full_resolution(found.points, factor);
-  if (points.size() < min_even_points) return;
+  if (points.size() < min_even_points) return plane;
   const auto start = ransac_plane(points, even_tolerance * factor);
-  if (!start || !limit.can_be_road(*start)) return;
+  if (!start || !limit.can_be_road(*start)) return plane;
   const auto fit = fit_plane_irls(points, *start, fine_fit_scale * factor, with_roll, fine_fit_iterations);
-  if (fit && limit.can_be_road(fit->plane)) plane = fit->plane;
+  return fit && limit.can_be_road(fit->plane) ? fit->plane : plane;
 }
 
 /// First wide, for the coarse plane is good to a pixel of the downsampled image at best; then close. By single blocks,
 /// and where these find nothing by cells of them.
 Refinement find_around(const FinePair& pair, const DisparityPlane& plane, bool with_roll, int threads) {
   Refinement refinement;
-  for (PlaneMatcher* match : {&match_along_plane, &match_cells_along_plane}) {
-    refinement = refine_road(pair, plane, *match, first_search, with_roll, threads);
-    if (refinement.evidence.found) {
-      refinement = refine_road(pair, refinement.evidence.plane, *match, close_search, with_roll, threads);
-    }
-    if (refinement.evidence.found) break;
-  }
+  const auto search = [&](PlaneMatcher match, const FineSearch& first, const FineSearch& close) {
+    refinement = refine_road(pair, plane, match, first, with_roll, threads);
+    if (!refinement.evidence.found) return;
+    refinement = refine_road(pair, refinement.evidence.plane, match, close, with_roll, threads);
+  };
+  search(match_along_plane, first_search, close_search);
+  if (!refinement.evidence.found) search(match_cells_along_plane, first_cell_search, close_cell_search);
   return refinement;
 }
 
+/// Assess one plane in the full-size pair, or in the downsampled one, where noise that hides every block averages out.
+RoadModelEstimate assess_plane(std::span<const FinePair> pairs, const PlaneHypothesis& hypothesis,
+                               const PlaneEvidence& evidence, const TiltLimit& limit, const RoadModelOptions& options,
+                               int threads, const RoadModelEstimate& matched) {
+  const auto weigh = [&](const DisparityPlane& plane) { return limit.level_weight(plane) * evidence.of_plane(plane); };
+  RoadModelEstimate first = matched;
+  for (const FinePair& pair : pairs) {
+    Refinement refinement = find_around(pair, hypothesis.plane, options.with_roll, threads);
+    PlaneFitStatistics& fit = refinement.evidence;
+    if (fit.found) {
+      const DisparityPlane even = fit_evenly(pair, fit.plane, limit, options.with_roll, threads);
+      if (weigh(even) >= min_even_evidence * weigh(fit.plane)) fit.plane = even;
+    }
+    RoadModelEstimate assessed = matched;
+    assess_found_road(fit, hypothesis.evidence, limit, options, assessed);
+    if (assessed.has_road()) return assessed;
+    if (&pair == &pairs.front()) first = assessed;
+  }
+  return first;
+}
+
 /// Assess the planes in turn until one is a road. If none is, the reason is that of the first.
-RoadModelEstimate assess_planes(const FinePair& pair, std::span<const PlaneHypothesis> planes, double coarse_pixels,
-                                const TiltLimit& limit, const RoadModelOptions& options, int threads,
-                                const RoadModelEstimate& matched) {
+RoadModelEstimate assess_planes(std::span<const FinePair> pairs, std::span<const PlaneHypothesis> planes,
+                                const PlaneEvidence& evidence, const TiltLimit& limit, const RoadModelOptions& options,
+                                int threads, const RoadModelEstimate& matched) {
   RoadModelEstimate estimate = matched;
   for (const PlaneHypothesis& hypothesis : planes) {
-    Refinement refinement = find_around(pair, hypothesis.plane, options.with_roll, threads);
-    if (refinement.evidence.found) fit_evenly(pair, limit, options.with_roll, threads, refinement.evidence.plane);
-    RoadModelEstimate assessed = matched;
-    assess_found_road(refinement.evidence, hypothesis.score / coarse_pixels, limit, options, assessed);
+    const RoadModelEstimate assessed = assess_plane(pairs, hypothesis, evidence, limit, options, threads, matched);
     if (assessed.has_road()) return assessed;
     if (&hypothesis == &planes.front()) estimate = assessed;
   }
@@ -228,21 +243,16 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
   // The plane with the most evidence; the next where that is no road after all.
   constexpr int max_planes = 3;
+  const PlaneEvidence evidence(coarse);
   const ScratchVector<PlaneHypothesis> planes =
-      search_planes(coarse, limit, RigPrior(options, calibration), max_planes, threads);
+      search_planes(evidence, limit, RigPrior(options, calibration), max_planes, threads);
   if (planes.empty()) {
     estimate.reason = few_match ? too_few(estimate.matches) : "no plane has more evidence for it than against it";
     return estimate;
   }
-  const auto assess_in = [&](int downsampling) {
-    return assess_planes({left, right, mask, downsampling}, planes, coarse.pixels(), limit, options, threads, estimate);
-  };
-  RoadModelEstimate found = assess_in(fine_factor(left.width()));
-  if (!found.has_road()) {
-    // Noise that hides every block at full size averages out in the downsampled pair.
-    const RoadModelEstimate found_coarsely = assess_in(factor);
-    if (found_coarsely.has_road()) found = found_coarsely;
-  }
+  const std::array<FinePair, 2> pairs{FinePair{left, right, mask, fine_factor(left.width())},
+                                      FinePair{left, right, mask, factor}};
+  RoadModelEstimate found = assess_planes(pairs, planes, evidence, limit, options, threads, estimate);
   if (few_match && !found.has_road()) found.reason = too_few(estimate.matches);
   measure_range(matches, found);
   return found;

@@ -33,6 +33,8 @@ struct FineSearch {
 };
 inline constexpr FineSearch first_search{7, 1000};  ///< the coarse plane is good to a pixel of the shrunk image at best
 inline constexpr FineSearch close_search{4, 2500};
+inline constexpr FineSearch first_cell_search{7, 4000};
+inline constexpr FineSearch close_cell_search{4, 5000};
 inline constexpr FineSearch close_search_again{2, 1500};
 inline constexpr FineSearch first_search_again{4, 700};  ///< around the last frame's plane
 
@@ -41,6 +43,8 @@ inline constexpr FineSearch first_search_again{4, 700};  ///< around the last fr
 inline constexpr int even_spacing_px = 5, even_range_px = 7;
 inline constexpr double even_tolerance = 1.0;
 inline constexpr std::size_t min_even_points = 40;
+/// Its plane is taken unless it has less than this share of the evidence of the plane it started from.
+inline constexpr double min_even_evidence = 0.75;
 
 /// Of the robust fit after a search. The window is in pixels of the shrunk image: a kerb must not pull the plane, a
 /// road that is not flat must stay in.
