@@ -43,7 +43,8 @@ struct FrameLink {
                                                     ///< to camera `to`
   std::array<double, 36> covariance{};              ///< translation, then rotation vector, in the axes of camera `to`
   double correlation = 0;                           ///< median NCC of patches of texture, −1 … 1
-  double overlap = 0;                               ///< share of the view of `from` that `to` sees, 0 … 1
+  double overlap = 0;                               ///< share of the view of `from` that `to` sees, 0 … 1; what it
+                                                    ///< sees from farther away counts by the smaller area
   double offset_px = 0;                             ///< disparity offset at infinity that was undone, pixels
   double offset_sd_px = 0;                          ///< its standard error
   double measured_offset_px = 0;                    ///< what this link alone tells of the offset

@@ -37,7 +37,7 @@ struct Equation {
 struct Equations {
   std::vector<Equation> grey;
   std::vector<Equation> disparity;
-  std::size_t visible = 0;
+  double visible = 0;  ///< points, each by the area of what it stands for that is left
 };
 
 /// Bilinear sample; false outside.
@@ -127,7 +127,8 @@ class Linearisation {
     const double u = f * q[0] / q[2] + calibration_.cx_px, v = f * q[1] / q[2] + calibration_.cy_px;
     GreySample sample;
     if (!sample_grey(samples_, (u + 0.5) * scale_ - 0.5, (v + 0.5) * scale_ - 0.5, sample)) return;
-    ++equations.visible;
+    const double scale = z / q[2];
+    equations.visible += std::min(1.0, scale * scale);
     // Derivative of q by the disparity.
     const Vector<3> turned = state.motion.rotated(p);
     const Vector<3> by_disparity{-turned[0] / disparity, -turned[1] / disparity, -turned[2] / disparity};
@@ -354,7 +355,7 @@ class Aligner {
     linearisation.build(points, state_, equations_);
     alignment.motion = state_.motion;
     if (points.empty() || equations_.grey.size() < min_points) return alignment;
-    alignment.overlap = static_cast<double>(equations_.visible) / static_cast<double>(points.size());
+    alignment.overlap = equations_.visible / static_cast<double>(points.size());
     double noise = 10;
     weigh(noise);
     fill_covariance(alignment);

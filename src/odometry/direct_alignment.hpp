@@ -16,7 +16,8 @@ struct OffsetPrior {
 struct Alignment {
   RigidMotion motion;      ///< from the camera frame of the reference to that of the current frame
   Matrix<6> covariance{};  ///< of the motion: translation, then rotation vector, in the current camera frame
-  double overlap = 0;      ///< share of the points of the reference that the current frame sees
+  double overlap = 0;      ///< share of the points of the reference that the current frame sees; what it sees from
+                           ///< farther away counts by the smaller area
   double correlation = 0;  ///< median NCC of patches of texture; about 0 for a wrong motion
   double offset_px = 0;    ///< disparity offset at infinity that was assumed or estimated
   double offset_sd_px = 0;

@@ -98,13 +98,16 @@ bool LinkEstimator::accepted(const Alignment& alignment) const {
   return alignment.correlation >= options_.min_correlation && alignment.overlap >= options_.min_overlap;
 }
 
-/// Where the road planes of both frames agree best, whatever the motion; and no motion.
+/// No motion; where the road planes of both frames agree best, whatever the motion; and motions along the road, which
+/// a road without texture does not show from above. Their step leaves no gap between searches of patches.
 std::vector<RigidMotion> LinkEstimator::starts(const LinkReference& from, const FrameMaps& maps,
                                                const OdometryFrame& frame, double yaw_rad) const {
   constexpr int max_yaw_steps = 4;
   constexpr double yaw_step_rad = 2 * std::numbers::pi / 180;
   constexpr int peaks_per_yaw = 2;
   constexpr std::size_t max_starts = 6;
+  constexpr int max_steps = 6;
+  constexpr double step_of_height = 0.7;
   std::vector<RigidMotion> result{RigidMotion{}};
   FrameRoad road;
   if (!from.road || !frame.has_road ||
@@ -128,6 +131,10 @@ std::vector<RigidMotion> LinkEstimator::starts(const LinkReference& from, const 
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   for (std::size_t i = 0; i < std::min(found.size(), max_starts); ++i) result.push_back(found[i].second);
+  for (int step = 1; step <= max_steps; ++step) {
+    const double length_m = step * step_of_height * road.plane.height_m;
+    for (const double y_m : {-length_m, length_m}) result.push_back(planar_motion(*from.road, road, 0, 0, y_m));
+  }
   return result;
 }
 

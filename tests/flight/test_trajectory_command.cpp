@@ -50,6 +50,53 @@ TEST_F(TrajectoryCommand, FilesHaveMotion) {
                    "--trajectory is for recordings only");
 }
 
+/// Position of a frame of the drive, from its true poses.
+std::vector<std::array<double, 3>> true_positions(const std::filesystem::path& file) {
+  std::ifstream text(file);
+  std::vector<std::array<double, 3>> positions;
+  std::array<double, 12> pose{};
+  while (std::all_of(pose.begin(), pose.end(), [&text](double& number) { return bool(text >> number); })) {
+    positions.push_back({pose[3], pose[7], pose[11]});
+  }
+  return positions;
+}
+
+using TrajectoryRealData = CommandTest;
+
+TEST_F(TrajectoryRealData, DriveIsOnePieceBackwardsAndInStridesOfMetres) {
+  const auto data = data_folder("wider/odometry");
+  if (!data) GTEST_SKIP() << "SKIPPED: no real data; set ROADSTEREO_DATA to a folder that has wider/odometry";
+  const auto positions = true_positions(*data / "poses.txt");
+  ASSERT_EQ(positions.size(), 51U);
+  struct Order {
+    int first, step, count;
+  };
+  for (const Order order : {Order{29, -1, 30}, Order{0, 3, 9}, Order{20, -3, 7}, Order{0, 5, 6}}) {
+    const std::filesystem::path drive = folder_ / "drive";
+    for (const char* const view : {"image_0", "image_1"}) {
+      std::filesystem::create_directories(drive / view);
+      for (int i = 0; i < order.count; ++i) {
+        const std::string from = std::to_string(1000000 + order.first + i * order.step).substr(1),
+                          to = std::to_string(1000000 + i).substr(1);
+        std::filesystem::create_symlink(*data / view / (from + ".png"), drive / view / (to + ".png"));
+      }
+    }
+    std::filesystem::copy_file(*data / "calibration.yaml", drive / "calibration.yaml");
+    const Outcome outcome = run("inspect drive --trajectory --output out");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("in 1 piece,"), std::string::npos) << order.step << outcome.out;
+    const Trajectory trajectory = io::read_trajectory((folder_ / "out/trajectory_kitti.txt").string());
+    ASSERT_EQ(trajectory.frames.size(), static_cast<std::size_t>(order.count));
+    const auto& pose = trajectory.frames.back().camera_to_world;
+    const auto &first = positions[static_cast<std::size_t>(order.first)],
+               &last = positions[static_cast<std::size_t>(order.first + (order.count - 1) * order.step)];
+    const double path = std::hypot(last[0] - first[0], last[1] - first[1], last[2] - first[2]);
+    EXPECT_NEAR(std::hypot(pose[3], pose[7], pose[11]), path, 0.02 * path) << order.step;
+    std::filesystem::remove_all(drive);
+    std::filesystem::remove_all(folder_ / "out");
+  }
+}
+
 TEST_F(TrajectoryCommand, FrameOfOtherSizeIsLeftOut) {
   const Outcome made = run("synth --scene uav --size 192x108 --output small --quiet");
   ASSERT_EQ(made.exit_code, 0) << made.err;

@@ -210,6 +210,36 @@ TEST(Odometry, OffsetAtInfinityIsUndone) {
   EXPECT_LT(with, 0.1 * without);
 }
 
+/// Frames of a street, `step_m` further each.
+std::vector<KnownFrame> street_frames(const synth::Scene& street, double step_m, int count) {
+  synth::Scene scene = street;
+  std::vector<KnownFrame> frames;
+  for (int i = 0; i < count; ++i) {
+    scene.rig.y_m = step_m * i;
+    frames.push_back(known_frame(scene));
+  }
+  return frames;
+}
+
+TEST(Odometry, FollowsStreetBackwards) {
+  // All that the reference shows stays in view and becomes smaller.
+  const synth::Scene street = test::smaller_scene("street", 2);
+  constexpr double step_m = -0.8;
+  constexpr int count = 12;
+  const std::vector<KnownFrame> frames = street_frames(street, step_m, count);
+  Odometry odometry(street.rig.calibration());
+  for (int i = 0; i < count; ++i) {
+    const FramePose& pose = odometry.add(i, frames[static_cast<std::size_t>(i)].maps());
+    EXPECT_EQ(pose.piece, 0) << i;
+    EXPECT_LT(distance(pose_error(pose, frames.front(), frames[static_cast<std::size_t>(i)])), 0.02) << i;
+  }
+  EXPECT_GT(odometry.reference(), 0);
+  for (const FrameLink& link : odometry.links()) {
+    EXPECT_EQ(link.status, LinkStatus::good) << link.to;
+    EXPECT_LT(link.overlap, 0.98) << link.to;
+  }
+}
+
 TEST(Odometry, ForgetsOldFramesOnly) {
   Odometry all(test::smaller_scene("uav", 2).rig.calibration());
   OdometryOptions options;
