@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "tests/cli/command_test.hpp"
 
@@ -52,6 +53,25 @@ TEST_F(EvaluateDamage, RejectsOtherFolders) {
   const Outcome outcome = run("evaluate damage .");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+}
+
+TEST_F(EvaluateDamage, LabelledPairsNeedNoScan) {
+  ASSERT_EQ(run("synth --scene demo --size 640x360 --output scene --quiet").exit_code, 0);
+  for (const auto& [from, to] :
+       {std::pair{"left.png", "left"}, {"right.png", "right"}, {"truth_labels.png", "label"}}) {
+    fs::create_directories(folder_ / "pairs" / to);
+    fs::copy_file(folder_ / "scene" / from, folder_ / "pairs" / to / "p1_00.png");
+  }
+  const Outcome without = run("evaluate damage pairs");
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_NE(without.err.find("no calibration_p….yaml for p1, and no calibration.yaml"), std::string::npos)
+      << without.err;
+  fs::copy_file(folder_ / "scene/calibration.yaml", folder_ / "pairs/calibration.yaml");
+  const Outcome outcome = run("evaluate damage pairs --json score.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto row = json_file("score.json")["rows"][0];
+  EXPECT_EQ(row["frame"], "p1_00");
+  EXPECT_GT(row["found"], 0) << row;
 }
 
 /// Scores of the frames of a folder, without the line of them all.

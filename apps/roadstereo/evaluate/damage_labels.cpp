@@ -108,9 +108,9 @@ std::vector<LabelResult> score_labelled_maps(const std::string& folder) {
 
 std::vector<LabelResult> score_labelled_pairs(const std::string& folder, const std::vector<DamageMethod>& methods) {
   std::vector<LabelResult> results;
-  const std::vector<ScanFiles> frames = find_scan_frames(folder);
+  const std::vector<LabelledFiles> frames = find_labelled_pairs(folder);
   for (const DamageMethod& method : methods) {
-    for (const ScanFiles& files : frames) {
+    for (const LabelledFiles& files : frames) {
       const StereoPair pair = read_pair(files.pair);
       const FrameDamage found = find_damage_of(method, pair, files.name);
       results.push_back(score_frame(files.name, found.map, read_mask(files.label), found.frame.disparity, files.label));

@@ -42,7 +42,9 @@ std::string find_calibration(const fs::path& root, const std::string& pothole) {
     const std::string potholes = path.stem().string().substr(prefix.size());
     if (pothole.size() == 2 && potholes.find(pothole[1]) != std::string::npos) return path.string();
   }
-  fail(root.string(), ": the folder contains no calibration_p….yaml for ", pothole);
+  const fs::path of_all = root / "calibration.yaml";
+  if (fs::is_regular_file(of_all)) return of_all.string();
+  fail(root.string(), ": the folder contains no calibration_p….yaml for ", pothole, ", and no calibration.yaml");
 }
 
 std::string require_file(const fs::path& path) {
@@ -52,18 +54,24 @@ std::string require_file(const fs::path& path) {
 
 }  // namespace
 
-std::vector<ScanFiles> find_scan_frames(const std::string& folder) {
+std::vector<LabelledFiles> find_labelled_pairs(const std::string& folder) {
   const fs::path root = folder;
-  std::vector<ScanFiles> frames;
+  std::vector<LabelledFiles> pairs;
   for (const fs::path& left : files_in(root / "left", "p", ".png")) {
-    const std::string file = left.filename().string();
-    const std::string pothole = pothole_of(left.stem().string());
-    frames.push_back({left.stem().string(),
-                      {left.string(), require_file(root / "right" / file), {find_calibration(root, pothole)}},
-                      require_file(root / "label" / file),
-                      find_scan(root, pothole)});
+    const std::string name = left.stem().string(), file = left.filename().string();
+    pairs.push_back({name,
+                     {left.string(), require_file(root / "right" / file), {find_calibration(root, pothole_of(name))}},
+                     require_file(root / "label" / file)});
   }
-  if (frames.empty()) fail((root / "left").string(), ": the folder contains no image pM_NN.png");
+  if (pairs.empty()) fail((root / "left").string(), ": the folder contains no image pM_NN.png");
+  return pairs;
+}
+
+std::vector<ScanFiles> find_scan_frames(const std::string& folder) {
+  std::vector<ScanFiles> frames;
+  for (const LabelledFiles& pair : find_labelled_pairs(folder)) {
+    frames.push_back({pair, find_scan(folder, pothole_of(pair.name))});
+  }
   return frames;
 }
 

@@ -10,17 +10,24 @@
 
 namespace roadstereo::cli {
 
-/// Files of a stereo pair of a pothole and of the scan of its cast.
-struct ScanFiles {
+/// Files of a stereo pair of a pothole.
+struct LabelledFiles {
   std::string name;
   PairFiles pair;
   std::string label;  ///< mask of the pothole in the left image
+};
+
+/// Find the pairs of a folder with left/, right/, label/ (pM_NN.png: pothole M, frame NN) and calibration_pM….yaml,
+/// whose digits are the potholes that it applies to (calibration_p12.yaml: 1 and 2), or calibration.yaml for all
+/// others. Sorted by name. Throws Error naming the file or folder that is missing.
+std::vector<LabelledFiles> find_labelled_pairs(const std::string& folder);
+
+/// The same and the scan of its cast.
+struct ScanFiles : LabelledFiles {
   std::string scan;
 };
 
-/// Find the pairs of a folder with left/, right/, label/ (pM_NN.png: pothole M, frame NN), scan/pM_*.ply and
-/// calibration_pM….yaml, whose digits are the potholes that it applies to (calibration_p12.yaml: 1 and 2). Sorted by
-/// name. Throws Error naming the file or folder that is missing.
+/// The labelled pairs of a folder with scan/pM_*.ply. Throws Error likewise.
 std::vector<ScanFiles> find_scan_frames(const std::string& folder);
 
 /// Read the points of a PLY file and scale them by `to_mm`.
