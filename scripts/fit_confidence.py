@@ -29,7 +29,7 @@ def surface_log_odds(significance):
 
 def features(region):
     significance = min(max(region["significance"], 1), MAX_SIGNIFICANCE)
-    return [1, math.log(significance), region["road_share"], region["border_share"]]
+    return [1, math.log(significance), region["road_share"], region["unseen_share"], region["border_share"] ** 2]
 
 
 def fit(x, y, offset, weight):
@@ -76,7 +76,7 @@ def main():
             of_kind = (sources == name) & (y == truth)
             weight[of_kind] = min(1, REGIONS_PER_SOURCE / max(1, of_kind.sum()))
     coefficients = fit(x, y, offset, weight)
-    print("intercept, ln significance, road share, border share:", np.round(coefficients, 2))
+    print("intercept, ln significance, road share, unseen share, border share²:", np.round(coefficients, 2))
     taking_part = predict(x, offset, coefficients)
     print(f"{'source':<12}{'damage':>7}{'found: all':>12}{'left out':>10}{'program':>9}"
           f"{'others':>8}{'wrong: all':>12}{'left out':>10}{'program':>9}")

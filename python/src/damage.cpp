@@ -69,6 +69,8 @@ void bind_one_damage(py::module_& module) {
       .field("steepness", &Evidence::steepness, "Maximum mean slope on a contour, relative to a cone.")
       .field("road_share", &Evidence::road_share, "Share of the band around that is road, 0 … 1.")
       .field("border_share", &Evidence::border_share, "Share of the outline on the border of the image, 0 … 1.")
+      .field("unseen_share", &Evidence::unseen_share,
+             "Share of the outline on a gap of the map that reaches the border of the image, 0 … 1.")
       .field("surface_significance", &Evidence::surface_significance,
              "Standard errors by which the images agree better along the measured surface than the road; NaN unknown.")
       .field("depth_significance", &Evidence::depth_significance,

@@ -19,7 +19,9 @@ namespace {
 struct SegmentationConstants {
   // Gaps without a measurement that belong to a depression: occluded or dark walls.
   float gap_depth_share = 0.5F;      ///< of the minimum depth of a core, from which a neighbour of the gap is deep
-  double min_deep_gap_share = 0.35;  ///< of the neighbours of the gap that must be deep
+  double min_deep_gap_share = 0.35;  ///< of the neighbours of an enclosed gap that must be deep
+  double min_deep_cut_share = 0.6;   ///< of those of a gap that the border of the image cuts
+  std::size_t max_cut_divisor = 20;  ///< and that is up to 1/20 of the image
 
   // Extent of a region.
   float min_core_area_share = 0.1F;  ///< of the minimum area of a damage, for its core
@@ -50,8 +52,8 @@ std::uint8_t label_of(DamageKind kind) {
 struct SearchInput {
   DepthCells& depth_cells;  ///< `remove_outliers` changes it
   const Image<std::uint8_t>& road;
-  const ConnectedComponents& gaps;    ///< of the cells without a measurement
-  const Image<std::uint8_t>& unseen;  ///< 255 in gaps that touch the border of the image: what is not seen, or off road
+  const Image<std::uint8_t>& deep_gaps;  ///< 255 in gaps that belong to a depression
+  const Image<std::uint8_t>& unseen;     ///< 255 in other gaps that touch the border: what is not seen, or off road
   const Thresholds& thresholds;
   const ImageEdges& image_edges;
 };
@@ -67,30 +69,17 @@ struct SearchImages {
   DepthField field() { return {depth, allowed, visited}; }
 };
 
-/// Mask of the gaps that touch the border of the image.
-Image<std::uint8_t> unseen_cells(const ConnectedComponents& gaps, int columns, int rows) {
-  Image<std::uint8_t> unseen(columns, rows, 0);
-  for (const ConnectedComponent& gap : gaps) {
-    if (gap.touches_border) fill_component(gap, 255, unseen);
-  }
-  return unseen;
-}
-
-/// Add to `allowed` the gaps that are enclosed by a depression. A gap that touches the border of the image or lies in
-/// the intact road belongs to none.
-void include_enclosed_gaps(const SearchInput& input, Image<std::uint8_t>& allowed) {
-  const DepthCells& cells = input.depth_cells;
-  for (const ConnectedComponent& gap : input.gaps) {
-    if (gap.touches_border) continue;
-    int neighbours = 0;
-    int deep = 0;
-    for_each_neighbour(gap, cells.valid.width(), cells.valid.height(), [&](int i, int j) {
-      if (cells.valid(i, j) == 0) return;
-      ++neighbours;
-      deep += cells.depth(i, j) > constants.gap_depth_share * input.thresholds.min_depth(i, j) ? 1 : 0;
-    });
-    if (deep >= constants.min_deep_gap_share * neighbours) fill_component(gap, 255, allowed);
-  }
+/// Whether a gap belongs to a depression: most cells around it are deep. One in the intact road belongs to none.
+bool is_deep(const ConnectedComponent& gap, const DepthCells& cells, const Thresholds& thresholds) {
+  if (gap.touches_border && gap.size > cells.valid.pixels() / constants.max_cut_divisor) return false;
+  int neighbours = 0;
+  int deep = 0;
+  for_each_neighbour(gap, cells.valid.width(), cells.valid.height(), [&](int i, int j) {
+    if (cells.valid(i, j) == 0) return;
+    ++neighbours;
+    deep += cells.depth(i, j) > constants.gap_depth_share * thresholds.min_depth(i, j) ? 1 : 0;
+  });
+  return deep >= (gap.touches_border ? constants.min_deep_cut_share : constants.min_deep_gap_share) * neighbours;
 }
 
 SearchImages make_search_images(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& assigned) {
@@ -103,7 +92,10 @@ SearchImages make_search_images(const SearchInput& input, DamageKind kind, Image
   float* const signed_depth = images.depth.row(0);
   for (std::size_t k = 0; k < images.depth.pixels(); ++k) signed_depth[k] = sign * depth[k];
   std::copy_n(cells.valid.row(0), cells.valid.pixels(), images.allowed.row(0));
-  if (kind == DamageKind::depression) include_enclosed_gaps(input, images.allowed);
+  if (kind == DamageKind::protrusion) return images;
+  const std::uint8_t* const deep_gaps = input.deep_gaps.row(0);
+  std::uint8_t* const allowed = images.allowed.row(0);
+  for (std::size_t k = 0; k < images.allowed.pixels(); ++k) allowed[k] |= deep_gaps[k];
   return images;
 }
 
@@ -218,24 +210,27 @@ Candidate segment(const SearchInput& input, const ConnectedComponent& core, Dama
   return candidate;
 }
 
-/// Share of the contour of a region, with its cells at the border of the image, that lies on that border or on that of
-/// what is seen: the rim of a damage is not known there.
-double border_share(const BoxMask& region, const Image<std::uint8_t>& unseen) {
+/// Shares of the contour of a region, with its cells at the border of the image, on that border and on that of what is
+/// seen: the rim of a damage is not known there.
+void measure_border(const BoxMask& region, const Image<std::uint8_t>& unseen, DamageEvidence& evidence) {
   const int columns = unseen.width(), rows = unseen.height();
   const CellBox& box = region.box();
-  double contour = 0;
-  double border = 0;
+  double contour = 0, on_border = 0, on_gap = 0;
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
       if (!region(i, j)) continue;
-      bool at_border = i == 0 || j == 0 || i + 1 == columns || j + 1 == rows;
-      for_each_neighbour(i, j, columns, rows, [&](int x, int y) { at_border |= unseen(x, y) != 0; });
-      if (!at_border && !is_on_contour(region, i, j, columns, rows)) continue;
+      const bool at_border = i == 0 || j == 0 || i + 1 == columns || j + 1 == rows;
+      bool at_gap = false;
+      for_each_neighbour(i, j, columns, rows, [&](int x, int y) { at_gap |= unseen(x, y) != 0; });
+      if (!at_border && !at_gap && !is_on_contour(region, i, j, columns, rows)) continue;
       ++contour;
-      border += at_border ? 1 : 0;
+      on_border += at_border ? 1 : 0;
+      on_gap += at_gap && !at_border ? 1 : 0;
     }
   }
-  return contour > 0 ? border / contour : 0;
+  if (contour == 0) return;
+  evidence.border_share = on_border / contour;
+  evidence.unseen_share = on_gap / contour;
 }
 
 /// Share of the band around a candidate that is road, or a hollow no deeper than the outline. Cells of other damages do
@@ -285,7 +280,7 @@ void add_evidence(const SearchInput& input, SearchImages& images, Candidate& can
   evidence.contrast_sigmas = (damage.median - around.median) / std::max(around.sigma, input.depth_cells.noise);
   evidence.significance = evidence.contrast_sigmas * std::sqrt(samples);
   evidence.road_share = road_share(input, candidate, images.assigned);
-  evidence.border_share = border_share(candidate.cells, input.unseen);
+  measure_border(candidate.cells, input.unseen, evidence);
 }
 
 /// Assign the cells of a candidate to its kind.
@@ -370,8 +365,15 @@ void find_kind(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& a
 std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road,
                                        const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions) {
   const ConnectedComponents gaps(depth_cells.valid, ConnectedComponents::Foreground::zero);
-  const Image<std::uint8_t> unseen = unseen_cells(gaps, road.width(), road.height());
-  const SearchInput input{depth_cells, road, gaps, unseen, thresholds, image_edges};
+  Image<std::uint8_t> deep_gaps(road.width(), road.height(), 0), unseen = deep_gaps;
+  for (const ConnectedComponent& gap : gaps) {
+    if (is_deep(gap, depth_cells, thresholds)) {
+      fill_component(gap, 255, deep_gaps);
+    } else if (gap.touches_border) {
+      fill_component(gap, 255, unseen);
+    }
+  }
+  const SearchInput input{depth_cells, road, deep_gaps, unseen, thresholds, image_edges};
   std::vector<Candidate> found;
   Image<std::uint8_t> assigned(road.width(), road.height(), 0);
   find_kind(input, DamageKind::depression, assigned, found);

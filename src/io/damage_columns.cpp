@@ -136,6 +136,7 @@ std::vector<DamageColumn> pixel_columns() {
           {"steepness", evidence<&DamageEvidence::steepness>},
           {"road_share", evidence<&DamageEvidence::road_share>},
           {"border_share", evidence<&DamageEvidence::border_share>},
+          {"unseen_share", evidence<&DamageEvidence::unseen_share>},
           {"surface_significance", evidence<&DamageEvidence::surface_significance>},
           {"depth_significance", evidence<&DamageEvidence::depth_significance>},
           {"cut_by_border", [](const Damage& d) -> DamageValue { return d.cut_by_border; }}};

@@ -49,12 +49,15 @@ TEST(SeverityProbabilities, WithoutErrorIsTable) {
 
 TEST(DamageEvidence, ConfidenceIsLogistic) {
   // −9.8 + 2.15·ln 50 + 4.4 − 9.5·0.1 = 2.06085; 1 / (1 + e^−2.06085) = 0.88704
-  EXPECT_NEAR((DamageEvidence{20, 50, 3, 1, 0.1}.confidence()), 0.88704, 1e-5);
+  EXPECT_NEAR((DamageEvidence{20, 50, 3, 1, 0, 0.1}.confidence()), 0.88704, 1e-5);
+  // −9.8 + 2.15·ln 50 + 4.4 − 18·0.2² = 2.29085
+  EXPECT_NEAR((DamageEvidence{20, 50, 3, 1, 0.2, 0}.confidence()), 0.90812, 1e-5);
   EXPECT_EQ((DamageEvidence{20, 100, 3, 1, 0}.confidence()), (DamageEvidence{90, 900, 3, 1, 0}.confidence()));
   const DamageEvidence sound{10, 40, 3, 1, 0};
   EXPECT_GT(sound.confidence(), (DamageEvidence{10, 39, 3, 1, 0}.confidence()));
   EXPECT_GT(sound.confidence(), (DamageEvidence{10, 40, 3, 0.9, 0}.confidence()));
   EXPECT_GT(sound.confidence(), (DamageEvidence{10, 40, 3, 1, 0.1}.confidence()));
+  EXPECT_GT(sound.confidence(), (DamageEvidence{10, 40, 3, 1, 0, 0.1}.confidence()));
 }
 
 TEST(DamageEvidence, DeepCompactRegionIsNeverVetoed) {
@@ -151,32 +154,62 @@ TEST(FindDamage, OrientationCropAndResolutionGiveSameRegions) {
       0.95);
 }
 
-/// A hole of 24 noise deviations in which a third of the pixels has no value and the others scatter between the road
-/// and twice the depth, as where matching fails on its walls.
-TEST(FindDamage, RaggedHoleIsFoundToItsRim) {
-  constexpr int width = 640, height = 360, radius = 40;
-  const auto is_inside = [](int u, int v) { return std::hypot(u - 400.0, v - 210.0) <= radius; };
+/// A hole of 24 noise deviations around column 400 in which a third of the pixels has no value and the others scatter
+/// between the road and twice the depth, as where matching fails on its walls; and the mask of it.
+struct RaggedHole {
+  Image<float> map;
+  Image<std::uint8_t> inside;
+};
+
+RaggedHole ragged_hole(int width, int height, double centre_v, double radius) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> share(0, 1);
-  Image<float> map = with_noise(Image<float>(width, height, 30.0F), 1);
+  RaggedHole hole{with_noise(Image<float>(width, height, 30.0F), 1), Image<std::uint8_t>(width, height, 0)};
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
-      if (!is_inside(u, v)) continue;
+      if (std::hypot(u - 400.0, v - centre_v) > radius) continue;
       const float depth = 48 * share(random);
-      map(u, v) = share(random) < 1.0F / 3 ? std::numeric_limits<float>::quiet_NaN() : map(u, v) - depth;
+      float& value = hole.map(u, v);
+      value = share(random) < 1.0F / 3 ? std::numeric_limits<float>::quiet_NaN() : value - depth;
+      hole.inside(u, v) = 255;
     }
   }
-  const DamageMap found = find_in(map);
+  return hole;
+}
+
+/// F-measure of the pixels of damage.
+double f_of(const DamageMap& found, const Image<std::uint8_t>& inside) {
+  double both = 0, one = 0;
+  for (int v = 0; v < inside.height(); ++v) {
+    for (int u = 0; u < inside.width(); ++u) {
+      both += found.ids(u, v) != 0 && inside(u, v) != 0 ? 2 : 0;
+      one += (found.ids(u, v) != 0 ? 1 : 0) + (inside(u, v) != 0 ? 1 : 0);
+    }
+  }
+  return both / one;
+}
+
+TEST(FindDamage, RaggedHoleIsFoundToItsRim) {
+  const RaggedHole hole = ragged_hole(640, 360, 210, 40);
+  const DamageMap found = find_in(hole.map);
   ASSERT_EQ(found.damages.size(), 1U);
   EXPECT_GT(found.damages[0].confidence, 0.9);
-  double both = 0, one = 0;
-  for (int v = 0; v < height; ++v) {
-    for (int u = 0; u < width; ++u) {
-      both += found.ids(u, v) != 0 && is_inside(u, v) ? 2 : 0;
-      one += (found.ids(u, v) != 0 ? 1 : 0) + (is_inside(u, v) ? 1 : 0);
-    }
+  EXPECT_GE(f_of(found, hole.inside), 0.9);
+}
+
+TEST(FindDamage, RaggedHoleIsFoundWhereBorderCutsIt) {
+  // The lower border leaves more, half, and less of it; gaps of the hole reach the border.
+  for (const int centre_v : {340, 359, 372}) {
+    const RaggedHole hole = ragged_hole(640, 360, centre_v, 40);
+    const DamageMap found = find_in(hole.map);
+    ASSERT_EQ(found.damages.size(), 1U) << centre_v;
+    EXPECT_TRUE(found.damages[0].cut_by_border);
+    EXPECT_LT(found.damages[0].evidence.unseen_share, 0.1) << centre_v;
+    // Chord and arc of the circle.
+    const double half_angle = std::acos((centre_v - 359.5) / 40.0), chord = 2 * std::sin(half_angle);
+    EXPECT_NEAR(found.damages[0].evidence.border_share, chord / (chord + 2 * half_angle), 0.12) << centre_v;
+    EXPECT_GE(f_of(found, hole.inside), 0.85) << centre_v;
   }
-  EXPECT_GE(both / one, 0.9);
 }
 
 /// A gap that reaches the border of the image cuts a pothole through its middle: its rim is not known there. The same
@@ -188,7 +221,7 @@ TEST(FindDamage, GapThatReachesBorderIsBorder) {
   const DamageMap whole = find_damage(damaged().metric(), options);
   ASSERT_FALSE(whole.damages.empty());
   const Damage& pothole = whole.damages.front();
-  EXPECT_EQ(pothole.evidence.border_share, 0);
+  EXPECT_EQ(pothole.evidence.unseen_share, 0);
   const auto [u0, v0, u1, v1] = pothole.box_px;
   const auto cut = [&](int first_u, int end_u) {
     Image<float> map = damaged().transformed;
@@ -203,11 +236,11 @@ TEST(FindDamage, GapThatReachesBorderIsBorder) {
   const DamageMap at_border = cut(0, middle);
   ASSERT_FALSE(at_border.damages.empty());
   // The cut is a diameter of what is left, half an ellipse: a share of 1 / (1 + π/2) of a half circle's outline.
-  EXPECT_NEAR(at_border.damages.front().evidence.border_share, 0.39, 0.12);
+  EXPECT_NEAR(at_border.damages.front().evidence.unseen_share, 0.39, 0.12);
   EXPECT_LT(at_border.damages.front().confidence, whole.damages.front().confidence);
   const DamageMap enclosed = cut(u0 - 20, u0 + 4);
   ASSERT_FALSE(enclosed.damages.empty());
-  EXPECT_EQ(enclosed.damages.front().evidence.border_share, 0);
+  EXPECT_EQ(enclosed.damages.front().evidence.unseen_share, 0);
 }
 
 TEST(FindDamage, CandidatesAreNotCounted) {

@@ -44,6 +44,7 @@ nlohmann::ordered_json regions_json(const std::vector<FoundRegion>& regions) {
                     {"significance", number(evidence.significance)},
                     {"road_share", number(evidence.road_share)},
                     {"border_share", number(evidence.border_share)},
+                    {"unseen_share", number(evidence.unseen_share)},
                     {"surface_significance", number(evidence.surface_significance)},
                     {"confidence", number(region.damage.confidence)},
                     {"is_damage", region.is_damage}});

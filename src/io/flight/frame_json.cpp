@@ -106,6 +106,7 @@ void each_field(DamageEvidence& evidence, Visit& visit) {
   visit("steepness", evidence.steepness);
   visit("road_share", evidence.road_share);
   visit("border_share", evidence.border_share);
+  visit("unseen_share", evidence.unseen_share);
   visit("surface_significance", evidence.surface_significance);
   visit("depth_significance", evidence.depth_significance);
 }
