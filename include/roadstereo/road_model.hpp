@@ -79,5 +79,13 @@ RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageVie
                                     const RoadModelOptions& options, int threads = 0,
                                     ImageView<const std::uint8_t> mask = {});
 
+/// The same by the mean correlation of cells of 5×5 blocks, which still tells the disparity where noise hides that of
+/// every single block.
+RoadModelEstimate verify_road_model_in_noise(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                             const TrackedRoad& previous,
+                                             const std::optional<StereoCalibration>& calibration,
+                                             const RoadModelOptions& options, int threads = 0,
+                                             ImageView<const std::uint8_t> mask = {});
+
 }  // namespace roadstereo
 #pragma GCC visibility pop

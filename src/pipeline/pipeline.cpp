@@ -73,6 +73,7 @@ struct Pipeline::State {
   GreyPair convert_to_grey(const FrameView& left, const FrameView& right);
   GreyPair undo_misalignment(const GreyPair& pair);
   void estimate_road_model(const GreyPair& pair);
+  void track_in_noise(const GreyPair& pair);
   void measure_rows(const GreyPair& grey);
   MatchInput transform_perspective(const GreyPair& pair);
   CoarseSearchOptions coarse_options(int factor, int block_radius) const;
@@ -135,7 +136,9 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const StageTimer timer(result.ms.road_model);
   result.rows = {};
   if (carried.road) {
-    result.road = stages->verify_road_model(undo_misalignment(pair), *carried.road);
+    const GreyPair aligned = undo_misalignment(pair);
+    result.road = stages->verify_road_model(aligned, *carried.road);
+    if (!result.road.has_road()) track_in_noise(stages->on_host(aligned));
     result.road.correlation = carried.road->correlation;
     if (result.road.has_road()) return;
     result.warnings.push_back(format_message("road-anew: the road model was estimated anew: ", result.road.reason));
@@ -156,6 +159,13 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
     const std::string disagreement = RigPrior(options.road_model, calibration).disagreement(result.road.model);
     if (!disagreement.empty()) result.warnings.push_back("unexpected-pose: " + disagreement);
   }
+}
+
+/// Where blocks find the last frame's road no more, cells of them may.
+void Pipeline::State::track_in_noise(const GreyPair& pair) {
+  const RoadModelEstimate tracked =
+      verify_road_model_in_noise(pair.left, pair.right, *carried.road, calibration, options.road_model, threads, mask);
+  if (tracked.has_road()) result.road = tracked;
 }
 
 /// The misalignment that makes the offsets of the rows.

@@ -36,9 +36,9 @@ double max_move(const DisparityPlane& now, const DisparityPlane& before, int wid
 
 /// A road that has moved farther than this from one frame to the next has jumped: then nothing says that the search
 /// around the last frame's plane has seen all of it.
-double max_step_px(int width) {
+double max_step_px(int range_px, int width) {
   constexpr double share_of_range = 0.7;
-  return share_of_range * first_search_again.range_px * fine_factor(width);
+  return share_of_range * range_px * fine_factor(width);
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ void assess_found_road(const PlaneFitStatistics& fit, double evidence, const Til
 }
 
 RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const PlaneFitStatistics& close,
-                                      const TrackedRoad& previous, int width, int height,
+                                      const TrackedRoad& previous, int range_px, int width, int height,
                                       const std::optional<StereoCalibration>& calibration,
                                       const RoadModelOptions& options) {
   RoadModelEstimate estimate;
@@ -109,7 +109,7 @@ RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const Pl
                        " % of the textured samples where it should be seen, less than ", 100 * least, " %");
   } else if (estimate.residual_px > options.verify_tolerance_px) {
     estimate.reason = format_message("the last frame's road leaves ", estimate.residual_px, " px on this one");
-  } else if (moved > max_step_px(width)) {
+  } else if (moved > max_step_px(range_px, width)) {
     estimate.reason = format_message("the road has moved by ", moved, " px since the last frame");
   } else {
     estimate.status = RoadStatus::tracked;

@@ -41,9 +41,10 @@ std::string assess_plane_fit(const PlaneFitStatistics& fit, const TiltLimit& lim
 void assess_found_road(const PlaneFitStatistics& fit, double evidence, const TiltLimit& limit,
                        const RoadModelOptions& options, RoadModelEstimate& estimate);
 
-/// The estimate from the two searches around the last frame's model; all but the range of the residuals.
+/// The estimate from the two searches around the last frame's model, the first up to `range_px` away; all but the range
+/// of the residuals.
 RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const PlaneFitStatistics& close,
-                                      const TrackedRoad& previous, int width, int height,
+                                      const TrackedRoad& previous, int range_px, int width, int height,
                                       const std::optional<StereoCalibration>& calibration,
                                       const RoadModelOptions& options);
 

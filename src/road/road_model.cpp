@@ -258,20 +258,40 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   return found;
 }
 
+namespace {
+
+/// Two searches around the last frame's plane, the second around where the first finds it.
+RoadModelEstimate track_road(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                             const TrackedRoad& previous, PlaneMatcher match, const FineSearch& first,
+                             const FineSearch& close, const std::optional<StereoCalibration>& calibration,
+                             const RoadModelOptions& options, int threads, ImageView<const std::uint8_t> mask) {
+  const FinePair fine(left, right, mask, fine_factor(left.width()));
+  const Refinement around = refine_road(fine, previous.model, match, first, options.with_roll, threads);
+  const Refinement closer = around.evidence.found
+                                ? refine_road(fine, around.evidence.plane, match, close, options.with_roll, threads)
+                                : Refinement();
+  RoadModelEstimate estimate = assess_tracked_road(around.evidence, closer.evidence, previous, first.range_px,
+                                                   left.width(), left.height(), calibration, options);
+  measure_range(around.points, estimate);
+  return estimate;
+}
+
+}  // namespace
+
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                     const TrackedRoad& previous, const std::optional<StereoCalibration>& calibration,
                                     const RoadModelOptions& options, int threads, ImageView<const std::uint8_t> mask) {
-  const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
-  const FinePair fine(left, right, mask, fine_factor(left.width()));
-  const Refinement around =
-      refine_road(fine, previous.model, match_along_plane, first_search_again, options.with_roll, threads);
-  const Refinement close = around.evidence.found ? refine_road(fine, around.evidence.plane, match_along_plane,
-                                                               close_search_again, options.with_roll, threads)
-                                                 : Refinement();
-  RoadModelEstimate estimate =
-      assess_tracked_road(around.evidence, close.evidence, previous, left.width(), left.height(), calibration, options);
-  measure_range(around.points, estimate);
-  return estimate;
+  return track_road(left, right, previous, match_along_plane, first_search_again, close_search_again, calibration,
+                    options, threads, mask);
+}
+
+RoadModelEstimate verify_road_model_in_noise(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                             const TrackedRoad& previous,
+                                             const std::optional<StereoCalibration>& calibration,
+                                             const RoadModelOptions& options, int threads,
+                                             ImageView<const std::uint8_t> mask) {
+  return track_road(left, right, previous, match_cells_along_plane, first_cell_search, close_cell_search, calibration,
+                    options, threads, mask);
 }
 
 }  // namespace roadstereo

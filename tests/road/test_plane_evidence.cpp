@@ -178,10 +178,9 @@ TEST(RigPrior, OrdersPlanesOfLikeEvidence) {
   EXPECT_NEAR(weighed.front().evidence, planes[1].evidence, 0.01);
 }
 
-TEST(PlaneEvidence, FindsRoadInNoiseThatHidesBlocks) {
-  constexpr int width = 640, height = 360;
-  const auto road = [](double u, double v) { return 6 + 0.05 * v - 0.003 * u; };
-  auto pair = test::textured_pair(width, height, road, 7, 0.08);  // texture of 3 grey levels under noise of 6
+/// Texture of 3 grey levels under noise of 6.
+test::TexturedPair noisy_pair(int width, int height, const std::function<double(double, double)>& road) {
+  auto pair = test::textured_pair(width, height, road, 7, 0.08);
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
       const auto noisy = [&](std::int16_t grey, std::uint64_t seed) {
@@ -193,9 +192,34 @@ TEST(PlaneEvidence, FindsRoadInNoiseThatHidesBlocks) {
       pair.target(u, v) = noisy(pair.target(u, v), 200);
     }
   }
+  return pair;
+}
+
+TEST(PlaneEvidence, FindsRoadInNoiseThatHidesBlocks) {
+  constexpr int width = 640, height = 360;
+  const auto road = [](double u, double v) { return 6 + 0.05 * v - 0.003 * u; };
+  const auto pair = noisy_pair(width, height, road);
   const RoadModelEstimate found = estimate_road_model(pair.reference, pair.target, std::nullopt, RoadModelOptions{});
   ASSERT_NE(found.status, RoadStatus::none) << found.reason;
   EXPECT_LT(max_difference(found.model, road, 0, width - 1, 0, height - 1), 0.5);
+}
+
+TEST(TrackedRoad, IsFoundAgainInNoiseThatHidesBlocks) {
+  constexpr int width = 640, height = 360;
+  const auto road = [](double u, double v) { return 8 + 0.05 * v - 0.003 * u; };
+  const auto pair = noisy_pair(width, height, road);
+  const TrackedRoad last{{6.5, 0.051, -0.003}, 0.3};
+  const RoadModelEstimate by_blocks =
+      verify_road_model(pair.reference, pair.target, last, std::nullopt, RoadModelOptions{});
+  EXPECT_EQ(by_blocks.status, RoadStatus::none);
+  const RoadModelEstimate tracked =
+      verify_road_model_in_noise(pair.reference, pair.target, last, std::nullopt, RoadModelOptions{});
+  ASSERT_EQ(tracked.status, RoadStatus::tracked) << tracked.reason;
+  EXPECT_LT(max_difference(tracked.model, road, 0, width - 1, 0, height - 1), 0.5);
+  // Farther than the search can see the road has jumped.
+  const TrackedRoad far{{20, 0.05, -0.003}, 0.3};
+  EXPECT_EQ(verify_road_model_in_noise(pair.reference, pair.target, far, std::nullopt, RoadModelOptions{}).status,
+            RoadStatus::none);
 }
 
 TEST(TiltLimit, LevelWeightIsNormalInSineOfTilt) {

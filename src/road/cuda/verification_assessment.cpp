@@ -29,7 +29,7 @@ RoadModelEstimate assess_road_verification(const VerificationStatistics& statist
   const int rows = height / factor * factor;
   RoadModelEstimate estimate =
       assess_tracked_road(statistics_of(statistics.around, rows), statistics_of(statistics.close, rows), previous,
-                          width, height, calibration, options);
+                          first_search_again.range_px, width, height, calibration, options);
   if (statistics.near >= min_matches) {
     estimate.residual_p01_px = statistics.residual_p01_px;
     estimate.residual_p99_px = statistics.residual_p99_px;
