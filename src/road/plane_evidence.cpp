@@ -192,35 +192,37 @@ double PlaneEvidence::of_plane(const DisparityPlane& full_size) const {
   return sum / pixels_;
 }
 
-ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& grid, const TiltLimit& limit, const RigPrior& prior,
-                                             int max_planes, int threads) {
+ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
+                                             const RigPrior& prior, int max_planes, int threads) {
   auto planes = scratch_vector<PlaneHypothesis>();
-  if (grid.rows() < 2 || grid.columns() < 2 || grid.disparities() < 4) return planes;
-  const double half_width = 0.5 * (grid.column(grid.columns() - 1) - grid.column(0));
+  if (evidence.rows() < 2 || evidence.columns() < 2 || evidence.disparities() < 4) return planes;
+  const double half_width = 0.5 * (evidence.column(evidence.columns() - 1) - evidence.column(0));
   const int slopes = static_cast<int>(max_slope * half_width / slope_step);
   auto candidates = scratch_vector<Candidate>(static_cast<std::size_t>(2 * slopes + 1) * bottom_steps);
-  auto sheared = scratch_vector<float>(static_cast<std::size_t>(resolve_threads(threads)) * ShearedRows::size(grid));
+  auto sheared =
+      scratch_vector<float>(static_cast<std::size_t>(resolve_threads(threads)) * ShearedRows::size(evidence));
   parallel_for(2 * slopes + 1, threads, [&](int i, int worker) {
     const double slope = (i - slopes) * slope_step / half_width;
-    const ShearedRows rows(grid, slope, sheared.data() + static_cast<std::size_t>(worker) * ShearedRows::size(grid));
-    search_lines(grid, rows, slope, limit, candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
+    const ShearedRows rows(evidence, slope,
+                           sheared.data() + static_cast<std::size_t>(worker) * ShearedRows::size(evidence));
+    search_lines(evidence, rows, slope, limit, candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
   });
   for (Candidate& candidate : candidates) {
     if (candidate.score <= 0) continue;
-    const DisparityPlane plane = candidate.points.plane(grid);
+    const DisparityPlane plane = candidate.points.plane(evidence);
     candidate.weight = limit.level_weight(plane) * prior.weight(plane);
   }
   constexpr std::size_t refined = 8;
   ScratchVector<Candidate> best = choose(candidates, refined, 2 * slope_step);
   parallel_for(static_cast<int>(best.size()), threads, [&](int i, int) {
     Candidate& candidate = best[static_cast<std::size_t>(i)];
-    refine_plane(grid, limit, candidate);
-    const DisparityPlane plane = candidate.points.plane(grid);
-    candidate.score = grid.of_plane(plane);
+    refine_plane(evidence, limit, candidate);
+    const DisparityPlane plane = candidate.points.plane(evidence);
+    candidate.score = evidence.of_plane(plane);
     candidate.weight = limit.level_weight(plane) * prior.weight(plane);
   });
   for (const Candidate& candidate : choose(best, static_cast<std::size_t>(max_planes), slope_step)) {
-    planes.push_back({candidate.points.plane(grid), candidate.score});
+    planes.push_back({candidate.points.plane(evidence), candidate.score});
   }
   return planes;
 }

@@ -10,7 +10,7 @@ namespace roadstereo {
 /// A plane and what the whole picture says to it.
 struct PlaneHypothesis {
   DisparityPlane plane;  ///< in full-size pixels
-  double evidence = 0;   ///< PlaneEvidence::of_plane, less where the plane is tilted
+  double evidence = 0;   ///< PlaneEvidence::of_plane
 };
 
 /// What the cells of a downsampled pair say to planes. A plane gains where the pixels support its disparity and loses
@@ -44,7 +44,7 @@ class PlaneEvidence {
 /// Search planes by total evidence: a Hough transform over slope along the columns and a line in v-disparity space,
 /// then a local search. Nothing has to be matched pixel by pixel: where noise or defocus leave a single block
 /// undecided, the sum over all of them still decides. Best first, at most `max_planes`, and none of them nearly equal.
-/// `limit` rejects walls and lowers the evidence of what is tilted, `prior` weighs it in that order.
+/// `limit` rejects walls; the weights of the tilt and of `prior` count in that order, not in the evidence.
 ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
                                              const RigPrior& prior, int max_planes, int threads);
 
