@@ -169,7 +169,7 @@ RoadModelEstimate assess_planes(std::span<const FinePair> pairs, std::span<const
                                 int threads, const RoadModelEstimate& matched) {
   RoadModelEstimate estimate = matched;
   for (const PlaneHypothesis& hypothesis : planes) {
-    const RoadModelEstimate assessed = assess_plane(pairs, hypothesis, evidence, limit, options, threads, matched);
+    RoadModelEstimate assessed = assess_plane(pairs, hypothesis, evidence, limit, options, threads, matched);
     if (assessed.has_road()) return assessed;
     if (&hypothesis == &planes.front()) estimate = assessed;
   }
