@@ -207,10 +207,9 @@ ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, cons
                            sheared.data() + static_cast<std::size_t>(worker) * ShearedRows::size(evidence));
     search_lines(evidence, rows, slope, limit, candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
   });
+  const auto weight = [&](const DisparityPlane& plane) { return limit.level_weight(plane) * prior.weight(plane); };
   for (Candidate& candidate : candidates) {
-    if (candidate.score <= 0) continue;
-    const DisparityPlane plane = candidate.points.plane(evidence);
-    candidate.weight = limit.level_weight(plane) * prior.weight(plane);
+    if (candidate.score > 0) candidate.weight = weight(candidate.points.plane(evidence));
   }
   constexpr std::size_t refined = 8;
   ScratchVector<Candidate> best = choose(candidates, refined, 2 * slope_step);
@@ -219,7 +218,7 @@ ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, cons
     refine_plane(evidence, limit, candidate);
     const DisparityPlane plane = candidate.points.plane(evidence);
     candidate.score = evidence.of_plane(plane);
-    candidate.weight = limit.level_weight(plane) * prior.weight(plane);
+    candidate.weight = weight(plane);
   });
   for (const Candidate& candidate : choose(best, static_cast<std::size_t>(max_planes), slope_step)) {
     planes.push_back({candidate.points.plane(evidence), candidate.score});

@@ -50,17 +50,19 @@ TiltLimit::TiltLimit(int width, int height, const std::optional<StereoCalibratio
       offset_(calibration ? calibration->disparity_offset_px : 0),
       max_sine_(std::sin(max_tilt_deg * std::numbers::pi / 180)) {}
 
-bool TiltLimit::can_be_road(const DisparityPlane& plane) const {
+double TiltLimit::normal_length(const DisparityPlane& plane) const {
   const double depth = (plane.disparity(cx_, cy_) + offset_) / focal_;
-  const double length = std::hypot(plane.a1, plane.a2, depth);
+  return std::hypot(plane.a1, plane.a2, depth);
+}
+
+bool TiltLimit::can_be_road(const DisparityPlane& plane) const {
+  const double length = normal_length(plane);
   // A road lies below the camera and is not seen from beneath.
   return length > 0 && std::abs(plane.a2) <= max_sine_ * length && plane.a1 >= -max_sine_ * length;
 }
 
 double TiltLimit::level_weight(const DisparityPlane& plane) const {
-  const double depth = (plane.disparity(cx_, cy_) + offset_) / focal_;
-  const double length = std::hypot(plane.a1, plane.a2, depth);
-  const double tilt = length > 0 ? std::abs(plane.a2) / (length * max_sine_ * level_tilt) : 1 / level_tilt;
+  const double tilt = plane.a2 / (normal_length(plane) * max_sine_ * level_tilt);
   return std::exp(-0.5 * tilt * tilt);
 }
 

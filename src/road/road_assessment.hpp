@@ -7,18 +7,21 @@
 
 namespace roadstereo {
 
-/// Tells roads from walls: the sideways tilt of the plane. Without a calibration a usual lens stands in; it decides
-/// nothing but what cannot be a road.
+/// Tells roads from walls: the sideways tilt of the plane. Without a calibration a usual lens stands in.
 class TiltLimit {
  public:
   TiltLimit(int width, int height, const std::optional<StereoCalibration>& calibration, double max_tilt_deg);
 
   bool can_be_road(const DisparityPlane& plane) const;
 
-  /// Rigs hang level: of two planes with like evidence the one less tilted is the road. Above 0 … 1.
+  /// Rigs hang level: of two planes with like evidence the one less tilted is the road. Normal in the sine of the tilt,
+  /// above 0 … 1; for what can be a road.
   double level_weight(const DisparityPlane& plane) const;
 
  private:
+  /// Of the normal of the road (not of length 1), in units in which a2 is its part along the columns.
+  double normal_length(const DisparityPlane& plane) const;
+
   double focal_, cx_, cy_, offset_, max_sine_;
 };
 

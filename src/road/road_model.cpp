@@ -128,18 +128,24 @@ DisparityPlane fit_evenly(const FinePair& pair, const DisparityPlane& plane, con
   return fit && limit.can_be_road(fit->plane) ? fit->plane : plane;
 }
 
-/// First wide, for the coarse plane is good to a pixel of the downsampled image at best; then close. By single blocks,
-/// and where these find nothing by cells of them.
-Refinement find_around(const FinePair& pair, const DisparityPlane& plane, bool with_roll, int threads) {
-  Refinement refinement;
-  const auto search = [&](PlaneMatcher match, const FineSearch& first, const FineSearch& close) {
-    refinement = refine_road(pair, plane, match, first, with_roll, threads);
-    if (!refinement.evidence.found) return;
-    refinement = refine_road(pair, refinement.evidence.plane, match, close, with_roll, threads);
-  };
-  search(match_along_plane, first_search, close_search);
-  if (!refinement.evidence.found) search(match_cells_along_plane, first_cell_search, close_cell_search);
-  return refinement;
+/// What two searches by the same blocks find: wide around a supposed plane, then close around where the first finds it.
+struct TwoSearches {
+  Refinement wide, close;
+
+  TwoSearches(const FinePair& pair, const DisparityPlane& plane, PlaneMatcher match, const FineSearch& first,
+              const FineSearch& second, bool with_roll, int threads)
+      : wide(refine_road(pair, plane, match, first, with_roll, threads)) {
+    if (wide.evidence.found) close = refine_road(pair, wide.evidence.plane, match, second, with_roll, threads);
+  }
+  const PlaneFitStatistics& last() const { return wide.evidence.found ? close.evidence : wide.evidence; }
+};
+
+/// By single blocks, and where these find nothing by cells of them.
+PlaneFitStatistics find_around(const FinePair& pair, const DisparityPlane& plane, bool with_roll, int threads) {
+  const TwoSearches by_blocks(pair, plane, match_along_plane, first_search, close_search, with_roll, threads);
+  if (by_blocks.last().found) return by_blocks.last();
+  return TwoSearches(pair, plane, match_cells_along_plane, first_cell_search, close_cell_search, with_roll, threads)
+      .last();
 }
 
 /// Assess one plane in the full-size pair, or in the downsampled one, where noise that hides every block averages out.
@@ -149,8 +155,7 @@ RoadModelEstimate assess_plane(std::span<const FinePair> pairs, const PlaneHypot
   const auto weigh = [&](const DisparityPlane& plane) { return limit.level_weight(plane) * evidence.of_plane(plane); };
   RoadModelEstimate first = matched;
   for (const FinePair& pair : pairs) {
-    Refinement refinement = find_around(pair, hypothesis.plane, options.with_roll, threads);
-    PlaneFitStatistics& fit = refinement.evidence;
+    PlaneFitStatistics fit = find_around(pair, hypothesis.plane, options.with_roll, threads);
     if (fit.found) {
       const DisparityPlane even = fit_evenly(pair, fit.plane, limit, options.with_roll, threads);
       if (weigh(even) >= min_even_evidence * weigh(fit.plane)) fit.plane = even;
@@ -173,6 +178,19 @@ RoadModelEstimate assess_planes(std::span<const FinePair> pairs, std::span<const
     if (assessed.has_road()) return assessed;
     if (&hypothesis == &planes.front()) estimate = assessed;
   }
+  return estimate;
+}
+
+/// Searches around the last frame's plane.
+RoadModelEstimate track_road(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                             const TrackedRoad& previous, PlaneMatcher match, const FineSearch& first,
+                             const FineSearch& second, const std::optional<StereoCalibration>& calibration,
+                             const RoadModelOptions& options, int threads, ImageView<const std::uint8_t> mask) {
+  const FinePair fine(left, right, mask, fine_factor(left.width()));
+  const TwoSearches found(fine, previous.model, match, first, second, options.with_roll, threads);
+  RoadModelEstimate estimate = assess_tracked_road(found.wide.evidence, found.close.evidence, previous, first.range_px,
+                                                   left.width(), left.height(), calibration, options);
+  measure_range(found.wide.points, estimate);
   return estimate;
 }
 
@@ -257,26 +275,6 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   measure_range(matches, found);
   return found;
 }
-
-namespace {
-
-/// Two searches around the last frame's plane, the second around where the first finds it.
-RoadModelEstimate track_road(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                             const TrackedRoad& previous, PlaneMatcher match, const FineSearch& first,
-                             const FineSearch& close, const std::optional<StereoCalibration>& calibration,
-                             const RoadModelOptions& options, int threads, ImageView<const std::uint8_t> mask) {
-  const FinePair fine(left, right, mask, fine_factor(left.width()));
-  const Refinement around = refine_road(fine, previous.model, match, first, options.with_roll, threads);
-  const Refinement closer = around.evidence.found
-                                ? refine_road(fine, around.evidence.plane, match, close, options.with_roll, threads)
-                                : Refinement();
-  RoadModelEstimate estimate = assess_tracked_road(around.evidence, closer.evidence, previous, first.range_px,
-                                                   left.width(), left.height(), calibration, options);
-  measure_range(around.points, estimate);
-  return estimate;
-}
-
-}  // namespace
 
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                     const TrackedRoad& previous, const std::optional<StereoCalibration>& calibration,
