@@ -12,6 +12,7 @@
 
 #include "bindings.hpp"
 #include "frame_array.hpp"
+#include "map_array.hpp"
 #include "record.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/rectification.hpp"
@@ -30,10 +31,6 @@ std::array<double, Count> numbers(const char* name, const Numbers& given) {
   std::array<double, Count> values{};
   std::copy_n(given.data(), Count, values.begin());
   return values;
-}
-
-py::array_t<double> matrix(const std::array<double, 9>& values) {
-  return py::array_t<double>({3, 3}, values.data());
 }
 
 io::StereoRig make_rig(const Numbers& left_matrix, const std::vector<double>& left_distortion,
@@ -80,13 +77,13 @@ void bind_rig(py::module_& module) {
   Record<Rig> record(module, "StereoRig", "Calibration of an unrectified stereo rig; `Rectifier` rectifies its pairs.");
   record
       .field(
-          "left_matrix", [](const Rig& rig) { return matrix(rig.left_matrix); }, "K1, (3, 3), pixels.")
+          "left_matrix", [](const Rig& rig) { return matrix<3, 3>(rig.left_matrix); }, "K1, (3, 3), pixels.")
       .field("left_distortion", &Rig::left_distortion, "D1 in OpenCV's order; empty: none.")
       .field(
-          "right_matrix", [](const Rig& rig) { return matrix(rig.right_matrix); }, "K2, (3, 3), pixels.")
+          "right_matrix", [](const Rig& rig) { return matrix<3, 3>(rig.right_matrix); }, "K2, (3, 3), pixels.")
       .field("right_distortion", &Rig::right_distortion, "D2 in OpenCV's order; empty: none.")
       .field(
-          "rotation", [](const Rig& rig) { return matrix(rig.rotation); }, "R, (3, 3), left camera to right camera.")
+          "rotation", [](const Rig& rig) { return matrix<3, 3>(rig.rotation); }, "R, (3, 3), left camera to right camera.")
       .field("translation_m", &Rig::translation_m, "T, left camera to right camera, metres.")
       .field("fisheye", &Rig::fisheye, "Whether the distortion is OpenCV's fisheye model.")
       .field("width", &Rig::width, "Image width, pixels; 0: unknown.")

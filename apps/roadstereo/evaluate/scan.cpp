@@ -244,9 +244,11 @@ void add_scan(CLI::App& evaluate) {
   const auto arguments = std::make_shared<ScanArguments>();
   add_inputs(*command, *arguments);
   command->add_option("--methods", arguments->compared, "Presets and OpenCV's matchers, separated by commas")
+      ->type_name("LIST")
       ->delimiter(',')
       ->expected(1)
       ->allow_extra_args(false)
+      ->take_all()
       ->capture_default_str();
   command->add_option("--disparities", arguments->disparities, "Number of disparities for OpenCV's matchers")
       ->check(CLI::Range(16, 1024))
