@@ -36,12 +36,16 @@ struct Misalignment {
 /// Shift of the perspective transformation: the target pixel at column x of the transformed image comes from column
 /// x − at(x, v) of the target image. C++17, for kernels.
 struct PerspectiveShift {
-  DisparityPlane road;             ///< Δu, eq. (4)
-  double delta_p = 0;              ///< δp, pixels: residual disparity of the road
-  int disparities = 1;             ///< D: residual disparities 0 … D−1 are searched
-  bool whole_pixel = false;        ///< shifts are rounded to whole pixels
-  bool enabled = true;             ///< false: every shift is 0
-  Misalignment misalignment = {};  ///< of the target; also undone
+  DisparityPlane road;                               ///< Δu, eq. (4)
+  double delta_p = 0;                                ///< δp, pixels: residual disparity of the road
+  int disparities = 1;                               ///< D: residual disparities 0 … D−1 are searched
+  bool whole_pixel = false;                          ///< shifts are rounded to whole pixels
+  bool enabled = true;                               ///< false: every shift is 0
+  Misalignment misalignment = {};                    ///< of the target; also undone
+  double camera_height_m = assumed_camera_height_m;  ///< distance of the camera from the road plane, metres
+  double disparity_offset_px = 0;                    ///< StereoCalibration::disparity_offset_px
+
+  static constexpr double assumed_camera_height_m = 1.5;  ///< without a calibration: hand-held, on a car, a low drone
 
   /// max(0, Δu − δp), pixels.
   ROADSTEREO_HD double at(double x, double v) const {

@@ -83,7 +83,8 @@ void bind_rig(py::module_& module) {
           "right_matrix", [](const Rig& rig) { return matrix<3, 3>(rig.right_matrix); }, "K2, (3, 3), pixels.")
       .field("right_distortion", &Rig::right_distortion, "D2 in OpenCV's order; empty: none.")
       .field(
-          "rotation", [](const Rig& rig) { return matrix<3, 3>(rig.rotation); }, "R, (3, 3), left camera to right camera.")
+          "rotation", [](const Rig& rig) { return matrix<3, 3>(rig.rotation); },
+          "R, (3, 3), left camera to right camera.")
       .field("translation_m", &Rig::translation_m, "T, left camera to right camera, metres.")
       .field("fisheye", &Rig::fisheye, "Whether the distortion is OpenCV's fisheye model.")
       .field("width", &Rig::width, "Image width, pixels; 0: unknown.")

@@ -79,10 +79,11 @@ void visit_options(Options& o, Visitor visit) {
   visit("coarse_search.step_penalty", o.coarse_search.step_penalty,
         "cost of a change by one coarse pixel along the row");
   visit("coarse_search.jump_penalty", o.coarse_search.jump_penalty, "cost of a larger change along the row");
-  visit("coarse_search.road_prior_weight", o.coarse_search.road_prior_weight,
-        "cost per coarse pixel of distance from the road, without texture");
-  visit("coarse_search.road_prior_truncation_px", o.coarse_search.road_prior_truncation_px,
-        "truncation of that distance, coarse pixels");
+  visit("coarse_search.road_prior_height_m", o.coarse_search.road_prior_height_m,
+        "height above or below the road that costs 1 (without texture; a camera that is not calibrated is 1.5 m high), "
+        "metres; 0: no prior");
+  visit("coarse_search.road_prior_truncation", o.coarse_search.road_prior_truncation,
+        "largest cost of such a height, without texture");
   visit("coarse_search.row_offset_sigma_px", o.coarse_search.row_offset_sigma_px,
         "standard error of the rows' offset, coarse pixels");
   visit("coarse_search.half_weight_sigma_px", o.coarse_search.half_weight_sigma_px,

@@ -206,13 +206,13 @@ MatchInput Pipeline::State::transform_perspective(const GreyPair& pair) {
 }
 
 /// The coarse search at a given size, with blocks for the noise that is left there. In a scene the road is one surface
-/// of many: its prior has less weight. Frames of KITTI: with 0.3 the disparities off the road are pulled to it, with 0
-/// one in a hundred on the road is lost.
+/// of many: its prior has less weight. Frames of KITTI: with 1.5 the disparities off the road are pulled to it, with
+/// 0 one in a hundred on the road is lost.
 CoarseSearchOptions Pipeline::State::coarse_options(int factor, int block_radius) const {
-  constexpr double max_prior_weight_of_scene = 0.1;
+  constexpr double max_truncation_of_scene = 0.3;
   CoarseSearchOptions coarse = options.coarse_search;
   if (options.perspective.scope == Scope::scene) {
-    coarse.road_prior_weight = std::min(coarse.road_prior_weight, max_prior_weight_of_scene);
+    coarse.road_prior_truncation = std::min(coarse.road_prior_truncation, max_truncation_of_scene);
   }
   coarse.factor = factor;
   coarse.block_radius = options.matcher.adapt_support
@@ -294,7 +294,7 @@ DisparityPriorView Pipeline::State::search_scene(const MatchInput& pair) {
   const StageTimer timer(result.ms.coarse);
   CoarseSearchOptions coarse =
       coarse_options(std::min(max_factor, 2 * coarse_factor(options.coarse_search, width)), block_radius);
-  coarse.road_prior_weight = 0;
+  coarse.road_prior_height_m = 0;
   const DisparityPlane& road = result.shift.road;
   const double nearest = std::max(road.disparity(0, height - 1), road.disparity(width - 1, height - 1));
   MatchInput whole = pair;

@@ -11,7 +11,7 @@ PipelineOptions paper_preset() {
   options.correct_rows = false;
   options.road_model.with_roll = false;  // eq. (4): Δu depends on v alone
   options.perspective.shift = ShiftPrecision::whole_pixel;
-  options.coarse_search.road_prior_weight = 0;
+  options.coarse_search.road_prior_height_m = 0;
   options.matcher.prior_weight = 0;  // the costs alone decide
   options.matcher.match_both_views = true;
   options.matcher.adapt_support = false;

@@ -29,12 +29,12 @@ struct ResidualRange {
 
 /// Residual disparities of the deepest damage and the highest bump where the road is nearest to the camera. A point
 /// at distance e beyond the road plane has the road's disparity times h / (h + e), h = distance of camera and plane.
-ResidualRange physical_range(const DisparityPlane& road, const StereoCalibration& calibration, int width, int height,
-                             const PerspectiveOptions& options) {
-  const double h = ground_plane(road, calibration).height_m;
+ResidualRange physical_range(const PerspectiveShift& shift, int width, int height, const PerspectiveOptions& options) {
+  const double h = shift.camera_height_m;
+  const DisparityPlane& road = shift.road;
   const std::array<double, 4> corners{road.disparity(0, 0), road.disparity(width - 1, 0), road.disparity(0, height - 1),
                                       road.disparity(width - 1, height - 1)};
-  const double nearest = *std::max_element(corners.begin(), corners.end()) + calibration.disparity_offset_px;
+  const double nearest = *std::max_element(corners.begin(), corners.end()) + shift.disparity_offset_px;
   const double bump = std::min(options.max_bump_height_m, 0.5 * h);
   return {nearest * options.max_damage_depth_m / (h + options.max_damage_depth_m), nearest * bump / (h - bump)};
 }
@@ -136,12 +136,13 @@ PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::opti
     return shift;
   }
   shift.road = road.model;
-  // What the correspondences show of the road's unevenness, and what is to be measured where a scale is known.
-  ResidualRange range{std::max(0.0, -road.residual_p01_px), std::max(0.0, road.residual_p99_px)};
   if (calibration) {
-    const ResidualRange physical = physical_range(road.model, *calibration, width, height, options);
-    range = {std::max(range.below, physical.below), std::max(range.above, physical.above)};
+    shift.camera_height_m = ground_plane(road.model, *calibration).height_m;
+    shift.disparity_offset_px = calibration->disparity_offset_px;
   }
+  // What the correspondences show of the road's unevenness, and what is to be measured.
+  const ResidualRange physical = physical_range(shift, width, height, options);
+  ResidualRange range{std::max(-road.residual_p01_px, physical.below), std::max(road.residual_p99_px, physical.above)};
   // Where the road's disparity is 0 or less there is no shift, and the residual is the disparity.
   if (options.scope == Scope::scene) range.above = std::max(range.above, max_scene_disparity(road, width));
   range.below += margin_px;

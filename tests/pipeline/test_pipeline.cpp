@@ -90,18 +90,18 @@ TEST(PipelineScope, SceneMatchesWhatStandsOnRoad) {
 /// The road has less weight where it is one surface of many.
 TEST(PipelineScope, SceneHasWeakerRoadPrior) {
   const synth::SyntheticPair pair = street();
-  const auto disparity = [&](double road_prior_weight) {
+  const auto disparity = [&](double road_prior_truncation) {
     PipelineOptions options;
     options.perspective.scope = Scope::scene;
-    options.coarse_search.road_prior_weight = road_prior_weight;
+    options.coarse_search.road_prior_truncation = road_prior_truncation;
     Pipeline pipeline(options, pair.calibration);
     const Image<float>& map = pipeline.process(pair.left.view(), pair.right.view()).disparity;
     std::vector<std::uint32_t> bits(map.pixels());  // NaN differs from itself
     std::memcpy(bits.data(), map.row(0), bits.size() * sizeof(float));
     return bits;
   };
-  EXPECT_EQ(disparity(0.3), disparity(0.1));
-  EXPECT_NE(disparity(0.1), disparity(0));
+  EXPECT_EQ(disparity(1.5), disparity(0.3));
+  EXPECT_NE(disparity(0.3), disparity(0));
 }
 
 /// With a limit that hardly anything meets: of a street, whose horizon is in the picture, and of a road from the air.

@@ -227,7 +227,7 @@ TEST(CoarseSearch, RejectsOptionsOutOfRange) {
   refused([](auto& o) { o.block_radius = 0; });
   refused([](auto& o) { o.step_penalty = -0.1; });
   refused([](auto& o) { o.jump_penalty = nan; });
-  refused([](auto& o) { o.road_prior_weight = 11; });
+  refused([](auto& o) { o.road_prior_height_m = 101; });
   refused([](auto& o) { o.half_weight_sigma_px = 0; });
 }
 

@@ -27,8 +27,7 @@ constexpr double uncorrelated_cost = 0.75;
 /// One row: cost[u][d] without priors, and what optimise_scanlines is told besides.
 struct Row {
   std::vector<std::vector<float>> cost;
-  std::vector<float> centre, weight;
-  float truncation = 3;
+  std::vector<float> centre, weight, truncation;
   ScanlinePenalties penalties{0.2F, 0.7F};
   int first_seen = 0;
 
@@ -46,6 +45,7 @@ Row random_row(int columns, int disparities, bool guessed, std::uint64_t seed) {
     const bool missing = !guessed || test::lattice(u, -2, seed) < 0.25;
     row.centre.push_back(missing ? nan : static_cast<float>(prior));
     row.weight.push_back(static_cast<float>(0.4 * test::lattice(u, -3, seed)));
+    row.truncation.push_back(static_cast<float>(4 * test::lattice(u, -4, seed)));
   }
   return row;
 }
@@ -55,8 +55,8 @@ double pixel_cost(const Row& row, int u, int d) {
   const auto column = static_cast<std::size_t>(u);
   const double seen = d <= u - row.first_seen ? row.cost[column][static_cast<std::size_t>(d)] : uncorrelated_cost;
   if (std::isnan(row.centre[column])) return seen;
-  const double away = std::abs(d - double{row.centre[column]});
-  return seen + double{row.weight[column]} * std::min(away, double{row.truncation});
+  const double away = std::min(std::abs(d - double{row.centre[column]}), double{row.truncation[column]});
+  return seen + double{row.weight[column]} * away * away;
 }
 
 double change_cost(const Row& row, int from, int to) {
@@ -142,7 +142,7 @@ struct RowInMemory {
       std::copy(cost.begin(), cost.end(), costs.get() + u * pitch);
     }
     return {{costs.get(), pitch, row.columns(), row.disparities(), row.first_seen},
-            {row.centre.data(), row.weight.data(), row.truncation},
+            {row.centre.data(), row.weight.data(), row.truncation.data()},
             scratch.get(),
             disparity.data()};
   }

@@ -6,12 +6,15 @@
 #include <limits>
 
 #include "core/downsample.hpp"
+#include "core/full_resolution.hpp"
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
+#include "core/shifted_road.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/coarse_column.hpp"
 #include "stereo/coarse/coarse_map.hpp"
 #include "stereo/coarse/coarse_size.hpp"
+#include "stereo/coarse/height_prior.hpp"
 #include "stereo/coarse/road_plausibility.hpp"
 #include "stereo/coarse/road_weights.hpp"
 #include "stereo/coarse/scanline.hpp"
@@ -32,8 +35,8 @@ void CoarseSearchOptions::validate() const {
   require_range("coarse_search", "ncc_noise_sigma", ncc_noise_sigma, 0.0, 50.0);
   require_range("coarse_search", "step_penalty", step_penalty, 0.0, 10.0);
   require_range("coarse_search", "jump_penalty", jump_penalty, 0.0, 10.0);
-  require_range("coarse_search", "road_prior_weight", road_prior_weight, 0.0, 10.0);
-  require_range("coarse_search", "road_prior_truncation_px", road_prior_truncation_px, 0.0, 1000.0);
+  require_range("coarse_search", "road_prior_height_m", road_prior_height_m, 0.0, 100.0);
+  require_range("coarse_search", "road_prior_truncation", road_prior_truncation, 0.0, 100.0);
   require_range("coarse_search", "row_offset_sigma_px", row_offset_sigma_px, 0.0, 10.0);
   require_range("coarse_search", "half_weight_sigma_px", half_weight_sigma_px, 0.01, 10.0);
 }
@@ -91,6 +94,7 @@ bool CoarseSearch::find_prior(const MatchInput& input, const PerspectiveShift& s
     for (std::size_t k = 0; k < 2; ++k) {
       worker.centre[k].resize(static_cast<std::size_t>(reference_.width()));
       worker.weight[k].resize(static_cast<std::size_t>(reference_.width()));
+      worker.truncation[k].resize(static_cast<std::size_t>(reference_.width()));
       guard_scanline_scratch(reference_.width(), pitch, coarse.disparities, worker.scratch.row(k));
     }
     worker.nearest.reserve(static_cast<std::size_t>(reference_.width()));
@@ -113,7 +117,6 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
   worker.texture.start(coarse.reference, first, texture_uncertainty_options(options_));
   const ScanlinePenalties penalties{static_cast<float>(options_.step_penalty),
                                     static_cast<float>(options_.jump_penalty)};
-  const auto truncation = static_cast<float>(options_.road_prior_truncation_px);
   for (int v = first; v < last; v += 2) {
     std::array<Scanline, 2> rows;
     const int count = std::min(2, last - v);
@@ -123,10 +126,11 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
       worker.costs.compute(v + k, costs);
       rows[at] = {{costs, worker.costs.pitch(), reference_.width(), coarse.disparities,
                    block_first_column_[static_cast<std::size_t>(v) + at]},
-                  {worker.centre[at].data(), worker.weight[at].data(), truncation},
+                  {worker.centre[at].data(), worker.weight[at].data(), worker.truncation[at].data()},
                   worker.scratch.row(at),
                   along_rows_.row(v + k)};
-      weigh_road(rows[at].costs, v + k, shift, worker.texture.next(), worker.centre[at], worker.weight[at]);
+      weigh_road(rows[at].costs, v + k, shift, worker.texture.next(), worker.centre[at], worker.weight[at],
+                 worker.truncation[at]);
     }
     optimise_scanlines(rows.data(), count, penalties, uncorrelated_cost);
   }
@@ -135,11 +139,16 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
 /// The road as prior of row v where texture is weak.
 void CoarseSearch::weigh_road(const ScanlineCosts& row, int v, const PerspectiveShift& shift,
                               const std::vector<float>& texture_uncertainty, std::vector<float>& centre,
-                              std::vector<float>& weight) const {
+                              std::vector<float>& weight, std::vector<float>& truncation) const {
+  const HeightPrior heights(options_, shift, prior_.factor);
   for (int u = 0; u < row.columns; ++u) {
     const auto column = static_cast<std::size_t>(u);
-    centre[column] = coarse_road(shift, u, v, prior_.factor, std::numeric_limits<float>::quiet_NaN());
-    weight[column] = static_cast<float>(options_.road_prior_weight) * texture_uncertainty[column];
+    const double x = to_full_resolution(u, prior_.factor), y = to_full_resolution(v, prior_.factor);
+    const double road = shifted_road(shift, x, y, std::numeric_limits<double>::quiet_NaN());
+    centre[column] = static_cast<float>(road) / static_cast<float>(prior_.factor);
+    const DistanceCost cost = heights.at(static_cast<float>(shift.road.disparity(x, y)), texture_uncertainty[column]);
+    weight[column] = cost.weight;
+    truncation[column] = cost.truncation;
   }
   apply_road_plausibility(row, centre.data(), texture_uncertainty.data(), weight.data());
 }

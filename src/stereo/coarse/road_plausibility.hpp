@@ -1,7 +1,6 @@
 #pragma once
 
-#include "core/full_resolution.hpp"
-#include "core/shifted_road.hpp"
+#include "roadstereo/host_device.hpp"
 #include "roadstereo/perspective_shift.hpp"
 
 namespace roadstereo {
@@ -32,13 +31,6 @@ ROADSTEREO_HD inline float cost_plausibility(float at_road, float smallest) {
   constexpr float plausible_below = 0.2F, rejected_above = 0.4F;  // in units of the correlation
   const float plausibility = (rejected_above - (at_road - smallest)) / (rejected_above - plausible_below);
   return plausibility < 0.0F ? 0.0F : plausibility > 1.0F ? 1.0F : plausibility;
-}
-
-/// shifted_road at a pixel of the downsampled pair, coarse pixels.
-ROADSTEREO_HD inline float coarse_road(const PerspectiveShift& shift, int u, int v, int factor, float invalid) {
-  const double road =
-      shifted_road(shift, to_full_resolution(u, factor), to_full_resolution(v, factor), static_cast<double>(invalid));
-  return static_cast<float>(road) / static_cast<float>(factor);
 }
 
 }  // namespace roadstereo

@@ -26,16 +26,16 @@ constexpr float infinite_cost = std::numeric_limits<float>::infinity();
 HWY_INLINE void complete_costs(const ScanlineCosts& row, const ScanlinePrior& prior, float uncorrelated_cost) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
-  const Float truncation = hn::Set(df, prior.truncation);
   for (int u = 0; u < row.columns; ++u) {
     float* cost = row.costs + u * row.pitch;
     for (int d = std::max(0, u - row.first_seen + 1); d < row.disparities; ++d) cost[d] = uncorrelated_cost;
     if (!std::isnan(prior.centre[u])) {
       const Float centre = hn::Set(df, prior.centre[u]), weight = hn::Set(df, prior.weight[u]);
+      const Float truncation = hn::Set(df, prior.truncation[u]);
       for (int d = 0; d < row.disparities; d += lanes) {
         const Float here = hn::Add(hn::Iota(df, 0), hn::Set(df, static_cast<float>(d)));
         const Float away = hn::Min(hn::Abs(hn::Sub(here, centre)), truncation);
-        hn::Store(hn::MulAdd(weight, away, hn::Load(df, cost + d)), df, cost + d);
+        hn::Store(hn::MulAdd(hn::Mul(weight, away), away, hn::Load(df, cost + d)), df, cost + d);
       }
     }
     std::fill(cost + row.disparities, cost + row.pitch, infinite_cost);

@@ -17,11 +17,11 @@ struct ScanlineCosts {
   int first_seen;  ///< column u has a counterpart up to disparity u − first_seen
 };
 
-/// Prior of a row: disparity d of column u costs weight[u] · min(|d − centre[u]|, truncation) more.
+/// Prior of a row: disparity d of column u costs weight[u] · min(|d − centre[u]|, truncation[u])² more.
 struct ScanlinePrior {
   const float* centre;  ///< NaN: no prior
   const float* weight;
-  float truncation;
+  const float* truncation;
 };
 
 /// Penalties of a change of the disparity from one pixel to the next.

@@ -231,7 +231,7 @@ __global__ void block_costs_of_segments(CoarsePair pair, float noise_variance, R
     slide_block(
         of, begin, end, min(lane, costs.disparities - 1),
         [&](int u, float cost) {
-          costs.pixel(u, v)[lane] = completed_cost(of.priors[u - first], prior, costs, cost, count(u));
+          costs.pixel(u, v)[lane] = completed_cost(of.priors[u - first], costs, cost, count(u));
         },
         Known<known_block>{});
     return;
@@ -241,7 +241,7 @@ __global__ void block_costs_of_segments(CoarsePair pair, float noise_variance, R
         of, begin, end, d, [&](int u, float cost) { costs.pixel(u, v)[d] = cost; }, Known<known_block>{});
   }
   __syncwarp();  // lanes read what others have written
-  for (int u = begin; u < end; ++u) complete_costs(of.priors[u - first], prior, costs, costs.pixel(u, v), count(u));
+  for (int u = begin; u < end; ++u) complete_costs(of.priors[u - first], costs, costs.pixel(u, v), count(u));
 }
 
 }  // namespace

@@ -25,9 +25,9 @@ CoarseTiles tiles_of_pair(int width, int height, int factor) {
           SearchRanges::tile_columns / factor, SearchRanges::tile_rows / factor};
 }
 
-RoadPrior road_prior(const CoarseSearchOptions& options, const PerspectiveShift& shift) {
-  return {shift, static_cast<float>(options.road_prior_weight), static_cast<float>(options.road_prior_truncation_px),
-          uncertainty_params(texture_uncertainty_options(options)), options.block_radius};
+RoadPrior road_prior(const CoarseSearchOptions& options, const PerspectiveShift& shift, int factor) {
+  return {shift, HeightPrior(options, shift, factor), uncertainty_params(texture_uncertainty_options(options)),
+          options.block_radius};
 }
 
 }  // namespace
@@ -92,7 +92,8 @@ void CudaCoarseSearch::match_band(const CoarsePair& pair, const PerspectiveShift
   forward.numbers = forward_.data();
   backward.numbers = backward_.data();
   const double noise = options_.ncc_noise_sigma * grey_scale;
-  block_costs(pair, static_cast<float>(noise * noise), road_prior(options_, shift), costs, first_seen_.data(), stream);
+  block_costs(pair, static_cast<float>(noise * noise), road_prior(options_, shift, factor_), costs, first_seen_.data(),
+              stream);
   aggregate_scanlines(costs, {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)},
                       first_seen_.data(), forward, backward, ImageView(along_rows_.data(), width_, height_), stream);
 }

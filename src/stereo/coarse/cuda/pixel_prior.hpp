@@ -14,9 +14,11 @@ struct alignas(8) GradientSums {
   int squares, products;
 };
 
-/// Road, coarse pixels, NaN above the horizon and without one, and texture uncertainty of a pixel.
+/// Road, coarse pixels, NaN above the horizon and without one, texture uncertainty of a pixel, and what a distance from
+/// the road costs where that is plausible.
 struct PixelPrior {
   float road, texture_uncertainty;
+  DistanceCost away;
 };
 
 /// Pixels at the border have no gradient.
@@ -53,27 +55,27 @@ __device__ inline PixelPrior prior_of(const GradientSums* columns, const RoadPri
   }
   const float disparity = road.at(static_cast<float>(u)), shifted = static_cast<float>(prior.shift.delta_p);
   const float expected = disparity < 0 ? nanf("") : fminf(disparity, shifted) / static_cast<float>(factor);
-  return {expected, texture_uncertainty(block.squares, block.products, prior.texture_uncertainty)};
+  const float uncertainty = texture_uncertainty(block.squares, block.products, prior.texture_uncertainty);
+  return {expected, uncertainty, prior.heights.at(disparity, uncertainty)};
 }
 
 /// Weight of the prior of a pixel with costs of `count` disparities; `smallest_cost(first, end)` is that of a range of
 /// them, found by a whole warp.
 template <class SmallestCost>
-__device__ float weight_of(const PixelPrior& pixel, const RoadPrior& prior, int count, SmallestCost smallest_cost) {
-  const float weight = prior.weight * pixel.texture_uncertainty;
-  if (count <= 0 || pixel.texture_uncertainty < min_uncertainty) return weight;
+__device__ float weight_of(const PixelPrior& pixel, int count, SmallestCost smallest_cost) {
+  if (count <= 0 || pixel.texture_uncertainty < min_uncertainty) return pixel.away.weight;
   const NearRoad near = near_road(pixel.road, count);
-  return weight * cost_plausibility(smallest_cost(near.first, near.end), smallest_cost(0, count));
+  return pixel.away.weight * cost_plausibility(smallest_cost(near.first, near.end), smallest_cost(0, count));
 }
 
 /// A cost with the prior.
-__device__ inline float with_prior(float cost, int d, const PixelPrior& pixel, float weight, float truncation) {
-  return fmaf(weight, fminf(fabsf(static_cast<float>(d) - pixel.road), truncation), cost);
+__device__ inline float with_prior(float cost, int d, const PixelPrior& pixel, float weight) {
+  const float away = fminf(fabsf(static_cast<float>(d) - pixel.road), pixel.away.truncation);
+  return fmaf(weight * away, away, cost);
 }
 
 /// Completes the costs of a pixel in memory, with a whole warp: the prior, and infinity behind the last disparity.
-__device__ inline void complete_costs(const PixelPrior& pixel, const RoadPrior& prior, const CoarseVolume& costs,
-                                      float* cost, int count) {
+__device__ inline void complete_costs(const PixelPrior& pixel, const CoarseVolume& costs, float* cost, int count) {
   const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
   const bool known = pixel.road == pixel.road;
   const auto smallest_cost = [&](int first, int end) {
@@ -81,27 +83,26 @@ __device__ inline void complete_costs(const PixelPrior& pixel, const RoadPrior& 
     for (int d = first + lane; d < end; d += warp_lanes) smallest = fminf(smallest, cost[d]);
     return warp_min(smallest);
   };
-  const float weight = known ? weight_of(pixel, prior, count, smallest_cost) : 0;
+  const float weight = known ? weight_of(pixel, count, smallest_cost) : 0;
   for (int d = lane; d < costs.pitch; d += warp_lanes) {
     if (d >= costs.disparities) {
       cost[d] = INFINITY;
     } else if (known) {
-      cost[d] = with_prior(cost[d], d, pixel, weight, prior.truncation);
+      cost[d] = with_prior(cost[d], d, pixel, weight);
     }
   }
 }
 
 /// The same of the cost that each lane of a warp holds, for at most as many disparities as there are lanes.
-__device__ inline float completed_cost(const PixelPrior& pixel, const RoadPrior& prior, const CoarseVolume& costs,
-                                       float cost, int count) {
+__device__ inline float completed_cost(const PixelPrior& pixel, const CoarseVolume& costs, float cost, int count) {
   const int d = static_cast<int>(threadIdx.x) % warp_lanes;
   const auto smallest_cost = [&](int first, int end) {
     return warp_min(d >= first && d < end ? fminf(cost, uncorrelated_cost) : uncorrelated_cost);
   };
   const bool known = pixel.road == pixel.road;
-  const float weight = known ? weight_of(pixel, prior, count, smallest_cost) : 0;
+  const float weight = known ? weight_of(pixel, count, smallest_cost) : 0;
   if (d >= costs.disparities) return INFINITY;
-  return known ? with_prior(cost, d, pixel, weight, prior.truncation) : cost;
+  return known ? with_prior(cost, d, pixel, weight) : cost;
 }
 
 }  // namespace roadstereo::cuda
