@@ -25,8 +25,9 @@ struct PerspectiveOptions {
   bool enabled = true;  ///< false: no shift, plain stereo over the full range
   ShiftPrecision shift = ShiftPrecision::sub_pixel;
   Scope scope = Scope::road;
-  double max_damage_depth_m = 0.10;  ///< deepest measurable damage, metres, above 0, at most 2; needs a calibration
-  double max_bump_height_m = 0.05;   ///< highest measurable bump, metres, above 0, at most 2; needs a calibration
+  double max_damage_depth_m = 0.10;  ///< deepest measurable damage, metres, above 0, at most 2; without a
+                                     ///< calibration below a camera of 1.5 m, PerspectiveShift::assumed_camera_height_m
+  double max_bump_height_m = 0.05;   ///< highest measurable bump, metres, above 0, at most 2; likewise
   int disparities = 0;               ///< number of disparities D searched after the shift, 1 … 1024; 0 derives it
   double delta_p_px = -1;  ///< δp: the road's disparity after the shift, pixels, at most 1024; negative derives it
 

@@ -65,9 +65,9 @@ void visit_options(Options& o, Visitor visit) {
   visit("perspective.shift", o.perspective.shift, "precision of that shift");
   visit("perspective.scope", o.perspective.scope, "what is searched after the shift");
   visit("perspective.max_damage_depth_m", o.perspective.max_damage_depth_m,
-        "deepest damage to be measured, metres (needs a calibration)");
+        "deepest damage to be measured, metres (without a calibration below a camera 1.5 m high)");
   visit("perspective.max_bump_height_m", o.perspective.max_bump_height_m,
-        "highest bump to be measured, metres (needs a calibration)");
+        "highest bump to be measured, metres (without a calibration below a camera 1.5 m high)");
   visit("perspective.disparities", o.perspective.disparities, "disparities searched after the shift; 0 derives it");
   visit("perspective.delta_p_px", o.perspective.delta_p_px,
         "the road's disparity after the shift, pixels; negative derives it");

@@ -208,6 +208,7 @@ TEST(PlanPerspective, ConvertsPhysicalLimitsToPixels) {
   EXPECT_LE(shift.delta_p, deepest + 3);
   EXPECT_GE(shift.disparities - 1, shift.delta_p + highest);
   EXPECT_LE(shift.disparities - 1, shift.delta_p + highest + 3);
+  EXPECT_NEAR(shift.camera_height_m, 2, 1e-12);
 }
 
 TEST(PlanPerspective, WithoutScaleUsesResidualsOfMatches) {
@@ -215,6 +216,16 @@ TEST(PlanPerspective, WithoutScaleUsesResidualsOfMatches) {
       plan_perspective(reliable({42, 0, 0}, -7.5, 3.5), std::nullopt, 640, 360, PerspectiveOptions{});
   EXPECT_EQ(shift.delta_p, 10);      // 7.5 + 2 rounded up
   EXPECT_EQ(shift.disparities, 17);  // 10 + 5.5 rounded up + 1
+}
+
+/// Few of the matches that the road is found with lie in a pothole.
+TEST(PlanPerspective, WithoutScaleSearchesDamageBelowCameraOfUsualHeight) {
+  const PerspectiveShift shift =
+      plan_perspective(reliable({320, 0, 0}, 0, 0), std::nullopt, 2080, 1040, PerspectiveOptions{});
+  EXPECT_EQ(shift.camera_height_m, 1.5);
+  EXPECT_GE(shift.delta_p, 320 - 320 * 1.5 / 1.6);  // 20 px at 10 cm, and 29 mm under a camera at arm's length, 0.45 m
+  EXPECT_LE(shift.delta_p, 320 - 320 * 1.5 / 1.6 + 3);
+  EXPECT_GE(shift.disparities - 1, shift.delta_p + 320 * 1.5 / 1.45 - 320);
 }
 
 TEST(PlanPerspective, SceneSearchesUpToLargestDisparity) {
@@ -230,7 +241,8 @@ TEST(PlanPerspective, SceneSearchesUpToLargestDisparity) {
   road.max_disparity_px = 0;  // unknown, as when the road is tracked: a quarter of the width
   EXPECT_GE(plan_perspective(road, std::nullopt, 640, 360, options).disparities, 160);
   options.scope = Scope::road;
-  EXPECT_LE(plan_perspective(road, std::nullopt, 640, 360, options).disparities, 10);
+  const double nearest = -10 + 0.5 * 359, of_damage = nearest * (0.1 / 1.6 + 0.05 / 1.45);  // below 1.5 m
+  EXPECT_LE(plan_perspective(road, std::nullopt, 640, 360, options).disparities, of_damage + 8);
 }
 
 TEST(PlanPerspective, TakesGivenPixels) {
