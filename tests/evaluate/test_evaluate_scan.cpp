@@ -71,7 +71,7 @@ TEST_F(EvaluateScan, RejectsBadInput) {
   expect_complaint(run("cloud.ply scan.ply --labelled 5"), "labelled");
   expect_complaint(run("cloud.ply scan.ply --cloud-unit-mm 0"), "--cloud-unit-mm");
   expect_complaint(run("nowhere"), "nowhere");
-  expect_complaint(run("nowhere --methods default,SGBM"), "nowhere is not a folder");
+  expect_complaint(run("nowhere --methods default,SGBM"), "nowhere/left is not a folder");
   expect_complaint(run("cloud.ply scan.ply --label cloud.ply"), "--calibration");
   expect_complaint(run(". --scan scan.ply"), "LEFT RIGHT");
   expect_complaint(run(""), "INPUT");

