@@ -27,11 +27,8 @@ double cost(const DistanceCost& prior, double height_m) {
 }
 
 TEST(HeightPrior, CostIsThatOfHeightInMetres) {
-  CoarseSearchOptions options;
-  options.road_prior_height_m = 0.1;
-  options.road_prior_truncation = 100;
   for (const double doffs : {0.0, 30.0}) {
-    const DistanceCost prior = HeightPrior(options, looking_down(doffs), factor).at(42 - static_cast<float>(doffs), 1);
+    const DistanceCost prior = HeightPrior(0.1, 100, looking_down(doffs), factor).at(42 - static_cast<float>(doffs), 1);
     // The disparity is not quite linear in the height: by h/2.
     EXPECT_NEAR(cost(prior, 0.001), std::pow(0.001 / 0.1, 2), 2e-7);
     EXPECT_NEAR(cost(prior, -0.05), std::pow(0.05 / 0.1, 2), 0.02);
@@ -41,34 +38,29 @@ TEST(HeightPrior, CostIsThatOfHeightInMetres) {
 
 /// The same height costs the same below a camera at arm's length and one ten times as high: not the same pixels.
 TEST(HeightPrior, PixelsNearCameraCostLess) {
-  const CoarseSearchOptions options;
   PerspectiveShift near, far;
   near.camera_height_m = 0.5;
   far.camera_height_m = 5;
-  const DistanceCost of_near = HeightPrior(options, near, factor).at(280, no_texture);
-  const DistanceCost of_far = HeightPrior(options, far, factor).at(280, no_texture);
+  const DistanceCost of_near = HeightPrior(0.15, 1.5, near, factor).at(280, no_texture);
+  const DistanceCost of_far = HeightPrior(0.15, 1.5, far, factor).at(280, no_texture);
   EXPECT_NEAR(of_far.weight / of_near.weight, 100, 1e-3);
   EXPECT_NEAR(of_near.truncation / of_far.truncation, 10, 1e-4);
 }
 
 TEST(HeightPrior, CostIsBoundedAndGrowsWithUncertainty) {
-  CoarseSearchOptions options;
-  options.road_prior_truncation = 1.5;
-  const DistanceCost prior = HeightPrior(options, looking_down(0), factor).at(42, no_texture);
+  const DistanceCost prior = HeightPrior(0.15, 1.5, looking_down(0), factor).at(42, no_texture);
   EXPECT_NEAR(cost(prior, 1.5), 1.5, 1e-5);
-  const DistanceCost textured = HeightPrior(options, looking_down(0), factor).at(42, 0.2F);
+  const DistanceCost textured = HeightPrior(0.15, 1.5, looking_down(0), factor).at(42, 0.2F);
   EXPECT_NEAR(cost(textured, 1.5), 0.3, 1e-5);
   // A pixel at the horizon and behind it is no more than a metre.
   for (const float disparity : {0.0F, -5.0F, 1e-6F}) {
-    const DistanceCost horizon = HeightPrior(options, looking_down(0), factor).at(disparity, no_texture);
-    EXPECT_NEAR(horizon.weight, std::pow(1 / options.road_prior_height_m, 2), 1e-3);
+    const DistanceCost horizon = HeightPrior(0.15, 1.5, looking_down(0), factor).at(disparity, no_texture);
+    EXPECT_NEAR(horizon.weight, std::pow(1 / 0.15, 2), 1e-3);
   }
 }
 
 TEST(HeightPrior, HeightOfZeroIsNoPrior) {
-  CoarseSearchOptions options;
-  options.road_prior_height_m = 0;
-  const DistanceCost prior = HeightPrior(options, looking_down(0), factor).at(42, no_texture);
+  const DistanceCost prior = HeightPrior(0, 1.5, looking_down(0), factor).at(42, no_texture);
   EXPECT_EQ(prior.weight, 0);
   EXPECT_EQ(cost(prior, 0.1), 0);
 }

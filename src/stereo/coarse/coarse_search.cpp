@@ -140,7 +140,7 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
 void CoarseSearch::weigh_road(const ScanlineCosts& row, int v, const PerspectiveShift& shift,
                               const std::vector<float>& texture_uncertainty, std::vector<float>& centre,
                               std::vector<float>& weight, std::vector<float>& truncation) const {
-  const HeightPrior heights(options_, shift, prior_.factor);
+  const HeightPrior heights(options_.road_prior_height_m, options_.road_prior_truncation, shift, prior_.factor);
   for (int u = 0; u < row.columns; ++u) {
     const auto column = static_cast<std::size_t>(u);
     const double x = to_full_resolution(u, prior_.factor), y = to_full_resolution(v, prior_.factor);

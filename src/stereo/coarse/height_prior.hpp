@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "roadstereo/coarse_search.hpp"
 #include "roadstereo/perspective_shift.hpp"
 
 namespace roadstereo {
@@ -19,14 +18,14 @@ struct DistanceCost {
 /// ahead of a car.
 class HeightPrior {
  public:
-  /// `factor`: size of a coarse pixel.
-  HeightPrior(const CoarseSearchOptions& options, const PerspectiveShift& shift, int factor)
+  /// `height_m` costs 1, and nothing more than `truncation`; 0: no prior. `factor`: size of a coarse pixel.
+  HeightPrior(double height_m, double truncation, const PerspectiveShift& shift, int factor)
       : offset_px_(static_cast<float>(shift.disparity_offset_px)),
-        root_of_truncation_(static_cast<float>(std::sqrt(options.road_prior_truncation))) {
+        root_of_truncation_(static_cast<float>(std::sqrt(truncation))) {
     constexpr double max_pixel_m = 1;  // a pixel beyond is more than any damage
-    if (options.road_prior_height_m == 0) return;
-    scale_ = static_cast<float>(factor * shift.camera_height_m / options.road_prior_height_m);
-    max_pixel_ = static_cast<float>(max_pixel_m / options.road_prior_height_m);
+    if (height_m == 0) return;
+    scale_ = static_cast<float>(factor * shift.camera_height_m / height_m);
+    max_pixel_ = static_cast<float>(max_pixel_m / height_m);
   }
 
   /// Of a pixel where the road has `disparity`, full-size pixels, and a block with that texture uncertainty.

@@ -26,8 +26,8 @@ CoarseTiles tiles_of_pair(int width, int height, int factor) {
 }
 
 RoadPrior road_prior(const CoarseSearchOptions& options, const PerspectiveShift& shift, int factor) {
-  return {shift, HeightPrior(options, shift, factor), uncertainty_params(texture_uncertainty_options(options)),
-          options.block_radius};
+  return {shift, HeightPrior(options.road_prior_height_m, options.road_prior_truncation, shift, factor),
+          uncertainty_params(texture_uncertainty_options(options)), options.block_radius};
 }
 
 }  // namespace

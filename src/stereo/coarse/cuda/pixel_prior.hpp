@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/cuda/warp.hpp"
+#include "core/full_resolution.hpp"
 #include "stereo/coarse/cuda/coarse_volume.hpp"
 #include "stereo/coarse/cuda/road_prior.hpp"
 #include "stereo/coarse/road_plausibility.hpp"
