@@ -9,7 +9,6 @@
 #include "core/full_resolution.hpp"
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
-#include "core/shifted_road.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/coarse_column.hpp"
 #include "stereo/coarse/coarse_map.hpp"
@@ -92,9 +91,10 @@ bool CoarseSearch::find_prior(const MatchInput& input, const PerspectiveShift& s
     worker.costs_of_row.resize(2, 0, reference_.width() * pitch);
     worker.scratch.resize(2, 0, static_cast<std::ptrdiff_t>(scanline_scratch(reference_.width(), pitch)));
     for (std::size_t k = 0; k < 2; ++k) {
-      worker.centre[k].resize(static_cast<std::size_t>(reference_.width()));
-      worker.weight[k].resize(static_cast<std::size_t>(reference_.width()));
-      worker.truncation[k].resize(static_cast<std::size_t>(reference_.width()));
+      RoadOfRow& road = worker.road[k];
+      for (std::vector<float>* per_column : {&road.centre, &road.weight, &road.truncation}) {
+        per_column->resize(static_cast<std::size_t>(reference_.width()));
+      }
       guard_scanline_scratch(reference_.width(), pitch, coarse.disparities, worker.scratch.row(k));
     }
     worker.nearest.reserve(static_cast<std::size_t>(reference_.width()));
@@ -123,14 +123,14 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
     for (int k = 0; k < count; ++k) {
       const auto at = static_cast<std::size_t>(k);
       float* const costs = worker.costs_of_row.row(at);
+      RoadOfRow& road = worker.road[at];
       worker.costs.compute(v + k, costs);
       rows[at] = {{costs, worker.costs.pitch(), reference_.width(), coarse.disparities,
                    block_first_column_[static_cast<std::size_t>(v) + at]},
-                  {worker.centre[at].data(), worker.weight[at].data(), worker.truncation[at].data()},
+                  {road.centre.data(), road.weight.data(), road.truncation.data()},
                   worker.scratch.row(at),
                   along_rows_.row(v + k)};
-      weigh_road(rows[at].costs, v + k, shift, worker.texture.next(), worker.centre[at], worker.weight[at],
-                 worker.truncation[at]);
+      weigh_road(rows[at].costs, v + k, shift, worker.texture.next(), road);
     }
     optimise_scanlines(rows.data(), count, penalties, uncorrelated_cost);
   }
@@ -138,19 +138,24 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
 
 /// The road as prior of row v where texture is weak.
 void CoarseSearch::weigh_road(const ScanlineCosts& row, int v, const PerspectiveShift& shift,
-                              const std::vector<float>& texture_uncertainty, std::vector<float>& centre,
-                              std::vector<float>& weight, std::vector<float>& truncation) const {
+                              const std::vector<float>& texture_uncertainty, RoadOfRow& road) const {
   const HeightPrior heights(options_.road_prior_height_m, options_.road_prior_truncation, shift, prior_.factor);
+  const double at_first =
+      shift.road.disparity(to_full_resolution(0, prior_.factor), to_full_resolution(v, prior_.factor));
+  const float first = shift.enabled ? static_cast<float>(at_first) : -1;
+  const float step = shift.enabled ? static_cast<float>(shift.road.a2 * prior_.factor) : 0;
+  const auto delta_p = static_cast<float>(shift.delta_p), factor = static_cast<float>(prior_.factor);
+  const float* const uncertainty = texture_uncertainty.data();
+  float *const centre = road.centre.data(), *const weight = road.weight.data(),
+               *const truncation = road.truncation.data();
   for (int u = 0; u < row.columns; ++u) {
-    const auto column = static_cast<std::size_t>(u);
-    const double x = to_full_resolution(u, prior_.factor), y = to_full_resolution(v, prior_.factor);
-    const double road = shifted_road(shift, x, y, std::numeric_limits<double>::quiet_NaN());
-    centre[column] = static_cast<float>(road) / static_cast<float>(prior_.factor);
-    const DistanceCost cost = heights.at(static_cast<float>(shift.road.disparity(x, y)), texture_uncertainty[column]);
-    weight[column] = cost.weight;
-    truncation[column] = cost.truncation;
+    const float disparity = first + static_cast<float>(u) * step;
+    centre[u] = disparity < 0 ? std::numeric_limits<float>::quiet_NaN() : std::min(disparity, delta_p) / factor;
+    const DistanceCost cost = heights.at(disparity, uncertainty[u]);
+    weight[u] = cost.weight;
+    truncation[u] = cost.truncation;
   }
-  apply_road_plausibility(row, centre.data(), texture_uncertainty.data(), weight.data());
+  apply_road_plausibility(row, centre, uncertainty, weight);
 }
 
 /// The prior from what the rows found, each on its own.

@@ -34,19 +34,22 @@ class CoarseSearch {
   const SearchRanges* ranges() const { return ranges_found_ ? &tile_ranges_.ranges() : nullptr; }
 
  private:
+  /// The road as prior of a row, per column: where it is, coarse pixels, and what a distance from it costs.
+  struct RoadOfRow {
+    std::vector<float> centre, weight, truncation;
+  };
   /// Memory of one thread.
   struct Worker {
     cpu::TileCosts costs;
     TextureUncertainty texture;
-    cpu::PaddedRows<float> costs_of_row, scratch;                  ///< two rows each
-    std::array<std::vector<float>, 2> centre, weight, truncation;  ///< of the road, per column
-    std::vector<float> nearest;                                    ///< disparity that the target view sees, per column
+    cpu::PaddedRows<float> costs_of_row, scratch;  ///< two rows each
+    std::array<RoadOfRow, 2> road;
+    std::vector<float> nearest;  ///< disparity that the target view sees, per column
   };
   void downsample_pair(const MatchInput& input, int factor);
   void match_rows(const MatchInput& coarse, int first, int last, const PerspectiveShift& shift, Worker& worker);
   void weigh_road(const ScanlineCosts& row, int v, const PerspectiveShift& shift,
-                  const std::vector<float>& texture_uncertainty, std::vector<float>& centre, std::vector<float>& weight,
-                  std::vector<float>& truncation) const;
+                  const std::vector<float>& texture_uncertainty, RoadOfRow& road) const;
   void correct_rows(int first, int last, Worker& worker);
 
   CoarseSearchOptions options_;
