@@ -42,7 +42,7 @@ PipelineOptions fast_preset() {
   PipelineOptions options;
   options.coarse_search.factor = 4;
   options.coarse_search.road_prior_truncation = 3;  // gives disparities off the road, right or wrong
-  options.matcher.adapt_support = false;  // its block is large already
+  options.matcher.adapt_support = false;            // its block is large already
   options.matcher.reject_range_boundary = true;
   options.matcher.occlusion_sigma_px = 0;
   options.matcher.block_radius = 5;

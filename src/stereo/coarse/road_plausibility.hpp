@@ -1,7 +1,6 @@
 #pragma once
 
 #include "roadstereo/host_device.hpp"
-#include "roadstereo/perspective_shift.hpp"
 
 namespace roadstereo {
 
@@ -9,7 +8,7 @@ namespace roadstereo {
 
 /// Cost of a disparity without a counterpart: that of uncorrelated blocks.
 constexpr float uncorrelated_cost = 1;
-/// Texture uncertainty below which the plausibility of the road is not computed: its weight is small.
+/// Texture uncertainty below which the plausibility of the road is not computed: all that the road can cost is small.
 constexpr float min_uncertainty = 0.1F;
 
 /// Disparities within two coarse pixels of the road's, of `count`: first ≤ d < end.
