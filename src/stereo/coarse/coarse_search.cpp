@@ -6,12 +6,12 @@
 #include <limits>
 
 #include "core/downsample.hpp"
-#include "core/full_resolution.hpp"
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/coarse_column.hpp"
 #include "stereo/coarse/coarse_map.hpp"
+#include "stereo/coarse/coarse_road.hpp"
 #include "stereo/coarse/coarse_size.hpp"
 #include "stereo/coarse/height_prior.hpp"
 #include "stereo/coarse/road_plausibility.hpp"
@@ -140,17 +140,13 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
 void CoarseSearch::weigh_road(const ScanlineCosts& row, int v, const PerspectiveShift& shift,
                               const std::vector<float>& texture_uncertainty, RoadOfRow& road) const {
   const HeightPrior heights(options_.road_prior_height_m, options_.road_prior_truncation, shift, prior_.factor);
-  const double at_first =
-      shift.road.disparity(to_full_resolution(0, prior_.factor), to_full_resolution(v, prior_.factor));
-  const float first = shift.enabled ? static_cast<float>(at_first) : -1;
-  const float step = shift.enabled ? static_cast<float>(shift.road.a2 * prior_.factor) : 0;
-  const auto delta_p = static_cast<float>(shift.delta_p), factor = static_cast<float>(prior_.factor);
+  const CoarseRoad plane(shift, v, prior_.factor);
   const float* const uncertainty = texture_uncertainty.data();
   float *const centre = road.centre.data(), *const weight = road.weight.data(),
                *const truncation = road.truncation.data();
   for (int u = 0; u < row.columns; ++u) {
-    const float disparity = first + static_cast<float>(u) * step;
-    centre[u] = disparity < 0 ? std::numeric_limits<float>::quiet_NaN() : std::min(disparity, delta_p) / factor;
+    const float disparity = plane.disparity(u);
+    centre[u] = plane.shifted(disparity);
     const DistanceCost cost = heights.at(disparity, uncertainty[u]);
     weight[u] = cost.weight;
     truncation[u] = cost.truncation;

@@ -46,7 +46,7 @@ struct Segment {
   ViewColumns own, other;
   GradientSums* gradients;  ///< of the own columns
   PixelPrior* priors;       ///< of the segment
-  RowLine* road;
+  CoarseRoad* road;
   int width, first_visible;  ///< columns of the image; the first one of the target that counts
   int radius, rows;          ///< of the block; rows of it that lie in the image
   float noise_variance;
@@ -172,7 +172,7 @@ __device__ Segment make_segment(int first, int radius, const CoarseVolume& costs
   of.other.sums = of.own.sums + of.own.count;
   of.gradients = reinterpret_cast<GradientSums*>(of.other.sums + of.other.count);
   of.priors = reinterpret_cast<PixelPrior*>(of.gradients + of.own.count);
-  of.road = reinterpret_cast<RowLine*>(of.priors + segment);
+  of.road = reinterpret_cast<CoarseRoad*>(of.priors + segment);
   of.own.grey = reinterpret_cast<short*>(of.road + 1);
   of.other.grey = of.own.grey + (2 * radius + 1) * of.own.count;
   return of;
@@ -183,7 +183,7 @@ std::size_t shared_bytes(int radius, int disparities) {
              both = 2 * own + static_cast<std::size_t>(disparities) - 1;
   const std::size_t of_column =
       sizeof(BlockPart) + sizeof(ColumnSums) + static_cast<std::size_t>(2 * radius + 1) * sizeof(short);
-  return both * of_column + own * sizeof(GradientSums) + segment * sizeof(PixelPrior) + sizeof(RowLine);
+  return both * of_column + own * sizeof(GradientSums) + segment * sizeof(PixelPrior) + sizeof(CoarseRoad);
 }
 
 /// Loads what the costs of a segment need, and sums it.
@@ -195,12 +195,12 @@ __device__ void prepare(const Segment& of, const CoarsePair& pair, const RoadPri
   for (int i = thread; i < of.own.count; i += warps * warp_lanes) {
     of.gradients[i] = column_gradients(pair.reference, of.own.first + i, v, of.radius);
   }
-  if (thread == 0) *of.road = road_in_row(prior.shift, v, pair.factor);
+  if (thread == 0) *of.road = CoarseRoad(prior.shift, v, pair.factor);
   __syncthreads();
   fill_parts(of.own, of);
   fill_parts(of.other, of);
   for (int i = thread; i < segment; i += warps * warp_lanes) {
-    of.priors[i] = prior_of(of.gradients + i, prior, *of.road, pair.factor, first + i);
+    of.priors[i] = prior_of(of.gradients + i, prior, *of.road, first + i);
   }
   __syncthreads();
 }

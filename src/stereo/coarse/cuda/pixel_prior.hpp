@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/cuda/warp.hpp"
-#include "core/full_resolution.hpp"
+#include "stereo/coarse/coarse_road.hpp"
 #include "stereo/coarse/cuda/coarse_volume.hpp"
 #include "stereo/coarse/cuda/road_prior.hpp"
 #include "stereo/coarse/road_plausibility.hpp"
@@ -38,26 +38,17 @@ __device__ inline GradientSums column_gradients(const ImageView<const std::int16
   return sums;
 }
 
-/// The road's disparities in a row of the downsampled pair, full-size pixels, along its columns; below 0 without a
-/// road. Double precision is slow on small GPUs: once a row suffices.
-__device__ inline RowLine road_in_row(const PerspectiveShift& shift, int v, int factor) {
-  if (!shift.enabled) return {-1, 0};
-  const double first = shift.road.disparity(to_full_resolution(0, factor), to_full_resolution(v, factor));
-  return {static_cast<float>(first), static_cast<float>(shift.road.a2 * factor)};
-}
-
 /// Of column u, whose block begins at `columns`.
-__device__ inline PixelPrior prior_of(const GradientSums* columns, const RoadPrior& prior, const RowLine& road,
-                                      int factor, int u) {
+__device__ inline PixelPrior prior_of(const GradientSums* columns, const RoadPrior& prior, const CoarseRoad& road,
+                                      int u) {
   GradientSums block{0, 0};
   for (int k = 0; k <= 2 * prior.block_radius; ++k) {
     block.squares += columns[k].squares;
     block.products += columns[k].products;
   }
-  const float disparity = road.at(static_cast<float>(u)), shifted = static_cast<float>(prior.shift.delta_p);
-  const float expected = disparity < 0 ? nanf("") : fminf(disparity, shifted) / static_cast<float>(factor);
+  const float disparity = road.disparity(u);
   const float uncertainty = texture_uncertainty(block.squares, block.products, prior.texture_uncertainty);
-  return {expected, uncertainty, prior.heights.at(disparity, uncertainty)};
+  return {road.shifted(disparity), uncertainty, prior.heights.at(disparity, uncertainty)};
 }
 
 /// Weight of the prior of a pixel with costs of `count` disparities; `smallest_cost(first, end)` is that of a range of

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "road/row_shift.hpp"
+#include "roadstereo/perspective_shift.hpp"
 #include "stereo/coarse/block_uncertainty.hpp"
 #include "stereo/coarse/height_prior.hpp"
 
