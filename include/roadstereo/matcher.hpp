@@ -79,14 +79,17 @@ struct SearchRanges {
 struct DisparityPriorView {
   ImageView<const float> disparity;
   int factor = 1;
+  ImageView<const float> low = {}, high = {};
 };
 
 /// Coarse disparity map: the prior of winner-take-all.
 struct DisparityPrior {
   Image<float> disparity;  ///< of the reference view, pixels of the full size; NaN: unknown
   int factor = 1;  ///< its pixel (x, y) covers factor × factor pixels from (x·factor, y·factor) on; at least 1
+  /// Disparities from low to high cost nothing; NaN: unknown. As large as `disparity`, or empty: that alone.
+  Image<float> low = {}, high = {};
 
-  DisparityPriorView view() const { return {disparity, factor}; }
+  DisparityPriorView view() const { return {disparity, factor, low, high}; }
 };
 
 /// One grey pair of equal size, the target already transformed. All views lie in the memory of the engine that takes

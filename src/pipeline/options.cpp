@@ -84,6 +84,8 @@ void visit_options(Options& o, Visitor visit) {
         "metres; 0: no prior");
   visit("coarse_search.road_prior_truncation", o.coarse_search.road_prior_truncation,
         "largest cost of such a height, without texture");
+  visit("coarse_search.border_height_m", o.coarse_search.border_height_m,
+        "largest change of height within a block whose place the matcher decides, metres; 0: none");
   visit("coarse_search.row_offset_sigma_px", o.coarse_search.row_offset_sigma_px,
         "standard error of the rows' offset, coarse pixels");
   visit("coarse_search.half_weight_sigma_px", o.coarse_search.half_weight_sigma_px,

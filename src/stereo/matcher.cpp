@@ -31,6 +31,13 @@ void validate(ImageView<const SearchRange> ranges, const MatchInput& input, cons
 
 void validate(const DisparityPriorView& prior) {
   if (prior.factor < 1) fail("the prior's factor is ", prior.factor, "; it must be at least 1");
+  for (const ImageView<const float>& end : {prior.low, prior.high}) {
+    if (end.empty() && prior.low.empty() == prior.high.empty()) continue;
+    if (end.width() != prior.disparity.width() || end.height() != prior.disparity.height()) {
+      fail("the prior has ", prior.disparity.width(), "×", prior.disparity.height(), " pixels, but the ends of its ",
+           "intervals ", end.width(), "×", end.height(), "; they must be equal");
+    }
+  }
 }
 
 }  // namespace

@@ -26,9 +26,9 @@ ROADSTEREO_HD inline float prior_share(float best) {
   return fminf(1.0F, (best + prior_cost_offset) / prior_full_cost);
 }
 
-/// Cost of the distance of disparity `d` from the prior `centre`; 0 where that is NaN.
-ROADSTEREO_HD inline float prior_cost(float weight, float truncation, float centre, float d) {
-  return centre == centre ? weight * fminf(fabsf(d - centre), truncation) : 0.0F;
+/// Cost of the distance of disparity `d` from the prior low … high; 0 where that is NaN.
+ROADSTEREO_HD inline float prior_cost(float weight, float truncation, float low, float high, float d) {
+  return low == low ? weight * fminf(fmaxf(fmaxf(low - d, d - high), 0.0F), truncation) : 0.0F;
 }
 
 /// Offset of the minimum from the winner, pixels, and its variance, pixels² (stereo/window.hpp).

@@ -43,9 +43,13 @@ void expect_ranges(ImageView<const SearchRange> found, const Image<SearchRange>&
   EXPECT_LE(differ, test::kernels_round_as_host ? 0U : 1U) << "of " << expected.pixels() << " tiles";
 }
 
-void expect_prior(const Image<float>& found, const Image<float>& expected) {
-  ASSERT_EQ(found.width(), expected.width());
-  ASSERT_EQ(found.height(), expected.height());
+void expect_map(ImageView<const float> on_device, const Image<float>& expected) {
+  ASSERT_EQ(on_device.width(), expected.width());
+  ASSERT_EQ(on_device.height(), expected.height());
+  if (expected.empty()) return;
+  Image<float> found(expected.width(), expected.height());
+  const auto numbers = test::to_host(on_device.data(), found.pixels());
+  std::copy(numbers.begin(), numbers.end(), found.row(0));
   int off = 0;
   for (int v = 0; v < expected.height(); ++v) {
     for (int u = 0; u < expected.width(); ++u) {
@@ -66,11 +70,9 @@ void expect_as_on_host(cuda::CudaCoarseSearch& look, const Case& of) {
       {reference.view(), target.view(), columns != nullptr ? device_columns.data() : nullptr, of.disparities, {}, {}},
       of.shift, nullptr));
   ASSERT_EQ(look.prior().factor, search.prior().factor);
-  const auto prior = look.prior().disparity;
-  Image<float> found(prior.width(), prior.height());
-  const auto numbers = test::to_host(prior.data(), found.pixels());
-  std::copy(numbers.begin(), numbers.end(), found.row(0));
-  expect_prior(found, search.prior().disparity);
+  expect_map(look.prior().disparity, search.prior().disparity);
+  expect_map(look.prior().low, search.prior().low);
+  expect_map(look.prior().high, search.prior().high);
   ASSERT_EQ(look.ranges().empty(), search.ranges() == nullptr);
   if (search.ranges() == nullptr) return;
   expect_ranges(look.ranges().reference, search.ranges()->reference);

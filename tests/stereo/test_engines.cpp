@@ -24,6 +24,7 @@ struct Case {
   bool with_ranges = false;  ///< tiles search parts of the disparities
   int prior_factor = 0;      ///< a prior of this factor; 0: none
   double prior_offset = 0;   ///< of the prior from the truth, pixels
+  double prior_width = 0;    ///< of its intervals, pixels, at most; 0: none
 };
 
 MatcherOptions paper_options() {
@@ -80,6 +81,7 @@ std::vector<Case> cases() {
   all.push_back({"ranges", 290, 131, 40, two_views, true, true});
   all.push_back({"prior_below", 131, 67, 33, MatcherOptions{}, true, false, 2, -2.5});
   all.push_back({"prior_above", 131, 67, 33, MatcherOptions{}, true, false, 3, 3.5});
+  all.push_back({"prior_of_intervals", 131, 67, 33, MatcherOptions{}, true, false, 2, -2.5, 4});
   all.push_back({"prior_with_ranges", 200, 101, 40, MatcherOptions{}, true, true, 3, 1.5});
   MatcherOptions steep;  // so steep that the winner need not be a minimum of the costs
   steep.prior_weight = 0.5;
@@ -125,6 +127,14 @@ DisparityPrior prior_of(const Case& setting) {
       const bool hole = x % 16 < 5 && y % 8 < 3;
       prior.disparity(x, y) =
           hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(truth + wide + 0.3 * std::sin(0.7 * x));
+    }
+  }
+  if (setting.prior_width == 0) return prior;
+  prior.low = prior.high = prior.disparity;
+  for (int y = 0; y < prior.disparity.height(); ++y) {
+    for (int x = 0; x < prior.disparity.width(); ++x) {
+      prior.low(x, y) -= static_cast<float>(setting.prior_width * (x % 3) / 4);
+      prior.high(x, y) += static_cast<float>(setting.prior_width * (y % 3) / 4);
     }
   }
   return prior;
@@ -351,6 +361,23 @@ TEST_P(EveryEngine, PriorDecidesWithoutTexture) {
       ASSERT_TRUE(std::isinf(maps.variance(u / step, v / step))) << u << ", " << v;
     }
   }
+}
+
+/// Of disparities that cost the same, those of the interval cost least, and the smallest of them wins.
+TEST_P(EveryEngine, DisparitiesOfIntervalCostNothing) {
+  const GreyImage flat(64, 48, 1600);
+  DisparityPrior prior{Image<float>(32, 24, 7.0F), 2, Image<float>(32, 24, 4.5F), Image<float>(32, 24, 9.0F)};
+  MatchMaps maps;
+  make_engine(GetParam(), 2)->match({flat, flat, nullptr, 16, {}, prior.view()}, MatcherOptions{}, maps);
+  for (int y = 0; y < maps.winner.height(); ++y) {
+    for (int x = 8; x < maps.winner.width(); ++x) ASSERT_EQ(maps.winner(x, y), 5) << x << ", " << y;
+  }
+  prior.high = Image<float>(31, 24, 9.0F);
+  EXPECT_THROW(make_engine(GetParam(), 1)->match({flat, flat, nullptr, 16, {}, prior.view()}, MatcherOptions{}, maps),
+               Error);
+  prior.high = {};
+  EXPECT_THROW(make_engine(GetParam(), 1)->match({flat, flat, nullptr, 16, {}, prior.view()}, MatcherOptions{}, maps),
+               Error);
 }
 
 TEST_P(EveryEngine, RejectsBadInput) {

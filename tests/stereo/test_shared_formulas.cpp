@@ -121,9 +121,12 @@ TEST(FitParabola, FlatCostsGiveInfiniteVariance) {
 }
 
 TEST(PriorCost, IsTruncatedLinear) {
-  EXPECT_FLOAT_EQ(prior_cost(0.08F, 8, 10, 13), 0.24F);
-  EXPECT_FLOAT_EQ(prior_cost(0.08F, 8, 10, 40), 0.64F);
-  EXPECT_EQ(prior_cost(0.08F, 8, NAN, 13), 0);
+  EXPECT_FLOAT_EQ(prior_cost(0.08F, 8, 10, 10, 13), 0.24F);
+  EXPECT_FLOAT_EQ(prior_cost(0.08F, 8, 10, 10, 40), 0.64F);
+  EXPECT_FLOAT_EQ(prior_cost(0.08F, 8, 6, 10, 13), 0.24F);
+  EXPECT_FLOAT_EQ(prior_cost(0.08F, 8, 6, 10, 4), 0.16F);
+  EXPECT_EQ(prior_cost(0.08F, 8, 6, 10, 7), 0);
+  EXPECT_EQ(prior_cost(0.08F, 8, NAN, NAN, 13), 0);
   EXPECT_FLOAT_EQ(prior_share(0.0F), 0.2F);
   EXPECT_FLOAT_EQ(prior_share(0.04F), 0.6F);
   EXPECT_EQ(prior_share(0.5F), 1);

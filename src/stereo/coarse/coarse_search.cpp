@@ -23,6 +23,7 @@ namespace roadstereo {
 namespace {
 
 constexpr int min_rows = 24;  // of a band
+constexpr int max_block_radius = 10;
 
 }  // namespace
 
@@ -30,12 +31,13 @@ void CoarseSearchOptions::validate() const {
   if (factor != 0 && factor != 2 && factor != 4 && factor != 8) {
     fail("coarse_search.factor is ", factor, "; it must be 2, 4 or 8, or 0 to derive it");
   }
-  require_range("coarse_search", "block_radius", block_radius, 1, 10);
+  require_range("coarse_search", "block_radius", block_radius, 1, max_block_radius);
   require_range("coarse_search", "ncc_noise_sigma", ncc_noise_sigma, 0.0, 50.0);
   require_range("coarse_search", "step_penalty", step_penalty, 0.0, 10.0);
   require_range("coarse_search", "jump_penalty", jump_penalty, 0.0, 10.0);
   require_range("coarse_search", "road_prior_height_m", road_prior_height_m, 0.0, 100.0);
   require_range("coarse_search", "road_prior_truncation", road_prior_truncation, 0.0, 100.0);
+  require_range("coarse_search", "border_height_m", border_height_m, 0.0, 100.0);
   require_range("coarse_search", "row_offset_sigma_px", row_offset_sigma_px, 0.0, 10.0);
   require_range("coarse_search", "half_weight_sigma_px", half_weight_sigma_px, 0.01, 10.0);
 }
@@ -62,6 +64,7 @@ void CoarseSearch::downsample_pair(const MatchInput& input, int factor) {
 
 bool CoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift) {
   if (!find_prior(input, shift)) return false;
+  find_intervals(shift);
   if (input.disparities < min_ranged_disparities) return true;
   tile_ranges_.find(prior_.disparity, prior_.factor, input.reference.width(), input.reference.height(),
                     input.disparities, threads_);
@@ -72,6 +75,7 @@ bool CoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift) 
 bool CoarseSearch::find_prior(const MatchInput& input, const PerspectiveShift& shift) {
   const int width = input.reference.width(), height = input.reference.height();
   ranges_found_ = false;
+  for (Image<float>* map : {&prior_.low, &prior_.high}) map->resize(0, 0);
   if (!coarse_search_pays(width, height)) return false;
   prior_.factor = coarse_factor(options_, width);
   downsample_pair(input, prior_.factor);
@@ -98,16 +102,32 @@ bool CoarseSearch::find_prior(const MatchInput& input, const PerspectiveShift& s
       guard_scanline_scratch(reference_.width(), pitch, coarse.disparities, worker.scratch.row(k));
     }
     worker.nearest.reserve(static_cast<std::size_t>(reference_.width()));
+    worker.interval.reserve(reference_.width(), max_block_radius);
   }
-  // A band begins by filling its sums, so it should be high.
-  const int rows = std::max(min_rows, (reference_.height() + 4 * threads_ - 1) / (4 * threads_));
-  parallel_rows(reference_.height(), rows, threads_, [&](int first, int last, int worker) {
+  parallel_rows(reference_.height(), band_rows(), threads_, [&](int first, int last, int worker) {
     match_rows(coarse, first, last, shift, workers_[static_cast<std::size_t>(worker)]);
   });
-  parallel_rows(reference_.height(), rows, threads_, [&](int first, int last, int worker) {
+  parallel_rows(reference_.height(), band_rows(), threads_, [&](int first, int last, int worker) {
     correct_rows(first, last, workers_[static_cast<std::size_t>(worker)]);
   });
   return true;
+}
+
+/// A band begins by filling its sums, so it should be high.
+int CoarseSearch::band_rows() const {
+  return std::max(min_rows, (reference_.height() + 4 * threads_ - 1) / (4 * threads_));
+}
+
+/// The matcher's freedom where the map changes.
+void CoarseSearch::find_intervals(const PerspectiveShift& shift) {
+  if (options_.border_height_m == 0) return;
+  const int width = prior_.disparity.width(), height = prior_.disparity.height();
+  for (Image<float>* map : {&prior_.low, &prior_.high}) map->resize(width, height);
+  const PixelHeight heights(shift, options_.border_height_m, 1);
+  parallel_rows(height, band_rows(), threads_, [&](int first, int last, int worker) {
+    find_prior_intervals(shift, heights, options_.block_radius, first, last,
+                         workers_[static_cast<std::size_t>(worker)].interval, prior_);
+  });
 }
 
 void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, const PerspectiveShift& shift,

@@ -6,6 +6,7 @@
 #include "roadstereo/coarse_search.hpp"
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/perspective_shift.hpp"
+#include "stereo/coarse/prior_intervals.hpp"
 #include "stereo/coarse/scanline.hpp"
 #include "stereo/coarse/texture_uncertainty.hpp"
 #include "stereo/coarse/tile_ranges.hpp"
@@ -26,7 +27,7 @@ class CoarseSearch {
   /// Computes the prior and, where that saves work, the ranges; both are valid until the next call. `shift`: that of
   /// the target, with the road. Returns false when the image is too small.
   bool find(const MatchInput& input, const PerspectiveShift& shift);
-  /// The same without the ranges.
+  /// The same without the ranges and the intervals of the prior.
   bool find_prior(const MatchInput& input, const PerspectiveShift& shift);
 
   const DisparityPrior& prior() const { return prior_; }
@@ -45,12 +46,15 @@ class CoarseSearch {
     cpu::PaddedRows<float> costs_of_row, scratch;  ///< two rows each
     std::array<RoadOfRow, 2> road;
     std::vector<float> nearest;  ///< disparity that the target view sees, per column
+    IntervalScratch interval;
   };
   void downsample_pair(const MatchInput& input, int factor);
   void match_rows(const MatchInput& coarse, int first, int last, const PerspectiveShift& shift, Worker& worker);
   void weigh_road(const ScanlineCosts& row, int v, const PerspectiveShift& shift,
                   const std::vector<float>& texture_uncertainty, RoadOfRow& road) const;
   void correct_rows(int first, int last, Worker& worker);
+  void find_intervals(const PerspectiveShift& shift);
+  int band_rows() const;
 
   CoarseSearchOptions options_;
   int threads_;

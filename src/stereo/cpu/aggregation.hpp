@@ -22,9 +22,10 @@ struct WindowRow {
   int last_valid;     ///< last pixel of the own view
 };
 
-/// Prior of winner-take-all: energies at disparity d grow by weight · min(|d − centre|, truncation).
+/// Prior of winner-take-all: energies at disparity d grow by weight · min(distance of d from low … high, truncation).
 struct PriorRow {
-  const float* centre = nullptr;  ///< per column of the tile, whole strips; NaN: unknown; null: no prior
+  const float* low = nullptr;  ///< per column of the tile, whole strips; NaN: unknown; null: no prior
+  const float* high = nullptr;
   float weight = 0;
   float truncation = 0;
 };

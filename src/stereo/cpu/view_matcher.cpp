@@ -45,7 +45,7 @@ void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& op
   effective_samples_ = static_cast<float>(effective_samples(options));
   prior_weight_ = static_cast<float>(options.prior_weight);
   prior_truncation_px_ = static_cast<float>(options.prior_truncation_px);
-  prior_.resize(static_cast<std::size_t>(padded));
+  for (std::vector<float>* end : {&prior_low_, &prior_high_}) end->resize(static_cast<std::size_t>(padded));
   steps_.resize(static_cast<std::size_t>(scratch.pointers));
   winner_.resize(static_cast<std::size_t>(padded));
   offset_.resize(static_cast<std::size_t>(padded));
@@ -111,15 +111,20 @@ void ViewMatcher::match_row(const MatchView& view, int y, const Tile& tile, Matc
 PriorRow ViewMatcher::prior_row(const MatchView& view, int y, const Tile& tile) {
   const DisparityPriorView prior = view.prior();
   if (prior.disparity.empty() || prior_weight_ == 0) return {};
-  const ImageView<const float>& map = prior.disparity;
-  const float* row = map.row(std::min(y * pixel_step_ / prior.factor, map.height() - 1));
+  const int v = std::min(y * pixel_step_ / prior.factor, prior.disparity.height() - 1);
+  const float* const low = (prior.low.empty() ? prior.disparity : prior.low).row(v);
+  const float* const high = (prior.high.empty() ? prior.disparity : prior.high).row(v);
   const auto first = static_cast<float>(tile.range.first);
-  const int last_column = map.width() - 1;
+  const int last_column = prior.disparity.width() - 1;
   for (int i = 0; i < matched(tile.end - tile.first); ++i) {
-    const int u = tile.first + i * pixel_step_;
-    prior_[static_cast<std::size_t>(i)] = row[std::min(u / prior.factor, last_column)] - first;
+    const int u = std::min((tile.first + i * pixel_step_) / prior.factor, last_column);
+    prior_low_[static_cast<std::size_t>(i)] = low[u] - first;
+    prior_high_[static_cast<std::size_t>(i)] = high[u] - first;
   }
-  return {.centre = prior_.data(), .weight = prior_weight_, .truncation = prior_truncation_px_};
+  return {.low = prior_low_.data(),
+          .high = prior_high_.data(),
+          .weight = prior_weight_,
+          .truncation = prior_truncation_px_};
 }
 
 }  // namespace roadstereo::cpu

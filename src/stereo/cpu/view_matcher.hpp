@@ -59,7 +59,7 @@ class ViewMatcher {
   std::vector<const float*> steps_;
   float effective_samples_ = 1;
   float prior_weight_ = 0, prior_truncation_px_ = 0;
-  std::vector<float> prior_;
+  std::vector<float> prior_low_, prior_high_;
   std::vector<std::int16_t> winner_;
   std::vector<float> offset_, variance_;
 };

@@ -89,7 +89,7 @@ HWY_INLINE void min_energies(const Energies& energies, int disparities, float* s
 template <class Energies>
 struct RegularisedCosts {
   const Energies& plain;
-  float centre[4], weight[4];
+  float low[4], high[4], weight[4];
   float truncation;
 
   HWY_INLINE RegularisedCosts(const AggregationRow& row, const Energies& energies, int column)
@@ -98,18 +98,21 @@ struct RegularisedCosts {
     float smallest[4];
     min_energies(plain, row.disparities, smallest);
     for (std::size_t p = 0; p < 4; p += hn::Lanes(d)) {
-      const auto at = hn::LoadU(d, row.prior.centre + column + p);
-      const auto known = hn::Eq(at, at);
+      const auto from = hn::LoadU(d, row.prior.low + column + p), to = hn::LoadU(d, row.prior.high + column + p);
+      const auto known = hn::Eq(from, from);
       const auto cost = hn::Add(hn::LoadU(d, smallest + p), hn::Set(d, prior_cost_offset));
       const auto share = hn::Min(hn::Set(d, 1.0f), hn::Div(cost, hn::Set(d, prior_full_cost)));
-      hn::StoreU(hn::IfThenElseZero(known, at), d, centre + p);
+      hn::StoreU(hn::IfThenElseZero(known, from), d, low + p);
+      hn::StoreU(hn::IfThenElseZero(known, to), d, high + p);
       hn::StoreU(hn::IfThenElseZero(known, hn::Mul(hn::Set(d, row.prior.weight), share)), d, weight + p);
     }
   }
 
   HWY_INLINE Float at(int p, int d) const {
     const Floats df;
-    const Float away = hn::Abs(hn::Sub(hn::ConvertTo(df, count_from(d)), hn::Set(df, centre[p])));
+    const Float here = hn::ConvertTo(df, count_from(d));
+    const Float outside = hn::Max(hn::Sub(hn::Set(df, low[p]), here), hn::Sub(here, hn::Set(df, high[p])));
+    const Float away = hn::Max(outside, hn::Zero(df));
     return hn::MulAdd(hn::Min(away, hn::Set(df, truncation)), hn::Set(df, weight[p]), plain.at(p, d));
   }
 };
@@ -145,7 +148,7 @@ HWY_INLINE void find_winners_of_four(const AggregationRow& row, int column, floa
   const PlainEnergies plain{energies, row.pitch};
   if (row.disparities <= lanes) {
     const HeldEnergies held(plain, row.disparities);
-    if (row.prior.centre == nullptr) {
+    if (row.prior.low == nullptr) {
       take_winners(held, lanes, winners);
     } else {
       const RegularisedCosts regularised(row, held, column);
@@ -156,7 +159,7 @@ HWY_INLINE void find_winners_of_four(const AggregationRow& row, int column, floa
   for (int p = 0; p < 4; ++p) {
     std::fill(energies + p * row.pitch + row.disparities, energies + (p + 1) * row.pitch, infinity);
   }
-  if (row.prior.centre == nullptr) {
+  if (row.prior.low == nullptr) {
     take_winners(plain, row.disparities, winners);
   } else {
     take_winners(RegularisedCosts(row, plain, column), row.disparities, winners);

@@ -48,7 +48,8 @@ class CudaEngine final : public StereoEngine {
       there.first_column = upload(ImageView<const int>(input.first_column, rows, 1), first_column_).data();
     }
     there.ranges = {upload(input.ranges.reference, ranges_[0]), upload(input.ranges.target, ranges_[1])};
-    there.prior = {upload(input.prior.disparity, prior_), input.prior.factor};
+    there.prior = {upload(input.prior.disparity, prior_[0]), input.prior.factor, upload(input.prior.low, prior_[1]),
+                   upload(input.prior.high, prior_[2])};
     return there;
   }
 
@@ -75,7 +76,7 @@ class CudaEngine final : public StereoEngine {
   DeviceArray<std::int16_t> images_[2];
   DeviceArray<int> first_column_;
   DeviceArray<SearchRange> ranges_[2];
-  DeviceArray<float> prior_;
+  DeviceArray<float> prior_[3];
 };
 
 }  // namespace

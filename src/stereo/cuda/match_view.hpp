@@ -30,8 +30,8 @@ struct ViewToMatch {
   ImageView<const SearchRange> ranges;  ///< one per tile of the own view; empty: all search all disparities
   int range_columns;                    ///< pixels of such a tile
   int range_rows;
-  ImageView<const float> prior;  ///< of winner-take-all; empty: none
-  int prior_factor;              ///< pixels of a pixel of the prior, across and down
+  ImageView<const float> prior_low, prior_high;  ///< of winner-take-all; empty: none
+  int prior_factor;                              ///< pixels of a pixel of the prior, across and down
 };
 
 struct ViewSettings {

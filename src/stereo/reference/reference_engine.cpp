@@ -150,15 +150,19 @@ const SearchRange& range_at(ImageView<const SearchRange> ranges, int u, int v) {
   return ranges(u / SearchRanges::tile_columns, v / SearchRanges::tile_rows);
 }
 
-/// Cost of the distance of a disparity from the prior: weight · min(|d − prior|, prior_truncation_px), weight =
+/// Cost of the distance of a disparity from the prior: weight · min(distance, prior_truncation_px), weight =
 /// prior_weight but where the smallest cost `best` is small (stereo/window.hpp).
 double prior_term(const Scene& scene, const DisparityPriorView& prior, double best, int u, int v, int d) {
   if (prior.disparity.empty()) return 0;
-  const ImageView<const float>& map = prior.disparity;
-  const double centre = map(std::min(u / prior.factor, map.width() - 1), std::min(v / prior.factor, map.height() - 1));
+  const int x = std::min(u / prior.factor, prior.disparity.width() - 1);
+  const int y = std::min(v / prior.factor, prior.disparity.height() - 1);
+  const double centre = prior.disparity(x, y);
   if (std::isnan(centre)) return 0;
+  const double low = prior.low.empty() ? centre : prior.low(x, y);
+  const double high = prior.high.empty() ? centre : prior.high(x, y);
+  const double distance = std::max({low - d, d - high, 0.0});
   const double weight = std::min(1.0, (best + double{prior_cost_offset}) / double{prior_full_cost});
-  return weight * scene.options.prior_weight * std::min(std::abs(d - centre), scene.options.prior_truncation_px);
+  return weight * scene.options.prior_weight * std::min(distance, scene.options.prior_truncation_px);
 }
 
 /// Winner-take-all: the disparity of the smallest cost, −1 where there is none; the smaller disparity wins a tie.

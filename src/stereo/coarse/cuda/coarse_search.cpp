@@ -8,6 +8,7 @@
 #include "stereo/coarse/cuda/block_costs.hpp"
 #include "stereo/coarse/cuda/coarse_map.hpp"
 #include "stereo/coarse/cuda/paths.hpp"
+#include "stereo/coarse/cuda/prior_interval.hpp"
 #include "stereo/coarse/cuda/road_prior.hpp"
 #include "stereo/coarse/cuda/tile_ranges.hpp"
 #include "stereo/coarse/texture_uncertainty.hpp"
@@ -34,12 +35,14 @@ RoadPrior road_prior(const CoarseSearchOptions& options, const PerspectiveShift&
 
 bool CudaCoarseSearch::find(const MatchInput& input, const PerspectiveShift& shift, StreamView stream) {
   if (!find_prior(input, shift, stream)) return false;
+  if (options_.border_height_m > 0) find_intervals(shift, stream);
   if (input.disparities >= min_ranged_disparities) find_ranges(input, stream);
   return true;
 }
 
 bool CudaCoarseSearch::find_prior(const MatchInput& input, const PerspectiveShift& shift, StreamView stream) {
   ranges_ = {};
+  intervals_found_ = false;
   width_ = height_ = 0;
   const int width = input.reference.width(), height = input.reference.height();
   if (!coarse_search_pays(width, height)) return false;
@@ -96,6 +99,15 @@ void CudaCoarseSearch::match_band(const CoarsePair& pair, const PerspectiveShift
               stream);
   aggregate_scanlines(costs, {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)},
                       first_seen_.data(), forward, backward, ImageView(along_rows_.data(), width_, height_), stream);
+}
+
+/// The matcher's freedom where the map changes.
+void CudaCoarseSearch::find_intervals(const PerspectiveShift& shift, StreamView stream) {
+  for (DeviceArray<float>* map : {&low_, &high_}) map->reserve(area(width_, height_));
+  find_prior_intervals(prior().disparity, factor_,
+                       {shift, PixelHeight(shift, options_.border_height_m, 1), options_.block_radius},
+                       ImageView(low_.data(), width_, height_), ImageView(high_.data(), width_, height_), stream);
+  intervals_found_ = true;
 }
 
 void CudaCoarseSearch::find_ranges(const MatchInput& input, StreamView stream) {

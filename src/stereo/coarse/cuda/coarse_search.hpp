@@ -30,10 +30,14 @@ class CudaCoarseSearch {
   /// Enqueues the search of `input`, which lies in device memory. Returns false, without prior and ranges, when the
   /// image is too small.
   bool find(const MatchInput& input, const PerspectiveShift& shift, StreamView stream);
-  /// The same without the ranges.
+  /// The same without the ranges and the intervals of the prior.
   bool find_prior(const MatchInput& input, const PerspectiveShift& shift, StreamView stream);
 
-  DisparityPriorView prior() const { return {ImageView<const float>(prior_.data(), width_, height_), factor_}; }
+  DisparityPriorView prior() const {
+    const auto map = [&](const DeviceArray<float>& of) { return ImageView<const float>(of.data(), width_, height_); };
+    if (!intervals_found_) return {map(prior_), factor_};
+    return {map(prior_), factor_, map(low_), map(high_)};
+  }
   /// Empty when there are too few disparities to save any.
   SearchRangeViews ranges() const { return ranges_; }
 
@@ -42,6 +46,7 @@ class CudaCoarseSearch {
   CoarsePair downsample_pair(const MatchInput& input, StreamView stream);
   void match_band(const CoarsePair& pair, const PerspectiveShift& shift, const CoarseVolume& shape, int first_row,
                   StreamView stream);
+  void find_intervals(const PerspectiveShift& shift, StreamView stream);
   void find_ranges(const MatchInput& input, StreamView stream);
 
   CoarseSearchOptions options_;
@@ -50,9 +55,10 @@ class CudaCoarseSearch {
   DeviceArray<std::int16_t> reference_, target_;
   DeviceArray<int> first_seen_;
   DeviceArray<float> costs_, forward_, backward_;
-  DeviceArray<float> along_rows_, prior_;
+  DeviceArray<float> along_rows_, prior_, low_, high_;
   DeviceArray<SearchRange> reference_ranges_, target_ranges_;
   SearchRangeViews ranges_;
+  bool intervals_found_ = false;
 };
 
 }  // namespace roadstereo::cuda

@@ -37,15 +37,16 @@ __device__ inline int take_winner(const ViewToMatch& view, const ViewSettings& s
       winner = d;
     }
   }
-  if (view.prior.empty() || winner < 0) return winner;
-  const float centre = view.prior(min(u / view.prior_factor, view.prior.width() - 1),
-                                  min(v / view.prior_factor, view.prior.height() - 1));
-  if (!(centre == centre)) return winner;
+  if (view.prior_low.empty() || winner < 0) return winner;
+  const int x = min(u / view.prior_factor, view.prior_low.width() - 1);
+  const int y = min(v / view.prior_factor, view.prior_low.height() - 1);
+  const float low = view.prior_low(x, y), high = view.prior_high(x, y);
+  if (!(low == low)) return winner;
   const float weight = settings.prior_weight * prior_share(smallest);
   float best = INFINITY;
   for (int d = energies.first(); d < energies.end(); ++d) {
     const float regularised =
-        energies(d) + prior_cost(weight, settings.prior_truncation_px, centre, static_cast<float>(d));
+        energies(d) + prior_cost(weight, settings.prior_truncation_px, low, high, static_cast<float>(d));
     if (regularised < best) {
       best = regularised;
       winner = d;
