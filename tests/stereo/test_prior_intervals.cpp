@@ -65,6 +65,18 @@ TEST(PriorIntervals, HigherBordersAreNarrower) {
   EXPECT_NEAR(prior.high(21, 20), 10, 1e-5);
 }
 
+/// A coarse pixel is 2 pixels: a change by one is noise, by 1.5 half of it counts.
+TEST(PriorIntervals, NoiseOfMapIsNoBorder) {
+  DisparityPrior prior = with_hole(1);
+  find(0.16, prior);
+  EXPECT_EQ(prior.low(18, 20), 12);
+  EXPECT_EQ(prior.high(21, 20), 11);
+  prior = with_hole(1.5F);
+  find(0.16, prior);
+  EXPECT_NEAR(prior.low(18, 20), 11.25, 1e-5);
+  EXPECT_NEAR(prior.high(21, 20), 11.25, 1e-5);
+}
+
 TEST(PriorIntervals, UnknownStaysUnknownAndIsPassedOver) {
   DisparityPrior prior = with_hole(2);
   prior.disparity(5, 5) = nan;

@@ -25,11 +25,19 @@ struct DisparitySpread {
   }
 };
 
+/// Rises from 0 at one half to 1 at one.
+ROADSTEREO_HD inline float from_half_to_one(float x) {
+  return x < 0.5F ? 0.0F : x > 1.0F ? 1.0F : 2.0F * x - 1.0F;
+}
+
 /// Interval of a pixel of disparity `own`, where one pixel means `pixel_height` in units of border_height_m: all of the
-/// spread up to half that height, nothing from it on, since what is higher occludes what is behind it.
-ROADSTEREO_HD inline PriorInterval prior_interval(float own, const DisparitySpread& around, float pixel_height) {
-  const float left = 2.0F - 2.0F * (around.largest - around.smallest) * pixel_height;
-  const float share = left < 0.0F ? 0.0F : left > 1.0F ? 1.0F : left;
+/// spread up to half that height, nothing from it on, since what is higher occludes what is behind it; nothing up to
+/// half a coarse pixel, of `factor` pixels, which is noise of the map, all from one on.
+ROADSTEREO_HD inline PriorInterval prior_interval(float own, const DisparitySpread& around, float pixel_height,
+                                                  int factor) {
+  const float spread = around.largest - around.smallest;
+  const float share =
+      from_half_to_one(spread / static_cast<float>(factor)) * (1.0F - from_half_to_one(spread * pixel_height));
   return {own - share * (own - around.smallest), own + share * (around.largest - own)};
 }
 

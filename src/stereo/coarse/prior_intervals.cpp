@@ -36,7 +36,8 @@ void find_prior_intervals(const PerspectiveShift& shift, const PixelHeight& heig
     const CoarseRoad road(shift, v, prior.factor);
     const float* const own = map.row(v);
     for (int u = 0; u < map.width(); ++u) {
-      const PriorInterval interval = prior_interval(own[u], {low[u], high[u]}, heights.at(road.disparity(u)));
+      const PriorInterval interval =
+          prior_interval(own[u], {low[u], high[u]}, heights.at(road.disparity(u)), prior.factor);
       low[u] = interval.low;
       high[u] = interval.high;
     }

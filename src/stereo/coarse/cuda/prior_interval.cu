@@ -24,7 +24,7 @@ __global__ void find_intervals_of_row(ImageView<const float> prior, int factor, 
     for (int row = first_row; row <= last_row; ++row) {
       for (int column = first; column <= last; ++column) around.add(__ldg(&prior(column, row)));
     }
-    const PriorInterval interval = prior_interval(prior(u, v), around, border.heights.at(road.disparity(u)));
+    const PriorInterval interval = prior_interval(prior(u, v), around, border.heights.at(road.disparity(u)), factor);
     low(u, v) = interval.low;
     high(u, v) = interval.high;
   }
