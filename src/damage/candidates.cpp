@@ -92,9 +92,15 @@ SearchImages make_search_images(const SearchInput& input, DamageKind kind, Image
   float* const signed_depth = images.depth.row(0);
   for (std::size_t k = 0; k < images.depth.pixels(); ++k) signed_depth[k] = sign * depth[k];
   std::copy_n(cells.valid.row(0), cells.valid.pixels(), images.allowed.row(0));
-  if (kind == DamageKind::protrusion) return images;
-  const std::uint8_t* const deep_gaps = input.deep_gaps.row(0);
   std::uint8_t* const allowed = images.allowed.row(0);
+  if (kind == DamageKind::protrusion) {
+    // A depression is no part of a bump beside it, nor of what surrounds that.
+    const std::uint8_t depression = label_of(DamageKind::depression);
+    const std::uint8_t* const labels = assigned.row(0);
+    for (std::size_t k = 0; k < images.allowed.pixels(); ++k) allowed[k] &= labels[k] == depression ? 0 : 255;
+    return images;
+  }
+  const std::uint8_t* const deep_gaps = input.deep_gaps.row(0);
   for (std::size_t k = 0; k < images.allowed.pixels(); ++k) allowed[k] |= deep_gaps[k];
   return images;
 }

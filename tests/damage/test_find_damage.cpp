@@ -395,6 +395,23 @@ TEST(FindDamage, FindsShallowDamageBesidePothole) {
   }
 }
 
+/// Potholes around a bump are not what it is compared with.
+TEST(FindDamage, FindsLowBumpBetweenPotholes) {
+  synth::Scene scene = intact_scene();
+  for (const double around : {0.5, 1.5, 2.5, 3.5, 4.5, 5.5}) {
+    scene.road.blobs.push_back({0.21 * std::cos(around), 0.66 + 0.21 * std::sin(around), 0.1, 0.06, 0, 0.3, 3});
+  }
+  scene.road.blobs.push_back({0, 0.66, 0.09, -0.009, 0, 0.5, 7});
+  const ExactMaps maps(scene);
+  const DamageMap map = find_damage(maps.metric());
+  const synth::DamageTruth& bump = maps.pair.damages.back();
+  ASSERT_EQ(bump.kind, "bump");
+  const Damage* found = find(map, maps.pair, bump.id);
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->kind, DamageKind::protrusion);
+  EXPECT_NEAR(found->metrics->max_depth_m.value, bump.depth_m, 0.15 * bump.depth_m);
+}
+
 /// A bump keeps clear of a block too high for damage, with which its foot is connected through smeared depths.
 TEST(FindDamage, FindsBumpBesideHighBlock) {
   synth::Scene scene = intact_scene();
