@@ -176,6 +176,16 @@ std::vector<float> taken(const Row& row) {
   return disparity;
 }
 
+/// Beside the road: the vertex of the pixel's own costs, of variance 2c/K, and the road, of variance 1/(2w).
+double fraction_near_road(const Row& row, std::size_t u, std::size_t d) {
+  const std::vector<float>& cost = row.cost[u];
+  const double before = cost[d - 1], at = cost[d], after = cost[d + 1], second = before + after - 2 * at;
+  const double block = second > 0 ? second / (2 * std::max(at, 0.02)) : 0, road = 2 * double{row.weight[u]};
+  const double vertex = second > 0 ? std::clamp((before - after) / (2 * second), -1.0, 1.0) : 0;
+  const double offset = double{row.centre[u]} - static_cast<double>(d);
+  return block + road > 0 ? std::clamp((block * vertex + road * offset) / (block + road), -0.5, 0.5) : 0;
+}
+
 /// The winner among the disparities with a counterpart, with the vertex of the parabola through its neighbours.
 double winner(const Row& row, const std::vector<double>& totals, int u) {
   const auto count = static_cast<std::ptrdiff_t>(std::min(row.disparities(), u - row.first_seen + 1));
@@ -183,6 +193,10 @@ double winner(const Row& row, const std::vector<double>& totals, int u) {
   const auto best = std::min_element(totals.begin(), totals.begin() + count);
   const auto d = best - totals.begin();
   if (d == 0 || d + 1 >= count) return static_cast<double>(d);
+  const auto column = static_cast<std::size_t>(u);
+  if (std::abs(double{row.centre[column]} - static_cast<double>(d)) <= 1) {
+    return static_cast<double>(d) + fraction_near_road(row, column, static_cast<std::size_t>(d));
+  }
   return static_cast<double>(d) + (best[-1] - best[1]) / (2 * (best[-1] + best[1] - 2 * *best));
 }
 

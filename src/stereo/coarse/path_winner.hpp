@@ -1,13 +1,52 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/parabola.hpp"
+
+// The winner of the coarse search with its fraction. C++17, for kernels.
 
 namespace roadstereo {
 
-/// Returns the winner of `count` disparities with its fraction, eq. (13) on the total costs before, at and after it.
-ROADSTEREO_HD inline float winner_with_fraction(int winner, int count, float before, float at, float after) {
+/// The road as prior of a pixel: disparity d costs weight · min(|d − centre|, truncation)² more.
+struct RoadCost {
+  float centre;  ///< coarse pixels; NaN: no prior
+  float weight, truncation;
+
+  ROADSTEREO_HD float at(int d) const {
+    const float distance = fabsf(static_cast<float>(d) - centre), away = distance < truncation ? distance : truncation;
+    return centre == centre ? weight * away * away : 0.0F;
+  }
+};
+
+/// Fraction of a winner beside the road: the mean of the vertex of the pixel's own costs before, at and after it and of
+/// the road's offset from it, weighted by their inverse variances. A block's is 2c/K, with the cost c and its second
+/// difference K, since its errors are correlated (stereo/window.hpp with n = 1); the road's is 1 / (2 · weight). The
+/// totals of the paths would do for large changes only: their penalties and the prior at whole disparities lock the
+/// fraction to 0 where the texture is weak, and there damage below a coarse pixel would be lost.
+ROADSTEREO_HD inline float fraction_near_road(float before, float at, float after, float offset, float weight) {
+  constexpr float min_cost = 0.02F;
+  const float curvature = second_difference(before, at, after);
+  const float vertex = curvature > 0 ? parabola_vertex(before, at, after) : 0.0F;
+  const float known = curvature > 0 ? curvature / (2 * (at > min_cost ? at : min_cost)) : 0.0F;
+  const float bounded = vertex < -1.0F ? -1.0F : vertex > 1.0F ? 1.0F : vertex;
+  const float sum = known + 2 * weight;
+  const float mean = sum > 0 ? (known * bounded + 2 * weight * offset) / sum : 0.0F;
+  return mean < -0.5F ? -0.5F : mean > 0.5F ? 0.5F : mean;
+}
+
+/// Returns the winner of `count` disparities with its fraction: within a coarse pixel of the road that of
+/// fraction_near_road, elsewhere eq. (13) on the total costs before, at and after it. `costs`: the pixel's own costs
+/// with the road's.
+ROADSTEREO_HD inline float winner_with_fraction(int winner, int count, float before, float at, float after,
+                                                const float* costs, const RoadCost& road) {
   const auto disparity = static_cast<float>(winner);
   if (winner == 0 || winner + 1 >= count) return disparity;
+  const float offset = road.centre - disparity;
+  if (fabsf(offset) <= 1.0F) {
+    const auto own = [&](int d) { return costs[d] - road.at(d); };
+    return disparity + fraction_near_road(own(winner - 1), own(winner), own(winner + 1), offset, road.weight);
+  }
   return second_difference(before, at, after) > 0 ? disparity + parabola_vertex(before, at, after) : disparity;
 }
 

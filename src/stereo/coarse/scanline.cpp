@@ -100,7 +100,8 @@ HWY_INLINE void extend_paths(int u, Float step, Float jump, RowPaths& paths) {
 }
 
 /// Returns the smallest of the first `count` totals of a column, with its fraction. `totals` is scratch memory.
-HWY_INLINE float take_winner(const float* forward, const float* backward, int count, float* totals) {
+HWY_INLINE float take_winner(const float* forward, const float* backward, int count, float* totals, const float* costs,
+                             const RoadCost& road) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float end = hn::Set(df, static_cast<float>(count));
@@ -122,14 +123,16 @@ HWY_INLINE float take_winner(const float* forward, const float* backward, int co
   }
   const bool inside = winner > 0 && winner + 1 < count;
   const float before = inside ? totals[winner - 1] : infinite_cost, after = inside ? totals[winner + 1] : infinite_cost;
-  return winner_with_fraction(winner, count, before, totals[winner], after);
+  return winner_with_fraction(winner, count, before, totals[winner], after, costs, road);
 }
 
-HWY_INLINE void take_winners(const ScanlineCosts& row, const PathMemory& memory, float* disparity) {
+HWY_INLINE void take_winners(const ScanlineCosts& row, const ScanlinePrior& prior, const PathMemory& memory,
+                             float* disparity) {
   for (int u = 0; u < row.columns; ++u) {
     const int count = std::min(row.disparities, u - row.first_seen + 1);
     disparity[u] = count > 0 ? take_winner(memory.forward + u * memory.pitch, memory.backward + u * memory.pitch, count,
-                                           memory.last_totals[0])
+                                           memory.last_totals[0], row.costs + u * row.pitch,
+                                           {prior.centre[u], prior.weight[u], prior.truncation[u]})
                              : std::numeric_limits<float>::quiet_NaN();
   }
 }
@@ -155,8 +158,8 @@ void optimise_scanlines(const Scanline* rows, int count, const ScanlinePenalties
       extend_paths(u, step, jump, second);
     }
   }
-  take_winners(rows[0].costs, first_memory, rows[0].disparity);
-  if (count > 1) take_winners(rows[1].costs, second_memory, rows[1].disparity);
+  take_winners(rows[0].costs, rows[0].prior, first_memory, rows[0].disparity);
+  if (count > 1) take_winners(rows[1].costs, rows[1].prior, second_memory, rows[1].disparity);
 }
 
 }  // namespace roadstereo::HWY_NAMESPACE

@@ -48,9 +48,9 @@ struct Scanline {
 };
 
 /// Writes for every column of one or two rows of the same size the disparity with the smallest total cost of all paths
-/// along its row through it, with the fraction of eq. (13) on the total costs; NaN where the column has no counterpart.
-/// Disparities without a counterpart cost `uncorrelated_cost` and never win. Two rows take less time than one after the
-/// other: their paths hide each other's latency.
+/// along its row through it, with its fraction (stereo/coarse/path_winner.hpp); NaN where the column has no
+/// counterpart. Disparities without a counterpart cost `uncorrelated_cost` and never win. Two rows take less time than
+/// one after the other: their paths hide each other's latency.
 void optimise_scanlines(const Scanline* rows, int count, const ScanlinePenalties& penalties, float uncorrelated_cost);
 
 }  // namespace roadstereo

@@ -207,7 +207,7 @@ __device__ void prepare(const Segment& of, const CoarsePair& pair, const RoadPri
 
 template <int known_block>
 __global__ void block_costs_of_segments(CoarsePair pair, float noise_variance, RoadPrior prior, CoarseVolume costs,
-                                        int* first_seen) {
+                                        ImageView<RoadCost> roads, int* first_seen) {
   const int v = costs.first_row + static_cast<int>(blockIdx.y), first = static_cast<int>(blockIdx.x) * segment;
   const int radius = prior.block_radius, first_row = v - radius, last_row = v + radius;
   const int inside = (last_row < pair.reference.height() ? last_row : pair.reference.height() - 1) -
@@ -231,7 +231,9 @@ __global__ void block_costs_of_segments(CoarsePair pair, float noise_variance, R
     slide_block(
         of, begin, end, min(lane, costs.disparities - 1),
         [&](int u, float cost) {
-          costs.pixel(u, v)[lane] = completed_cost(of.priors[u - first], costs, cost, count(u));
+          const RoadCost road = complete_cost(of.priors[u - first], costs, cost, count(u));
+          costs.pixel(u, v)[lane] = cost;
+          if (lane == 0) roads(u, v) = road;
         },
         Known<known_block>{});
     return;
@@ -241,17 +243,20 @@ __global__ void block_costs_of_segments(CoarsePair pair, float noise_variance, R
         of, begin, end, d, [&](int u, float cost) { costs.pixel(u, v)[d] = cost; }, Known<known_block>{});
   }
   __syncwarp();  // lanes read what others have written
-  for (int u = begin; u < end; ++u) complete_costs(of.priors[u - first], costs, costs.pixel(u, v), count(u));
+  for (int u = begin; u < end; ++u) {
+    const RoadCost road = complete_costs(of.priors[u - first], costs, costs.pixel(u, v), count(u));
+    if (lane == 0) roads(u, v) = road;
+  }
 }
 
 }  // namespace
 
 void block_costs(const CoarsePair& pair, float noise_variance, const RoadPrior& prior, const CoarseVolume& costs,
-                 int* first_seen, StreamView stream) {
+                 ImageView<RoadCost> roads, int* first_seen, StreamView stream) {
   const LaunchShape shape{dim3(blocks_for(costs.columns, segment), static_cast<unsigned>(costs.rows)),
                           warps * warp_lanes, shared_bytes(prior.block_radius, costs.disparities)};
   const auto kernel = prior.block_radius == 3 ? block_costs_of_segments<7> : block_costs_of_segments<0>;
-  launch("block_costs", kernel, shape, stream, pair, noise_variance, prior, costs, first_seen);
+  launch("block_costs", kernel, shape, stream, pair, noise_variance, prior, costs, roads, first_seen);
 }
 
 }  // namespace roadstereo::cuda

@@ -62,6 +62,7 @@ CoarseVolume CudaCoarseSearch::reserve(const MatchInput& input) {
   const std::size_t pixels = area(width_, height_);
   for (DeviceArray<std::int16_t>* image : {&reference_, &target_}) image->reserve(pixels);
   for (DeviceArray<float>* map : {&along_rows_, &prior_}) map->reserve(pixels);
+  roads_.reserve(pixels);
   first_seen_.reserve(static_cast<std::size_t>(height_));
   const CoarseTiles tiles = tiles_of_pair(input.reference.width(), input.reference.height(), factor_);
   for (DeviceArray<SearchRange>* ranges : {&reference_ranges_, &target_ranges_}) {
@@ -95,10 +96,12 @@ void CudaCoarseSearch::match_band(const CoarsePair& pair, const PerspectiveShift
   forward.numbers = forward_.data();
   backward.numbers = backward_.data();
   const double noise = options_.ncc_noise_sigma * grey_scale;
-  block_costs(pair, static_cast<float>(noise * noise), road_prior(options_, shift, factor_), costs, first_seen_.data(),
-              stream);
+  const ImageView roads(roads_.data(), width_, height_);
+  block_costs(pair, static_cast<float>(noise * noise), road_prior(options_, shift, factor_), costs, roads,
+              first_seen_.data(), stream);
   aggregate_scanlines(costs, {static_cast<float>(options_.step_penalty), static_cast<float>(options_.jump_penalty)},
-                      first_seen_.data(), forward, backward, ImageView(along_rows_.data(), width_, height_), stream);
+                      roads, first_seen_.data(), forward, backward, ImageView(along_rows_.data(), width_, height_),
+                      stream);
 }
 
 /// The matcher's freedom where the map changes.

@@ -9,6 +9,7 @@
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/perspective_shift.hpp"
 #include "stereo/coarse/cuda/coarse_volume.hpp"
+#include "stereo/coarse/path_winner.hpp"
 
 namespace roadstereo::cuda {
 
@@ -54,6 +55,7 @@ class CudaCoarseSearch {
   int width_ = 0, height_ = 0, factor_ = 1;  ///< of the coarse map
   DeviceArray<std::int16_t> reference_, target_;
   DeviceArray<int> first_seen_;
+  DeviceArray<RoadCost> roads_;
   DeviceArray<float> costs_, forward_, backward_;
   DeviceArray<float> along_rows_, prior_, low_, high_;
   DeviceArray<SearchRange> reference_ranges_, target_ranges_;

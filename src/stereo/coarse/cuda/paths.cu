@@ -99,7 +99,8 @@ __global__ void aggregate_rows(CoarseVolume costs, PathPenalties penalties, Coar
 constexpr int winner_warps = 8;
 
 /// The smallest of the sums of both directions, with its fraction: a warp for each pixel.
-__device__ float take_winner(const float* forward, const float* backward, int count) {
+__device__ float take_winner(const float* forward, const float* backward, int count, const float* costs,
+                             const RoadCost& road) {
   const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
   float smallest = INFINITY;
   int winner = 0;
@@ -114,16 +115,18 @@ __device__ float take_winner(const float* forward, const float* backward, int co
   // Of equal totals the first disparity wins.
   winner = -warp_max(smallest == lowest ? -winner : -count);
   const auto total = [&](int d) { return d >= 0 && d < count ? forward[d] + backward[d] : INFINITY; };
-  return winner_with_fraction(winner, count, total(winner - 1), lowest, total(winner + 1));
+  return winner_with_fraction(winner, count, total(winner - 1), lowest, total(winner + 1), costs, road);
 }
 
-__global__ void take_winners(CoarseVolume forward, CoarseVolume backward, const int* first_seen,
-                             ImageView<float> disparity) {
+__global__ void take_winners(CoarseVolume costs, CoarseVolume forward, CoarseVolume backward,
+                             ImageView<const RoadCost> roads, const int* first_seen, ImageView<float> disparity) {
   const int v = forward.first_row + static_cast<int>(blockIdx.y);
   const int u = static_cast<int>(blockIdx.x) * winner_warps + static_cast<int>(threadIdx.x) / warp_lanes;
   if (u >= forward.columns) return;
   const int seen = u - first_seen[v] + 1, count = seen < forward.disparities ? seen : forward.disparities;
-  const float winner = count > 0 ? take_winner(forward.pixel(u, v), backward.pixel(u, v), count) : nanf("");
+  const float winner =
+      count > 0 ? take_winner(forward.pixel(u, v), backward.pixel(u, v), count, costs.pixel(u, v), roads(u, v))
+                : nanf("");
   if (threadIdx.x % warp_lanes == 0) disparity(u, v) = winner;
 }
 
@@ -153,14 +156,14 @@ int path_pitch(int disparities) {
   return row_kernel(disparities).count * warp_lanes;
 }
 
-void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, const int* first_seen,
-                         const CoarseVolume& forward, const CoarseVolume& backward, ImageView<float> disparity,
-                         StreamView stream) {
+void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, ImageView<const RoadCost> roads,
+                         const int* first_seen, const CoarseVolume& forward, const CoarseVolume& backward,
+                         ImageView<float> disparity, StreamView stream) {
   const auto rows = static_cast<unsigned>(costs.rows);
   launch("aggregate_rows", row_kernel(costs.disparities).kernel, {dim3(rows, 2), warp_lanes}, stream, costs, penalties,
          forward, backward);
   launch("take_winners", take_winners, {dim3(blocks_for(costs.columns, winner_warps), rows), winner_warps * warp_lanes},
-         stream, forward, backward, first_seen, disparity);
+         stream, costs, forward, backward, roads, first_seen, disparity);
 }
 
 }  // namespace roadstereo::cuda

@@ -4,6 +4,7 @@
 #include "stereo/coarse/coarse_road.hpp"
 #include "stereo/coarse/cuda/coarse_volume.hpp"
 #include "stereo/coarse/cuda/road_prior.hpp"
+#include "stereo/coarse/path_winner.hpp"
 #include "stereo/coarse/road_plausibility.hpp"
 
 // The road as prior of the costs of a pixel. For kernels.
@@ -67,7 +68,8 @@ __device__ inline float with_prior(float cost, int d, const PixelPrior& pixel, f
 }
 
 /// Completes the costs of a pixel in memory, with a whole warp: the prior, and infinity behind the last disparity.
-__device__ inline void complete_costs(const PixelPrior& pixel, const CoarseVolume& costs, float* cost, int count) {
+/// Returns what the prior costs.
+__device__ inline RoadCost complete_costs(const PixelPrior& pixel, const CoarseVolume& costs, float* cost, int count) {
   const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
   const bool known = pixel.road == pixel.road;
   const auto smallest_cost = [&](int first, int end) {
@@ -83,18 +85,23 @@ __device__ inline void complete_costs(const PixelPrior& pixel, const CoarseVolum
       cost[d] = with_prior(cost[d], d, pixel, weight);
     }
   }
+  return {pixel.road, weight, pixel.away.truncation};
 }
 
 /// The same of the cost that each lane of a warp holds, for at most as many disparities as there are lanes.
-__device__ inline float completed_cost(const PixelPrior& pixel, const CoarseVolume& costs, float cost, int count) {
+__device__ inline RoadCost complete_cost(const PixelPrior& pixel, const CoarseVolume& costs, float& cost, int count) {
   const int d = static_cast<int>(threadIdx.x) % warp_lanes;
   const auto smallest_cost = [&](int first, int end) {
     return warp_min(d >= first && d < end ? fminf(cost, uncorrelated_cost) : uncorrelated_cost);
   };
   const bool known = pixel.road == pixel.road;
   const float weight = known ? weight_of(pixel, count, smallest_cost) : 0;
-  if (d >= costs.disparities) return INFINITY;
-  return known ? with_prior(cost, d, pixel, weight) : cost;
+  if (d >= costs.disparities) {
+    cost = INFINITY;
+  } else if (known) {
+    cost = with_prior(cost, d, pixel, weight);
+  }
+  return {pixel.road, weight, pixel.away.truncation};
 }
 
 }  // namespace roadstereo::cuda
