@@ -12,12 +12,12 @@ struct CoarseSearchOptions {
   double ncc_noise_sigma = 1.0;  ///< standard deviation of the noise, 8-bit grey levels, 0 … 50; 0 is plain NCC
   double step_penalty = 0.15;    ///< cost of a change by one coarse pixel between neighbours, 0 … 10
   double jump_penalty = 1.5;     ///< cost of a larger change, 0 … 10; 0 with `step_penalty` 0 switches smoothing off
-  double road_prior_height_m = 0.15;  ///< height above or below the road that costs 1, without texture, 0 … 100; the
-                                      ///< cost grows with its square; 0: no prior
-  double road_prior_truncation = 1.75;  ///< largest cost of a height, without texture, 0 … 100
-  double border_height_m = 0.15;     ///< largest change of height whose place, known to a block's radius, the matcher
-                                     ///< decides (up to half of it without cost), metres, 0 … 100; 0: none
-  double row_offset_sigma_px = 0.5;  ///< standard error of the rows' offset, coarse pixels, 0 … 10
+  double road_prior_height_m = 0.15;   ///< height above or below the road that costs 1, without texture, 0 … 100; the
+                                       ///< cost grows with its square; 0: no prior
+  double road_prior_truncation = 1.3;  ///< largest cost of a height, without texture, 0 … 100
+  double border_height_m = 0.15;       ///< largest change of height whose place, known to a block's radius, the matcher
+                                       ///< decides (up to half of it without cost), metres, 0 … 100; 0: none
+  double row_offset_sigma_px = 0.5;    ///< standard error of the rows' offset, coarse pixels, 0 … 10
   double half_weight_sigma_px =
       0.3;  ///< standard error at which the prior has half its weight, coarse pixels, 0.01 … 10
 

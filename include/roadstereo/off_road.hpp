@@ -25,7 +25,7 @@ struct OffRoadOptions {
 /// - unconfirmed when the geometric mean of σ around it (36×36 pixels) exceeds max_sigma_px · 3^(ρ − 1), ρ the
 ///   correlation; above the horizon only where it does not agree with `scene`;
 /// - on the road when its mean residual is within s/3 of the road's, and within s/2 of that of a pixel of `scene` up to
-///   four columns and a row away, if it is unconfirmed one column;
+///   two columns and a row away, if it is unconfirmed one column;
 /// - contradicted when it differs by more than s/2 from those (at another height, from that of its own pixel).
 /// Contradicted and unconfirmed cells and the neighbours of contradicted ones are rejected, but for those that cells on
 /// the road and the lower border enclose, such as the dark wall of a pothole.

@@ -183,7 +183,7 @@ double fraction_near_road(const Row& row, std::size_t u, std::size_t d) {
   const double block = second > 0 ? second / (2 * std::max(at, 0.02)) : 0, road = 2 * double{row.weight[u]};
   const double vertex = second > 0 ? std::clamp((before - after) / (2 * second), -1.0, 1.0) : 0;
   const double offset = double{row.centre[u]} - static_cast<double>(d);
-  return block + road > 0 ? std::clamp((block * vertex + road * offset) / (block + road), -0.5, 0.5) : 0;
+  return std::clamp((block * vertex + road * offset) / (block + (road > 0 ? road : 1)), -0.5, 0.5);
 }
 
 /// The winner among the disparities with a counterpart, with the vertex of the parabola through its neighbours.

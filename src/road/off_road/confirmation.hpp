@@ -91,7 +91,7 @@ struct Around {
 /// Compares the mean residual disparity of a cell with the coarse map, whose resolution is half a coarse pixel. Above
 /// the horizon, where the fine search has no road to fall back on, agreement confirms whatever the standard error.
 ROADSTEREO_HD inline CellState assess_cell(const CoarseScene& scene, float residual, bool confirmed, int i, int j) {
-  constexpr Around if_confirmed{4, 1}, if_unconfirmed{1, 0}, off_road{0, 0};
+  constexpr Around if_confirmed{2, 1}, if_unconfirmed{1, 0}, off_road{0, 0};
   constexpr float resolution = 0.5F, road_thickness = 1.0F / 3;  // coarse pixels, to either side
   constexpr double centre = 0.5 * (alignment_cell - 1);
   const CellState otherwise = confirmed ? plausible : unconfirmed;

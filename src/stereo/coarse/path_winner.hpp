@@ -21,17 +21,17 @@ struct RoadCost {
 
 /// Fraction of a winner beside the road: the mean of the vertex of the pixel's own costs before, at and after it and of
 /// the road's offset from it, weighted by their inverse variances. A block's is 2c/K, with the cost c and its second
-/// difference K, since its errors are correlated (stereo/window.hpp with n = 1); the road's is 1 / (2 · weight). The
-/// totals of the paths would do for large changes only: their penalties and the prior at whole disparities lock the
-/// fraction to 0 where the texture is weak, and there damage below a coarse pixel would be lost.
+/// difference K, since its errors are correlated (stereo/window.hpp with n = 1); the road's is 1 / (2 · weight). Where
+/// the road is no prior, the winner is one with a variance of 1. The totals of the paths would do for large changes
+/// only: their penalties and the prior at whole disparities lock the fraction to 0 where the texture is weak, and there
+/// damage below a coarse pixel would be lost.
 ROADSTEREO_HD inline float fraction_near_road(float before, float at, float after, float offset, float weight) {
   constexpr float min_cost = 0.02F;
   const float curvature = second_difference(before, at, after);
   const float vertex = curvature > 0 ? parabola_vertex(before, at, after) : 0.0F;
   const float known = curvature > 0 ? curvature / (2 * (at > min_cost ? at : min_cost)) : 0.0F;
   const float bounded = vertex < -1.0F ? -1.0F : vertex > 1.0F ? 1.0F : vertex;
-  const float sum = known + 2 * weight;
-  const float mean = sum > 0 ? (known * bounded + 2 * weight * offset) / sum : 0.0F;
+  const float mean = (known * bounded + 2 * weight * offset) / (known + (weight > 0 ? 2 * weight : 1.0F));
   return mean < -0.5F ? -0.5F : mean > 0.5F ? 0.5F : mean;
 }
 
