@@ -13,11 +13,10 @@
 namespace roadstereo {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr int width = 40, height = 30, radius = 3;
+constexpr int map_columns = 40, map_rows = 30, block_radius = 3;
 
 /// Looking down from 2 m on a road of 50 pixels: a pixel is 40 mm.
-PerspectiveShift looking_down() {
+PerspectiveShift two_metres_above() {
   PerspectiveShift shift;
   shift.road = {50, 0, 0};
   shift.delta_p = 12;
@@ -27,25 +26,26 @@ PerspectiveShift looking_down() {
 
 /// A map of the road, 12 px, with a hole from column 20 and row 15 on.
 DisparityPrior with_hole(float depth_px) {
-  DisparityPrior prior{Image<float>(width, height, 12.0F), 2, Image<float>(width, height), Image<float>(width, height)};
-  for (int v = 15; v < height; ++v)
-    std::fill(prior.disparity.row(v) + 20, prior.disparity.row(v) + width, 12 - depth_px);
+  DisparityPrior prior{Image<float>(map_columns, map_rows, 12.0F), 2, Image<float>(map_columns, map_rows),
+                       Image<float>(map_columns, map_rows)};
+  for (int v = 15; v < map_rows; ++v)
+    std::fill(prior.disparity.row(v) + 20, prior.disparity.row(v) + map_columns, 12 - depth_px);
   return prior;
 }
 
-void find(double border_height_m, DisparityPrior& prior) {
-  const PerspectiveShift shift = looking_down();
+void find_intervals(double border_height_m, DisparityPrior& prior) {
+  const PerspectiveShift shift = two_metres_above();
   IntervalScratch scratch;
-  find_prior_intervals(shift, PixelHeight(shift, border_height_m, 1), radius, 0, height, scratch, prior);
+  find_prior_intervals(shift, PixelHeight(shift, border_height_m, 1), block_radius, 0, map_rows, scratch, prior);
 }
 
 TEST(PriorIntervals, HoldBothSidesOfBorderWithinRadius) {
   DisparityPrior prior = with_hole(2);  // 80 mm
-  find(0.16, prior);
-  for (int v = 0; v < height; ++v) {
-    for (int u = 0; u < width; ++u) {
-      const bool hole_near = u >= 20 - radius && v >= 15 - radius;
-      const bool road_near = u < 20 + radius || v < 15 + radius;
+  find_intervals(0.16, prior);
+  for (int v = 0; v < map_rows; ++v) {
+    for (int u = 0; u < map_columns; ++u) {
+      const bool hole_near = u >= 20 - block_radius && v >= 15 - block_radius;
+      const bool road_near = u < 20 + block_radius || v < 15 + block_radius;
       ASSERT_EQ(prior.low(u, v), hole_near ? 10 : 12) << u << ", " << v;
       ASSERT_EQ(prior.high(u, v), road_near ? 12 : 10) << u << ", " << v;
     }
@@ -55,12 +55,12 @@ TEST(PriorIntervals, HoldBothSidesOfBorderWithinRadius) {
 /// 80 mm are three quarters of 107 mm: half of the change is free. From 80 mm on none is.
 TEST(PriorIntervals, HigherBordersAreNarrower) {
   DisparityPrior prior = with_hole(2);
-  find(0.08 / 0.75, prior);
+  find_intervals(0.08 / 0.75, prior);
   EXPECT_NEAR(prior.low(18, 20), 11, 1e-5);
   EXPECT_EQ(prior.high(18, 20), 12);
   EXPECT_EQ(prior.low(21, 20), 10);
   EXPECT_NEAR(prior.high(21, 20), 11, 1e-5);
-  find(0.08, prior);
+  find_intervals(0.08, prior);
   EXPECT_NEAR(prior.low(18, 20), 12, 1e-5);
   EXPECT_NEAR(prior.high(21, 20), 10, 1e-5);
 }
@@ -68,19 +68,19 @@ TEST(PriorIntervals, HigherBordersAreNarrower) {
 /// A coarse pixel is 2 pixels: a change by one is noise, by 1.5 half of it counts.
 TEST(PriorIntervals, NoiseOfMapIsNoBorder) {
   DisparityPrior prior = with_hole(1);
-  find(0.16, prior);
+  find_intervals(0.16, prior);
   EXPECT_EQ(prior.low(18, 20), 12);
   EXPECT_EQ(prior.high(21, 20), 11);
   prior = with_hole(1.5F);
-  find(0.16, prior);
+  find_intervals(0.16, prior);
   EXPECT_NEAR(prior.low(18, 20), 11.25, 1e-5);
   EXPECT_NEAR(prior.high(21, 20), 11.25, 1e-5);
 }
 
 TEST(PriorIntervals, UnknownStaysUnknownAndIsPassedOver) {
   DisparityPrior prior = with_hole(2);
-  prior.disparity(5, 5) = nan;
-  find(0.16, prior);
+  prior.disparity(5, 5) = std::numeric_limits<float>::quiet_NaN();
+  find_intervals(0.16, prior);
   EXPECT_TRUE(std::isnan(prior.low(5, 5)));
   EXPECT_TRUE(std::isnan(prior.high(5, 5)));
   EXPECT_EQ(prior.low(6, 5), 12);
