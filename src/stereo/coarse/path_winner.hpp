@@ -26,12 +26,13 @@ struct RoadCost {
 /// only: their penalties and the prior at whole disparities lock the fraction to 0 where the texture is weak, and there
 /// damage below a coarse pixel would be lost.
 ROADSTEREO_HD inline float fraction_near_road(float before, float at, float after, float offset, float weight) {
+  // All times 2c. The vertex, half of the slope over K, is at most a pixel away.
   constexpr float min_cost = 0.02F;
-  const float curvature = second_difference(before, at, after);
-  const float vertex = curvature > 0 ? parabola_vertex(before, at, after) : 0.0F;
-  const float known = curvature > 0 ? curvature / (2 * (at > min_cost ? at : min_cost)) : 0.0F;
-  const float bounded = vertex < -1.0F ? -1.0F : vertex > 1.0F ? 1.0F : vertex;
-  const float mean = (known * bounded + 2 * weight * offset) / (known + (weight > 0 ? 2 * weight : 1.0F));
+  const float cost2 = 2 * (at > min_cost ? at : min_cost), second = second_difference(before, at, after);
+  const float curvature = second > 0 ? second : 0.0F, half_slope = 0.5F * (before - after);
+  const float bounded = half_slope < -curvature ? -curvature : half_slope > curvature ? curvature : half_slope;
+  const float road = cost2 * 2 * weight;
+  const float mean = (bounded + road * offset) / (curvature + (weight > 0 ? road : cost2));
   return mean < -0.5F ? -0.5F : mean > 0.5F ? 0.5F : mean;
 }
 

@@ -12,7 +12,7 @@ void find_prior_intervals(const PerspectiveShift& shift, const PixelHeight& heig
                           IntervalScratch& scratch, DisparityPrior& prior) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const Image<float>& map = prior.disparity;
-  const auto padded = static_cast<std::size_t>(map.width() + 2 * radius);
+  const auto padded = static_cast<std::size_t>(map.width()) + 2 * static_cast<std::size_t>(radius);
   for (int v = first; v < last; ++v) {
     scratch.smallest.assign(padded, infinity);
     scratch.largest.assign(padded, -infinity);

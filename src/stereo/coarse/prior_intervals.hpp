@@ -12,7 +12,8 @@ struct IntervalScratch {
   std::vector<float> smallest, largest;  ///< of the pixels above and below, with as many as the radius on either side
 
   void reserve(int columns, int radius) {
-    for (std::vector<float>* of : {&smallest, &largest}) of->reserve(static_cast<std::size_t>(columns + 2 * radius));
+    const std::size_t padded = static_cast<std::size_t>(columns) + 2 * static_cast<std::size_t>(radius);
+    for (std::vector<float>* of : {&smallest, &largest}) of->reserve(padded);
   }
 };
 
