@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "roadstereo/perspective.hpp"
 #include "roadstereo/synth.hpp"
@@ -87,7 +89,7 @@ TEST(PriorIntervals, UnknownStaysUnknownAndIsPassedOver) {
   EXPECT_EQ(prior.high(6, 5), 12);
 }
 
-/// The search writes them unless they are switched off, and the scene's search has none.
+/// The search writes them unless they are switched off; a search of the prior alone has none of an earlier one.
 TEST(PriorIntervals, AreFoundWithThePrior) {
   const synth::SyntheticPair pair = synth::render(synth::named_scene("flat"));
   GreyImage left, right, target;
@@ -113,6 +115,10 @@ TEST(PriorIntervals, AreFoundWithThePrior) {
   }
   EXPECT_GT(inside, 0.9 * static_cast<double>(prior.disparity.pixels()));  // the rest has no counterpart
   EXPECT_LT(wide, 0.02 * static_cast<double>(prior.disparity.pixels()));
+  ASSERT_TRUE(search.find_prior(input, shift));
+  EXPECT_TRUE(search.prior().low.empty());
+  ASSERT_TRUE(search.find(input, shift));
+  EXPECT_FALSE(search.prior().low.empty());
   CoarseSearchOptions none;
   none.border_height_m = 0;
   search.set_options(none);
