@@ -13,8 +13,8 @@ struct RoadCost {
   float centre;  ///< coarse pixels; NaN: no prior
   float weight, truncation;
 
-  ROADSTEREO_HD float at(int d) const {
-    const float distance = fabsf(static_cast<float>(d) - centre), away = distance < truncation ? distance : truncation;
+  ROADSTEREO_HD float at(float d) const {
+    const float distance = fabsf(d - centre), away = distance < truncation ? distance : truncation;
     return centre == centre ? weight * away * away : 0.0F;
   }
 };
@@ -36,19 +36,24 @@ ROADSTEREO_HD inline float fraction_near_road(float before, float at, float afte
   return mean < -0.5F ? -0.5F : mean > 0.5F ? 0.5F : mean;
 }
 
-/// Returns the winner of `count` disparities with its fraction: within a coarse pixel of the road that of
-/// fraction_near_road, elsewhere eq. (13) on the total costs before, at and after it. `costs`: the pixel's own costs
-/// with the road's.
-ROADSTEREO_HD inline float winner_with_fraction(int winner, int count, float before, float at, float after,
-                                                const float* costs, const RoadCost& road) {
-  const auto disparity = static_cast<float>(winner);
-  if (winner == 0 || winner + 1 >= count) return disparity;
-  const float offset = road.centre - disparity;
-  if (fabsf(offset) <= 1.0F) {
-    const auto own = [&](int d) { return costs[d] - road.at(d); };
-    return disparity + fraction_near_road(own(winner - 1), own(winner), own(winner + 1), offset, road.weight);
-  }
-  return second_difference(before, at, after) > 0 ? disparity + parabola_vertex(before, at, after) : disparity;
+/// A winner that is not at either end of the disparities: the total costs of the paths before, at and after it, and the
+/// pixel's own costs with the road's.
+struct PathWinner {
+  float disparity;
+  float before, at, after;
+  float own_before, own_at, own_after;
+};
+
+/// Fraction of a winner: within a coarse pixel of the road that of fraction_near_road, elsewhere eq. (13) on the total
+/// costs. Without branches, so that loops over pixels are vectorised.
+ROADSTEREO_HD inline float fraction_of(const PathWinner& winner, const RoadCost& road) {
+  const float offset = road.centre - winner.disparity;
+  const float near_road = fraction_near_road(
+      winner.own_before - road.at(winner.disparity - 1), winner.own_at - road.at(winner.disparity),
+      winner.own_after - road.at(winner.disparity + 1), offset, road.weight);
+  const float second = second_difference(winner.before, winner.at, winner.after);
+  const float half_slope = 0.5F * (winner.before - winner.after), vertex = half_slope / (second > 0 ? second : 1.0F);
+  return fabsf(offset) <= 1.0F ? near_road : second > 0 ? vertex : 0.0F;
 }
 
 }  // namespace roadstereo

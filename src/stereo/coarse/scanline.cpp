@@ -99,9 +99,9 @@ HWY_INLINE void extend_paths(int u, Float step, Float jump, RowPaths& paths) {
   paths.backward = {to_backward, hn::MinOfLanes(df, min_backward)};
 }
 
-/// Returns the smallest of the first `count` totals of a column, with its fraction. `totals` is scratch memory.
-HWY_INLINE float take_winner(const float* forward, const float* backward, int count, float* totals, const float* costs,
-                             const RoadCost& road) {
+/// Writes the smallest of the first `count` totals of column u. `totals` is scratch memory.
+HWY_INLINE void take_winner(const float* forward, const float* backward, int count, float* totals, const float* costs,
+                            int u, const PathWinners& winners) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float end = hn::Set(df, static_cast<float>(count));
@@ -121,19 +121,33 @@ HWY_INLINE float take_winner(const float* forward, const float* backward, int co
     winner = d + static_cast<int>(found);
     break;
   }
-  const bool inside = winner > 0 && winner + 1 < count;
-  const float before = inside ? totals[winner - 1] : infinite_cost, after = inside ? totals[winner + 1] : infinite_cost;
-  return winner_with_fraction(winner, count, before, totals[winner], after, costs, road);
+  const int before = std::max(winner - 1, 0), after = std::min(winner + 1, count - 1);
+  winners.disparity[u] = static_cast<float>(winner);
+  winners.inside[u] = after - before == 2 ? 1.0f : 0.0f;
+  winners.before[u] = totals[before];
+  winners.at[u] = totals[winner];
+  winners.after[u] = totals[after];
+  winners.own_before[u] = costs[before];
+  winners.own_at[u] = costs[winner];
+  winners.own_after[u] = costs[after];
 }
 
 HWY_INLINE void take_winners(const ScanlineCosts& row, const ScanlinePrior& prior, const PathMemory& memory,
-                             float* disparity) {
-  for (int u = 0; u < row.columns; ++u) {
+                             float* HWY_RESTRICT disparity) {
+  const PathWinners& winners = memory.winners;
+  int u = 0;
+  for (; u < row.columns && u < row.first_seen; ++u) disparity[u] = std::numeric_limits<float>::quiet_NaN();
+  const int first = u;
+  for (; u < row.columns; ++u) {
     const int count = std::min(row.disparities, u - row.first_seen + 1);
-    disparity[u] = count > 0 ? take_winner(memory.forward + u * memory.pitch, memory.backward + u * memory.pitch, count,
-                                           memory.last_totals[0], row.costs + u * row.pitch,
-                                           {prior.centre[u], prior.weight[u], prior.truncation[u]})
-                             : std::numeric_limits<float>::quiet_NaN();
+    take_winner(memory.forward + u * memory.pitch, memory.backward + u * memory.pitch, count, memory.last_totals[0],
+                row.costs + u * row.pitch, u, winners);
+  }
+  for (u = first; u < row.columns; ++u) {
+    const PathWinner winner{winners.disparity[u],  winners.before[u], winners.at[u],       winners.after[u],
+                            winners.own_before[u], winners.own_at[u], winners.own_after[u]};
+    const float fraction = fraction_of(winner, {prior.centre[u], prior.weight[u], prior.truncation[u]});
+    disparity[u] = winner.disparity + winners.inside[u] * fraction;
   }
 }
 
@@ -171,7 +185,8 @@ namespace roadstereo {
 HWY_EXPORT(optimise_scanlines);
 
 std::size_t scanline_scratch(int columns, std::ptrdiff_t pitch) {
-  return static_cast<std::size_t>((2 * columns + 2) * (pitch + scanline_guard) + scanline_guard);
+  return static_cast<std::size_t>((2 * columns + 2) * (pitch + scanline_guard) + scanline_guard +
+                                  PathWinners::arrays * columns);
 }
 
 void guard_scanline_scratch(int columns, std::ptrdiff_t pitch, int disparities, float* scratch) {

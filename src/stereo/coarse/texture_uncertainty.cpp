@@ -3,7 +3,40 @@
 #include <algorithm>
 #include <numeric>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "stereo/coarse/texture_uncertainty.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
+//
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace roadstereo::HWY_NAMESPACE {
+
+/// Adds `sign` times the gradients of the columns 1 … `end` − 1 of a row to the sums of their squares and products.
+void add_gradients(const std::int16_t* above, const std::int16_t* row, const std::int16_t* below, int end, int sign,
+                   std::int32_t* HWY_RESTRICT squares, std::int32_t* HWY_RESTRICT products) {
+  for (int u = 1; u < end; ++u) {
+    const CoarseGradient gradient = coarse_gradient(row[u - 1], row[u + 1], above[u], below[u]);
+    squares[u] += sign * gradient.across * gradient.across;
+    products[u] += sign * gradient.across * gradient.down;
+  }
+}
+
+void uncertainties(const std::int32_t* squares, const std::int32_t* products, int columns,
+                   const UncertaintyParams& terms, float* HWY_RESTRICT uncertainty) {
+  const UncertaintyParams same = terms;
+  for (int u = 0; u < columns; ++u) uncertainty[u] = texture_uncertainty(squares[u], products[u], same);
+}
+
+}  // namespace roadstereo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace roadstereo {
+
+HWY_EXPORT(add_gradients);
+HWY_EXPORT(uncertainties);
+
 namespace {
 
 /// Sums of the numbers up to `radius` away, as far as there are any.
@@ -51,15 +84,8 @@ void TextureUncertainty::start(ImageView<const std::int16_t> image, int first_ro
 /// Adds the gradients of one row to the column sums, or takes them away; rows without both neighbours have none.
 void TextureUncertainty::add_row(int v, int sign) {
   if (v < 1 || v + 1 >= image_.height()) return;
-  const std::int16_t* above = image_.row(v - 1);
-  const std::int16_t* row = image_.row(v);
-  const std::int16_t* below = image_.row(v + 1);
-  for (int u = 1; u + 1 < image_.width(); ++u) {
-    const CoarseGradient gradient = coarse_gradient(row[u - 1], row[u + 1], above[u], below[u]);
-    const auto column = static_cast<std::size_t>(u);
-    squares_[column] += sign * gradient.across * gradient.across;
-    products_[column] += sign * gradient.across * gradient.down;
-  }
+  HWY_DYNAMIC_DISPATCH(add_gradients)
+  (image_.row(v - 1), image_.row(v), image_.row(v + 1), image_.width() - 1, sign, squares_.data(), products_.data());
 }
 
 const std::vector<float>& TextureUncertainty::next() {
@@ -68,12 +94,12 @@ const std::vector<float>& TextureUncertainty::next() {
   const UncertaintyParams terms = uncertainty_params(options_);
   sum_windows(squares_, radius, window_squares_);
   sum_windows(products_, radius, window_products_);
-  for (std::size_t u = 0; u < texture_uncertainty_.size(); ++u) {
-    texture_uncertainty_[u] = texture_uncertainty(window_squares_[u], window_products_[u], terms);
-  }
+  HWY_DYNAMIC_DISPATCH(uncertainties)
+  (window_squares_.data(), window_products_.data(), image_.width(), terms, texture_uncertainty_.data());
   add_row(row_ - radius, -1);
   ++row_;
   return texture_uncertainty_;
 }
 
 }  // namespace roadstereo
+#endif  // HWY_ONCE

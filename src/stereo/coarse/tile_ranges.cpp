@@ -7,6 +7,38 @@
 #include "stereo/coarse/tile_range.hpp"
 
 namespace roadstereo {
+namespace {
+
+/// Counts in the histograms of a row of tiles. Neighbouring pixels mostly agree: a run of them is added at once.
+class RunCounter {
+ public:
+  RunCounter(std::uint32_t* histograms, std::size_t bins) : histograms_(histograms), bins_(bins) {}
+
+  void add(const TileSpan& tiles, int bin) {
+    if (bin != bin_ || tiles.first != tiles_.first || tiles.last != tiles_.last) {
+      finish();
+      tiles_ = tiles;
+      bin_ = bin;
+    }
+    ++count_;
+  }
+  /// Adds the last run.
+  void finish() {
+    for (int tile = tiles_.first; tile <= tiles_.last; ++tile) {
+      histograms_[static_cast<std::size_t>(tile) * bins_ + static_cast<std::size_t>(bin_)] += count_;
+    }
+    count_ = 0;
+  }
+
+ private:
+  std::uint32_t* histograms_;
+  std::size_t bins_;
+  TileSpan tiles_{0, -1};
+  int bin_ = 0;
+  std::uint32_t count_ = 0;
+};
+
+}  // namespace
 
 void TileRanges::count(const Image<float>& coarse, int factor, int threads) {
   const int across = ranges_.reference.width(), down = ranges_.reference.height();
@@ -29,20 +61,18 @@ void TileRanges::count(const Image<float>& coarse, int factor, int threads) {
 
 /// Counts a row of the coarse map in a row of tiles, whose histograms begin at `counts`.
 void TileRanges::count_row(const float* row, int width, int factor, std::size_t counts) {
-  std::uint32_t *const reference = in_reference_.data() + counts, *const target = in_target_.data() + counts;
   const float inverse_factor = 1.0f / static_cast<float>(factor);
+  const auto bins = static_cast<int>(bins_);
+  RunCounter reference(in_reference_.data() + counts, bins_), target(in_target_.data() + counts, bins_);
   for (int u = 0; u < width; ++u) {
     if (std::isnan(row[u])) continue;
-    const auto bin = static_cast<std::size_t>(disparity_bin(row[u], static_cast<int>(bins_)));
-    const auto add = [&](std::uint32_t* histograms, int column) {
-      const TileSpan tiles = columns_[static_cast<std::size_t>(std::max(0, column))];
-      for (int tile = tiles.first; tile <= tiles.last; ++tile) {
-        ++histograms[static_cast<std::size_t>(tile) * bins_ + bin];
-      }
-    };
-    add(reference, u);
-    add(target, std::min(width - 1, tile_target_column(u, row[u], inverse_factor)));
+    const int bin = disparity_bin(row[u], bins);
+    const int column = std::min(width - 1, tile_target_column(u, row[u], inverse_factor));
+    reference.add(columns_[static_cast<std::size_t>(u)], bin);
+    target.add(columns_[static_cast<std::size_t>(std::max(0, column))], bin);
   }
+  reference.finish();
+  target.finish();
 }
 
 /// From the first to the last disparity that enough pixels of the tile agree on; all where too few pixels matched.

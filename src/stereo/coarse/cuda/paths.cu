@@ -114,8 +114,12 @@ __device__ float take_winner(const float* forward, const float* backward, int co
   const float lowest = warp_min(smallest);
   // Of equal totals the first disparity wins.
   winner = -warp_max(smallest == lowest ? -winner : -count);
-  const auto total = [&](int d) { return d >= 0 && d < count ? forward[d] + backward[d] : INFINITY; };
-  return winner_with_fraction(winner, count, total(winner - 1), lowest, total(winner + 1), costs, road);
+  const auto disparity = static_cast<float>(winner);
+  if (winner == 0 || winner + 1 >= count) return disparity;
+  const auto total = [&](int d) { return forward[d] + backward[d]; };
+  const PathWinner inside{disparity,          total(winner - 1), lowest,           total(winner + 1),
+                          costs[winner - 1], costs[winner],     costs[winner + 1]};
+  return disparity + fraction_of(inside, road);
 }
 
 __global__ void take_winners(CoarseVolume costs, CoarseVolume forward, CoarseVolume backward,
