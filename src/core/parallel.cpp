@@ -36,7 +36,10 @@ tbb::task_arena& arena_of(int workers) {
 
 int resolve_threads(int threads) {
   if (threads < 0 || threads > 1024) fail("threads is ", threads, "; it must be between 0 (all cores) and 1024");
-  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (threads > 0) return threads;
+  // Reads a file of the system: once.
+  static const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return cores;
 }
 
 void parallel_for(int count, int threads, FunctionRef<void(int, int)> body) {

@@ -14,27 +14,26 @@ namespace {
 
 /// Column sums over the pixel rows of one row of cells.
 struct ColumnSums {
-  std::vector<double> sum;
+  std::vector<float> sum;
   std::vector<int> count;  ///< valid pixels
 
   explicit ColumnSums(int columns) : sum(static_cast<std::size_t>(columns)), count(static_cast<std::size_t>(columns)) {}
   void clear() {
-    std::fill(sum.begin(), sum.end(), 0.0);
+    std::fill(sum.begin(), sum.end(), 0.0F);
     std::fill(count.begin(), count.end(), 0);
   }
   /// Add the valid pixels of an image row.
   void add(const float* values, const float* sigma, int width) {
     constexpr float max_sigma_px = 1;
     constexpr float max_finite = std::numeric_limits<float>::max();
-    double* const sums = sum.data();
+    float* const sums = sum.data();
     int* const counts = count.data();
     for (int u = 0; u < width; ++u) {
       const int finite = std::abs(values[u]) <= max_finite ? 1 : 0;
       const int uncertain = sigma[u] > max_sigma_px ? 1 : 0;
       const int valid = finite & ~uncertain;
-      const float value = valid != 0 ? values[u] : 0.0F;
       counts[u] += valid;
-      sums[u] += static_cast<double>(value);
+      sums[u] += valid != 0 ? values[u] : 0.0F;
     }
   }
 };
@@ -42,7 +41,7 @@ struct ColumnSums {
 /// Means of a row of cells. The sums have `factor` columns per cell, also for a cell that the border clips.
 void mean_row(const ColumnSums& columns, int factor, bool last_row, int cells, float* means) {
   for (int i = 0; i < cells; ++i) {
-    double sum = 0;
+    float sum = 0;
     int count = 0;
     for (int k = i * factor; k < (i + 1) * factor; ++k) {
       sum += columns.sum[static_cast<std::size_t>(k)];
@@ -50,7 +49,7 @@ void mean_row(const ColumnSums& columns, int factor, bool last_row, int cells, f
     }
     const bool may_be_clipped = last_row || i + 1 == cells;  // by the border of the image
     const bool valid = count > 0 && (may_be_clipped ? 4 : 2) * count >= factor * factor;
-    means[i] = valid ? static_cast<float>(sum / count) : std::numeric_limits<float>::quiet_NaN();
+    means[i] = valid ? sum / static_cast<float>(count) : std::numeric_limits<float>::quiet_NaN();
   }
 }
 

@@ -49,13 +49,18 @@ std::string reason_for_pixels(const DamageInput& input) {
   return {};
 }
 
-/// Fit the road surface by alternating between it and the road region.
-RoadSurface find_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates, int threads) {
+/// Fit the road surface by alternating between it and the road region, and move the cells that the images do not
+/// support onto it before the last fit.
+RoadSurface find_road_surface(const DamageInput& input, const SurfaceCoordinates& coordinates, int threads,
+                              Cells& cells) {
   RoadSurface surface = fit_road_surface(cells, coordinates, threads);
-  for (const Sampling sampling : {Sampling::coarse, Sampling::fine}) {
+  const auto refit = [&](Sampling sampling) {
     const Image<std::uint8_t> region = find_road_region(cells, surface, threads);
     surface = refit_road_surface(cells, coordinates, region, surface, sampling, threads);
-  }
+  };
+  refit(Sampling::coarse);
+  move_unsupported_cells(input, surface, threads, cells);
+  refit(Sampling::fine);
   return surface;
 }
 
@@ -120,10 +125,7 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
   Cells cells = make_cells(input.transformed, input.sigma,
                            cell_factor(input.transformed.width(), input.transformed.height()), threads);
   const SurfaceCoordinates coordinates = surface_coordinates(cells, input, threads);
-  RoadSurface surface = find_road_surface(cells, coordinates, threads);
-  if (move_unsupported_cells(input, surface, threads, cells)) {
-    surface = find_road_surface(cells, coordinates, threads);
-  }
+  const RoadSurface surface = find_road_surface(input, coordinates, threads, cells);
   const Image<std::uint8_t> road = find_road_region(cells, surface, threads);
   DepthCells depth_cells = make_depth_cells(cells, surface, threads);
   result.non_metric_reason = reason_for_pixels(input);

@@ -31,6 +31,16 @@ struct RayComponent {
   double slope = 0;
 };
 
+/// A value that is linear in the column of cells.
+class Line {
+ public:
+  Line(double first, double step) : first_(static_cast<float>(first)), step_(static_cast<float>(step)) {}
+  float at(int i) const { return first_ + step_ * static_cast<float>(i); }
+
+ private:
+  float first_, step_;
+};
+
 /// Component of the rays of image row v.
 RayComponent ray_component(const StereoCalibration& calibration, const std::array<double, 3>& axis, double v) {
   const double f = calibration.focal_px;
@@ -56,21 +66,26 @@ SurfaceCoordinates road_coordinates(const Cells& cells, const DisparityPlane& mo
   const double fb = calibration.focal_px * calibration.baseline_m;
   const double max_depth_m = std::sqrt(max_row_m * calibration.focal_px * plane.height_m);  // row: Z²/(f·h)
   const double min_disparity = std::max(min_disparity_px, fb / max_depth_m);
+  // Of every column: the disparity is linear in it, as are the rays.
+  const auto min_valid = static_cast<float>(min_disparity), focal_baseline = static_cast<float>(fb);
+  const auto camera_x = static_cast<float>(camera[0]), camera_y = static_cast<float>(camera[1]);
+  const auto per_metre = static_cast<float>(1 / plane.height_m);
   const auto fill_row = [&](int j) {
-    const double v = cells.middle(j);
+    const double v = cells.middle(j), first = cells.middle(0), step = cells.middle(1) - first;
     const RayComponent ray_x = ray_component(calibration, axes.x, v);
     const RayComponent ray_y = ray_component(calibration, axes.y, v);
+    const Line disparities(model.disparity(first, v) + calibration.disparity_offset_px, model.a2 * step);
+    const Line rays_x(ray_x.offset + ray_x.slope * first, ray_x.slope * step);
+    const Line rays_y(ray_y.offset + ray_y.slope * first, ray_y.slope * step);
     float* const x = c.x.row(j);
     float* const y = c.y.row(j);
     float* const scale = c.scale.row(j);
     for (int i = 0; i < cells.width(); ++i) {
-      const double u = cells.middle(i);
-      const double disparity = model.disparity(u, v) + calibration.disparity_offset_px;
-      const double z = fb / disparity;
-      const bool valid = disparity >= min_disparity;
-      x[i] = valid ? static_cast<float>(camera[0] + z * (ray_x.offset + ray_x.slope * u)) : nan;
-      y[i] = valid ? static_cast<float>(camera[1] + z * (ray_y.offset + ray_y.slope * u)) : nan;
-      scale[i] = valid ? static_cast<float>(disparity / plane.height_m) : nan;
+      const float disparity = disparities.at(i), z = focal_baseline / disparity;
+      const bool valid = disparity >= min_valid;
+      x[i] = valid ? camera_x + z * rays_x.at(i) : nan;
+      y[i] = valid ? camera_y + z * rays_y.at(i) : nan;
+      scale[i] = valid ? disparity * per_metre : nan;
     }
   };
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {

@@ -17,8 +17,7 @@ double surface_significance(const DamageInput& input, const DamageMap& maps, int
                             double offset);
 
 /// Move cells onto the surface that are off it while, in the support window of matching around them, the votes are for
-/// the road by more than a standard error. Returns whether there were any; none without a right image or a disparity
-/// map.
-bool move_unsupported_cells(const DamageInput& input, const RoadSurface& surface, int threads, Cells& cells);
+/// the road by more than a standard error; none without a right image or a disparity map.
+void move_unsupported_cells(const DamageInput& input, const RoadSurface& surface, int threads, Cells& cells);
 
 }  // namespace roadstereo
