@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/order_statistics.hpp"
@@ -56,13 +57,30 @@ class BinnedSelection {
   std::vector<float> in_bin_;
 };
 
+/// Smallest and largest of n ≥ 1 values without NaN.
+inline std::pair<float, float> range_of(std::span<const float> values) {
+  constexpr std::size_t lanes = 8;  // independent of each other, so that the loop is vectorised
+  std::array<float, lanes> low, high;
+  low.fill(values[0]);
+  high.fill(values[0]);
+  const float* const value = values.data();
+  std::size_t k = 0;
+  for (; k + lanes <= values.size(); k += lanes) {
+    for (std::size_t l = 0; l < lanes; ++l) {
+      low[l] = std::min(low[l], value[k + l]);
+      high[l] = std::max(high[l], value[k + l]);
+    }
+  }
+  for (; k < values.size(); ++k) {
+    low[0] = std::min(low[0], value[k]);
+    high[0] = std::max(high[0], value[k]);
+  }
+  return {*std::min_element(low.begin(), low.end()), *std::max_element(high.begin(), high.end())};
+}
+
 /// Upper median x(⌊n / 2⌋) of n ≥ 1 values without NaN.
 inline float binned_median(std::span<const float> values) {
-  float low = values[0], high = values[0];
-  for (const float value : values) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
+  const auto [low, high] = range_of(values);
   BinnedSelection selection;
   selection.bin(values, low, high);
   return selection.select(values.size() / 2);

@@ -218,7 +218,8 @@ class SurfaceComparison {
   /// Log likelihood of a block along a surface, but for a constant: grey levels differ by normal noise.
   static float log_likelihood(float correlation) {
     constexpr float min_noise_share = 1e-4F;
-    return -0.5F * static_cast<float>(block_pixels) * std::log(std::max(1 - correlation * correlation, min_noise_share));
+    return -0.5F * static_cast<float>(block_pixels) *
+           std::log(std::max(1 - correlation * correlation, min_noise_share));
   }
 
   const DamageInput& input_;

@@ -20,20 +20,31 @@ float interpolate_bilinear(const Image<float>& cells, int factor, int u, int v) 
          t * ((1 - s) * cells(left, below) + s * cells(right, below));
 }
 
-RowUpsampler::RowUpsampler(const Image<float>& cells, int factor, int width) : cells_(cells), factor_(factor) {
-  columns_.reserve(static_cast<std::size_t>(width));
-  for (int u = 0; u < width; ++u) columns_.push_back(linear_taps(u, factor, cells.width()));
-}
+RowUpsampler::RowUpsampler(const Image<float>& cells, int factor, int width)
+    : cells_(cells), factor_(factor), width_(width) {}
 
 void RowUpsampler::interpolate_row(int row, InterpolatedRow& result) const {
   if (result.row == row) return;
   result.row = row;
-  result.values.resize(columns_.size());
+  result.values.resize(static_cast<std::size_t>(width_));
   const float* const cells = cells_.row(row);
-  for (std::size_t u = 0; u < columns_.size(); ++u) {
-    const auto& [left, right, weight] = columns_[u];
-    result.values[u] = (1 - weight) * cells[left] + weight * cells[right];
+  float* const values = result.values.data();
+  const auto interpolate = [&](int u) {
+    const auto [left, right, weight] = linear_taps(u, factor_, cells_.width());
+    values[u] = (1 - weight) * cells[left] + weight * cells[right];
+  };
+  // Away from the border every cell has the same weights.
+  const int whole = std::min(width_ / factor_, cells_.width()) - 1;
+  const int first = std::min(factor_, width_), last = std::max(first, whole * factor_);
+  for (int k = 0; k < factor_ && whole > 1; ++k) {
+    const auto [left, right, weight] = linear_taps(factor_ + k, factor_, cells_.width());
+    const float *const one = cells + left, *const other = cells + right;
+    for (int i = 0; i + 1 < whole; ++i) {
+      values[factor_ + k + i * factor_] = (1 - weight) * one[i] + weight * other[i];
+    }
   }
+  for (int u = 0; u < first; ++u) interpolate(u);
+  for (int u = last; u < width_; ++u) interpolate(u);
 }
 
 void RowUpsampler::read(int v, float* values) {
@@ -47,8 +58,7 @@ void RowUpsampler::read(int v, float* values) {
   interpolate_row(below, below_);
   const float* const one = above_.values.data();
   const float* const other = below_.values.data();
-  const auto width = static_cast<int>(columns_.size());
-  for (int u = 0; u < width; ++u) values[u] = (1 - weight) * one[u] + weight * other[u];
+  for (int u = 0; u < width_; ++u) values[u] = (1 - weight) * one[u] + weight * other[u];
 }
 
 }  // namespace roadstereo

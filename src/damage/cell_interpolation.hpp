@@ -39,7 +39,7 @@ class RowUpsampler {
 
   const Image<float>& cells_;
   int factor_;
-  std::vector<LinearTaps> columns_;  ///< one per pixel of a row
+  int width_;
   InterpolatedRow above_, below_;
 };
 

@@ -72,8 +72,8 @@ class VoteIntegral {
   static int blocks_before(int cell) { return (cell + step - 1) / step; }
 
   /// Sums of block row j from the left.
-  void add_row(const DamageInput& input, const Cells& cells, const RoadSurface& surface, float max_distance,
-               int j, RowOfBlocks& row) {
+  void add_row(const DamageInput& input, const Cells& cells, const RoadSurface& surface, float max_distance, int j,
+               RowOfBlocks& row) {
     const float *const road = surface.value.row(j * step), *const measured = cells.value.row(j * step);
     VoteSums* const sums = sums_.row(j + 1) + 1;
     row.clear();
@@ -115,7 +115,8 @@ double surface_significance(const DamageInput& input, const DamageMap& maps, int
     for (const float vote : row.votes) votes += vote;
     blocks += static_cast<double>(row.votes.size());
   }
-  const double independent = blocks * std::min(1.0, static_cast<double>(step * step) / static_cast<double>(block_pixels));
+  const double independent =
+      blocks * std::min(1.0, static_cast<double>(step * step) / static_cast<double>(block_pixels));
   return blocks > 0 ? votes / blocks * std::sqrt(std::max(1.0, independent)) : unknown;
 }
 

@@ -48,9 +48,9 @@ struct PathWinner {
 /// costs. Without branches, so that loops over pixels are vectorised.
 ROADSTEREO_HD inline float fraction_of(const PathWinner& winner, const RoadCost& road) {
   const float offset = road.centre - winner.disparity;
-  const float near_road = fraction_near_road(
-      winner.own_before - road.at(winner.disparity - 1), winner.own_at - road.at(winner.disparity),
-      winner.own_after - road.at(winner.disparity + 1), offset, road.weight);
+  const float near_road =
+      fraction_near_road(winner.own_before - road.at(winner.disparity - 1), winner.own_at - road.at(winner.disparity),
+                         winner.own_after - road.at(winner.disparity + 1), offset, road.weight);
   const float second = second_difference(winner.before, winner.at, winner.after);
   const float half_slope = 0.5F * (winner.before - winner.after), vertex = half_slope / (second > 0 ? second : 1.0F);
   return fabsf(offset) <= 1.0F ? near_road : second > 0 ? vertex : 0.0F;

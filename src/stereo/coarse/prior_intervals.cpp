@@ -45,8 +45,7 @@ void find_prior_intervals(const PerspectiveShift& shift, const PixelHeight& heig
     const float* const own = map.row(v);
     const int factor = prior.factor;
     for (int u = 0; u < width; ++u) {
-      const PriorInterval interval =
-          prior_interval(own[u], {low[u], high[u]}, heights.at(road.disparity(u)), factor);
+      const PriorInterval interval = prior_interval(own[u], {low[u], high[u]}, heights.at(road.disparity(u)), factor);
       low[u] = interval.low;
       high[u] = interval.high;
     }

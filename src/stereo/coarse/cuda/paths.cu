@@ -117,7 +117,7 @@ __device__ float take_winner(const float* forward, const float* backward, int co
   const auto disparity = static_cast<float>(winner);
   if (winner == 0 || winner + 1 >= count) return disparity;
   const auto total = [&](int d) { return forward[d] + backward[d]; };
-  const PathWinner inside{disparity,          total(winner - 1), lowest,           total(winner + 1),
+  const PathWinner inside{disparity,         total(winner - 1), lowest,           total(winner + 1),
                           costs[winner - 1], costs[winner],     costs[winner + 1]};
   return disparity + fraction_of(inside, road);
 }
