@@ -28,9 +28,9 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
                            const Tile& tile, float* energies_of_block, const ViewWinners& winners) {
   int4* products = shared_memory<int4>();
   const int latest_first =
-      latest_first_column(view, tile, reinterpret_cast<int*>(products + tile.halo_rows * tile.product_columns));
+      latest_first_column(view, tile, reinterpret_cast<int*>(products + tile.halo.rows * tile.halo.product_columns));
   const int x = static_cast<int>(threadIdx.x) % tile_columns, y = static_cast<int>(threadIdx.x) / tile_columns;
-  const int i = tile.first_i + x * tile.step, v = tile.first_v + y * tile.step;
+  const int i = tile.first_i + x * tile.halo.step, v = tile.first_v + y * tile.halo.step;
   const bool wanted = x < tile.columns && v < view.own.height();
   PixelEnergies energies(energies_of_block, tile.range);
   PixelWeights<max_taps> weights{};
@@ -44,8 +44,8 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
     }
     weights.inverse_sum = 1 / sum;
   }
-  const int4* centre = products + (y + settings.window_half_height / tile.step) * tile.product_columns + x +
-                       settings.window_half_width / tile.step;
+  const int4* centre = products + (y + settings.window_half_height / tile.halo.step) * tile.halo.product_columns + x +
+                       settings.window_half_width / tile.halo.step;
   for (int d = tile.range.first; d < tile.range.end; d += chunk) {
     sum_products(view, tile, settings.block_radius, d, products);
     __syncthreads();
@@ -69,12 +69,12 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
 
 template <int max_taps>
 __global__ void __launch_bounds__(threads, max_taps <= taps_of_default ? 2 : 1)
-    match_tiles(ViewToMatch view, ViewSettings settings, TapOffsets<max_taps> offsets, float* energies,
+    match_tiles(ViewToMatch view, ViewSettings settings, Halo halo, TapOffsets<max_taps> offsets, float* energies,
                 std::size_t energies_per_block, ViewWinners winners) {
   const int tiles =
       tiles_along(view.own.width(), settings, tile_columns) * tiles_along(view.own.height(), settings, tile_rows);
   for (int index = static_cast<int>(blockIdx.x); index < tiles; index += static_cast<int>(gridDim.x)) {
-    const Tile tile = locate_tile(view, settings, index);
+    const Tile tile = locate_tile(view, settings, halo, index);
     match_tile<max_taps>(view, settings, offsets, tile, energies + blockIdx.x * energies_per_block, winners);
     __syncthreads();
   }
@@ -83,14 +83,15 @@ __global__ void __launch_bounds__(threads, max_taps <= taps_of_default ? 2 : 1)
 template <int max_taps>
 void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
                   const ViewLaunch& plan, float* energies, const ViewWinners& winners, StreamView stream) {
-  const int columns = product_columns(settings), step = settings.pixel_step;
+  const Halo halo = halo_of(settings);
   TapOffsets<max_taps> offsets{};
   for (int t = 0; max_taps > 0 && t < settings.tap_count; ++t) {
-    const int costs_away = taps_on_host[t].dv / step * columns + taps_on_host[t].du / step;
+    const int rows_away = taps_on_host[t].dv / halo.step, columns_away = taps_on_host[t].du / halo.step;
+    const int costs_away = rows_away * halo.product_columns + columns_away;
     offsets.bytes[t] = costs_away * static_cast<int>(sizeof(int4));
   }
   launch("match_tiles", match_tiles<max_taps>, {static_cast<unsigned>(plan.blocks), threads, plan.shared_bytes}, stream,
-         view, settings, offsets, energies, plan.energies_per_block, winners);
+         view, settings, halo, offsets, energies, plan.energies_per_block, winners);
 }
 
 }  // namespace
@@ -108,8 +109,8 @@ ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height,
   const int resident = blocks_per_multiprocessor * multiprocessors;
   plan.blocks = tiles < resident ? tiles : resident;
   plan.blocks = plan.blocks < room ? plan.blocks : room;
-  const int rows = halo_size(tile_rows, settings.window_half_height, settings);
-  plan.shared_bytes = sizeof(int4) * static_cast<std::size_t>(rows * product_columns(settings) + 1);
+  const Halo halo = halo_of(settings);
+  plan.shared_bytes = sizeof(int4) * static_cast<std::size_t>(halo.rows * halo.product_columns + 1);
   return plan;
 }
 

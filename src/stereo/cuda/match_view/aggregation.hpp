@@ -8,7 +8,7 @@
 namespace roadstereo::cuda {
 
 /// Largest windows of the kernels that keep the weights of the taps in registers.
-inline constexpr int taps_of_default = 28, taps_of_paper = 60;
+inline constexpr int taps_of_default = 25, taps_of_paper = 60;
 
 /// Offsets of the window's taps in shared memory, in bytes: kernel parameters are constants that become part of the
 /// address of a load. As indices, the compiler would compute all addresses beforehand and keep them in local memory.
@@ -80,7 +80,7 @@ __device__ Aggregate aggregate_clipped(const ViewToMatch& view, const ViewSettin
   } else {
     for (int t = 0; t < settings.tap_count; ++t) {
       const WindowTap tap = settings.taps[t];
-      const int4& costs = centre[tap.dv / tile.step * tile.product_columns + tap.du / tile.step];
+      const int4& costs = centre[tap.dv / tile.halo.step * tile.halo.product_columns + tap.du / tile.halo.step];
       add_clipped(costs, tap_weight(view, settings, tap, i, v, grey), sums);
     }
   }

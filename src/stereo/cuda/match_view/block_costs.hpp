@@ -25,6 +25,7 @@ __device__ inline float clipped_cost(const ViewToMatch& view, const CostRow& row
   if (i - d < row.first_visible) return missing_cost;
   const int first = max(max(i - row.radius, 0), d + row.first_visible), last = min(i + row.radius, row.last_valid);
   int products = 0, own_sum = 0, own_squares = 0, other_sum = 0, other_squares = 0;
+  ROADSTEREO_DO_NOT_UNROLL
   for (int q = first; q <= last; ++q) {
     const int4& of_column = row.products[q - halo_i + row.radius];
     products += k == 0 ? of_column.x : k == 1 ? of_column.y : k == 2 ? of_column.z : of_column.w;
@@ -97,10 +98,10 @@ __device__ inline float4 four_costs(const ViewToMatch& view, const CostRow& row,
 __device__ inline void make_costs(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile, int d,
                                   int4* products) {
   const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
-  for (int y = warp; y < tile.halo_rows; y += warps) {
-    const int v = tile.halo_v + y * tile.step, height = view.own.height();
+  for (int y = warp; y < tile.halo.rows; y += warps) {
+    const int v = tile.halo_v + y * tile.halo.step, height = view.own.height();
     const bool inside = v >= 0 && v < height;
-    int4* row = products + y * tile.product_columns;
+    int4* row = products + y * tile.halo.product_columns;
     CostRow cost_row{v, settings.block_radius, 0, 0, 0, -1, nullptr, nullptr, row};
     if (inside) {
       cost_row.pixel_rows = min(v + settings.block_radius, height - 1) - max(v - settings.block_radius, 0) + 1;
@@ -110,11 +111,11 @@ __device__ inline void make_costs(const ViewToMatch& view, const ViewSettings& s
       cost_row.first_visible = first_visible(view, v);
       cost_row.last_valid = last_valid(view, v);
     }
-    const int i = tile.halo_i + lane * tile.step;
-    const bool second = lane + 32 < tile.halo_columns;
+    const int i = tile.halo_i + lane * tile.halo.step;
+    const bool second = lane + 32 < tile.halo.columns;
     const float4 near = four_costs(view, cost_row, settings.noise_variance, tile.halo_i, i, d);
     float4 far = make_float4(missing_cost, missing_cost, missing_cost, missing_cost);
-    if (second) far = four_costs(view, cost_row, settings.noise_variance, tile.halo_i, i + 32 * tile.step, d);
+    if (second) far = four_costs(view, cost_row, settings.noise_variance, tile.halo_i, i + 32 * tile.halo.step, d);
     __syncwarp();
     row[lane] =
         make_int4(__float_as_int(near.x), __float_as_int(near.y), __float_as_int(near.z), __float_as_int(near.w));

@@ -45,18 +45,18 @@ struct Strip {
 };
 
 __device__ inline Strip strip_of_thread(const Tile& tile) {
-  const int strips = max(1, threads / tile.product_columns);
-  const int rows = (tile.halo_rows + strips - 1) / strips;
+  const int strips = max(1, threads / tile.halo.product_columns);
+  const int rows = (tile.halo.rows + strips - 1) / strips;
   const int job = static_cast<int>(threadIdx.x);
-  const int first = job / tile.product_columns * rows;
-  return {job % tile.product_columns, first, min(first + rows, tile.halo_rows)};
+  const int first = job / tile.halo.product_columns * rows;
+  return {job % tile.halo.product_columns, first, min(first + rows, tile.halo.rows)};
 }
 
 /// Whether the blocks of the tile's halo, and what they are compared with, lie inside both images.
 __device__ inline bool products_inside(const ViewToMatch& view, const Tile& tile, int radius, int d) {
   const int first_i = tile.halo_i - radius;
-  return tile.halo_v >= radius && tile.halo_v + (tile.halo_rows - 1) * tile.step + radius < view.own.height() &&
-         first_i - d - (chunk - 1) >= 0 && first_i + tile.product_columns <= view.own.width();
+  return tile.halo_v >= radius && tile.halo_v + (tile.halo.rows - 1) * tile.halo.step + radius < view.own.height() &&
+         first_i - d - (chunk - 1) >= 0 && first_i + tile.halo.product_columns <= view.own.width();
 }
 
 /// One pixel of the own view and four neighbours of the other, and how to get to the next row.
@@ -81,7 +81,7 @@ __device__ inline void sum_products_inside(const ViewToMatch& view, const Tile& 
                                            int4* products) {
   const Strip strip = strip_of_thread(tile);
   if (strip.first >= strip.end) return;
-  const int i = tile.halo_i - radius + strip.column, v = tile.halo_v + strip.first * tile.step - radius;
+  const int i = tile.halo_i - radius + strip.column, v = tile.halo_v + strip.first * tile.halo.step - radius;
   // In memory the disparities grow with the columns of a mirrored view, and against those of the other.
   const int others = view.mirrored ? image_column(view, i - d) : i - d - (chunk - 1);
   RowOfPixels entering{view.own.row(v) + image_column(view, i), view.other.row(v) + others, view.own.stride(),
@@ -91,10 +91,10 @@ __device__ inline void sum_products_inside(const ViewToMatch& view, const Tile& 
   for (int k = 0; k < 2 * radius; ++k) entering.add_and_advance<1>(sums);
   for (int y = strip.first; y < strip.end; ++y) {
     entering.add_and_advance<1>(sums);
-    products[y * tile.product_columns + strip.column] =
+    products[y * tile.halo.product_columns + strip.column] =
         view.mirrored ? sums : make_int4(sums.w, sums.z, sums.y, sums.x);
     leaving.add_and_advance<-1>(sums);
-    if (tile.step > 1 && y + 1 < strip.end) {
+    if (tile.halo.step > 1 && y + 1 < strip.end) {
       entering.add_and_advance<1>(sums);
       leaving.add_and_advance<-1>(sums);
     }
@@ -107,14 +107,14 @@ __device__ inline void sum_products_at_border(const ViewToMatch& view, const Til
   const Strip strip = strip_of_thread(tile);
   const ColumnProducts column_products(view, tile.halo_i - radius + strip.column, d);
   int4 sums = make_int4(0, 0, 0, 0);
-  const int first_v = tile.halo_v + strip.first * tile.step;
+  const int first_v = tile.halo_v + strip.first * tile.halo.step;
   for (int v = first_v - radius; v < first_v + radius; ++v) column_products.add(v, 1, sums);
   for (int y = strip.first; y < strip.end; ++y) {
-    const int v = tile.halo_v + y * tile.step;
+    const int v = tile.halo_v + y * tile.halo.step;
     column_products.add(v + radius, 1, sums);
-    products[y * tile.product_columns + strip.column] = sums;
+    products[y * tile.halo.product_columns + strip.column] = sums;
     column_products.add(v - radius, -1, sums);
-    if (tile.step == 1) continue;
+    if (tile.halo.step == 1) continue;
     column_products.add(v + 1 + radius, 1, sums);
     column_products.add(v + 1 - radius, -1, sums);
   }

@@ -13,14 +13,19 @@ inline constexpr int threads = tile_columns * tile_rows;
 inline constexpr int warps = threads / 32;
 inline constexpr int chunk = 4;  // disparities at a time
 
+/// The same for all tiles of a launch: a parameter of the kernel, which takes no registers from the weights.
+struct Halo {
+  int step;             ///< pixels from one column or row to the next
+  int columns, rows;    ///< of a tile with the window's taps
+  int product_columns;  ///< pixels across, with the blocks' radius on both sides
+};
+
 /// Where the tile and its halo lie, in the view's own coordinates. Columns and rows of both are matched pixels.
 struct Tile {
+  Halo halo;
   int first_i, columns;  ///< the tile itself
   int first_v;
   int halo_i, halo_v;  ///< with the window's taps
-  int halo_columns, halo_rows;
-  int step;             ///< pixels from one column or row to the next
-  int product_columns;  ///< pixels across the halo, with the blocks' radius on both sides
   SearchRange range;
 };
 
@@ -40,30 +45,26 @@ ROADSTEREO_HD inline int tiles_along(int pixels, const ViewSettings& settings, i
   const int matched = (pixels + settings.pixel_step - 1) / settings.pixel_step;
   return (matched + size - 1) / size;
 }
-/// Matched pixels of a halo along a side.
-ROADSTEREO_HD inline int halo_size(int tile_size, int half_window, const ViewSettings& settings) {
-  return tile_size + 2 * (half_window / settings.pixel_step);
-}
-/// Pixels across a halo, with the blocks' radius on both sides.
-ROADSTEREO_HD inline int product_columns(const ViewSettings& settings) {
-  return (halo_size(tile_columns, settings.window_half_width, settings) - 1) * settings.pixel_step + 1 +
-         2 * settings.block_radius;
+
+inline Halo halo_of(const ViewSettings& settings) {
+  const int step = settings.pixel_step;
+  Halo halo{step, tile_columns + 2 * (settings.window_half_width / step),
+            tile_rows + 2 * (settings.window_half_height / step), 0};
+  halo.product_columns = (halo.columns - 1) * step + 1 + 2 * settings.block_radius;
+  return halo;
 }
 
-__device__ inline Tile locate_tile(const ViewToMatch& view, const ViewSettings& settings, int index) {
+__device__ inline Tile locate_tile(const ViewToMatch& view, const ViewSettings& settings, const Halo& halo, int index) {
   const int width = view.own.width(), across = tiles_along(width, settings, tile_columns);
   Tile tile;
-  tile.step = settings.pixel_step;
-  const int first_u = index % across * tile_columns * tile.step;
-  const int end_u = min(first_u + tile_columns * tile.step, width);
+  tile.halo = halo;
+  const int first_u = index % across * tile_columns * tile.halo.step;
+  const int end_u = min(first_u + tile_columns * tile.halo.step, width);
   tile.first_i = view.mirrored ? width - end_u : first_u;
-  tile.columns = (end_u - first_u + tile.step - 1) / tile.step;
-  tile.first_v = index / across * tile_rows * tile.step;
+  tile.columns = (end_u - first_u + tile.halo.step - 1) / tile.halo.step;
+  tile.first_v = index / across * tile_rows * tile.halo.step;
   tile.halo_i = tile.first_i - settings.window_half_width;
   tile.halo_v = tile.first_v - settings.window_half_height;
-  tile.halo_columns = halo_size(tile_columns, settings.window_half_width, settings);
-  tile.halo_rows = halo_size(tile_rows, settings.window_half_height, settings);
-  tile.product_columns = product_columns(settings);
   tile.range = {0, static_cast<std::int16_t>(view.disparities)};
   if (!view.ranges.empty()) tile.range = view.ranges(first_u / view.range_columns, tile.first_v / view.range_rows);
   return tile;
@@ -74,8 +75,8 @@ __device__ inline int latest_first_column(const ViewToMatch& view, const Tile& t
   const int lane = static_cast<int>(threadIdx.x);
   if (lane < 32) {
     int latest = 0;
-    for (int y = lane; y < tile.halo_rows; y += 32) {
-      const int v = min(max(tile.halo_v + y * tile.step, 0), view.own.height() - 1);
+    for (int y = lane; y < tile.halo.rows; y += 32) {
+      const int v = min(max(tile.halo_v + y * tile.halo.step, 0), view.own.height() - 1);
       latest = max(latest, __ldg(view.first_column + v));
     }
     latest = warp_max(latest);
@@ -90,8 +91,8 @@ __device__ inline bool halo_whole(const ViewToMatch& view, const Tile& tile, int
   const int width = view.own.width();
   const int first_visible = view.mirrored ? 0 : latest_first;
   const int last_valid = view.mirrored ? width - 1 - latest_first : width - 1;
-  return tile.halo_v >= 0 && tile.halo_v + (tile.halo_rows - 1) * tile.step < view.own.height() && tile.halo_i >= 0 &&
-         tile.halo_i + (tile.halo_columns - 1) * tile.step <= last_valid &&
+  return tile.halo_v >= 0 && tile.halo_v + (tile.halo.rows - 1) * tile.halo.step < view.own.height() &&
+         tile.halo_i >= 0 && tile.halo_i + (tile.halo.columns - 1) * tile.halo.step <= last_valid &&
          tile.halo_i - d - (chunk - 1) >= first_visible;
 }
 
