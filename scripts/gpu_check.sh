@@ -74,7 +74,7 @@ run_tests() {
   # Each test is a process with a context of its own, of half a gigabyte: those of a hundred cores fill a GPU, and one
   # that is for one process at a time takes one.
   jobs=$(($(nproc) < 8 ? $(nproc) : 8))
-  ! nvidia-smi --query-gpu=compute_mode --format=csv,noheader 2>/dev/null | grep -q Exclusive || jobs=1
+  ! nvidia-smi --query-gpu=compute_mode --format=csv,noheader 2>/dev/null | grep Exclusive >/dev/null || jobs=1
   # Tests of the kernels fail where they would be skipped.
   ROADSTEREO_NEEDS_GPU=1 ./scripts/run_tests.sh $build -j "$jobs" --timeout "$limit" || failed "test"
 }
@@ -94,7 +94,8 @@ sanitize_program() {
     return
   fi
   # To GoogleTest before 1.11 the flag is unknown: it would print its help and run nothing.
-  ! timeout "$limit" "$test" --help | grep -q gtest_brief || brief=(--gtest_brief=1)
+  # All of the help is read: under pipefail a program whose reader has gone fails.
+  ! timeout "$limit" "$test" --help | grep gtest_brief >/dev/null || brief=(--gtest_brief=1)
   for tool in ${SANITIZERS:-memcheck racecheck initcheck synccheck}; do
     echo "compute-sanitizer: $tool of $(basename "$test")"
     ROADSTEREO_NEEDS_GPU=1 timeout "$limit" compute-sanitizer --tool "$tool" --error-exitcode 1 "$test" \
