@@ -19,6 +19,9 @@ data=$(cached ROADSTEREO_DATA)
 command -v chromedriver >/dev/null && /usr/bin/python3 -c 'import selenium' 2>/dev/null || missing+=(browser)
 command -v ament_xmllint >/dev/null && command -v rosidl >/dev/null || missing+=(ament)
 gpus=$(nvidia-smi --list-gpus 2>/dev/null | grep -c '^GPU' || true)
+# To CUDA the list ends at the first that there is not.
+[ -z "${CUDA_VISIBLE_DEVICES+set}" ] || gpus=$(tr , '\n' <<<"$CUDA_VISIBLE_DEVICES" |
+  awk -v gpus="$gpus" '/^$/ || /^-/ || (/^[0-9]+$/ && $1 >= gpus) { exit } { ++count } END { print count + 0 }')
 # Not every system has nvidia-smi; where a GPU is needed, tests without one fail.
 [ -z "${ROADSTEREO_NEEDS_GPU+set}" ] || [ "$gpus" -ge 1 ] || gpus=1
 if [ "$(cached ROADSTEREO_CUDA)" != EMULATED ]; then  # two GPUs are emulated
