@@ -286,8 +286,8 @@ bool Pipeline::State::can_see_off_road() const {
          options.off_road.max_sigma_px > 0 && options.lucas_kanade.radius > 0;
 }
 
-/// Disparities of all that the picture shows, up to that of what stands on the nearest road in it. Without the road as
-/// prior, in blocks as small as can be: the search is to tell what is not the road.
+/// Disparities of all that the picture shows. Without the road as prior, in blocks as small as can be: the search is to
+/// tell what is not the road.
 DisparityPriorView Pipeline::State::search_scene(const MatchInput& pair) {
   constexpr int max_factor = 8, block_radius = 1;
   if (!can_see_off_road()) return {};
@@ -295,10 +295,8 @@ DisparityPriorView Pipeline::State::search_scene(const MatchInput& pair) {
   CoarseSearchOptions coarse =
       coarse_options(std::min(max_factor, 2 * coarse_factor(options.coarse_search, width)), block_radius);
   coarse.road_prior_height_m = 0;
-  const DisparityPlane& road = result.shift.road;
-  const double nearest = std::max(road.disparity(0, height - 1), road.disparity(width - 1, height - 1));
   MatchInput whole = pair;
-  whole.disparities = static_cast<int>(std::clamp(result.shift.delta_p + nearest, 1.0, width / 4.0)) + 1;
+  whole.disparities = scene_disparities(result.shift, width, height);
   return stages->search_scene(whole, result.shift, coarse);
 }
 

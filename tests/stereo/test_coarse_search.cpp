@@ -14,6 +14,7 @@
 #include "roadstereo/synth.hpp"
 #include "stereo/coarse/coarse_map.hpp"
 #include "stereo/coarse/coarse_search.hpp"
+#include "stereo/coarse/coarse_size.hpp"
 #include "tests/stereo/textured_pair.hpp"
 
 namespace roadstereo {
@@ -214,6 +215,14 @@ TEST(CoarseSearch, IsIndependentOfThreads) {
   for (int y = 0; y < a.height(); ++y) {
     for (int x = 0; x < a.width(); ++x) ASSERT_TRUE(a(x, y) == b(x, y) || (std::isnan(a(x, y)) && std::isnan(b(x, y))));
   }
+}
+
+TEST(SceneDisparities, EndAtNearestRoadQuarterOfWidthAndMatchersMost) {
+  const PerspectiveShift shift{{-10, 0.25, 0}, 5};
+  EXPECT_EQ(scene_disparities(shift, 640, 361), 5 + 80 + 1);
+  EXPECT_EQ(scene_disparities(shift, 320, 361), 80 + 1);
+  EXPECT_EQ(scene_disparities(shift, 320, 1), 1 + 1);
+  EXPECT_EQ(scene_disparities(shift, 8192, 8192), 1024);
 }
 
 TEST(CoarseSearch, RejectsOptionsOutOfRange) {

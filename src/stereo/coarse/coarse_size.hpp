@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "roadstereo/coarse_search.hpp"
+#include "roadstereo/perspective_shift.hpp"
 
 // Sizes of the coarse search, on the host and on the device.
 
@@ -28,6 +29,15 @@ inline int coarse_factor(const CoarseSearchOptions& options, int width) {
 /// Returns the disparities searched in the downsampled pair.
 inline int coarse_disparities(int disparities, int factor) {
   return std::max(2, (disparities - 1) / factor + 1);
+}
+
+/// Returns the disparities of all that a W×H picture shows, up to that of what stands on the nearest road in it; at
+/// most as many as a matcher takes.
+inline int scene_disparities(const PerspectiveShift& shift, int width, int height) {
+  constexpr double max_disparities = 1024;
+  const DisparityPlane& road = shift.road;
+  const double nearest = std::max(road.disparity(0, height - 1), road.disparity(width - 1, height - 1));
+  return static_cast<int>(std::clamp(shift.delta_p + nearest, 1.0, std::min(width / 4.0, max_disparities - 1))) + 1;
 }
 
 }  // namespace roadstereo
