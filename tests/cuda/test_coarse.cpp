@@ -158,6 +158,15 @@ TEST_F(CudaCoarse, ManyDisparitiesWithoutRoadMatchHost) {
   expect_as_on_host(look, {test::textured_pair(101, 65, wavy), 80, no_shift()});
 }
 
+TEST_F(CudaCoarse, LargestBlocksWithMostDisparitiesMatchHost) {
+  CoarseSearchOptions options;
+  options.factor = 2;
+  options.block_radius = 10;
+  cuda::CudaCoarseSearch look(options);
+  const auto ramp = [](double u, double) { return 0.02 * u; };
+  expect_as_on_host(look, {test::textured_pair(258, 64, ramp), 1024, no_shift(), {}, options});
+}
+
 TEST_F(CudaCoarse, FewDisparitiesGiveNoRanges) {
   cuda::CudaCoarseSearch look({});
   const Case of{test::textured_pair(65, 64, [](double, double) { return 4; }), 8, no_shift()};

@@ -11,10 +11,9 @@ void check(cudaError_t status, const char* call) {
 }
 
 void require_shared_memory(std::size_t bytes) {
-  constexpr std::size_t most = std::size_t{48} << 10;
-  if (bytes <= most) return;
-  fail("the engine cuda needs ", bytes, " bytes of shared memory for these options; a block has at most ", most,
-       ": take a smaller window or fewer disparities");
+  if (bytes <= max_shared_bytes) return;
+  fail("the engine cuda needs ", bytes, " bytes of shared memory for these options; a block has at most ",
+       max_shared_bytes, ": take a smaller window or fewer disparities");
 }
 
 }  // namespace roadstereo::cuda

@@ -14,7 +14,6 @@ namespace {
 
 constexpr int tile_columns = 32, thread_rows = 8;
 constexpr int rows_at_once = 4;  // of a thread, when a tile is read
-constexpr int max_shared_bytes = 48 << 10;
 
 struct Maps {
   ImageView<const float> disparity, variance;

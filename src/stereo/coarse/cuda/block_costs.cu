@@ -17,8 +17,7 @@ namespace roadstereo::cuda {
 namespace {
 
 constexpr int warps = 4;
-constexpr int columns_each = 22;  // of a warp: with the block's radius of 3 on both sides four times a block's width
-constexpr int segment = warps * columns_each;
+constexpr int usual_columns = 22;  // of a warp: with the block's radius of 3 on both sides four times a block's width
 
 /// The width of a block, where the compiler knows it; 0 is any.
 template <int width>
@@ -47,6 +46,7 @@ struct Segment {
   GradientSums* gradients;  ///< of the own columns
   PixelPrior* priors;       ///< of the segment
   CoarseRoad* road;
+  int columns;               ///< of the segment
   int width, first_visible;  ///< columns of the image; the first one of the target that counts
   int radius, rows;          ///< of the block; rows of it that lie in the image
   float noise_variance;
@@ -160,10 +160,11 @@ __device__ int first_seen_by_block(const CoarsePair& pair, int v, int radius) {
 }
 
 /// Shares out the memory of the block.
-__device__ Segment make_segment(int first, int radius, const CoarseVolume& costs) {
+__device__ Segment make_segment(int first, int columns, int radius, const CoarseVolume& costs) {
   Segment of{};
+  of.columns = columns;
   of.own.first = first - radius;
-  of.own.count = segment + 2 * radius;
+  of.own.count = columns + 2 * radius;
   of.other.first = of.own.first - (costs.disparities - 1);
   of.other.count = of.own.count + costs.disparities - 1;
   of.own.parts = shared_memory<BlockPart>();
@@ -172,18 +173,19 @@ __device__ Segment make_segment(int first, int radius, const CoarseVolume& costs
   of.other.sums = of.own.sums + of.own.count;
   of.gradients = reinterpret_cast<GradientSums*>(of.other.sums + of.other.count);
   of.priors = reinterpret_cast<PixelPrior*>(of.gradients + of.own.count);
-  of.road = reinterpret_cast<CoarseRoad*>(of.priors + segment);
+  of.road = reinterpret_cast<CoarseRoad*>(of.priors + columns);
   of.own.grey = reinterpret_cast<short*>(of.road + 1);
   of.other.grey = of.own.grey + (2 * radius + 1) * of.own.count;
   return of;
 }
 
-std::size_t shared_bytes(int radius, int disparities) {
-  const auto own = static_cast<std::size_t>(segment + 2 * radius),
+std::size_t shared_bytes(int columns, int radius, int disparities) {
+  const auto own = static_cast<std::size_t>(columns + 2 * radius),
              both = 2 * own + static_cast<std::size_t>(disparities) - 1;
   const std::size_t of_column =
       sizeof(BlockPart) + sizeof(ColumnSums) + static_cast<std::size_t>(2 * radius + 1) * sizeof(short);
-  return both * of_column + own * sizeof(GradientSums) + segment * sizeof(PixelPrior) + sizeof(CoarseRoad);
+  return both * of_column + own * sizeof(GradientSums) + static_cast<std::size_t>(columns) * sizeof(PixelPrior) +
+         sizeof(CoarseRoad);
 }
 
 /// Loads what the costs of a segment need, and sums it.
@@ -199,20 +201,21 @@ __device__ void prepare(const Segment& of, const CoarsePair& pair, const RoadPri
   __syncthreads();
   fill_parts(of.own, of);
   fill_parts(of.other, of);
-  for (int i = thread; i < segment; i += warps * warp_lanes) {
+  for (int i = thread; i < of.columns; i += warps * warp_lanes) {
     of.priors[i] = prior_of(of.gradients + i, prior, *of.road, first + i);
   }
   __syncthreads();
 }
 
-template <int known_block>
+template <int known_block, int columns_each>
 __global__ void block_costs_of_segments(CoarsePair pair, float noise_variance, RoadPrior prior, CoarseVolume costs,
                                         ImageView<RoadCost> roads, int* first_seen) {
+  constexpr int segment = warps * columns_each;
   const int v = costs.first_row + static_cast<int>(blockIdx.y), first = static_cast<int>(blockIdx.x) * segment;
   const int radius = prior.block_radius, first_row = v - radius, last_row = v + radius;
   const int inside = (last_row < pair.reference.height() ? last_row : pair.reference.height() - 1) -
                      (first_row > 0 ? first_row : 0) + 1;
-  Segment of = make_segment(first, radius, costs);
+  Segment of = make_segment(first, segment, radius, costs);
   of.width = costs.columns;
   of.first_visible = first_seen_by_block(pair, v, radius);
   of.radius = radius;
@@ -253,10 +256,20 @@ __global__ void block_costs_of_segments(CoarsePair pair, float noise_variance, R
 
 void block_costs(const CoarsePair& pair, float noise_variance, const RoadPrior& prior, const CoarseVolume& costs,
                  ImageView<RoadCost> roads, int* first_seen, StreamView stream) {
-  const LaunchShape shape{dim3(blocks_for(costs.columns, segment), static_cast<unsigned>(costs.rows)),
-                          warps * warp_lanes, shared_bytes(prior.block_radius, costs.disparities)};
-  const auto kernel = prior.block_radius == 3 ? block_costs_of_segments<7> : block_costs_of_segments<0>;
-  launch("block_costs", kernel, shape, stream, pair, noise_variance, prior, costs, roads, first_seen);
+  const auto run = [&](auto kernel, int columns_each) {
+    const int segment = warps * columns_each;
+    const LaunchShape shape{dim3(blocks_for(costs.columns, segment), static_cast<unsigned>(costs.rows)),
+                            warps * warp_lanes, shared_bytes(segment, prior.block_radius, costs.disparities)};
+    launch("block_costs", kernel, shape, stream, pair, noise_variance, prior, costs, roads, first_seen);
+  };
+  if (prior.block_radius == 3) {
+    run(block_costs_of_segments<7, usual_columns>, usual_columns);
+  } else if (shared_bytes(warps * usual_columns, prior.block_radius, costs.disparities) <= max_shared_bytes) {
+    run(block_costs_of_segments<0, usual_columns>, usual_columns);
+  } else {
+    constexpr int fewer_columns = usual_columns / 2;  // of the largest blocks with the most disparities
+    run(block_costs_of_segments<0, fewer_columns>, fewer_columns);
+  }
 }
 
 }  // namespace roadstereo::cuda
