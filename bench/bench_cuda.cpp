@@ -157,27 +157,25 @@ Throughput count_frames(const Size& size, int pipelines, double goal, int runs) 
 }
 
 /// libSGM with its default parameters; it takes 64, 128 or 256 disparities, and frames of 8 bits without padding.
-std::vector<PeerTimes> time_libsgm([[maybe_unused]] const std::vector<Size>& sizes, [[maybe_unused]] int runs) {
-  std::vector<PeerTimes> peers;
 #if defined(ROADSTEREO_WITH_LIBSGM)
-  for (const Size& size : sizes) {
-    const synth::SyntheticPair pair = make_pair(size);
-    const FrameOnDevice left(pair.left), right(pair.right);
-    cuda::DeviceArray<std::uint16_t> disparity(static_cast<std::size_t>(size.width) *
-                                               static_cast<std::size_t>(size.height));
-    sgm::StereoSGM matcher(size.width, size.height, size.disparities, 8, 16, sgm::EXECUTE_INOUT_CUDA2CUDA);
-    const auto match = [&] {
-      matcher.execute(left.view().data, right.view().data, disparity.data());
-      ROADSTEREO_CUDA(cudaDeviceSynchronize());
-    };
-    warm_up(match);
-    peers.push_back({size, median_ms(runs, match)});
-  }
-#endif
-  return peers;
+PeerTimes time_libsgm(const Size& size, int runs) {
+  const synth::SyntheticPair pair = make_pair(size);
+  const FrameOnDevice left(pair.left), right(pair.right);
+  cuda::DeviceArray<std::uint16_t> disparity(static_cast<std::size_t>(size.width) *
+                                             static_cast<std::size_t>(size.height));
+  sgm::StereoSGM matcher(size.width, size.height, size.disparities, 8, 16, sgm::EXECUTE_INOUT_CUDA2CUDA);
+  const auto match = [&] {
+    matcher.execute(left.view().data, right.view().data, disparity.data());
+    ROADSTEREO_CUDA(cudaDeviceSynchronize());
+  };
+  warm_up(match);
+  return {size, median_ms(runs, match)};
 }
+#endif
 
-CudaReport run(int runs) {
+/// Measures all, and writes what is known after each part: one that fails, or does not end in the time it has, leaves
+/// the others. Returns whether none failed.
+bool run(int runs, const std::string& json) {
   const cuda::Device device = cuda::find_device();
   if (!device.usable) fail("nothing to measure: ", device.reason);
   const Size usual{640, 360, 32}, usual_64{640, 360, 64}, large{2079, 1040, 64};
@@ -189,6 +187,16 @@ CudaReport run(int runs) {
   CudaReport report;
   report.device = device.name;
   report.runs = runs;
+  bool good = true;
+  const auto measure = [&](auto part) {
+    try {
+      part();
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "bench_cuda: %s\n", error.what());
+      good = false;
+    }
+    if (!json.empty()) write_json(report, json);
+  };
   std::printf(
       "%s\n\nThe whole pipeline, images in device memory, median of %d frames; goals are those of an H200, the "
       "floor of matching is that of the whole range:\n",
@@ -196,18 +204,28 @@ CudaReport run(int runs) {
   for (const Goal& goal :
        {Goal{usual, "paper", 0.35}, Goal{usual, "default", 0.20}, Goal{usual, "fast", 0}, Goal{usual_64, "default", 0},
         Goal{large, "paper", 0}, Goal{large, "default", 1.5}, Goal{large, "fast", 0}}) {
-    report.pipelines.push_back(time_pipeline(goal.size, goal.preset, goal.ms, runs));
-    print(report.pipelines.back());
+    measure([&] {
+      report.pipelines.push_back(time_pipeline(goal.size, goal.preset, goal.ms, runs));
+      print(report.pipelines.back());
+    });
   }
   std::printf("\n");
   for (const int pipelines : {1, 2, 3}) {
-    report.throughput.push_back(count_frames(usual, pipelines, pipelines == 2 ? 1500 : 0, runs));
-    print(report.throughput.back());
+    measure([&] {
+      report.throughput.push_back(count_frames(usual, pipelines, pipelines == 2 ? 1500 : 0, runs));
+      print(report.throughput.back());
+    });
   }
+#if defined(ROADSTEREO_WITH_LIBSGM)
   std::printf("\n");
-  report.peers = time_libsgm({usual_64, large}, runs);
-  for (const PeerTimes& peer : report.peers) print(peer, report.pipelines);
-  return report;
+  for (const Size& size : {usual_64, large}) {
+    measure([&] {
+      report.peers.push_back(time_libsgm(size, runs));
+      print(report.peers.back(), report.pipelines);
+    });
+  }
+#endif
+  return good;
 }
 
 }  // namespace
@@ -226,9 +244,8 @@ int main(int argc, char** argv) {
         return 2;
       }
     }
-    const roadstereo::bench::CudaReport report = roadstereo::bench::run(runs);
-    if (!json.empty()) roadstereo::bench::write_json(report, json);
-    return 0;
+    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // what was measured is seen when the time is over
+    return roadstereo::bench::run(runs, json) ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_cuda: %s\n", error.what());
     return 1;

@@ -20,7 +20,9 @@ double attribute(cudaDeviceAttr which) {
 struct Work {
   double bytes = 0, operations = 0, shared_bytes = 0;
 
+  /// 0 where the driver does not tell a peak.
   double ms(const Peak& peak) const {
+    if (!(peak.bytes > 0 && peak.operations > 0)) return 0;
     return 1e3 * std::max({bytes / peak.bytes, operations / peak.operations, shared_bytes / peak.shared_bytes});
   }
 };

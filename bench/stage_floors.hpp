@@ -4,7 +4,7 @@
 
 namespace roadstereo::bench {
 
-/// What a GPU can do in a second, from what its driver says of it.
+/// What a GPU can do in a second, from what its driver says of it; 0: nothing.
 struct Peak {
   double bytes;         ///< of global memory
   double operations;    ///< in single precision; a multiply-add is one
