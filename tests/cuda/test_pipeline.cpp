@@ -185,6 +185,7 @@ TEST_F(CudaPipeline, HandsOutPinnedMaps) {
     Pipeline pipeline(options_of("fast", "cuda"), pair.calibration);
     for (int frame = 0; frame < 4; ++frame) pipeline.process(pair.left.view(), pair.right.view(), results[frame % 2]);
     ASSERT_NE(results[0].disparity.memory(), nullptr);
+    ASSERT_NE(results[0].right.memory(), nullptr);
 #if defined(ROADSTEREO_CUDA_EMULATED)
     const std::size_t before = cuda::emulated::allocations();
     for (int frame = 0; frame < 2; ++frame) pipeline.process(pair.left.view(), pair.right.view(), results[frame]);
@@ -192,6 +193,7 @@ TEST_F(CudaPipeline, HandsOutPinnedMaps) {
 #endif
   }
   EXPECT_EQ(results[0].grey, results[1].grey);
+  EXPECT_EQ(results[0].right, results[1].right);
   EXPECT_EQ(std::memcmp(results[0].disparity.row(0), results[1].disparity.row(0),
                         results[0].disparity.pixels() * sizeof(float)),
             0);

@@ -184,7 +184,7 @@ class DeviceStages final : public FrameStages {
   ImageView<const float> subtract_bias(ImageView<const float>, const std::optional<RigBias>& bias) override {
     if (bias) cuda::subtract_bias(bias_polynomial<float>(*bias), maps_.disparity(), stream());
     mark(StageClock::refined);
-    if (download_) maps_.download_refined(stream());
+    if (download_) maps_.download_refined(view(right_), stream());
     return maps_.disparity();
   }
 
@@ -267,16 +267,8 @@ class DeviceStages final : public FrameStages {
     transform_.run(disparity, road, {options_.roll.delta_t_px, shift.delta_p}, maps_.transformed(), stream());
     mark(StageClock::transformed);
     complete_ = false;
-    if (download_) enqueue_last_downloads();
+    if (download_) maps_.download_transformed(stream());
   }
-
-  /// The right image lies apart: kernels read it in vectors.
-  void enqueue_last_downloads() {
-    maps_.download_transformed(stream());
-    right_downloaded_.reserve(right_pixels());
-    stream().download(right_downloaded_.data(), right_.data(), right_pixels() * sizeof(std::int16_t));
-  }
-  std::size_t right_pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
 
   RollEstimate fit_on_host(ImageView<const float> disparity);
 
@@ -292,7 +284,6 @@ class DeviceStages final : public FrameStages {
   PairToGrey to_grey_;
   FrameMaps maps_;
   DeviceArray<std::int16_t> right_, target_;
-  PinnedArray<std::int16_t> right_downloaded_;
   DeviceArray<int> first_column_;
   /// Disparities and variances between two passes of the refinement; of every second pixel after the last, too.
   DeviceArray<float> between_;
@@ -373,7 +364,7 @@ void DeviceStages::invalidate_transformed() {
   ROADSTEREO_CUDA(cudaMemsetAsync(maps_.transformed().data(), every_bit, bytes, stream_));
   mark(StageClock::transformed);
   complete_ = false;
-  if (download_) enqueue_last_downloads();
+  if (download_) maps_.download_transformed(stream());
 }
 
 void DeviceStages::download(FrameResult& result) {
@@ -381,12 +372,9 @@ void DeviceStages::download(FrameResult& result) {
   if (clock_) clock_->read(result.ms);
   if (download_) {
     maps_.take(result);
-    result.right.resize(width_, height_);
-    std::copy_n(right_downloaded_.data(), right_pixels(), result.right.row(0));
   } else {
     for (Image<float>* map : {&result.disparity, &result.sigma, &result.transformed}) map->resize(0, 0);
-    result.grey.resize(0, 0);
-    result.right.resize(0, 0);
+    for (GreyImage* image : {&result.grey, &result.right}) image->resize(0, 0);
   }
 }
 

@@ -20,7 +20,7 @@ ImageMemory& pinned_memory() {
 
 /// Enqueues a copy to an image, which comes back from the caller as any image.
 template <class T>
-void copy_to_host(const ImageView<T>& from, Image<T>& to, StreamView stream) {
+void copy_to_host(const ImageView<const T>& from, Image<T>& to, StreamView stream) {
   if (to.memory() != &pinned_memory()) to = Image<T>(pinned_memory());
   to.resize(from.width(), from.height());
   stream.download(to.row(0), from.data(), to.pixels() * sizeof(T));
@@ -53,18 +53,19 @@ std::shared_ptr<const void> FrameMaps::hold() {
   return holder;
 }
 
-void FrameMaps::download_refined(StreamView stream) {
+void FrameMaps::download_refined(ImageView<const std::int16_t> right, StreamView stream) {
   const StreamView copies(copies_.get(), stream.recorder());
   refined_.record(stream.get());
   ROADSTEREO_CUDA(cudaStreamWaitEvent(copies.get(), refined_.get(), 0));
-  copy_to_host(disparity(), disparity_on_host_, copies);
-  copy_to_host(sigma(), sigma_on_host_, copies);
-  copy_to_host(grey(), grey_on_host_, copies);
+  copy_to_host<float>(disparity(), disparity_on_host_, copies);
+  copy_to_host<float>(sigma(), sigma_on_host_, copies);
+  copy_to_host<std::int16_t>(grey(), grey_on_host_, copies);
+  copy_to_host(right, right_on_host_, copies);
   copied_.record(copies.get());
 }
 
 void FrameMaps::download_transformed(StreamView stream) {
-  copy_to_host(transformed(), transformed_on_host_, stream);
+  copy_to_host<float>(transformed(), transformed_on_host_, stream);
   ROADSTEREO_CUDA(cudaStreamWaitEvent(stream.get(), copied_.get(), 0));
 }
 
@@ -73,6 +74,7 @@ void FrameMaps::take(FrameResult& result) {
   std::swap(result.sigma, sigma_on_host_);
   std::swap(result.transformed, transformed_on_host_);
   std::swap(result.grey, grey_on_host_);
+  std::swap(result.right, right_on_host_);
 }
 
 }  // namespace roadstereo::cuda

@@ -13,8 +13,8 @@
 
 namespace roadstereo::cuda {
 
-/// The results of a frame: ℓ, σ, ℓ' and the left image, in device memory, and on the host in pinned images that are
-/// handed out as they are.
+/// The results of a frame: ℓ, σ, ℓ' and the left image, in device memory, and on the host, with the right one, in
+/// pinned images that are handed out as they are.
 class FrameMaps {
  public:
   /// Begins a frame, in memory that nobody holds.
@@ -28,8 +28,8 @@ class FrameMaps {
   /// The memory of this frame: until what is returned is released, later frames take other memory.
   std::shared_ptr<const void> hold();
 
-  /// Enqueues the copies of all but ℓ' to the host, beside what `stream` does from now on.
-  void download_refined(StreamView stream);
+  /// Enqueues the copies of all but ℓ' to the host, beside what `stream` does from now on. `right` must stay.
+  void download_refined(ImageView<const std::int16_t> right, StreamView stream);
   /// Enqueues the copy of ℓ'. What waits for `stream` from now on waits for all copies.
   void download_transformed(StreamView stream);
   /// Swaps the images with those of the result, once the stream was waited for.
@@ -51,7 +51,7 @@ class FrameMaps {
   std::vector<std::shared_ptr<Memory>> all_{memory_};            ///< as many as were held at a time, and one
   std::weak_ptr<const void> holder_;                             ///< of this frame's memory
   Image<float> disparity_on_host_, sigma_on_host_, transformed_on_host_;
-  GreyImage grey_on_host_;
+  GreyImage grey_on_host_, right_on_host_;
   Stream copies_;
   Event refined_{cudaEventDisableTiming}, copied_{cudaEventDisableTiming};
 };
