@@ -214,6 +214,7 @@ CoarseSearchOptions Pipeline::State::coarse_options(int factor, int block_radius
   if (options.perspective.scope == Scope::scene) {
     coarse.road_prior_truncation = std::min(coarse.road_prior_truncation, max_truncation_of_scene);
   }
+  if (options.matcher.prior_weight == 0) coarse.border_height_m = 0;  // nobody reads intervals
   coarse.factor = factor;
   coarse.block_radius = options.matcher.adapt_support
                             ? adapt_radius(block_radius, downsampled_correlation(result.road.correlation, factor))

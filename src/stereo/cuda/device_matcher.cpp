@@ -76,7 +76,7 @@ ViewToMatch DeviceMatcher::view_of(const MatchInput& input, bool mirrored) const
   view.ranges = mirrored ? input.ranges.target : input.ranges.reference;
   view.range_columns = SearchRanges::tile_columns;
   view.range_rows = SearchRanges::tile_rows;
-  if (!mirrored) {
+  if (!mirrored && settings_.prior_weight > 0) {
     const DisparityPriorView& prior = input.prior;
     view.prior_low = prior.low.empty() ? prior.disparity : prior.low;
     view.prior_high = prior.high.empty() ? prior.disparity : prior.high;
