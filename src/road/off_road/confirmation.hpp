@@ -51,13 +51,12 @@ struct CoarseScene {
   PerspectiveShift shift;
 };
 
-/// Mean residual disparity of a cell; NaN where no pixel has one.
-ROADSTEREO_HD inline float cell_residual(ImageView<const float> disparity, const PerspectiveShift& shift, int i,
-                                         int j) {
+/// Mean residual disparity of a cell; NaN where no pixel has one. `lines`: the shifts of its rows.
+ROADSTEREO_HD inline float cell_residual(ImageView<const float> disparity, const RowLine* lines, int i, int j) {
   float sum = 0;
   int count = 0;
   for (int v = j * alignment_cell; v < (j + 1) * alignment_cell && v < disparity.height(); ++v) {
-    const RowLine line = shift_line(shift, v);
+    const RowLine line = lines[v - j * alignment_cell];
     for (int u = i * alignment_cell; u < (i + 1) * alignment_cell && u < disparity.width(); ++u) {
       const float d = disparity(u, v);
       if (d != d) continue;

@@ -1,6 +1,7 @@
 #include "roadstereo/off_road.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -63,9 +64,13 @@ void assess_cells(const CoarseScene& scene, ImageView<const float> correlation, 
     LogSigmas* const sums = of_columns + columns;
     for (int j = first; j < last; ++j) {
       sum_around(cells, j, of_columns, sums);
+      std::array<RowLine, alignment_cell> lines;
+      for (int y = 0; y < alignment_cell; ++y) {
+        lines[static_cast<std::size_t>(y)] = shift_line(scene.shift, j * alignment_cell + y);
+      }
       for (int i = 0; i < states.columns; ++i) {
         const bool confirmed = is_confirmed(sums[i], correlation(i, j), log2_max_sigma);
-        states.row(j)[i] = assess_cell(scene, cell_residual(disparity, scene.shift, i, j), confirmed, i, j);
+        states.row(j)[i] = assess_cell(scene, cell_residual(disparity, lines.data(), i, j), confirmed, i, j);
       }
     }
   });

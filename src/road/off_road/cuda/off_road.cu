@@ -11,6 +11,7 @@ namespace roadstereo::cuda {
 namespace {
 
 constexpr int block_columns = 32, block_rows = 8;
+constexpr int pixel_rows = block_rows * alignment_cell;
 constexpr int connecting_threads = 256;
 
 __device__ int thread_column() {
@@ -33,9 +34,13 @@ __global__ void sum_log_sigmas(ImageView<const float> sigma, ImageView<LogSigmas
   cells(i, j) = sums;
 }
 
-/// One thread a cell: the window around it, and the scene.
+/// One thread a cell: the window around it, and the scene. The road in its rows takes double precision, once a block.
 __global__ void assess_cells(CoarseScene scene, ImageView<const LogSigmas> cells, ImageView<const float> correlation,
                              ImageView<const float> disparity, float log2_max_sigma, ImageView<CellState> states) {
+  auto* lines = shared_memory<RowLine>();
+  const int thread = static_cast<int>(threadIdx.y) * block_columns + static_cast<int>(threadIdx.x);
+  if (thread < pixel_rows) lines[thread] = shift_line(scene.shift, static_cast<int>(blockIdx.y) * pixel_rows + thread);
+  __syncthreads();
   const int i = thread_column(), j = thread_row();
   if (i >= cells.width() || j >= cells.height()) return;
   LogSigmas sums;
@@ -45,7 +50,8 @@ __global__ void assess_cells(CoarseScene scene, ImageView<const LogSigmas> cells
     }
   }
   const bool confirmed = is_confirmed(sums, __ldg(&correlation(i, j)), log2_max_sigma);
-  states(i, j) = assess_cell(scene, cell_residual(disparity, scene.shift, i, j), confirmed, i, j);
+  const RowLine* const of_cell = lines + static_cast<int>(threadIdx.y) * alignment_cell;
+  states(i, j) = assess_cell(scene, cell_residual(disparity, of_cell, i, j), confirmed, i, j);
 }
 
 /// Cells that the flood fill can reach.
@@ -152,8 +158,9 @@ void OffRoad::run(const CoarseScene& scene, ImageView<const float> correlation, 
   const dim3 grid(blocks_for(columns, block_columns), blocks_for(rows, block_rows));
   const dim3 block(block_columns, block_rows);
   launch("off_road_sigmas", sum_log_sigmas, {grid, block, 0}, stream, ImageView<const float>(sigma), sigmas);
-  launch("off_road_assess", assess_cells, {grid, block, 0}, stream, scene, ImageView<const LogSigmas>(sigmas),
-         correlation, ImageView<const float>(disparity), std::log2(max_sigma_px), states);
+  launch("off_road_assess", assess_cells, {grid, block, pixel_rows * sizeof(RowLine)}, stream, scene,
+         ImageView<const LogSigmas>(sigmas), correlation, ImageView<const float>(disparity), std::log2(max_sigma_px),
+         states);
   launch("off_road_outside", mark_outside, {dim3(1), dim3(connecting_threads), sizeof(int)}, stream, states);
   launch("off_road_reject", reject_cells, {grid, block, 0}, stream, ImageView<const CellState>(states), disparity,
          sigma);
