@@ -93,6 +93,9 @@ __device__ inline float4 four_costs(const ViewToMatch& view, const CostRow& row,
   return costs;
 }
 
+inline constexpr int max_half_window = 10;  // MatcherOptions::validate()
+static_assert(tile_columns + 2 * max_half_window <= 2 * 32, "a lane has two costs of a row");
+
 /// Replaces the products by the costs of the matched pixels, a warp to a row: all its lanes have read before one
 /// writes.
 __device__ inline void make_costs(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile, int d,
