@@ -20,7 +20,7 @@ struct SearchMemory {
 };
 
 /// The device's part of verify_road_model(): two searches around the last frame's plane, each with a robust fit. What
-/// the statistics say of the road is assess_road_verification()'s to tell. Four launches, six for large images.
+/// the statistics say of the road is assess_road_verification()'s to tell. Four launches, five for large images.
 class RoadVerification {
  public:
   /// Enqueues it. The images must stay until then.
