@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace roadstereo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, 8>;
+using Floats = hn::CappedTag<float, 16>;
 using Float = hn::Vec<Floats>;
 
 /// Sums of the strip's columns and of their squares.
@@ -93,9 +93,16 @@ void sample_strip(const std::int16_t* image_row, int image_width, double x, doub
   const double drift = (step - 1) * (count - 1);
   const int base = static_cast<int>(std::floor(x + std::min(0.0, drift)));
   const int taps = static_cast<int>(std::abs(drift)) + 3;
-  std::array<std::int16_t, max_sampled + max_drift + 16> pixels{};
-  const int first = std::max(0, base), last = std::min(image_width, base + count + taps);
-  std::copy(image_row + first, image_row + last, pixels.data() + (first - base));
+  // Whole vectors read beyond the last column; where the image has nothing there, they read a copy.
+  std::array<std::int16_t, max_sampled + max_drift + 16> copied;
+  const std::int16_t* pixels = copied.data();
+  if (base >= 0 && base + count + taps + lanes <= image_width) {
+    pixels = image_row + base;
+  } else {
+    const int first = std::max(0, base), last = std::min(image_width, base + count + taps);
+    copied.fill(0);
+    std::copy(image_row + first, image_row + last, copied.data() + (first - base));
+  }
   const auto start = static_cast<float>(x - base);
   const Float slope = hn::Set(df, static_cast<float>(step - 1)), one = hn::Set(df, 1.0f);
   for (int i = 0; i < count; i += lanes) {
@@ -105,7 +112,7 @@ void sample_strip(const std::int16_t* image_row, int image_width, double x, doub
     for (int k = 0; k < taps; ++k) {
       const Float away = hn::Abs(hn::Sub(place, hn::Set(df, static_cast<float>(k))));
       const Float weight = hn::Max(hn::Sub(one, away), hn::Zero(df));
-      const Float pixel = hn::ConvertTo(df, hn::PromoteTo(d32, hn::LoadU(d16, pixels.data() + i + k)));
+      const Float pixel = hn::ConvertTo(df, hn::PromoteTo(d32, hn::LoadU(d16, pixels + i + k)));
       value = hn::MulAdd(weight, pixel, value);
     }
     hn::StoreU(value, df, strip_row + i);
