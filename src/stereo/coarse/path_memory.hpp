@@ -8,7 +8,7 @@ namespace roadstereo {
 
 /// The winners of the columns of a row: see PathWinner.
 struct PathWinners {
-  static constexpr int arrays = 8;
+  static constexpr std::ptrdiff_t arrays = 8;
 
   float *disparity, *before, *at, *after, *own_before, *own_at, *own_after;
   float* inside;  ///< 1, or 0 where the winner is the first or the last disparity
