@@ -157,77 +157,62 @@ class RightRow {
   bool is_aligned_;
 };
 
-/// Compares two surfaces by blocks of both images.
-class SurfaceComparison {
- public:
-  explicit SurfaceComparison(const DamageInput& input) : input_(input) {}
+/// Log likelihood of a block along a surface, but for a constant: grey levels differ by normal noise.
+float log_likelihood(float correlation) {
+  constexpr float min_noise_share = 1e-4F;
+  return -0.5F * static_cast<float>(block_pixels) * std::log(std::max(1 - correlation * correlation, min_noise_share));
+}
 
-  /// See vote_for_blocks.
-  void vote(int v, std::span<const int> u, std::span<const float> surface, std::span<float> votes) const {
-    std::fill(votes.begin(), votes.end(), 0.0F);
-    if (v < block_radius || v + block_radius >= input_.grey.height()) return;
-    if (input_.grey.width() <= 2 * block_radius) return;
-    for (std::size_t first = 0; first < u.size(); first += max_lanes) vote_lanes(v, u, surface, first, votes);
+/// Votes of the blocks from `first` on, up to as many as are compared together.
+void vote_lanes(const DamageInput& input, int v, std::span<const int> u, std::span<const float> surface,
+                std::size_t first, std::span<float> votes) {
+  constexpr float max_log_ratio = 2;  // an object that one camera alone sees counts no more than a block of the road
+  const int width = input.grey.width();
+  const std::size_t lanes = std::min(u.size() - first, max_lanes);
+  Lanes<int> column;
+  Lanes<float> road_surface;
+  for (std::size_t l = 0; l < lanes; ++l) {
+    column[l] = std::clamp(u[first + l], block_radius, width - 1 - block_radius);
+    road_surface[l] = surface[first + l];
   }
-
- private:
-  /// Votes of the blocks from `first` on, up to as many as are compared together.
-  void vote_lanes(int v, std::span<const int> u, std::span<const float> surface, std::size_t first,
-                  std::span<float> votes) const {
-    constexpr float max_log_ratio = 2;  // an object that one camera alone sees counts no more than a block of the road
-    const int width = input_.grey.width();
-    const std::size_t lanes = std::min(u.size() - first, max_lanes);
-    Lanes<int> column;
-    Lanes<float> road_surface;
-    for (std::size_t l = 0; l < lanes; ++l) {
-      column[l] = std::clamp(u[first + l], block_radius, width - 1 - block_radius);
-      road_surface[l] = surface[first + l];
-    }
-    Blocks left, measured, road;
-    std::size_t k = 0;
-    for (int y = v - block_radius; y <= v + block_radius; ++y) {
-      const RightRow row(input_, y);
-      const std::int16_t* const grey = input_.grey.row(y);
-      const float *const disparity = input_.disparity.row(y), *const transformed = input_.transformed.row(y);
-      for (int x = -block_radius; x <= block_radius; ++x, ++k) {
-        Lanes<float> disparities, transforms, at, at_road;
-        for (std::size_t l = 0; l < lanes; ++l) {
-          const int pixel = column[l] + x;
-          left[k][l] = grey[pixel];
-          disparities[l] = disparity[pixel];
-          transforms[l] = transformed[pixel];
-        }
-        for (std::size_t l = 0; l < lanes; ++l) {
-          at[l] = static_cast<float>(column[l] + x) - disparities[l];
-          at_road[l] = at[l] - (road_surface[l] - transforms[l]);
-        }
-        row.read(at, lanes, measured[k]);
-        row.read(at_road, lanes, road[k]);
+  Blocks left, measured, road;
+  std::size_t k = 0;
+  for (int y = v - block_radius; y <= v + block_radius; ++y) {
+    const RightRow row(input, y);
+    const std::int16_t* const grey = input.grey.row(y);
+    const float *const disparity = input.disparity.row(y), *const transformed = input.transformed.row(y);
+    for (int x = -block_radius; x <= block_radius; ++x, ++k) {
+      Lanes<float> disparities, transforms, at, at_road;
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const int pixel = column[l] + x;
+        left[k][l] = grey[pixel];
+        disparities[l] = disparity[pixel];
+        transforms[l] = transformed[pixel];
       }
-    }
-    Lanes<float> along_measured, along_road;
-    correlate(left, measured, lanes, along_measured);
-    correlate(left, road, lanes, along_road);
-    for (std::size_t l = 0; l < lanes; ++l) {
-      if (u[first + l] != column[l]) continue;  // the block is not inside the image
-      const float log_ratio = log_likelihood(along_measured[l]) - log_likelihood(along_road[l]);
-      votes[first + l] = std::isnan(log_ratio) ? 0 : std::clamp(log_ratio / max_log_ratio, -1.0F, 1.0F);
+      for (std::size_t l = 0; l < lanes; ++l) {
+        at[l] = static_cast<float>(column[l] + x) - disparities[l];
+        at_road[l] = at[l] - (road_surface[l] - transforms[l]);
+      }
+      row.read(at, lanes, measured[k]);
+      row.read(at_road, lanes, road[k]);
     }
   }
-
-  /// Log likelihood of a block along a surface, but for a constant: grey levels differ by normal noise.
-  static float log_likelihood(float correlation) {
-    constexpr float min_noise_share = 1e-4F;
-    return -0.5F * static_cast<float>(block_pixels) *
-           std::log(std::max(1 - correlation * correlation, min_noise_share));
+  Lanes<float> along_measured, along_road;
+  correlate(left, measured, lanes, along_measured);
+  correlate(left, road, lanes, along_road);
+  for (std::size_t l = 0; l < lanes; ++l) {
+    if (u[first + l] != column[l]) continue;  // the block is not inside the image
+    const float log_ratio = log_likelihood(along_measured[l]) - log_likelihood(along_road[l]);
+    votes[first + l] = std::isnan(log_ratio) ? 0 : std::clamp(log_ratio / max_log_ratio, -1.0F, 1.0F);
   }
-
-  const DamageInput& input_;
-};
+}
 
 void vote_for_blocks(const DamageInput& input, int v, std::span<const int> u, std::span<const float> surface,
                      std::span<float> votes) {
-  SurfaceComparison(input).vote(v, u, surface, votes);
+  std::fill(votes.begin(), votes.end(), 0.0F);
+  if (v < block_radius || v + block_radius >= input.grey.height()) return;
+  if (input.grey.width() <= 2 * block_radius) return;
+  for (std::size_t first = 0; first < u.size(); first += max_lanes) vote_lanes(input, v, u, surface, first, votes);
 }
 
 }  // namespace roadstereo::HWY_NAMESPACE

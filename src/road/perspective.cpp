@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/max_disparities.hpp"
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
 #include "core/scratch.hpp"
@@ -14,7 +15,6 @@
 namespace roadstereo {
 namespace {
 
-constexpr int max_disparities = 1024;
 constexpr int rows_per_band = 32;
 
 /// Room beyond the wanted range, so that the winner at its end still has neighbours and a small error of the road

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/max_disparities.hpp"
 #include "core/require_range.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/window.hpp"
@@ -139,8 +140,8 @@ void validate(const MatchInput& input) {
     fail("the reference image has ", input.reference.width(), "×", input.reference.height(),
          " pixels and the target image ", input.target.width(), "×", input.target.height(), "; they must be equal");
   }
-  if (input.disparities < 1 || input.disparities > 1024) {
-    fail("the number of disparities is ", input.disparities, "; it must be between 1 and 1024");
+  if (input.disparities < 1 || input.disparities > max_disparities) {
+    fail("the number of disparities is ", input.disparities, "; it must be between 1 and ", max_disparities);
   }
   if (!input.ranges.empty()) {
     validate(input.ranges.reference, input, "reference");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/max_disparities.hpp"
 #include "roadstereo/coarse_search.hpp"
 #include "roadstereo/perspective_shift.hpp"
 
@@ -34,10 +35,9 @@ inline int coarse_disparities(int disparities, int factor) {
 /// Returns the disparities of all that a W×H picture shows, up to that of what stands on the nearest road in it; at
 /// most as many as a matcher takes.
 inline int scene_disparities(const PerspectiveShift& shift, int width, int height) {
-  constexpr double max_disparities = 1024;
   const DisparityPlane& road = shift.road;
   const double nearest = std::max(road.disparity(0, height - 1), road.disparity(width - 1, height - 1));
-  return static_cast<int>(std::clamp(shift.delta_p + nearest, 1.0, std::min(width / 4.0, max_disparities - 1))) + 1;
+  return static_cast<int>(std::clamp(shift.delta_p + nearest, 1.0, std::min(width / 4.0, max_disparities - 1.0))) + 1;
 }
 
 }  // namespace roadstereo

@@ -22,10 +22,9 @@ void add_gradients(const std::int16_t* above, const std::int16_t* row, const std
   }
 }
 
-void uncertainties(const std::int32_t* squares, const std::int32_t* products, int columns,
-                   const UncertaintyParams& terms, float* HWY_RESTRICT uncertainty) {
-  const UncertaintyParams same = terms;
-  for (int u = 0; u < columns; ++u) uncertainty[u] = texture_uncertainty(squares[u], products[u], same);
+void uncertainties(const std::int32_t* squares, const std::int32_t* products, int columns, UncertaintyParams terms,
+                   float* HWY_RESTRICT uncertainty) {
+  for (int u = 0; u < columns; ++u) uncertainty[u] = texture_uncertainty(squares[u], products[u], terms);
 }
 
 }  // namespace roadstereo::HWY_NAMESPACE
