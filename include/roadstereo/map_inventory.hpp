@@ -38,7 +38,8 @@ struct RoadDamageRecord {
 /// variances; only the part of their errors that differs from frame to frame shrinks, by the number of independent
 /// views, n / `view_factor`. What no sighting shows whole is measured in the map. Confidences of n frames, a frame
 /// without a sighting included, are those of one that is √(n / `view_factor`) times as significant. Returns the damages
-/// of at least `min_confidence`, and deeper than three of their standard errors, deepest first.
+/// of at least `min_confidence`, and deeper than three of their standard errors, deepest first. Throws Error when one
+/// has no metric values.
 std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
                                           const RoadMap& map, const DamageOptions& options);
 

@@ -12,6 +12,7 @@
 #include "damage/distress.hpp"
 #include "damage/smoothing_error.hpp"
 #include "mapping/footprints.hpp"
+#include "roadstereo/error.hpp"
 
 namespace roadstereo {
 namespace {
@@ -123,6 +124,10 @@ Measurement fuse(const std::vector<Figure>& figures, double view_factor) {
   return {sum / weight, std::sqrt(common / weight + std::min(n, view_factor) / weight)};
 }
 
+double probability(double log_odds) {
+  return 1 / (1 + std::exp(-log_odds));
+}
+
 double logit(double p) {
   constexpr double smallest = 1e-6;
   const double clamped = std::clamp(p, smallest, 1 - smallest);
@@ -142,7 +147,19 @@ double joint_confidence(const Group& group, int views, double view_factor) {
   const double all = std::max(seen, static_cast<double>(views));
   const double mean = (sum + (all - seen) * logit(least_confidence)) / all;
   const double independent = std::max(1.0, seen / view_factor);
-  return 1 / (1 + std::exp(-(mean + per_log_significance * 0.5 * std::log(independent))));
+  return probability(mean + per_log_significance * 0.5 * std::log(independent));
+}
+
+/// Confidence of a finding in the map, which `views` frames measure. Each independent frame of those without a sighting
+/// counts against it, by the confidence that the damage would have in one frame, where noise is larger by the root of
+/// the number of independent frames: what all of them must have seen, and none has, is an error of the map.
+double confidence_in_map(const Damage& in_map, int views, int sightings, double view_factor) {
+  if (views <= sightings) return in_map.confidence;
+  const double independent = std::max(1.0, views / view_factor);
+  DamageEvidence in_frame = in_map.evidence;
+  in_frame.significance /= std::sqrt(independent);
+  const double silent = independent * (views - sightings) / views;
+  return probability(logit(in_map.confidence) + silent * std::log1p(-in_frame.confidence()));
 }
 
 /// Median number of frames that measure the cells of a footprint.
@@ -176,6 +193,11 @@ bool is_depth_resolved(const Group& group, const Measurement& fused) {
                      [](auto* one) { return one->found.damage.evidence.is_depth_resolved(); });
 }
 
+void require_metrics(const MapDamage& found) {
+  if (!found.damage.metrics)
+    fail("damage ", found.damage.id, " has no metric values; only measured damages are joined");
+}
+
 RoadDamageRecord record_of(const Group& group, const RoadMap& map, const SeverityScheme& severity) {
   const double view_factor = map.view_factor();
   RoadDamageRecord record;
@@ -207,7 +229,10 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const Severit
   record.area_m2 = whole ? fuse(area, view_factor) : best.area_m2;
   record.volume_m3 = whole ? fuse(volume, view_factor) : best.volume_m3;
   record.confidence = group.sightings.empty() ? 0 : joint_confidence(group, record.views, view_factor);
-  if (group.in_map != nullptr) record.confidence = std::max(record.confidence, group.in_map->damage.confidence);
+  if (group.in_map != nullptr) {
+    record.confidence = std::max(record.confidence,
+                                 confidence_in_map(group.in_map->damage, record.views, record.sightings, view_factor));
+  }
   DamageMetrics fused = best;
   fused.max_depth_m = record.max_depth_m;
   fused.mean_depth_m = record.mean_depth_m;
@@ -224,6 +249,8 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const Severit
 
 std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
                                           const RoadMap& map, const DamageOptions& options) {
+  for (const DamageSighting& sighting : sightings) require_metrics(sighting.found);
+  for (const MapDamage& found : in_map) require_metrics(found);
   std::vector<RoadDamageRecord> records;
   for (const Group& group : group_findings(sightings, in_map, options.min_confidence)) {
     RoadDamageRecord record = record_of(group, map, options.severity);

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "roadstereo/error.hpp"
 #include "roadstereo/map_inventory.hpp"
+#include "tests/mapping/step_frame.hpp"
 
 namespace roadstereo {
 namespace {
@@ -81,6 +83,33 @@ TEST_F(JoinDamage, DamageOfTheMapAloneIsKept) {
   EXPECT_TRUE(records[0].found_in_map);
   EXPECT_EQ(records[0].sightings, 0);
   EXPECT_EQ(records[0].max_depth_m.value, 0.012);
+}
+
+// A hole of the map that every frame must have seen, and none has, is an error of the map. One that noise hides in
+// single frames is not.
+TEST_F(JoinDamage, SilentFramesCountAgainstDamageOfTheMap) {
+  constexpr int frames = 4;
+  for (int i = 0; i < frames; ++i) map_.add(TestFrame(looking_down(0.01 * i, 0, 2), {}, 0.1, 1U + unsigned(i)).frame);
+  MapDamage plain = finding(-5, -5, 10, 0.03, 0.002, 0.9), hidden = plain;
+  plain.damage.evidence.significance = 100;
+  plain.damage.evidence.road_share = 1;
+  hidden.damage.evidence.significance = 3;
+  EXPECT_TRUE(join_damage({}, std::vector{plain}, map_, {}).empty());
+  const std::vector<RoadDamageRecord> kept = join_damage({}, std::vector{hidden}, map_, {});
+  ASSERT_EQ(kept.size(), 1U);
+  EXPECT_EQ(kept[0].views, frames);
+  EXPECT_NEAR(kept[0].confidence, 0.9, 0.01);
+  std::vector<DamageSighting> seen;
+  for (int frame = 0; frame < frames; ++frame) seen.push_back({0, frame, finding(-5, -5, 10, 0.03, 0.008, 0.4)});
+  const std::vector<RoadDamageRecord> records = join_damage(seen, std::vector{plain}, map_, {});
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_GE(records[0].confidence, 0.9);
+}
+
+TEST_F(JoinDamage, NeedsMetricValues) {
+  MapDamage unmeasured = finding(0, 0, 10, 0.02, 0.002, 0.9);
+  unmeasured.damage.metrics.reset();
+  EXPECT_THROW((void)join_damage(std::vector<DamageSighting>{{0, 0, unmeasured}}, {}, map_, {}), Error);
 }
 
 // A crack that no frame shows whole: the map measures it, its two parts are sightings.
