@@ -119,7 +119,7 @@ void inspect_flight(FlightSettings settings) {
   const FlightPlan plan = resolve(settings);
   FlightRun run;
   run.options = plan.options;
-  FlightResults results(settings.track);
+  FlightResults results(settings.track, run.options.damage.min_confidence);
   std::unique_ptr<io::FrameSource> frames = io::open_source(settings.source, plan.source);
   if (settings.calibration.empty() && !frames->calibration_file().empty()) {
     settings.calibration = {frames->calibration_file()};

@@ -1,15 +1,15 @@
 #include "flight/flight_results.hpp"
 
-#include <fmt/chrono.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 
 #include "auto_mask.hpp"
 #include "finite_values.hpp"
 #include "flight/flight_json.hpp"
+#include "io/geo/utc_time.hpp"
 #include "roadstereo/io/flight_tables.hpp"
 #include "roadstereo/io/rig_bias_file.hpp"
 #include "roadstereo/io/road_segments.hpp"
@@ -115,12 +115,10 @@ std::vector<std::array<double, 2>> positions_deg(const std::vector<io::GeoFrame>
 
 /// Date of the recording if its times are those of a calendar, then that of the report.
 std::vector<std::pair<std::string, std::string>> head_of(const FlightSettings& settings, const FlightSummary& summary) {
-  constexpr double first_calendar_s = 315532800;  // 1980
   std::vector<std::pair<std::string, std::string>> head = head_lines(settings.head);
-  const double time_s = summary.first_time_s + settings.track.offset_s;
-  if (time_s > first_calendar_s) {
-    const auto seconds = static_cast<std::time_t>(time_s);
-    head.insert(head.end() - 1, {"Recorded", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(seconds))});
+  if (const auto time = io::utc_time(summary.first_time_s + settings.track.offset_s)) {
+    head.insert(head.end() - 1, {"Recorded", fmt::format("{:04}-{:02}-{:02} {:02}:{:02} UTC", time->year, time->month,
+                                                         time->day, time->hour, time->minute)});
   }
   return head;
 }
@@ -134,8 +132,8 @@ std::string source_name(const FlightSettings& settings) {
 
 }  // namespace
 
-FlightResults::FlightResults(const TrackSettings& track)
-    : frames_csv_(io::frames_csv_names()), sightings_csv_(io::sightings_csv_names()) {
+FlightResults::FlightResults(const TrackSettings& track, double min_confidence)
+    : inventory_(min_confidence), frames_csv_(io::frames_csv_names()), sightings_csv_(io::sightings_csv_names()) {
   if (!track.file.empty()) positions_.emplace(track);
 }
 
@@ -202,6 +200,7 @@ std::string FlightResults::write(const FlightSettings& settings, const FlightRun
   summary_.settle_times();
   summary_.damages = static_cast<std::int64_t>(worst.size());
   summary_.candidates = static_cast<std::int64_t>(candidates.size());
+  for (const io::RoadDamage& damage : worst) summary_.sightings += damage.sightings;
   if (positions_) {
     summary_.located = static_cast<std::int64_t>(positions_->located());
     summary_.no_position_reason = positions_->no_position_reason();

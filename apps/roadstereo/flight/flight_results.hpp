@@ -36,8 +36,8 @@ struct FlightRun {
 /// Collects the results of a flight frame by frame and writes its tables, report and GIS files.
 class FlightResults {
  public:
-  /// Reads the track, if any. Throws Error naming its file and line.
-  explicit FlightResults(const TrackSettings& track);
+  /// Reads the track, if any. Throws Error naming its file and line. `min_confidence`: DamageOptions::min_confidence.
+  FlightResults(const TrackSettings& track, double min_confidence);
 
   /// Adds the next frame. Returns the ids of the road damages of its damages, then of its candidates.
   std::vector<std::int64_t> add(const io::FlightFrame& frame);

@@ -25,7 +25,6 @@ void FlightSummary::add(const io::FlightFrame& frame) {
   } else if (reasons.size() < max_reasons) {
     reasons.push_back(frame.name + ": " + frame.reason);
   }
-  sightings += static_cast<std::int64_t>(frame.damages.size());
   if (std::isnan(first_time_s)) first_time_s = frame.time_s;
   if (std::isfinite(frame.time_s)) last_time_s = frame.time_s;
   curves.time.push_back(frame.time_s);

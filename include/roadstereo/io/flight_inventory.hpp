@@ -17,7 +17,7 @@ namespace roadstereo::io {
 /// report.
 struct RoadDamage {
   std::int64_t id = 0;                           ///< unique in the flight, from 1, in the order of the first sighting
-  bool candidate = false;                        ///< a candidate in every frame: listed apart and not counted
+  bool candidate = false;                        ///< listed apart and not counted (FlightInventory)
   std::int64_t sightings = 0;                    ///< number of frames that show it
   std::int64_t first_frame = 0, last_frame = 0;  ///< indices of the frames that show it
   std::int64_t frame = 0;  ///< index of the best frame: not cut by the border if possible, then smallest error
@@ -39,8 +39,14 @@ std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool
 /// Tracks damages over the frames of a flight. Sightings in successive frames are one damage if their boxes overlap
 /// after the image motion is compensated. Tracking restarts at a frame whose road model was estimated anew; frames too
 /// far apart to overlap yield one damage per sighting.
+/// A damage of the road is one in at least one frame, and the two frames that are surest of it agree: the mean of their
+/// log-odds is at least that of the minimum confidence. Of many frames noise makes one that is sure. What a single
+/// frame shows is decided by that.
 class FlightInventory {
  public:
+  /// `min_confidence`: DamageOptions::min_confidence, 0 … 1.
+  explicit FlightInventory(double min_confidence = DamageOptions{}.min_confidence) : min_confidence_(min_confidence) {}
+
   /// Adds the next frame of the flight. Returns the id of the road damage of each of its damages, then of its
   /// candidates.
   std::vector<std::int64_t> add(const FlightFrame& frame);
@@ -58,7 +64,16 @@ class FlightInventory {
   const Sighting* seen_before(const Damage& damage, const std::vector<std::int64_t>& taken) const;
   void remember(const std::vector<Sighting>& sightings);
 
+  /// The two largest confidences of the frames that show a damage, and whether it is a damage in one of them.
+  struct Agreement {
+    double first = 0, second = 0;
+    bool is_damage = false;
+  };
+  bool agree(const Agreement& frames, std::int64_t sightings) const;
+
+  double min_confidence_;
   std::vector<RoadDamage> damages_;
+  std::vector<Agreement> agreements_;  ///< of each of them
   std::vector<Sighting> recent_;
   std::array<double, 2> motion_px_{};  ///< image motion from frame to frame
   std::int64_t sequence_ = 0;

@@ -38,6 +38,12 @@ double overlap(const std::array<int, 4>& box, const std::array<double, 2>& move,
   return width * height / smaller;
 }
 
+double log_odds(double probability) {
+  constexpr double smallest = 1e-6;
+  const double p = std::clamp(probability, smallest, 1 - smallest);
+  return std::log(p / (1 - p));
+}
+
 /// Takes the measurement in a frame as the best one.
 void measure(const FlightFrame& frame, const Damage& damage, RoadDamage& known) {
   known.frame = frame.index;
@@ -101,6 +107,11 @@ void FlightInventory::remember(const std::vector<Sighting>& sightings) {
   recent_.insert(recent_.end(), sightings.begin(), sightings.end());
 }
 
+bool FlightInventory::agree(const Agreement& frames, std::int64_t sightings) const {
+  if (sightings == 1) return true;
+  return log_odds(frames.first) + log_odds(frames.second) >= 2 * log_odds(min_confidence_);
+}
+
 std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
   ++sequence_;
   if (frame.status == FrameStatus::good && frame.road_status != RoadStatus::tracked)
@@ -112,17 +123,23 @@ std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
     const std::int64_t id = before == nullptr ? static_cast<std::int64_t>(damages_.size()) + 1 : before->id;
     if (before == nullptr) {
       RoadDamage& found = damages_.emplace_back();
+      agreements_.emplace_back();
       found.id = id;
-      found.candidate = candidate;
       found.first_frame = frame.index;
       measure(frame, damage, found);
     }
     RoadDamage& known = damages_[static_cast<std::size_t>(id) - 1];
+    Agreement& frames = agreements_[static_cast<std::size_t>(id) - 1];
     ++known.sightings;
     known.last_frame = frame.index;
-    const bool promoted = known.candidate && !candidate;
-    if (promoted || (known.candidate == candidate && is_better(damage, known.best))) measure(frame, damage, known);
-    known.candidate = known.candidate && candidate;
+    const bool first_damage = !candidate && !frames.is_damage;
+    if (first_damage || (frames.is_damage != candidate && is_better(damage, known.best))) {
+      measure(frame, damage, known);
+    }
+    frames.is_damage = frames.is_damage || !candidate;
+    frames.second = std::max(frames.second, std::min(frames.first, damage.confidence));
+    frames.first = std::max(frames.first, damage.confidence);
+    known.candidate = !frames.is_damage || !agree(frames, known.sightings);
     ids.push_back(id);
     sightings.push_back({id, sequence_, damage});
   };

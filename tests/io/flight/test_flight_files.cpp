@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 Damage pothole(int u, int v, double depth_m = 0.05, double error_m = 0.001) {
   Damage damage;
   damage.id = 1;
+  damage.confidence = 0.9;
   damage.pixels = 1600;
   damage.box_px = {u - 20, v - 20, u + 19, v + 19};
   damage.centroid_px = {u - 0.5, v - 0.5};
@@ -259,6 +260,28 @@ TEST(FlightInventory, CandidateBecomesDamage) {
   EXPECT_EQ(worst_first(inventory.damages(), true)[0].id, 2);
 }
 
+// Noise is sure of itself in one frame of many.
+TEST(FlightInventory, TwoFramesMustAgree) {
+  const auto candidate_of = [](const std::vector<double>& confidences) {
+    FlightInventory inventory;
+    for (std::size_t i = 0; i < confidences.size(); ++i) {
+      Damage damage = pothole(100, 100);
+      damage.confidence = confidences[i];
+      const bool is_damage = damage.confidence >= 0.5;
+      FlightFrame frame =
+          frame_of(static_cast<std::int64_t>(i), is_damage ? std::vector{damage} : std::vector<Damage>());
+      if (!is_damage) frame.candidates = {damage};
+      inventory.add(frame);
+    }
+    return inventory.damages().at(0).candidate;
+  };
+  EXPECT_FALSE(candidate_of({0.55}));
+  EXPECT_TRUE(candidate_of({0.2, 0.55, 0.3}));
+  EXPECT_FALSE(candidate_of({0.2, 0.55, 0.46, 0.1}));
+  EXPECT_FALSE(candidate_of({0.3, 0.95})) << "odds of 3/7 and 19";
+  EXPECT_TRUE(candidate_of({0.45, 0.45, 0.45}));
+}
+
 TEST(FlightInventory, CutStartsNewDamages) {
   FlightInventory inventory;
   inventory.add(frame_of(0, {pothole(100, 100)}));
@@ -375,6 +398,18 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   const std::string clean = flight_report(input);
   EXPECT_NE(clean.find("No damage found"), std::string::npos);
   EXPECT_NE(clean.find("Pixels only"), std::string::npos);
+  ReportedMap road_map;
+  road_map.damages.resize(2);
+  for (RoadDamageRecord& record : road_map.damages) record.best.damage = damage;
+  input.map = road_map;
+  const std::string in_map = flight_report(input);
+  EXPECT_EQ(in_map.find("No damage found.</strong>"), std::string::npos);
+  EXPECT_NE(in_map.find("Their map shows 2"), std::string::npos);
+  input.map.reset();
+  input.curves.sigma_d_px.assign(3, FlightFrame::unknown);
+  const std::string nothing = flight_report(input);
+  EXPECT_EQ(nothing.find("No damage found"), std::string::npos);
+  EXPECT_NE(nothing.find("Not inspected"), std::string::npos);
 }
 
 }  // namespace
