@@ -31,9 +31,9 @@ inline double resolvable_change_px(double noise_px, double threshold_sigma) {
 }
 
 struct ResolutionOptions {
-  /// Standard deviation of the intact road in the transformed map, pixels, 0 … 10: `noise_px` of damages.json. 0.025 px
-  /// is ordinary asphalt in focus.
-  double noise_px = 0.025;
+  /// Standard deviation of the intact road in the transformed map, pixels, 0 … 10: `noise_px` of damages.json. 0.07 px
+  /// is that of the flattest real roads (KITTI: 0.06 to 0.8 px), rendered ones in focus have 0.025.
+  double noise_px = 0.07;
   double threshold_sigma = DamageOptions{}.threshold_sigma;  ///< resolvable depth in standard errors, 0.1 … 100
   double min_area_m2 = DamageOptions{}.min_area_m2;          ///< minimum area of the segmentation, m², 0 … 100
   double rut_width_m = 0.3;  ///< of the floor of a rut, 0.01 … 10; its depth is the mean over this width
@@ -81,7 +81,8 @@ class ResolutionLimits {
 
   RowResolution at_row(double v) const;
 
-  /// Resolution of `count` evenly spaced rows, from the last (nearest) to the first; at least 2.
+  /// Resolution of `count` evenly spaced rows, from the last (nearest) to the first. Throws Error unless
+  /// it is 2 … 65536.
   std::vector<RowResolution> rows(int count) const;
 
   /// Depth below the road, metres, at which the disparity of row v is lower by `change_px`; infinity if there is none.

@@ -95,7 +95,8 @@ RowResolution ResolutionLimits::at_row(double v) const {
 }
 
 std::vector<RowResolution> ResolutionLimits::rows(int count) const {
-  const int steps = std::max(count, 2) - 1;
+  require_range("limits", "count", count, 2, 1 << 16);
+  const int steps = count - 1;
   std::vector<RowResolution> rows;
   rows.reserve(static_cast<std::size_t>(steps) + 1);
   for (int i = 0; i <= steps; ++i) rows.push_back(at_row(last_row() + (first_row_ - last_row()) * i / steps));

@@ -91,7 +91,7 @@ TEST(ResolutionLimits, FortyFiveDegreesMatchesClosedForm) {
   EXPECT_NEAR(row.distance_m, z, 1e-12);
   EXPECT_NEAR(row.ahead_m, 3, 1e-12);
   EXPECT_NEAR(row.disparity_px, 60 / z - 7, 1e-12);
-  EXPECT_NEAR(row.std_error_m, z * z / 60 * std::hypot(0.025, 0.03) / std::numbers::sqrt2, 1e-12);
+  EXPECT_NEAR(row.std_error_m, z * z / 60 * std::hypot(0.07, 0.03) / std::numbers::sqrt2, 1e-12);
   EXPECT_NEAR(row.gsd_across_m, z / 500, 1e-12);
   const double difference = limits.at_row(179).ahead_m - limits.at_row(180).ahead_m;
   EXPECT_NEAR(row.gsd_along_m, difference, 1e-5 * difference);
