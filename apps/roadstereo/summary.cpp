@@ -84,6 +84,7 @@ std::string picture_lines(const std::filesystem::path& folder, bool has_sigma) {
 }  // namespace
 
 std::string damage_text(const DamageMap& map) {
+  if (!map.has_road()) return "not inspected: " + map.non_metric_reason;
   const std::string candidates = map.candidates.empty() ? ""
                                                         : fmt::format("; {} candidate{}", map.candidates.size(),
                                                                       map.candidates.size() == 1 ? "" : "s");

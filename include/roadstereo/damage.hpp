@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -135,9 +136,13 @@ struct DamageMap {
   Image<float> surface;            ///< ℓ' of the undamaged road, pixels; extrapolated across damage and off the road
   Image<float> depth;   ///< depth below the undamaged road, negative above it: metres along the road's normal if
                         ///< `metric`, else pixels of ℓ'. Interpolated in the holes of damages; NaN in other holes
-  double noise_px = 0;  ///< robust standard deviation of the intact road around `surface`, per cell, pixels
+  double noise_px = 0;  ///< robust standard deviation of the intact road around `surface`, per cell, pixels; NaN
+                        ///< without a road
   bool metric = false;  ///< whether `depth` is in metres
   std::string non_metric_reason;  ///< why `metric` is false; empty if it is true
+
+  /// Whether there is a road, so that an empty list says something of it.
+  bool has_road() const { return !std::isnan(noise_px); }
 };
 
 /// Find and measure the regions that differ from the road's surface: IRLS fit of a quadratic road surface, hysteresis

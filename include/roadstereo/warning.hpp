@@ -16,6 +16,7 @@ namespace roadstereo {
 ///   few-disparities  too few pixels have a disparity
 ///   static-mask      a part of the picture never moves and is ignored from this frame on
 ///   no-damage        damage could not be searched
+///   search-end       the floor of a damage lies where the searched disparities end
 ///   values-lost      a file cannot hold all values
 /// and those of `HealthFinding`.
 constexpr std::string_view warning_code(std::string_view warning) {

@@ -70,7 +70,7 @@ double FlightHealth::vibration_px() const {
   return cli::vibration_px(known_of(of_frames_, &PairHealth::row_offset_px));
 }
 
-double FlightHealth::lost_share() const {
+double FlightHealth::missing_pairs() const {
   std::vector<double> periods;
   for (std::size_t i = 1; i < times_s_.size(); ++i) periods.push_back(times_s_[i] - times_s_[i - 1]);
   double missing = 0;
@@ -78,13 +78,18 @@ double FlightHealth::lost_share() const {
   for (const double gap : periods) {
     if (period > 0 && gap > 1.5 * period) missing += std::round(gap / period) - 1;
   }
-  const double all = static_cast<double>(frames_) + missing;
+  return missing;
+}
+
+double FlightHealth::lost_share() const {
+  const double missing = missing_pairs(), all = static_cast<double>(frames_) + missing;
   return all > 0 ? (static_cast<double>(without_result_) + missing) / all : 0;
 }
 
 std::vector<HealthFinding> FlightHealth::findings() const {
   std::vector<HealthFinding> findings = typical().findings();
-  const std::string advice = "see the reasons in frames.csv, and record to a faster disk";
+  const bool mostly_missing = missing_pairs() > static_cast<double>(without_result_);
+  const std::string advice = mostly_missing ? "record to a faster disk" : "frames.csv has the reasons";
   for (const auto& finding : {vibration_finding(vibration_px()), lost_pairs_finding(lost_share(), advice)}) {
     if (finding) findings.push_back(*finding);
   }

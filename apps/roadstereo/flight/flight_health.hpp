@@ -21,8 +21,9 @@ class FlightHealth {
   PairHealth typical() const;
   /// Standard deviation of the rows' offset from frame to frame, pixels; NaN unknown.
   double vibration_px() const;
-  /// Share of the pairs that are missing or without a result, 0 … 1: rejected, failed, or gaps in the times of more
-  /// than one and a half periods.
+  /// Pairs in the gaps in the times of more than one and a half periods.
+  double missing_pairs() const;
+  /// Share of the pairs that are missing or without a result, 0 … 1: rejected, failed, or in a gap.
   double lost_share() const;
   /// Findings of `typical`, vibration, lost pairs and what the trajectory tells.
   std::vector<HealthFinding> findings() const;

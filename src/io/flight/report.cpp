@@ -30,7 +30,19 @@ std::string jpeg_uri(const std::vector<std::uint8_t>& jpeg) {
 std::string notices_of(const FlightReportInput& input) {
   std::string html;
   for (const std::string& notice : input.notices) html += "<p class=\"notice\">" + escaped(notice) + "</p>\n";
-  if (input.damages.empty()) {
+  const std::vector<double>& roughness = input.curves.sigma_d_px;
+  const bool inspected =
+      std::any_of(roughness.begin(), roughness.end(), [](double sigma_d_px) { return std::isfinite(sigma_d_px); });
+  const std::size_t in_map = input.map ? input.map->damages.size() : 0;
+  if (!inspected) {
+    html +=
+        "<p class=\"notice\"><strong>Not inspected.</strong> No frame has a road, so that nothing is known of its "
+        "damage; "
+        "frames.csv has the reasons.</p>";
+  } else if (input.damages.empty() && in_map > 0) {
+    html += "<p class=\"notice\"><strong>No damage found in single frames.</strong> Their map shows " +
+            std::to_string(in_map) + ": see \"Damages on the map\".</p>";
+  } else if (input.damages.empty()) {
     html +=
         "<p class=\"notice good\"><strong>No damage found.</strong> No part of the visible road deviates from its "
         "surface by more than the resolvable depth of this rig.</p>";

@@ -117,6 +117,10 @@ std::string damages_cards(const Damages& damages, std::size_t candidates, bool m
 }
 
 std::string summary_notices(const DamageMap& map) {
+  if (!map.has_road()) {
+    return "<p class=\"notice\"><strong>Not inspected.</strong> Nothing is known of the damage of the road: " +
+           escaped(map.non_metric_reason) + ".</p>";
+  }
   std::string notices;
   if (map.damages.empty()) {
     notices +=

@@ -5,7 +5,7 @@
 namespace roadstereo::io {
 
 /// Plot area of the drawings of 520×246, pixels.
-inline constexpr double plot_left = 58, plot_right = 508, plot_top = 18, plot_bottom = 204;
+inline constexpr double plot_left = 66, plot_right = 508, plot_top = 18, plot_bottom = 204;
 
 /// One axis: maps values to coordinates of the drawing.
 struct SvgAxis {
