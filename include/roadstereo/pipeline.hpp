@@ -98,7 +98,7 @@ struct PipelineState {
   int width = 0;                    ///< size of the frames, pixels; 0 before the first one
   int height = 0;                   ///< pixels
   std::optional<TrackedRoad> road;  ///< the last frame's road; absent when it had none
-  double roll_rad = 0;              ///< ψ(t), start of the descent of ψ(t+1), eq. (24); 0 when not observable
+  double roll_rad = 0;              ///< ψ(t), start of the descent of ψ(t+1), eq. (25); 0 when not observable
   Misalignment misalignment;        ///< of the target; measured whenever the road model is estimated anew
 
   /// Throws Error naming the first value that no frame of this size leaves.

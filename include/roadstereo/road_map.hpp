@@ -22,6 +22,10 @@ using RigidTransform = std::array<double, 12>;
 RigidTransform compose(const RigidTransform& second, const RigidTransform& first);
 /// Returns the inverse.
 RigidTransform inverse(const RigidTransform& transform);
+/// Returns a point, transformed.
+std::array<double, 3> transform_point(const RigidTransform& transform, const std::array<double, 3>& point);
+/// Returns a direction, rotated.
+std::array<double, 3> rotate(const RigidTransform& transform, const std::array<double, 3>& direction);
 
 /// Largest column or row of a cell, and least but for the sign: about 5000 km at 1 cm.
 inline constexpr int max_map_cell = 1 << 29;

@@ -2,74 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/ground_plane.hpp"
 
 namespace roadstereo {
-namespace {
-
-std::array<double, 3> point_through(const RigidTransform& t, const std::array<double, 3>& p) {
-  return {t[0] * p[0] + t[1] * p[1] + t[2] * p[2] + t[3], t[4] * p[0] + t[5] * p[1] + t[6] * p[2] + t[7],
-          t[8] * p[0] + t[9] * p[1] + t[10] * p[2] + t[11]};
-}
-
-std::array<double, 3> direction_through(const RigidTransform& t, const std::array<double, 3>& p) {
-  return {t[0] * p[0] + t[1] * p[1] + t[2] * p[2], t[4] * p[0] + t[5] * p[1] + t[6] * p[2],
-          t[8] * p[0] + t[9] * p[1] + t[10] * p[2]};
-}
-
-}  // namespace
-
-ColourReader::ColourReader(const FrameView& image, double white_level) : image_(image) {
-  const float white = image.sample == SampleType::u8 ? 255.0F : 65535.0F;
-  scale_ = 255.0F / (white_level > 0 ? static_cast<float>(white_level) : white);
-}
-
-std::array<float, 3> ColourReader::pixel(int u, int v) const {
-  const int channels = channel_count(image_.order);
-  const auto* const row = static_cast<const std::uint8_t*>(image_.data) + v * image_.stride_bytes;
-  const auto sample = [&](int channel) -> float {
-    const std::ptrdiff_t index = static_cast<std::ptrdiff_t>(u) * channels + channel;
-    if (image_.sample == SampleType::u8) return row[index];
-    std::uint16_t value = 0;
-    std::memcpy(&value, row + 2 * index, sizeof value);
-    return value;
-  };
-  if (channels == 1) {
-    const float grey = sample(0) * scale_;
-    return {grey, grey, grey};
-  }
-  const bool red_first = image_.order == ChannelOrder::rgb || image_.order == ChannelOrder::rgba;
-  return {sample(red_first ? 0 : 2) * scale_, sample(1) * scale_, sample(red_first ? 2 : 0) * scale_};
-}
-
-std::array<float, 3> ColourReader::at(double u, double v) const {
-  const int u0 = std::clamp(static_cast<int>(std::floor(u)), 0, image_.width - 2);
-  const int v0 = std::clamp(static_cast<int>(std::floor(v)), 0, image_.height - 2);
-  const auto along = static_cast<float>(u - u0), down = static_cast<float>(v - v0);
-  const auto a = pixel(u0, v0), b = pixel(u0 + 1, v0), c = pixel(u0, v0 + 1), d = pixel(u0 + 1, v0 + 1);
-  std::array<float, 3> colour{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float above = a[k] + along * (b[k] - a[k]);
-    const float below = c[k] + along * (d[k] - c[k]);
-    colour[k] = std::clamp(above + down * (below - above), 0.0F, 255.0F);
-  }
-  return colour;
-}
-
 FrameProjection::FrameProjection(const MapFrame& frame, const RoadMapOptions& options)
     : frame_(frame),
       options_(options),
       map_to_camera_(inverse(frame.camera_to_map)),
       colours_(frame.image, frame.white_level) {
   const GroundPlane plane = ground_plane(frame.road, frame.calibration);
-  const std::array<double, 3> normal = direction_through(frame.camera_to_map, plane.normal);  // downwards
-  const std::array<double, 3> foot = point_through(
+  const std::array<double, 3> normal = rotate(frame.camera_to_map, plane.normal);  // downwards
+  const std::array<double, 3> foot = transform_point(
       frame.camera_to_map,
       {plane.height_m * plane.normal[0], plane.height_m * plane.normal[1], plane.height_m * plane.normal[2]});
-  constexpr double min_vertical = 0.3;
+  constexpr double min_vertical = 0.342;  // cos 70°
   if (!(normal[2] < -min_vertical)) {
     fail("the road of a frame is inclined by more than 70° in the map: its pose, or the axis that points up, is wrong");
   }
@@ -80,7 +28,7 @@ FrameProjection::FrameProjection(const MapFrame& frame, const RoadMapOptions& op
 }
 
 std::optional<std::array<double, 2>> FrameProjection::pixel_of(double x, double y, double z) const {
-  const std::array<double, 3> p = point_through(map_to_camera_, {x, y, z});
+  const std::array<double, 3> p = transform_point(map_to_camera_, {x, y, z});
   if (!(p[2] > 0)) return std::nullopt;
   const StereoCalibration& rig = frame_.calibration;
   const double u = rig.cx_px + rig.focal_px * p[0] / p[2];
@@ -125,7 +73,7 @@ MapBox FrameProjection::footprint() const {
     for (int u = 0; u < width + step - 1; u += step) {
       const int column = std::min(u, width - 1), row = std::min(v, height - 1);
       if (!is_sharp(column, row)) continue;
-      const std::array<double, 3> p = point_through(
+      const std::array<double, 3> p = transform_point(
           frame_.camera_to_map, frame_.calibration.point_m(column, row, frame_.road.disparity(column, row)));
       x0 = std::min(x0, p[0]);
       x1 = std::max(x1, p[0]);
@@ -154,7 +102,7 @@ std::optional<CellMeasurement> FrameProjection::measure(double x, double y) cons
     const std::optional<double> disparity = disparity_at(u, v);
     if (!disparity || !(*disparity + rig.disparity_offset_px > 0)) return std::nullopt;
     const std::array<double, 3> p = rig.point_m(u, v, *disparity);
-    const std::array<double, 3> point = point_through(frame_.camera_to_map, p);
+    const std::array<double, 3> point = transform_point(frame_.camera_to_map, p);
     z = point[2];
     if (z - road > options_.max_above_m || road - z > options_.max_below_m) return std::nullopt;
     const std::optional<std::array<double, 2>> next = pixel_of(x, y, z);

@@ -3,23 +3,11 @@
 #include <array>
 #include <optional>
 
+#include "core/colour_reader.hpp"
 #include "mapping/map_cell.hpp"
 #include "roadstereo/road_map.hpp"
 
 namespace roadstereo {
-
-/// Colours of pixels of an image of any order and depth, 8 bit.
-class ColourReader {
- public:
-  ColourReader(const FrameView& image, double white_level);
-  std::array<float, 3> at(double u, double v) const;
-
- private:
-  std::array<float, 3> pixel(int u, int v) const;
-
-  FrameView image_;
-  float scale_ = 1;
-};
 
 /// Heights of cells from one frame: fixed-point iteration along the vertical of the cell.
 class FrameProjection {
@@ -33,16 +21,9 @@ class FrameProjection {
   std::optional<CellMeasurement> measure(double x, double y) const;
 
  private:
-  struct Hit {
-    double u = 0, v = 0;
-    std::array<double, 3> point{};  ///< of the map
-    double disparity = 0;           ///< with the offset of the calibration, pixels
-    double depth = 0;               ///< along the optical axis, metres
-  };
   std::optional<std::array<double, 2>> pixel_of(double x, double y, double z) const;
   std::optional<double> disparity_at(double u, double v) const;
   bool is_sharp(double u, double v) const;
-  double height_above_road(const Hit& hit) const;
 
   const MapFrame& frame_;
   const RoadMapOptions& options_;

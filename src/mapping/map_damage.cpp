@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/order_statistics.hpp"
+#include "mapping/footprints.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/roll.hpp"
 
@@ -18,8 +19,7 @@ constexpr double road_px = 64;           ///< disparity of the window's plane
 constexpr double delta_t_px = 10;        ///< transformed disparity of the window's plane
 
 void make_unique(MapCells& cells) {
-  std::sort(cells.begin(), cells.end(),
-            [](const auto& a, const auto& b) { return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0]; });
+  std::sort(cells.begin(), cells.end(), cell_less);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
 }
 
@@ -73,6 +73,8 @@ bool make_view(const RoadMap& map, const MapBox& box, WindowView& view) {
   DisparityPlane plane;
   try {
     plane = estimate_roll(scaled, std::nullopt, std::nullopt, 0, {}, map.options().threads).plane;
+  } catch (const SystemError&) {
+    throw;
   } catch (const Error&) {  // all cells lie on one line
     return false;
   }
@@ -116,12 +118,11 @@ MapDamage map_damage(const Damage& damage, const DamageMap& found, const MapBox&
 /// Whether two damages of one kind share a footprint cell.
 bool overlap(const MapDamage& one, const MapDamage& other) {
   if (one.damage.kind != other.damage.kind) return false;
-  const auto less = [](const auto& a, const auto& b) { return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0]; };
   auto a = one.footprint.begin(), b = other.footprint.begin();
   while (a != one.footprint.end() && b != other.footprint.end()) {
-    if (less(*a, *b)) {
+    if (cell_less(*a, *b)) {
       ++a;
-    } else if (less(*b, *a)) {
+    } else if (cell_less(*b, *a)) {
       ++b;
     } else {
       return true;
@@ -169,6 +170,7 @@ std::vector<MapBox> windows_of(const RoadMap& map, int side) {
 std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& options) {
   constexpr int min_side = 1024;
   constexpr double min_side_m = 4;
+  options.validate();
   const double cell_m = map.options().cell_m;
   const int side = std::max(min_side, static_cast<int>(std::ceil(min_side_m / cell_m / 2)) * 2);
   std::vector<MapDamage> findings;
@@ -178,6 +180,8 @@ std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& 
     if (!make_view(map, box, view)) continue;
     try {
       find_damage(view.input, options, map.options().threads, found);
+    } catch (const SystemError&) {
+      throw;
     } catch (const Error&) {  // too little of it lies on one surface
       continue;
     }
@@ -190,29 +194,19 @@ std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& 
 
 std::vector<MapDamage> locate_damage(const DamageMap& found, const DisparityPlane& road,
                                      const StereoCalibration& calibration, const RigidTransform& camera_to_map) {
-  const auto in_map = [&](double u, double v) {
-    const std::array<double, 3> p = calibration.point_m(u, v, road.disparity(u, v));
-    const RigidTransform& t = camera_to_map;
-    return std::array<double, 2>{t[0] * p[0] + t[1] * p[1] + t[2] * p[2] + t[3],
-                                 t[4] * p[0] + t[5] * p[1] + t[6] * p[2] + t[7]};
-  };
-  const RoadAxes axes = road_axes(ground_plane(road, calibration));
-  const RigidTransform& t = camera_to_map;
-  // The road's x axis in the map.
-  const double axis_x = t[0] * axes.x[0] + t[1] * axes.x[1] + t[2] * axes.x[2];
-  const double axis_y = t[4] * axes.x[0] + t[5] * axes.x[1] + t[6] * axes.x[2];
+  const std::array<double, 3> axis = rotate(camera_to_map, road_axes(ground_plane(road, calibration)).x);
   std::vector<MapDamage> located;
   for (const Damage& damage : found.damages) {
     if (!damage.metrics) continue;
     MapDamage result;
     result.damage = damage;
-    const std::array<double, 3>& p = damage.metrics->centroid_m;
-    result.at_m = {t[0] * p[0] + t[1] * p[1] + t[2] * p[2] + t[3], t[4] * p[0] + t[5] * p[1] + t[6] * p[2] + t[7]};
-    result.length_angle_rad = damage.metrics->angle_rad + std::atan2(axis_y, axis_x);
+    const std::array<double, 3> centroid = transform_point(camera_to_map, damage.metrics->centroid_m);
+    result.at_m = {centroid[0], centroid[1]};
+    result.length_angle_rad = damage.metrics->angle_rad + std::atan2(axis[1], axis[0]);
     for (int v = damage.box_px[1]; v <= damage.box_px[3]; ++v) {
       for (int u = damage.box_px[0]; u <= damage.box_px[2]; ++u) {
         if (found.ids(u, v) != damage.id) continue;
-        const std::array<double, 2> at = in_map(u, v);
+        const auto at = transform_point(camera_to_map, calibration.point_m(u, v, road.disparity(u, v)));
         result.footprint.push_back(footprint_cell(at[0], at[1]));
       }
     }

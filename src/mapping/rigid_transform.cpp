@@ -25,4 +25,14 @@ RigidTransform inverse(const RigidTransform& transform) {
   return result;
 }
 
+std::array<double, 3> rotate(const RigidTransform& t, const std::array<double, 3>& d) {
+  return {t[0] * d[0] + t[1] * d[1] + t[2] * d[2], t[4] * d[0] + t[5] * d[1] + t[6] * d[2],
+          t[8] * d[0] + t[9] * d[1] + t[10] * d[2]};
+}
+
+std::array<double, 3> transform_point(const RigidTransform& t, const std::array<double, 3>& p) {
+  return {t[0] * p[0] + t[1] * p[1] + t[2] * p[2] + t[3], t[4] * p[0] + t[5] * p[1] + t[6] * p[2] + t[7],
+          t[8] * p[0] + t[9] * p[1] + t[10] * p[2] + t[11]};
+}
+
 }  // namespace roadstereo

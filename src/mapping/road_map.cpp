@@ -92,6 +92,7 @@ void RoadMapOptions::validate() const {
   require_range("map", "max_footprint_cells", max_footprint_cells, 1.0, 1000.0);
   require_range("map", "gate_sigmas", gate_sigmas, 1.0, 100.0);
   require_range("map", "common_share", common_share, 0.0, 1.0);
+  resolve_threads(threads);
 }
 
 struct RoadMap::State {

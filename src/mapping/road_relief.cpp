@@ -11,6 +11,7 @@
 #include "core/cholesky.hpp"
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
+#include "core/tukey.hpp"
 
 namespace roadstereo {
 namespace {
@@ -63,7 +64,7 @@ float reference_at(const NodeGrid& grid, int column, int row) {
     double x, y, z, residual;
   };
   constexpr int iterations = 4;
-  constexpr double tukey = 4.685, smallest = 1e-9, min_scale_m = 1e-4;
+  constexpr double smallest = 1e-9, min_scale_m = 1e-4;
   const int reach = static_cast<int>(radius_m / node_m);
   std::vector<Neighbour> neighbours;
   for (int j = std::max(0, row - reach); j <= std::min(grid.height.height() - 1, row + reach); ++j) {
@@ -89,9 +90,7 @@ float reference_at(const NodeGrid& grid, int column, int row) {
     Matrix<3> matrix{};
     Vector<3> right{};
     for (const Neighbour& n : neighbours) {
-      const double share = n.residual / limit;
-      if (std::abs(share) >= 1) continue;
-      const double w = (1 - share * share) * (1 - share * share);
+      const double w = tukey_weight(n.residual / limit);
       const Vector<3> terms{1, n.x, n.y};
       for (std::size_t a = 0; a < 3; ++a) {
         right[a] += w * terms[a] * n.z;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/order_statistics.hpp"
+#include "core/tukey.hpp"
 #include "odometry/direct_alignment.hpp"
 
 namespace roadstereo {
@@ -212,7 +213,6 @@ RigidMotion solve_motion(const std::vector<Match>& matches, const StereoCalibrat
                          const RigidMotion& start, double min_scale_px) {
   constexpr int iterations = 12;
   constexpr double narrowing = 0.6;
-  constexpr double truncation = 4.685;  // Tukey: 95 % efficiency on normal residuals
   RigidMotion motion = start;
   std::vector<double> errors, magnitudes;
   double widest = 0;
@@ -232,9 +232,8 @@ RigidMotion solve_motion(const std::vector<Match>& matches, const StereoCalibrat
     Matrix<6> normal{};
     Vector<6> right{};
     for (std::size_t k = 0; k < matches.size(); ++k) {
-      const double relative = errors[k] / (truncation * scale);
-      if (!(relative < 1)) continue;
-      const double weight = (1 - relative * relative) * (1 - relative * relative);
+      const double weight = tukey_weight(errors[k] / (tukey * scale));
+      if (weight == 0) continue;
       const Projection seen = projector.project(matches[k].point);
       const Vector<3>& q = seen.point;
       const Vector<3> du{f / q[2], 0, -f * q[0] / (q[2] * q[2])}, dv{0, f / q[2], -f * q[1] / (q[2] * q[2])};

@@ -385,21 +385,6 @@ void Pipeline::State::end_frame() {
   has_frame = has_maps = true;
 }
 
-void PipelineState::validate() const {
-  constexpr double max_disparity_px = 8192, full_turn_rad = 6.3;
-  if (road) {
-    for (const int u : {0, width}) {
-      for (const int v : {0, height}) {
-        require_range("road", "disparity", road->model.disparity(u, v), -max_disparity_px, max_disparity_px);
-      }
-    }
-    require_range("road", "inlier_share", road->inlier_share, 0.0, 1.0);
-    require_range("road", "correlation", road->correlation, -1.0, 1.0);
-  }
-  require_range("state", "roll_rad", roll_rad, -full_turn_rad, full_turn_rad);
-  require_range("misalignment", "largest_px", misalignment.largest_px(width, height), 0.0, Misalignment::max_px);
-}
-
 Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
     : state_(std::make_unique<State>()) {
   options.validate();
@@ -447,57 +432,6 @@ void Pipeline::find_damage(DamageMap& result) const {
   roadstereo::find_damage(s.result, s.calibration, s.options.damage, s.threads, result);
 }
 
-DamageMap find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
-                      const DamageOptions& options, int threads) {
-  DamageMap result;
-  find_damage(frame, calibration, options, threads, result);
-  return result;
-}
-
-namespace {
-
-/// Removes the ids of masked pixels, and damages that have half of their pixels or fewer left: what a damage has in a
-/// mask was interpolated.
-void remove_masked(const Image<std::uint8_t>& mask, DamageMap& map) {
-  std::vector<std::size_t> masked(map.damages.size() + 1);
-  for (int v = 0; v < mask.height(); ++v) {
-    for (int u = 0; u < mask.width(); ++u) {
-      if (mask(u, v) == 0 || map.ids(u, v) == 0) continue;
-      ++masked[map.ids(u, v)];
-      map.ids(u, v) = 0;
-    }
-  }
-  std::erase_if(map.damages, [&](const Damage& damage) {
-    const std::size_t pixels = damage.pixels - masked[static_cast<std::size_t>(damage.id)];
-    return 2 * pixels <= damage.pixels;
-  });
-}
-
-}  // namespace
-
-void find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
-                 const DamageOptions& options, int threads, DamageMap& result) {
-  if (frame.disparity.empty()) {
-    fail("the frame has no maps on the host, where damage is looked for: it is none, or they were left on the device");
-  }
-  if (!frame.roll_found) {
-    result = make_empty_damage_map(frame.disparity.width(), frame.disparity.height(), "no road was found");
-    return;
-  }
-  DamageInput input;
-  input.transformed = frame.transformed;
-  input.disparity = frame.disparity;
-  input.sigma = frame.sigma;
-  input.smoothing_px = frame.smoothing_px;
-  input.grey = frame.grey;
-  input.right = frame.right;
-  input.misalignment = frame.shift.misalignment;
-  input.plane = frame.geometry.plane;
-  input.calibration = calibration;
-  find_damage(input, options, threads, result);
-  remove_masked(frame.mask, result);
-}
-
 const PipelineState& Pipeline::carried() const {
   return state_->carried;
 }
@@ -515,8 +449,8 @@ void Pipeline::set_mask(ImageView<const std::uint8_t> mask) {
 }
 
 void Pipeline::set_device_options(const DeviceOptions& use) {
-  state_->has_frame = false;
   state_->stages->set_device_options(use);
+  state_->has_frame = false;
 }
 
 DeviceMaps Pipeline::device_maps() const {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/order_statistics.hpp"
-#include "road/robust_weights.hpp"
+#include "core/tukey.hpp"
 
 namespace roadstereo {
 namespace {

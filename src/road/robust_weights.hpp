@@ -3,23 +3,14 @@
 #include <cmath>
 
 #include "core/order_statistics.hpp"
+#include "core/tukey.hpp"
 #include "roadstereo/host_device.hpp"
 
 // The formulas of the robust plane fit, which runs on the host and on the device.
 namespace roadstereo {
 
-/// Tukey's constant: 95 % efficiency for normal residuals.
-inline constexpr double tukey = 4.685;
-
 /// Residuals below this are rounding, not noise.
 inline constexpr double min_scale_px = 1e-3;
-
-/// Tukey's biweight, 0 … 1; `x` is the residual in windows of tukey · scale.
-template <class Real>
-ROADSTEREO_HD Real tukey_weight(Real x) {
-  const Real rest = 1 - x * x;
-  return rest > 0 ? rest * rest : Real{0};
-}
 
 /// The scale after a step: that of the residuals in the window that is left, so that it narrows onto the road.
 ROADSTEREO_HD inline double narrowed_scale(double median_magnitude, double scale) {

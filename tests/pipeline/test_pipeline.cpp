@@ -217,6 +217,19 @@ TEST(PipelineMask, MaskedPixelsHaveNeitherDisparityNorDamage) {
     EXPECT_EQ(masked, static_cast<std::size_t>(std::count(mask.row(0), mask.row(0) + mask.pixels(), 255)));
     EXPECT_GT(known, (mask.pixels() - masked) * 9 / 10);
     EXPECT_EQ(damaged(mask), 0);
+    // Damages are numbered by their order, and ids are those of damages.
+    const DamageMap damage = pipeline.find_damage();
+    std::vector<std::size_t> pixels(damage.damages.size() + 1);
+    for (int v = 0; v < mask.height(); ++v) {
+      for (int u = 0; u < mask.width(); ++u) {
+        ASSERT_LT(damage.ids(u, v), pixels.size());
+        ++pixels[damage.ids(u, v)];
+      }
+    }
+    for (std::size_t k = 0; k < damage.damages.size(); ++k) {
+      EXPECT_EQ(damage.damages[k].id, static_cast<int>(k) + 1);
+      EXPECT_GT(2 * pixels[k + 1], damage.damages[k].pixels);
+    }
     EXPECT_LT(std::abs(result.geometry.roll_rad - pair.roll_rad), 0.006);
   }
   pipeline.set_mask({});

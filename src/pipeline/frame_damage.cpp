@@ -1,0 +1,68 @@
+#include <algorithm>
+#include <vector>
+
+#include "roadstereo/error.hpp"
+#include "roadstereo/pipeline.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Removes the ids of masked pixels, and damages that have half of their pixels or fewer left: what a damage has in a
+/// mask was interpolated. The others are numbered anew, in their order.
+void remove_masked(const Image<std::uint8_t>& mask, DamageMap& map) {
+  if (mask.empty()) return;
+  std::vector<std::size_t> seen(map.damages.size() + 1);
+  for (int v = 0; v < mask.height(); ++v) {
+    for (int u = 0; u < mask.width(); ++u) {
+      if (mask(u, v) != 0) map.ids(u, v) = 0;
+      ++seen[map.ids(u, v)];
+    }
+  }
+  std::vector<std::uint16_t> new_ids(map.damages.size() + 1, 0);
+  std::erase_if(map.damages,
+                [&](const Damage& damage) { return 2 * seen[static_cast<std::size_t>(damage.id)] <= damage.pixels; });
+  for (std::size_t k = 0; k < map.damages.size(); ++k) {
+    int& id = map.damages[k].id;
+    new_ids[static_cast<std::size_t>(id)] = static_cast<std::uint16_t>(k + 1);
+    id = static_cast<int>(k + 1);
+  }
+  for (int v = 0; v < map.ids.height(); ++v) {
+    std::uint16_t* const row = map.ids.row(v);
+    std::transform(row, row + map.ids.width(), row, [&](std::uint16_t id) { return new_ids[id]; });
+  }
+}
+
+}  // namespace
+
+DamageMap find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
+                      const DamageOptions& options, int threads) {
+  DamageMap result;
+  find_damage(frame, calibration, options, threads, result);
+  return result;
+}
+
+void find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
+                 const DamageOptions& options, int threads, DamageMap& result) {
+  if (frame.disparity.empty()) {
+    fail("the frame has no maps on the host, where damage is looked for: it is none, or they were left on the device");
+  }
+  if (!frame.roll_found) {
+    result = make_empty_damage_map(frame.disparity.width(), frame.disparity.height(),
+                                   frame.road.has_road() ? "too few disparities of the road" : "no road was found");
+    return;
+  }
+  DamageInput input;
+  input.transformed = frame.transformed;
+  input.disparity = frame.disparity;
+  input.sigma = frame.sigma;
+  input.smoothing_px = frame.smoothing_px;
+  input.grey = frame.grey;
+  input.right = frame.right;
+  input.misalignment = frame.shift.misalignment;
+  input.plane = frame.geometry.plane;
+  input.calibration = calibration;
+  find_damage(input, options, threads, result);
+  remove_masked(frame.mask, result);
+}
+
+}  // namespace roadstereo
