@@ -62,7 +62,7 @@ struct PairHealth {
   bool depth_is_trusted() const;
 };
 
-/// Measure the health of a pair. `damage`: of the frame, by find_damage.
+/// Measure the health of a pair. `damage`: of the frame, by find_damage. Throws Error when it has another size.
 PairHealth measure_health(const FrameResult& frame, const DamageMap& damage,
                           const std::optional<StereoCalibration>& calibration, const DamageOptions& options = {},
                           int threads = 0);

@@ -67,15 +67,15 @@ void add_pictures(const PairHealth& h, Findings& findings) {
   const double gain = std::max(h.gain, 1 / h.gain);
   findings.add_above("gain", gain, max_gain, "", false, "the right view is ", rounded(h.gain, 0.01),
                      " times as bright as the left one (limit ", max_gain, "); couple the exposures");
-  const double clipped = std::max(h.clipped_left, h.clipped_right);
+  const double clipped = std::fmax(h.clipped_left, h.clipped_right);
   findings.add_above("clipped", clipped, max_clipped, "", false, "of the road ", rounded(100 * h.clipped_left, 1),
                      " % (left) and ", rounded(100 * h.clipped_right, 1),
                      " % (right) of the pixels are black or white (limit ", 100 * max_clipped,
                      " %); change the exposure");
   constexpr double max_blur_px = 3;  // the radius of a block
   constexpr double max_blur_ratio = 1.5;
-  const double blur = std::max(h.blur_left_px, h.blur_right_px);
-  const double ratio = blur / std::min(h.blur_left_px, h.blur_right_px);
+  const double blur = std::fmax(h.blur_left_px, h.blur_right_px);  // of the other view if one is unknown
+  const double ratio = std::max(h.blur_left_px / h.blur_right_px, h.blur_right_px / h.blur_left_px);
   findings.add_above("blur", blur, max_blur_px, "px", false, "the pictures are blurred by ",
                      rounded(h.blur_left_px, 0.1), " px (left) and ", rounded(h.blur_right_px, 0.1),
                      " px (right; limit ", max_blur_px, " px); focus, or expose for a shorter time");
@@ -88,7 +88,7 @@ void add_pictures(const PairHealth& h, Findings& findings) {
                      " %): damage may be missed; add light, or expose for longer with less gain");
   constexpr double max_blocks = 0.1;
   constexpr double max_trusted_blocks = 1;  // the grid of the blocks is as strong as the texture: it is matched
-  const double blocks = std::max(h.blocks_left, h.blocks_right);
+  const double blocks = std::fmax(h.blocks_left, h.blocks_right);
   findings.add_above("compression", blocks, max_blocks, "", blocks > max_trusted_blocks,
                      "steps between blocks of 8×8 pixels are ", rounded(100 * blocks, 1),
                      " % higher than others (limit ", 100 * max_blocks,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "core/order_statistics.hpp"
@@ -11,6 +12,25 @@ namespace roadstereo {
 namespace {
 
 using Grey = ImageView<const std::int16_t>;
+
+/// Pixel of the right image nearest to what the left one has at a pixel.
+struct Match {
+  int u = 0, v = 0;
+  double off_px = 0;  ///< distance to the place itself, the larger of both directions
+};
+
+/// Nothing where there is no disparity or fewer than `margin` pixels lie around the match.
+std::optional<Match> match_of(const FrameResult& frame, int u, int v, int margin) {
+  const double disparity = frame.disparity(u, v);
+  if (std::isnan(disparity)) return std::nullopt;
+  const Misalignment& misalignment = frame.shift.misalignment;
+  const double x = u - disparity, column = x + misalignment.columns_at(v), row = v + misalignment.rows_at(x, v);
+  const Match match{static_cast<int>(std::lround(column)), static_cast<int>(std::lround(row)),
+                    std::max(std::abs(column - std::round(column)), std::abs(row - std::round(row)))};
+  const bool inside = match.u >= margin && match.u + margin < frame.right.width() && match.v >= margin &&
+                      match.v + margin < frame.right.height();
+  return inside ? std::optional(match) : std::nullopt;
+}
 
 /// Share of the road's pixels in each view that are black or white, and the ratio of the levels of the others.
 void measure_exposure(const FrameResult& frame, const DamageMap& damage, PairHealth& health) {
@@ -21,10 +41,9 @@ void measure_exposure(const FrameResult& frame, const DamageMap& damage, PairHea
   std::size_t pixels = 0, left_clipped = 0, right_clipped = 0;
   for (int v = 0; v < frame.grey.height(); v += step) {
     for (int u = 0; u < frame.grey.width(); u += step) {
-      const float disparity = frame.disparity(u, v);
-      const auto from = std::lround(u - double{disparity});
-      if (damage.road(u, v) == 0 || std::isnan(disparity) || from < 0 || from >= frame.right.width()) continue;
-      const int left = frame.grey(u, v), right = frame.right(static_cast<int>(from), v);
+      const std::optional<Match> match = match_of(frame, u, v, 0);
+      if (damage.road(u, v) == 0 || !match) continue;
+      const int left = frame.grey(u, v), right = frame.right(match->u, match->v);
       ++pixels;
       left_clipped += is_clipped(left) ? 1U : 0U;
       right_clipped += is_clipped(right) ? 1U : 0U;
@@ -99,7 +118,7 @@ double block_variance(Grey image, int at_u, int at_v, int radius) {
 }
 
 /// Variance of the white noise of a view by the median variance of blocks of the road. Noise is what the mask responds
-/// to differently in both views, where the disparity is nearly a whole number: fine texture is the same in both.
+/// to differently in both views, where matches are nearly whole pixels: fine texture is the same in both.
 double noise_share(const FrameResult& frame, const DamageMap& damage) {
   constexpr int radius = 3, step = 3;
   constexpr double mask_norm = 6, max_fraction_px = 0.25;
@@ -107,11 +126,10 @@ double noise_share(const FrameResult& frame, const DamageMap& damage) {
   std::vector<float> differences, variances;
   for (int v = radius; v + radius < frame.grey.height(); v += step) {
     for (int u = radius; u + radius < frame.grey.width(); u += step) {
-      if (damage.road(u, v) == 0 || std::isnan(frame.disparity(u, v))) continue;
-      const double at = u - double{frame.disparity(u, v)};
-      const auto from = static_cast<int>(std::lround(at));
-      if (std::abs(at - from) > max_fraction_px || from < radius || from + radius >= frame.right.width()) continue;
-      differences.push_back(static_cast<float>(noise_mask(frame.grey, u, v) - noise_mask(frame.right, from, v)));
+      const std::optional<Match> match = match_of(frame, u, v, 1);
+      if (damage.road(u, v) == 0 || !match || match->off_px > max_fraction_px) continue;
+      differences.push_back(
+          static_cast<float>(noise_mask(frame.grey, u, v) - noise_mask(frame.right, match->u, match->v)));
       variances.push_back(static_cast<float>(block_variance(frame.grey, u, v, radius)));
     }
   }

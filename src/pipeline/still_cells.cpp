@@ -60,7 +60,7 @@ CellTexture texture_around(const CellLevels& levels, int x, int y, int reach, fl
   return texture;
 }
 
-/// CellMask with a lasting texture, fine or coarse, that vary by `max_variance` at most.
+/// Cells with a lasting texture, fine or coarse, that vary by `max_variance` at most.
 CellMask find_lasting_texture(const CellLevels& levels, double max_ratio, float max_variance) {
   constexpr std::array reaches{1, 2, 4};
   CellMask lasting(levels.mean().width(), levels.mean().height(), 0);

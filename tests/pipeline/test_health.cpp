@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pipeline/rectification_error.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/health.hpp"
 #include "tests/damage/damage_scene.hpp"
 
@@ -140,6 +141,25 @@ TEST(MeasureHealth, NoiseIsShareOfVariance) {
   EXPECT_TRUE(much.depth_is_trusted());
 }
 
+// Rows that matching has undone are compared where they lie in the right view.
+TEST(MeasureHealth, RowOffsetIsNoNoise) {
+  constexpr int rows = 2;
+  ExactFrame lowered([](Frame&, Frame& right) {
+    const auto offset = static_cast<std::ptrdiff_t>(rows) * right.width;
+    std::copy_backward(right.bytes.begin(), right.bytes.end() - offset, right.bytes.end());
+  });
+  const double not_undone = lowered.health().noise_share;
+  lowered.frame.shift.misalignment.rows_px = rows;
+  EXPECT_NEAR(lowered.health().noise_share, ExactFrame().health().noise_share, 0.01);
+  EXPECT_GT(not_undone, lowered.health().noise_share + 0.1);
+}
+
+TEST(MeasureHealth, DamageOfAnotherSizeIsRejected) {
+  ExactFrame exact;
+  exact.damage = make_empty_damage_map(64, 48, "");
+  EXPECT_THROW((void)exact.health(), Error);
+}
+
 TEST(MeasureHealth, BlocksAreCompression) {
   constexpr int block = 8;
   const auto quantise = [](Frame& frame) {
@@ -158,6 +178,17 @@ TEST(MeasureHealth, BlocksAreCompression) {
     quantise(right);
   });
   EXPECT_NE(blocks.found().find("compression"), std::string::npos);
+}
+
+TEST(PairHealth, UnknownViewHidesNoFault) {
+  for (const bool left : {false, true}) {
+    PairHealth health;
+    (left ? health.blocks_left : health.blocks_right) = 0.9;
+    (left ? health.blur_left_px : health.blur_right_px) = 5;
+    ASSERT_EQ(health.findings().size(), 2U);
+    EXPECT_EQ(health.findings()[0].id, "blur");
+    EXPECT_EQ(health.findings()[1].id, "compression");
+  }
 }
 
 TEST(PairHealth, GridOfBlocksAsStrongAsTextureSpoilsDepth) {
