@@ -59,7 +59,8 @@ struct RoadModelEstimate {
 /// a robust fit to correspondences along it. Never guesses: when the evidence is poor, the status is `none`.
 /// `calibration`, when given, tells walls from roads by their real tilt, and is needed for an expected height or pitch.
 /// Pixels where `mask` (W×H, or empty) is not 0 take no part.
-/// Throws Error when the images look swapped (the matches lie at negative disparities).
+/// Throws Error when the images look swapped (the matches lie at negative disparities), when the sizes differ and when
+/// an option is out of range.
 RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                       const std::optional<StereoCalibration>& calibration,
                                       const RoadModelOptions& options, int threads = 0,
@@ -73,7 +74,8 @@ struct TrackedRoad {
 };
 
 /// Tracks the last frame's road: searches around `previous` and refits. The status is `none` when the road explains far
-/// less of this pair than of the last one, or has moved farther than the search can see. `mask` as above.
+/// less of this pair than of the last one, or has moved farther than the search can see. `mask` and errors of size and
+/// options as above.
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                     const TrackedRoad& previous, const std::optional<StereoCalibration>& calibration,
                                     const RoadModelOptions& options, int threads = 0,

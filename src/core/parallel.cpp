@@ -74,10 +74,11 @@ void parallel_for(int count, int threads, FunctionRef<void(int, int)> body) {
       }
     }
   };
-  std::vector<std::thread> pool;
-  for (int t = 1; t < workers; ++t) pool.emplace_back(work, t);
-  work(0);
-  for (std::thread& thread : pool) thread.join();
+  {
+    std::vector<std::jthread> pool;
+    for (int t = 1; t < workers; ++t) pool.emplace_back(work, t);
+    work(0);
+  }
   if (first_error) std::rethrow_exception(first_error);
 #endif
 }

@@ -5,6 +5,7 @@
 
 #include "core/require_range.hpp"
 #include "damage/local_ground_plane.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/pixel_box.hpp"
 
 namespace roadstereo {
@@ -30,6 +31,7 @@ void centre(Image<float>& coordinates) {
 Relief extract_relief(const DamageMap& map, const Damage& damage, ImageView<const float> disparity,
                       const std::optional<StereoCalibration>& calibration, int max_points) {
   require_same_size(map, disparity);
+  if (map.depth.empty()) fail("the damage map is empty; it must be that of find_damage");
   require_range("relief", "max_points", max_points, 2, 1000);
   constexpr double margin_share = 0.25;
   constexpr int min_margin_px = 6;

@@ -6,7 +6,7 @@
 namespace roadstereo {
 
 /// A plane of the full-size image in the coordinates and pixels of the image downsampled by `factor`.
-inline DisparityPlane downsample_plane(const DisparityPlane& plane, int factor) {
+ROADSTEREO_HD inline DisparityPlane downsample_plane(const DisparityPlane& plane, int factor) {
   const double centre = to_full_resolution(0, factor);
   return {plane.disparity(centre, centre) / factor, plane.a1, plane.a2};
 }

@@ -41,7 +41,8 @@ std::optional<IrlsPlaneFit> fit_plane_irls(std::span<const DisparityPoint> point
   auto near = scratch_vector<double>();
   near.reserve(points.size());
   measure_from(start);
-  for (fit.iterations = 1; fit.iterations <= max_iterations; ++fit.iterations) {
+  while (fit.iterations < max_iterations) {
+    ++fit.iterations;
     PlaneSums sums(points.front().u, points.front().v);
     for (std::size_t i = 0; i < points.size(); ++i) {
       fit.weights[i] = tukey_weight(residuals[i] / (tukey * fit.scale_px));

@@ -101,7 +101,7 @@ RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const Pl
   RoadModelEstimate estimate;
   estimate.matches = around.points;
   const TiltLimit limit(width, height, calibration, options.max_road_tilt_deg);
-  estimate.reason = assess_plane_fit(close, limit, estimate);
+  estimate.reason = assess_plane_fit(around.found ? close : around, limit, estimate);
   const double least = std::max(min_share, min_share_of_last * previous.inlier_share);
   const double moved = max_move(estimate.model, previous.model, width, height);
   if (!estimate.reason.empty()) return estimate;

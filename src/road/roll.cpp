@@ -16,21 +16,21 @@
 namespace roadstereo {
 namespace {
 
-using Mask = std::optional<ImageView<const std::uint8_t>>;
+using Region = std::optional<ImageView<const std::uint8_t>>;
 
-bool usable(ImageView<const float> disparity, const Mask& mask, int u, int v) {
-  return !std::isnan(disparity(u, v)) && (!mask || (*mask)(u, v) != 0);
+bool usable(ImageView<const float> disparity, const Region& region, int u, int v) {
+  return !std::isnan(disparity(u, v)) && (!region || (*region)(u, v) != 0);
 }
 
 /// The sums over all usable pixels; added up row by row, so that they do not depend on the number of threads.
-PlaneSums sum_map(ImageView<const float> disparity, const Mask& mask, int threads) {
+PlaneSums sum_map(ImageView<const float> disparity, const Region& region, int threads) {
   const PlaneSums origin((disparity.width() - 1) / 2.0, (disparity.height() - 1) / 2.0);
   auto rows = scratch_vector<PlaneSums>(static_cast<std::size_t>(disparity.height()), origin);
   parallel_rows(disparity.height(), 16, threads, [&](int first, int last, int) {
     for (int v = first; v < last; ++v) {
       PlaneSums& row = rows[static_cast<std::size_t>(v)];
       for (int u = 0; u < disparity.width(); ++u) {
-        if (usable(disparity, mask, u, v)) row.add({static_cast<double>(u), static_cast<double>(v), disparity(u, v)});
+        if (usable(disparity, region, u, v)) row.add({static_cast<double>(u), static_cast<double>(v), disparity(u, v)});
       }
     }
   });
@@ -46,7 +46,7 @@ PlaneSums sum_points(std::span<const DisparityPoint> points) {
 }
 
 /// Valid disparities on a regular grid.
-ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, const Mask& mask) {
+ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, const Region& region) {
   const MapSample sample = map_sample(disparity.width(), disparity.height());
   auto points = scratch_vector<DisparityPoint>();
   points.reserve(static_cast<std::size_t>(sample.count()));
@@ -54,7 +54,7 @@ ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, const
     const int v = sample.at(row);
     for (int column = 0; column < sample.columns; ++column) {
       const int u = sample.at(column);
-      if (usable(disparity, mask, u, v)) {
+      if (usable(disparity, region, u, v)) {
         points.push_back({static_cast<double>(u), static_cast<double>(v), disparity(u, v)});
       }
     }
@@ -180,19 +180,19 @@ void RollOptions::validate() const {
   require_range("roll", "min_gradient_px", min_gradient_px, 0.0, unlimited);
 }
 
-RollEstimate estimate_roll(ImageView<const float> disparity, const Mask& mask,
+RollEstimate estimate_roll(ImageView<const float> disparity, const Region& region,
                            const std::optional<DisparityPlane>& prior, double initial_roll_rad,
                            const RollOptions& options, int threads) {
   options.validate();
-  if (mask && (mask->width() != disparity.width() || mask->height() != disparity.height())) {
-    fail("the mask has ", mask->width(), "×", mask->height(), " pixels and the disparity map ", disparity.width(), "×",
-         disparity.height(), "; they must be equal");
+  if (region && (region->width() != disparity.width() || region->height() != disparity.height())) {
+    fail("the region has ", region->width(), "×", region->height(), " pixels and the disparity map ", disparity.width(),
+         "×", disparity.height(), "; they must be equal");
   }
-  const ScratchVector<DisparityPoint> points = sample_map(disparity, mask);
+  const ScratchVector<DisparityPoint> points = sample_map(disparity, region);
   auto weights = scratch_vector<double>();
   RollEstimate geometry = options.solver == RollSolver::robust
                               ? fit_robustly(points, prior, options.max_iterations, weights)
-                              : solve_from_sums(sum_map(disparity, mask, threads), initial_roll_rad, options);
+                              : solve_from_sums(sum_map(disparity, region, threads), initial_roll_rad, options);
   const FitMoments moments = fit_moments(points, weights, geometry.plane, disparity.width(), disparity.height());
   assess_roll(moments, disparity.width(), disparity.height(), options, geometry);
   return geometry;

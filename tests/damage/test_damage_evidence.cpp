@@ -47,17 +47,27 @@ TEST(SeverityProbabilities, WithoutErrorIsTable) {
   }
 }
 
-TEST(DamageEvidence, ConfidenceIsLogistic) {
-  // −9.8 + 2.15·ln 50 + 4.4 − 9.5·0.1 = 2.06085; 1 / (1 + e^−2.06085) = 0.88704
-  EXPECT_NEAR((DamageEvidence{20, 50, 3, 1, 0, 0.1}.confidence()), 0.88704, 1e-5);
-  // −9.8 + 2.15·ln 50 + 4.4 − 18·0.2² = 2.29085
-  EXPECT_NEAR((DamageEvidence{20, 50, 3, 1, 0.2, 0}.confidence()), 0.90812, 1e-5);
-  EXPECT_EQ((DamageEvidence{20, 100, 3, 1, 0}.confidence()), (DamageEvidence{90, 900, 3, 1, 0}.confidence()));
+double log_odds(const DamageEvidence& evidence) {
+  return std::log(evidence.confidence() / (1 - evidence.confidence()));
+}
+
+// Each piece of evidence adds to the log-odds, whatever the others say; which by how much, `evaluate damage` tells.
+TEST(DamageEvidence, EveryPieceCountsByItself) {
   const DamageEvidence sound{10, 40, 3, 1, 0};
   EXPECT_GT(sound.confidence(), (DamageEvidence{10, 39, 3, 1, 0}.confidence()));
   EXPECT_GT(sound.confidence(), (DamageEvidence{10, 40, 3, 0.9, 0}.confidence()));
   EXPECT_GT(sound.confidence(), (DamageEvidence{10, 40, 3, 1, 0.1}.confidence()));
   EXPECT_GT(sound.confidence(), (DamageEvidence{10, 40, 3, 1, 0, 0.1}.confidence()));
+  const auto without_road = [](double significance) {
+    return log_odds({10, significance, 3, 1, 0}) - log_odds({10, significance, 3, 0.5, 0});
+  };
+  EXPECT_NEAR(without_road(10), without_road(80), 1e-9);
+  const auto at_border = [](double road_share) {
+    return log_odds({10, 40, 3, road_share, 0}) - log_odds({10, 40, 3, road_share, 0.3});
+  };
+  EXPECT_NEAR(at_border(1), at_border(0.4), 1e-9);
+  EXPECT_EQ((DamageEvidence{20, 100, 3, 1, 0}.confidence()), (DamageEvidence{90, 900, 3, 1, 0}.confidence()))
+      << "more does not tell a pothole from a kerb";
 }
 
 TEST(DamageEvidence, DeepCompactRegionIsNeverVetoed) {

@@ -74,6 +74,13 @@ TEST(IrlsPlaneFit, ScaleIsSigmaOfNormalNoise) {
   EXPECT_NEAR(fit->scale_px, 0.3, 0.01);
 }
 
+TEST(IrlsPlaneFit, CountsItsSteps) {
+  auto points = points_on(truth, 3000);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].d += test::lattice(static_cast<int>(i), 7, 5);
+  const DisparityPlane start{truth.a0 + 0.4, truth.a1, truth.a2};
+  for (const int most : {1, 2}) EXPECT_EQ(fit_plane_irls(points, start, 0.6, true, most)->iterations, most);
+}
+
 TEST(SearchPlane, FindsPlaneOfMajority) {
   auto points = points_on(truth, 2000);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -82,13 +89,6 @@ TEST(SearchPlane, FindsPlaneOfMajority) {
   const auto plane = ransac_plane(points, 0.5);
   ASSERT_TRUE(plane);
   EXPECT_NEAR(plane->disparity(600, 300), truth.disparity(600, 300), 0.5);
-}
-
-TEST(MedianMagnitude, IsMedianOfAbsoluteValues) {
-  std::vector<double> values{-9, 1, 4};
-  EXPECT_EQ(upper_median_magnitude(values), 4);
-  values.clear();
-  EXPECT_EQ(upper_median_magnitude(values), 0);
 }
 
 }  // namespace

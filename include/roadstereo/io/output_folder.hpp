@@ -31,12 +31,17 @@ class OutputFolder {
   /// Returns whether a file of that name is staged.
   bool has(const std::string& name) const;
 
+  /// Names a file that this result does not have: `commit` removes what an earlier one has left of it,
+  /// unless it is protected.
+  void remove(const std::string& name);
+
   /// Moves all staged files into the output folder. Throws SystemError; the folder is then unchanged.
   void commit();
 
   const std::filesystem::path& path() const { return folder_; }
 
  private:
+  bool is_protected(const std::string& name) const;
   void stage();
   void unstage() noexcept;
   void remove_unfinished() noexcept;
@@ -45,7 +50,7 @@ class OutputFolder {
   std::vector<std::filesystem::path> protected_;
   std::filesystem::path staging_;  // empty without staged files
   int lock_ = -1;                  // of the staging folder, as long as this process lives
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, removed_;
   std::vector<std::filesystem::path> made_folders_;  // innermost first; empty after a commit
 };
 

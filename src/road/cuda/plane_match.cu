@@ -7,6 +7,7 @@
 #include "core/full_resolution.hpp"
 #include "core/mid_grey.hpp"
 #include "road/cuda/plane_match.hpp"
+#include "road/downsampled_plane.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -28,12 +29,6 @@ struct PlaceMemory {
   RowSums rows[plane_block_height][max_offsets];
   float correlations[max_offsets];
 };
-
-/// The pair's planes at the size of the search.
-__device__ DisparityPlane shrunk_plane(const DisparityPlane& plane, int factor) {
-  const double centre = to_full_resolution(0, factor);
-  return {plane.disparity(centre, centre) / factor, plane.a1, plane.a2};
-}
 
 /// A search by one warp.
 class PlaceSearch {
@@ -182,7 +177,7 @@ __global__ void match_places(GuidedPair pair, SampleGrid grid, PlaneSource sourc
   const int own = static_cast<int>(threadIdx.x) / warp_lanes;
   const int place = static_cast<int>(blockIdx.x) * places_per_block + own;
   if (place >= grid.places()) return;
-  const DisparityPlane plane = shrunk_plane(source.get(), pair.factor);
+  const DisparityPlane plane = downsample_plane(source.get(), pair.factor);
   const int u = grid.column(place % grid.columns), v = grid.row(place / grid.columns);
   bool tried = (needed == nullptr || *needed != 0) && fabs(plane.a2) < plane_match_max_slant &&
                search_in_view(u, plane.disparity(u, v), plane_search_extent(plane.a1, plane.a2, grid.range_px),

@@ -60,7 +60,8 @@ class BlockFit {
     const double first_scale = fit_.start_scale_px > 0 ? fit_.start_scale_px : start_scale();
     if (leader()) take_scale(first_scale);
     __syncthreads();
-    for (fitted.iterations = 1; fitted.iterations <= fit_.max_iterations; ++fitted.iterations) {
+    while (fitted.iterations < fit_.max_iterations) {
+      ++fitted.iterations;
       const DisparityPlane last = state_.plane;
       const double last_scale = state_.scale;
       step();

@@ -18,9 +18,8 @@ namespace roadstereo::cpu {
 //   |   |   +-----------------------+   |   |            …      |
 //   |   |   | tile: pixels to match |   |   |         v + rows  | newest
 //   |   |   +-----------------------+   |   |
-//   |   +-------------------------------+   |         Row q lies at ring row q mod (2·rows + 1). A device keeps the
-//   whole
-//   +---------------------------------------+         tile with R and R' in shared memory, four disparities at a time.
+//   |   +-------------------------------+   |         Row q lies at ring row q mod (2·rows + 1).
+//   +---------------------------------------+         A device keeps the tile with R and R' in shared memory.
 //
 //   columns of either view, width w                   the common view in row v
 //   own:    0    1   …   i   …          w − 1         own pixel i has a counterpart at disparity d

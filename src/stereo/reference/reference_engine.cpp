@@ -151,7 +151,7 @@ const SearchRange& range_at(ImageView<const SearchRange> ranges, int u, int v) {
 }
 
 /// Cost of the distance of a disparity from the prior: weight · min(distance, prior_truncation_px), weight =
-/// prior_weight but where the smallest cost `best` is small (stereo/window.hpp).
+/// prior_weight but where the smallest cost `best` is small (`prior_share`, stereo/sub_pixel.hpp).
 double prior_term(const Scene& scene, const DisparityPriorView& prior, double best, int u, int v, int d) {
   if (prior.disparity.empty()) return 0;
   const int x = std::min(u / prior.factor, prior.disparity.width() - 1);

@@ -43,7 +43,7 @@ __device__ float cheapest_of(const LaneCosts<count>& totals) {
 /// Cheapest transition from the totals of a column to each disparity of the next: stay, step by one, or jump.
 template <int count>
 __device__ LaneCosts<count> transition_cost(const LaneCosts<count>& totals, float cheapest,
-                                            const PathPenalties& penalties) {
+                                            const ScanlinePenalties& penalties) {
   const auto lane = static_cast<int>(threadIdx.x);
   const float from_left = __shfl_up_sync(whole_warp, totals.at[count - 1], 1U);
   const float from_right = __shfl_down_sync(whole_warp, totals.at[0], 1U);
@@ -61,7 +61,7 @@ __device__ LaneCosts<count> transition_cost(const LaneCosts<count>& totals, floa
 
 /// Aggregates along the path. Forward it writes totals, backward path costs without the column's own cost.
 template <int count, bool forward>
-__device__ void aggregate_path(const Path<count>& path, int columns, const PathPenalties& penalties) {
+__device__ void aggregate_path(const Path<count>& path, int columns, const ScanlinePenalties& penalties) {
   constexpr int ahead = count <= 2 ? 8 : 4;  // columns loaded ahead, to hide the latency of memory
   LaneCosts<count> totals = path.cost(0), path_cost{}, entering[ahead];
   path.store(0, forward ? totals : path_cost);
@@ -83,7 +83,7 @@ __device__ void aggregate_path(const Path<count>& path, int columns, const PathP
 
 /// A warp aggregates one row in one direction.
 template <int count>
-__global__ void aggregate_rows(CoarseVolume costs, PathPenalties penalties, CoarseVolume forward,
+__global__ void aggregate_rows(CoarseVolume costs, ScanlinePenalties penalties, CoarseVolume forward,
                                CoarseVolume backward) {
   const int v = costs.first_row + static_cast<int>(blockIdx.x);
   const int d = static_cast<int>(threadIdx.x) * count, last = costs.columns - 1;
@@ -134,7 +134,7 @@ __global__ void take_winners(CoarseVolume costs, CoarseVolume forward, CoarseVol
   if (threadIdx.x % warp_lanes == 0) disparity(u, v) = winner;
 }
 
-using RowKernel = void (*)(CoarseVolume, PathPenalties, CoarseVolume, CoarseVolume);
+using RowKernel = void (*)(CoarseVolume, ScanlinePenalties, CoarseVolume, CoarseVolume);
 
 struct RowKernelOf {
   int count;
@@ -160,7 +160,7 @@ int path_pitch(int disparities) {
   return row_kernel(disparities).count * warp_lanes;
 }
 
-void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, ImageView<const RoadCost> roads,
+void aggregate_scanlines(const CoarseVolume& costs, const ScanlinePenalties& penalties, ImageView<const RoadCost> roads,
                          const int* first_seen, const CoarseVolume& forward, const CoarseVolume& backward,
                          ImageView<float> disparity, StreamView stream) {
   const auto rows = static_cast<unsigned>(costs.rows);

@@ -4,16 +4,11 @@
 #include "roadstereo/image_view.hpp"
 #include "stereo/coarse/cuda/coarse_volume.hpp"
 #include "stereo/coarse/path_winner.hpp"
+#include "stereo/coarse/scanline.hpp"
 
 // Scanline optimisation (1-D semi-global matching) on the device.
 
 namespace roadstereo::cuda {
-
-/// Penalties of a change of the disparity from one pixel to the next.
-struct PathPenalties {
-  float step;  ///< by one
-  float jump;  ///< by more
-};
 
 /// The pitch of volumes of so many disparities, at most 512.
 int path_pitch(int disparities);
@@ -21,7 +16,7 @@ int path_pitch(int disparities);
 /// Takes for every column of the band's rows the disparity of the cheapest path along the row that passes through it
 /// (stereo/coarse/scanline.hpp), coarse pixels, NaN where a column has no counterpart. `forward` and `backward` are
 /// scratch memory of the size of `costs`, `roads` what these hold of the road.
-void aggregate_scanlines(const CoarseVolume& costs, const PathPenalties& penalties, ImageView<const RoadCost> roads,
+void aggregate_scanlines(const CoarseVolume& costs, const ScanlinePenalties& penalties, ImageView<const RoadCost> roads,
                          const int* first_seen, const CoarseVolume& forward, const CoarseVolume& backward,
                          ImageView<float> disparity, StreamView stream);
 
