@@ -26,7 +26,8 @@ namespace {
 void add_kitti_png(Inspection& inspection, io::OutputFolder& folder) {
   const KittiRange range = fit_kitti_range(inspection.result.disparity);
   folder.add("disparity.png", io::encode_kitti_png(range.disparity));
-  if (range.lost == 0) return;
+  constexpr std::size_t worth_telling = 1000;  // one of so many
+  if (worth_telling * range.lost <= range.valid) return;
   inspection.warnings.push_back(
       fmt::format("values-lost: {:.2f} % of the disparities are outside 0 … 255.99 px and invalid in disparity.png; "
                   "disparity.tiff has all of them",
@@ -168,7 +169,11 @@ void add_result_files(const std::vector<std::string>& words, Inspection& inspect
     if (!words.empty() && std::find(words.begin(), words.end(), group.word) == words.end()) continue;
     group.add(inspection, folder);
     for (const auto& [name, what] : group.files) {
-      if (folder.has(name)) inspection.files_written.emplace_back(name, what);
+      if (folder.has(name)) {
+        inspection.files_written.emplace_back(name, what);
+      } else {
+        folder.remove(name);
+      }
     }
   }
 }

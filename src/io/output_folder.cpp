@@ -164,13 +164,16 @@ void OutputFolder::protect(const fs::path& input) {
   protected_.push_back(input);
 }
 
+bool OutputFolder::is_protected(const std::string& name) const {
+  std::error_code absent;
+  return std::any_of(protected_.begin(), protected_.end(),
+                     [&](const fs::path& input) { return fs::equivalent(folder_ / name, input, absent); });
+}
+
 void OutputFolder::add(const std::string& name, std::span<const std::uint8_t> bytes) {
   check_name(name);
-  std::error_code absent;
-  for (const fs::path& input : protected_) {
-    if (fs::equivalent(folder_ / name, input, absent)) {
-      fail((folder_ / name).string(), ": this input would be overwritten; choose another output folder");
-    }
+  if (is_protected(name)) {
+    fail((folder_ / name).string(), ": this input would be overwritten; choose another output folder");
   }
   if (staging_.empty()) stage();
   const fs::path staged = staging_ / "new" / name;
@@ -188,6 +191,11 @@ void OutputFolder::add(const std::string& name, std::span<const std::uint8_t> by
 
 void OutputFolder::add(const std::string& name, const std::string& text) {
   add(name, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+void OutputFolder::remove(const std::string& name) {
+  check_name(name);
+  if (!is_protected(name)) removed_.push_back(name);
 }
 
 bool OutputFolder::has(const std::string& name) const {
@@ -209,8 +217,11 @@ void OutputFolder::commit() {
     moves.take_back();
     fail_write(target, error.code().value());
   }
+  std::error_code ignored;
+  for (const std::string& name : removed_) fs::remove(folder_ / name, ignored);
   unstage();
   names_.clear();
+  removed_.clear();
   made_folders_.clear();
 }
 

@@ -14,8 +14,8 @@ constexpr double line_opacity = 0.7;
 
 /// Range of disparities and rows in the plot.
 struct PlotRange {
-  double residual_p01_px = 0;
-  double residual_p99_px = 1;
+  double low_px = 0;
+  double high_px = 1;
   int rows = 1;
   int columns = 1;
 };
@@ -25,16 +25,16 @@ PlotRange plot_range(ImageView<const float> disparity) {
   const std::vector<double> ends = percentiles(disparity, {0.5, 99.5});
   if (ends.empty()) return range;
   const double margin = std::max(0.06 * (ends[1] - ends[0]), 1.0);
-  range.residual_p01_px = ends[0] - margin;
-  if (ends[0] >= 0) range.residual_p01_px = std::max(range.residual_p01_px, 0.0);
-  range.residual_p99_px = ends[1] + margin;
+  range.low_px = ends[0] - margin;
+  if (ends[0] >= 0) range.low_px = std::max(range.low_px, 0.0);
+  range.high_px = ends[1] + margin;
   return range;
 }
 
 /// Histogram with linear interpolation between the two nearest cells, which are at least 1/8 px wide: avoids stripes of
 /// quantised disparities.
 cv::Mat count_pixels(ImageView<const float> disparity, const PlotRange& range, cv::Size plot) {
-  const double span = range.residual_p99_px - range.residual_p01_px;
+  const double span = range.high_px - range.low_px;
   const int columns = std::clamp(static_cast<int>(8 * span), 1, plot.width);
   const int rows = std::min(plot.height, range.rows);
   cv::Mat counts = cv::Mat::zeros(rows, columns, CV_32FC1);
@@ -42,8 +42,8 @@ cv::Mat count_pixels(ImageView<const float> disparity, const PlotRange& range, c
     const float* in = disparity.row(v);
     auto* out = counts.ptr<float>(static_cast<int>(static_cast<std::int64_t>(v) * rows / range.rows));
     for (int u = 0; u < range.columns; ++u) {
-      if (!(in[u] >= range.residual_p01_px && in[u] < range.residual_p99_px)) continue;
-      const double column_at = std::clamp((in[u] - range.residual_p01_px) / span * columns - 0.5, 0.0, columns - 1.0);
+      if (!(in[u] >= range.low_px && in[u] < range.high_px)) continue;
+      const double column_at = std::clamp((in[u] - range.low_px) / span * columns - 0.5, 0.0, columns - 1.0);
       const int column = static_cast<int>(column_at);
       const auto share = static_cast<float>(column_at - column);
       out[column] += 1 - share;
@@ -70,7 +70,7 @@ void draw_road_line(cv::Mat& picture, const PlotRange& range, const DisparityPla
                     int width) {
   const auto point_at = [&](double row_share) {
     const double v = row_share * (range.rows - 1);
-    const double x = (road.disparity(u, v) - range.residual_p01_px) / (range.residual_p99_px - range.residual_p01_px);
+    const double x = (road.disparity(u, v) - range.low_px) / (range.high_px - range.low_px);
     return cv::Point2d(x * picture.cols, row_share * (picture.rows - 1));
   };
   constexpr int pieces = 60;
@@ -128,10 +128,9 @@ void draw_axes(cv::Mat& canvas, cv::Rect plot, const PlotRange& range, int text_
   const int tick = text_height / 2;
   const int line = std::max(1, text_height / 12);
   cv::rectangle(canvas, plot, ink);
-  const Ticks across =
-      round_ticks(range.residual_p01_px, range.residual_p99_px, std::clamp(plot.width / (6 * text_height), 2, 9));
+  const Ticks across = round_ticks(range.low_px, range.high_px, std::clamp(plot.width / (6 * text_height), 2, 9));
   for (const double value : across.values) {
-    const double share = (value - range.residual_p01_px) / (range.residual_p99_px - range.residual_p01_px);
+    const double share = (value - range.low_px) / (range.high_px - range.low_px);
     const int x = plot.x + cvRound(share * (plot.width - 1));
     cv::line(canvas, {x, plot.br().y}, {x, plot.br().y + tick}, ink, line);
     put_text(canvas, number_text(value, across.decimals), {x, plot.br().y + tick + text_height + text_height / 2},

@@ -80,6 +80,19 @@ TEST_F(OutputFolderFiles, KeepOtherFiles) {
   EXPECT_EQ(text_of(root / "other.txt"), "other");
 }
 
+TEST_F(OutputFolderFiles, RemovesWhatEarlierResultHasLeft) {
+  for (const char* name : {"cloud.ply", "sigma.tiff"}) std::ofstream(root / name) << "of another pair";
+  OutputFolder folder(root);
+  folder.protect(root / "sigma.tiff");
+  folder.add("result.json", std::string("new"));
+  for (const char* name : {"cloud.ply", "sigma.tiff", "none.ply"}) folder.remove(name);
+  EXPECT_TRUE(fs::exists(root / "cloud.ply"));
+  folder.commit();
+  EXPECT_FALSE(fs::exists(root / "cloud.ply"));
+  EXPECT_EQ(text_of(root / "sigma.tiff"), "of another pair");
+  EXPECT_EQ(text_of(root / "result.json"), "new");
+}
+
 TEST_F(OutputFolderFiles, FailedCommitIsRolledBack) {
   std::ofstream(root / "a.txt") << "old";
   fs::create_directory(root / "b.txt");

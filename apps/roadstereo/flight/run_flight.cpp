@@ -252,10 +252,12 @@ void FlightPipeline::add_pictures(FlightJob& job, const std::vector<std::int64_t
 
 bool FlightPipeline::run() {
   std::vector<std::thread> threads;
-  threads.emplace_back([this] { run_stage([this] { read(); }); });
-  for (int i = 0; i < finishers_; ++i) {
-    threads.emplace_back([this] { run_stage([this] { finish(); }); });
-  }
+  run_stage([&] {  // the system may refuse a thread
+    threads.emplace_back([this] { run_stage([this] { read(); }); });
+    for (int i = 0; i < finishers_; ++i) {
+      threads.emplace_back([this] { run_stage([this] { finish(); }); });
+    }
+  });
   run_stage([this] { match(); });
   for (std::thread& thread : threads) thread.join();
   failure_.rethrow();

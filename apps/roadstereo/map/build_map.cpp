@@ -1,10 +1,9 @@
 #include "map/build_map.hpp"
 
-#include <fmt/chrono.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <map>
 #include <memory>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "core/order_statistics.hpp"
 #include "flight/rectified_source.hpp"
 #include "inspect_flight.hpp"
+#include "io/geo/utc_time.hpp"
 #include "map/map_journal.hpp"
 #include "map/map_provenance.hpp"
 #include "progress.hpp"
@@ -124,6 +124,7 @@ class MapBuilder {
   void add_pass(Pass& pass, Progress& progress) {
     constexpr std::int64_t frames_per_save = 16;
     const MapPass& from = plan_.passes[static_cast<std::size_t>(state_.pass)];
+    if (state_.next_frame == 0) tell_missing_poses(pass, from);
     if (state_.white_level > 0) pass.source->set_white_level(state_.white_level);
     std::optional<Pipeline> pipeline;
     std::int64_t next = 0;
@@ -145,6 +146,14 @@ class MapBuilder {
     }
   }
 
+  void tell_missing_poses(const Pass& pass, const MapPass& from) {
+    const std::optional<std::int64_t> size = pass.source->source().size();
+    if (!size) return;
+    const std::int64_t frames = (*size + plan_.every - 1) / plan_.every;
+    const std::int64_t missing = frames - static_cast<std::int64_t>(pass.poses.size());
+    if (missing > 0) add_reason(fmt::format("{} of {} frames have no pose in {}", missing, frames, from.trajectory));
+  }
+
   void add_pair(const MapPass& from, const RectifiedSource& source, const io::SourcePair& pair, const FramePose& pose,
                 std::optional<Pipeline>& pipeline) {
     if (!state_.day) state_.day = day_of(from, pair.time_s);
@@ -161,12 +170,9 @@ class MapBuilder {
 
   /// Index of the day of a recording whose first frame has this time.
   std::size_t day_of(const MapPass& pass, double time_s) {
-    constexpr double first_calendar_s = 315532800;  // 1980
     std::string name = io::valid_utf8(pass.day);
-    const double utc_s = time_s + pass.time_offset_s;
-    if (name.empty() && utc_s > first_calendar_s) {
-      name = fmt::format("{:%Y-%m-%d}", fmt::gmtime(static_cast<std::time_t>(utc_s)));
-    }
+    const auto time = io::utc_time(time_s + pass.time_offset_s);
+    if (name.empty() && time) name = fmt::format("{:04}-{:02}-{:02}", time->year, time->month, time->day);
     const auto known = std::find(state_.day_names.begin(), state_.day_names.end(), name);
     const auto index = static_cast<std::size_t>(known - state_.day_names.begin());
     if (known == state_.day_names.end()) state_.day_names.push_back(name);
@@ -194,10 +200,6 @@ class MapBuilder {
       const DisparityPlane& road = result.geometry.plane;
       if (days_.empty()) set_axes(road, pose, calibration);
       const RigidTransform camera_to_map = compose(state_.world_to_map, pose.camera_to_world);
-      map_of(*state_.day)
-          .map.add({result.disparity, result.sigma, pair.left.view(), pipeline.options().white_level, road, calibration,
-                    camera_to_map});
-      ++state_.mapped;
       pipeline.find_damage(damage_);
       MappedFrame mapped{state_.pass,
                          pose.frame,
@@ -205,6 +207,10 @@ class MapBuilder {
                          pose.piece != state_.piece,
                          foot_of(road, calibration, camera_to_map),
                          locate_damage(damage_, road, calibration, camera_to_map)};
+      map_of(*state_.day)
+          .map.add({result.disparity, result.sigma, pair.left.view(), pipeline.options().white_level, road, calibration,
+                    camera_to_map});
+      ++state_.mapped;
       state_.piece = pose.piece;
       journal_.append(mapped);
       add_record(std::move(mapped));

@@ -4,6 +4,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/geo/map_crs.hpp"
 #include "map/build_map.hpp"
 #include "map/map_files.hpp"
 #include "map/map_results.hpp"
@@ -27,6 +28,7 @@ BuiltMap built_map(const MapPlan& plan, const std::filesystem::path& tiles, cons
 
 MapSummary make_map(const MapPlan& plan, const StopSignals& stop) {
   io::OutputFolder folder(plan.output);  // fails early
+  if (!plan.crs.empty()) static_cast<void>(io::map_wkt({.crs = plan.crs}));
   for (const MapPass& pass : plan.passes) {
     for (const auto& inputs : {pass.source, pass.calibration, std::vector{pass.trajectory}}) {
       for (const std::string& input : inputs) folder.protect(input);

@@ -52,6 +52,8 @@ OGRSpatialReference spatial_reference(const MapReference& reference, const GdalE
     errors.require(crs.SetLinearUnits(SRS_UL_METER, 1) == OGRERR_NONE, "setting metres");
   } else if (crs.SetFromUserInput(reference.crs.c_str()) != OGRERR_NONE) {
     fail("--crs ", reference.crs, ": GDAL does not know this coordinate system");
+  } else if (crs.IsGeographic() || crs.IsGeocentric()) {
+    fail("--crs ", reference.crs, ": this coordinate system is not projected; cells and poses are in metres");
   }
   crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return crs;
@@ -162,7 +164,11 @@ std::string map_wkt(const MapReference& reference) {
 void write_geotiff(const std::filesystem::path& file, MapLayer layer, const MapBox& bounds,
                    const MapReference& reference, const ReadMap& read) {
   constexpr int block = 512;
-  if (bounds.empty()) fail("the map is empty: no frame shows a road and has a pose");
+  if (bounds.empty())
+    fail(
+        "the map is empty: no frame shows the road sharply enough for a cell. Are the poses in metres, with z up, and "
+        "the "
+        "cells of --cell not larger than what frames show?");
   const GdalErrors errors(file.string());
   const BlockCacheLimit limit;
   const LayerFormat format = format_of(layer);

@@ -10,13 +10,14 @@
 namespace roadstereo::io {
 namespace {
 
-/// Topics are those of the summary; without one (unindexed, cut off) the file is read once from its start.
+/// Topics are those of the summary; without one (unindexed, cut off), or if it does not repeat the channels or schemas
+/// of its messages, the file is read once from its start.
 class McapLog final : public MessageLog {
  public:
   explicit McapLog(const std::string& path) : path_(path), file_(path) {
     const std::optional<std::uint64_t> summary = file_.summary_offset();
     if (summary) read_summary(*summary);
-    if (counts_.empty()) read_all();
+    if (!knows_topics()) read_all();
     for (const auto& [id, channel] : channels_) add_topic(channel);
   }
 
@@ -118,6 +119,13 @@ class McapLog final : public MessageLog {
     std::sort(chunks_.begin(), chunks_.end(), by_offset);
   }
 
+  bool knows_topics() const {
+    return !counts_.empty() && std::all_of(counts_.begin(), counts_.end(), [this](const auto& count) {
+      const auto channel = channels_.find(count.first);
+      return channel != channels_.end() && (channel->second.schema == 0 || schemas_.contains(channel->second.schema));
+    });
+  }
+
   void count(const McapRecord& record) {
     if (record.opcode != McapOpcode::message) return take(record);
     ++counts_[McapFields(path_, record.content).value<std::uint16_t>()];
@@ -126,6 +134,7 @@ class McapLog final : public MessageLog {
   void read_all() {
     schemas_.clear();
     channels_.clear();
+    counts_.clear();
     chunks_.clear();
     file_.seek(McapFile::first_offset());
     while (const auto record = file_.next([](McapOpcode) { return true; })) {

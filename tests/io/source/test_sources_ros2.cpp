@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -79,6 +80,31 @@ TEST_F(Ros2Bag, EveryContainerHasTheSamePairs) {
   expect_three_pairs(data / "rosbag2" / "rosbag2_0.db3", "ROS 2 bag");
   expect_three_pairs(data / "rosbag2_messages", "ROS 2 bag");
   expect_three_pairs(data / "rosbag2_file", "ROS 2 bag");
+}
+
+// Writers may leave them out of the summary: they are in the chunks.
+TEST_F(Ros2Bag, SummaryNeedNotRepeatChannelsAndSchemas) {
+  constexpr std::size_t head = 9, footer = 20, magic = 8;
+  constexpr char private_opcode = '\x80';
+  const std::vector<char> whole = bytes_of(data / "zstd.mcap");
+  const auto number_at = [&whole](std::size_t at) {
+    std::uint64_t value = 0;
+    std::memcpy(&value, whole.data() + at, sizeof value);
+    return static_cast<std::size_t>(value);
+  };
+  const std::size_t end = whole.size() - magic - footer - head;
+  for (const char opcode : {'\3', '\4'}) {  // schema, channel
+    std::vector<char> without = whole;
+    std::size_t records = 0;
+    for (std::size_t at = number_at(end + head); at < end; at += head + number_at(at + 1)) {
+      if (without[at] != opcode) continue;
+      without[at] = private_opcode;
+      ++records;
+    }
+    ASSERT_GT(records, 0U);
+    write(folder_ / "short.mcap", without);
+    expect_three_pairs(folder_ / "short.mcap", "MCAP file");
+  }
 }
 
 TEST_F(Ros2Bag, CompressedImagesInLz4Chunks) {
