@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 std::string damages_csv(const BuiltMap& built, const MapResults& results) {
   std::string text =
       "id,kind,x_m,y_m,max_depth_m,max_depth_stderr_m,mean_depth_m,mean_depth_stderr_m,area_m2,area_stderr_m2,"
-      "volume_m3,volume_stderr_m3,length_m,width_m,angle_deg,severity,confidence,sightings,passes,views,found_in_"
-      "map,day\r\n";
+      "volume_m3,volume_stderr_m3,length_m,width_m,angle_deg,distress,severity,confidence,sightings,passes,views,"
+      "found_in_map,day\r\n";
   constexpr double degrees = 180 / 3.14159265358979323846;
   for (std::size_t k = 0; k < results.damages.size(); ++k) {
     const RoadDamageRecord& damage = results.damages[k];
@@ -31,10 +31,10 @@ std::string damages_csv(const BuiltMap& built, const MapResults& results) {
     for (const Measurement& measured : {damage.max_depth_m, damage.mean_depth_m, damage.area_m2, damage.volume_m3}) {
       text += fmt::format("{},{},", csv(measured.value, 6), csv(measured.std_error, 6));
     }
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{},", csv(metrics.length_m, 4), csv(metrics.width_m, 4),
-                    csv(damage.best.length_angle_rad * degrees, 1), name_of(damage.severity), csv(damage.confidence, 3),
-                    damage.sightings, damage.passes, damage.views, damage.found_in_map ? 1 : 0);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},", csv(metrics.length_m, 4), csv(metrics.width_m, 4),
+                        csv(damage.best.length_angle_rad * degrees, 1), name_of(metrics.distress),
+                        name_of(damage.severity), csv(damage.confidence, 3), damage.sightings, damage.passes,
+                        damage.views, damage.found_in_map ? 1 : 0);
     text += io::CsvLine().add(built.days[results.damage_days[k]].name).end();
   }
   return text;
@@ -114,6 +114,7 @@ Json damage_json(const BuiltMap& built, const RoadDamageRecord& damage) {
           {"mean_depth_m", measurement_json(damage.mean_depth_m)},
           {"area_m2", measurement_json(damage.area_m2)},
           {"volume_m3", measurement_json(damage.volume_m3)},
+          {"distress", name_of(damage.best.damage.metrics->distress)},
           {"severity", name_of(damage.severity)},
           {"confidence", json_number(damage.confidence)},
           {"sightings", damage.sightings},
