@@ -14,7 +14,7 @@
 namespace roadstereo {
 namespace {
 
-constexpr int rows_per_band = 8;  // of cells
+constexpr int cell_rows_per_band = 8;
 
 /// One value per cell, in scratch memory.
 template <class T>
@@ -31,7 +31,7 @@ struct CellMap {
 };
 
 void sum_log_sigmas(ImageView<const float> sigma, int threads, CellMap<LogSigmas>& cells) {
-  parallel_rows(cells.rows, rows_per_band, threads, [&](int first, int last, int) {
+  parallel_rows(cells.rows, cell_rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first * alignment_cell; v < std::min(last * alignment_cell, sigma.height()); ++v) {
       const float* const errors = sigma.row(v);
       LogSigmas* const of_cell = cells.row(v / alignment_cell);
@@ -59,7 +59,7 @@ void assess_cells(const CoarseScene& scene, ImageView<const float> correlation, 
   sum_log_sigmas(sigma, threads, cells);
   const auto columns = static_cast<std::size_t>(states.columns);
   auto memory = scratch_vector<LogSigmas>(2 * columns * static_cast<std::size_t>(resolve_threads(threads)));
-  parallel_rows(states.rows, rows_per_band, threads, [&](int first, int last, int worker) {
+  parallel_rows(states.rows, cell_rows_per_band, threads, [&](int first, int last, int worker) {
     LogSigmas* const of_columns = memory.data() + 2 * columns * static_cast<std::size_t>(worker);
     LogSigmas* const sums = of_columns + columns;
     for (int j = first; j < last; ++j) {
@@ -103,7 +103,7 @@ void mark_outside(CellMap<CellState>& states) {
 void reject_cells(const CellMap<CellState>& states, int threads, Image<float>& disparity, Image<float>& sigma) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   const ImageView<const CellState> view(states.values.data(), states.columns, states.rows);
-  parallel_rows(states.rows, rows_per_band, threads, [&](int first, int last, int) {
+  parallel_rows(states.rows, cell_rows_per_band, threads, [&](int first, int last, int) {
     for (int j = first; j < last; ++j) {
       const int end_v = std::min((j + 1) * alignment_cell, disparity.height());
       for (int i = 0; i < states.columns; ++i) {
