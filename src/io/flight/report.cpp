@@ -37,8 +37,7 @@ std::string notices_of(const FlightReportInput& input) {
   if (!inspected) {
     html +=
         "<p class=\"notice\"><strong>Not inspected.</strong> No frame has a road, so that nothing is known of its "
-        "damage; "
-        "frames.csv has the reasons.</p>";
+        "damage; frames.csv has the reasons.</p>";
   } else if (input.damages.empty() && in_map > 0) {
     html += "<p class=\"notice\"><strong>No damage found in single frames.</strong> Their map shows " +
             std::to_string(in_map) + ": see \"Damages on the map\".</p>";
