@@ -95,7 +95,11 @@ std::string FlightPositions::no_position_reason() const {
 }
 
 std::vector<StagedFile> FlightPositions::files(std::span<const io::RoadDamage> damages, bool with_candidates) const {
-  const io::GeoLayers layers{frames_, sightings_, damages, with_candidates};
+  std::vector<io::GeoSighting> sightings = sightings_;
+  std::erase_if(sightings, [&](const io::GeoSighting& sighting) {
+    return !with_candidates && damages[static_cast<std::size_t>(sighting.road_damage) - 1].candidate;
+  });
+  const io::GeoLayers layers{frames_, sightings, damages, with_candidates};
   std::vector<StagedFile> files{{"flight.gpkg", io::geopackage(layers, track_)}};
   for (const io::NamedText& file : io::geojson_files(layers)) files.push_back(text_file(file.name, file.text));
   return files;
