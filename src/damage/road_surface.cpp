@@ -9,7 +9,6 @@
 #include "core/cholesky.hpp"
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
-#include "core/tukey.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -179,12 +178,13 @@ double quadratic(const Coefficients& c, double x, double y, double scale) {
 /// deviation `sigma`, from the MAD, which at most halves in one iteration.
 template <std::size_t count>
 Coefficients fit_irls(Samples& samples, int iterations, double& sigma) {
-  constexpr double max_sigmas = 3;  // of the residuals from which sigma is estimated
+  constexpr double tukey_sigmas = 4.7;  // 95 % efficiency on normal residuals
+  constexpr double max_sigmas = 3;      // of the residuals from which sigma is estimated
   Coefficients solution{};
   std::vector<float> magnitudes(samples.size());
   BinnedSelection selection;
   for (int i = 0; i < iterations; ++i) {
-    solution = solve<count>(accumulate<count>(samples, tukey * sigma));
+    solution = solve<count>(accumulate<count>(samples, tukey_sigmas * sigma));
     const double max_residual = max_sigmas * sigma;
     for (std::size_t k = 0; k < samples.size(); ++k) {
       const double residual = samples.value[k] - quadratic(solution, samples.x[k], samples.y[k], samples.scale[k]);
