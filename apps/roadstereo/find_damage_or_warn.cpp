@@ -28,9 +28,9 @@ void warn_of_search_end(const DamageMap& map, const FrameResult& frame, bool cal
     ids += (ids.empty() ? "" : ", ") + std::to_string(damage.id);
   }
   if (ids.empty()) return;
-  warnings.push_back("search-end: the floor of damage " + ids +
-                     " lies where the search ends: it may be deeper than measured; " +
-                     (calibrated ? "" : "give a calibration, or ") + "raise perspective.max_damage_depth_m");
+  warnings.push_back("search-end: the search ends at the floor of damage " + ids +
+                     ", which may be deeper than measured; " + (calibrated ? "" : "give a calibration, or ") +
+                     "raise perspective.max_damage_depth_m");
 }
 
 }  // namespace

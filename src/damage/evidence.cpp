@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/log_odds.hpp"
 #include "roadstereo/damage.hpp"
 
 namespace roadstereo {
@@ -28,7 +29,7 @@ double DamageEvidence::confidence() const {
   const double log_odds = intercept + per_log_significance * std::log(std::clamp(significance, 1.0, max_significance)) +
                           per_road_share * road_share + per_unseen_share * unseen_share +
                           per_squared_border_share * border_share * border_share;
-  return 1 / (1 + std::exp(-(log_odds + surface_log_odds(surface_significance))));
+  return probability_of(log_odds + surface_log_odds(surface_significance));
 }
 
 }  // namespace roadstereo

@@ -79,11 +79,7 @@ class Overview {
         seen.emplace_back(u, v);
       }
     }
-    if (seen.empty())
-      fail(
-          "the map is empty: no frame shows the road sharply enough for a cell. Are the poses in metres, with z up, "
-          "and the "
-          "cells of --cell not larger than what frames show?");
+    if (seen.empty()) fail("the map is empty");
     measured_ = cv::boundingRect(seen);
     colours_ = bgr;
   }
@@ -195,11 +191,7 @@ void draw_legend(cv::Mat& canvas, cv::Point at, const Panel& panel, int width, c
 std::vector<std::uint8_t> map_picture(const MapBox& bounds, const MapReference& reference, const ReadMap& read,
                                       const ReadMap& relief, std::span<const RoadDamageRecord> damages) {
   constexpr int quality = 85, gap = 10, legend = 3 * letters_px;
-  if (bounds.empty())
-    fail(
-        "the map is empty: no frame shows the road sharply enough for a cell. Are the poses in metres, with z up, and "
-        "the "
-        "cells of --cell not larger than what frames show?");
+  if (bounds.empty()) fail("the map is empty");
   const Overview overview(bounds, read, relief);
   const Panel panel(overview);
   Image<float> relief_mm(overview.relief().width(), overview.relief().height());

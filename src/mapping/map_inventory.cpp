@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/log_odds.hpp"
 #include "core/order_statistics.hpp"
 #include "damage/distress.hpp"
 #include "damage/smoothing_error.hpp"
@@ -124,16 +125,6 @@ Measurement fuse(const std::vector<Figure>& figures, double view_factor) {
   return {sum / weight, std::sqrt(common / weight + std::min(n, view_factor) / weight)};
 }
 
-double probability(double log_odds) {
-  return 1 / (1 + std::exp(-log_odds));
-}
-
-double logit(double p) {
-  constexpr double smallest = 1e-6;
-  const double clamped = std::clamp(p, smallest, 1 - smallest);
-  return std::log(clamped / (1 - clamped));
-}
-
 /// Confidence of agreeing frames: the mean of the log-odds, and what the root of the number of independent views adds
 /// to the log of the significance. A frame that measures the place without a finding counts as the least confident one.
 double joint_confidence(const Group& group, int views, double view_factor) {
@@ -141,13 +132,13 @@ double joint_confidence(const Group& group, int views, double view_factor) {
   std::set<std::pair<int, int>> frames;
   double sum = 0;
   for (const DamageSighting* sighting : group.sightings) {
-    if (frames.insert({sighting->pass, sighting->frame}).second) sum += logit(sighting->found.damage.confidence);
+    if (frames.insert({sighting->pass, sighting->frame}).second) sum += log_odds(sighting->found.damage.confidence);
   }
   const auto seen = static_cast<double>(frames.size());
   const double all = std::max(seen, static_cast<double>(views));
-  const double mean = (sum + (all - seen) * logit(least_confidence)) / all;
+  const double mean = (sum + (all - seen) * log_odds(least_confidence)) / all;
   const double independent = std::max(1.0, seen / view_factor);
-  return probability(mean + per_log_significance * 0.5 * std::log(independent));
+  return probability_of(mean + per_log_significance * 0.5 * std::log(independent));
 }
 
 /// Confidence of a finding in the map, which `views` frames measure. Each independent frame of those without a sighting
@@ -159,7 +150,7 @@ double confidence_in_map(const Damage& in_map, int views, int sightings, double 
   DamageEvidence in_frame = in_map.evidence;
   in_frame.significance /= std::sqrt(independent);
   const double silent = independent * (views - sightings) / views;
-  return probability(logit(in_map.confidence) + silent * std::log1p(-in_frame.confidence()));
+  return probability_of(log_odds(in_map.confidence) + silent * std::log1p(-in_frame.confidence()));
 }
 
 /// Median number of frames that measure the cells of a footprint.

@@ -7,7 +7,7 @@
 
 #include "core/format_message.hpp"
 #include "core/parallel.hpp"
-#include "core/require_range.hpp"
+#include "core/require_size.hpp"
 #include "core/scratch.hpp"
 #include "pipeline/host_stages.hpp"
 #include "road/rig_prior.hpp"
@@ -101,16 +101,10 @@ void Pipeline::State::begin_frame(const FrameView& left, const FrameView& right)
   has_frame = has_maps = false;
   result.warnings.clear();
   result.ms = {};
-  if (left.width != right.width || left.height != right.height) {
-    fail("the left image has ", left.width, "×", left.height, " pixels and the right image ", right.width, "×",
-         right.height, "; a pair must have one size");
-  }
+  require_one_size({left.width, left.height}, {right.width, right.height});
   width = left.width;
   height = left.height;
-  if (!mask.empty() && (mask.width() != width || mask.height() != height)) {
-    fail("the mask has ", mask.width(), "×", mask.height(), " pixels; it must have ", width, "×", height,
-         " like the pair");
-  }
+  require_mask_size({mask.width(), mask.height()}, {width, height});
   if (calibration) calibration->validate(width, height, "calibration");
   if (options.rig_bias) options.rig_bias->require_rig(width, height, calibration);
   if (carried.width != width || carried.height != height) carried = {};

@@ -8,6 +8,7 @@
 #include "core/downsample.hpp"
 #include "core/format_message.hpp"
 #include "core/require_range.hpp"
+#include "core/require_size.hpp"
 #include "road/coarse_match.hpp"
 #include "road/downsampled_plane.hpp"
 #include "road/masked_blocks.hpp"
@@ -181,24 +182,13 @@ RoadModelEstimate assess_planes(std::span<const FinePair> pairs, std::span<const
   return estimate;
 }
 
-void require_one_size(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                      ImageView<const std::uint8_t> mask) {
-  if (left.width() != right.width() || left.height() != right.height()) {
-    fail("the left image has ", left.width(), "×", left.height(), " pixels and the right image ", right.width(), "×",
-         right.height(), "; a pair must have one size");
-  }
-  if (!mask.empty() && (mask.width() != left.width() || mask.height() != left.height())) {
-    fail("the mask has ", mask.width(), "×", mask.height(), " pixels; it must have ", left.width(), "×", left.height(),
-         " like the pair");
-  }
-}
-
 /// Searches around the last frame's plane.
 RoadModelEstimate track_road(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                              const TrackedRoad& previous, PlaneMatcher match, const FineSearch& first,
                              const FineSearch& second, const std::optional<StereoCalibration>& calibration,
                              const RoadModelOptions& options, int threads, ImageView<const std::uint8_t> mask) {
-  require_one_size(left, right, mask);
+  require_one_size({left.width(), left.height()}, {right.width(), right.height()});
+  require_mask_size({mask.width(), mask.height()}, {left.width(), left.height()});
   options.validate();
   const FinePair fine(left, right, mask, fine_factor(left.width()));
   const TwoSearches found(fine, previous.model, match, first, second, options.with_roll, threads);
@@ -255,7 +245,8 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
                                       const std::optional<StereoCalibration>& calibration,
                                       const RoadModelOptions& options, int threads,
                                       ImageView<const std::uint8_t> mask) {
-  require_one_size(left, right, mask);
+  require_one_size({left.width(), left.height()}, {right.width(), right.height()});
+  require_mask_size({mask.width(), mask.height()}, {left.width(), left.height()});
   options.validate();
   const int factor = coarse_factor(left.width(), left.height());
   const double max_disparity = options.max_disparity_share * left.width();

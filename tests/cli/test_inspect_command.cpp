@@ -25,6 +25,20 @@ const std::set<std::string> result_files = {
     "sigma.tiff",     "sigma_color.png",  "result.json",   "damages.json",        "damages.csv",           "damage.png",
     "overlay.png",    "report.html",      "cloud.ply",     "road_cloud.ply"};
 
+// The demo's deepest pothole is 3 px deep.
+TEST_F(InspectCommand, TellsWhereSearchEndsAtFloor) {
+  ASSERT_EQ(run("synth --scene demo --size 640x360 --output demo --quiet").exit_code, 0);
+  const std::string pair =
+      "inspect demo/left.png demo/right.png --calibration demo/calibration.yaml --quiet --output out";
+  const auto tells = [this](const std::string& command) {
+    EXPECT_EQ(run(command).exit_code, 0);
+    const nlohmann::json codes = json_file("out/result.json")["warning_codes"];
+    return std::find(codes.begin(), codes.end(), "search-end") != codes.end();
+  };
+  EXPECT_FALSE(tells(pair));
+  EXPECT_TRUE(tells(pair + " --set perspective.delta_p_px=1"));
+}
+
 TEST_F(InspectCommand, WritesEveryFile) {
   make_road();
   const Outcome outcome = inspect();

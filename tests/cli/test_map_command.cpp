@@ -56,6 +56,18 @@ TEST_F(MapCommand, NamesWhatIsMissing) {
   for (int i = 0; i < 9; ++i) poses += "1 0 0 0 0 1 0 0 0 0 1 0\n";
   write("long.txt", poses);
   expect_complaint(map("--trajectory long.txt"), "has 2 frames");
+  expect_complaint(map("--trajectory flight/trajectory_kitti.txt --crs NOSUCH"), "--crs NOSUCH: GDAL does not know");
+  expect_complaint(map("--trajectory flight/trajectory_kitti.txt --crs EPSG:4326"), "not projected");
+}
+
+TEST_F(MapCommand, SaysHowManyFramesHaveNoPose) {
+  make_flight("160x90");
+  const std::string poses = read_text(folder_ / "flight/trajectory_kitti.txt");
+  write("one.txt", poses.substr(0, poses.find('\n') + 1));
+  ASSERT_EQ(map("--trajectory one.txt --quiet").exit_code, 0);
+  const nlohmann::json result = json_file("map/map.json");
+  ASSERT_EQ(result["reasons"].size(), 1U);
+  EXPECT_EQ(result["reasons"][0], "1 of 2 frames have no pose in one.txt");
 }
 
 // The same road with and without its potholes ("flat" has none); poses are true, so both days have one world.

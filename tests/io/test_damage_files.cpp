@@ -289,6 +289,16 @@ TEST(DamageReport, ShowsFiguresWithStandardErrors) {
   EXPECT_NE(html.find("12.3\u00a0±\u00a00.5\u00a0L"), std::string::npos);
 }
 
+TEST(DamageReport, WithoutRoadNothingWasInspected) {
+  TrueDamage truth = damage_from_truth(road());
+  truth.map = make_empty_damage_map(480, 270, "no road was found");
+  const std::string html = damage_report(report_input(truth));
+  EXPECT_EQ(html.find("No damage found"), std::string::npos);
+  EXPECT_NE(html.find("Not inspected"), std::string::npos);
+  EXPECT_NE(html.find("no road was found"), std::string::npos);
+  EXPECT_TRUE(nlohmann::json::parse(damages_json(truth.map))["noise_px"].is_null());
+}
+
 TEST(DamageReport, SaysThatNoDamageWasFound) {
   TrueDamage truth = damage_from_truth(road());
   truth.map.damages.clear();

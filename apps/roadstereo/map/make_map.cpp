@@ -17,6 +17,12 @@ namespace {
 
 BuiltMap built_map(const MapPlan& plan, const std::filesystem::path& tiles, const StopSignals& stop) {
   BuiltMap built = build_map(plan, tiles, stop);
+  for (const DayMap& day : built.days) {
+    if (!day.map.bounds().empty()) continue;
+    fail(
+        "the map is empty: no frame shows the road sharply enough for a cell. Are the poses in metres, with z up, and ",
+        "the cells of --cell not larger than what frames show?");
+  }
   if (!built.days.empty()) return built;
   std::error_code ignored;
   std::filesystem::remove_all(tiles, ignored);

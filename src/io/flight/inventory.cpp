@@ -3,6 +3,7 @@
 #include <iterator>
 #include <tuple>
 
+#include "core/log_odds.hpp"
 #include "core/order_statistics.hpp"
 #include "io/damage_colours.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
@@ -36,12 +37,6 @@ double overlap(const std::array<int, 4>& box, const std::array<double, 2>& move,
   const double smaller = std::min(length(box[0], box[2]) * length(box[1], box[3]),
                                   length(other[0], other[2]) * length(other[1], other[3]));
   return width * height / smaller;
-}
-
-double log_odds(double probability) {
-  constexpr double smallest = 1e-6;
-  const double p = std::clamp(probability, smallest, 1 - smallest);
-  return std::log(p / (1 - p));
 }
 
 /// Takes the measurement in a frame as the best one.

@@ -30,9 +30,9 @@ std::string jpeg_uri(const std::vector<std::uint8_t>& jpeg) {
 std::string notices_of(const FlightReportInput& input) {
   std::string html;
   for (const std::string& notice : input.notices) html += "<p class=\"notice\">" + escaped(notice) + "</p>\n";
-  const std::vector<double>& roughness = input.curves.sigma_d_px;
+  const std::vector<double>& of_frames = input.curves.sigma_d_px;
   const bool inspected =
-      std::any_of(roughness.begin(), roughness.end(), [](double sigma_d_px) { return std::isfinite(sigma_d_px); });
+      std::any_of(of_frames.begin(), of_frames.end(), [](double sigma_d_px) { return std::isfinite(sigma_d_px); });
   const std::size_t in_map = input.map ? input.map->damages.size() : 0;
   if (!inspected) {
     html +=

@@ -164,11 +164,7 @@ std::string map_wkt(const MapReference& reference) {
 void write_geotiff(const std::filesystem::path& file, MapLayer layer, const MapBox& bounds,
                    const MapReference& reference, const ReadMap& read) {
   constexpr int block = 512;
-  if (bounds.empty())
-    fail(
-        "the map is empty: no frame shows the road sharply enough for a cell. Are the poses in metres, with z up, and "
-        "the "
-        "cells of --cell not larger than what frames show?");
+  if (bounds.empty()) fail("the map is empty");
   const GdalErrors errors(file.string());
   const BlockCacheLimit limit;
   const LayerFormat format = format_of(layer);

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "roadstereo/error.hpp"
+
+namespace roadstereo {
+
+struct ImageSize {
+  int width = 0, height = 0;
+
+  friend bool operator==(const ImageSize&, const ImageSize&) = default;
+};
+
+inline void require_one_size(const ImageSize& left, const ImageSize& right) {
+  if (left == right) return;
+  fail("the left image has ", left.width, "×", left.height, " pixels and the right image ", right.width, "×",
+       right.height, "; a pair must have one size");
+}
+
+/// A mask may be empty.
+inline void require_mask_size(const ImageSize& mask, const ImageSize& pair) {
+  if (mask.width == 0 || mask == pair) return;
+  fail("the mask has ", mask.width, "×", mask.height, " pixels; it must have ", pair.width, "×", pair.height,
+       " like the pair");
+}
+
+}  // namespace roadstereo
