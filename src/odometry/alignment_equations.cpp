@@ -10,18 +10,30 @@ namespace {
 
 constexpr double min_depth_m = 0.05;
 
-/// Bilinear sample; false outside.
-bool sample_grey(const Image<GreySample>& level, double x, double y, GreySample& sample) {
+/// Grey level and its gradient between pixels: 8-bit grey levels, and per pixel of the level.
+struct GreySample {
+  float grey = 0;
+  float per_column = 0;
+  float per_row = 0;
+};
+
+/// Bilinear, of central differences; false outside.
+bool sample_grey(ImageView<const std::int16_t> level, double x, double y, GreySample& sample) {
   constexpr int margin = 1;
   if (!(x >= margin && y >= margin && x < level.width() - 1 - margin && y < level.height() - 1 - margin)) return false;
   const int u = static_cast<int>(x), v = static_cast<int>(y);
   const float fu = static_cast<float>(x - u), fv = static_cast<float>(y - v);
-  const GreySample* a = level.row(v) + u;
-  const GreySample* b = level.row(v + 1) + u;
-  const float w00 = (1 - fu) * (1 - fv), w10 = fu * (1 - fv), w01 = (1 - fu) * fv, w11 = fu * fv;
-  sample.grey = w00 * a[0].grey + w10 * a[1].grey + w01 * b[0].grey + w11 * b[1].grey;
-  sample.per_column = w00 * a[0].per_column + w10 * a[1].per_column + w01 * b[0].per_column + w11 * b[1].per_column;
-  sample.per_row = w00 * a[0].per_row + w10 * a[1].per_row + w01 * b[0].per_row + w11 * b[1].per_row;
+  const std::int16_t* above = level.row(v - 1) + u;
+  const std::int16_t* a = level.row(v) + u;
+  const std::int16_t* b = level.row(v + 1) + u;
+  const std::int16_t* below = level.row(v + 2) + u;
+  const auto between = [fu, fv](int a0, int a1, int b0, int b1) {
+    return (1 - fu) * (1 - fv) * static_cast<float>(a0) + fu * (1 - fv) * static_cast<float>(a1) +
+           (1 - fu) * fv * static_cast<float>(b0) + fu * fv * static_cast<float>(b1);
+  };
+  sample.grey = between(a[0], a[1], b[0], b[1]) * grey_unit;
+  sample.per_column = between(a[1] - a[-1], a[2] - a[0], b[1] - b[-1], b[2] - b[0]) * (grey_unit / 2);
+  sample.per_row = between(b[0] - above[0], b[1] - above[1], below[0] - a[0], below[1] - a[1]) * (grey_unit / 2);
   return true;
 }
 
@@ -57,7 +69,7 @@ class Linearisation {
   Linearisation(const FrameMaps& current, const StereoCalibration& calibration, int level)
       : current_(current),
         calibration_(calibration),
-        samples_(current.pyramid.level(level)),
+        grey_(current.pyramid.level(level)),
         scale_(1.0 / (1 << level)),
         depth_scale_(calibration.focal_px * calibration.baseline_m),
         rows_(current.disparity.height() - 1) {}
@@ -80,21 +92,24 @@ class Linearisation {
     const double f = calibration_.focal_px;
     const double z = depth_scale_ / disparity;
     const Vector<3> p{(point.u - calibration_.cx_px) / f * z, (point.v - calibration_.cy_px) / f * z, z};
-    Vector<3> q = state.motion(p);
+    const Vector<3> turned = state.motion.rotated(p);
+    Vector<3> q = turned;
+    for (std::size_t i = 0; i < 3; ++i) q[i] += state.motion.translation[i];
     Vector<3> by_shutter{};
     if (!end_of_motion(state.shutter, point.v, velocity, q, by_shutter)) return;
-    const double u = f * q[0] / q[2] + calibration_.cx_px, v = f * q[1] / q[2] + calibration_.cy_px;
+    const double pixels_per_m = f / q[2];
+    const double u = pixels_per_m * q[0] + calibration_.cx_px, v = pixels_per_m * q[1] + calibration_.cy_px;
     GreySample sample;
-    if (!sample_grey(samples_, (u + 0.5) * scale_ - 0.5, (v + 0.5) * scale_ - 0.5, sample)) return;
+    if (!sample_grey(grey_, (u + 0.5) * scale_ - 0.5, (v + 0.5) * scale_ - 0.5, sample)) return;
     const double scale = z / q[2];
     equations.visible += std::min(1.0, scale * scale);
     // Derivative of q by the disparity.
-    const Vector<3> turned = state.motion.rotated(p);
-    const Vector<3> by_disparity{-turned[0] / disparity, -turned[1] / disparity, -turned[2] / disparity};
+    const double nearer = -1 / disparity;
+    const Vector<3> by_disparity{nearer * turned[0], nearer * turned[1], nearer * turned[2]};
     // Derivative of the grey level by q.
-    const double gu = sample.per_column * scale_ * f / q[2], gv = sample.per_row * scale_ * f / q[2];
+    const double gu = sample.per_column * scale_ * pixels_per_m, gv = sample.per_row * scale_ * pixels_per_m;
     const Vector<3> by_q{gu, gv, -(gu * q[0] + gv * q[1]) / q[2]};
-    AlignmentEquation equation;
+    AlignmentEquation& equation = equations.grey.emplace_back();
     equation.cell = point.cell;
     equation.residual = sample.grey - state.gain * point.grey - state.brightness;
     put_motion(by_q, q, equation);
@@ -105,7 +120,6 @@ class Linearisation {
     equation.row[offset_index] = by_offset * shape;
     equation.row[growth_index] = by_offset * (shape - 1);
     equation.variance = by_offset * by_offset * point.sigma_px * point.sigma_px;
-    equations.grey.push_back(equation);
     add_disparity(point, state, {q, u, v, disparity, shape, by_disparity, by_shutter}, equations);
   }
 
@@ -146,7 +160,7 @@ class Linearisation {
     const double here = offset_shape(calibration_, moved.u, surface.disparity);
     const double factor = depth_scale_ / (q[2] * towards);
     const Vector<3> by_q{factor * normal[0], factor * normal[1], factor * normal[2]};
-    AlignmentEquation equation;
+    AlignmentEquation& equation = equations.disparity.emplace_back();
     equation.cell = point.cell;
     equation.residual = surface.disparity + state.offset(here) + calibration_.disparity_offset_px - depth_scale_ / q[2];
     put_motion(by_q, q, equation);
@@ -155,7 +169,6 @@ class Linearisation {
     equation.row[offset_index] = here + by_offset * moved.shape;
     equation.row[growth_index] = here - 1 + by_offset * (moved.shape - 1);
     equation.variance = surface.sigma_px * surface.sigma_px + by_offset * by_offset * point.sigma_px * point.sigma_px;
-    equations.disparity.push_back(equation);
   }
 
   /// Derivatives by a translation and a rotation of q.
@@ -169,7 +182,7 @@ class Linearisation {
 
   const FrameMaps& current_;
   const StereoCalibration& calibration_;
-  const Image<GreySample>& samples_;
+  ImageView<const std::int16_t> grey_;
   double scale_;
   double depth_scale_;
   double rows_;  ///< from the first to the last

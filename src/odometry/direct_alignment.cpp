@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "core/order_statistics.hpp"
 #include "odometry/alignment_equations.hpp"
 #include "odometry/alignment_weights.hpp"
+#include "odometry/anderson_acceleration.hpp"
 #include "odometry/patch_matching.hpp"
 
 namespace roadstereo {
@@ -54,6 +56,12 @@ struct NormalEquations {
     matrix[index][index] = 1;
     right[index] = 0;
   }
+
+  Vector<unknowns> solved() const {
+    Matrix<unknowns> factor = matrix;
+    factor_in_place(factor, smallest);
+    return solve_factored(factor, right);
+  }
 };
 
 class Aligner {
@@ -64,18 +72,22 @@ class Aligner {
     state_.motion = start;
     state_.offset_px = prior.mean_px;
     sums_.resize(static_cast<std::size_t>(reference.cells));
+    for (const ReferencePoint& point : reference.levels.back()) scratch_.push_back(point.disparity);
+    const double typical_disparity = scratch_.empty() ? 1 : upper_median(scratch_);
+    typical_depth_m_ = calibration.focal_px * calibration.baseline_m / typical_disparity;
   }
 
-  void run_level(int level) {
+  /// Until a step moves the points by less than `converged_px` of the level.
+  void run_level(int level, double converged_px) {
     constexpr int max_iterations = 12;
-    constexpr double converged_px = 0.01;  // of the level
     const std::vector<ReferencePoint>& points = reference_.levels[static_cast<std::size_t>(level)];
     double noise = 10;  // grey levels; a start
+    AndersonAcceleration<unknowns> acceleration;
     for (int i = 0; i < max_iterations; ++i) {
       linearise(points, current_, calibration_, level, state_, equations_);
       if (equations_.grey.size() < min_points) return;
       weigh(noise);
-      if (step(level) < converged_px) break;
+      if (shift_px(step({prior_.sd_px, 0, 0}, acceleration), level) < converged_px) break;
     }
   }
 
@@ -98,26 +110,31 @@ class Aligner {
   void weigh(double& noise) {
     weigh_grey_levels(equations_.grey, noise, sums_, scratch_);
     if (!equations_.disparity.empty()) weigh_disparities(equations_.disparity, sums_, scratch_);
+    normal_ = {};
+    normal_.add(equations_.grey);
+    normal_.add(equations_.disparity);
   }
 
   NormalEquations normal_equations(const Spread& spread) const {
-    NormalEquations normal;
-    normal.add(equations_.grey);
-    normal.add(equations_.disparity);
+    NormalEquations normal = normal_;
     normal.expect(offset_index, state_.offset_px - prior_.mean_px, spread.offset_px);
     normal.expect(growth_index, state_.growth_px, spread.growth_px);
     normal.expect(shutter_index, state_.shutter, spread.shutter);
     return normal;
   }
 
-  /// One step of Gauss–Newton; returns by how much it moves the points, pixels of the level.
-  double step(int level) {
-    const Vector<unknowns> x = solved({prior_.sd_px, 0, 0});
-    take(x);
+  /// One step of Gauss–Newton, longer or shorter as the last ones say; returns the step itself.
+  Vector<unknowns> step(const Spread& spread, AndersonAcceleration<unknowns>& acceleration) {
+    const NormalEquations normal = normal_equations(spread);
+    const Vector<unknowns> x = normal.solved();
+    take(acceleration.accelerated(x, normal.matrix));
+    return x;
+  }
+
+  /// By how much a step moves the points, pixels of the level.
+  double shift_px(const Vector<unknowns>& x, int level) const {
     const double f = calibration_.focal_px;
-    const double near_m = calibration_.focal_px * calibration_.baseline_m / typical_disparity();
-    const double shift = f * std::hypot(x[0], x[1], x[2]) / near_m + f * std::hypot(x[3], x[4], x[5]);
-    return shift / (1 << level);
+    return (f * std::hypot(x[0], x[1], x[2]) / typical_depth_m_ + f * std::hypot(x[3], x[4], x[5])) / (1 << level);
   }
 
   void take(const Vector<unknowns>& x) {
@@ -129,12 +146,6 @@ class Aligner {
     state_.shutter += x[shutter_index];
   }
 
-  double typical_disparity() {
-    scratch_.clear();
-    for (const ReferencePoint& point : reference_.levels.back()) scratch_.push_back(point.disparity);
-    return scratch_.empty() ? 1 : upper_median(scratch_);
-  }
-
   void fill_covariance(Alignment& alignment) {
     const Matrix<unknowns> covariance = sandwich({prior_.sd_px, 0, 0});
     for (std::size_t i = 0; i < 6; ++i) std::copy_n(covariance[i].begin(), 6, alignment.covariance[i].begin());
@@ -142,17 +153,18 @@ class Aligner {
     alignment.offset_sd_px = std::sqrt(covariance[offset_index][offset_index]);
     // What one more step with a free offset finds.
     const Spread free_offset{unknown_offset_sd_px, 0, 0};
-    alignment.measured_offset_px = state_.offset_px + solved(free_offset)[offset_index];
+    alignment.measured_offset_px = state_.offset_px + normal_equations(free_offset).solved()[offset_index];
     alignment.measured_offset_sd_px = std::sqrt(sandwich(free_offset)[offset_index][offset_index]);
   }
 
-  /// What further steps with a free shutter and a free offset of the disparities find. The first step alone overshoots
-  /// by a tenth or more: the gradients of fine texture are too small.
+  /// What further steps with a free shutter and a free offset of the disparities find, to a tenth of a standard error.
+  /// The first step alone overshoots by a tenth or more: the gradients of fine texture are too small.
   void examine_rig(const std::vector<ReferencePoint>& points, int level, double noise, Alignment& alignment) {
     constexpr int steps = 6;
-    constexpr double noteworthy_std_errors = 2;
+    constexpr double noteworthy_std_errors = 2, small_std_errors = 0.1;
     const Spread free{any_offset_sd_px, any_offset_sd_px, any_shutter_sd};
     const AlignmentState before = state_;
+    AndersonAcceleration<unknowns> acceleration;
     for (int i = 0; i < steps; ++i) {
       if (i > 0) {
         linearise(points, current_, calibration_, level, state_, equations_);
@@ -160,22 +172,19 @@ class Aligner {
         weigh(noise);
       }
       const Matrix<unknowns> covariance = sandwich(free);
-      take(solved(free));
+      const Vector<unknowns> x = step(free, acceleration);
       alignment.rig_offset_sd_px = std::sqrt(covariance[offset_index][offset_index]);
       alignment.shutter_sd = std::sqrt(covariance[shutter_index][shutter_index]);
-      if (std::abs(state_.shutter) < noteworthy_std_errors * alignment.shutter_sd &&
-          std::abs(state_.offset_px) < noteworthy_std_errors * alignment.rig_offset_sd_px)
-        break;
+      const auto both_below = [&alignment](double offset_px, double shutter, double std_errors) {
+        return std::abs(offset_px) < std_errors * alignment.rig_offset_sd_px &&
+               std::abs(shutter) < std_errors * alignment.shutter_sd;
+      };
+      if (both_below(state_.offset_px, state_.shutter, noteworthy_std_errors)) break;
+      if (both_below(x[offset_index], x[shutter_index], small_std_errors)) break;
     }
     alignment.rig_offset_px = state_.offset_px;
     alignment.shutter = state_.shutter;
     state_ = before;
-  }
-
-  Vector<unknowns> solved(const Spread& spread) const {
-    NormalEquations normal = normal_equations(spread);
-    factor_in_place(normal.matrix, smallest);
-    return solve_factored(normal.matrix, normal.right);
   }
 
   /// H⁻¹ (Σ g gᵀ) H⁻¹ with the scores g of the cells.
@@ -189,27 +198,32 @@ class Aligner {
     };
     add_scores(equations_.grey);
     add_scores(equations_.disparity);
-    Matrix<unknowns> factor = normal_equations(spread).matrix;
-    factor_in_place(factor, smallest);
     std::size_t used = 0;
-    Matrix<unknowns> covariance{};
-    for (Vector<unknowns>& score : scores) {
+    Matrix<unknowns> covariance{};  // of the scores
+    for (const Vector<unknowns>& score : scores) {
       if (std::all_of(score.begin(), score.end(), [](double s) { return s == 0; })) continue;
       ++used;
-      if (spread.offset_px <= 0) score[offset_index] = 0;
-      if (spread.growth_px <= 0) score[growth_index] = 0;
-      if (spread.shutter <= 0) score[shutter_index] = 0;
-      add_outer(solve_factored(factor, score), covariance);
+      add_outer(score, covariance);
     }
-    const auto add_expectation = [&](std::size_t index, double sd) {
-      if (sd <= 0) return;
-      Vector<unknowns> score{};
-      score[index] = 1 / sd;
-      add_outer(solve_factored(factor, score), covariance);
+    const auto add_expectation = [&covariance](std::size_t index, double sd) {
+      if (sd > 0) {
+        covariance[index][index] += 1 / (sd * sd);
+        return;
+      }
+      for (std::size_t i = 0; i < unknowns; ++i) covariance[index][i] = covariance[i][index] = 0;
     };
     add_expectation(offset_index, spread.offset_px);
     add_expectation(growth_index, spread.growth_px);
     add_expectation(shutter_index, spread.shutter);
+    Matrix<unknowns> factor = normal_equations(spread).matrix;
+    factor_in_place(factor, smallest);
+    // Rows, then columns: both are symmetric.
+    for (int side = 0; side < 2; ++side) {
+      for (Vector<unknowns>& row : covariance) row = solve_factored(factor, row);
+      for (std::size_t i = 0; i < unknowns; ++i) {
+        for (std::size_t j = 0; j < i; ++j) std::swap(covariance[i][j], covariance[j][i]);
+      }
+    }
     const double count = static_cast<double>(used);
     const std::size_t estimated = spread.shutter > 0 ? unknowns : unknowns - 2;
     const double small_sample = used > 2 * estimated ? count / (count - static_cast<double>(estimated)) : 2;
@@ -229,8 +243,10 @@ class Aligner {
   const FrameMaps& current_;
   const StereoCalibration& calibration_;
   OffsetPrior prior_;
+  double typical_depth_m_ = 0;
   AlignmentState state_;
   AlignmentEquations equations_;
+  NormalEquations normal_;  ///< of the weighted equations
   std::vector<double> scratch_;
   std::vector<double> sums_;
 };
@@ -241,7 +257,10 @@ Alignment align(const ReferencePoints& reference, const FrameMaps& current, cons
                 const RigidMotion& start, const OffsetPrior& offset, int coarsest, int finest) {
   Aligner aligner(reference, current, calibration, start, offset);
   const int levels = std::min(current.pyramid.levels(), static_cast<int>(reference.levels.size()));
-  for (int level = std::min(coarsest, levels - 1); level >= finest; --level) aligner.run_level(level);
+  constexpr double start_of_finer_px = 0.1, converged_px = 0.01;
+  for (int level = std::min(coarsest, levels - 1); level >= finest; --level) {
+    aligner.run_level(level, level > finest ? start_of_finer_px : converged_px);
+  }
   return aligner.result(std::min(finest, levels - 1));
 }
 

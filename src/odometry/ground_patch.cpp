@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace roadstereo {
 namespace {
@@ -109,13 +110,13 @@ void sample_ground(const ImagePyramid& pyramid, const StereoCalibration& calibra
       const double v = calibration.focal_px * p[1] / p[2] + calibration.cy_px;
       // The level whose pixels are as large as the cells.
       const double pixels = grid.cell_m * calibration.focal_px / p[2];
-      const int level =
-          std::clamp(static_cast<int>(std::lround(std::log2(std::max(pixels, 1.0)))), 0, pyramid.levels() - 1);
-      const Image<GreySample>& samples = pyramid.level(level);
-      const long x = std::lround((u + 0.5) / (1 << level) - 0.5), y = std::lround((v + 0.5) / (1 << level) - 0.5);
-      if (x < 0 || y < 0 || x >= samples.width() || y >= samples.height()) continue;
+      int level = 0;
+      while (level + 1 < pyramid.levels() && pixels > std::numbers::sqrt2 * (1 << level)) ++level;
+      const ImageView<const std::int16_t> grey = pyramid.level(level);
+      const double scale = 1.0 / (1 << level), x = (u + 0.5) * scale, y = (v + 0.5) * scale;
+      if (!(x >= 0 && y >= 0 && x < grey.width() && y < grey.height())) continue;
       const auto i = static_cast<std::size_t>(row) * side + static_cast<std::size_t>(column);
-      cells[i] = samples(static_cast<int>(x), static_cast<int>(y)).grey;
+      cells[i] = static_cast<float>(grey.row(static_cast<int>(y))[static_cast<int>(x)]) * grey_unit;
       valid[i] = 1;
     }
   }

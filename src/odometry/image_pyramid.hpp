@@ -8,27 +8,24 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// Grey level and its gradient at a pixel: 8-bit grey levels, and per pixel of the level.
-struct GreySample {
-  float grey = 0;
-  float per_column = 0;
-  float per_row = 0;
-};
+/// 8-bit grey levels per unit of an image of sixteenths.
+inline constexpr float grey_unit = 1.0F / 16;
 
-/// Gaussian-like pyramid of an image: level 0 has its size, every further level is the mean of 2×2 pixels of the one
-/// before. Pixel (x, y) of level n has its centre at ((x + ½)·2ⁿ − ½, …) of the image.
+/// Gaussian-like pyramid of an image: level 0 is the image, every further level is the mean of 2×2 pixels of the one
+/// before. Pixel (x, y) of level n has its centre at ((x + ½)·2ⁿ − ½, …) of the image. Sixteenths of grey levels.
 class ImagePyramid {
  public:
-  /// Keeps the memory of the last image.
+  /// The image must outlive the use of level 0. Keeps the memory of the last image.
   void build(ImageView<const std::int16_t> grey);
 
-  int levels() const { return levels_; }
-  const Image<GreySample>& level(int n) const { return samples_[static_cast<std::size_t>(n)]; }
+  int levels() const { return static_cast<int>(reduced_.size()) + 1; }
+  ImageView<const std::int16_t> level(int n) const {
+    return n == 0 ? grey_ : reduced_[static_cast<std::size_t>(n - 1)].view();
+  }
 
  private:
-  int levels_ = 0;
-  std::vector<GreyImage> grey_;  ///< of the levels above 0
-  std::vector<Image<GreySample>> samples_;
+  ImageView<const std::int16_t> grey_;
+  std::vector<GreyImage> reduced_;  ///< levels from 1
 };
 
 }  // namespace roadstereo

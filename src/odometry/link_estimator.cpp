@@ -87,9 +87,7 @@ LinkReference LinkEstimator::reference(const FrameMaps& maps, const OdometryFram
   FrameRoad road;
   if (frame.has_road && frame_road(frame.road, calibration_, frame.grey.width(), frame.grey.height(), road)) {
     reference.road = road;
-    std::vector<float> cells;
-    sample_ground(maps.pyramid, calibration_, road, road.grid, 0, cells);
-    reference.ground = spectrum(cells, GroundGrid::side);
+    sample_ground(maps.pyramid, calibration_, road, road.grid, 0, reference.ground);
   }
   return reference;
 }
@@ -117,12 +115,13 @@ std::vector<RigidMotion> LinkEstimator::starts(const LinkReference& from, const 
   const GroundGrid& fixed = from.road->grid;
   const GroundGrid grid{fixed.cell_m, road.grid.centre_x_m, road.grid.centre_y_m};
   std::vector<std::pair<double, RigidMotion>> found;
+  const Spectrum ground = spectrum(from.ground, GroundGrid::side);
   std::vector<float> cells;
   for (int step = -max_yaw_steps; step <= max_yaw_steps; ++step) {
     const double yaw = yaw_rad + step * yaw_step_rad;
     sample_ground(maps.pyramid, calibration_, road, grid, yaw, cells);
     for (const CorrelationPeak& peak :
-         phase_correlation(from.ground, spectrum(cells, GroundGrid::side), GroundGrid::side, peaks_per_yaw)) {
+         phase_correlation(ground, spectrum(cells, GroundGrid::side), GroundGrid::side, peaks_per_yaw)) {
       const double x = peak.x * grid.cell_m - fixed.centre_x_m, y = peak.y * grid.cell_m - fixed.centre_y_m;
       const double cosine = std::cos(yaw), sine = std::sin(yaw);
       found.emplace_back(peak.height, planar_motion(*from.road, road, yaw, grid.centre_x_m + cosine * x - sine * y,

@@ -16,7 +16,7 @@ namespace roadstereo {
 struct LinkReference {
   ReferencePoints points;
   std::optional<FrameRoad> road;
-  Spectrum ground;  ///< of the road's grid
+  std::vector<float> ground;  ///< grey levels of the road's grid
 };
 
 /// What is known before a link is estimated.

@@ -90,16 +90,17 @@ class WarpedPatch {
   }
 
   /// NCC around a pixel; −1 without texture.
-  float correlate(const Image<GreySample>& samples, int u, int v) const {
+  float correlate(ImageView<const std::int16_t> image, int u, int v) const {
     constexpr float count = side * side;
     float sum = 0, squares = 0, products = 0;
     const float* grey = grey_.data();
     for (int y = v - radius; y <= v + radius; ++y) {
-      const GreySample* row = samples.row(y) + u - radius;
+      const std::int16_t* row = image.row(y) + u - radius;
       for (int x = 0; x < side; ++x) {
-        sum += row[x].grey;
-        squares += row[x].grey * row[x].grey;
-        products += row[x].grey * *grey++;
+        const float level = static_cast<float>(row[x]) * grey_unit;
+        sum += level;
+        squares += level * level;
+        products += level * *grey++;
       }
     }
     const float variance = squares - sum * sum / count;
@@ -133,8 +134,8 @@ struct Match {
 
 class Search {
  public:
-  Search(const Image<GreySample>& samples, int level, int radius)
-      : samples_(samples),
+  Search(ImageView<const std::int16_t> image, int level, int radius)
+      : image_(image),
         scale_(1 << level),
         radius_(radius),
         ncc_(static_cast<std::size_t>((2 * radius + 3) * (2 * radius + 3))) {}
@@ -146,13 +147,13 @@ class Search {
     const int u0 = static_cast<int>(std::lround((u + 0.5) / scale_ - 0.5)),
               v0 = static_cast<int>(std::lround((v + 0.5) / scale_ - 0.5));
     const int far = radius_ + 1 + margin;
-    if (u0 < far || v0 < far || u0 + far >= samples_.width() || v0 + far >= samples_.height()) return false;
+    if (u0 < far || v0 < far || u0 + far >= image_.width() || v0 + far >= image_.height()) return false;
     const int side = 2 * radius_ + 1;
     int best_x = 0, best_y = 0;
     float best = min_ncc;
     for (int y = 0; y < side; ++y) {
       for (int x = 0; x < side; ++x) {
-        const float ncc = patch.correlate(samples_, u0 + x - radius_, v0 + y - radius_);
+        const float ncc = patch.correlate(image_, u0 + x - radius_, v0 + y - radius_);
         at(x, y) = ncc;
         if (ncc <= best) continue;
         best = ncc;
@@ -195,7 +196,7 @@ class Search {
                     : 0;
   }
 
-  const Image<GreySample>& samples_;
+  ImageView<const std::int16_t> image_;
   int scale_;
   int radius_;
   std::vector<float> ncc_;
@@ -281,7 +282,7 @@ double patch_correlation(const ReferencePoints& reference, const FrameMaps& curr
                          const StereoCalibration& calibration, const RigidMotion& motion, double offset_px) {
   constexpr int level = 1;
   if (current.pyramid.levels() <= level) return 0;
-  const Image<GreySample>& samples = current.pyramid.level(level);
+  ImageView<const std::int16_t> image = current.pyramid.level(level);
   constexpr int radius = WarpedPatch::radius;
   const Projector projector(calibration, motion, offset_px);
   WarpedPatch warped;
@@ -291,8 +292,8 @@ double patch_correlation(const ReferencePoints& reference, const FrameMaps& curr
     if (!seen.valid || !warped.warp(patch, seen.jacobian)) continue;
     const int u = static_cast<int>(std::lround((seen.u + 0.5) / 2 - 0.5));
     const int v = static_cast<int>(std::lround((seen.v + 0.5) / 2 - 0.5));
-    if (u < radius || v < radius || u + radius >= samples.width() || v + radius >= samples.height()) continue;
-    const float ncc = warped.correlate(samples, u, v);
+    if (u < radius || v < radius || u + radius >= image.width() || v + radius >= image.height()) continue;
+    const float ncc = warped.correlate(image, u, v);
     if (ncc > -1) found.emplace_back(patch.point.disparity, static_cast<double>(ncc));
   }
   if (found.size() < 2 * min_patches) return 0;

@@ -41,25 +41,32 @@ int full_pixel(int x, int level, int size) {
 
 class Selector {
  public:
-  Selector(const FrameMaps& frame, int level) : frame_(frame), level_(level), samples_(frame.pyramid.level(level)) {}
+  Selector(const FrameMaps& frame, int level) : frame_(frame), level_(level), grey_(frame.pyramid.level(level)) {}
 
-  /// The textured pixel of a cell; false when none has a disparity.
-  bool strongest(int u0, int v0, int side, int margin, int& best_u, int& best_v) const {
-    float strongest = -1;
-    const int u1 = std::min(u0 + side, samples_.width() - margin), v1 = std::min(v0 + side, samples_.height() - margin);
-    for (int v = std::max(v0, margin); v < v1; ++v) {
-      const GreySample* row = samples_.row(v);
+  struct Pixel {
+    int u = 0, v = 0;
+    float strength = -1;  ///< of the gradient, squared; −1: none
+  };
+
+  /// The textured pixels of the cells from row v0 to v1 that have a disparity; both are off the border.
+  void strongest(int v0, int v1, int side, int margin, std::vector<Pixel>& best) {
+    best.assign(static_cast<std::size_t>((grey_.width() + side - 1) / side), {});
+    strength_.resize(static_cast<std::size_t>(grey_.width()));
+    for (int v = v0; v < v1; ++v) {
+      find_strength(v);
       const int full_v = full_pixel(v, level_, frame_.disparity.height());
-      for (int u = std::max(u0, margin); u < u1; ++u) {
-        const float strength = row[u].per_column * row[u].per_column + row[u].per_row * row[u].per_row;
-        if (strength <= strongest) continue;
-        if (!(frame_.disparity(full_pixel(u, level_, frame_.disparity.width()), full_v) > 0)) continue;
-        strongest = strength;
-        best_u = u;
-        best_v = v;
+      for (std::size_t cell = 0; cell < best.size(); ++cell) {
+        Pixel& pixel = best[cell];
+        const int first = static_cast<int>(cell) * side;
+        const int last = std::min(first + side, grey_.width() - margin);
+        for (int u = std::max(first, margin); u < last; ++u) {
+          const float strength = strength_[static_cast<std::size_t>(u)];
+          if (strength <= pixel.strength) continue;
+          if (!(frame_.disparity(full_pixel(u, level_, frame_.disparity.width()), full_v) > 0)) continue;
+          pixel = {u, v, strength};
+        }
       }
     }
-    return strongest >= 0;
   }
 
   ReferencePoint point(int u, int v) const {
@@ -71,7 +78,7 @@ class Selector {
     point.v = (v + 0.5) * scale - 0.5;
     point.disparity = frame_.disparity(full_u, full_v);
     point.sigma_px = frame_.sigma(full_u, full_v);
-    point.grey = samples_(u, v).grey;
+    point.grey = static_cast<double>(static_cast<float>(grey_.row(v)[u]) * grey_unit);
     point.cell = full_v / error_cell * cells_per_row(frame_) + full_u / error_cell;
     find_slopes(frame_, full_u, full_v, point);
     if (point.has_slope) {  // from the pixel that has the disparity to the centre of the coarse one
@@ -83,42 +90,61 @@ class Selector {
   static int cells_per_row(const FrameMaps& frame) { return (frame.disparity.width() + error_cell - 1) / error_cell; }
 
  private:
+  void find_strength(int v) {
+    const std::int16_t* row = grey_.row(v);
+    const std::int16_t* above = grey_.row(v - 1);
+    const std::int16_t* below = grey_.row(v + 1);
+    float* strength = strength_.data();
+    for (int u = 1; u < grey_.width() - 1; ++u) {
+      const auto per_column = static_cast<float>(row[u + 1] - row[u - 1]);
+      const auto per_row = static_cast<float>(below[u] - above[u]);
+      strength[u] = per_column * per_column + per_row * per_row;
+    }
+  }
+
   const FrameMaps& frame_;
   int level_;
-  const Image<GreySample>& samples_;
+  ImageView<const std::int16_t> grey_;
+  std::vector<float> strength_;  // of a row
 };
 
+/// `margin` ≥ 1: pixels at the border that are not taken.
 template <class Take>
 void for_each_cell(const FrameMaps& frame, int level, int count, int margin, const Take& take) {
-  const Image<GreySample>& samples = frame.pyramid.level(level);
-  const Selector selector(frame, level);
-  const int side = cell_side(samples.width(), samples.height(), count);
-  for (int v = 0; v < samples.height(); v += side) {
-    for (int u = 0; u < samples.width(); u += side) {
-      int best_u = 0, best_v = 0;
-      if (selector.strongest(u, v, side, margin, best_u, best_v)) take(selector, best_u, best_v);
+  const ImageView<const std::int16_t> grey = frame.pyramid.level(level);
+  Selector selector(frame, level);
+  const int side = cell_side(grey.width(), grey.height(), count);
+  std::vector<Selector::Pixel> cells;
+  for (int v = 0; v < grey.height(); v += side) {
+    selector.strongest(std::max(v, margin), std::min(v + side, grey.height() - margin), side, margin, cells);
+    for (const Selector::Pixel& pixel : cells) {
+      if (pixel.strength >= 0) take(selector, pixel.u, pixel.v);
     }
   }
 }
 
-/// False for a patch without texture.
-bool fill_patch(const Image<GreySample>& samples, int u, int v, TexturePatch& patch) {
+/// The patch around a pixel that is farther than its radius from the border; false without texture.
+bool fill_patch(ImageView<const std::int16_t> grey, int u, int v, TexturePatch& patch) {
   constexpr int radius = TexturePatch::radius;
   std::size_t i = 0;
+  std::int64_t uu = 0, uv = 0, vv = 0;
   for (int y = v - radius; y <= v + radius; ++y) {
+    const std::int16_t* row = grey.row(y);
+    const std::int16_t* above = grey.row(y - 1);
+    const std::int16_t* below = grey.row(y + 1);
     for (int x = u - radius; x <= u + radius; ++x) {
-      const GreySample& sample = samples(x, y);
-      patch.grey[i++] = sample.grey;
-      patch.uu += static_cast<double>(sample.per_column * sample.per_column);
-      patch.uv += static_cast<double>(sample.per_column * sample.per_row);
-      patch.vv += static_cast<double>(sample.per_row * sample.per_row);
+      const std::int64_t per_column = row[x + 1] - row[x - 1], per_row = below[x] - above[x];
+      patch.grey[i++] = static_cast<float>(row[x]) * grey_unit;
+      uu += per_column * per_column;
+      uv += per_column * per_row;
+      vv += per_row * per_row;
     }
   }
-  const double trace = patch.uu + patch.vv;
+  const auto trace = static_cast<double>(uu + vv);
   if (!(trace > 0)) return false;
-  patch.uu /= trace;
-  patch.uv /= trace;
-  patch.vv /= trace;
+  patch.uu = static_cast<double>(uu) / trace;
+  patch.uv = static_cast<double>(uv) / trace;
+  patch.vv = static_cast<double>(vv) / trace;
   return true;
 }
 
@@ -152,8 +178,8 @@ void select_points(const FrameMaps& frame, ReferencePoints& points) {
 }
 
 bool sample_surface(const FrameMaps& frame, double u, double v, SurfaceSample& sample) {
-  const int x = static_cast<int>(std::floor(u)), y = static_cast<int>(std::floor(v));
-  if (x < 0 || y < 0 || x + 1 >= frame.disparity.width() || y + 1 >= frame.disparity.height()) return false;
+  if (!(u >= 0 && v >= 0 && u < frame.disparity.width() - 1 && v < frame.disparity.height() - 1)) return false;
+  const int x = static_cast<int>(u), y = static_cast<int>(v);
   const float* row = frame.disparity.row(y) + x;
   const float* next = frame.disparity.row(y + 1) + x;
   const float lowest = std::min(std::min(row[0], row[1]), std::min(next[0], next[1]));
