@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the tests of a build folder, says how many were skipped, and fails when those are not the ones that cannot run on
-# this machine. What a test needs is a label of it (tests/labels.cmake).
+# this machine. What a test needs is a label of it (tests/suites.cmake).
 #   scripts/run_tests.sh BUILD [options of ctest]
 set -euo pipefail
 cd "$(dirname "$0")/.."
