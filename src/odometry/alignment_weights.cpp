@@ -55,12 +55,10 @@ void divide_weights(std::vector<AlignmentEquation>& equations, double factor) {
 void weigh_grey_levels(std::vector<AlignmentEquation>& equations, double& noise, std::vector<double>& sums,
                        std::vector<double>& scratch) {
   constexpr double min_noise = 0.3;  // grey levels: that of rounding to 8 bits
-  for (int pass = 0; pass < 2; ++pass) {
-    scratch.clear();
-    for (const AlignmentEquation& e : equations)
-      scratch.push_back(e.residual * noise / std::sqrt(noise * noise + e.variance));
-    noise = std::max(gaussian_mad * upper_median_magnitude(scratch), min_noise);
-  }
+  scratch.clear();
+  for (const AlignmentEquation& e : equations)
+    scratch.push_back(e.residual * noise / std::sqrt(noise * noise + e.variance));
+  noise = std::max(gaussian_mad * upper_median_magnitude(scratch), min_noise);
   for (AlignmentEquation& e : equations) {
     e.total_variance = noise * noise + e.variance;
     e.weight = tukey_weight(e.residual / (tukey * std::sqrt(e.total_variance))) / e.total_variance;

@@ -81,12 +81,11 @@ class Aligner {
   void run_level(int level, double converged_px) {
     constexpr int max_iterations = 12;
     const std::vector<ReferencePoint>& points = reference_.levels[static_cast<std::size_t>(level)];
-    double noise = 10;  // grey levels; a start
     AndersonAcceleration<unknowns> acceleration;
     for (int i = 0; i < max_iterations; ++i) {
       linearise(points, current_, calibration_, level, state_, equations_);
       if (equations_.grey.size() < min_points) return;
-      weigh(noise);
+      weigh();
       if (shift_px(step({prior_.sd_px, 0, 0}, acceleration), level) < converged_px) break;
     }
   }
@@ -98,17 +97,16 @@ class Aligner {
     alignment.motion = state_.motion;
     if (points.empty() || equations_.grey.size() < min_points) return alignment;
     alignment.overlap = equations_.visible / static_cast<double>(points.size());
-    double noise = 10;
-    weigh(noise);
+    weigh();
     fill_covariance(alignment);
-    examine_rig(points, level, noise, alignment);
+    examine_rig(points, level, alignment);
     alignment.correlation = patch_correlation(reference_, current_, calibration_, state_.motion, state_.offset_px);
     return alignment;
   }
 
  private:
-  void weigh(double& noise) {
-    weigh_grey_levels(equations_.grey, noise, sums_, scratch_);
+  void weigh() {
+    weigh_grey_levels(equations_.grey, noise_, sums_, scratch_);
     if (!equations_.disparity.empty()) weigh_disparities(equations_.disparity, sums_, scratch_);
     normal_ = {};
     normal_.add(equations_.grey);
@@ -159,7 +157,7 @@ class Aligner {
 
   /// What further steps with a free shutter and a free offset of the disparities find, to a tenth of a standard error.
   /// The first step alone overshoots by a tenth or more: the gradients of fine texture are too small.
-  void examine_rig(const std::vector<ReferencePoint>& points, int level, double noise, Alignment& alignment) {
+  void examine_rig(const std::vector<ReferencePoint>& points, int level, Alignment& alignment) {
     constexpr int steps = 6;
     constexpr double noteworthy_std_errors = 2, small_std_errors = 0.1;
     const Spread free{any_offset_sd_px, any_offset_sd_px, any_shutter_sd};
@@ -169,7 +167,7 @@ class Aligner {
       if (i > 0) {
         linearise(points, current_, calibration_, level, state_, equations_);
         if (equations_.grey.size() < min_points) break;
-        weigh(noise);
+        weigh();
       }
       const Matrix<unknowns> covariance = sandwich(free);
       const Vector<unknowns> x = step(free, acceleration);
@@ -244,6 +242,7 @@ class Aligner {
   const StereoCalibration& calibration_;
   OffsetPrior prior_;
   double typical_depth_m_ = 0;
+  double noise_ = 10;  ///< of the grey levels; a start
   AlignmentState state_;
   AlignmentEquations equations_;
   NormalEquations normal_;  ///< of the weighted equations
