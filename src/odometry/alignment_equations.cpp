@@ -1,199 +1,312 @@
 #include "odometry/alignment_equations.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 #include "odometry/direct_alignment.hpp"
 
-namespace roadstereo {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "odometry/alignment_equations.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
+//
+#include <hwy/highway.h>
 
-constexpr double min_depth_m = 0.05;
+HWY_BEFORE_NAMESPACE();
+namespace roadstereo::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
 
-/// Grey level and its gradient between pixels: 8-bit grey levels, and per pixel of the level.
-struct GreySample {
-  float grey = 0;
-  float per_column = 0;
-  float per_row = 0;
-};
+constexpr int max_lanes = 8;
+using Doubles = hn::CappedTag<double, max_lanes>;
+using Double = hn::Vec<Doubles>;
 
-/// Bilinear, of central differences; false outside.
-bool sample_grey(ImageView<const std::int16_t> level, double x, double y, GreySample& sample) {
-  constexpr int margin = 1;
-  if (!(x >= margin && y >= margin && x < level.width() - 1 - margin && y < level.height() - 1 - margin)) return false;
-  const int u = static_cast<int>(x), v = static_cast<int>(y);
-  const float fu = static_cast<float>(x - u), fv = static_cast<float>(y - v);
-  const std::int16_t* above = level.row(v - 1) + u;
-  const std::int16_t* a = level.row(v) + u;
-  const std::int16_t* b = level.row(v + 1) + u;
-  const std::int16_t* below = level.row(v + 2) + u;
-  const auto between = [fu, fv](int a0, int a1, int b0, int b1) {
-    return (1 - fu) * (1 - fv) * static_cast<float>(a0) + fu * (1 - fv) * static_cast<float>(a1) +
-           (1 - fu) * fv * static_cast<float>(b0) + fu * fv * static_cast<float>(b1);
-  };
-  sample.grey = between(a[0], a[1], b[0], b[1]) * grey_unit;
-  sample.per_column = between(a[1] - a[-1], a[2] - a[0], b[1] - b[-1], b[2] - b[0]) * (grey_unit / 2);
-  sample.per_row = between(b[0] - above[0], b[1] - above[1], below[0] - a[0], below[1] - a[1]) * (grey_unit / 2);
-  return true;
+HWY_INLINE Double all(double value) {
+  return hn::Set(Doubles(), value);
 }
 
-/// Velocity of points at the end of a motion that was a constant one, per duration of the motion.
-class EndVelocity {
- public:
-  explicit EndVelocity(const RigidMotion& motion) {
-    const Twist twist = twist_of(motion);
-    turn_ = {twist[3], twist[4], twist[5]};
-    const Vector<3>&t = motion.translation, bend = cross(turn_, t);
-    for (std::size_t i = 0; i < 3; ++i) shift_[i] = t[i] - bend[i] / 2;
-  }
-
-  Vector<3> operator()(const Vector<3>& q) const {
-    const Vector<3> turned = cross(turn_, q);
-    return {shift_[0] + turned[0], shift_[1] + turned[1], shift_[2] + turned[2]};
-  }
-
- private:
-  Vector<3> turn_{}, shift_{};
+/// Vectors of as many points as there are lanes.
+struct Vectors {
+  Double x, y, z;
 };
 
-/// Point of the reference at the present motion.
-struct MovedPoint {
-  Vector<3> q{};        ///< in the current camera frame, metres
-  double u = 0, v = 0;  ///< its pixel
-  double disparity = 0, shape = 0;
-  Vector<3> by_disparity{}, by_shutter{};  ///< derivatives of q
+HWY_INLINE Double dot(const Vectors& a, const Vectors& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+
+HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+
+HWY_INLINE Vectors plus(const Vectors& a, const Vectors& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+
+HWY_INLINE Vectors times(Double factor, const Vectors& a) {
+  return {hn::Mul(factor, a.x), hn::Mul(factor, a.y), hn::Mul(factor, a.z)};
+}
+
+HWY_INLINE Vectors all(const Vector<3>& a) {
+  return {all(a[0]), all(a[1]), all(a[2])};
+}
+
+HWY_INLINE Vectors rotated(const RigidMotion& motion, const Vectors& a) {
+  return {dot(all(motion.rotation[0]), a), dot(all(motion.rotation[1]), a), dot(all(motion.rotation[2]), a)};
+}
+
+/// One number of every point of a batch.
+struct Numbers {
+  HWY_ALIGN double at[max_lanes] = {};
+
+  Double load() const { return hn::Load(Doubles(), at); }
+  void store(Double values) { hn::Store(values, Doubles(), at); }
+};
+
+/// Points of the reference, and what the current frame shows of them.
+struct Batch {
+  int count = 0;
+  Numbers u, v, disparity, sigma, grey, slope_u, slope_v;
+  Numbers sample, per_column, per_row;  ///< grey level there, and its gradient
+  Numbers surface_disparity, surface_sigma;
+  bool has_sample[max_lanes] = {}, has_surface[max_lanes] = {};
+
+  void read(const ReferencePoint* points) {
+    for (int i = 0; i < static_cast<int>(hn::Lanes(Doubles())); ++i) {
+      const ReferencePoint& point = points[std::min(i, count - 1)];
+      u.at[i] = point.u;
+      v.at[i] = point.v;
+      disparity.at[i] = point.disparity;
+      sigma.at[i] = point.sigma_px;
+      grey.at[i] = point.grey;
+      slope_u.at[i] = point.slope_u;
+      slope_v.at[i] = point.slope_v;
+    }
+  }
+
+  void look(const FrameMaps& current, ImageView<const std::int16_t> level, double scale, const Numbers& at_u,
+            const Numbers& at_v, const bool* in_front) {
+    for (int i = 0; i < count; ++i) {
+      GreySample there;
+      has_sample[i] =
+          in_front[i] && sample_grey(level, (at_u.at[i] + 0.5) * scale - 0.5, (at_v.at[i] + 0.5) * scale - 0.5, there);
+      sample.at[i] = static_cast<double>(there.grey);
+      per_column.at[i] = static_cast<double>(there.per_column);
+      per_row.at[i] = static_cast<double>(there.per_row);
+      SurfaceSample surface;
+      has_surface[i] = has_sample[i] && sample_surface(current, at_u.at[i], at_v.at[i], surface);
+      surface_disparity.at[i] = surface.disparity;
+      surface_sigma.at[i] = surface.sigma_px;
+    }
+  }
+};
+
+/// One equation of every point of a batch.
+struct EquationBatch {
+  std::array<Numbers, unknowns> row;
+  Numbers residual, variance;
+
+  /// Derivatives by a translation and a rotation of q.
+  HWY_INLINE void put_motion(const Vectors& by_q, const Vectors& q) {
+    const Vectors by_rotation = cross(q, by_q);
+    row[0].store(by_q.x);
+    row[1].store(by_q.y);
+    row[2].store(by_q.z);
+    row[3].store(by_rotation.x);
+    row[4].store(by_rotation.y);
+    row[5].store(by_rotation.z);
+  }
+
+  void append(int lane, int cell, std::vector<AlignmentEquation>& equations) const {
+    AlignmentEquation& equation = equations.emplace_back();
+    for (std::size_t i = 0; i < unknowns; ++i) equation.row[i] = row[i].at[lane];
+    equation.residual = residual.at[lane];
+    equation.variance = variance.at[lane];
+    equation.cell = cell;
+  }
+};
+
+/// Points of the reference at the present motion.
+struct MovedPoints {
+  Vectors q;    ///< in the current camera frame, metres
+  Double u, v;  ///< their pixels
+  Double pixels_per_m;
+  Double disparity, shape;
+  Vectors by_disparity, by_shutter;  ///< derivatives of q
 };
 
 class Linearisation {
  public:
-  Linearisation(const FrameMaps& current, const StereoCalibration& calibration, int level)
+  Linearisation(const FrameMaps& current, const StereoCalibration& calibration, int level, const AlignmentState& state)
       : current_(current),
         calibration_(calibration),
+        state_(state),
         grey_(current.pyramid.level(level)),
         scale_(1.0 / (1 << level)),
-        depth_scale_(calibration.focal_px * calibration.baseline_m),
-        rows_(current.disparity.height() - 1) {}
+        focal_(all(calibration.focal_px)),
+        depth_scale_(all(calibration.focal_px * calibration.baseline_m)) {
+    // Velocity of points at the end of a motion that was a constant one, per duration of the motion: shift + turn × q.
+    const Twist twist = twist_of(state.motion);
+    const Vector<3> turn{twist[3], twist[4], twist[5]}, bend = roadstereo::cross(turn, state.motion.translation);
+    Vector<3> shift = state.motion.translation;
+    for (std::size_t i = 0; i < 3; ++i) shift[i] -= bend[i] / 2;
+    turn_ = all(turn);
+    shift_ = all(shift);
+  }
 
-  void build(const std::vector<ReferencePoint>& points, const AlignmentState& state,
-             AlignmentEquations& equations) const {
-    equations.grey.clear();
-    equations.disparity.clear();
-    equations.visible = 0;
-    const EndVelocity velocity(state.motion);
-    for (const ReferencePoint& point : points) add(point, state, velocity, equations);
+  void add(const ReferencePoint* points, int count, AlignmentEquations& equations) {
+    batch_.count = count;
+    batch_.read(points);
+    bool in_front[max_lanes];
+    const MovedPoints moved = move(in_front);
+    Numbers u, v;
+    u.store(moved.u);
+    v.store(moved.v);
+    batch_.look(current_, grey_, scale_, u, v, in_front);
+    compare_grey_levels(moved);
+    compare_disparities(moved);
+    Numbers scale;
+    scale.store(hn::Div(hn::Div(depth_scale_, moved.disparity), moved.q.z));
+    for (int i = 0; i < count; ++i) {
+      if (!batch_.has_sample[i]) continue;
+      equations.visible += std::min(1.0, scale.at[i] * scale.at[i]);
+      grey_equations_.append(i, points[i].cell, equations.grey);
+      if (has_plane_[i]) disparity_equations_.append(i, points[i].cell, equations.disparity);
+    }
   }
 
  private:
-  void add(const ReferencePoint& point, const AlignmentState& state, const EndVelocity& velocity,
-           AlignmentEquations& equations) const {
-    const double shape = offset_shape(calibration_, point.u, point.disparity);
-    const double disparity = point.disparity + state.offset(shape) + calibration_.disparity_offset_px;
-    if (!(disparity > 0)) return;
-    const double f = calibration_.focal_px;
-    const double z = depth_scale_ / disparity;
-    const Vector<3> p{(point.u - calibration_.cx_px) / f * z, (point.v - calibration_.cy_px) / f * z, z};
-    const Vector<3> turned = state.motion.rotated(p);
-    Vector<3> q = turned;
-    for (std::size_t i = 0; i < 3; ++i) q[i] += state.motion.translation[i];
-    Vector<3> by_shutter{};
-    if (!end_of_motion(state.shutter, point.v, velocity, q, by_shutter)) return;
-    const double pixels_per_m = f / q[2];
-    const double u = pixels_per_m * q[0] + calibration_.cx_px, v = pixels_per_m * q[1] + calibration_.cy_px;
-    GreySample sample;
-    if (!sample_grey(grey_, (u + 0.5) * scale_ - 0.5, (v + 0.5) * scale_ - 0.5, sample)) return;
-    const double scale = z / q[2];
-    equations.visible += std::min(1.0, scale * scale);
-    // Derivative of q by the disparity.
-    const double nearer = -1 / disparity;
-    const Vector<3> by_disparity{nearer * turned[0], nearer * turned[1], nearer * turned[2]};
-    // Derivative of the grey level by q.
-    const double gu = sample.per_column * scale_ * pixels_per_m, gv = sample.per_row * scale_ * pixels_per_m;
-    const Vector<3> by_q{gu, gv, -(gu * q[0] + gv * q[1]) / q[2]};
-    AlignmentEquation& equation = equations.grey.emplace_back();
-    equation.cell = point.cell;
-    equation.residual = sample.grey - state.gain * point.grey - state.brightness;
-    put_motion(by_q, q, equation);
-    equation.row[shutter_index] = dot(by_q, by_shutter);
-    equation.row[gain_index] = -point.grey;
-    equation.row[brightness_index] = -1;
-    const double by_offset = dot(by_q, by_disparity);
-    equation.row[offset_index] = by_offset * shape;
-    equation.row[growth_index] = by_offset * (shape - 1);
-    equation.variance = by_offset * by_offset * point.sigma_px * point.sigma_px;
-    add_disparity(point, state, {q, u, v, disparity, shape, by_disparity, by_shutter}, equations);
+  /// Scale of the disparity offset, as `offset_shape`.
+  HWY_INLINE Double shape_of_offset(Double u, Double disparity) const {
+    const Double x = hn::Div(hn::Sub(hn::Sub(u, disparity), all(calibration_.cx_px)), focal_);
+    return hn::MulAdd(x, x, all(1));
   }
 
-  /// Moves a point on to when its row of the current frame is exposed, by the shutter; `by_shutter`: derivative. False
-  /// behind the camera.
-  bool end_of_motion(double shutter, double reference_row, const EndVelocity& velocity, Vector<3>& q,
-                     Vector<3>& by_shutter) const {
-    const Vector<3> start = q;
-    const int passes = shutter != 0 ? 3 : 1;  // the row depends on the time, little
+  HWY_INLINE Double offset(Double shape) const {
+    return hn::MulAdd(all(state_.offset_px), shape,
+                      hn::MulAdd(all(state_.growth_px), hn::Sub(shape, all(1)), all(calibration_.disparity_offset_px)));
+  }
+
+  HWY_INLINE MovedPoints move(bool* in_front) const {
+    constexpr double min_depth_m = 0.05;
+    MovedPoints moved;
+    const Double u = batch_.u.load(), v = batch_.v.load(), measured = batch_.disparity.load();
+    moved.shape = shape_of_offset(u, measured);
+    moved.disparity = hn::Add(measured, offset(moved.shape));
+    auto valid = hn::Gt(moved.disparity, all(0));
+    const Double z = hn::Div(depth_scale_, moved.disparity), per_focal = hn::Div(z, focal_);
+    const Vectors p{hn::Mul(hn::Sub(u, all(calibration_.cx_px)), per_focal),
+                    hn::Mul(hn::Sub(v, all(calibration_.cy_px)), per_focal), z};
+    const Vectors turned = rotated(state_.motion, p), start = plus(turned, all(state_.motion.translation));
+    moved.by_disparity = times(hn::Div(all(-1), moved.disparity), turned);
+    // On to when its row of the current frame is exposed, by the shutter.
+    moved.q = start;
+    const int passes = state_.shutter != 0 ? 3 : 1;  // the row depends on the time, little
+    const Double rows = all(current_.disparity.height() - 1);
     for (int i = 0; i < passes; ++i) {
-      if (!(q[2] > min_depth_m)) return false;
-      const Vector<3> speed = velocity(q);
-      const double row = calibration_.focal_px * q[1] / q[2] + calibration_.cy_px;
-      const double later = (row - reference_row) / rows_;
-      for (std::size_t k = 0; k < 3; ++k) {
-        by_shutter[k] = later * speed[k];
-        q[k] = start[k] + shutter * by_shutter[k];
-      }
+      valid = hn::And(valid, hn::Gt(moved.q.z, all(min_depth_m)));
+      const Double row = hn::Add(hn::Div(hn::Mul(focal_, moved.q.y), moved.q.z), all(calibration_.cy_px));
+      const Vectors speed = plus(shift_, cross(turn_, moved.q));
+      moved.by_shutter = times(hn::Div(hn::Sub(row, v), rows), speed);
+      moved.q = plus(start, times(all(state_.shutter), moved.by_shutter));
     }
-    return q[2] > min_depth_m;
+    valid = hn::And(valid, hn::Gt(moved.q.z, all(min_depth_m)));
+    moved.pixels_per_m = hn::Div(focal_, moved.q.z);
+    moved.u = hn::MulAdd(moved.pixels_per_m, moved.q.x, all(calibration_.cx_px));
+    moved.v = hn::MulAdd(moved.pixels_per_m, moved.q.y, all(calibration_.cy_px));
+    store(valid, in_front);
+    return moved;
+  }
+
+  template <class Mask>
+  HWY_INLINE static void store(Mask mask, bool* flags) {
+    Numbers ones;
+    ones.store(hn::IfThenElseZero(mask, all(1)));
+    for (int i = 0; i < max_lanes; ++i) flags[i] = ones.at[i] != 0;
+  }
+
+  HWY_INLINE void compare_grey_levels(const MovedPoints& moved) {
+    const Vectors& q = moved.q;
+    const Double scale = hn::Mul(all(scale_), moved.pixels_per_m), grey = batch_.grey.load();
+    const Double gu = hn::Mul(batch_.per_column.load(), scale), gv = hn::Mul(batch_.per_row.load(), scale);
+    const Vectors by_q{gu, gv, hn::Div(hn::Neg(hn::MulAdd(gu, q.x, hn::Mul(gv, q.y))), q.z)};
+    EquationBatch& equation = grey_equations_;
+    equation.residual.store(
+        hn::Sub(hn::Sub(batch_.sample.load(), hn::Mul(all(state_.gain), grey)), all(state_.brightness)));
+    equation.put_motion(by_q, q);
+    equation.row[shutter_index].store(dot(by_q, moved.by_shutter));
+    equation.row[gain_index].store(hn::Neg(grey));
+    equation.row[brightness_index].store(all(-1));
+    const Double by_offset = dot(by_q, moved.by_disparity);
+    equation.row[offset_index].store(hn::Mul(by_offset, moved.shape));
+    equation.row[growth_index].store(hn::Mul(by_offset, hn::Sub(moved.shape, all(1))));
+    const Double error = hn::Mul(by_offset, batch_.sigma.load());
+    equation.variance.store(hn::Mul(error, error));
   }
 
   /// The measured disparity where a point is seen against that of the point, point to plane.
-  void add_disparity(const ReferencePoint& point, const AlignmentState& state, const MovedPoint& moved,
-                     AlignmentEquations& equations) const {
-    SurfaceSample surface;
-    if (!sample_surface(current_, moved.u, moved.v, surface)) return;
-    const double f = calibration_.focal_px;
-    const Vector<3>& q = moved.q;
+  HWY_INLINE void compare_disparities(const MovedPoints& moved) {
+    const Vectors& q = moved.q;
     // N·p = b for points of the plane around the point of the reference.
-    const Vector<3> plane{point.slope_u, point.slope_v,
-                          (moved.disparity - point.slope_u * (point.u - calibration_.cx_px) -
-                           point.slope_v * (point.v - calibration_.cy_px)) /
-                              f};
-    const Vector<3> normal = state.motion.rotated(plane);
-    const double towards = dot(normal, q);
-    if (!(towards > 0)) return;
-    const double here = offset_shape(calibration_, moved.u, surface.disparity);
-    const double factor = depth_scale_ / (q[2] * towards);
-    const Vector<3> by_q{factor * normal[0], factor * normal[1], factor * normal[2]};
-    AlignmentEquation& equation = equations.disparity.emplace_back();
-    equation.cell = point.cell;
-    equation.residual = surface.disparity + state.offset(here) + calibration_.disparity_offset_px - depth_scale_ / q[2];
-    put_motion(by_q, q, equation);
-    equation.row[shutter_index] = dot(by_q, moved.by_shutter);
-    const double by_offset = dot(by_q, moved.by_disparity);
-    equation.row[offset_index] = here + by_offset * moved.shape;
-    equation.row[growth_index] = here - 1 + by_offset * (moved.shape - 1);
-    equation.variance = surface.sigma_px * surface.sigma_px + by_offset * by_offset * point.sigma_px * point.sigma_px;
-  }
-
-  /// Derivatives by a translation and a rotation of q.
-  static void put_motion(const Vector<3>& by_q, const Vector<3>& q, AlignmentEquation& equation) {
-    const Vector<3> by_rotation = cross(q, by_q);
-    for (std::size_t i = 0; i < 3; ++i) {
-      equation.row[i] = by_q[i];
-      equation.row[i + 3] = by_rotation[i];
-    }
+    const Double slope_u = batch_.slope_u.load(), slope_v = batch_.slope_v.load();
+    const Double along = hn::MulAdd(slope_u, hn::Sub(batch_.u.load(), all(calibration_.cx_px)),
+                                    hn::Mul(slope_v, hn::Sub(batch_.v.load(), all(calibration_.cy_px))));
+    const Vectors normal = rotated(state_.motion, {slope_u, slope_v, hn::Div(hn::Sub(moved.disparity, along), focal_)});
+    const Double towards = dot(normal, q), surface = batch_.surface_disparity.load();
+    store(hn::Gt(towards, all(0)), has_plane_);
+    for (int i = 0; i < max_lanes; ++i) has_plane_[i] = has_plane_[i] && batch_.has_surface[i];
+    const Double here = shape_of_offset(moved.u, surface), predicted = hn::Div(depth_scale_, q.z);
+    const Vectors by_q = times(hn::Div(predicted, towards), normal);
+    EquationBatch& equation = disparity_equations_;
+    equation.residual.store(hn::Sub(hn::Add(surface, offset(here)), predicted));
+    equation.put_motion(by_q, q);
+    equation.row[shutter_index].store(dot(by_q, moved.by_shutter));
+    const Double by_offset = dot(by_q, moved.by_disparity);
+    equation.row[offset_index].store(hn::MulAdd(by_offset, moved.shape, here));
+    equation.row[growth_index].store(hn::MulAdd(by_offset, hn::Sub(moved.shape, all(1)), hn::Sub(here, all(1))));
+    const Double error = hn::Mul(by_offset, batch_.sigma.load()), own = batch_.surface_sigma.load();
+    equation.variance.store(hn::MulAdd(own, own, hn::Mul(error, error)));
   }
 
   const FrameMaps& current_;
   const StereoCalibration& calibration_;
+  const AlignmentState& state_;
   ImageView<const std::int16_t> grey_;
   double scale_;
-  double depth_scale_;
-  double rows_;  ///< from the first to the last
+  Double focal_, depth_scale_;
+  Vectors turn_, shift_;
+  Batch batch_;
+  EquationBatch grey_equations_, disparity_equations_;
+  bool has_plane_[max_lanes] = {};
 };
 
-}  // namespace
+void linearise_level(const std::vector<ReferencePoint>& points, const FrameMaps& current,
+                     const StereoCalibration& calibration, int level, const AlignmentState& state,
+                     AlignmentEquations& equations) {
+  equations.grey.clear();
+  equations.disparity.clear();
+  equations.visible = 0;
+  const std::size_t lanes = hn::Lanes(Doubles());
+  Linearisation linearisation(current, calibration, level, state);
+  for (std::size_t first = 0; first < points.size(); first += lanes) {
+    linearisation.add(points.data() + first, static_cast<int>(std::min(lanes, points.size() - first)), equations);
+  }
+}
+
+}  // namespace roadstereo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace roadstereo {
+
+HWY_EXPORT(linearise_level);
 
 void linearise(const std::vector<ReferencePoint>& points, const FrameMaps& current,
                const StereoCalibration& calibration, int level, const AlignmentState& state,
                AlignmentEquations& equations) {
-  Linearisation(current, calibration, level).build(points, state, equations);
+  HWY_DYNAMIC_DISPATCH(linearise_level)(points, current, calibration, level, state, equations);
 }
 
 }  // namespace roadstereo
+#endif
