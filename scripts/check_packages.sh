@@ -9,10 +9,11 @@ build=$(realpath "${PACKAGES_BUILD:-build-packages}")
 release=$(. /etc/os-release && echo "$VERSION_CODENAME")
 
 # What engines are made of is no symbol of the library.
-if nm -DC --defined-only "$build/src/libroadstereo.so" | grep -E ' roadstereo::(cpu|cuda|N_[A-Z0-9_]+)::'; then
-  echo "$build/src/libroadstereo.so: symbols of engines are visible" >&2
+for library in roadstereo roadstereo_odometry; do
+  nm -DC --defined-only "$build/src/lib$library.so" | grep -E ' roadstereo::(cpu|cuda|N_[A-Z0-9_]+)::' || continue
+  echo "$build/src/lib$library.so: symbols of engines are visible" >&2
   exit 1
-fi
+done
 
 cat > "$build/use_packages.sh" <<'EOF'
 set -eux

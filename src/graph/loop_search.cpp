@@ -89,7 +89,7 @@ void LoopSearch::State::add(int frame, const OdometryFrame& maps, double offset_
 }
 
 const Loaded& LoopSearch::State::load(const LinkEstimator& estimator, std::size_t index) {
-  constexpr std::size_t most = 8;  // about 20 MB each
+  constexpr std::size_t most = 8;  // about 5 MB each
   const auto known =
       std::find_if(recent_.begin(), recent_.end(), [&](const Loaded& one) { return one.index == index; });
   if (known != recent_.end()) {

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-
-#include "odometry/direct_alignment.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "odometry/alignment_equations.cpp"
@@ -72,6 +69,7 @@ struct Batch {
   Numbers surface_disparity, surface_sigma;
   bool has_sample[max_lanes] = {}, has_surface[max_lanes] = {};
 
+  /// Lanes beyond `count` repeat the last point.
   void read(const ReferencePoint* points) {
     for (int i = 0; i < static_cast<int>(hn::Lanes(Doubles())); ++i) {
       const ReferencePoint& point = points[std::min(i, count - 1)];
@@ -132,6 +130,7 @@ struct MovedPoints {
   Vectors q;    ///< in the current camera frame, metres
   Double u, v;  ///< their pixels
   Double pixels_per_m;
+  Double z;  ///< of the reference, metres
   Double disparity, shape;
   Vectors by_disparity, by_shutter;  ///< derivatives of q
 };
@@ -167,7 +166,7 @@ class Linearisation {
     compare_grey_levels(moved);
     compare_disparities(moved);
     Numbers scale;
-    scale.store(hn::Div(hn::Div(depth_scale_, moved.disparity), moved.q.z));
+    scale.store(hn::Div(moved.z, moved.q.z));
     for (int i = 0; i < count; ++i) {
       if (!batch_.has_sample[i]) continue;
       equations.visible += std::min(1.0, scale.at[i] * scale.at[i]);
@@ -177,12 +176,13 @@ class Linearisation {
   }
 
  private:
-  /// Scale of the disparity offset, as `offset_shape`.
+  /// `offset_shape` of the points.
   HWY_INLINE Double shape_of_offset(Double u, Double disparity) const {
     const Double x = hn::Div(hn::Sub(hn::Sub(u, disparity), all(calibration_.cx_px)), focal_);
     return hn::MulAdd(x, x, all(1));
   }
 
+  /// Offset of the disparity where the shape of an offset has a value, that of the calibration included.
   HWY_INLINE Double offset(Double shape) const {
     return hn::MulAdd(all(state_.offset_px), shape,
                       hn::MulAdd(all(state_.growth_px), hn::Sub(shape, all(1)), all(calibration_.disparity_offset_px)));
@@ -195,12 +195,13 @@ class Linearisation {
     moved.shape = shape_of_offset(u, measured);
     moved.disparity = hn::Add(measured, offset(moved.shape));
     auto valid = hn::Gt(moved.disparity, all(0));
-    const Double z = hn::Div(depth_scale_, moved.disparity), per_focal = hn::Div(z, focal_);
+    moved.z = hn::Div(depth_scale_, moved.disparity);
+    const Double per_focal = hn::Div(moved.z, focal_);
     const Vectors p{hn::Mul(hn::Sub(u, all(calibration_.cx_px)), per_focal),
-                    hn::Mul(hn::Sub(v, all(calibration_.cy_px)), per_focal), z};
+                    hn::Mul(hn::Sub(v, all(calibration_.cy_px)), per_focal), moved.z};
     const Vectors turned = rotated(state_.motion, p), start = plus(turned, all(state_.motion.translation));
     moved.by_disparity = times(hn::Div(all(-1), moved.disparity), turned);
-    // On to when its row of the current frame is exposed, by the shutter.
+    // The shutter: each point moves on until its row of the current frame is exposed.
     moved.q = start;
     const int passes = state_.shutter != 0 ? 3 : 1;  // the row depends on the time, little
     const Double rows = all(current_.disparity.height() - 1);
@@ -215,12 +216,11 @@ class Linearisation {
     moved.pixels_per_m = hn::Div(focal_, moved.q.z);
     moved.u = hn::MulAdd(moved.pixels_per_m, moved.q.x, all(calibration_.cx_px));
     moved.v = hn::MulAdd(moved.pixels_per_m, moved.q.y, all(calibration_.cy_px));
-    store(valid, in_front);
+    write(valid, in_front);
     return moved;
   }
 
-  template <class Mask>
-  HWY_INLINE static void store(Mask mask, bool* flags) {
+  HWY_INLINE static void write(hn::Mask<Doubles> mask, bool* flags) {
     Numbers ones;
     ones.store(hn::IfThenElseZero(mask, all(1)));
     for (int i = 0; i < max_lanes; ++i) flags[i] = ones.at[i] != 0;
@@ -254,7 +254,7 @@ class Linearisation {
                                     hn::Mul(slope_v, hn::Sub(batch_.v.load(), all(calibration_.cy_px))));
     const Vectors normal = rotated(state_.motion, {slope_u, slope_v, hn::Div(hn::Sub(moved.disparity, along), focal_)});
     const Double towards = dot(normal, q), surface = batch_.surface_disparity.load();
-    store(hn::Gt(towards, all(0)), has_plane_);
+    write(hn::Gt(towards, all(0)), has_plane_);
     for (int i = 0; i < max_lanes; ++i) has_plane_[i] = has_plane_[i] && batch_.has_surface[i];
     const Double here = shape_of_offset(moved.u, surface), predicted = hn::Div(depth_scale_, q.z);
     const Vectors by_q = times(hn::Div(predicted, towards), normal);

@@ -42,9 +42,6 @@ struct AlignmentState {
   double offset_px = 0;
   double growth_px = 0;
   double shutter = 0;
-
-  /// Offset of the disparity where the shape of an offset has a value.
-  double offset(double shape) const { return offset_px * shape + growth_px * (shape - 1); }
 };
 
 /// Linearises the differences of grey levels and of disparities between the points of a level of a reference and a

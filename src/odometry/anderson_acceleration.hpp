@@ -14,13 +14,14 @@ class AndersonAcceleration {
  public:
   /// Step to take instead of `step`, lengths in the norm of the lower half of `metric`.
   Vector<N> accelerated(const Vector<N>& step, const Matrix<N>& metric) {
-    constexpr double longest = 0.5, shortest = -2;  // a longer step than twice the last two is none of theirs
+    constexpr double least = -2, most = 0.5;  // steps that shrink to two thirds; that turn round
     Vector<N> taken = step;
     if (has_last_) {
       Vector<N> change{};
       for (std::size_t i = 0; i < N; ++i) change[i] = step[i] - last_step_[i];
       const double squared = product(metric, change, change);
-      const double share = squared > 0 ? std::clamp(product(metric, change, step) / squared, shortest, longest) : 0;
+      double share = squared > 0 ? product(metric, change, step) / squared : 0;
+      share = share > 1 ? 0 : std::clamp(share, least, most);  // above 1 steps grow: they say nothing of an end
       for (std::size_t i = 0; i < N; ++i) taken[i] -= share * (last_taken_[i] + change[i]);
     }
     has_last_ = true;

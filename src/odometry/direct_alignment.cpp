@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "core/order_statistics.hpp"
@@ -155,8 +154,8 @@ class Aligner {
     alignment.measured_offset_sd_px = std::sqrt(sandwich(free_offset)[offset_index][offset_index]);
   }
 
-  /// What further steps with a free shutter and a free offset of the disparities find, to a tenth of a standard error.
-  /// The first step alone overshoots by a tenth or more: the gradients of fine texture are too small.
+  /// What further steps with a free shutter and a free offset of the disparities find, until one is less than a tenth
+  /// of a standard error. The first alone overshoots by a tenth or more: the gradients of fine texture are too small.
   void examine_rig(const std::vector<ReferencePoint>& points, int level, Alignment& alignment) {
     constexpr int steps = 6;
     constexpr double noteworthy_std_errors = 2, small_std_errors = 0.1;
@@ -197,30 +196,30 @@ class Aligner {
     add_scores(equations_.grey);
     add_scores(equations_.disparity);
     std::size_t used = 0;
-    Matrix<unknowns> covariance{};  // of the scores
+    Matrix<unknowns> scatter{};  // of the scores
     for (const Vector<unknowns>& score : scores) {
       if (std::all_of(score.begin(), score.end(), [](double s) { return s == 0; })) continue;
       ++used;
-      add_outer(score, covariance);
+      add_outer(score, scatter);
     }
-    const auto add_expectation = [&covariance](std::size_t index, double sd) {
+    const auto add_expectation = [&scatter](std::size_t index, double sd) {
       if (sd > 0) {
-        covariance[index][index] += 1 / (sd * sd);
+        scatter[index][index] += 1 / (sd * sd);
         return;
       }
-      for (std::size_t i = 0; i < unknowns; ++i) covariance[index][i] = covariance[i][index] = 0;
+      for (std::size_t i = 0; i < unknowns; ++i) scatter[index][i] = scatter[i][index] = 0;
     };
     add_expectation(offset_index, spread.offset_px);
     add_expectation(growth_index, spread.growth_px);
     add_expectation(shutter_index, spread.shutter);
     Matrix<unknowns> factor = normal_equations(spread).matrix;
     factor_in_place(factor, smallest);
-    // Rows, then columns: both are symmetric.
-    for (int side = 0; side < 2; ++side) {
-      for (Vector<unknowns>& row : covariance) row = solve_factored(factor, row);
-      for (std::size_t i = 0; i < unknowns; ++i) {
-        for (std::size_t j = 0; j < i; ++j) std::swap(covariance[i][j], covariance[j][i]);
-      }
+    factor_in_place(scatter, smallest);
+    Matrix<unknowns> covariance{};
+    for (std::size_t j = 0; j < unknowns; ++j) {
+      Vector<unknowns> column{};
+      for (std::size_t i = j; i < unknowns; ++i) column[i] = scatter[i][j];
+      add_outer(solve_factored(factor, column), covariance);
     }
     const double count = static_cast<double>(used);
     const std::size_t estimated = spread.shutter > 0 ? unknowns : unknowns - 2;

@@ -35,11 +35,11 @@ inline double offset_shape(const StereoCalibration& calibration, double u, doubl
   return 1 + x * x;
 }
 
-/// Aligns a frame with the points of a reference: Gauss–Newton over six degrees of freedom, gain, offset of the grey
-/// levels and offset of the disparities, coarse to fine, on differences of grey levels and of disparities. Both are
-/// weighted by their variances (M-estimator, Tukey's biweight); those of grey levels include the standard error of the
-/// depth. The covariance is the sandwich of cells of the image, whose residuals may be correlated. `start` is a first
-/// guess; `coarsest` the first level of the pyramid, `finest` the last.
+/// Aligns a frame with the points of a reference: Gauss–Newton, accelerated, over six degrees of freedom, gain, offset
+/// of the grey levels and offset of the disparities, coarse to fine, on differences of grey levels and of disparities.
+/// Both are weighted by their variances (M-estimator, Tukey's biweight); those of grey levels include the standard
+/// error of the depth. The covariance is the sandwich of cells of the image, whose residuals may be correlated. `start`
+/// is a first guess; `coarsest` the first level of the pyramid, `finest` the last.
 Alignment align(const ReferencePoints& reference, const FrameMaps& current, const StereoCalibration& calibration,
                 const RigidMotion& start, const OffsetPrior& offset, int coarsest, int finest);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "odometry/patch_matching.hpp"
+#include "odometry/phase_correlation.hpp"
 
 namespace roadstereo {
 namespace {

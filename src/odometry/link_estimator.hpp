@@ -5,7 +5,6 @@
 
 #include "odometry/direct_alignment.hpp"
 #include "odometry/ground_patch.hpp"
-#include "odometry/phase_correlation.hpp"
 #include "odometry/reference_points.hpp"
 #include "roadstereo/odometry.hpp"
 
@@ -16,7 +15,7 @@ namespace roadstereo {
 struct LinkReference {
   ReferencePoints points;
   std::optional<FrameRoad> road;
-  std::vector<float> ground;  ///< grey levels of the road's grid
+  std::vector<float> ground;  ///< of the road's grid, from `sample_ground`
 };
 
 /// What is known before a link is estimated.

@@ -48,7 +48,7 @@ class Selector {
     float strength = -1;  ///< of the gradient, squared; −1: none
   };
 
-  /// The textured pixels of the cells from row v0 to v1 that have a disparity; both are off the border.
+  /// The most textured pixel of every cell between rows v0 and v1, off the border, that has a disparity.
   void strongest(int v0, int v1, int side, int margin, std::vector<Pixel>& best) {
     best.assign(static_cast<std::size_t>((grey_.width() + side - 1) / side), {});
     strength_.resize(static_cast<std::size_t>(grey_.width()));

@@ -1,91 +1,164 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
 #include "odometry/alignment_equations.hpp"
 #include "odometry/image_pyramid.hpp"
+#include "tests/core/every_target.hpp"
 
 namespace roadstereo {
 namespace {
 
-constexpr int width = 97, height = 67;
+using AlignmentEquationsTarget = test::EveryTarget;
 
-/// A ramp of grey levels on a plane: both are exact between pixels.
-struct Ramp {
-  Ramp() : grey(width, height), disparity(width, height), sigma(width, height, 0.1F) {
+/// A plane that two frames see, and a ramp of grey levels: disparities and grey levels are exact between pixels.
+class PlaneInTwoFrames {
+ public:
+  static constexpr int width = 97, height = 67;
+
+  explicit PlaneInTwoFrames(const RigidMotion& motion)
+      : motion_(motion), grey_(width, height), disparity_(width, height), moved_(width, height), sigma_(width, height) {
+    calibration_.focal_px = 120;
+    calibration_.cx_px = 47;
+    calibration_.cy_px = 30;
+    calibration_.baseline_m = 0.2;
+    // N·p = baseline for points of the plane, and N'·q = b after the motion.
+    const Vector<3> normal{slope_u, slope_v, centre / calibration_.focal_px};
+    const Vector<3> turned = motion.rotated(normal);
+    const double scale = calibration_.baseline_m / (calibration_.baseline_m + dot(turned, motion.translation));
     for (int v = 0; v < height; ++v) {
       for (int u = 0; u < width; ++u) {
-        grey(u, v) = static_cast<std::int16_t>(320 + 8 * u + 12 * v);
-        disparity(u, v) = 8 + 0.03125F * static_cast<float>(u) + 0.0625F * static_cast<float>(v);
+        const double x = u - calibration_.cx_px, y = v - calibration_.cy_px;
+        grey_(u, v) = static_cast<std::int16_t>(320 + 8 * u + 12 * v);
+        disparity_(u, v) = static_cast<float>(slope_u * x + slope_v * y + centre);
+        moved_(u, v) = static_cast<float>(scale * (turned[0] * x + turned[1] * y + turned[2] * calibration_.focal_px));
+        sigma_(u, v) = sigma;
       }
     }
-    pyramid.build(grey.view());
-    select_points(maps(), points);
-    constexpr double margin = 8;  // no point leaves the view
-    std::erase_if(points.levels[0], [](const ReferencePoint& point) {
-      return point.u < margin || point.v < margin || point.u > width - margin || point.v > height - margin;
-    });
-    calibration.focal_px = 120;
-    calibration.cx_px = 47;
-    calibration.cy_px = 30;
-    calibration.baseline_m = 0.2;
+    pyramid_.build(grey_.view());
+    ReferencePoints points;
+    select_points({pyramid_, disparity_.view(), sigma_.view()}, points);
+    constexpr double margin = 12;  // no point leaves the view
+    for (const ReferencePoint& point : points.levels[0]) {
+      if (point.u > margin && point.v > margin && point.u < width - margin && point.v < height - margin)
+        points_.push_back(point);
+    }
   }
 
-  FrameMaps maps() const { return {pyramid, disparity.view(), sigma.view()}; }
+  const std::vector<ReferencePoint>& points() const { return points_; }
+  const StereoCalibration& calibration() const { return calibration_; }
 
-  AlignmentEquations at(const AlignmentState& state) const {
+  /// At the motion, with one unknown moved on.
+  AlignmentEquations at(std::size_t index = 0, double by = 0) const { return at(points_, index, by); }
+
+  AlignmentEquations at(const std::vector<ReferencePoint>& points, std::size_t index = 0, double by = 0) const {
+    AlignmentState state;
+    Twist twist{};
+    if (index < twist.size()) twist[index] = by;
+    state.motion = rigid_motion(twist) * motion_;
+    if (index == gain_index) state.gain += by;
+    if (index == brightness_index) state.brightness += by;
+    if (index == offset_index) state.offset_px += by;
+    if (index == growth_index) state.growth_px += by;
+    if (index == shutter_index) state.shutter += by;
     AlignmentEquations equations;
-    linearise(points.levels[0], maps(), calibration, 0, state, equations);
+    linearise(points, {pyramid_, moved_.view(), sigma_.view()}, calibration_, 0, state, equations);
     return equations;
   }
 
-  GreyImage grey;
-  Image<float> disparity, sigma;
-  ImagePyramid pyramid;
-  ReferencePoints points;
-  StereoCalibration calibration;
+  static constexpr double slope_u = 0.03, slope_v = 0.06, centre = 11;
+  static constexpr float sigma = 0.125F;
+
+ private:
+  RigidMotion motion_;
+  GreyImage grey_;
+  Image<float> disparity_, moved_, sigma_;
+  ImagePyramid pyramid_;
+  StereoCalibration calibration_;
+  std::vector<ReferencePoint> points_;
 };
 
-AlignmentState moved(std::size_t index, double by) {
-  AlignmentState state;
-  Twist twist{};
-  if (index < 6) twist[index] = by;
-  state.motion = rigid_motion(twist);
-  if (index == gain_index) state.gain += by;
-  if (index == brightness_index) state.brightness += by;
-  if (index == offset_index) state.offset_px += by;
-  if (index == growth_index) state.growth_px += by;
-  if (index == shutter_index) state.shutter += by;
-  return state;
-}
+const RigidMotion motion = rigid_motion({0.03, -0.02, 0.15, 0.01, -0.02, 0.015});
 
-TEST(AlignmentEquations, FrameAgreesWithItself) {
-  const Ramp ramp;
-  const AlignmentEquations equations = ramp.at({});
-  EXPECT_GT(equations.grey.size(), 500U);
-  EXPECT_GT(equations.disparity.size(), 500U);
-  EXPECT_NEAR(equations.visible, static_cast<double>(equations.grey.size()), 1e-9);
-  for (const AlignmentEquation& e : equations.grey) EXPECT_NEAR(e.residual, 0, 1e-4);
-  for (const AlignmentEquation& e : equations.disparity) EXPECT_NEAR(e.residual, 0, 1e-5);
-}
-
-TEST(AlignmentEquations, RowsAreDerivativesOfResiduals) {
-  const Ramp ramp;
-  const AlignmentEquations here = ramp.at({});
-  constexpr double step = 1e-3;
+TEST_P(AlignmentEquationsTarget, RowsAreDerivativesOfResiduals) {
+  const PlaneInTwoFrames scene(motion);
+  const AlignmentEquations here = scene.at();
+  ASSERT_GT(scene.points().size(), 100U);
+  ASSERT_EQ(here.grey.size(), scene.points().size());
+  ASSERT_EQ(here.disparity.size(), scene.points().size());
+  constexpr double step = 2e-3;
   for (std::size_t index = 0; index < unknowns; ++index) {
-    if (index == shutter_index) continue;  // nothing moves
-    const AlignmentEquations more = ramp.at(moved(index, step)), less = ramp.at(moved(index, -step));
+    const AlignmentEquations more = scene.at(index, step), less = scene.at(index, -step);
     const auto compare = [&](const std::vector<AlignmentEquation>& equations, const auto& beyond, const auto& before) {
       ASSERT_EQ(beyond.size(), equations.size());
       ASSERT_EQ(before.size(), equations.size());
       for (std::size_t i = 0; i < equations.size(); ++i) {
         const double derivative = (beyond[i].residual - before[i].residual) / (2 * step);
-        ASSERT_NEAR(equations[i].row[index], derivative, 0.01 * std::abs(derivative) + 0.02) << index << " " << i;
+        // Single precision of grey levels and disparities, 10⁻⁵, by the step; and the third derivative.
+        ASSERT_NEAR(equations[i].row[index], derivative, 5e-3 + 1e-4 * std::abs(derivative)) << index << " " << i;
       }
     };
     compare(here.grey, more.grey, less.grey);
     compare(here.disparity, more.disparity, less.disparity);
   }
 }
+
+TEST_P(AlignmentEquationsTarget, DisparitiesOfPlaneAgree) {
+  const PlaneInTwoFrames scene(motion);
+  const AlignmentEquations equations = scene.at();
+  for (const AlignmentEquation& e : equations.disparity) EXPECT_NEAR(e.residual, 0, 1e-5);  // single precision
+}
+
+TEST_P(AlignmentEquationsTarget, VariancesAreThoseOfDisparities) {
+  const PlaneInTwoFrames scene(motion);
+  const AlignmentEquations equations = scene.at();
+  for (std::size_t i = 0; i < equations.grey.size(); ++i) {
+    // The offset moves the disparity of a point by its shape, 1 + x² of the right camera.
+    const ReferencePoint& point = scene.points()[i];
+    const StereoCalibration& calibration = scene.calibration();
+    const double right = (point.u - point.disparity - calibration.cx_px) / calibration.focal_px;
+    const double shape = 1 + right * right;
+    const double error = equations.grey[i].row[offset_index] / shape * PlaneInTwoFrames::sigma;
+    EXPECT_NEAR(equations.grey[i].variance, error * error, 1e-9 + 1e-6 * error * error);
+    const double own = PlaneInTwoFrames::sigma;
+    EXPECT_GT(equations.disparity[i].variance, own * own);
+    EXPECT_LT(equations.disparity[i].variance, 3 * own * own);
+  }
+}
+
+TEST_P(AlignmentEquationsTarget, PointsSeenFromFartherAwayCountByTheirArea) {
+  const PlaneInTwoFrames scene(motion);
+  double areas = 0;
+  for (const ReferencePoint& point : scene.points()) {
+    const Vector<3> p = scene.calibration().point_m(point.u, point.v, point.disparity);
+    const double scale = p[2] / motion(p)[2];
+    areas += std::min(1.0, scale * scale);
+  }
+  EXPECT_LT(areas, 0.99 * static_cast<double>(scene.points().size()));
+  EXPECT_NEAR(scene.at().visible, areas, 1e-9 * areas);
+}
+
+TEST_P(AlignmentEquationsTarget, NeighboursInVectorsDoNotMatter) {
+  const PlaneInTwoFrames scene(motion);
+  const AlignmentEquations all = scene.at();
+  ASSERT_NE(scene.points().size() % 8, 0U);  // the last vector is not full
+  for (std::size_t i = 0; i < scene.points().size(); ++i) {
+    const AlignmentEquations one = scene.at({scene.points()[i]});
+    ASSERT_EQ(one.grey.size(), 1U);
+    ASSERT_EQ(one.disparity.size(), 1U);
+    EXPECT_EQ(one.grey[0].row, all.grey[i].row);
+    EXPECT_EQ(one.grey[0].residual, all.grey[i].residual);
+    EXPECT_EQ(one.disparity[0].row, all.disparity[i].row);
+    EXPECT_EQ(one.disparity[0].residual, all.disparity[i].residual);
+    EXPECT_EQ(one.disparity[0].cell, scene.points()[i].cell);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Machine, AlignmentEquationsTarget, testing::ValuesIn(test::targets_of_this_machine()),
+                         test::name_of_target);
 
 }  // namespace
 }  // namespace roadstereo

@@ -5,7 +5,7 @@
 namespace roadstereo {
 namespace {
 
-constexpr Matrix<2> metric{{{4, 0}, {1, 2}}};
+constexpr Matrix<2> metric{{{4, 99}, {1, 2}}};  // the upper half is not read
 
 TEST(AndersonAcceleration, GeometricSequenceEndsAtItsLimit) {
   for (const double ratio : {0.4, -0.7}) {
@@ -20,17 +20,23 @@ TEST(AndersonAcceleration, GeometricSequenceEndsAtItsLimit) {
   }
 }
 
-TEST(AndersonAcceleration, FirstStepIsUnchanged) {
+TEST(AndersonAcceleration, LengthsAreThoseOfMetric) {
+  // The change (−1, 1) has the square 4 − 2·1 + 2 = 4 and the product −1 + 2 = 1 with the step: a share of a quarter.
   AndersonAcceleration<2> acceleration;
-  EXPECT_EQ(acceleration.accelerated({1, 2}, metric), (Vector<2>{1, 2}));
+  EXPECT_EQ(acceleration.accelerated({1, 0}, metric), (Vector<2>{1, 0}));
+  EXPECT_EQ(acceleration.accelerated({0, 1}, metric), (Vector<2>{0, 0.75}));
 }
 
-TEST(AndersonAcceleration, GrowingStepsAreNotPrevented) {
-  // Steps 1, 2 would come from x = −1 and end there; half of the change, 0.5 · (1 + 1), is the most that is taken off.
+TEST(AndersonAcceleration, SlowStepsAreThreeTimesAsLong) {
+  AndersonAcceleration<2> acceleration;
+  acceleration.accelerated({0.1, 0}, metric);
+  EXPECT_NEAR(acceleration.accelerated({0.09, 0}, metric)[0], 0.27, 1e-12);
+}
+
+TEST(AndersonAcceleration, GrowingStepsAreTakenAsTheyAre) {
   AndersonAcceleration<2> acceleration;
   acceleration.accelerated({1, 0}, metric);
-  const Vector<2> taken = acceleration.accelerated({2, 0}, metric);
-  EXPECT_EQ(taken, (Vector<2>{1, 0}));
+  EXPECT_EQ(acceleration.accelerated({2, 0}, metric), (Vector<2>{2, 0}));
 }
 
 }  // namespace

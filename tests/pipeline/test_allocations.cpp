@@ -33,7 +33,7 @@ constexpr int max_threads = 2;
 constexpr int max_threads = 1;
 #endif
 
-TEST(LensWatch, AllocatesForFirstFrameOnly) {
+TEST(LensWatchAllocations, ForFirstFrameOnly) {
   SKIP_WITHOUT_COUNT();
   GreyImage frame(320, 180);
   LensWatch watch;
@@ -51,7 +51,7 @@ TEST(LensWatch, AllocatesForFirstFrameOnly) {
   EXPECT_FALSE(std::isnan(watch.spots().dirt));
 }
 
-TEST(StaticMask, AllocatesForFirstFrameAndWhenItJudgesOnly) {
+TEST(StaticMaskAllocations, ForFirstFrameAndWhenItJudgesOnly) {
   SKIP_WITHOUT_COUNT();
   GreyImage frame(320, 180);
   StaticMask mask;
