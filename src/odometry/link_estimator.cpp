@@ -143,11 +143,12 @@ std::vector<RigidMotion> LinkEstimator::starts(const LinkReference& from, const 
 Alignment LinkEstimator::track(const LinkReference& from, const FrameMaps& maps, const RigidMotion& start,
                                const LinkPrior& prior) const {
   constexpr double as_usual = 0.93;  // of the correlation of the last links
+  const double enough = prior.usual_correlation > 0 ? as_usual * prior.usual_correlation : options_.weak_correlation;
   constexpr int search_radius = 6, coarsest = 1, coarsest_search = 3;
   Alignment best = align(from.points, maps, calibration_, start, prior.offset, coarsest, 0);
   if (best.overlap < options_.min_overlap) best.correlation = 0;
   for (int top = 1; top <= std::min(maps.pyramid.levels() - 1, coarsest_search); ++top) {
-    if (best.correlation > 0 && best.correlation >= as_usual * prior.usual_correlation) break;
+    if (best.correlation >= enough) break;
     RigidMotion motion = start;
     for (int level = top; level >= 1; --level) {
       motion = match_patches(from.points, maps, calibration_, motion, prior.offset.mean_px, level, search_radius);

@@ -108,6 +108,12 @@ TEST_F(Evaluate, HelpNamesEveryExperiment) {
   }
 }
 
+TEST_F(Evaluate, OdometryLinksFirstFrameWithoutPrediction) {
+  const Outcome outcome = run("odometry --flight loop=300 --frames 3 --json odometry.json --threads 2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json_file("odometry.json")["rows"][0]["lost"], 0);
+}
+
 TEST_F(SlowEvaluate, SynthComparesEveryMethodInEveryGroup) {
   const Outcome outcome = run("synth --sizes small --json synth.json --threads 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
