@@ -9,6 +9,8 @@
 #   Threads   threads    is about threads: the thread sanitizer runs it
 #   /cuda     engine_cuda  is that of every engine, with the engine cuda
 #   OfDevice  engine_cuda  needs the engine cuda
+cmake_policy(VERSION 3.22)  # CTest sets none
+
 function(roadstereo_labels test labels)
   set(found "")
   foreach(name_and_label RealData=real_data TwoGpus=two_gpus GStreamer=gstreamer Ogrinfo=ogrinfo Slow=slow
