@@ -68,7 +68,8 @@ function(roadstereo_suites program file folder environment)
     list(JOIN tests_of_${group} ":" filter)
     set(labels ${label} ${labels_of_${group}})
     add_test(${group} ${ARGN} ${file} --gtest_filter=${filter})
-    set_tests_properties(${group} PROPERTIES LABELS "${labels}" TIMEOUT 1800 WORKING_DIRECTORY ${folder} ENVIRONMENT "${environment}"
+    set_tests_properties(${group} PROPERTIES LABELS "${labels}" TIMEOUT 1800 WORKING_DIRECTORY ${folder}
+      ENVIRONMENT "${environment}"
       # Skipped where all tests are; where only some are, the others would not be seen to fail.
       SKIP_REGULAR_EXPRESSION "\\[  PASSED  \\] 0 tests\\.(\n\\[  SKIPPED \\][^\n]*)+\n*$"
       FAIL_REGULAR_EXPRESSION "\\[  SKIPPED \\]")

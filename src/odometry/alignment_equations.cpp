@@ -83,6 +83,7 @@ struct Batch {
     }
   }
 
+  /// Samples what the current frame has at the pixels (at_u, at_v) of the points that are in front of it.
   void look(const FrameMaps& current, ImageView<const std::int16_t> level, double scale, const Numbers& at_u,
             const Numbers& at_v, const bool* in_front) {
     for (int i = 0; i < count; ++i) {
@@ -176,7 +177,7 @@ class Linearisation {
   }
 
  private:
-  /// `offset_shape` of the points.
+  /// `offset_shape` (direct_alignment.hpp) of the points.
   HWY_INLINE Double shape_of_offset(Double u, Double disparity) const {
     const Double x = hn::Div(hn::Sub(hn::Sub(u, disparity), all(calibration_.cx_px)), focal_);
     return hn::MulAdd(x, x, all(1));
