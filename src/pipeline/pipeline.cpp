@@ -11,6 +11,7 @@
 #include "core/scratch.hpp"
 #include "pipeline/host_stages.hpp"
 #include "road/rig_prior.hpp"
+#include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/adaptive_support.hpp"
@@ -69,9 +70,13 @@ struct Pipeline::State {
   std::pmr::unsynchronized_pool_resource memory{{.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
   FrameResult result;
 
+  GreyImage aligned_right;  ///< align_on_host
+  std::vector<int> first_column;
+
   void begin_frame(const FrameView& left, const FrameView& right);
   GreyPair convert_to_grey(const FrameView& left, const FrameView& right);
   GreyPair undo_misalignment(const GreyPair& pair);
+  GreyPair align_on_host(const GreyPair& pair);
   void estimate_road_model(const GreyPair& pair);
   void track_in_noise(const GreyPair& pair);
   void measure_rows(const GreyPair& grey);
@@ -125,6 +130,14 @@ GreyPair Pipeline::State::undo_misalignment(const GreyPair& pair) {
   return aligned;
 }
 
+/// The same of a pair in host memory, on the host: a device rounds a few grey levels otherwise, and one correspondence
+/// more or less makes RANSAC draw others and takes a correlation across the border between two sizes of blocks.
+GreyPair Pipeline::State::align_on_host(const GreyPair& pair) {
+  if (carried.misalignment.is_zero()) return pair;
+  transform_target(pair.right, without_road(carried.misalignment), threads, aligned_right, first_column);
+  return {pair.left, aligned_right, pair.mask};
+}
+
 /// Road model Δu, eq. (4): the last frame's when it still fits, else from the images.
 void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const StageTimer timer(result.ms.road_model);
@@ -137,8 +150,9 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
     if (result.road.has_road()) return;
     result.warnings.push_back(format_message("road-anew: the road model was estimated anew: ", result.road.reason));
   }
-  if (options.check_rows) measure_rows(stages->on_host(pair));
-  const GreyPair grey = stages->on_host(undo_misalignment(pair));
+  const GreyPair on_host = stages->on_host(pair);
+  if (options.check_rows) measure_rows(on_host);
+  const GreyPair grey = align_on_host(on_host);
   result.road =
       roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, pair.mask);
   if (!result.road.has_road()) {
