@@ -10,7 +10,7 @@ namespace {
 using namespace cuda;  // NOLINT(google-build-using-namespace): what is tested
 
 template <int count>
-__global__ void sum_of_block(int items, double* sums) {
+__global__ void __launch_bounds__(1024) sum_of_block(int items, double* sums) {
   double own[count] = {};
   for (int i = static_cast<int>(threadIdx.x); i < items; i += static_cast<int>(blockDim.x)) {
     for (int k = 0; k < count; ++k) own[k] += (k + 1) * i;
