@@ -91,6 +91,23 @@ TEST_F(CudaPipeline, SubtractsRigBiasAsHostDoes) {
             0.1);
 }
 
+// A search for a road amplifies rounding: it must see the same grey levels.
+TEST_F(CudaPipeline, FindsRoadBetweenMisalignedRowsThatHostFinds) {
+  synth::Scene scene = synth::named_scene("street");
+  scene.supersampling = 1;
+  scene.degradation.row_offset_px = 0.37;
+  scene.degradation.row_rotation_deg = 0.05;
+  const synth::SyntheticPair pair = synth::render(scene, 2);
+  Pipeline host(options_of("fast", "cpu"), pair.calibration), device(options_of("fast", "cuda"), pair.calibration);
+  const FrameResult& expected = host.process(pair.left.view(), pair.right.view());
+  const FrameResult& found = device.process(pair.left.view(), pair.right.view());
+  EXPECT_FALSE(expected.shift.misalignment.is_zero());
+  for (const double v : {0.0, 1.0}) {
+    for (const double u : {0.0, 1.0}) EXPECT_EQ(found.road.model.disparity(u, v), expected.road.model.disparity(u, v));
+  }
+  EXPECT_EQ(found.road.correlation, expected.road.correlation);
+}
+
 TEST_P(CudaPreset, MatchesHostFrameByFrame) {
   const StereoCalibration calibration = frame_of("uav").calibration;
   Pipeline host(options_of(GetParam(), "cpu"), calibration), device(options_of(GetParam(), "cuda"), calibration);
@@ -194,9 +211,8 @@ TEST_F(CudaPipeline, HandsOutPinnedMaps) {
   }
   EXPECT_EQ(results[0].grey, results[1].grey);
   EXPECT_EQ(results[0].right, results[1].right);
-  EXPECT_EQ(std::memcmp(results[0].disparity.row(0), results[1].disparity.row(0),
-                        results[0].disparity.pixels() * sizeof(float)),
-            0);
+  // The road that the frame before leaves differs in its last bits.
+  EXPECT_GE(Difference(results[0].disparity, results[1].disparity).same_share, 0.999);
   const Image<float> copy = results[0].disparity;
   EXPECT_EQ(copy.memory(), nullptr);
   EXPECT_TRUE(std::isfinite(copy(copy.width() / 2, copy.height() / 2)));

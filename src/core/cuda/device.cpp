@@ -40,7 +40,8 @@ Device find_device() {
       format_message(properties.name, " (compute capability ", properties.major, ".", properties.minor, ")");
   status = cudaFree(nullptr);  // makes the context, for which a GPU may be too busy or its memory too full
   if (status != cudaSuccess) return unusable(format_message("the ", name, " cannot be used now: ", said(status)));
-  if (const cudaError_t code = probe_code(); code != cudaSuccess) {
+  int code_for = 0;
+  if (const cudaError_t code = probe_code(code_for); code != cudaSuccess) {
     return unusable(format_message("this binary carries no code that the ", name, " can run (", said(code),
                                    "): build it with CMAKE_CUDA_ARCHITECTURES=", properties.major, properties.minor));
   }
@@ -48,6 +49,7 @@ Device find_device() {
   device.name = name;
   device.index = index;
   device.multiprocessors = properties.multiProcessorCount;
+  device.programmatic_launch = CUDART_VERSION >= 11080 && code_for >= 90;  // what begin_kernel() does on a 9.0
   device.usable = true;
   return device;
 }

@@ -18,6 +18,7 @@ struct Device {
   std::string reason;  ///< why not, as a sentence; empty when usable
   int index = 0;
   int multiprocessors = 0;
+  bool programmatic_launch = false;  ///< kernels may begin before the last one has ended (begin_kernel())
 };
 
 /// Asks the driver for the current device, and whether this binary carries code for it.

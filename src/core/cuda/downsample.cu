@@ -16,6 +16,7 @@ struct Shrinking {
 /// A factor known to the compiler makes the loops straight; 0 is any other.
 template <int known_factor>
 __global__ void downsample_images(Shrinking first, Shrinking second, int factor) {
+  begin_kernel();
   const Shrinking of = blockIdx.z == 0 ? first : second;
   const int x = static_cast<int>(blockIdx.x * block_columns + threadIdx.x);
   const int y = static_cast<int>(blockIdx.y * block_rows + threadIdx.y);

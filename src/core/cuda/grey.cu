@@ -97,6 +97,7 @@ __device__ void report(int shown, int* votes, int first_left, int first_right, P
 }
 
 __global__ void pair_to_grey(GreyPair pair, int* votes, PairFindings* findings) {
+  begin_kernel();
   int* of_block = shared_memory<int>();
   const bool first_thread = threadIdx.x == 0 && threadIdx.y == 0;
   if (first_thread) *of_block = 0;

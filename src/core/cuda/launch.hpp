@@ -19,6 +19,35 @@ inline unsigned blocks_for(int count, int size) {
   return static_cast<unsigned>((count + size - 1) / size);
 }
 
+/// The first line of every kernel: it may begin before the last one of its stream has ended (programmatic dependent
+/// launch), so that the time of a launch is hidden, and waits here until that has ended and its memory is seen.
+__device__ inline void begin_kernel() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  asm volatile("griddepcontrol.launch_dependents;");
+  asm volatile("griddepcontrol.wait;" ::: "memory");
+#endif
+}
+
+#if !defined(ROADSTEREO_CUDA_EMULATED)
+inline void launch_function(const void* function, const LaunchShape& shape, void** arguments, StreamView stream) {
+#if CUDART_VERSION >= 11080
+  cudaLaunchAttribute programmatic{};
+  programmatic.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  programmatic.val.programmaticStreamSerializationAllowed = 1;
+  cudaLaunchConfig_t config{};
+  config.gridDim = shape.grid;
+  config.blockDim = shape.block;
+  config.dynamicSmemBytes = shape.shared_bytes;
+  config.stream = stream.get();
+  config.attrs = &programmatic;
+  config.numAttrs = stream.programmatic() ? 1 : 0;
+  ROADSTEREO_CUDA(cudaLaunchKernelExC(&config, function, arguments));
+#else
+  ROADSTEREO_CUDA(cudaLaunchKernel(function, shape.grid, shape.block, arguments, shape.shared_bytes, stream.get()));
+#endif
+}
+#endif
+
 /// Launches `kernel` in the stream; throws SystemError when that fails. `name` is that of the kernel, for records.
 template <class... Parameters, class... Arguments>
 void launch(const char* name, void (*kernel)(Parameters...), const LaunchShape& shape, StreamView stream,
@@ -35,8 +64,7 @@ void launch(const char* name, void (*kernel)(Parameters...), const LaunchShape& 
   std::apply(
       [&](auto&... value) {
         void* pointers[] = {static_cast<void*>(&value)...};
-        ROADSTEREO_CUDA(
-            cudaLaunchKernel(function, shape.grid, shape.block, pointers, shape.shared_bytes, stream.get()));
+        launch_function(function, shape, pointers, stream);
       },
       values);
 #endif

@@ -9,9 +9,11 @@ __global__ void empty_kernel() {}
 
 }  // namespace
 
-cudaError_t probe_code() {
+cudaError_t probe_code(int& compute_capability) {
   cudaFuncAttributes attributes{};
-  return cudaFuncGetAttributes(&attributes, empty_kernel);
+  const cudaError_t status = cudaFuncGetAttributes(&attributes, empty_kernel);
+  compute_capability = attributes.ptxVersion;
+  return status;
 }
 
 }  // namespace roadstereo::cuda

@@ -12,11 +12,14 @@ namespace roadstereo::cuda {
 /// A stream that it does not own, and what records the work that goes there, if anything does. Not thread-safe.
 class StreamView {
  public:
-  StreamView(cudaStream_t stream, Recorder* recorder = nullptr)  // NOLINT(google-explicit-constructor): a stream is one
-      : stream_(stream), recorder_(recorder) {}
+  /// `programmatic`: Device::programmatic_launch.
+  StreamView(cudaStream_t stream, Recorder* recorder = nullptr,  // NOLINT(google-explicit-constructor): a stream is one
+             bool programmatic = false)
+      : stream_(stream), recorder_(recorder), programmatic_(programmatic) {}
 
   cudaStream_t get() const { return stream_; }
   Recorder* recorder() const { return recorder_; }
+  bool programmatic() const { return programmatic_; }
 
   /// Enqueues a copy to the device, or from it.
   void upload(void* to, const void* from, std::size_t bytes) const {
@@ -39,6 +42,7 @@ class StreamView {
  private:
   cudaStream_t stream_;
   Recorder* recorder_;
+  bool programmatic_;
 };
 
 /// A stream that waits for no other.

@@ -48,6 +48,7 @@ class DeviceStages final : public FrameStages {
       : options_(options),
         calibration_(calibration),
         device_(device.index),
+        programmatic_(device.programmatic_launch),
         scene_search_(options.coarse_search),
         matcher_(device.multiprocessors) {
     if (options.narrow_search || options.matcher.prior_weight > 0) coarse_search_.emplace(options.coarse_search);
@@ -223,7 +224,7 @@ class DeviceStages final : public FrameStages {
   }
 
  private:
-  StreamView stream() { return {stream_, recorder_ ? &*recorder_ : nullptr}; }
+  StreamView stream() { return {stream_, recorder_ ? &*recorder_ : nullptr, programmatic_}; }
   void wait() {
     stream().wait();
     complete_ = true;
@@ -275,6 +276,7 @@ class DeviceStages final : public FrameStages {
   PipelineOptions options_;
   std::optional<StereoCalibration> calibration_;
   int device_;
+  bool programmatic_;
   Stream own_stream_;
   cudaStream_t stream_ = own_stream_.get();  ///< or the caller's
   bool download_ = true;

@@ -93,6 +93,7 @@ __device__ float median_near(const Sample& sample, const int* first_digits, Sele
 /// spread, and clears what blocks have counted: nothing is left where the next launch fails.
 __global__ void measure_heights(ImageView<const float> disparity, PlaneSource source, TransformOffset offset,
                                 Sample sample, DisparityTransform::State* state) {
+  begin_kernel();
   Measuring& shared = *shared_memory<Measuring>();
   const DisparityPlane road = source.get();
   const Pixel at;
@@ -145,6 +146,7 @@ __device__ void finish(const double* sums, int blocks, Shifting& shared, const D
 /// Writes the transformed map and adds up its spread: in single precision over a block, in double over the blocks.
 __global__ void shift_heights(ImageView<const float> disparity, PlaneSource source, ImageView<float> transformed,
                               DisparityTransform::State* state, double* sums, TransformStatistics* statistics) {
+  begin_kernel();
   Shifting& shared = *shared_memory<Shifting>();
   const DisparityPlane plane = source.get();
   const DisparityTransform::Heights heights = state->found;

@@ -96,6 +96,7 @@ __device__ RawSums add_rows(const RawSums* rows, int height, Shared& shared) {
 
 __global__ void sum_map(MaskedMap map, RollFromSums how, RawSums* rows, unsigned* arrived, SolvedMap* solved,
                         SolvedMap* result) {
+  begin_kernel();
   Shared& shared = *shared_memory<Shared>();
   const int own = static_cast<int>(threadIdx.x) / warp_lanes;
   const int v = static_cast<int>(blockIdx.x) * rows_per_block + own;

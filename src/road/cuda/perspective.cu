@@ -83,6 +83,7 @@ struct TransformedPart {
 /// Double precision is slow on small GPUs: three threads do what needs it, each in a warp of its own.
 __global__ void transform_rows(ImageView<const std::int16_t> target, PerspectiveShift shift, float white,
                                ImageView<std::int16_t> transformed, int* first_column) {
+  begin_kernel();
   auto& part = *shared_memory<TransformedPart>();
   const int v = static_cast<int>(blockIdx.y), begin = static_cast<int>(blockIdx.x) * row_threads;
   const auto thread = static_cast<int>(threadIdx.x);
@@ -118,6 +119,7 @@ struct RestoredPart {
 
 __global__ void restore_rows(ImageView<const float> residual, PerspectiveShift shift, int pixel_step,
                              ImageView<float> disparity) {
+  begin_kernel();
   auto& part = *shared_memory<RestoredPart>();
   const int x = static_cast<int>(blockIdx.x) * row_threads + static_cast<int>(threadIdx.x);
   const int y = static_cast<int>(blockIdx.y), u = x * pixel_step, v = y * pixel_step;

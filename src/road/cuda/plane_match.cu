@@ -174,6 +174,7 @@ class PlaceSearch {
 
 __global__ void match_places(GuidedPair pair, SampleGrid grid, PlaneSource source, const int* needed,
                              GuidedSlots slots) {
+  begin_kernel();
   const int own = static_cast<int>(threadIdx.x) / warp_lanes;
   const int place = static_cast<int>(blockIdx.x) * places_per_block + own;
   if (place >= grid.places()) return;

@@ -9,6 +9,7 @@ namespace {
 constexpr int row_threads = 128;
 
 __global__ void subtract_rows(BiasPolynomial<float> bias, ImageView<float> disparity) {
+  begin_kernel();
   const int u = static_cast<int>(blockIdx.x) * row_threads + static_cast<int>(threadIdx.x);
   const int v = static_cast<int>(blockIdx.y);
   if (u >= disparity.width()) return;

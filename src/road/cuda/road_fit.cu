@@ -15,7 +15,7 @@ namespace {
 struct SampledMap {
   MapSample sample;
   int width, height;
-  float *u, *v, *d, *first, *weights;
+  float *u, *v, *d, *weights;
 
   __device__ bool has(int i) const { return d[i] == d[i]; }
 };
@@ -87,10 +87,14 @@ __device__ bool fit_least_squares(const SampledMap& sampled, FitState& state, Di
 struct CellRange {
   __device__ CellRange(const MapSample& sample, int places, int cell, int size)
       : first((cell * size / cells_per_side - sample.step / 2) / sample.step - 1) {
+    // cell_of() without its division.
+    const auto lies_before = [&](int place, int other_cell) {
+      return place < places && sample.at(place) * cells_per_side < other_cell * size;
+    };
     if (first < 0) first = 0;
-    while (first < places && cell_of(sample.at(first), size) < cell) ++first;
+    while (lies_before(first, cell)) ++first;
     end = first;
-    while (end < places && cell_of(sample.at(end), size) == cell) ++end;
+    while (lies_before(end, cell + 1)) ++end;
   }
   int first, end;
 };
@@ -217,9 +221,10 @@ __device__ void fit_moments(const SampledMap& sampled, const DisparityPlane& pla
 }
 
 /// `max_iterations` 0 measures the plane as it is.
-__global__ void __launch_bounds__(1024)
+__global__ void __launch_bounds__(max_fit_threads)
     fit_map(MaskedMap map, SampledMap sampled, PlaneSource source, int max_iterations, RoadFitStatistics* statistics,
             RoadFitStatistics* result) {
+  begin_kernel();
   MapFitState& state = *shared_memory<MapFitState>();
   const DisparityPlane start = source.get();
   RoadFitStatistics own{start, {start, 0, 0, 0, 0}, 0, 1, {}};
@@ -228,7 +233,8 @@ __global__ void __launch_bounds__(1024)
   if (max_iterations > 0) {
     const DevicePoints points{sampled.u, sampled.v, sampled.d, sampled.sample.count()};
     const RobustFit fit{0, true, max_iterations};
-    own.fit = BlockFit(points, fit, state.fit, residuals, sampled.first, sampled.weights).run(start);
+    RegisterSelect select(state.fit.select);
+    own.fit = BlockFit(points, fit, state.fit, select).run(start, sampled.weights);
     own.plane = own.fit.plane;
     own.points = own.fit.points;
   }
@@ -257,10 +263,10 @@ void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_it
   const int width = map.disparity.width(), height = map.disparity.height();
   const MapSample sample = map_sample(width, height);
   require_fit_points(sample.count());
-  for (DeviceArray<float>* of : {&u_, &v_, &d_, &first_, &weights_}) {
+  for (DeviceArray<float>* of : {&u_, &v_, &d_, &weights_}) {
     of->reserve(static_cast<std::size_t>(sample.count()));
   }
-  const SampledMap sampled{sample, width, height, u_.data(), v_.data(), d_.data(), first_.data(), weights_.data()};
+  const SampledMap sampled{sample, width, height, u_.data(), v_.data(), d_.data(), weights_.data()};
   const std::size_t shared_bytes = sizeof(MapFitState) + static_cast<std::size_t>(sample.count()) * sizeof(float);
   launch("fit_map", fit_map, {1, fit_threads(sample.count()), shared_bytes}, stream, map, sampled, plane,
          max_iterations, statistics_.data(), result_.data());

@@ -32,7 +32,7 @@ class RoadFit {
  private:
   void enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, StreamView stream);
 
-  DeviceArray<float> u_, v_, d_, first_, weights_;
+  DeviceArray<float> u_, v_, d_, weights_;
   DeviceArray<RoadFitStatistics> statistics_{1};
   PinnedArray<RoadFitStatistics> result_{1};
 };

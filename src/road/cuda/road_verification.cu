@@ -22,70 +22,91 @@ __device__ void count_places(const SearchMemory& search, FitState& state, Search
   statistics.tried = sums[1];
 }
 
+/// The values that the shares `low` and `high` of the floats lie below, and how many floats there are.
+struct KeyRange {
+  float low, high;
+  int of;
+};
+__device__ KeyRange range_of_keys(const std::uint32_t (&keys)[fit_points_per_thread], double low, double high,
+                                  RegisterSelect& select) {
+  KeyRange range{};
+  ROADSTEREO_DO_NOT_UNROLL
+  for (int end = 0; end < 2; ++end) {
+    const SelectedKey key = select.select<RegisterSelect::float_digits>(keys, ShareRank{end == 0 ? low : high});
+    (end == 0 ? range.low : range.high) = value_of(key.key);
+    range.of = key.of;
+  }
+  return range;
+}
+
 /// Inliers and the rows that they cover; a thread's own weights are visible to it.
-__device__ void count_inliers(const SearchMemory& search, FitState& state, SearchStatistics& statistics) {
-  const auto row = [&](int i, std::uint32_t& key) {
-    key = key_of(search.slots.v[i]);
-    return search.weights[i] > 0;
-  };
-  const SelectedKey lowest = block_select<float_digits>(search.count, row, ShareRank{row_p05}, state.select);
-  statistics.inliers = lowest.of;
-  statistics.found = lowest.of >= min_matches ? 1 : 0;
+__device__ void count_inliers(const SearchMemory& search, RegisterSelect& select, SearchStatistics& statistics) {
+  std::uint32_t rows[fit_points_per_thread];
+  keys_of_thread(
+      search.count, [&](int i) { return search.weights[i] > 0 ? key_of(search.slots.v[i]) : RegisterSelect::no_key; },
+      rows);
+  const KeyRange range = range_of_keys(rows, row_p05, row_p95, select);
+  statistics.inliers = range.of;
+  statistics.found = range.of >= min_matches ? 1 : 0;
   if (statistics.found == 0) return;
-  const SelectedKey highest = block_select<float_digits>(search.count, row, ShareRank{row_p95}, state.select);
-  statistics.lowest_row = value_of(lowest.key);
-  statistics.highest_row = value_of(highest.key);
+  statistics.lowest_row = range.low;
+  statistics.highest_row = range.high;
 }
 
 /// The fit to what a search found; all threads get the statistics.
-__device__ SearchStatistics fit_search(const SearchMemory& search, const DisparityPlane& start, const RobustFit& fit) {
+__device__ SearchStatistics fit_search(const SearchMemory& search, const DisparityPlane& start, const RobustFit& fit,
+                                       RegisterSelect& select) {
   FitState& state = *shared_memory<FitState>();
   SearchStatistics statistics{{start, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
   count_places(search, state, statistics);
   if (statistics.points < min_matches) return statistics;
   const DevicePoints points{search.slots.u, search.slots.v, search.slots.d, search.count};
-  auto* residuals = reinterpret_cast<float*>(&state + 1);
-  statistics.fit = BlockFit(points, fit, state, residuals, search.first, search.weights).run(start);
-  if (statistics.fit.found != 0) count_inliers(search, state, statistics);
+  statistics.fit = BlockFit(points, fit, state, select).run(start, search.weights);
+  if (statistics.fit.found != 0) count_inliers(search, select, statistics);
   return statistics;
 }
 
-__global__ void __launch_bounds__(1024)
+__global__ void __launch_bounds__(max_fit_threads)
     fit_around(SearchMemory search, PlaneSource previous, RobustFit fit, SearchStatistics* around) {
-  const SearchStatistics found = fit_search(search, previous.get(), fit);
+  begin_kernel();
+  RegisterSelect select(shared_memory<FitState>()->select);
+  const SearchStatistics found = fit_search(search, previous.get(), fit, select);
   if (threadIdx.x == 0) *around = found;
 }
 
 /// Where the correspondences of the first search lie that are near the road.
-__device__ void measure_range(const SearchMemory& around, const DisparityPlane& road,
+__device__ void measure_range(const SearchMemory& around, const DisparityPlane& road, RegisterSelect& select,
                               VerificationStatistics& statistics) {
-  FitState& state = *shared_memory<FitState>();
-  const auto residual = [&](int i, std::uint32_t& key) {
-    const double expected = road.disparity(around.slots.u[i], around.slots.v[i]);
-    const double value = around.slots.d[i] - expected;
-    key = key_of(static_cast<float>(value));
-    return near_road(value, expected);
-  };
-  const SelectedKey lowest = block_select<float_digits>(around.count, residual, ShareRank{residual_p01}, state.select);
-  statistics.near = lowest.of;
-  if (lowest.of < min_matches) return;
-  const SelectedKey highest = block_select<float_digits>(around.count, residual, ShareRank{residual_p99}, state.select);
-  statistics.residual_p01_px = value_of(lowest.key);
-  statistics.residual_p99_px = value_of(highest.key);
+  std::uint32_t residuals[fit_points_per_thread];
+  keys_of_thread(
+      around.count,
+      [&](int i) {
+        const double expected = road.disparity(around.slots.u[i], around.slots.v[i]);
+        const double value = around.slots.d[i] - expected;
+        return near_road(value, expected) ? key_of(static_cast<float>(value)) : RegisterSelect::no_key;
+      },
+      residuals);
+  const KeyRange range = range_of_keys(residuals, residual_p01, residual_p99, select);
+  statistics.near = range.of;
+  if (range.of < min_matches) return;
+  statistics.residual_p01_px = range.low;
+  statistics.residual_p99_px = range.high;
 }
 
-__global__ void __launch_bounds__(1024)
+__global__ void __launch_bounds__(max_fit_threads)
     fit_close(SearchMemory search, SearchMemory around, RobustFit fit, const SearchStatistics* found_around,
               VerificationStatistics* result) {
+  begin_kernel();
   VerificationStatistics own{*found_around, {}, 0, 0, 0};
+  RegisterSelect select(shared_memory<FitState>()->select);
   const bool needed = own.around.found != 0;
-  if (needed) own.close = fit_search(search, own.around.fit.plane, fit);
-  if (own.close.fit.found != 0) measure_range(around, own.close.fit.plane, own);
+  if (needed) own.close = fit_search(search, own.around.fit.plane, fit, select);
+  if (own.close.fit.found != 0) measure_range(around, own.close.fit.plane, select, own);
   if (threadIdx.x == 0) *result = own;  // not read back: it lies in the host's memory
 }
 
 LaunchShape fit_shape(int count) {
-  return {1, fit_threads(count), fit_shared_bytes(count)};
+  return {1, fit_threads(count), sizeof(FitState)};
 }
 
 }  // namespace
@@ -93,9 +114,9 @@ LaunchShape fit_shape(int count) {
 SearchMemory RoadVerification::Search::memory(int places) {
   require_fit_points(places);
   const auto count = static_cast<std::size_t>(places > 0 ? places : 1);
-  for (DeviceArray<float>* of : {&u, &v, &d, &first, &weights}) of->reserve(count);
+  for (DeviceArray<float>* of : {&u, &v, &d, &weights}) of->reserve(count);
   tried.reserve(count);
-  return {{u.data(), v.data(), d.data(), tried.data()}, places, first.data(), weights.data()};
+  return {{u.data(), v.data(), d.data(), tried.data()}, places, weights.data()};
 }
 
 GuidedPair RoadVerification::downsampled(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,

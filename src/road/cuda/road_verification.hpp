@@ -15,7 +15,6 @@ namespace roadstereo::cuda {
 struct SearchMemory {
   GuidedSlots slots;
   int count;
-  float* first;
   float* weights;
 };
 
@@ -33,7 +32,7 @@ class RoadVerification {
  private:
   /// The places of one search.
   struct Search {
-    DeviceArray<float> u, v, d, first, weights;
+    DeviceArray<float> u, v, d, weights;
     DeviceArray<int> tried;
 
     SearchMemory memory(int count);

@@ -6,12 +6,12 @@
 namespace roadstereo::cuda {
 namespace {
 
-__global__ void __launch_bounds__(1024) fit_plane(DevicePoints points, PlaneSource start, RobustFit fit, float* first,
-                                                  float* weights, FittedPlane* fitted, FittedPlane* result) {
+__global__ void __launch_bounds__(max_fit_threads) fit_plane(DevicePoints points, PlaneSource start, RobustFit fit,
+                                                             float* weights, FittedPlane* fitted, FittedPlane* result) {
+  begin_kernel();
   FitState& state = *shared_memory<FitState>();
-  auto* residuals = reinterpret_cast<float*>(&state + 1);
-  BlockFit block(points, fit, state, residuals, first, weights);
-  const FittedPlane found = block.run(start.get());
+  RegisterSelect select(state.select);
+  const FittedPlane found = BlockFit(points, fit, state, select).run(start.get(), weights);
   if (threadIdx.x != 0) return;
   *fitted = found;
   *result = found;  // not read back: it lies in the host's memory
@@ -22,10 +22,9 @@ __global__ void __launch_bounds__(1024) fit_plane(DevicePoints points, PlaneSour
 void RobustPlaneFit::run(const DevicePoints& points, const PlaneSource& start, const RobustFit& fit,
                          StreamView stream) {
   require_fit_points(points.count);
-  first_.reserve(static_cast<std::size_t>(points.count));
   weights_.reserve(static_cast<std::size_t>(points.count));
-  launch("fit_plane", fit_plane, {1, fit_threads(points.count), fit_shared_bytes(points.count)}, stream, points, start,
-         fit, first_.data(), weights_.data(), fitted_.data(), result_.data());
+  launch("fit_plane", fit_plane, {1, fit_threads(points.count), sizeof(FitState)}, stream, points, start, fit,
+         weights_.data(), fitted_.data(), result_.data());
 }
 
 }  // namespace roadstereo::cuda

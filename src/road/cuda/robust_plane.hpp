@@ -14,7 +14,7 @@ struct DevicePoints {
   int count;  ///< with the missing ones, at most max_fit_points
 };
 
-/// As many as a block works on in the shared memory that every device has.
+/// As many as a block holds in its registers.
 inline constexpr int max_fit_points = 7168;
 
 /// Throws Error when there are more.
@@ -38,7 +38,7 @@ class RobustPlaneFit {
 
  private:
   DeviceArray<FittedPlane> fitted_{1};
-  DeviceArray<float> first_, weights_;
+  DeviceArray<float> weights_;
   PinnedArray<FittedPlane> result_{1};
 };
 

@@ -46,6 +46,7 @@ __device__ int first_column_of_blocks(const int* first, int v, int rows, int rad
 /// also finds their first columns.
 __global__ void sum_tile(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int radius,
                          float noise_variance, const int* first_column, BlockSums sums) {
+  begin_kernel();
   const int view = static_cast<int>(blockIdx.z);
   const ImageView<const std::int16_t> image = view == 0 ? left : right;
   // Parameters that are indexed would be copied to memory.

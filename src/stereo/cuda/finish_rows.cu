@@ -45,6 +45,7 @@ __device__ void finish_pixels(const MapRow& row, int begin, const int* projected
 __global__ void finish_row(ImageView<const std::int16_t> winner, ImageView<std::int16_t> target_winner,
                            ImageView<const float> offset, FinishSettings settings, bool project, int pixel_step,
                            ImageView<float> disparity, ImageView<float> variance) {
+  begin_kernel();
   int* projected = shared_memory<int>();
   const int v = static_cast<int>(blockIdx.x), width = target_winner.width();
   const int first = static_cast<int>(threadIdx.x);

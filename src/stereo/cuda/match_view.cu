@@ -3,10 +3,11 @@
 #include "stereo/cuda/match_view/aggregation.hpp"
 #include "stereo/cuda/match_view/block_costs.hpp"
 #include "stereo/cuda/match_view/column_products.hpp"
+#include "stereo/cuda/match_view/staged_pixels.hpp"
 #include "stereo/cuda/match_view/tile.hpp"
 #include "stereo/cuda/match_view/winner_take_all.hpp"
 
-// A block of threads matches one tile of 32×12 matched pixels, four disparities at a time: column sums of products
+// A block of threads matches one tile of 32×8 matched pixels, four disparities at a time: column sums of products
 // slide down the tile and its halo, costs replace them in shared memory, and every thread aggregates its own pixel with
 // weights that it computed once. The weight of the prior depends on the smallest energy, so that the energies of a tile
 // are kept in a slice of global memory that is written and read by the same thread and stays in L2.
@@ -23,12 +24,19 @@
 namespace roadstereo::cuda {
 namespace {
 
-template <int max_taps>
+/// `known_radius`: of the blocks, whose pixels are staged then, or 0.
+template <int max_taps, int known_radius>
 __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings, const TapOffsets<max_taps>& offsets,
-                           const Tile& tile, float* energies_of_block, const ViewWinners& winners) {
+                           const Tile& tile, bool staged, float* energies_of_block, const ViewWinners& winners) {
   int4* products = shared_memory<int4>();
-  const int latest_first =
-      latest_first_column(view, tile, reinterpret_cast<int*>(products + tile.halo.rows * tile.halo.product_columns));
+  auto* rows = reinterpret_cast<CostRow*>(products + tile.halo.rows * tile.halo.product_columns);
+  for (int row = static_cast<int>(threadIdx.x); row < tile.halo.rows; row += threads) {
+    rows[row] = cost_row(view, settings, tile, row);
+  }
+  auto* latest = reinterpret_cast<int*>(rows + tile.halo.rows);
+  StagedPixels pixels(tile.halo, settings.block_radius, latest + 1);
+  if (staged) pixels.load_own(view, tile, settings.block_radius);
+  const int latest_first = latest_first_column(view, tile, latest);
   const int x = static_cast<int>(threadIdx.x) % tile_columns, y = static_cast<int>(threadIdx.x) / tile_columns;
   const int i = tile.first_i + x * tile.halo.step, v = tile.first_v + y * tile.halo.step;
   const bool wanted = x < tile.columns && v < view.own.height();
@@ -47,9 +55,17 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
   const int4* centre = products + (y + settings.window_half_height / tile.halo.step) * tile.halo.product_columns + x +
                        settings.window_half_width / tile.halo.step;
   for (int d = tile.range.first; d < tile.range.end; d += chunk) {
-    sum_products(view, tile, settings.block_radius, d, products);
+    if (staged) {
+      if ((d - tile.range.first) % StagedPixels::disparities == 0) {
+        pixels.load_other(view, tile, settings.block_radius, d);
+        __syncthreads();
+      }
+      sum_staged_products<known_radius>(tile, pixels, settings.block_radius, d, products);
+    } else {
+      sum_products(view, tile, settings.block_radius, d, products);
+    }
     __syncthreads();
-    make_costs(view, settings, tile, d, products);
+    make_costs<known_radius>(view, settings, tile, rows, d, products);
     __syncthreads();
     if (wanted) {
       const bool whole = halo_whole(view, tile, latest_first, d);
@@ -67,15 +83,22 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
   if (wanted) choose(view, settings, energies, image_column(view, i), v, winners);
 }
 
-template <int max_taps>
-__global__ void __launch_bounds__(threads, max_taps <= taps_of_default ? 2 : 1)
-    match_tiles(ViewToMatch view, ViewSettings settings, Halo halo, TapOffsets<max_taps> offsets, float* energies,
-                std::size_t energies_per_block, ViewWinners winners) {
+/// Blocks that a multiprocessor has registers for: the weights take most of them.
+constexpr int resident_blocks(int taps) {
+  return taps <= taps_of_default ? 3 : 2;
+}
+
+template <int max_taps, int known_radius>
+__global__ void __launch_bounds__(threads, resident_blocks(max_taps))
+    match_tiles(ViewToMatch view, ViewSettings settings, Halo halo, TapOffsets<max_taps> offsets, bool staged,
+                float* energies, std::size_t energies_per_block, ViewWinners winners) {
+  begin_kernel();
   const int tiles =
       tiles_along(view.own.width(), settings, tile_columns) * tiles_along(view.own.height(), settings, tile_rows);
   for (int index = static_cast<int>(blockIdx.x); index < tiles; index += static_cast<int>(gridDim.x)) {
     const Tile tile = locate_tile(view, settings, halo, index);
-    match_tile<max_taps>(view, settings, offsets, tile, energies + blockIdx.x * energies_per_block, winners);
+    match_tile<max_taps, known_radius>(view, settings, offsets, tile, known_radius > 0 || staged,
+                                       energies + blockIdx.x * energies_per_block, winners);
     __syncthreads();
   }
 }
@@ -90,14 +113,22 @@ void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const W
     const int costs_away = rows_away * halo.product_columns + columns_away;
     offsets.bytes[t] = costs_away * static_cast<int>(sizeof(int4));
   }
-  launch("match_tiles", match_tiles<max_taps>, {static_cast<unsigned>(plan.blocks), threads, plan.shared_bytes}, stream,
-         view, settings, halo, offsets, energies, plan.energies_per_block, winners);
+  const auto run = [&](auto kernel) {
+    launch("match_tiles", kernel, {static_cast<unsigned>(plan.blocks), threads, plan.shared_bytes}, stream, view,
+           settings, halo, offsets, plan.staged, energies, plan.energies_per_block, winners);
+  };
+  // Of the presets. The kernel for any number of taps is for any blocks, too.
+  constexpr int usual_radius = max_taps == 0 ? 0 : max_taps == taps_of_default ? 2 : 5;
+  if (plan.staged && settings.block_radius == usual_radius) {
+    run(match_tiles<max_taps, usual_radius>);
+  } else {
+    run(match_tiles<max_taps, 0>);
+  }
 }
 
 }  // namespace
 
 ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height, int disparities, int multiprocessors) {
-  constexpr int blocks_per_multiprocessor = 2;
   constexpr std::size_t max_energies = std::size_t{64} << 20;  // 256 MB
   constexpr int reserve = 64;                                  // disparities are counted in multiples of this
   ViewLaunch plan;
@@ -106,11 +137,15 @@ ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height,
   plan.energies_per_block = static_cast<std::size_t>(threads) * static_cast<std::size_t>(with_reserve);
   const int tiles = tiles_along(width, settings, tile_columns) * tiles_along(height, settings, tile_rows);
   const auto room = static_cast<int>(max_energies / plan.energies_per_block);
-  const int resident = blocks_per_multiprocessor * multiprocessors;
+  const int resident = resident_blocks(settings.tap_count) * multiprocessors;
   plan.blocks = tiles < resident ? tiles : resident;
   plan.blocks = plan.blocks < room ? plan.blocks : room;
   const Halo halo = halo_of(settings);
-  plan.shared_bytes = sizeof(int4) * static_cast<std::size_t>(halo.rows * halo.product_columns + 1);
+  plan.shared_bytes = sizeof(int4) * static_cast<std::size_t>(halo.rows * halo.product_columns + 1) +
+                      sizeof(CostRow) * static_cast<std::size_t>(halo.rows);
+  const std::size_t staged_bytes = plan.shared_bytes + StagedPixels::bytes(halo, settings.block_radius);
+  plan.staged = staged_bytes <= max_shared_bytes;
+  if (plan.staged) plan.shared_bytes = staged_bytes;
   return plan;
 }
 

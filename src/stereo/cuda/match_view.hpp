@@ -61,6 +61,7 @@ struct ViewLaunch {
   int blocks;
   std::size_t energies_per_block;  ///< floats
   std::size_t shared_bytes;
+  bool staged;  ///< the pixels of a tile and its halo have room in shared memory
 };
 
 /// For a device with so many multiprocessors.

@@ -11,6 +11,7 @@
 #include "threads.hpp"
 #include "types.h"
 
+#define CUDART_VERSION 13000
 #define __global__
 #define __device__
 #define __host__
@@ -137,7 +138,7 @@ struct cudaDeviceProp {
   int major, minor, multiProcessorCount;
 };
 struct cudaFuncAttributes {
-  int numRegs;
+  int numRegs, ptxVersion;
   std::size_t localSizeBytes, sharedSizeBytes;
 };
 using cudaStream_t = struct CUstream_st*;

@@ -23,6 +23,7 @@ __device__ int thread_row() {
 
 /// One thread a cell.
 __global__ void sum_log_sigmas(ImageView<const float> sigma, ImageView<LogSigmas> cells) {
+  begin_kernel();
   const int i = thread_column(), j = thread_row();
   if (i >= cells.width() || j >= cells.height()) return;
   LogSigmas sums;
@@ -37,6 +38,7 @@ __global__ void sum_log_sigmas(ImageView<const float> sigma, ImageView<LogSigmas
 /// One thread a cell: the window around it, and the scene. The road in its rows takes double precision, once a block.
 __global__ void assess_cells(CoarseScene scene, ImageView<const LogSigmas> cells, ImageView<const float> correlation,
                              ImageView<const float> disparity, float log2_max_sigma, ImageView<CellState> states) {
+  begin_kernel();
   auto* lines = shared_memory<RowLine>();
   const int thread = static_cast<int>(threadIdx.y) * block_columns + static_cast<int>(threadIdx.x);
   if (thread < pixel_rows) lines[thread] = shift_line(scene.shift, static_cast<int>(blockIdx.y) * pixel_rows + thread);
@@ -101,6 +103,7 @@ __device__ void mark_border(CellState& cell) {
 /// One block of threads: flood fill from the upper, left and right border, by sweeps until nothing changes. Every
 /// second row and column takes part at a time, so that no thread reads what another one writes.
 __global__ void mark_outside(ImageView<CellState> states) {
+  begin_kernel();
   const int columns = states.width(), rows = states.height();
   const int thread = static_cast<int>(threadIdx.x);
   for (int i = thread; i < columns; i += connecting_threads) mark_border(states(i, 0));
@@ -135,6 +138,7 @@ __global__ void mark_outside(ImageView<CellState> states) {
 
 /// One thread a cell: its pixels become invalid where it is rejected.
 __global__ void reject_cells(ImageView<const CellState> states, ImageView<float> disparity, ImageView<float> sigma) {
+  begin_kernel();
   const int i = thread_column(), j = thread_row();
   if (i >= states.width() || j >= states.height() || !is_rejected(states, i, j)) return;
   for (int v = j * alignment_cell; v < min((j + 1) * alignment_cell, disparity.height()); ++v) {

@@ -32,6 +32,7 @@ struct Maps {
 };
 
 __global__ void interpolate_four(Maps maps) {
+  begin_kernel();
   const int x = static_cast<int>(blockIdx.x * block_columns + threadIdx.x);
   const int y = static_cast<int>(blockIdx.y * block_rows + threadIdx.y);
   if (x >= maps.disparity.width() || y >= maps.disparity.height()) return;

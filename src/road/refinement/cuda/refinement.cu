@@ -137,6 +137,7 @@ __device__ RefinedPixel refine_pixel(const Maps& maps, const Pixels& pixels, con
 
 template <int rows_each>
 __global__ void refine_tiles(Maps maps, RefinementSettings settings, ImageView<float> refined, ImageView<float> error) {
+  begin_kernel();
   const int left = static_cast<int>(blockIdx.x) * tile_columns;
   const int top = static_cast<int>(blockIdx.y) * thread_rows * rows_each;
   const int border = settings.pass.radius;
@@ -157,6 +158,7 @@ __global__ void refine_tiles(Maps maps, RefinementSettings settings, ImageView<f
 
 __global__ void refine_untiled(Maps maps, RefinementSettings settings, ImageView<float> refined,
                                ImageView<float> error) {
+  begin_kernel();
   const int u = static_cast<int>(blockIdx.x * tile_columns + threadIdx.x);
   const int v = static_cast<int>(blockIdx.y * thread_rows + threadIdx.y);
   if (u >= refined.width() || v >= refined.height()) return;
@@ -167,6 +169,7 @@ __global__ void refine_untiled(Maps maps, RefinementSettings settings, ImageView
 
 /// Adds the error of smoothing to the standard errors.
 __global__ void add_smoothing_error(ImageView<const float> disparity, int reach, ImageView<float> sigma) {
+  begin_kernel();
   const int u = static_cast<int>(blockIdx.x * tile_columns + threadIdx.x) + reach;
   const int v = static_cast<int>(blockIdx.y * thread_rows + threadIdx.y) + reach;
   if (u >= disparity.width() - reach || v >= disparity.height() - reach) return;

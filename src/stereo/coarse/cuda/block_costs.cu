@@ -23,17 +23,18 @@ constexpr int usual_columns = 22;  // of a warp: with the block's radius of 3 on
 template <int width>
 struct Known {};
 
-/// Sums of one column over the rows of a block.
+/// Sums over the rows of a block of one column, then of all columns before and with it. They may wrap around: only
+/// differences are taken.
 struct alignas(8) ColumnSums {
-  int sum, square;
+  unsigned sum, square;
 };
 
 /// One view's columns around a segment, for the rows of a block: 0 where there is no pixel that counts.
 struct ViewColumns {
   BlockPart* parts;  ///< of the whole blocks around the columns
-  ColumnSums* sums;
-  short* grey;  ///< row by row
-  int first;    ///< column of the image
+  ColumnSums* sums;  ///< of the columns up to the one before; one more than there are columns
+  short* grey;       ///< row by row
+  int first;         ///< column of the image
   int count;
 
   __device__ const short* from(int column) const { return grey + (column - first); }
@@ -53,7 +54,7 @@ struct Segment {
   float inverse_whole;  ///< 1 / pixels of a whole block
 };
 
-/// Loads a view's columns from `begin` on and sums them: where the rows are known, all of a column at once.
+/// Loads a view's columns from `begin` on and sums each: where the rows are known, all of a column at once.
 template <int known_rows>
 __device__ void load_columns(const ViewColumns& view, const ImageView<const std::int16_t>& image, int begin,
                              int first_row, int radius) {
@@ -67,22 +68,39 @@ __device__ void load_columns(const ViewColumns& view, const ImageView<const std:
       const bool inside = column >= begin && column < image.width() && v >= 0 && v < image.height();
       const int grey = inside ? __ldg(&image(column, v)) - mid_grey : 0;
       view.grey[r * view.count + i] = static_cast<short>(grey);
-      sums.sum += grey;
-      sums.square += grey * grey;
+      sums.sum += static_cast<unsigned>(grey);
+      sums.square += static_cast<unsigned>(grey * grey);
     }
-    view.sums[i] = sums;
+    view.sums[i + 1] = sums;
+  }
+}
+
+/// Adds up the columns, with a whole warp.
+__device__ void accumulate_columns(const ViewColumns& view) {
+  const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
+  ColumnSums before{0, 0};
+  if (lane == 0) view.sums[0] = before;
+  for (int first = 1; first <= view.count; first += warp_lanes) {
+    const bool there = first + lane <= view.count;
+    ColumnSums until = there ? view.sums[first + lane] : ColumnSums{0, 0};
+    for (int by = 1; by < warp_lanes; by *= 2) {
+      const unsigned sum = __shfl_up_sync(whole_warp, until.sum, static_cast<unsigned>(by));
+      const unsigned square = __shfl_up_sync(whole_warp, until.square, static_cast<unsigned>(by));
+      until.sum += lane >= by ? sum : 0;
+      until.square += lane >= by ? square : 0;
+    }
+    until = {until.sum + before.sum, until.square + before.square};
+    if (there) view.sums[first + lane] = until;
+    before.sum = __shfl_sync(whole_warp, until.sum, warp_lanes - 1);
+    before.square = __shfl_sync(whole_warp, until.square, warp_lanes - 1);
   }
 }
 
 /// The part of a block that the columns first … last of a view make up.
 __device__ BlockPart part_of(const ViewColumns& view, int first, int last, const Segment& of) {
-  ColumnSums sums{0, 0};
-  for (int c = first; c <= last; ++c) {
-    const ColumnSums& column = view.sums[c - view.first];
-    sums.sum += column.sum;
-    sums.square += column.square;
-  }
-  return block_part(sums.sum, sums.square, (last - first + 1) * of.rows, of.noise_variance);
+  const ColumnSums until = view.sums[last + 1 - view.first], before = view.sums[first - view.first];
+  return block_part(static_cast<int>(until.sum - before.sum), static_cast<int>(until.square - before.square),
+                    (last - first + 1) * of.rows, of.noise_variance);
 }
 
 __device__ void fill_parts(const ViewColumns& view, const Segment& of) {
@@ -116,21 +134,19 @@ __device__ float cost_of(const Segment& of, int u, int d, int product) {
 }
 
 /// Tells `use(u, cost)` the costs of one disparity along the columns begin … end − 1. The products of the block's
-/// columns lie in registers.
+/// columns lie in registers, through which they move: unrolled, the code would be longer than what is kept near.
 template <int block, class Use>
 __device__ void slide_block(const Segment& of, int begin, int end, int d, Use use, Known<block>) {
   constexpr int radius = block / 2;
   int columns[block] = {}, product = 0;
-  for (int first = begin - radius; first < end + radius; first += block) {
+  ROADSTEREO_DO_NOT_UNROLL
+  for (int u = begin - 2 * radius; u < end; ++u) {
+    product -= columns[0];
     ROADSTEREO_UNROLL
-    for (int k = 0; k < block; ++k) {
-      const int u = first + k - radius;
-      if (u >= end) break;
-      columns[k] = column_product<block>(of, first + k, d);
-      product += columns[k];
-      if (u >= begin) use(u, cost_of(of, u, d, product));
-      product -= columns[(k + 1) % block];
-    }
+    for (int k = 0; k + 1 < block; ++k) columns[k] = columns[k + 1];
+    columns[block - 1] = column_product<block>(of, u + radius, d);
+    product += columns[block - 1];
+    if (u >= begin) use(u, cost_of(of, u, d, product));
   }
 }
 
@@ -170,8 +186,8 @@ __device__ Segment make_segment(int first, int columns, int radius, const Coarse
   of.own.parts = shared_memory<BlockPart>();
   of.other.parts = of.own.parts + of.own.count;
   of.own.sums = reinterpret_cast<ColumnSums*>(of.other.parts + of.other.count);
-  of.other.sums = of.own.sums + of.own.count;
-  of.gradients = reinterpret_cast<GradientSums*>(of.other.sums + of.other.count);
+  of.other.sums = of.own.sums + of.own.count + 1;
+  of.gradients = reinterpret_cast<GradientSums*>(of.other.sums + of.other.count + 1);
   of.priors = reinterpret_cast<PixelPrior*>(of.gradients + of.own.count);
   of.road = reinterpret_cast<CoarseRoad*>(of.priors + columns);
   of.own.grey = reinterpret_cast<short*>(of.road + 1);
@@ -184,8 +200,8 @@ std::size_t shared_bytes(int columns, int radius, int disparities) {
              both = 2 * own + static_cast<std::size_t>(disparities) - 1;
   const std::size_t of_column =
       sizeof(BlockPart) + sizeof(ColumnSums) + static_cast<std::size_t>(2 * radius + 1) * sizeof(short);
-  return both * of_column + own * sizeof(GradientSums) + static_cast<std::size_t>(columns) * sizeof(PixelPrior) +
-         sizeof(CoarseRoad);
+  return both * of_column + 2 * sizeof(ColumnSums) + own * sizeof(GradientSums) +
+         static_cast<std::size_t>(columns) * sizeof(PixelPrior) + sizeof(CoarseRoad);
 }
 
 /// Loads what the costs of a segment need, and sums it.
@@ -199,6 +215,8 @@ __device__ void prepare(const Segment& of, const CoarsePair& pair, const RoadPri
   }
   if (thread == 0) *of.road = CoarseRoad(prior.shift, v, pair.factor);
   __syncthreads();
+  if (thread / warp_lanes < 2) accumulate_columns(thread / warp_lanes == 0 ? of.own : of.other);
+  __syncthreads();
   fill_parts(of.own, of);
   fill_parts(of.other, of);
   for (int i = thread; i < of.columns; i += warps * warp_lanes) {
@@ -210,6 +228,7 @@ __device__ void prepare(const Segment& of, const CoarsePair& pair, const RoadPri
 template <int known_block, int columns_each>
 __global__ void block_costs_of_segments(CoarsePair pair, float noise_variance, RoadPrior prior, CoarseVolume costs,
                                         ImageView<RoadCost> roads, int* first_seen) {
+  begin_kernel();
   constexpr int segment = warps * columns_each;
   const int v = costs.first_row + static_cast<int>(blockIdx.y), first = static_cast<int>(blockIdx.x) * segment;
   const int radius = prior.block_radius, first_row = v - radius, last_row = v + radius;

@@ -40,6 +40,7 @@ __device__ float median_at(const ImageView<const float>& map, int u, int v) {
 }
 
 __global__ void correct_row(ImageView<const float> along_rows, float factor, ImageView<float> prior) {
+  begin_kernel();
   const int v = static_cast<int>(blockIdx.x), columns = along_rows.width();
   auto* disparity = shared_memory<float>();
   const MapRow row{disparity, reinterpret_cast<int*>(disparity + columns), columns};

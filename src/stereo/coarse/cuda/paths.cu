@@ -20,16 +20,16 @@ struct alignas(count % 4 == 0   ? 16
   float at[count];
 };
 
-/// One path along a row, from the left or from the right.
+/// One path along a row, from the left or from the right: this lane's costs of the first column of the path.
 template <int count>
 struct Path {
   using Lane = LaneCosts<count>;
-  const float* costs;  ///< this lane's of the first column of the path
+  const float* costs;
   float* out;
   std::ptrdiff_t next;  ///< from one column of the path to the next
 
-  __device__ Lane cost(int k) const { return *reinterpret_cast<const Lane*>(costs + k * next); }
-  __device__ void store(int k, const Lane& numbers) const { *reinterpret_cast<Lane*>(out + k * next) = numbers; }
+  __device__ Lane cost() const { return *reinterpret_cast<const Lane*>(costs); }
+  __device__ void store(const Lane& numbers) const { *reinterpret_cast<Lane*>(out) = numbers; }
 };
 
 template <int count>
@@ -37,7 +37,7 @@ __device__ float cheapest_of(const LaneCosts<count>& totals) {
   float smallest = totals.at[0];
   ROADSTEREO_UNROLL
   for (int i = 1; i < count; ++i) smallest = fminf(smallest, totals.at[i]);
-  return warp_min(smallest);
+  return warp_min_of_costs(smallest);
 }
 
 /// Cheapest transition from the totals of a column to each disparity of the next: stay, step by one, or jump.
@@ -59,32 +59,52 @@ __device__ LaneCosts<count> transition_cost(const LaneCosts<count>& totals, floa
   return path_cost;
 }
 
-/// Aggregates along the path. Forward it writes totals, backward path costs without the column's own cost.
+/// The totals of the next column of a path from those of the last one. Forward it writes them, backward path costs
+/// without the column's own cost.
 template <int count, bool forward>
-__device__ void aggregate_path(const Path<count>& path, int columns, const ScanlinePenalties& penalties) {
-  constexpr int ahead = count <= 2 ? 8 : 4;  // columns loaded ahead, to hide the latency of memory
-  LaneCosts<count> totals = path.cost(0), path_cost{}, entering[ahead];
-  path.store(0, forward ? totals : path_cost);
+__device__ void go_on(Path<count>& path, const LaneCosts<count>& cost, const ScanlinePenalties& penalties,
+                      LaneCosts<count>& totals) {
+  const LaneCosts<count> path_cost = transition_cost(totals, cheapest_of(totals), penalties);
   ROADSTEREO_UNROLL
-  for (int k = 0; k < ahead; ++k) entering[k] = path.cost(1 + k < columns ? 1 + k : columns - 1);
-  for (int first = 1; first < columns; first += ahead) {
+  for (int i = 0; i < count; ++i) totals.at[i] = cost.at[i] + path_cost.at[i];
+  path.out += path.next;
+  path.store(forward ? totals : path_cost);
+}
+
+/// Aggregates along the path.
+template <int count, bool forward>
+__device__ void aggregate_path(Path<count> path, int columns, const ScanlinePenalties& penalties) {
+  constexpr int ahead = count <= 2 ? 8 : 4;  // columns loaded ahead, to hide the latency of memory
+  const auto next_cost = [&path] {
+    path.costs += path.next;
+    return path.cost();
+  };
+  LaneCosts<count> totals = path.cost(), entering[ahead];
+  path.store(forward ? totals : LaneCosts<count>{});
+  int left = columns - 1;  // that totals are to be found of
+  ROADSTEREO_UNROLL
+  for (int k = 0; k < ahead; ++k) {
+    if (k < left) entering[k] = next_cost();
+  }
+  for (; left >= 2 * ahead; left -= ahead) {
     ROADSTEREO_UNROLL
     for (int k = 0; k < ahead; ++k) {
-      if (first + k >= columns) break;
-      path_cost = transition_cost(totals, cheapest_of(totals), penalties);
-      ROADSTEREO_UNROLL
-      for (int i = 0; i < count; ++i) totals.at[i] = entering[k].at[i] + path_cost.at[i];
-      const int wanted = first + k + ahead;
-      entering[k] = path.cost(wanted < columns ? wanted : columns - 1);
-      path.store(first + k, forward ? totals : path_cost);
+      go_on<count, forward>(path, entering[k], penalties, totals);
+      entering[k] = next_cost();
     }
   }
+  ROADSTEREO_UNROLL
+  for (int k = 0; k < ahead; ++k) {
+    if (k < left) go_on<count, forward>(path, entering[k], penalties, totals);
+  }
+  for (int k = ahead; k < left; ++k) go_on<count, forward>(path, next_cost(), penalties, totals);
 }
 
 /// A warp aggregates one row in one direction.
 template <int count>
 __global__ void aggregate_rows(CoarseVolume costs, ScanlinePenalties penalties, CoarseVolume forward,
                                CoarseVolume backward) {
+  begin_kernel();
   const int v = costs.first_row + static_cast<int>(blockIdx.x);
   const int d = static_cast<int>(threadIdx.x) * count, last = costs.columns - 1;
   if (blockIdx.y == 0) {
@@ -96,42 +116,65 @@ __global__ void aggregate_rows(CoarseVolume costs, ScanlinePenalties penalties, 
   }
 }
 
-constexpr int winner_warps = 8;
+constexpr int winner_threads = 256;
+constexpr int lanes_of_pixel = 8, disparities_of_lane = 4;  // read at once
+constexpr int pixels_of_block = winner_threads / lanes_of_pixel;
 
-/// The smallest of the sums of both directions, with its fraction: a warp for each pixel.
-__device__ float take_winner(const float* forward, const float* backward, int count, const float* costs,
-                             const RoadCost& road) {
-  const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
-  float smallest = INFINITY;
-  int winner = 0;
-  for (int d = lane; d < count; d += warp_lanes) {
-    const float total = forward[d] + backward[d];
-    if (total < smallest) {
-      smallest = total;
-      winner = d;
+/// The smallest total of the paths, and where; of equal totals the first disparity wins.
+struct CheapestPath {
+  float total;
+  int disparity;
+
+  __device__ void take(float other_total, int other) {
+    if (other_total > total || (other_total == total && other > disparity)) return;
+    total = other_total;
+    disparity = other;
+  }
+};
+
+/// Of the sums of both directions at a pixel, by the lanes of a pixel; all of them get it.
+__device__ CheapestPath cheapest_path(const float* forward, const float* backward, int count) {
+  using Lane = LaneCosts<disparities_of_lane>;
+  const int lane = static_cast<int>(threadIdx.x) % lanes_of_pixel;
+  CheapestPath cheapest{INFINITY, count};
+  for (int first = lane * disparities_of_lane; first < count; first += lanes_of_pixel * disparities_of_lane) {
+    const Lane there = *reinterpret_cast<const Lane*>(forward + first);
+    const Lane back = *reinterpret_cast<const Lane*>(backward + first);
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < disparities_of_lane; ++k) {
+      if (first + k < count) cheapest.take(there.at[k] + back.at[k], first + k);
     }
   }
-  const float lowest = warp_min(smallest);
-  // Of equal totals the first disparity wins.
-  winner = -warp_max(smallest == lowest ? -winner : -count);
-  const auto disparity = static_cast<float>(winner);
-  if (winner == 0 || winner + 1 >= count) return disparity;
-  const auto total = [&](int d) { return forward[d] + backward[d]; };
-  const PathWinner inside{disparity,         total(winner - 1), lowest,           total(winner + 1),
-                          costs[winner - 1], costs[winner],     costs[winner + 1]};
+  for (int mask = lanes_of_pixel / 2; mask > 0; mask /= 2) {
+    const float total = __shfl_xor_sync(whole_warp, cheapest.total, mask);
+    cheapest.take(total, __shfl_xor_sync(whole_warp, cheapest.disparity, mask));
+  }
+  return cheapest;
+}
+
+/// The winner with its fraction.
+__device__ float with_fraction(const CheapestPath& winner, const float* forward, const float* backward,
+                               const float* costs, int count, const RoadCost& road) {
+  const int d = winner.disparity;
+  const auto disparity = static_cast<float>(d);
+  if (d == 0 || d + 1 >= count) return disparity;
+  const auto total = [&](int at) { return forward[at] + backward[at]; };
+  const PathWinner inside{disparity, total(d - 1), winner.total, total(d + 1), costs[d - 1], costs[d], costs[d + 1]};
   return disparity + fraction_of(inside, road);
 }
 
 __global__ void take_winners(CoarseVolume costs, CoarseVolume forward, CoarseVolume backward,
                              ImageView<const RoadCost> roads, const int* first_seen, ImageView<float> disparity) {
+  begin_kernel();
   const int v = forward.first_row + static_cast<int>(blockIdx.y);
-  const int u = static_cast<int>(blockIdx.x) * winner_warps + static_cast<int>(threadIdx.x) / warp_lanes;
-  if (u >= forward.columns) return;
-  const int seen = u - first_seen[v] + 1, count = seen < forward.disparities ? seen : forward.disparities;
-  const float winner =
-      count > 0 ? take_winner(forward.pixel(u, v), backward.pixel(u, v), count, costs.pixel(u, v), roads(u, v))
-                : nanf("");
-  if (threadIdx.x % warp_lanes == 0) disparity(u, v) = winner;
+  const int wanted = static_cast<int>(blockIdx.x) * pixels_of_block + static_cast<int>(threadIdx.x) / lanes_of_pixel;
+  const int u = min(wanted, forward.columns - 1);  // a warp stays whole
+  const int seen = u - first_seen[v] + 1, count = min(seen, forward.disparities);
+  const CheapestPath winner = cheapest_path(forward.pixel(u, v), backward.pixel(u, v), count);
+  if (wanted != u || threadIdx.x % lanes_of_pixel != 0) return;
+  disparity(u, v) = count > 0 ? with_fraction(winner, forward.pixel(u, v), backward.pixel(u, v), costs.pixel(u, v),
+                                              count, roads(u, v))
+                              : nanf("");
 }
 
 using RowKernel = void (*)(CoarseVolume, ScanlinePenalties, CoarseVolume, CoarseVolume);
@@ -166,8 +209,8 @@ void aggregate_scanlines(const CoarseVolume& costs, const ScanlinePenalties& pen
   const auto rows = static_cast<unsigned>(costs.rows);
   launch("aggregate_rows", row_kernel(costs.disparities).kernel, {dim3(rows, 2), warp_lanes}, stream, costs, penalties,
          forward, backward);
-  launch("take_winners", take_winners, {dim3(blocks_for(costs.columns, winner_warps), rows), winner_warps * warp_lanes},
-         stream, costs, forward, backward, roads, first_seen, disparity);
+  launch("take_winners", take_winners, {dim3(blocks_for(costs.columns, pixels_of_block), rows), winner_threads}, stream,
+         costs, forward, backward, roads, first_seen, disparity);
 }
 
 }  // namespace roadstereo::cuda

@@ -8,28 +8,29 @@
 namespace roadstereo::cuda {
 namespace {
 
-constexpr int threads = 128;
+constexpr int threads = 64;
 
-/// One block a row: the road in it takes double precision, once.
+/// One block a row or a part of it: the road in it takes double precision, once.
 __global__ void find_intervals_of_row(ImageView<const float> prior, int factor, BorderSettings border,
                                       ImageView<float> low, ImageView<float> high) {
-  const int v = static_cast<int>(blockIdx.x), radius = border.block_radius;
+  begin_kernel();
+  const int v = static_cast<int>(blockIdx.y), radius = border.block_radius;
   auto* road = shared_memory<CoarseRoad>();
   if (threadIdx.x == 0) *road = CoarseRoad(border.shift, v, factor);
   __syncthreads();
   const int first_row = v - radius < 0 ? 0 : v - radius;
   const int last_row = v + radius < prior.height() ? v + radius : prior.height() - 1;
-  for (int u = static_cast<int>(threadIdx.x); u < prior.width(); u += threads) {
-    const int first = u - radius < 0 ? 0 : u - radius;
-    const int last = u + radius < prior.width() ? u + radius : prior.width() - 1;
-    DisparitySpread around;
-    for (int row = first_row; row <= last_row; ++row) {
-      for (int column = first; column <= last; ++column) around.add(__ldg(&prior(column, row)));
-    }
-    const PriorInterval interval = prior_interval(prior(u, v), around, border.heights.at(road->disparity(u)), factor);
-    low(u, v) = interval.low;
-    high(u, v) = interval.high;
+  const int u = static_cast<int>(blockIdx.x) * threads + static_cast<int>(threadIdx.x);
+  if (u >= prior.width()) return;
+  const int first = u - radius < 0 ? 0 : u - radius;
+  const int last = u + radius < prior.width() ? u + radius : prior.width() - 1;
+  DisparitySpread around;
+  for (int row = first_row; row <= last_row; ++row) {
+    for (int column = first; column <= last; ++column) around.add(__ldg(&prior(column, row)));
   }
+  const PriorInterval interval = prior_interval(prior(u, v), around, border.heights.at(road->disparity(u)), factor);
+  low(u, v) = interval.low;
+  high(u, v) = interval.high;
 }
 
 }  // namespace
@@ -37,8 +38,8 @@ __global__ void find_intervals_of_row(ImageView<const float> prior, int factor, 
 void find_prior_intervals(ImageView<const float> prior, int factor, const BorderSettings& border, ImageView<float> low,
                           ImageView<float> high, StreamView stream) {
   launch("find_intervals_of_row", find_intervals_of_row,
-         {static_cast<unsigned>(prior.height()), threads, sizeof(CoarseRoad)}, stream, prior, factor, border, low,
-         high);
+         {dim3(blocks_for(prior.width(), threads), static_cast<unsigned>(prior.height())), threads, sizeof(CoarseRoad)},
+         stream, prior, factor, border, low, high);
 }
 
 }  // namespace roadstereo::cuda

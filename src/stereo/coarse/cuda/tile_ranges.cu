@@ -11,8 +11,8 @@
 namespace roadstereo::cuda {
 namespace {
 
-constexpr int threads = 256;
-constexpr int rows_a_run = 16;
+constexpr int threads = 512;
+constexpr int rows_a_run = 8;
 constexpr int rows_at_once = 8;  // whose disparities are on their way together: memory takes long
 
 /// What the threads of a block share about their tile.
@@ -119,6 +119,7 @@ __device__ SearchRange choose_range(const std::uint32_t* counts, int bins, int f
 
 __global__ void range_of_tile(ImageView<const float> coarse, int factor, int disparities, CoarseTiles tiles,
                               SearchRange* reference, SearchRange* target) {
+  begin_kernel();
   const int bins = disparities + factor;
   auto& found = *shared_memory<Found>();
   auto* counts = reinterpret_cast<std::uint32_t*>(&found + 1);

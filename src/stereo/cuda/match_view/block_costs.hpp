@@ -16,25 +16,37 @@ struct CostRow {
   float inverse_whole;  ///< 1 / n of whole blocks
   int first_visible, last_valid;
   const BlockPart *own_blocks, *other_blocks;  ///< of this row
-  const int4* products;                        ///< of the column halo_i − radius on
 };
 
-/// The cost of own pixel i at disparity d = first of the chunk + k, over the part of the block that both views see.
-__device__ inline float clipped_cost(const ViewToMatch& view, const CostRow& row, float noise_variance, int halo_i,
-                                     int i, int d, int k) {
+/// The cost of own pixel i at disparity d = first of the chunk + k, over the part of the block that both views see;
+/// `row_products` are those of the column halo_i − radius on. Of a radius that the compiler knows, not 0, all columns
+/// are read at once.
+template <int known_radius>
+__device__ float clipped_cost(const ViewToMatch& view, const CostRow& row, const int4* row_products,
+                              float noise_variance, int halo_i, int i, int d, int k) {
   if (i - d < row.first_visible) return missing_cost;
-  const int first = max(max(i - row.radius, 0), d + row.first_visible), last = min(i + row.radius, row.last_valid);
+  const int radius = known_radius > 0 ? known_radius : row.radius;
+  const int first = max(max(i - radius, 0), d + row.first_visible), last = min(i + radius, row.last_valid);
   int products = 0, own_sum = 0, own_squares = 0, other_sum = 0, other_squares = 0;
-  ROADSTEREO_DO_NOT_UNROLL
-  for (int q = first; q <= last; ++q) {
-    const int4& of_column = row.products[q - halo_i + row.radius];
-    products += k == 0 ? of_column.x : k == 1 ? of_column.y : k == 2 ? of_column.z : of_column.w;
-    const ColumnSums& own = view.own_columns(image_column(view, q), row.v);
-    const ColumnSums& other = view.other_columns(image_column(view, q - d), row.v);
-    own_sum += own.sum;
-    own_squares += own.squares;
-    other_sum += other.sum;
-    other_squares += other.squares;
+  const auto add = [&](int q) {
+    const bool seen = q >= first && q <= last;
+    const int at = seen ? q : first;  // no branch keeps the reads from each other
+    const int4& of_column = row_products[at - halo_i + radius];
+    const int product = k == 0 ? of_column.x : k == 1 ? of_column.y : k == 2 ? of_column.z : of_column.w;
+    const ColumnSums own = view.own_columns(image_column(view, at), row.v);
+    const ColumnSums other = view.other_columns(image_column(view, at - d), row.v);
+    products += seen ? product : 0;
+    own_sum += seen ? own.sum : 0;
+    own_squares += seen ? own.squares : 0;
+    other_sum += seen ? other.sum : 0;
+    other_squares += seen ? other.squares : 0;
+  };
+  if (known_radius > 0) {
+    ROADSTEREO_UNROLL
+    for (int q = -known_radius; q <= known_radius; ++q) add(i + q);
+  } else {
+    ROADSTEREO_DO_NOT_UNROLL
+    for (int q = first; q <= last; ++q) add(q);
   }
   const int n = row.pixel_rows * (last - first + 1);
   return correlation_cost(block_part(own_sum, own_squares, n, noise_variance),
@@ -43,12 +55,13 @@ __device__ inline float clipped_cost(const ViewToMatch& view, const CostRow& row
 }
 
 /// The same at four disparities. Not unrolled: few tiles need it, and its registers would be taken from the weights.
-__device__ inline float4 clipped_costs(const ViewToMatch& view, const CostRow& row, float noise_variance, int halo_i,
-                                       int i, int d) {
+template <int known_radius>
+__device__ float4 clipped_costs(const ViewToMatch& view, const CostRow& row, const int4* row_products,
+                                float noise_variance, int halo_i, int i, int d) {
   float4 costs = make_float4(missing_cost, missing_cost, missing_cost, missing_cost);
   ROADSTEREO_DO_NOT_UNROLL
   for (int k = 0; k < chunk; ++k) {
-    const float cost = clipped_cost(view, row, noise_variance, halo_i, i, d + k, k);
+    const float cost = clipped_cost<known_radius>(view, row, row_products, noise_variance, halo_i, i, d + k, k);
     costs.x = k == 0 ? cost : costs.x;
     costs.y = k == 1 ? cost : costs.y;
     costs.z = k == 2 ? cost : costs.z;
@@ -68,16 +81,18 @@ __device__ inline BlockPart read_part(const BlockPart* at) {
 }
 
 /// The costs of own pixel i at four disparities.
-__device__ inline float4 four_costs(const ViewToMatch& view, const CostRow& row, float noise_variance, int halo_i,
-                                    int i, int d) {
+template <int known_radius>
+__device__ float4 four_costs(const ViewToMatch& view, const CostRow& row, const int4* row_products,
+                             float noise_variance, int halo_i, int i, int d) {
   float4 costs = make_float4(missing_cost, missing_cost, missing_cost, missing_cost);
   if (i < 0 || i > row.last_valid || i - d < row.first_visible) return costs;
-  const bool whole =
-      i >= row.radius && i + row.radius <= row.last_valid && i - d - (chunk - 1) - row.radius >= row.first_visible;
-  if (!whole) return clipped_costs(view, row, noise_variance, halo_i, i, d);
+  const int radius = known_radius > 0 ? known_radius : row.radius;
+  const bool whole = i >= radius && i + radius <= row.last_valid && i - d - (chunk - 1) - radius >= row.first_visible;
+  if (!whole) return clipped_costs<known_radius>(view, row, row_products, noise_variance, halo_i, i, d);
   int4 sums = make_int4(0, 0, 0, 0);
-  const int4* products = row.products + (i - halo_i);
-  for (int k = 0; k <= 2 * row.radius; ++k) {
+  const int4* products = row_products + (i - halo_i);
+  ROADSTEREO_UNROLL
+  for (int k = 0; k <= 2 * radius; ++k) {
     sums.x += products[k].x;
     sums.y += products[k].y;
     sums.z += products[k].z;
@@ -93,39 +108,44 @@ __device__ inline float4 four_costs(const ViewToMatch& view, const CostRow& row,
   return costs;
 }
 
-inline constexpr int max_half_window = 10;  // MatcherOptions::validate()
-static_assert(tile_columns + 2 * max_half_window <= 2 * 32, "a lane has two costs of a row");
+/// What the costs of row y of the halo need to know of it; a row outside the image sees nothing.
+__device__ inline CostRow cost_row(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile, int y) {
+  const int v = tile.halo_v + y * tile.halo.step, height = view.own.height(), radius = settings.block_radius;
+  CostRow row{v, radius, 0, 0, 0, -1, nullptr, nullptr};
+  if (v < 0 || v >= height) return row;
+  row.pixel_rows = min(v + radius, height - 1) - max(v - radius, 0) + 1;
+  row.inverse_whole = 1.0F / static_cast<float>(row.pixel_rows * (2 * radius + 1));
+  row.own_blocks = view.own_blocks.row(v);
+  row.other_blocks = view.other_blocks.row(v);
+  row.first_visible = first_visible(view, v);
+  row.last_valid = last_valid(view, v);
+  return row;
+}
 
-/// Replaces the products by the costs of the matched pixels, a warp to a row: all its lanes have read before one
-/// writes.
-__device__ inline void make_costs(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile, int d,
-                                  int4* products) {
-  const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
-  for (int y = warp; y < tile.halo.rows; y += warps) {
-    const int v = tile.halo_v + y * tile.halo.step, height = view.own.height();
-    const bool inside = v >= 0 && v < height;
-    int4* row = products + y * tile.halo.product_columns;
-    CostRow cost_row{v, settings.block_radius, 0, 0, 0, -1, nullptr, nullptr, row};
-    if (inside) {
-      cost_row.pixel_rows = min(v + settings.block_radius, height - 1) - max(v - settings.block_radius, 0) + 1;
-      cost_row.inverse_whole = 1.0F / static_cast<float>(cost_row.pixel_rows * (2 * settings.block_radius + 1));
-      cost_row.own_blocks = view.own_blocks.row(v);
-      cost_row.other_blocks = view.other_blocks.row(v);
-      cost_row.first_visible = first_visible(view, v);
-      cost_row.last_valid = last_valid(view, v);
+/// Replaces the products by the costs of the matched pixels of the halo, as many at a time as there are threads: all
+/// have read before one writes. Cost x of a row stands where product x stood, and cost x reads products from x on, so
+/// that those of the pixels that follow are still there.
+template <int known_radius>
+__device__ void make_costs(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile, const CostRow* rows,
+                           int d, int4* products) {
+  const int columns = tile.halo.columns;
+  const int rows_a_round = threads / columns, rest = threads - rows_a_round * columns;
+  int y = static_cast<int>(threadIdx.x) / columns, x = static_cast<int>(threadIdx.x) - y * columns;
+  for (int first = 0; first < columns * tile.halo.rows; first += threads) {
+    int4* row_products = products + y * tile.halo.product_columns;
+    float4 costs{};
+    if (y < tile.halo.rows) {
+      costs = four_costs<known_radius>(view, rows[y], row_products, settings.noise_variance, tile.halo_i,
+                                       tile.halo_i + x * tile.halo.step, d);
     }
-    const int i = tile.halo_i + lane * tile.halo.step;
-    const bool second = lane + 32 < tile.halo.columns;
-    const float4 near = four_costs(view, cost_row, settings.noise_variance, tile.halo_i, i, d);
-    float4 far = make_float4(missing_cost, missing_cost, missing_cost, missing_cost);
-    if (second) far = four_costs(view, cost_row, settings.noise_variance, tile.halo_i, i + 32 * tile.halo.step, d);
-    __syncwarp();
-    row[lane] =
-        make_int4(__float_as_int(near.x), __float_as_int(near.y), __float_as_int(near.z), __float_as_int(near.w));
-    if (second) {
-      row[lane + 32] =
-          make_int4(__float_as_int(far.x), __float_as_int(far.y), __float_as_int(far.z), __float_as_int(far.w));
+    __syncthreads();
+    if (y < tile.halo.rows) {
+      row_products[x] =
+          make_int4(__float_as_int(costs.x), __float_as_int(costs.y), __float_as_int(costs.z), __float_as_int(costs.w));
     }
+    x += rest;
+    y += rows_a_round + (x >= columns ? 1 : 0);
+    x -= x >= columns ? columns : 0;
   }
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 
+#include "core/cuda/unroll.hpp"
 #include "core/mid_grey.hpp"
-#include "stereo/cuda/match_view/tile.hpp"
+#include "stereo/cuda/match_view/staged_pixels.hpp"
 
 // Products of both views summed over the rows of a block, sliding down the columns of the halo.
 
@@ -52,58 +53,52 @@ __device__ inline Strip strip_of_thread(const Tile& tile) {
   return {job % tile.halo.product_columns, first, min(first + rows, tile.halo.rows)};
 }
 
-/// Whether the blocks of the tile's halo, and what they are compared with, lie inside both images.
-__device__ inline bool products_inside(const ViewToMatch& view, const Tile& tile, int radius, int d) {
-  const int first_i = tile.halo_i - radius;
-  return tile.halo_v >= radius && tile.halo_v + (tile.halo.rows - 1) * tile.halo.step + radius < view.own.height() &&
-         first_i - d - (chunk - 1) >= 0 && first_i + tile.halo.product_columns <= view.own.width();
-}
-
 /// One pixel of the own view and four neighbours of the other, and how to get to the next row.
-struct RowOfPixels {
-  const std::int16_t *own, *others;
-  std::ptrdiff_t own_stride, other_stride;
+struct StagedRow {
+  const short *own, *other;
+  int own_columns, other_columns;
 
   template <int sign>
   __device__ void add_and_advance(int4& sums) {
-    const int grey = sign * (__ldg(own) - mid_grey);
-    sums.x += grey * (__ldg(others) - mid_grey);
-    sums.y += grey * (__ldg(others + 1) - mid_grey);
-    sums.z += grey * (__ldg(others + 2) - mid_grey);
-    sums.w += grey * (__ldg(others + 3) - mid_grey);
-    own += own_stride;
-    others += other_stride;
+    const int grey = sign * *own;
+    sums.x += grey * other[0];
+    sums.y += grey * other[-1];
+    sums.z += grey * other[-2];
+    sums.w += grey * other[-3];
+    own += own_columns;
+    other += other_columns;
   }
 };
 
-/// sum_products() where products_inside(): without checks of the borders.
-__device__ inline void sum_products_inside(const ViewToMatch& view, const Tile& tile, int radius, int d,
-                                           int4* products) {
+/// products[y][c]: sums over the rows of the blocks around row y of the halo, at pixel c across it and the disparities
+/// d … d + 3, of staged pixels. A radius that the compiler knows, or 0.
+template <int known_radius>
+__device__ void sum_staged_products(const Tile& tile, const StagedPixels& pixels, int block_radius, int d,
+                                    int4* products) {
+  const int radius = known_radius > 0 ? known_radius : block_radius;
   const Strip strip = strip_of_thread(tile);
   if (strip.first >= strip.end) return;
-  const int i = tile.halo_i - radius + strip.column, v = tile.halo_v + strip.first * tile.halo.step - radius;
-  // In memory the disparities grow with the columns of a mirrored view, and against those of the other.
-  const int others = view.mirrored ? image_column(view, i - d) : i - d - (chunk - 1);
-  RowOfPixels entering{view.own.row(v) + image_column(view, i), view.other.row(v) + others, view.own.stride(),
-                       view.other.stride()};
-  RowOfPixels leaving = entering;
+  const int first_row = strip.first * tile.halo.step;
+  StagedRow entering{pixels.own(first_row, strip.column), pixels.other(first_row, strip.column, d),
+                     pixels.own_columns(), pixels.other_columns()};
+  StagedRow leaving = entering;
   int4 sums = make_int4(0, 0, 0, 0);
+  ROADSTEREO_UNROLL
   for (int k = 0; k < 2 * radius; ++k) entering.add_and_advance<1>(sums);
   for (int y = strip.first; y < strip.end; ++y) {
     entering.add_and_advance<1>(sums);
-    products[y * tile.halo.product_columns + strip.column] =
-        view.mirrored ? sums : make_int4(sums.w, sums.z, sums.y, sums.x);
+    products[y * tile.halo.product_columns + strip.column] = sums;
+    if (y + 1 == strip.end) break;
     leaving.add_and_advance<-1>(sums);
-    if (tile.halo.step > 1 && y + 1 < strip.end) {
+    if (tile.halo.step > 1) {
       entering.add_and_advance<1>(sums);
       leaving.add_and_advance<-1>(sums);
     }
   }
 }
 
-/// The same with missing pixels at the images' borders, which count as mid-grey.
-__device__ inline void sum_products_at_border(const ViewToMatch& view, const Tile& tile, int radius, int d,
-                                              int4* products) {
+/// The same of blocks that are too large to be staged, from the images: pixels outside count as mid-grey.
+__device__ inline void sum_products(const ViewToMatch& view, const Tile& tile, int radius, int d, int4* products) {
   const Strip strip = strip_of_thread(tile);
   const ColumnProducts column_products(view, tile.halo_i - radius + strip.column, d);
   int4 sums = make_int4(0, 0, 0, 0);
@@ -117,16 +112,6 @@ __device__ inline void sum_products_at_border(const ViewToMatch& view, const Til
     if (tile.halo.step == 1) continue;
     column_products.add(v + 1 + radius, 1, sums);
     column_products.add(v + 1 - radius, -1, sums);
-  }
-}
-
-/// products[y][c]: sums over the rows of the blocks around row y of the halo, at pixel c across it and the disparities
-/// d … d + 3.
-__device__ inline void sum_products(const ViewToMatch& view, const Tile& tile, int radius, int d, int4* products) {
-  if (products_inside(view, tile, radius, d)) {
-    sum_products_inside(view, tile, radius, d, products);
-  } else {
-    sum_products_at_border(view, tile, radius, d, products);
   }
 }
 

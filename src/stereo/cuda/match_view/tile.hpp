@@ -8,9 +8,8 @@
 namespace roadstereo::cuda {
 
 inline constexpr int tile_columns = 32;
-inline constexpr int tile_rows = 12;
+inline constexpr int tile_rows = 8;
 inline constexpr int threads = tile_columns * tile_rows;
-inline constexpr int warps = threads / 32;
 inline constexpr int chunk = 4;  // disparities at a time
 
 /// The same for all tiles of a launch: a parameter of the kernel, which takes no registers from the weights.
