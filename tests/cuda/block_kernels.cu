@@ -1,6 +1,7 @@
 #include "core/cuda/block_reduce.hpp"
 #include "core/cuda/block_select.hpp"
 #include "core/cuda/launch.hpp"
+#include "core/cuda/register_select.hpp"
 #include "core/cuda/warp.hpp"
 #include "tests/cuda/block_kernels.hpp"
 
@@ -46,13 +47,20 @@ struct RankOf {
   }
 };
 
+constexpr int values_of_thread = 8;
+
 __global__ void value_of_rank(const float* values, int count, RankOf rank, Selected* selected) {
-  const auto key = [&](int i, std::uint32_t& out) {
-    out = key_of(values[i]);
-    return values[i] == values[i];
-  };
-  const SelectedKey found = block_select<float_digits>(count, key, rank, *shared_memory<SelectScratch>());
-  if (threadIdx.x == 0) *selected = {value_of(found.key), found.of};
+  RegisterSelect select(*shared_memory<RegisterSelectScratch>());
+  std::uint32_t keys[values_of_thread];
+  for (int k = 0; k < values_of_thread; ++k) {
+    const int i = static_cast<int>(threadIdx.x) + k * static_cast<int>(blockDim.x);
+    keys[k] = i < count && values[i] == values[i] ? key_of(values[i]) : RegisterSelect::no_key;
+  }
+  const SelectedKey found = select.select<RegisterSelect::float_digits>(keys, rank);
+  // Again at once: nobody may still be counting the last digit, or reading its counts.
+  const SelectedKey again = select.select<RegisterSelect::float_digits>(keys, rank);
+  const bool same = found.key == again.key && found.of == again.of;
+  if (threadIdx.x == blockDim.x - 1) *selected = {same ? value_of(found.key) : nanf(""), found.of};
 }
 
 __global__ void number_of_rank(const float* values, int count, RankOf rank, const int* first_digits,
@@ -61,7 +69,7 @@ __global__ void number_of_rank(const float* values, int count, RankOf rank, cons
     out = static_cast<std::uint32_t>(values[i]);
     return values[i] == values[i];
   };
-  const SelectedKey found = block_select<2>(count, key, rank, *shared_memory<SelectScratch>(), first_digits);
+  const SelectedKey found = block_select<4>(count, key, rank, first_digits, *shared_memory<SelectScratch>());
   if (threadIdx.x == 0) *selected = {static_cast<float>(found.key), found.of};
 }
 
@@ -110,8 +118,8 @@ void find_extremes(const float* values, unsigned threads, float* found) {
 }
 
 void select_value(const float* values, int count, unsigned threads, Rank rank, Selected* selected) {
-  launch("value_of_rank", value_of_rank, {1, threads, sizeof(SelectScratch)}, nullptr, values, count, RankOf{rank},
-         selected);
+  launch("value_of_rank", value_of_rank, {1, threads, sizeof(RegisterSelectScratch)}, nullptr, values, count,
+         RankOf{rank}, selected);
 }
 
 void select_number(const float* values, int count, unsigned threads, Rank rank, const int* first_digits,

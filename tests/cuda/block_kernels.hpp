@@ -22,11 +22,11 @@ struct Selected {
   int of;
 };
 
-/// Selects floats by keys of three digits.
+/// Selects floats, at most eight for each of the threads, which hold them in registers.
 void select_value(const float* values, int count, unsigned threads, Rank rank, Selected* selected);
 
-/// Selects whole numbers below 2²², in floats, by keys of two digits, the first of which were counted before if
-/// `first_digits`, 2048 numbers, is not null.
+/// Selects whole numbers below 2²², in floats, by keys of two digits, the first of which were counted before:
+/// `first_digits` are 2048 numbers.
 void select_number(const float* values, int count, unsigned threads, Rank rank, const int* first_digits,
                    Selected* selected);
 

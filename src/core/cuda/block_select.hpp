@@ -8,11 +8,11 @@
 #include "core/cuda/digit_counts.hpp"
 #include "core/cuda/unroll.hpp"
 
-// Radix select: order statistics of the keys of a block of threads. Every thread of the block calls these; blocks have
-// whole warps in one dimension.
+// Radix select: order statistics of keys of two digits, of which all blocks have counted the first and one block counts
+// the second. Every thread of the block calls these; blocks have whole warps in one dimension.
 namespace roadstereo::cuda {
 
-/// Shared memory of block_select(); digits take its counts in turn.
+/// Shared memory of block_select(): a count for each digit.
 struct SelectScratch {
   DigitCounts counts[2];
   std::uint32_t prefix;
@@ -34,7 +34,6 @@ __device__ inline std::uint32_t key_of(float value) {
 __device__ inline float value_of(std::uint32_t key) {
   return __int_as_float(static_cast<int>((key & 0x80000000U) != 0 ? key & 0x7FFFFFFFU : ~key));
 }
-inline constexpr int float_digits = 3;  ///< of such a key
 
 /// Ranks counted from the smallest, of `count` values in order: the upper median, and the value that `share` of the
 /// others lie below.
@@ -103,50 +102,40 @@ __device__ inline void load_counts(const int* of_bin, DigitCounts& counts) {
   }
 }
 
-/// Returns the key of the rank `rank_of(number of keys)` of keys of `digits` digits: digit by digit from the highest,
-/// with two barriers each. `key_of_item(i, key)` returns whether item i of `count` has a key, and writes it; an item is
-/// always asked for by the same thread, which asks for `at_once` before it counts one, since memory takes long.
-/// Where the first digit was counted before, `known`, in global memory, has how many keys have each value of it.
-template <int digits, int at_once = 4, class KeyOfItem, class RankOf>
-__device__ SelectedKey block_select(int count, KeyOfItem key_of_item, RankOf rank_of, SelectScratch& scratch,
-                                    const int* known = nullptr) {
+/// Returns the key of the rank `rank_of(number of keys)`. `first_digits`, in global memory, has how many keys have each
+/// value of the first digit. `key_of_item(i, key)` returns whether item i of `count` has a key, and writes it; a thread
+/// asks for `at_once` before it counts one, since memory takes long.
+template <int at_once, class KeyOfItem, class RankOf>
+__device__ SelectedKey block_select(int count, KeyOfItem key_of_item, RankOf rank_of, const int* first_digits,
+                                    SelectScratch& scratch) {
   const int thread = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
-  if (known != nullptr) {
-    load_counts(known, scratch.counts[0]);
-  } else {
-    clear_counts(scratch.counts[0]);
-  }
+  load_counts(first_digits, scratch.counts[0]);
   clear_counts(scratch.counts[1]);
   __syncthreads();
-  std::uint32_t prefix = 0;
-  for (int digit = 0; digit < digits; ++digit) {
-    const int shift = DigitCounts::bits * (digits - 1 - digit);
-    const bool first_digit = digit == 0;
-    if (!first_digit && digit + 1 < digits) clear_counts(scratch.counts[(digit + 1) % 2]);
-    DigitCounts& counts = scratch.counts[digit % 2];
-    for (int first = thread; !(first_digit && known != nullptr) && first < count; first += at_once * threads) {
-      std::uint32_t keys[at_once] = {};
-      bool has[at_once];
-      ROADSTEREO_UNROLL
-      for (int k = 0; k < at_once; ++k) {
-        const int i = first + k * threads;
-        has[k] = key_of_item(i < count ? i : first, keys[k]);  // no branch keeps the reads from each other
-      }
-      ROADSTEREO_UNROLL
-      for (int k = 0; k < at_once; ++k) {
-        const bool counted = has[k] && first + k * threads < count;
-        if (counted && (first_digit || keys[k] >> (shift + DigitCounts::bits) == prefix)) {
-          count_digit((keys[k] >> shift) % DigitCounts::bins, counts);
-        }
+  if (thread < warp_lanes) choose_digit(true, scratch.counts[0], rank_of, scratch);
+  __syncthreads();
+  if (scratch.of == 0) return {0, 0};
+  const std::uint32_t first_digit = scratch.prefix;
+  for (int first = thread; first < count; first += at_once * threads) {
+    std::uint32_t keys[at_once] = {};
+    bool has[at_once];
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < at_once; ++k) {
+      const int i = first + k * threads;
+      has[k] = key_of_item(i < count ? i : first, keys[k]);  // no branch keeps the reads from each other
+    }
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < at_once; ++k) {
+      const bool counted = has[k] && first + k * threads < count;
+      if (counted && keys[k] >> DigitCounts::bits == first_digit) {
+        count_digit(keys[k] % DigitCounts::bins, scratch.counts[1]);
       }
     }
-    __syncthreads();
-    if (thread < warp_lanes) choose_digit(first_digit, counts, rank_of, scratch);
-    __syncthreads();
-    if (scratch.of == 0) return {0, 0};
-    prefix = scratch.prefix;
   }
-  return {prefix, scratch.of};
+  __syncthreads();
+  if (thread < warp_lanes) choose_digit(false, scratch.counts[1], rank_of, scratch);
+  __syncthreads();
+  return {scratch.prefix, scratch.of};
 }
 
 }  // namespace roadstereo::cuda

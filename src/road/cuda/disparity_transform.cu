@@ -68,9 +68,8 @@ struct Shifting {
 };
 
 // Residuals as keys of two digits, in steps of 2⁻²⁰ px.
-constexpr int median_digits = 2;
 constexpr float steps_per_px = 1 << 20;
-static_assert(spread_nearest_px * steps_per_px < 1 << median_digits * DigitCounts::bits);
+static_assert(spread_nearest_px * steps_per_px < 1 << 2 * DigitCounts::bits);
 
 /// The key of the residual of a pixel, which is its height; false when it is not near the road or there is none.
 __device__ bool residual_key(float height, std::uint32_t& key) {
@@ -85,7 +84,7 @@ __device__ float median_near(const Sample& sample, const int* first_digits, Sele
   const auto key = [&](int i, std::uint32_t& out) { return residual_key(sample.heights[i], out); };
   constexpr int at_once = 16;  // of the some 50 that a thread has in device memory
   const int count = sample.columns * sample.rows;
-  const SelectedKey median = block_select<median_digits, at_once>(count, key, MiddleRank{}, scratch, first_digits);
+  const SelectedKey median = block_select<at_once>(count, key, MiddleRank{}, first_digits, scratch);
   return median.of > 0 ? static_cast<float>(median.key) / steps_per_px : 0;
 }
 

@@ -79,7 +79,7 @@ __device__ void aggregate_path(Path<count> path, int columns, const ScanlinePena
     path.costs += path.next;
     return path.cost();
   };
-  LaneCosts<count> totals = path.cost(), entering[ahead];
+  LaneCosts<count> totals = path.cost(), entering[ahead], following[ahead];
   path.store(forward ? totals : LaneCosts<count>{});
   int left = columns - 1;  // that totals are to be found of
   ROADSTEREO_UNROLL
@@ -87,11 +87,13 @@ __device__ void aggregate_path(Path<count> path, int columns, const ScanlinePena
     if (k < left) entering[k] = next_cost();
   }
   for (; left >= 2 * ahead; left -= ahead) {
+    // Before the stores, behind which the compiler leaves a load.
     ROADSTEREO_UNROLL
-    for (int k = 0; k < ahead; ++k) {
-      go_on<count, forward>(path, entering[k], penalties, totals);
-      entering[k] = next_cost();
-    }
+    for (int k = 0; k < ahead; ++k) following[k] = next_cost();
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < ahead; ++k) go_on<count, forward>(path, entering[k], penalties, totals);
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < ahead; ++k) entering[k] = following[k];
   }
   ROADSTEREO_UNROLL
   for (int k = 0; k < ahead; ++k) {

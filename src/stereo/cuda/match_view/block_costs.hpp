@@ -18,56 +18,52 @@ struct CostRow {
   const BlockPart *own_blocks, *other_blocks;  ///< of this row
 };
 
-/// The cost of own pixel i at disparity d = first of the chunk + k, over the part of the block that both views see;
-/// `row_products` are those of the column halo_i − radius on. Of a radius that the compiler knows, not 0, all columns
-/// are read at once.
-template <int known_radius>
-__device__ float clipped_cost(const ViewToMatch& view, const CostRow& row, const int4* row_products,
-                              float noise_variance, int halo_i, int i, int d, int k) {
-  if (i - d < row.first_visible) return missing_cost;
-  const int radius = known_radius > 0 ? known_radius : row.radius;
-  const int first = max(max(i - radius, 0), d + row.first_visible), last = min(i + radius, row.last_valid);
-  int products = 0, own_sum = 0, own_squares = 0, other_sum = 0, other_squares = 0;
-  const auto add = [&](int q) {
-    const bool seen = q >= first && q <= last;
-    const int at = seen ? q : first;  // no branch keeps the reads from each other
-    const int4& of_column = row_products[at - halo_i + radius];
-    const int product = k == 0 ? of_column.x : k == 1 ? of_column.y : k == 2 ? of_column.z : of_column.w;
-    const ColumnSums own = view.own_columns(image_column(view, at), row.v);
-    const ColumnSums other = view.other_columns(image_column(view, at - d), row.v);
-    products += seen ? product : 0;
-    own_sum += seen ? own.sum : 0;
-    own_squares += seen ? own.squares : 0;
-    other_sum += seen ? other.sum : 0;
-    other_squares += seen ? other.squares : 0;
-  };
-  if (known_radius > 0) {
-    ROADSTEREO_UNROLL
-    for (int q = -known_radius; q <= known_radius; ++q) add(i + q);
-  } else {
-    ROADSTEREO_DO_NOT_UNROLL
-    for (int q = first; q <= last; ++q) add(q);
-  }
-  const int n = row.pixel_rows * (last - first + 1);
-  return correlation_cost(block_part(own_sum, own_squares, n, noise_variance),
-                          block_part(other_sum, other_squares, n, noise_variance), products,
-                          1.0F / static_cast<float>(n));
-}
+/// Σ over the columns of a block that both views see, at four disparities. The columns of the other view move with
+/// them.
+struct ClippedSums {
+  int products[chunk], own[chunk], own_squares[chunk], other[chunk], other_squares[chunk];
+};
 
-/// The same at four disparities. Not unrolled: few tiles need it, and its registers would be taken from the weights.
+/// The costs of own pixel i at the disparities d … d + 3, each over the part of the block that both views see;
+/// `row_products` are those of the column halo_i − radius on. What is read of a column serves all of them.
 template <int known_radius>
 __device__ float4 clipped_costs(const ViewToMatch& view, const CostRow& row, const int4* row_products,
                                 float noise_variance, int halo_i, int i, int d) {
-  float4 costs = make_float4(missing_cost, missing_cost, missing_cost, missing_cost);
+  const int radius = known_radius > 0 ? known_radius : row.radius;
+  const int first = max(i - radius, 0), last = min(i + radius, row.last_valid);
+  ClippedSums sums{};
+  ColumnSums others[chunk];  // of the other view at q − d − k
+  const auto other_at = [&](int j) { return view.other_columns(image_column(view, max(j, 0)), row.v); };
+  ROADSTEREO_UNROLL
+  for (int k = 1; k < chunk; ++k) others[k] = other_at(first - 1 - d - (k - 1));
   ROADSTEREO_DO_NOT_UNROLL
-  for (int k = 0; k < chunk; ++k) {
-    const float cost = clipped_cost<known_radius>(view, row, row_products, noise_variance, halo_i, i, d + k, k);
-    costs.x = k == 0 ? cost : costs.x;
-    costs.y = k == 1 ? cost : costs.y;
-    costs.z = k == 2 ? cost : costs.z;
-    costs.w = k == 3 ? cost : costs.w;
+  for (int q = first; q <= last; ++q) {
+    others[0] = other_at(q - d);
+    const ColumnSums own = view.own_columns(image_column(view, q), row.v);
+    const int4 of_column = row_products[q - halo_i + radius];
+    const int products[chunk]{of_column.x, of_column.y, of_column.z, of_column.w};
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < chunk; ++k) {
+      const bool seen = q - d - k >= row.first_visible;
+      sums.products[k] += seen ? products[k] : 0;
+      sums.own[k] += seen ? own.sum : 0;
+      sums.own_squares[k] += seen ? own.squares : 0;
+      sums.other[k] += seen ? others[k].sum : 0;
+      sums.other_squares[k] += seen ? others[k].squares : 0;
+    }
+    ROADSTEREO_UNROLL
+    for (int k = chunk - 1; k > 0; --k) others[k] = others[k - 1];
   }
-  return costs;
+  float costs[chunk];
+  ROADSTEREO_UNROLL
+  for (int k = 0; k < chunk; ++k) {
+    const int columns = last - max(first, d + k + row.first_visible) + 1, n = row.pixel_rows * max(columns, 1);
+    const BlockPart own = block_part(sums.own[k], sums.own_squares[k], n, noise_variance);
+    const BlockPart other = block_part(sums.other[k], sums.other_squares[k], n, noise_variance);
+    const float cost = correlation_cost(own, other, sums.products[k], 1.0F / static_cast<float>(n));
+    costs[k] = i - d - k < row.first_visible ? missing_cost : cost;
+  }
+  return make_float4(costs[0], costs[1], costs[2], costs[3]);
 }
 
 /// A part in one piece: the compiler would read what it needs of it in two, for twice the traffic.
