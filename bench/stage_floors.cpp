@@ -30,7 +30,7 @@ struct Work {
 /// match_view.cu, per matched pixel and disparity, but column sums of products per pixel; block_sums.cu and
 /// finish_rows.cu per pixel.
 Work matching(const MatcherOptions& options, double pixels, int disparities) {
-  constexpr double tile_columns = 32, tile_rows = 12;
+  constexpr double tile_columns = 32, tile_rows = 8;
   int across = 0, down = 0;
   const std::vector<Tap> taps = trimmed_taps(options);
   for (const Tap& tap : taps) {
@@ -44,7 +44,7 @@ Work matching(const MatcherOptions& options, double pixels, int disparities) {
   const double costs = views * pixels / (step * step) * disparities;
   return {.bytes = pixels * (2 * 26 + 22),
           .operations = costs * (surroundings * (4 * step * step + block + 8) + window + 6),
-          .shared_bytes = costs * 4 * ((block + 1 + step) * surroundings + window)};
+          .shared_bytes = costs * ((4 * (block + 1 + step) + 5 * step * step) * surroundings + 4 * window)};
 }
 
 /// stereo/coarse/cuda/*.cu, with the pair at half its size, or less.

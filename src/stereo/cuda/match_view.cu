@@ -7,19 +7,20 @@
 #include "stereo/cuda/match_view/tile.hpp"
 #include "stereo/cuda/match_view/winner_take_all.hpp"
 
-// A block of threads matches one tile of 32×8 matched pixels, four disparities at a time: column sums of products
-// slide down the tile and its halo, costs replace them in shared memory, and every thread aggregates its own pixel with
-// weights that it computed once. The weight of the prior depends on the smallest energy, so that the energies of a tile
-// are kept in a slice of global memory that is written and read by the same thread and stays in L2.
+// A block of threads matches one tile of 32×8 matched pixels, four disparities at a time: the grey levels around it are
+// staged in shared memory, column sums of their products slide down the tile and its halo, costs replace them, and
+// every thread aggregates its own pixel with weights that it computed once. The weight of the prior depends on the
+// smallest energy, so that the energies of a tile are kept in a slice of global memory that is written and read by the
+// same thread and stays in L2.
 //
-// Floor per matched pixel and disparity, T taps, blocks of (2r+1)², every p-th pixel matched, halo s = (32 + 2R/p)(12 +
-// 2R'/p)/384 times the tile:
+// Floor per matched pixel and disparity, T taps, blocks of (2r+1)², every p-th pixel matched, halo s = (32 + 2R/p)(8 +
+// 2R'/p)/256 times the tile:
 //   products 4p²s operations, block sums (2r+1)s, costs 8s, aggregation T, choice 6;
-//   shared memory 4 ((2r+2+p)s + T) bytes; global memory 8 bytes of energies, in L2.
-// Default (r 2, R 8, R' 4, T 25, p 2, s 1.7): 79 operations, 154 bytes of shared memory. 640×360, D 32: 0.15 G
-// operations and 0.28 GB, for which an H200 (132 multiprocessors, 1.7 GHz, 128 lanes and 128 bytes a cycle each) needs
-// 5 and 10 µs: the floor is 10 µs, less by as much as the search ranges leave out. Paper (r 5, R = R' 4, T 57, p 1,
-// s 2.1, two views): 170 µs.
+//   shared memory (4 (2r+2+p) + 5p²)s + 4T bytes; global memory 8 bytes of energies, in L2.
+// Default (r 2, R 8, R' 4, T 25, p 2, s 1.9): 86 operations, 198 bytes of shared memory. 640×360, D 32: 0.16 G
+// operations and 0.36 GB, for which an H200 (132 multiprocessors, 2.0 GHz, 128 lanes and 128 bytes a cycle each) needs
+// 5 and 11 µs, less by as much as the search ranges leave out. What it takes is four times that: the tiles are few more
+// than multiprocessors, and a warp waits for its own results.
 
 namespace roadstereo::cuda {
 namespace {
