@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "road/lucas_kanade/gauss_newton.hpp"
 #include "road/off_road/cuda/off_road.hpp"
 #include "roadstereo/off_road.hpp"
 #include "tests/cuda/device_copy.hpp"
@@ -23,14 +24,17 @@ int expect_as_on_host(const test::StreetMaps& maps) {
   off_road.run({scene.view(), maps.scene.factor, maps.shift}, correlation.view(), 1.0F, disparity.plane(),
                sigma.plane(), nullptr);
   const Image<float> found = disparity.on_host(), error = sigma.on_host();
-  int rejected = 0;
+  int rejected = 0, differ = 0;
   for (int v = 0; v < found.height(); ++v) {
     for (int u = 0; u < found.width(); ++u) {
-      EXPECT_EQ(std::isnan(found(u, v)), std::isnan(expected.disparity(u, v))) << u << ", " << v;
-      EXPECT_EQ(std::isnan(error(u, v)), std::isnan(expected.sigma(u, v))) << u << ", " << v;
+      const bool same = std::isnan(found(u, v)) == std::isnan(expected.disparity(u, v)) &&
+                        std::isnan(error(u, v)) == std::isnan(expected.sigma(u, v));
+      differ += same ? 0 : 1;
       rejected += std::isnan(found(u, v)) && !std::isnan(maps.disparity(u, v)) ? 1 : 0;
     }
   }
+  // What lies at the edge of a threshold is a cell.
+  EXPECT_LE(differ, test::kernels_round_as_host ? 0 : 2 * alignment_cell * alignment_cell);
   return rejected;
 }
 

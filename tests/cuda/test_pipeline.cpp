@@ -121,7 +121,7 @@ TEST_P(CudaPreset, MatchesHostFrameByFrame) {
     EXPECT_EQ(found.road.has_road(), expected.road.has_road());
     EXPECT_EQ(found.road.status, expected.road.status);
     EXPECT_EQ(found.road.status == RoadStatus::tracked, frame > 0);
-    EXPECT_EQ(found.shift.disparities, expected.shift.disparities);
+    EXPECT_NEAR(found.shift.disparities, expected.shift.disparities, test::kernels_round_as_host ? 0 : 1);
     for (const double v : {0.0, height - 1.0}) {
       EXPECT_NEAR(found.road.model.disparity(0, v), expected.road.model.disparity(0, v), 2e-3);
       EXPECT_NEAR(found.geometry.plane.disparity(0, v), expected.geometry.plane.disparity(0, v), 5e-3);
