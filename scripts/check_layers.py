@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Checks the includes of every folder against the table of layers in docs/architecture.md.
+"""Checks the includes of every folder against the table of layers in docs/architecture.md, and the first line of kernels.
 
 The last column of the table names the folders that a folder may include, besides itself and the public headers. The
-public headers of `src/pipeline` and `src/io` count as part of those folders. It takes less than a second.
+public headers of `src/pipeline` and `src/io` count as part of those folders. A kernel of the library that does not wait
+for the last one (begin_kernel) is a race that no tool shows. It takes less than a second.
 
     scripts/check_layers.py
 """
@@ -81,9 +82,17 @@ def breaks(rules, used):
             yield f"{source}: includes {name}; {folder} may not include {other}"
 
 
+def kernels_without_begin():
+    """Every kernel of the library whose first line is not begin_kernel(), as text."""
+    for file in sorted((ROOT / "src").rglob("*.cu")):
+        for body in re.findall(r"__global__[^{;]*\{\s*([^\n]*)", file.read_text(encoding="utf-8")):
+            if not body.startswith(("begin_kernel();", "}")):
+                yield f"{file.relative_to(ROOT)}: a kernel begins with {body} and not with begin_kernel();"
+
+
 def main():
     rules, used = read_table(ROOT / "docs/architecture.md"), set()
-    found = list(breaks(rules, used))
+    found = list(breaks(rules, used)) + list(kernels_without_begin())
     found += [f"{file}: the exception for {folder} is not needed" for file, folder in EXCEPTIONS.keys() - used]
     if found:
         print("\n".join(found), file=sys.stderr)

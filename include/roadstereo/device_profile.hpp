@@ -16,7 +16,7 @@ struct KernelProfile {
   int threads = 0;       ///< of a block
   double occupancy = 0;  ///< threads resident on a multiprocessor at a time, as a share of the most it can hold, 0 … 1
   int registers = 0;     ///< of a thread
-  int local_bytes = 0;   ///< of a thread: spilled registers
+  int local_bytes = 0;   ///< of a thread: spilled registers, and arrays that are indexed
   int shared_bytes = 0;  ///< of a block
 };
 

@@ -143,9 +143,8 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const StageTimer timer(result.ms.road_model);
   result.rows = {};
   if (carried.road) {
-    const GreyPair aligned = undo_misalignment(pair);
-    result.road = stages->verify_road_model(aligned, *carried.road);
-    if (!result.road.has_road()) track_in_noise(stages->on_host(aligned));
+    result.road = stages->verify_road_model(undo_misalignment(pair), *carried.road);
+    if (!result.road.has_road()) track_in_noise(align_on_host(stages->on_host(pair)));
     result.road.correlation = carried.road->correlation;
     if (result.road.has_road()) return;
     result.warnings.push_back(format_message("road-anew: the road model was estimated anew: ", result.road.reason));

@@ -85,8 +85,9 @@ __global__ void reduce_warp(WarpResults* results) {
   const int number = static_cast<int>(threadIdx.x);
   int sum = number;
   for (int mask = warp_lanes / 2; mask > 0; mask /= 2) sum += __shfl_xor_sync(whole_warp, sum, mask);
+  const float cost = number % 5 == 0 ? INFINITY : fabsf(static_cast<float>(number - 41)) - 1e-7F;
   results[number] = {sum, __ballot_sync(whole_warp, number % 3 == 0), warp_min(24.5F - static_cast<float>(number)),
-                     warp_max(-3 - number)};
+                     warp_min_of_costs(cost), warp_max(-3 - number)};
 }
 
 }  // namespace

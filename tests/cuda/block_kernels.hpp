@@ -34,11 +34,13 @@ void select_number(const float* values, int count, unsigned threads, Rank rank, 
 void reverse_in_blocks(const int* in, unsigned blocks, unsigned threads, int* out);
 
 /// Of every lane of two warps: the sum of the warp's lane numbers from the block's first on; the votes of lanes with
-/// numbers divisible by three; the smallest of floats 24.5 − number … and the largest of −3 − number.
+/// numbers divisible by three; the smallest of floats 24.5 − number …, that of costs |number − 41| − 10⁻⁷, where lanes
+/// divisible by five have none (infinity), and the largest of −3 − number.
 struct WarpResults {
   int sum;
   unsigned votes;
   float least;
+  float least_cost;
   int largest;
 };
 void reduce_warps(WarpResults* results);

@@ -135,6 +135,7 @@ TEST_F(CudaBlock, LanesOfWarpReduceAndVote) {
     EXPECT_EQ(found[t].sum, 31 * 32 / 2 + (second ? 32 * 32 : 0));
     EXPECT_EQ(found[t].votes, second ? 0x92492492U : 0x49249249U);  // multiples of 3 from 33 on, and from 0 on
     EXPECT_EQ(found[t].least, second ? -38.5F : -6.5F);
+    EXPECT_EQ(found[t].least_cost, second ? -1e-7F : 10 - 1e-7F);  // of numbers 41 and 31
     EXPECT_EQ(found[t].largest, second ? -35 : -3);
   }
 }

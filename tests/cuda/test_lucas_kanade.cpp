@@ -71,6 +71,7 @@ TEST_F(CudaLucasKanade, EveryWindowSizeMatchesHost) {
     LucasKanadeOptions options;
     options.radius = radius;
     expect_step_as_on_host(97, 40, shift, options);
+    expect_step_as_on_host(300, 40, shift, options);  // cells of several blocks across
   }
 }
 

@@ -92,7 +92,8 @@ class CudaRobustPlane : public test::OnDevice {};
 
 TEST_F(CudaRobustPlane, MatchesHost) {
   const DisparityPlane start{4.4, 0.109, -0.0195};
-  for (const int count : {37, 500, 1800}) {
+  // A thread has eight points, a block at least 128 threads.
+  for (const int count : {37, 500, 1024, 1025, 1800, max_fit_points}) {
     for (const double noise : {0.5, 0.0}) {
       SCOPED_TRACE(testing::Message() << count << " points, noise " << noise);
       const Points points = noisy_road(count, noise);

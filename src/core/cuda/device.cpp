@@ -49,7 +49,7 @@ Device find_device() {
   device.name = name;
   device.index = index;
   device.multiprocessors = properties.multiProcessorCount;
-  device.programmatic_launch = CUDART_VERSION >= 11080 && code_for >= 90;  // what begin_kernel() does on a 9.0
+  device.programmatic_launch = CUDART_VERSION >= 11080 && code_for >= 90;  // only then begin_kernel() waits
   device.usable = true;
   return device;
 }

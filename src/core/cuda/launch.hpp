@@ -19,8 +19,9 @@ inline unsigned blocks_for(int count, int size) {
   return static_cast<unsigned>((count + size - 1) / size);
 }
 
-/// The first line of every kernel: it may begin before the last one of its stream has ended (programmatic dependent
-/// launch), so that the time of a launch is hidden, and waits here until that has ended and its memory is seen.
+/// The first line of every kernel of the library (scripts/check_layers.py): it may begin before the last one of its
+/// stream has ended (programmatic dependent launch), so that the time of a launch is hidden, and waits here until that
+/// has ended and its memory is seen.
 __device__ inline void begin_kernel() {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
   asm volatile("griddepcontrol.launch_dependents;");

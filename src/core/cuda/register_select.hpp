@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/cuda/block_select.hpp"
+#include "core/cuda/unroll.hpp"
+#include "core/cuda/warp.hpp"
 
 // Radix select of keys that the threads of a block hold in registers. Every thread of the block calls these; blocks
 // have whole warps in one dimension.
@@ -12,7 +16,7 @@ struct RegisterSelectScratch {
   static constexpr int bits = 8, bins = 1 << bits, turns = 3;
   struct alignas(16) Counts {
     int of_bin[bins];
-    int of_none[warp_lanes];  ///< a lane without a key counts here, so that nothing branches
+    int of_none[warp_lanes];  ///< a lane without a key counts here, so that nothing branches; nobody reads it
   };
   Counts counts[turns];
 };
@@ -37,8 +41,9 @@ class RegisterSelect {
     static_assert(digits * Scratch::bits <= 32);
     SelectedKey selected{0, 0};
     int rank = 0;
-    ROADSTEREO_DO_NOT_UNROLL  // a fit's code is run through once: fetching it takes long
-        for (int digit = 0; digit < digits; ++digit) {
+    // A fit's code is run through once: fetching it takes long.
+    ROADSTEREO_DO_NOT_UNROLL
+    for (int digit = 0; digit < digits; ++digit) {
       const int shift = Scratch::bits * (digits - 1 - digit);
       Scratch::Counts& counts = scratch_.counts[turn_];
       turn_ = turn_ + 1 < Scratch::turns ? turn_ + 1 : 0;

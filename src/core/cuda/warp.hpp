@@ -30,7 +30,8 @@ __device__ inline float warp_min(float value) {
 }
 
 /// The same of numbers that are not negative but for rounding, in fewer steps: as whole numbers, floats above zero are
-/// in order; of several below it any may be returned.
+/// in order; of several below it the
+/// one nearest to zero may be returned.
 __device__ inline float warp_min_of_costs(float value) {
 #if ROADSTEREO_WARP_REDUCES
   return __int_as_float(__reduce_min_sync(whole_warp, __float_as_int(value)));

@@ -38,8 +38,8 @@ Device require_device() {
   return device;
 }
 
-/// The host waits for the device twice a frame: for the road, which it assesses, and for the end. CUDA graphs are not
-/// used: what they would save, the time between launches, cannot be told without a device.
+/// The host waits for the device twice a frame: for the road, which it assesses, and for the end. docs/architecture.md
+/// says why there is no CUDA graph.
 class DeviceStages final : public FrameStages {
  public:
   /// The device must be usable: members already take memory of it.

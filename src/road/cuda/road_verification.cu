@@ -1,4 +1,4 @@
-// Floor: that of plane_match.cu for 500 and 1500 places, and of robust_fit.hpp for as many points. What it takes is
+// Floor: that of plane_match.cu for 700 and 1500 places, and of robust_fit.hpp for as many points. What it takes is
 // the latency of two searches and two fits one after the other.
 
 #include "core/cuda/downsample.hpp"

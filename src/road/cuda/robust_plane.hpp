@@ -6,7 +6,8 @@
 
 namespace roadstereo::cuda {
 
-/// Points of disparity space in device memory; those whose `d` is NaN are missing.
+/// Points of disparity space in device memory; those whose `d` is NaN are missing, and have a finite place all the
+/// same.
 struct DevicePoints {
   const float* u;
   const float* v;

@@ -19,7 +19,7 @@
 //   shared memory (4 (2r+2+p) + 5p²)s + 4T bytes; global memory 8 bytes of energies, in L2.
 // Default (r 2, R 8, R' 4, T 25, p 2, s 1.9): 86 operations, 198 bytes of shared memory. 640×360, D 32: 0.16 G
 // operations and 0.36 GB, for which an H200 (132 multiprocessors, 2.0 GHz, 128 lanes and 128 bytes a cycle each) needs
-// 5 and 11 µs, less by as much as the search ranges leave out. What it takes is four times that: the tiles are few more
+// 5 and 11 µs, less by as much as the search ranges leave out. What it takes is five times that: the tiles are few more
 // than multiprocessors, and a warp waits for its own results.
 
 namespace roadstereo::cuda {
@@ -84,7 +84,8 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
   if (wanted) choose(view, settings, energies, image_column(view, i), v, winners);
 }
 
-/// Blocks that a multiprocessor has registers for: the weights take most of them.
+/// Blocks that a multiprocessor has registers for: the weights take most of them. The kernel for more taps than any of
+/// those is launched with as many blocks as that for the most, though it keeps no weights.
 constexpr int resident_blocks(int taps) {
   return taps <= taps_of_default ? 3 : 2;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "core/cuda/unroll.hpp"
 #include "core/mid_grey.hpp"
