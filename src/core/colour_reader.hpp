@@ -4,6 +4,7 @@
 
 #include "roadstereo/image.hpp"
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Red, green and blue of an image of any order and depth, 0 … 255. `white_level` as in to_grey.
@@ -21,3 +22,4 @@ class ColourReader {
 };
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#pragma GCC visibility push(default)
 namespace roadstereo::io {
 
 /// Date and time of day in UTC with milliseconds.
@@ -36,3 +37,4 @@ struct IsoTime {
 std::optional<IsoTime> parse_iso_time(std::string_view text);
 
 }  // namespace roadstereo::io
+#pragma GCC visibility pop
