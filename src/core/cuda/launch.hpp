@@ -30,6 +30,7 @@ __device__ inline void begin_kernel() {
 }
 
 #if !defined(ROADSTEREO_CUDA_EMULATED)
+/// With the attribute of programmatic dependent launch where the stream and the toolkit have it.
 inline void launch_function(const void* function, const LaunchShape& shape, void** arguments, StreamView stream) {
 #if CUDART_VERSION >= 11080
   cudaLaunchAttribute programmatic{};

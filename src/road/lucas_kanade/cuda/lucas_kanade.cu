@@ -41,6 +41,7 @@ struct Window {
 
 /// Adds up over the neighbouring lanes of a cell; all of them get the sums.
 __device__ AlignmentSums<float> sums_of_cell(const AlignmentSums<float>& of_lane) {
+  static_assert(sizeof(AlignmentSums<float>) == 10 * sizeof(float), "every sum is exchanged");
   AlignmentSums<float> sums = of_lane;
   for (int mask = 1; mask < alignment_cell; mask *= 2) {
     AlignmentSums<float> other;

@@ -1,7 +1,8 @@
 // Floor: 8 bytes and 7 operations a cost each direction, and 8 bytes for the winners: 320×180 pixels of 24 disparities,
 // 33 MB in the second cache. What counts is the chain: a column needs the smallest total of the column before it, so
-// that a row takes columns × (exchange with the neighbours, smallest of a warp, three operations), about 70 cycles each
-// with the hardware's minimum (compute capability 8), 170 without. Both directions of all rows run side by side.
+// that a row takes columns × (exchange with the neighbours, smallest of a warp, three operations), about 100 cycles
+// each on an H200 with the hardware's minimum (compute capability 8), more without. Both directions of all rows run
+// side by side.
 
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
