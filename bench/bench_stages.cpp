@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "roadstereo/damage.hpp"
+#include "roadstereo/health.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
 #include "stereo/coarse/coarse_search.hpp"
@@ -77,15 +78,30 @@ void match(benchmark::State& state, const std::string& preset_name, int threads)
   run(state, [&](Frame& frame) { engine->match(frame.input(), options, frame.maps); });
 }
 
-/// Damage of what the pipeline makes of the frame, with the memory of an earlier result.
-void damage(benchmark::State& state) {
+/// Runs `stage(result, options, frame)` on what the pipeline makes of the frame, with its damage.
+template <class Stage>
+void run_on_result(benchmark::State& state, const Stage& stage) {
   Frame frame = make_frame(state);
   PipelineOptions options = preset("default");
   options.perspective.disparities = frame.shift.disparities;
   Pipeline pipeline(options, frame.pair.calibration);
   const FrameResult& result = pipeline.process(frame.pair.left.view(), frame.pair.right.view());
-  for (auto _ : state) find_damage(result, frame.pair.calibration, options.damage, 0, frame.damage);
+  find_damage(result, frame.pair.calibration, options.damage, 0, frame.damage);
+  for (auto _ : state) stage(result, options.damage, frame);
   report(state, frame);
+}
+
+/// Damage, with the memory of an earlier result.
+void damage(benchmark::State& state) {
+  run_on_result(state, [](const FrameResult& result, const DamageOptions& options, Frame& frame) {
+    find_damage(result, frame.pair.calibration, options, 0, frame.damage);
+  });
+}
+
+void health(benchmark::State& state) {
+  run_on_result(state, [](const FrameResult& result, const DamageOptions& options, Frame& frame) {
+    benchmark::DoNotOptimize(measure_health(result, frame.damage, frame.pair.calibration, options));
+  });
 }
 
 template <class Body>
@@ -114,6 +130,8 @@ void register_all() {
             [](Frame& f) { transform_disparity(f.disparity, f.geometry, 0, {}, 0, f.transformed); });
   auto* damages = add("stage/damage", damage);
   for (const auto& size : sizes) damages->Args(size);
+  auto* healths = add("stage/health", health);
+  for (const auto& size : sizes) healths->Args(size);
   auto* coarse = add("stage/coarse_search", [](benchmark::State& state) {
     CoarseSearch search({}, 0);
     run(state, [&](Frame& frame) { search.find(frame.input(), frame.shift); });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -13,65 +14,93 @@ namespace {
 
 using Grey = ImageView<const std::int16_t>;
 
+/// Calls `visit(u, v)` for some ten thousand places of an image, at least 3 pixels apart and `margin` from its border.
+/// A row of them is shifted by a pixel against the last, so that no pattern falls on all or none.
+template <class Visit>
+void for_each_sample(Grey image, int margin, Visit&& visit) {
+  constexpr int min_step = 3;
+  constexpr double samples = 10e3;
+  const int step =
+      std::max(min_step, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(image.pixels()) / samples))));
+  for (int v = margin, shift = 0; v + margin < image.height(); v += step, shift = (shift + 1) % step) {
+    for (int u = margin + shift; u + margin < image.width(); u += step) visit(u, v);
+  }
+}
+
 /// Pixel of the right image nearest to what the left one has at a pixel.
 struct Match {
   int u = 0, v = 0;
   double off_px = 0;  ///< distance to the place itself, the larger of both directions
 };
 
-/// Nothing where there is no disparity or fewer than `margin` pixels lie around the match.
-std::optional<Match> match_of(const FrameResult& frame, int u, int v, int margin) {
+/// Nothing off the road, without a disparity, and where fewer than `margin` pixels lie around the match.
+std::optional<Match> match_of(const FrameResult& frame, const DamageMap& damage, int u, int v, int margin) {
   const double disparity = frame.disparity(u, v);
-  if (std::isnan(disparity)) return std::nullopt;
+  if (damage.road(u, v) == 0 || std::isnan(disparity)) return std::nullopt;
   const Misalignment& misalignment = frame.shift.misalignment;
   const double x = u - disparity, column = x + misalignment.columns_at(v), row = v + misalignment.rows_at(x, v);
-  const Match match{static_cast<int>(std::lround(column)), static_cast<int>(std::lround(row)),
-                    std::max(std::abs(column - std::round(column)), std::abs(row - std::round(row)))};
-  const bool inside = match.u >= margin && match.u + margin < frame.right.width() && match.v >= margin &&
-                      match.v + margin < frame.right.height();
-  return inside ? std::optional(match) : std::nullopt;
+  const auto inside = [margin](double at, int size) { return at >= margin - 0.5 && at < size - margin - 0.5; };
+  if (!inside(column, frame.right.width()) || !inside(row, frame.right.height())) return std::nullopt;
+  const int at_u = static_cast<int>(column + 0.5), at_v = static_cast<int>(row + 0.5);  // NOLINT: not negative
+  return Match{at_u, at_v, std::max(std::abs(column - at_u), std::abs(row - at_v))};
 }
 
 /// Share of the road's pixels in each view that are black or white, and the ratio of the levels of the others.
 void measure_exposure(const FrameResult& frame, const DamageMap& damage, PairHealth& health) {
-  constexpr int step = 3;
   constexpr std::size_t min_pixels = 100;
   const auto is_clipped = [](int level) { return level <= 0 || level >= grey_max; };
   std::vector<float> ratios;
   std::size_t pixels = 0, left_clipped = 0, right_clipped = 0;
-  for (int v = 0; v < frame.grey.height(); v += step) {
-    for (int u = 0; u < frame.grey.width(); u += step) {
-      const std::optional<Match> match = match_of(frame, u, v, 0);
-      if (damage.road(u, v) == 0 || !match) continue;
-      const int left = frame.grey(u, v), right = frame.right(match->u, match->v);
-      ++pixels;
-      left_clipped += is_clipped(left) ? 1U : 0U;
-      right_clipped += is_clipped(right) ? 1U : 0U;
-      if (is_clipped(left) || is_clipped(right)) continue;
-      ratios.push_back(static_cast<float>(right) / static_cast<float>(left));
-    }
-  }
+  for_each_sample(frame.grey, 0, [&](int u, int v) {
+    const std::optional<Match> match = match_of(frame, damage, u, v, 0);
+    if (!match) return;
+    const int left = frame.grey(u, v), right = frame.right(match->u, match->v);
+    ++pixels;
+    left_clipped += is_clipped(left) ? 1U : 0U;
+    right_clipped += is_clipped(right) ? 1U : 0U;
+    if (is_clipped(left) || is_clipped(right)) return;
+    ratios.push_back(static_cast<float>(right) / static_cast<float>(left));
+  });
   if (pixels < min_pixels) return;
   health.clipped_left = static_cast<double>(left_clipped) / static_cast<double>(pixels);
   health.clipped_right = static_cast<double>(right_clipped) / static_cast<double>(pixels);
   if (ratios.size() >= min_pixels) health.gain = static_cast<double>(upper_median(ratios));
 }
 
-/// Mean square of the differences of pixels `lag` apart, along rows and columns, over the road.
-double structure_function(Grey image, const DamageMap& damage, int lag, bool down) {
-  constexpr int step = 2;
-  double sum = 0, count = 0;
-  const int du = down ? 0 : lag, dv = down ? lag : 0;
-  for (int v = 0; v + dv < image.height(); v += step) {
-    for (int u = 0; u + du < image.width(); u += step) {
-      if (damage.road(u, v) == 0 || damage.road(u + du, v + dv) == 0) continue;
-      const double difference = image(u + du, v + dv) - image(u, v);
-      sum += difference * difference;
-      ++count;
+/// Sum of the squared differences of every second pixel of two rows, where both are road, and their number.
+struct SquaredDifferences {
+  std::uint64_t sum = 0, count = 0;
+
+  void add(const std::int16_t* image, const std::int16_t* other, const std::uint8_t* road,
+           const std::uint8_t* other_road, int width) {
+    constexpr int step = 2, run = 512;  // 256 differences of at most grey_max, squared, fit into 32 bits
+    for (int first = 0; first < width; first += run) {
+      std::uint32_t part = 0, pixels = 0;
+      for (int u = first; u < std::min(first + run, width); u += step) {
+        const int difference = other[u] - image[u];
+        const std::uint32_t both = (road[u] & other_road[u]) != 0 ? 1 : 0;
+        part += both * static_cast<std::uint32_t>(difference * difference);
+        pixels += both;
+      }
+      sum += part;
+      count += pixels;
     }
   }
-  constexpr double min_count = 100;
-  return count >= min_count ? sum / count : PairHealth::unknown;
+};
+
+/// Mean square of the differences of pixels `lag` apart, along rows or columns, over the road. Of some 128 rows.
+double structure_function(Grey image, const DamageMap& damage, int lag, bool down) {
+  constexpr int rows = 128;
+  const int step = std::max(2, image.height() / rows);
+  const int du = down ? 0 : lag, dv = down ? lag : 0;
+  SquaredDifferences differences;
+  for (int v = 0; v + dv < image.height(); v += step) {
+    differences.add(image.row(v), image.row(v + dv) + du, damage.road.row(v), damage.road.row(v + dv) + du,
+                    image.width() - du);
+  }
+  constexpr std::uint64_t min_count = 100;
+  return differences.count >= min_count ? static_cast<double>(differences.sum) / static_cast<double>(differences.count)
+                                        : PairHealth::unknown;
 }
 
 /// Gaussian blur σ of white texture whose structure function, 1 − exp(−lag² / 4σ²), has that ratio at the two lags.
@@ -99,40 +128,40 @@ double blur_of(Grey image, const DamageMap& damage) {
   return blur;
 }
 
+constexpr int noise_block_radius = 3;
+
 /// Immerkær's mask, which takes away planes of grey levels; its coefficients squared sum to 36.
 int noise_mask(Grey image, int u, int v) {
   const auto second_difference = [&](int row) { return image(u - 1, row) - 2 * image(u, row) + image(u + 1, row); };
   return second_difference(v - 1) - 2 * second_difference(v) + second_difference(v + 1);
 }
 
-double block_variance(Grey image, int at_u, int at_v, int radius) {
-  double sum = 0, squares = 0, pixels = 0;
-  for (int v = at_v - radius; v <= at_v + radius; ++v) {
-    for (int u = at_u - radius; u <= at_u + radius; ++u, ++pixels) {
-      const double level = image(u, v);
-      sum += level;
-      squares += level * level;
+double block_variance(Grey image, int at_u, int at_v) {
+  constexpr int width = 2 * noise_block_radius + 1, pixels = width * width;
+  int sum = 0, squares = 0;  // of 49 levels of at most grey_max
+  for (int y = 0; y < width; ++y) {
+    const std::int16_t* const row = image.row(at_v + y - noise_block_radius) + at_u - noise_block_radius;
+    for (int x = 0; x < width; ++x) {
+      sum += row[x];
+      squares += row[x] * row[x];
     }
   }
-  return (squares - sum * sum / pixels) / (pixels - 1);
+  return (squares - double{1} * sum * sum / pixels) / (pixels - 1);
 }
 
 /// Variance of the white noise of a view by the median variance of blocks of the road. Noise is what the mask responds
 /// to differently in both views, where matches are nearly whole pixels: fine texture is the same in both.
 double noise_share(const FrameResult& frame, const DamageMap& damage) {
-  constexpr int radius = 3, step = 3;
   constexpr double mask_norm = 6, max_fraction_px = 0.25;
   constexpr std::size_t min_blocks = 100;
   std::vector<float> differences, variances;
-  for (int v = radius; v + radius < frame.grey.height(); v += step) {
-    for (int u = radius; u + radius < frame.grey.width(); u += step) {
-      const std::optional<Match> match = match_of(frame, u, v, 1);
-      if (damage.road(u, v) == 0 || !match || match->off_px > max_fraction_px) continue;
-      differences.push_back(
-          static_cast<float>(noise_mask(frame.grey, u, v) - noise_mask(frame.right, match->u, match->v)));
-      variances.push_back(static_cast<float>(block_variance(frame.grey, u, v, radius)));
-    }
-  }
+  for_each_sample(frame.grey, noise_block_radius, [&](int u, int v) {
+    const std::optional<Match> match = match_of(frame, damage, u, v, 1);
+    if (!match || match->off_px > max_fraction_px) return;
+    differences.push_back(
+        static_cast<float>(noise_mask(frame.grey, u, v) - noise_mask(frame.right, match->u, match->v)));
+    variances.push_back(static_cast<float>(block_variance(frame.grey, u, v)));
+  });
   if (variances.size() < min_blocks) return PairHealth::unknown;
   const double noise = gaussian_mad * upper_median_magnitude(differences) / mask_norm;
   const double variance = upper_median(variances);
@@ -142,16 +171,22 @@ double noise_share(const FrameResult& frame, const DamageMap& damage) {
 /// Excess of the steps at multiples of 8 pixels over those beside them, relative: JPEG quantises blocks of 8×8 apart.
 double block_excess(Grey image) {
   constexpr int block = 8;
-  std::array<double, block> steps{};
+  const int width = image.width();
+  std::array<std::int64_t, block> steps{};
+  std::vector<std::int32_t> across(static_cast<std::size_t>(width));  // up to 2³¹ / grey_max rows
   for (int v = 1; v < image.height(); ++v) {
-    const std::int16_t *above = image.row(v - 1), *row = image.row(v);
-    for (int u = 1; u < image.width(); ++u) {
-      steps[static_cast<std::size_t>(u % block)] += std::abs(row[u] - row[u - 1]);
-      steps[static_cast<std::size_t>(v % block)] += std::abs(row[u] - above[u]);
+    const std::int16_t *const above = image.row(v - 1), *const row = image.row(v);
+    std::int32_t* const columns = across.data();
+    std::int32_t down = 0;
+    for (int u = 1; u < width; ++u) {
+      columns[u] += std::abs(row[u] - row[u - 1]);
+      down += std::abs(row[u] - above[u]);
     }
+    steps[static_cast<std::size_t>(v % block)] += down;
   }
-  const double beside = 0.5 * (steps[1] + steps[block - 1]);
-  return beside > 0 ? steps[0] / beside - 1 : PairHealth::unknown;
+  for (std::size_t u = 1; u < across.size(); ++u) steps[u % block] += across[u];
+  const double beside = 0.5 * static_cast<double>(steps[1] + steps[block - 1]);
+  return beside > 0 ? static_cast<double>(steps[0]) / beside - 1 : PairHealth::unknown;
 }
 
 }  // namespace

@@ -7,15 +7,25 @@
 #include "core/cholesky.hpp"
 #include "road/cubic.hpp"
 
-namespace roadstereo {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "road/block_alignment.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
+//
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace roadstereo::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, 8>;
+using Float = hn::Vec<Floats>;
 
 constexpr std::size_t parameters = 6;  // du, dv, shear, stretch, gain, offset
 using Parameters = Vector<parameters>;
 constexpr double min_share = 1e-5;  // sums of single precision leave that much of nothing
 
 constexpr int max_radius = 8;
-constexpr std::size_t columns = 20;  ///< of the largest block, up to whole vectors of four
+constexpr std::size_t columns = 24;  ///< of the largest block, up to whole vectors of eight
 using Columns = std::array<float, columns>;
 
 /// One row of the block as the right image shows it where it is supposed to lie: grey levels (8-bit scale, minus the
@@ -99,35 +109,82 @@ class LeftBlock {
   std::array<Columns, 2 * max_radius + 1> rows_{};
 };
 
-/// Row y of the block in the right image under the parameters p; false when it leaves the image.
-bool sample_row(ImageView<const std::int16_t> right, const LeftBlock& block, const Parameters& p, int y, Row& row) {
+/// A row of the right image between its rows, from a column on: grey levels, those of linear interpolation, and their
+/// slope down. What lies beside the columns that were read is finite.
+class RightRow {
+ public:
+  static constexpr int margin = 10;  ///< a block of 17 pixels that is stretched by half is so much wider
+
+  void read(ImageView<const std::int16_t> right, int first, int count, int v, float low) {
+    constexpr float unit = 1.0f / grey_scale;
+    const CubicWeights weights = cubic_weights(low);
+    const std::int16_t *const before = right.row(v - 1) + first, *const at = right.row(v) + first;
+    const std::int16_t *const after = right.row(v + 1) + first, *const beyond = right.row(v + 2) + first;
+    float *HWY_RESTRICT grey = grey_.data() + margin, *HWY_RESTRICT linear = linear_.data() + margin;
+    float* HWY_RESTRICT down = down_.data() + margin;
+    for (int i = 0; i < count; ++i) {
+      const auto top = static_cast<float>(at[i]), bottom = static_cast<float>(after[i]);
+      // Linear interpolation blurs between two rows and not on one, which would draw the block towards whole rows.
+      grey[i] = unit * weighted(weights, static_cast<float>(before[i]), top, bottom, static_cast<float>(beyond[i]));
+      linear[i] = unit * (top + low * (bottom - top));
+      down[i] = unit * (bottom - top);
+    }
+  }
+  /// At column i + offset.
+  const float* grey(int offset) const { return grey_.data() + margin + offset; }
+  const float* linear(int offset) const { return linear_.data() + margin + offset; }
+  const float* down(int offset) const { return down_.data() + margin + offset; }
+
+ private:
+  std::array<float, columns + 2 * margin + 2> grey_{}, linear_{}, down_{};
+};
+
+/// Adds what the columns i + offset and i + offset + 1 of a row give to pixel i of the block, which lies at column
+/// i + slide + i·stretch: linear interpolation as a sum over offsets, so that nothing is looked up.
+HWY_INLINE void add_columns(const RightRow& between, int offset, float slide, float stretch, Row& row) {
+  const Floats df;
+  const Float zero = hn::Zero(df), one = hn::Set(df, 1.0F);
+  const auto add = [df](float* to, Float value) { hn::StoreU(hn::Add(hn::LoadU(df, to), value), df, to); };
+  for (std::size_t i = 0; i < columns; i += hn::Lanes(df)) {
+    const Float past = hn::MulAdd(hn::Iota(df, static_cast<float>(i)), hn::Set(df, stretch),
+                                  hn::Set(df, slide - static_cast<float>(offset)));
+    const Float weight = hn::Max(zero, hn::Sub(one, hn::Abs(past)));
+    const Float slope =
+        hn::Sub(hn::LoadU(df, between.linear(offset + 1) + i), hn::LoadU(df, between.linear(offset) + i));
+    add(row.grey.data() + i, hn::Mul(weight, hn::LoadU(df, between.grey(offset) + i)));
+    add(row.down.data() + i, hn::Mul(weight, hn::LoadU(df, between.down(offset) + i)));
+    add(row.across.data() + i, hn::IfThenElseZero(hn::And(hn::Ge(past, zero), hn::Lt(past, one)), slope));
+  }
+}
+
+/// Row y of the block in the right image under the parameters p; false when it leaves the image, or is stretched by
+/// more than half. `between` is scratch memory.
+bool sample_row(ImageView<const std::int16_t> right, const LeftBlock& block, const Parameters& p, int y,
+                RightRow& between, Row& row) {
+  constexpr double max_stretch = 0.5;
   const double at_v = block.v() + y + p[1], step = 1 + p[3];
   const double start = block.u() - block.radius() * step + p[0] + p[2] * y, end = start + (block.width() - 1) * step;
-  if (!(at_v >= 1 && at_v < right.height() - 2 && std::min(start, end) >= 0 &&
-        std::max(start, end) < right.width() - 1))
+  if (!(std::abs(p[3]) <= max_stretch && at_v >= 1 && at_v < right.height() - 2 && start >= 0 &&
+        end < right.width() - 1))
     return false;
-  const int whole_v = static_cast<int>(at_v);
-  const auto low = static_cast<float>(at_v - whole_v), mean = static_cast<float>(block.mean());
-  const CubicWeights weights = cubic_weights(low);
-  const std::int16_t *before = right.row(whole_v - 1), *above = right.row(whole_v);
-  const std::int16_t *below = right.row(whole_v + 1), *beyond = right.row(whole_v + 2);
-  constexpr float unit = 1.0f / grey_scale;
-  for (int x = 0; x < block.width(); ++x) {
-    const double at_u = start + x * step;
-    const int whole_u = static_cast<int>(at_u);
-    const auto f = static_cast<float>(at_u - whole_u);
-    const auto across_above = static_cast<float>(above[whole_u + 1] - above[whole_u]);
-    const auto across_below = static_cast<float>(below[whole_u + 1] - below[whole_u]);
-    const auto between = [whole_u, f](const std::int16_t* from) {
-      return static_cast<float>(from[whole_u]) + f * static_cast<float>(from[whole_u + 1] - from[whole_u]);
-    };
-    const float top = between(above), bottom = between(below);
-    const auto i = static_cast<std::size_t>(x);
-    // Linear interpolation blurs between two rows and not on one, which would draw the block towards whole rows.
-    row.grey[i] = unit * weighted(weights, between(before), top, bottom, between(beyond)) - mean;
-    row.across[i] = unit * (across_above + low * (across_below - across_above));
-    row.down[i] = unit * (bottom - top);
-    row.residual[i] = block.row(y)[i] - static_cast<float>(p[4]) * row.grey[i] - static_cast<float>(p[5]);
+  const int v = static_cast<int>(at_v), first = static_cast<int>(start);
+  between.read(right, first, static_cast<int>(end) + 2 - first, v, static_cast<float>(at_v - v));
+  const auto slide = static_cast<float>(start - first), stretch = static_cast<float>(p[3]);
+  const float last = slide + static_cast<float>(block.width() - 1) * stretch;
+  row = {};
+  const int highest = static_cast<int>(std::floor(std::max(slide, last))) + 1;
+  for (int k = static_cast<int>(std::floor(std::min(slide, last))); k <= highest; ++k) {
+    add_columns(between, k, slide, stretch, row);
+  }
+  const auto mean = static_cast<float>(block.mean()), gain = static_cast<float>(p[4]),
+             offset = static_cast<float>(p[5]);
+  const Columns& left = block.row(y);
+  for (std::size_t i = 0; i < columns; ++i) {
+    const float inside = static_cast<int>(i) < block.width() ? 1.0F : 0.0F;
+    row.grey[i] = inside * (row.grey[i] - mean);
+    row.across[i] *= inside;
+    row.down[i] *= inside;
+    row.residual[i] = inside * (left[i] - gain * row.grey[i] - offset);
   }
   return true;
 }
@@ -179,19 +236,18 @@ Equations make_equations(const ColumnSums& s, const LeftBlock& block, const Para
 
 std::optional<Equations> set_up(const LeftBlock& block, ImageView<const std::int16_t> right, const Parameters& p) {
   ColumnSums sums;
+  RightRow between;
   Row row;
   for (int y = -block.radius(); y <= block.radius(); ++y) {
-    if (!sample_row(right, block, p, y, row)) return std::nullopt;
+    if (!sample_row(right, block, p, y, between, row)) return std::nullopt;
     sums.add(row, static_cast<float>(y));
   }
   return make_equations(sums, block, p);
 }
 
-}  // namespace
-
-std::optional<BlockAlignment> affine_lucas_kanade(ImageView<const std::int16_t> left, int u, int v,
-                                                  ImageView<const std::int16_t> right, const BlockAlignment& start,
-                                                  int radius) {
+std::optional<BlockAlignment> align_block(ImageView<const std::int16_t> left, int u, int v,
+                                          ImageView<const std::int16_t> right, const BlockAlignment& start,
+                                          int radius) {
   constexpr int max_steps = 12;
   constexpr double converged_px = 0.01;
   constexpr double farthest_px = 1.5;
@@ -213,4 +269,19 @@ std::optional<BlockAlignment> affine_lucas_kanade(ImageView<const std::int16_t> 
   return std::nullopt;
 }
 
+}  // namespace roadstereo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace roadstereo {
+
+HWY_EXPORT(align_block);
+
+std::optional<BlockAlignment> affine_lucas_kanade(ImageView<const std::int16_t> left, int u, int v,
+                                                  ImageView<const std::int16_t> right, const BlockAlignment& start,
+                                                  int radius) {
+  return HWY_DYNAMIC_DISPATCH(align_block)(left, u, v, right, start, radius);
+}
+
 }  // namespace roadstereo
+#endif  // HWY_ONCE

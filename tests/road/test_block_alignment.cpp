@@ -1,4 +1,4 @@
-// Where a block lies in the other image, against an analytic texture under a known warp.
+// Where a block lies in the other image, against an analytic texture under a known warp, by every instruction set.
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,12 @@
 #include <functional>
 
 #include "road/block_alignment.hpp"
+#include "tests/core/every_target.hpp"
 
 namespace roadstereo {
 namespace {
+
+using AlignBlockTarget = test::EveryTarget;
 
 constexpr int width = 80, height = 60;
 constexpr int centre_u = 45, centre_v = 30;
@@ -38,7 +41,7 @@ GreyImage warped(const BlockAlignment& truth, double gain, double offset) {
   });
 }
 
-TEST(AlignBlock, RecoversKnownWarp) {
+TEST_P(AlignBlockTarget, RecoversKnownWarp) {
   const GreyImage left = paint(texture);
   constexpr BlockAlignment warps[] = {{0, 0, 0, 0},          {-7.4, 0.3, 0, 0},       {-7.4, 0.3, 0.1, 0},
                                       {-6.8, -0.6, 0, 0.05}, {-7.3, 0.5, -0.15, 0.1}, {-8, 1, 0.2, -0.08}};
@@ -57,7 +60,7 @@ TEST(AlignBlock, RecoversKnownWarp) {
   }
 }
 
-TEST(AlignBlock, FailsWithoutTexture) {
+TEST_P(AlignBlockTarget, FailsWithoutTexture) {
   const GreyImage flat(width, height, 1600);
   EXPECT_FALSE(affine_lucas_kanade(flat, centre_u, centre_v, flat, {}, radius));
   // Texture along the rows alone does not tell the vertical offset.
@@ -65,7 +68,7 @@ TEST(AlignBlock, FailsWithoutTexture) {
   EXPECT_FALSE(affine_lucas_kanade(stripes, centre_u, centre_v, stripes, {}, radius));
 }
 
-TEST(AlignBlock, FailsBeyondImages) {
+TEST_P(AlignBlockTarget, FailsBeyondImages) {
   const GreyImage image = paint(texture);
   EXPECT_TRUE(affine_lucas_kanade(image, radius + 2, radius + 2, image, {}, radius));
   EXPECT_FALSE(affine_lucas_kanade(image, radius - 1, centre_v, image, {}, radius));
@@ -73,18 +76,22 @@ TEST(AlignBlock, FailsBeyondImages) {
   EXPECT_FALSE(affine_lucas_kanade(image, centre_u, radius - 1, image, {}, radius));
   EXPECT_FALSE(affine_lucas_kanade(image, centre_u, height - radius, image, {}, radius));
   EXPECT_FALSE(affine_lucas_kanade(image, radius + 2, centre_v, image, {.du = -3}, radius));
+  EXPECT_FALSE(affine_lucas_kanade(image, centre_u, centre_v, image, {.stretch = 1.6}, radius));
 }
 
-TEST(AlignBlock, FailsFarFromStart) {
+TEST_P(AlignBlockTarget, FailsFarFromStart) {
   const GreyImage left = paint(texture), right = warped({.du = -7}, 1, 0);
   EXPECT_FALSE(affine_lucas_kanade(left, centre_u, centre_v, right, {.du = -5}, radius));
 }
 
-TEST(AlignBlock, FailsWithoutCorrelation) {
+TEST_P(AlignBlockTarget, FailsWithoutCorrelation) {
   const GreyImage left = paint(texture);
   const GreyImage negative = paint([](double u, double v) { return 240 - texture(u, v); });
   EXPECT_FALSE(affine_lucas_kanade(left, centre_u, centre_v, negative, {}, radius));
 }
+
+INSTANTIATE_TEST_SUITE_P(Machine, AlignBlockTarget, testing::ValuesIn(test::targets_of_this_machine()),
+                         test::name_of_target);
 
 }  // namespace
 }  // namespace roadstereo
