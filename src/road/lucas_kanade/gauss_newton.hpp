@@ -128,17 +128,19 @@ struct AlignmentSettings {
 /// variance.
 template <class Number>
 ROADSTEREO_HD inline float alignment_shift(const AlignmentSums<Number>& sums, const AlignmentSettings& settings) {
-  constexpr Number min_variance = 1;
+  // Rounding to 8 bits leaves a variance of 1/12 of a squared grey level. Windows with less, black or saturated ones,
+  // would follow the last bits of what was rounded since.
+  constexpr Number rounding_variance = Number(81 * grey_scale * grey_scale) / 12, min_curvature = 1;
   constexpr Number pixels_per_sample = Number(81) / 19;  // noise that the prefilter has correlated: (Σ w)² / Σ w²
   if (!(sums.n >= min_alignment_samples)) return 0.0F;
   const Number share = 1 / sums.n;
   const Number tt = sums.tt - sums.t * sums.t * share, tg = sums.tg - sums.t * sums.g * share;
   const Number tr = sums.tr - sums.t * sums.r * share, gg = sums.gg - sums.g * sums.g * share;
   const Number gr = sums.gr - sums.g * sums.r * share, rr = sums.rr - sums.r * sums.r * share;
-  if (!(tt > min_variance * sums.n)) return 0.0F;
+  if (!(tt > rounding_variance * sums.n)) return 0.0F;
   const Number per_tt = 1 / tt;
   const Number curvature = gg - tg * tg * per_tt;
-  if (!(curvature > min_variance)) return 0.0F;
+  if (!(curvature > min_curvature)) return 0.0F;
   const Number slope = (gr - tg * tr * per_tt) / curvature;
   const Number left = rr - tr * tr * per_tt - slope * slope * curvature;
   const Number noise = (left > 0 ? left : 0) * share;
