@@ -8,6 +8,7 @@
 
 #include "core/parallel.hpp"
 #include "road/downsampled_plane.hpp"
+#include "road/line_sums.hpp"
 
 namespace roadstereo {
 namespace {
@@ -48,7 +49,7 @@ class ShearedRows {
  public:
   /// `values` is memory for rows × disparities values.
   ShearedRows(const PlaneEvidence& grid, double slope, float* values)
-      : disparities_(grid.disparities()), values_(values) {
+      : rows_(grid.rows()), disparities_(grid.disparities()), values_(values) {
     std::fill_n(values_, size(grid), 0.0f);
     for (int c = 0; c < grid.columns(); ++c) {
       const double offset = slope * (grid.column(c) - grid.middle_column());
@@ -66,10 +67,10 @@ class ShearedRows {
   static std::size_t size(const PlaneEvidence& grid) {
     return static_cast<std::size_t>(grid.rows()) * static_cast<std::size_t>(grid.disparities());
   }
-  const float* row(int r) const { return values_ + static_cast<std::ptrdiff_t>(r) * disparities_; }
+  VDisparity image() const { return {values_, rows_, disparities_}; }
 
  private:
-  int disparities_;
+  int rows_, disparities_;
   float* values_;
 };
 
@@ -78,20 +79,19 @@ void search_lines(const PlaneEvidence& grid, const ShearedRows& sheared, double 
                   Candidate* best) {
   const double span = slope * (grid.column(grid.columns() - 1) - grid.middle_column());
   const int last_row = grid.rows() - 1;
+  std::array<double, top_steps + 1> tops;
+  std::array<float, top_steps + 1 + line_sums_guard> steps{}, sums;
+  for (std::size_t t = 0; t < tops.size(); ++t) {
+    tops[t] = grid.disparities() * (lowest_top + (1 - lowest_top) * static_cast<double>(t) / top_steps);
+  }
   for (int b = 0; b < bottom_steps; ++b) {
     const double bottom = (b + 1.0) * grid.disparities() / bottom_steps;
-    for (int t = 0; t <= top_steps; ++t) {
-      const double top = grid.disparities() * (lowest_top + (1 - lowest_top) * t / top_steps);
-      const ThreePoints points{{bottom - span, bottom + span, top}};
-      const float step = static_cast<float>((bottom - top) / last_row);
-      const float rounded_bottom = static_cast<float>(bottom) + 0.5F;
-      float sum = 0;
-      for (int r = last_row; r >= 0; r -= row_step) {
-        const int d = static_cast<int>(rounded_bottom - step * static_cast<float>(last_row - r));
-        if (d > 0 && d < grid.disparities()) sum += sheared.row(r)[d];
-      }
-      if (static_cast<double>(sum) <= best[b].score) continue;
-      if (limit.can_be_road(points.plane(grid))) best[b] = {points, sum, 1};
+    for (std::size_t t = 0; t < tops.size(); ++t) steps[t] = static_cast<float>((bottom - tops[t]) / last_row);
+    sum_along_lines(sheared.image(), static_cast<float>(bottom), steps.data(), top_steps + 1, row_step, sums.data());
+    for (std::size_t t = 0; t < tops.size(); ++t) {
+      if (static_cast<double>(sums[t]) <= best[b].score) continue;
+      const ThreePoints points{{bottom - span, bottom + span, tops[t]}};
+      if (limit.can_be_road(points.plane(grid))) best[b] = {points, sums[t], 1};
     }
   }
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "road/line_sums.hpp"
 #include "road/masked_blocks.hpp"
 #include "road/plane_evidence.hpp"
 #include "road/rig_prior.hpp"
@@ -55,6 +56,33 @@ TEST_P(DisparityEvidenceTarget, MatchesPosteriorByHand) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Machine, DisparityEvidenceTarget, testing::ValuesIn(test::targets_of_this_machine()),
+                         test::name_of_target);
+
+using LineSumsTarget = test::EveryTarget;
+
+// Numbers that are exact in single precision: lines that leave the image at either end, and more than fill a vector.
+TEST_P(LineSumsTarget, MatchesSumOverRows) {
+  constexpr int rows = 13, disparities = 21, count = 37, row_step = 2;
+  std::vector<float> values(static_cast<std::size_t>(rows) * disparities);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>((i * 7) % 31) - 11;
+  std::vector<float> steps(count + line_sums_guard, 0.0F), sums(count + line_sums_guard);
+  for (int k = 0; k < count; ++k) steps[static_cast<std::size_t>(k)] = 0.125F * static_cast<float>(k - 14);
+  for (const float bottom : {0.25F, 9.75F, 20.0F}) {
+    sum_along_lines({values.data(), rows, disparities}, bottom, steps.data(), count, row_step, sums.data());
+    for (int k = 0; k < count; ++k) {
+      double expected = 0;
+      for (int above = 0; above < rows; above += row_step) {
+        const double d = std::floor(double{bottom} - above * 0.125 * (k - 14) + 0.5);
+        if (d < 1 || d >= disparities) continue;
+        expected +=
+            double{values[static_cast<std::size_t>((rows - 1 - above) * disparities) + static_cast<std::size_t>(d)]};
+      }
+      EXPECT_EQ(sums[static_cast<std::size_t>(k)], expected) << "from " << bottom << ", line " << k;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Machine, LineSumsTarget, testing::ValuesIn(test::targets_of_this_machine()),
                          test::name_of_target);
 
 /// Largest difference of a plane to d(u, v) in the corners of a box.

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+
+namespace roadstereo {
+
+/// A v-disparity image: what every row of the picture says to each disparity.
+struct VDisparity {
+  const float* values;  ///< row by row, `disparities` apart
+  int rows, disparities;
+
+  const float* row(int r) const { return values + std::ptrdiff_t{r} * disparities; }
+};
+
+/// Elements behind the last line that sum_along_lines reads and writes.
+inline constexpr int line_sums_guard = 15;
+
+/// For each of `count` lines that have the disparity `bottom` in the last row and steps[k] less in every row above it,
+/// the sum of the values along it, in every `row_step`-th row from the last; nothing beyond the disparities 1 … last.
+void sum_along_lines(const VDisparity& image, float bottom, const float* steps, int count, int row_step, float* sums);
+
+}  // namespace roadstereo
