@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/mid_grey.hpp"
+#include "road/plane_search.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "road/strip_correlation.cpp"
@@ -17,6 +18,41 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, 16>;
 using Float = hn::Vec<Floats>;
+
+/// The block whose first pixel is (u, v).
+void cut_block(ImageView<const std::int16_t> image, int u, int v, CorrelationBlock& block) {
+  const Floats df;
+  const hn::Rebind<std::int16_t, Floats> d16;
+  const hn::RebindToSigned<Floats> d32;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  auto sum = hn::Zero(d32), squares = hn::Zero(d32);  // as unsigned numbers squares of at most 4080 fit
+  for (int y = 0; y < block.height; ++y) {
+    const std::int16_t* row = image.row(v + y) + u;
+    std::array<std::int16_t, CorrelationBlock::max_width + CorrelationBlock::guard> copied;
+    if (u + CorrelationBlock::guard > image.width()) {
+      copied.fill(0);
+      std::copy_n(row, block.width, copied.data());
+      row = copied.data();
+    }
+    float* const values = block.values.data() + static_cast<std::ptrdiff_t>(y) * block.width;
+    for (int x = 0; x < block.width; x += lanes) {
+      const auto inside = hn::FirstN(d32, static_cast<std::size_t>(block.width - x));
+      const auto grey = hn::IfThenElseZero(inside, hn::PromoteTo(d32, hn::LoadU(d16, row + x)));
+      sum = hn::Add(sum, grey);
+      squares = hn::Add(squares, hn::Mul(grey, grey));
+      hn::StoreU(hn::ConvertTo(df, grey), df, values + x);
+    }
+  }
+  const auto total = [d32](auto lanes_of) { return static_cast<unsigned>(hn::GetLane(hn::SumOfLanes(d32, lanes_of))); };
+  const int pixels = block.width * block.height;
+  const double mean = static_cast<double>(total(sum)) / pixels;
+  block.deviation = static_cast<float>(block_deviation(total(squares), mean, pixels));
+  const Float subtracted = hn::Set(df, static_cast<float>(mean));
+  for (int i = 0; i < pixels; i += lanes) {
+    float* const at = block.values.data() + i;
+    hn::StoreU(hn::Sub(hn::LoadU(df, at), subtracted), df, at);
+  }
+}
 
 /// Sums of the strip's columns and of their squares.
 struct ColumnSums {
@@ -92,7 +128,7 @@ void sample_strip(const std::int16_t* image_row, int image_width, double x, doub
   const int lanes = static_cast<int>(hn::Lanes(df));
   const double drift = (step - 1) * (count - 1);
   const int base = static_cast<int>(std::floor(x + std::min(0.0, drift)));
-  const int taps = static_cast<int>(std::abs(drift)) + 3;
+  const int taps = static_cast<int>(x + std::max(0.0, drift) - base) + 2;
   // Whole vectors read beyond the last column; where the image has nothing there, they read a copy.
   std::array<std::int16_t, max_sampled + max_drift + 16> copied;
   const std::int16_t* pixels = copied.data();
@@ -123,31 +159,15 @@ void sample_strip(const std::int16_t* image_row, int image_width, double x, doub
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include "road/plane_search.hpp"
-
 namespace roadstereo {
 
+HWY_EXPORT(cut_block);
 HWY_EXPORT(correlate_strip);
 HWY_EXPORT(sample_strip);
 
 CorrelationBlock::CorrelationBlock(ImageView<const std::int16_t> image, int u, int v, int half_width, int half_height)
     : width(2 * half_width + 1), height(2 * half_height + 1) {
-  std::uint32_t sum = 0, squares = 0;  // max_width · max_height squares of at most 4080 fit
-  for (int y = -half_height; y <= half_height; ++y) {
-    const std::int16_t* row = image.row(v + y) + u - half_width;
-    for (int x = 0; x < width; ++x) {
-      const auto grey = static_cast<std::uint32_t>(row[x]);
-      sum += grey;
-      squares += grey * grey;
-    }
-  }
-  const double pixels = width * height, mean = sum / pixels;
-  deviation = static_cast<float>(block_deviation(squares, mean, pixels));
-  float* value = values.data();
-  for (int y = -half_height; y <= half_height; ++y, value += width) {
-    const std::int16_t* row = image.row(v + y) + u - half_width;
-    for (int x = 0; x < width; ++x) value[x] = static_cast<float>(row[x]) - static_cast<float>(mean);
-  }
+  HWY_DYNAMIC_DISPATCH(cut_block)(image, u - half_width, v - half_height, *this);
 }
 
 void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float min_deviation,

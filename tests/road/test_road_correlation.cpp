@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "road/row_correlation.hpp"
@@ -49,6 +50,32 @@ TEST_P(RoadCorrelationTarget, StripsMatchDefinitionAtEveryColumn) {
   // What has less texture than asked for has no correlation.
   correlate_strip(block, strip, count, grey_max, correlations);
   EXPECT_EQ(correlations[3], -1);
+}
+
+// In the middle and in both corners, where whole vectors would leave the image.
+TEST_P(RoadCorrelationTarget, BlocksLoseTheirMean) {
+  const auto pair = test::textured_pair(40, 20, [](double, double) { return 4; });
+  for (const auto& [half_width, half_height] : {std::pair{7, 4}, std::pair{5, 4}, std::pair{4, 3}}) {
+    for (const auto& [u, v] :
+         {std::pair{20, 9}, std::pair{half_width, half_height}, std::pair{39 - half_width, 19 - half_height}}) {
+      const CorrelationBlock block(pair.reference, u, v, half_width, half_height);
+      double sum = 0, squares = 0;
+      const double n = block.width * block.height;
+      for (int y = 0; y < block.height; ++y) {
+        for (int x = 0; x < block.width; ++x) {
+          const double grey = pair.reference(u - half_width + x, v - half_height + y);
+          sum += grey, squares += grey * grey;
+        }
+      }
+      EXPECT_NEAR(block.deviation, std::sqrt(squares / n - std::pow(sum / n, 2)), 1e-3);
+      for (int y = 0; y < block.height; ++y) {
+        for (int x = 0; x < block.width; ++x) {
+          EXPECT_NEAR(block.values[static_cast<std::size_t>(y * block.width + x)],
+                      pair.reference(u - half_width + x, v - half_height + y) - sum / n, 1e-3);
+        }
+      }
+    }
+  }
 }
 
 TEST_P(RoadCorrelationTarget, StripsAreSampledBetweenPixels) {
