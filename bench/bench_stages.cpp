@@ -128,10 +128,9 @@ void register_all() {
   add_stage("roll", [](Frame& f) { estimate_roll(f.disparity, std::nullopt, f.road.model, 0, {}); });
   add_stage("transform_disparity",
             [](Frame& f) { transform_disparity(f.disparity, f.geometry, 0, {}, 0, f.transformed); });
-  auto* damages = add("stage/damage", damage);
-  for (const auto& size : sizes) damages->Args(size);
-  auto* healths = add("stage/health", health);
-  for (const auto& size : sizes) healths->Args(size);
+  for (auto* after : {add("stage/damage", damage), add("stage/health", health)}) {
+    for (const auto& size : sizes) after->Args(size);
+  }
   auto* coarse = add("stage/coarse_search", [](benchmark::State& state) {
     CoarseSearch search({}, 0);
     run(state, [&](Frame& frame) { search.find(frame.input(), frame.shift); });

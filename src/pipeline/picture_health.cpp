@@ -88,10 +88,11 @@ struct SquaredDifferences {
   }
 };
 
-/// Mean square of the differences of pixels `lag` apart, along rows or columns, over the road. Of some 128 rows.
+/// Mean square of the differences of pixels `lag` apart, along rows or columns, over the road. Of large images it takes
+/// some 128 rows, an odd number apart, so that they lie everywhere in the blocks of 8×8 pixels of JPEG.
 double structure_function(Grey image, const DamageMap& damage, int lag, bool down) {
   constexpr int rows = 128;
-  const int step = std::max(2, image.height() / rows);
+  const int every = image.height() / rows, step = every > 2 ? every | 1 : 2;
   const int du = down ? 0 : lag, dv = down ? lag : 0;
   SquaredDifferences differences;
   for (int v = 0; v + dv < image.height(); v += step) {
@@ -146,7 +147,7 @@ double block_variance(Grey image, int at_u, int at_v) {
       squares += row[x] * row[x];
     }
   }
-  return (squares - double{1} * sum * sum / pixels) / (pixels - 1);
+  return (squares - static_cast<double>(sum) * sum / pixels) / (pixels - 1);
 }
 
 /// Variance of the white noise of a view by the median variance of blocks of the road. Noise is what the mask responds
@@ -173,10 +174,10 @@ double block_excess(Grey image) {
   constexpr int block = 8;
   const int width = image.width();
   std::array<std::int64_t, block> steps{};
-  std::vector<std::int32_t> across(static_cast<std::size_t>(width));  // up to 2³¹ / grey_max rows
+  std::vector<std::int32_t> across(static_cast<std::size_t>(width));  // fits for up to 2³¹ / grey_max rows
+  std::int32_t* const columns = across.data();
   for (int v = 1; v < image.height(); ++v) {
     const std::int16_t *const above = image.row(v - 1), *const row = image.row(v);
-    std::int32_t* const columns = across.data();
     std::int32_t down = 0;
     for (int u = 1; u < width; ++u) {
       columns[u] += std::abs(row[u] - row[u - 1]);

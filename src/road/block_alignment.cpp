@@ -17,6 +17,8 @@ HWY_BEFORE_NAMESPACE();
 namespace roadstereo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+namespace {
+
 using Floats = hn::CappedTag<float, 8>;
 using Float = hn::Vec<Floats>;
 
@@ -37,7 +39,7 @@ struct Row {
 
 /// Sums over the columns' pixels of products of the two that they are named after, and those weighted by the row y or
 /// its square. The columns are added up last: a column's own coordinate is a factor of all its pixels.
-struct ColumnSums {
+struct BlockSums {
   Columns aa{}, ad{}, dd{}, ag{}, dg{}, gg{}, a{}, d{}, g{}, ar{}, dr{}, gr{}, r{};
   Columns y_aa{}, yy_aa{}, y_ad{}, y_ag{}, y_a{}, y_ar{};
 
@@ -109,9 +111,9 @@ class LeftBlock {
   std::array<Columns, 2 * max_radius + 1> rows_{};
 };
 
-/// A row of the right image between its rows, from a column on: grey levels, those of linear interpolation, and their
-/// slope down. What lies beside the columns that were read is finite.
-class RightRow {
+/// A row between those of the right image, from a column on: grey levels, those of linear interpolation, and their
+/// slope down. The last column that was read is there twice; what lies beside is finite.
+class BetweenRows {
  public:
   static constexpr int margin = 10;  ///< a block of 17 pixels that is stretched by half is so much wider
 
@@ -129,6 +131,9 @@ class RightRow {
       linear[i] = unit * (top + low * (bottom - top));
       down[i] = unit * (bottom - top);
     }
+    grey[count] = grey[count - 1];
+    linear[count] = linear[count - 1];
+    down[count] = down[count - 1];
   }
   /// At column i + offset.
   const float* grey(int offset) const { return grey_.data() + margin + offset; }
@@ -136,31 +141,31 @@ class RightRow {
   const float* down(int offset) const { return down_.data() + margin + offset; }
 
  private:
-  std::array<float, columns + 2 * margin + 2> grey_{}, linear_{}, down_{};
+  static constexpr std::size_t capacity = columns + std::size_t{2} * margin + 2;
+  std::array<float, capacity> grey_{}, linear_{}, down_{};
 };
 
 /// Adds what the columns i + offset and i + offset + 1 of a row give to pixel i of the block, which lies at column
 /// i + slide + i·stretch: linear interpolation as a sum over offsets, so that nothing is looked up.
-HWY_INLINE void add_columns(const RightRow& between, int offset, float slide, float stretch, Row& row) {
+HWY_INLINE void add_columns(const BetweenRows& between, int offset, float slide, float stretch, Row& row) {
   const Floats df;
-  const Float zero = hn::Zero(df), one = hn::Set(df, 1.0F);
+  const Float zero = hn::Zero(df), one = hn::Set(df, 1.0F), here = hn::Set(df, static_cast<float>(offset));
   const auto add = [df](float* to, Float value) { hn::StoreU(hn::Add(hn::LoadU(df, to), value), df, to); };
   for (std::size_t i = 0; i < columns; i += hn::Lanes(df)) {
-    const Float past = hn::MulAdd(hn::Iota(df, static_cast<float>(i)), hn::Set(df, stretch),
-                                  hn::Set(df, slide - static_cast<float>(offset)));
-    const Float weight = hn::Max(zero, hn::Sub(one, hn::Abs(past)));
+    const Float place = hn::MulAdd(hn::Iota(df, static_cast<float>(i)), hn::Set(df, stretch), hn::Set(df, slide));
+    const Float weight = hn::Max(zero, hn::Sub(one, hn::Abs(hn::Sub(place, here))));
     const Float slope =
         hn::Sub(hn::LoadU(df, between.linear(offset + 1) + i), hn::LoadU(df, between.linear(offset) + i));
     add(row.grey.data() + i, hn::Mul(weight, hn::LoadU(df, between.grey(offset) + i)));
     add(row.down.data() + i, hn::Mul(weight, hn::LoadU(df, between.down(offset) + i)));
-    add(row.across.data() + i, hn::IfThenElseZero(hn::And(hn::Ge(past, zero), hn::Lt(past, one)), slope));
+    add(row.across.data() + i, hn::IfThenElseZero(hn::Eq(hn::Floor(place), here), slope));
   }
 }
 
 /// Row y of the block in the right image under the parameters p; false when it leaves the image, or is stretched by
 /// more than half. `between` is scratch memory.
 bool sample_row(ImageView<const std::int16_t> right, const LeftBlock& block, const Parameters& p, int y,
-                RightRow& between, Row& row) {
+                BetweenRows& between, Row& row) {
   constexpr double max_stretch = 0.5;
   const double at_v = block.v() + y + p[1], step = 1 + p[3];
   const double start = block.u() - block.radius() * step + p[0] + p[2] * y, end = start + (block.width() - 1) * step;
@@ -172,10 +177,10 @@ bool sample_row(ImageView<const std::int16_t> right, const LeftBlock& block, con
   const auto slide = static_cast<float>(start - first), stretch = static_cast<float>(p[3]);
   const float last = slide + static_cast<float>(block.width() - 1) * stretch;
   row = {};
-  const int highest = static_cast<int>(std::floor(std::max(slide, last))) + 1;
-  for (int k = static_cast<int>(std::floor(std::min(slide, last))); k <= highest; ++k) {
-    add_columns(between, k, slide, stretch, row);
-  }
+  constexpr float rounding = 1e-5F;  // of the places in add_columns
+  const int lowest = static_cast<int>(std::floor(std::min(slide, last) - rounding));
+  const int highest = static_cast<int>(std::floor(std::max(slide, last) + rounding)) + 1;
+  for (int k = lowest; k <= highest; ++k) add_columns(between, k, slide, stretch, row);
   const auto mean = static_cast<float>(block.mean()), gain = static_cast<float>(p[4]),
              offset = static_cast<float>(p[5]);
   const Columns& left = block.row(y);
@@ -213,7 +218,7 @@ double moment(const Columns& sums, int radius, int power) {
 }
 
 /// Slopes of the residual: gain·a, gain·d, gain·a·y, gain·a·x, g, 1.
-Equations make_equations(const ColumnSums& s, const LeftBlock& block, const Parameters& p) {
+Equations make_equations(const BlockSums& s, const LeftBlock& block, const Parameters& p) {
   const double gain = p[4], offset = p[5], n = block.pixels();
   const int radius = block.radius();
   const auto x = [radius](const Columns& sums) { return moment(sums, radius, 1); };
@@ -235,8 +240,8 @@ Equations make_equations(const ColumnSums& s, const LeftBlock& block, const Para
 }
 
 std::optional<Equations> set_up(const LeftBlock& block, ImageView<const std::int16_t> right, const Parameters& p) {
-  ColumnSums sums;
-  RightRow between;
+  BlockSums sums;
+  BetweenRows between;
   Row row;
   for (int y = -block.radius(); y <= block.radius(); ++y) {
     if (!sample_row(right, block, p, y, between, row)) return std::nullopt;
@@ -244,6 +249,8 @@ std::optional<Equations> set_up(const LeftBlock& block, ImageView<const std::int
   }
   return make_equations(sums, block, p);
 }
+
+}  // namespace
 
 std::optional<BlockAlignment> align_block(ImageView<const std::int16_t> left, int u, int v,
                                           ImageView<const std::int16_t> right, const BlockAlignment& start,

@@ -20,8 +20,8 @@ struct BlockAlignment {
 };
 
 /// Refines `start` by least squares of the grey values (with gain and offset) over the block of the given radius, at
-/// most 8, around (u, v). Nothing when the block leaves the images, the fit does not converge within a pixel and a half
-/// of `start`, or the fitted block does not correlate.
+/// most 8, around (u, v). Nothing when the block leaves the images or is stretched by more than half, the fit does not
+/// converge within a pixel and a half of `start`, or the fitted block does not correlate.
 std::optional<BlockAlignment> affine_lucas_kanade(ImageView<const std::int16_t> left, int u, int v,
                                                   ImageView<const std::int16_t> right, const BlockAlignment& start,
                                                   int radius);

@@ -16,7 +16,8 @@ struct VDisparity {
 inline constexpr int line_sums_guard = 15;
 
 /// For each of `count` lines that have the disparity `bottom` in the last row and steps[k] less in every row above it,
-/// the sum of the values along it, in every `row_step`-th row from the last; nothing beyond the disparities 1 … last.
+/// the sum of the values at the nearest disparities, in every `row_step`-th row from the last; nothing beyond the
+/// disparities 1 … last. `steps` has numbers in its guard, too.
 void sum_along_lines(const VDisparity& image, float bottom, const float* steps, int count, int row_step, float* sums);
 
 }  // namespace roadstereo

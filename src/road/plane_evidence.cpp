@@ -49,16 +49,16 @@ class ShearedRows {
  public:
   /// `values` is memory for rows × disparities values.
   ShearedRows(const PlaneEvidence& grid, double slope, float* values)
-      : rows_(grid.rows()), disparities_(grid.disparities()), values_(values) {
-    std::fill_n(values_, size(grid), 0.0f);
+      : image_{values, grid.rows(), grid.disparities()} {
+    std::fill_n(values, size(grid), 0.0f);
     for (int c = 0; c < grid.columns(); ++c) {
       const double offset = slope * (grid.column(c) - grid.middle_column());
       const int whole = static_cast<int>(std::floor(offset));
       const float share = static_cast<float>(offset - whole);
-      const int first = std::max(0, -whole), last = std::min(disparities_, disparities_ - 1 - whole);
+      const int first = std::max(0, -whole), last = std::min(image_.disparities, image_.disparities - 1 - whole);
       for (int r = 0; r < grid.rows(); ++r) {
         const float* in = grid.values(r, c) + whole;
-        float* out = values_ + static_cast<std::ptrdiff_t>(r) * disparities_;
+        float* out = values + static_cast<std::ptrdiff_t>(r) * image_.disparities;
         for (int d = first; d < last; ++d) out[d] += (1 - share) * in[d] + share * in[d + 1];
       }
     }
@@ -67,11 +67,10 @@ class ShearedRows {
   static std::size_t size(const PlaneEvidence& grid) {
     return static_cast<std::size_t>(grid.rows()) * static_cast<std::size_t>(grid.disparities());
   }
-  VDisparity image() const { return {values_, rows_, disparities_}; }
+  const VDisparity& image() const { return image_; }
 
  private:
-  int rows_, disparities_;
-  float* values_;
+  VDisparity image_;
 };
 
 /// The best lines of one slope, one for each disparity of the lowest row.

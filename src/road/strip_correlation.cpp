@@ -28,8 +28,8 @@ void cut_block(ImageView<const std::int16_t> image, int u, int v, CorrelationBlo
   auto sum = hn::Zero(d32), squares = hn::Zero(d32);  // as unsigned numbers squares of at most 4080 fit
   for (int y = 0; y < block.height; ++y) {
     const std::int16_t* row = image.row(v + y) + u;
-    std::array<std::int16_t, CorrelationBlock::max_width + CorrelationBlock::guard> copied;
-    if (u + CorrelationBlock::guard > image.width()) {
+    std::array<std::int16_t, CorrelationBlock::whole_vectors> copied;
+    if (u + CorrelationBlock::whole_vectors > image.width()) {
       copied.fill(0);
       std::copy_n(row, block.width, copied.data());
       row = copied.data();
@@ -43,7 +43,9 @@ void cut_block(ImageView<const std::int16_t> image, int u, int v, CorrelationBlo
       hn::StoreU(hn::ConvertTo(df, grey), df, values + x);
     }
   }
-  const auto total = [d32](auto lanes_of) { return static_cast<unsigned>(hn::GetLane(hn::SumOfLanes(d32, lanes_of))); };
+  const auto total = [d32](hn::Vec<decltype(d32)> sums) {
+    return static_cast<unsigned>(hn::GetLane(hn::SumOfLanes(d32, sums)));
+  };
   const int pixels = block.width * block.height;
   const double mean = static_cast<double>(total(sum)) / pixels;
   block.deviation = static_cast<float>(block_deviation(total(squares), mean, pixels));

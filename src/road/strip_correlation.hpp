@@ -12,12 +12,13 @@ namespace roadstereo {
 struct CorrelationBlock {
   static constexpr int max_width = 15;
   static constexpr int max_height = 9;
-  static constexpr int guard = 16;  ///< elements behind the last row of values, written, and without effect
+  static constexpr int whole_vectors = 16;  ///< max_width up to whole vectors
 
   int width = 0;
   int height = 0;
-  float deviation = 0;                                                    ///< standard deviation of its grey levels
-  std::array<float, std::size_t{max_width} * max_height + guard> values;  ///< row by row, `width` apart
+  float deviation = 0;  ///< standard deviation of its grey levels
+  std::array<float, std::size_t{max_width} * max_height + whole_vectors>
+      values;  ///< row by row, `width` apart; what lies behind has no effect
 
   /// Cuts it out around (u, v), 2·half_width + 1 columns wide; the image must hold it whole.
   CorrelationBlock(ImageView<const std::int16_t> image, int u, int v, int half_width, int half_height);

@@ -76,7 +76,17 @@ TEST_P(AlignBlockTarget, FailsBeyondImages) {
   EXPECT_FALSE(affine_lucas_kanade(image, centre_u, radius - 1, image, {}, radius));
   EXPECT_FALSE(affine_lucas_kanade(image, centre_u, height - radius, image, {}, radius));
   EXPECT_FALSE(affine_lucas_kanade(image, radius + 2, centre_v, image, {.du = -3}, radius));
-  EXPECT_FALSE(affine_lucas_kanade(image, centre_u, centre_v, image, {.stretch = 1.6}, radius));
+}
+
+TEST_P(AlignBlockTarget, FailsWhereStretchedByMoreThanHalf) {
+  const GreyImage left = paint(texture);
+  const auto is_found = [&](double stretch) {
+    const BlockAlignment truth{.du = -3, .stretch = stretch};
+    return affine_lucas_kanade(left, centre_u, centre_v, warped(truth, 1, 0), truth, radius).has_value();
+  };
+  EXPECT_TRUE(is_found(0.4));
+  EXPECT_TRUE(is_found(-0.4));
+  EXPECT_FALSE(is_found(0.6));
 }
 
 TEST_P(AlignBlockTarget, FailsFarFromStart) {

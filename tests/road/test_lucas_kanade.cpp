@@ -117,28 +117,26 @@ TEST(LucasKanade, LeavesPixelsWithoutTextureOrDisparity) {
   EXPECT_EQ(aligned(120, 30), 6.2F);
 }
 
-// A texture whose deviation is less than what rounding to 8 bits leaves, 1/√12 of a grey level, and one of five times
-// that.
+// Textures whose deviation is less than that of rounding to 8 bits, 1/√12 of a grey level, and one of five times that.
 TEST(LucasKanade, LeavesContrastBelowRounding) {
-  const Image<float> disparity(width, height, 6.2F);
-  const auto aligned = [&](double deviation_grey) {
-    const test::TexturedPair full = test::textured_pair(width, height, [](double, double) { return 6.3; });
-    double sum = 0, squares = 0;
-    for (int v = 0; v < height; ++v) {
-      for (int u = 0; u < width; ++u) {
-        sum += full.target(u, v);
-        squares += std::pow(static_cast<double>(full.target(u, v)), 2);
-      }
-    }
-    const double mean = sum / (width * height), deviation = std::sqrt(squares / (width * height) - mean * mean);
-    const double contrast = deviation_grey * grey_scale / deviation;
-    return align(test::textured_pair(
-                     width, height, [](double, double) { return 6.3; }, 1, contrast),
-                 disparity);
+  const auto pair_of = [](double contrast) {
+    return test::textured_pair(
+        width, height, [](double, double) { return 6.3; }, 1, contrast);
   };
-  const double rounding = 1 / std::sqrt(12.0);
-  EXPECT_EQ(rms_error(aligned(0.5 * rounding), 6.2F), 0);
-  EXPECT_LT(rms_error(aligned(5 * rounding), 6.3), 0.03);
+  const GreyImage full = pair_of(1).target;
+  const double pixels = width * height;
+  double sum = 0, squares = 0;
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      sum += full(u, v);
+      squares += std::pow(static_cast<double>(full(u, v)), 2);
+    }
+  }
+  const double rounding = grey_scale / std::sqrt(12.0);
+  const double contrast = rounding / std::sqrt(squares / pixels - std::pow(sum / pixels, 2));
+  const Image<float> disparity(width, height, 6.2F);
+  EXPECT_EQ(rms_error(align(pair_of(0.5 * contrast), disparity), 6.2F), 0);
+  EXPECT_LT(rms_error(align(pair_of(5 * contrast), disparity), 6.3), 0.03);
 }
 
 TEST(LucasKanade, ChangesByNoMoreThanLimit) {

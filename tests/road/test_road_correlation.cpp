@@ -52,7 +52,7 @@ TEST_P(RoadCorrelationTarget, StripsMatchDefinitionAtEveryColumn) {
   EXPECT_EQ(correlations[3], -1);
 }
 
-// In the middle and in both corners, where whole vectors would leave the image.
+// In the middle and in two corners; from the lower right one whole vectors would leave the image.
 TEST_P(RoadCorrelationTarget, BlocksLoseTheirMean) {
   const auto pair = test::textured_pair(40, 20, [](double, double) { return 4; });
   for (const auto& [half_width, half_height] : {std::pair{7, 4}, std::pair{5, 4}, std::pair{4, 3}}) {
@@ -76,6 +76,16 @@ TEST_P(RoadCorrelationTarget, BlocksLoseTheirMean) {
       }
     }
   }
+}
+
+// The largest sum of squares, 135 · 4080², does not fit into 31 bits.
+TEST_P(RoadCorrelationTarget, WhiteBlockHasItsDeviation) {
+  GreyImage white(40, 20, static_cast<std::int16_t>(grey_max));
+  for (int v = 0; v < 20; ++v) white(20, v) = grey_max - 160;
+  const CorrelationBlock block(white, 20, 9, 7, 4);
+  EXPECT_NEAR(block.deviation, 160 * std::sqrt(14.0) / 15, 0.01);
+  EXPECT_NEAR(block.values[0], 160.0 / 15, 0.01);
+  EXPECT_NEAR(block.values[7], 160.0 / 15 - 160, 0.01);
 }
 
 TEST_P(RoadCorrelationTarget, StripsAreSampledBetweenPixels) {

@@ -128,8 +128,8 @@ struct AlignmentSettings {
 /// variance.
 template <class Number>
 ROADSTEREO_HD inline float alignment_shift(const AlignmentSums<Number>& sums, const AlignmentSettings& settings) {
-  // Rounding to 8 bits leaves a variance of 1/12 of a squared grey level. Windows with less, black or saturated ones,
-  // would follow the last bits of what was rounded since.
+  // The variance of rounding to 8 bits, 1/12 of a squared grey level. Windows whose filtered target varies by less,
+  // black or saturated ones, would follow the last bits of later roundings.
   constexpr Number rounding_variance = Number(81 * grey_scale * grey_scale) / 12, min_curvature = 1;
   constexpr Number pixels_per_sample = Number(81) / 19;  // noise that the prefilter has correlated: (Σ w)² / Σ w²
   if (!(sums.n >= min_alignment_samples)) return 0.0F;
