@@ -25,7 +25,8 @@ void cut_block(ImageView<const std::int16_t> image, int u, int v, CorrelationBlo
   const hn::Rebind<std::int16_t, Floats> d16;
   const hn::RebindToSigned<Floats> d32;
   const int lanes = static_cast<int>(hn::Lanes(df));
-  auto sum = hn::Zero(d32), squares = hn::Zero(d32);  // as unsigned numbers squares of at most 4080 fit
+  auto sum = hn::Zero(d32), squares = hn::Zero(d32);  // of 135 levels within ±2040: fits
+  const auto middle = hn::Set(d32, mid_grey);
   for (int y = 0; y < block.height; ++y) {
     const std::int16_t* row = image.row(v + y) + u;
     std::array<std::int16_t, CorrelationBlock::whole_vectors> copied;
@@ -37,18 +38,16 @@ void cut_block(ImageView<const std::int16_t> image, int u, int v, CorrelationBlo
     float* const values = block.values.data() + static_cast<std::ptrdiff_t>(y) * block.width;
     for (int x = 0; x < block.width; x += lanes) {
       const auto inside = hn::FirstN(d32, static_cast<std::size_t>(block.width - x));
-      const auto grey = hn::IfThenElseZero(inside, hn::PromoteTo(d32, hn::LoadU(d16, row + x)));
+      const auto grey = hn::IfThenElseZero(inside, hn::Sub(hn::PromoteTo(d32, hn::LoadU(d16, row + x)), middle));
       sum = hn::Add(sum, grey);
       squares = hn::Add(squares, hn::Mul(grey, grey));
       hn::StoreU(hn::ConvertTo(df, grey), df, values + x);
     }
   }
-  const auto total = [d32](hn::Vec<decltype(d32)> sums) {
-    return static_cast<unsigned>(hn::GetLane(hn::SumOfLanes(d32, sums)));
-  };
+  const auto total = [d32](hn::Vec<decltype(d32)> sums) { return hn::GetLane(hn::SumOfLanes(d32, sums)); };
   const int pixels = block.width * block.height;
   const double mean = static_cast<double>(total(sum)) / pixels;
-  block.deviation = static_cast<float>(block_deviation(total(squares), mean, pixels));
+  block.deviation = static_cast<float>(block_deviation(static_cast<unsigned>(total(squares)), mean, pixels));
   const Float subtracted = hn::Set(df, static_cast<float>(mean));
   for (int i = 0; i < pixels; i += lanes) {
     float* const at = block.values.data() + i;

@@ -78,7 +78,7 @@ TEST_P(RoadCorrelationTarget, BlocksLoseTheirMean) {
   }
 }
 
-// The largest sum of squares, 135 · 4080², does not fit into 31 bits.
+// The squares of its levels, 135 · 4080², would not fit into 31 bits.
 TEST_P(RoadCorrelationTarget, WhiteBlockHasItsDeviation) {
   GreyImage white(40, 20, static_cast<std::int16_t>(grey_max));
   for (int v = 0; v < 20; ++v) white(20, v) = grey_max - 160;
