@@ -4,8 +4,11 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 ./scripts/install_deps.sh
-cmake --preset release -DROADSTEREO_BUILD_TESTS=OFF -DROADSTEREO_BUILD_BENCHMARKS=OFF
-cmake --build --preset release -j "$(nproc)"
+# A build with tests stays one.
+options=()
+[ -f build/CMakeCache.txt ] || options=(-DROADSTEREO_BUILD_TESTS=OFF -DROADSTEREO_BUILD_BENCHMARKS=OFF)
+cmake --preset release "${options[@]}"
+cmake --build --preset release -j "$(nproc)" --target roadstereo_program
 
 build/bin/roadstereo synth --scene demo --output demo/road
 build/bin/roadstereo inspect demo/road/left.png demo/road/right.png --calibration demo/road/calibration.yaml \

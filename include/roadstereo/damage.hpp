@@ -94,8 +94,8 @@ struct DamageEvidence {
   double significance = 0;  ///< contrast times the root of the number of independent samples: support windows inside
   double steepness = 0;     ///< maximum of the mean slope on a contour, relative to a cone of the same area and depth
   double road_share = 0;    ///< share of the band around that is road, 0 … 1
-  double border_share = 0;  ///< share of the outline on the border of the image, 0 … 1
-  double unseen_share = 0;  ///< share of the outline on a gap that reaches the border: what is not seen, 0 … 1
+  double border_share = 0;  ///< share of the outline on the border of what both cameras see, 0 … 1
+  double unseen_share = 0;  ///< share of the outline on a gap that reaches that border: what is not seen, 0 … 1
   /// Standard errors by which the blocks inside correlate better between the pictures along the measured surface than
   /// along the undamaged road; NaN unknown. What one camera alone sees agrees along neither, the texture around it
   /// along the road.
@@ -123,7 +123,7 @@ struct Damage {
   double mean_depth_px = 0;             ///< mean |depth| over the pixels with a disparity
   double confidence = 0;                ///< that this is damage, 0 … 1: `DamageEvidence::confidence`
   DamageEvidence evidence;
-  bool cut_by_border = false;            ///< touches the border of the image: it may continue outside
+  bool cut_by_border = false;            ///< touches the border of what both cameras see: it may continue outside
   std::optional<DamageMetrics> metrics;  ///< absent without a calibration
 };
 

@@ -68,9 +68,10 @@ void bind_one_damage(py::module_& module) {
       .field("significance", &Evidence::significance, "Contrast times the root of the number of samples.")
       .field("steepness", &Evidence::steepness, "Maximum mean slope on a contour, relative to a cone.")
       .field("road_share", &Evidence::road_share, "Share of the band around that is road, 0 … 1.")
-      .field("border_share", &Evidence::border_share, "Share of the outline on the border of the image, 0 … 1.")
+      .field("border_share", &Evidence::border_share,
+             "Share of the outline on the border of what both cameras see, 0 … 1.")
       .field("unseen_share", &Evidence::unseen_share,
-             "Share of the outline on a gap of the map that reaches the border of the image, 0 … 1.")
+             "Share of the outline on a gap of the map that reaches that border, 0 … 1.")
       .field("surface_significance", &Evidence::surface_significance,
              "Standard errors by which the images agree better along the measured surface than the road; NaN unknown.")
       .field("depth_significance", &Evidence::depth_significance,
@@ -88,7 +89,7 @@ void bind_one_damage(py::module_& module) {
       .field("mean_depth_px", &Damage::mean_depth_px, "Mean depth over the pixels with a disparity, pixels.")
       .field("confidence", &Damage::confidence, "Probability that this is damage, 0 … 1.")
       .field("evidence", &Damage::evidence, "What the confidence rests on.")
-      .field("cut_by_border", &Damage::cut_by_border, "Whether it touches the border of the image.")
+      .field("cut_by_border", &Damage::cut_by_border, "Whether it touches the border of what both cameras see.")
       .field("metrics", &Damage::metrics, "Metric properties; None without a calibration.");
 }
 

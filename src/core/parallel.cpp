@@ -23,9 +23,9 @@ namespace roadstereo {
 namespace {
 
 /// The arena that this thread last used; making one for every call would allocate.
-tbb::task_arena& arena_of(int workers) {
-  // More workers than cores gain nothing, and TBB complains about them on stderr.
-  const int concurrency = std::min(workers, tbb::info::default_concurrency());
+tbb::task_arena& arena_of(int threads) {
+  // More threads than cores gain nothing, and TBB complains about them on stderr.
+  const int concurrency = std::min(threads, tbb::info::default_concurrency());
   thread_local std::optional<tbb::task_arena> arena;
   if (!arena || arena->max_concurrency() != concurrency) arena.emplace(concurrency);
   return *arena;
@@ -43,8 +43,8 @@ int resolve_threads(int threads) {
 }
 
 void parallel_for(int count, int threads, FunctionRef<void(int, int)> body) {
-  const int workers = std::min(resolve_threads(threads), count);
-  if (workers <= 1) {
+  const int available = resolve_threads(threads);
+  if (std::min(available, count) <= 1) {
     for (int i = 0; i < count; ++i) body(i, 0);
     return;
   }
@@ -58,7 +58,7 @@ void parallel_for(int count, int threads, FunctionRef<void(int, int)> body) {
         },
         tbb::simple_partitioner{});
   };
-  arena_of(workers).execute(run);
+  arena_of(available).execute(run);  // of one size whatever the count, so that it is kept
 #else
   std::atomic<int> next{0};
   std::exception_ptr first_error;
@@ -76,7 +76,7 @@ void parallel_for(int count, int threads, FunctionRef<void(int, int)> body) {
   };
   {
     std::vector<std::jthread> pool;
-    for (int t = 1; t < workers; ++t) pool.emplace_back(work, t);
+    for (int t = 1; t < std::min(available, count); ++t) pool.emplace_back(work, t);
     work(0);
   }
   if (first_error) std::rethrow_exception(first_error);

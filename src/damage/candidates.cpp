@@ -52,6 +52,7 @@ std::uint8_t label_of(DamageKind kind) {
 struct SearchInput {
   DepthCells& depth_cells;  ///< `remove_outliers` changes it
   const Image<std::uint8_t>& road;
+  const CommonView& view;
   const Image<std::uint8_t>& deep_gaps;  ///< 255 in gaps that belong to a depression
   const Image<std::uint8_t>& unseen;     ///< 255 in other gaps that touch the border: what is not seen, or off road
   const Thresholds& thresholds;
@@ -68,6 +69,24 @@ struct SearchImages {
 
   DepthField field() { return {depth, allowed, visited}; }
 };
+
+/// Gaps in the view: 0 where there is no measurement.
+Image<std::uint8_t> gaps_in_view(const Image<std::uint8_t>& valid, const CommonView& view) {
+  Image<std::uint8_t> mask(valid.width(), valid.height());
+  std::copy_n(valid.row(0), valid.pixels(), mask.row(0));
+  for (int j = 0; j < mask.height(); ++j) std::fill_n(mask.row(j), view.first_column(j), std::uint8_t{255});
+  return mask;
+}
+
+/// Whether a gap reaches the border of the view.
+bool is_cut(const ConnectedComponent& gap, const CommonView& view) {
+  return std::any_of(gap.runs.begin(), gap.runs.end(), [&](const CellRun& run) {
+    for (int i = run.first; i <= run.last; ++i) {
+      if (view.is_on_border(i, run.row)) return true;
+    }
+    return false;
+  });
+}
 
 /// Whether a gap belongs to a depression: most cells around it are deep. One in the intact road belongs to none.
 bool is_deep(const ConnectedComponent& gap, const DepthCells& cells, const Thresholds& thresholds) {
@@ -154,8 +173,8 @@ bool overlaps_other(const Candidate& candidate, const Image<std::uint8_t>& assig
   return false;
 }
 
-/// Remove assigned cells, and recompute the bounding box and the size.
-void update_extent(Candidate& candidate, const Image<std::uint8_t>& assigned) {
+/// Remove assigned cells and those outside the view, and recompute the bounding box and the size.
+void update_extent(Candidate& candidate, const CommonView& view, const Image<std::uint8_t>& assigned) {
   const CellBox around = candidate.box();
   CellBox box;
   candidate.size = 0;
@@ -163,7 +182,7 @@ void update_extent(Candidate& candidate, const Image<std::uint8_t>& assigned) {
     std::uint8_t* const cells = candidate.cells.cells().row(j - around.first_row);
     const std::uint8_t* const labels = assigned.row(j) + around.first_column;
     for (int i = 0; i < around.columns(); ++i) {
-      if (labels[i] != 0) cells[i] = 0;
+      if (labels[i] != 0 || !view.contains(around.first_column + i, j)) cells[i] = 0;
       if (cells[i] == 0) continue;
       box.add(around.first_column + i, j);
       ++candidate.size;
@@ -185,11 +204,11 @@ void extend_region(const SearchInput& input, SearchImages& images, Candidate& ca
                    candidate.cells);
   }
   fill_holes(candidate.cells.cells(), max_hole);
-  update_extent(candidate, images.assigned);
+  update_extent(candidate, input.view, images.assigned);
   if (candidate.size == 0 || candidate.kind == DamageKind::protrusion || input.image_edges.grey.empty()) return;
   refine_outline_by_image(input.image_edges, images.depth.width(), images.depth.height(), candidate.cells);
   fill_holes(candidate.cells.cells(), max_hole);
-  update_extent(candidate, images.assigned);
+  update_extent(candidate, input.view, images.assigned);
 }
 
 /// Segment the region around a core. If it runs into another damage or an obstacle, the level is raised above the
@@ -216,16 +235,17 @@ Candidate segment(const SearchInput& input, const ConnectedComponent& core, Dama
   return candidate;
 }
 
-/// Shares of the contour of a region, with its cells at the border of the image, on that border and on that of what is
+/// Shares of the contour of a region, with its cells at the border of the view, on that border and on that of what is
 /// seen: the rim of a damage is not known there.
-void measure_border(const BoxMask& region, const Image<std::uint8_t>& unseen, DamageEvidence& evidence) {
+void measure_border(const BoxMask& region, const CommonView& view, const Image<std::uint8_t>& unseen,
+                    DamageEvidence& evidence) {
   const int columns = unseen.width(), rows = unseen.height();
   const CellBox& box = region.box();
   double contour = 0, on_border = 0, on_gap = 0;
   for (int j = box.first_row; j <= box.last_row; ++j) {
     for (int i = box.first_column; i <= box.last_column; ++i) {
       if (!region(i, j)) continue;
-      const bool at_border = i == 0 || j == 0 || i + 1 == columns || j + 1 == rows;
+      const bool at_border = view.is_on_border(i, j);
       bool at_gap = false;
       for_each_neighbour(i, j, columns, rows, [&](int x, int y) { at_gap |= unseen(x, y) != 0; });
       if (!at_border && !at_gap && !is_on_contour(region, i, j, columns, rows)) continue;
@@ -239,8 +259,8 @@ void measure_border(const BoxMask& region, const Image<std::uint8_t>& unseen, Da
   evidence.unseen_share = on_gap / contour;
 }
 
-/// Share of the band around a candidate that is road, or a hollow no deeper than the outline. Cells of other damages do
-/// not count; 1 if no cell is left.
+/// Share of the band around a candidate that is road, or a hollow no deeper than the outline. Cells of other damages
+/// and outside the view do not count; 1 if no cell is left.
 double road_share(const SearchInput& input, const Candidate& candidate, const Image<std::uint8_t>& assigned) {
   const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
   const int margin = std::max(constants.min_margin_cells, static_cast<int>(constants.margin_radii * radius));
@@ -256,7 +276,7 @@ double road_share(const SearchInput& input, const Candidate& candidate, const Im
   for (int j = around.first_row; j <= around.last_row; ++j) {
     for (int i = around.first_column; i <= around.last_column; ++i) {
       const bool other_damage = assigned(i, j) != 0 && assigned(i, j) != obstacle_label;
-      if (!dilated(i, j) || candidate.cells(i, j) || other_damage) continue;
+      if (!dilated(i, j) || candidate.cells(i, j) || other_damage || !input.view.contains(i, j)) continue;
       ++cells;
       if (input.depth_cells.valid(i, j) == 0) continue;
       const float depth = sign * input.depth_cells.depth(i, j);
@@ -286,7 +306,7 @@ void add_evidence(const SearchInput& input, SearchImages& images, Candidate& can
   evidence.contrast_sigmas = (damage.median - around.median) / std::max(around.sigma, input.depth_cells.noise);
   evidence.significance = evidence.contrast_sigmas * std::sqrt(samples);
   evidence.road_share = road_share(input, candidate, images.assigned);
-  measure_border(candidate.cells, input.unseen, evidence);
+  measure_border(candidate.cells, input.view, input.unseen, evidence);
 }
 
 /// Assign the cells of a candidate to its kind.
@@ -368,18 +388,18 @@ void find_kind(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& a
 
 }  // namespace
 
-std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road,
+std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road, const CommonView& view,
                                        const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions) {
-  const ConnectedComponents gaps(depth_cells.valid, ConnectedComponents::Foreground::zero);
+  const ConnectedComponents gaps(gaps_in_view(depth_cells.valid, view), ConnectedComponents::Foreground::zero);
   Image<std::uint8_t> deep_gaps(road.width(), road.height(), 0), unseen = deep_gaps;
   for (const ConnectedComponent& gap : gaps) {
     if (is_deep(gap, depth_cells, thresholds)) {
       fill_component(gap, 255, deep_gaps);
-    } else if (gap.touches_border) {
+    } else if (is_cut(gap, view)) {
       fill_component(gap, 255, unseen);
     }
   }
-  const SearchInput input{depth_cells, road, deep_gaps, unseen, thresholds, image_edges};
+  const SearchInput input{depth_cells, road, view, deep_gaps, unseen, thresholds, image_edges};
   std::vector<Candidate> found;
   Image<std::uint8_t> assigned(road.width(), road.height(), 0);
   find_kind(input, DamageKind::depression, assigned, found);

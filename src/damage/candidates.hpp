@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "damage/box_mask.hpp"
+#include "damage/common_view.hpp"
 #include "damage/depth_cells.hpp"
 #include "damage/image_outline.hpp"
 #include "damage/thresholds.hpp"
@@ -29,7 +30,7 @@ struct Candidate {
 /// Find candidates: connected components deeper than the thresholds (cores), extended to their outlines, with the
 /// evidence that they are damage. Depressions come first, each kind by decreasing size of the core. Regions do not
 /// overlap. Outliers in them, deeper than a damage can be, become gaps of `depth_cells` at the depth of the floor.
-std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road,
+std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road, const CommonView& view,
                                        const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions);
 
 }  // namespace roadstereo

@@ -7,6 +7,7 @@
 #include "core/require_range.hpp"
 #include "damage/candidates.hpp"
 #include "damage/cells.hpp"
+#include "damage/common_view.hpp"
 #include "damage/damage_maps.hpp"
 #include "damage/depth_cells.hpp"
 #include "damage/measurement.hpp"
@@ -79,7 +80,7 @@ void search_and_fill(const DamageInput& input, const DamageOptions& options, con
   const int bands = (height + rows_per_band - 1) / rows_per_band;
   parallel_for(bands + 2, threads, [&](int task, int) {
     if (task == 0) {
-      segmentation.candidates = find_candidates(depth_cells, segmentation.road, thresholds,
+      segmentation.candidates = find_candidates(depth_cells, segmentation.road, segmentation.view, thresholds,
                                                 make_image_edges(input, segmentation.cells), options.protrusions);
     } else if (task == 1) {
       if (result.metric) geometry.emplace(input);
@@ -125,6 +126,8 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
   require_input(input);
   Cells cells = make_cells(input.transformed, input.sigma,
                            cell_factor(input.transformed.width(), input.transformed.height()), threads);
+  const CommonView view(input, cells);
+  view.remove_outside(cells);
   const SurfaceCoordinates coordinates = surface_coordinates(cells, input, threads);
   const RoadSurface surface = find_road_surface(input, coordinates, threads, cells);
   const Image<std::uint8_t> road = find_road_region(cells, surface, threads);
@@ -133,7 +136,7 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
   result.metric = result.non_metric_reason.empty();
   result.noise_px = surface.noise;
   const Thresholds thresholds(input, options, cells, coordinates, depth_cells.noise, result.metric);
-  Segmentation segmentation{cells, surface, road, depth_cells, {}};
+  Segmentation segmentation{cells, view, surface, road, depth_cells, {}};
   std::optional<FrameGeometry> geometry;
   search_and_fill(input, options, thresholds, depth_cells, threads, segmentation, geometry, result);
   measure_damage(input, options, segmentation, geometry, threads, result);

@@ -35,7 +35,6 @@ void add_run(const DamageInput& input, const DamageMap& maps, int v, int first, 
   damage.pixels += static_cast<std::size_t>(count);
   sums.u += static_cast<std::int64_t>(first + last) * count / 2;
   sums.v += static_cast<std::int64_t>(v) * count;
-  if (first == 0 || v == 0 || last + 1 == maps.ids.width() || v + 1 == maps.ids.height()) damage.cut_by_border = true;
   const float *const transformed = input.transformed.row(v), *const depth = maps.depth.row(v);
   for (int u = first; u <= last; ++u) {
     if (!std::isfinite(transformed[u])) continue;
@@ -108,6 +107,7 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   damage.id = static_cast<int>(k + 1);
   damage.kind = candidate.kind;
   damage.evidence = candidate.evidence;
+  damage.cut_by_border = candidate.evidence.border_share > 0;
   const PixelBox box = pixel_box(candidate, segmentation.cells);
   damage.evidence.surface_significance = surface_significance(input, maps, damage.id, box, offset.value);
   damage.confidence = damage.evidence.confidence();

@@ -13,6 +13,7 @@ namespace roadstereo {
 /// Result of the segmentation, in cells.
 struct Segmentation {
   const Cells& cells;
+  const CommonView& view;
   const RoadSurface& surface;
   const Image<std::uint8_t>& road;
   const DepthCells& depth_cells;

@@ -203,7 +203,7 @@ CoarseMatches match_coarsely(ImageView<const std::int16_t> left, ImageView<const
   const SmallPair pair{PaddedImage(left, factor, layout), PaddedImage(right, factor, layout),
                        MaskedBlocks(mask, factor), layout, factor};
   const int bands = (rows + band_rows - 1) / band_rows;
-  const int workers = std::min(resolve_threads(threads), bands);
+  const int workers = resolve_threads(threads);
   std::pmr::vector<BandMemory> memory(ScratchScope::memory());
   memory.reserve(static_cast<std::size_t>(workers));
   for (int worker = 0; worker < workers; ++worker) memory.emplace_back(layout);

@@ -222,6 +222,45 @@ TEST(FindDamage, RaggedHoleIsFoundWhereBorderCutsIt) {
   }
 }
 
+/// The right camera sees the road from column 50 on; left of it a quarter of the pixels have accidental matches below
+/// the road. The border of that view cuts a pothole as the border of the image does.
+TEST(FindDamage, HoleIsFoundWhereViewOfRightCameraCutsIt) {
+  constexpr int width = 640, height = 360, first_u = 50, radius = 60;
+  const Image<std::int16_t> right(width, height, std::int16_t{0});
+  for (const int centre_u : {first_u + 40, first_u + 10, first_u - 10}) {
+    Image<float> transformed(width, height, 30.0F);
+    Image<std::uint8_t> inside(width, height, 0);
+    std::mt19937 random(7);
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        if (std::hypot(u - centre_u, v - 180) <= radius) transformed(u, v) -= 6;
+        if (u >= first_u) {
+          inside(u, v) = transformed(u, v) < 30 ? 255 : 0;
+        } else {
+          const auto draw = random() % 1000;
+          transformed(u, v) = draw < 250 ? 18 + static_cast<float>(draw % 10) : std::numeric_limits<float>::quiet_NaN();
+        }
+      }
+    }
+    transformed = with_noise(transformed, 0.05);
+    DamageInput input;
+    input.transformed = transformed;
+    input.right = right;
+    input.plane = DisparityPlane{first_u, 0, 0};
+    const DamageMap map = find_damage(input);
+    ASSERT_EQ(map.damages.size(), 1U) << centre_u;
+    const Damage& hole = map.damages[0];
+    EXPECT_TRUE(hole.cut_by_border);
+    EXPECT_EQ(hole.evidence.unseen_share, 0);
+    // Chord and arc of the circle.
+    const double half_angle = std::acos(static_cast<double>(first_u - centre_u) / radius),
+                 chord = 2 * std::sin(half_angle);
+    EXPECT_NEAR(hole.evidence.border_share, chord / (chord + 2 * half_angle), 0.08) << centre_u;
+    EXPECT_NEAR(hole.evidence.road_share, 1, 0.05);
+    EXPECT_GT(f_of(map, inside), 0.9) << centre_u;
+  }
+}
+
 /// A gap that reaches the border of the image cuts a pothole through its middle: its rim is not known there. The same
 /// cut by a gap that the road encloses is none.
 TEST(FindDamage, GapThatReachesBorderIsBorder) {

@@ -104,7 +104,8 @@ std::string scale_html(double max_depth) {
 
 std::string note_of(const Damage& damage) {
   std::string note = damage.metrics ? distress_reason(*damage.metrics) : "";
-  if (damage.cut_by_border) note += (note.empty() ? "" : "; ") + std::string("cut by the image border: may be larger");
+  if (damage.cut_by_border)
+    note += (note.empty() ? "" : "; ") + std::string("cut by the border of the view: may be larger");
   return note;
 }
 

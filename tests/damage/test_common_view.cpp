@@ -1,0 +1,76 @@
+// Where both cameras see the road, against the plane solved for the column.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "damage/common_view.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Cells of 2×2 pixels of a pair on a tilted plane. The right image shows the road from u − d(u, v) = 0 on, which is
+/// u = (10 + 0.2 v) / (1 − 0.25).
+struct TiltedRoad {
+  Image<float> transformed{120, 80, 30.0F};
+  Image<std::int16_t> right{120, 80, std::int16_t{0}};
+  Cells cells;
+  DamageInput input;
+
+  TiltedRoad() {
+    for (int u = 0; u < transformed.width(); u += 3) transformed(u, 0) = 31;
+    cells = make_cells(transformed, {}, 2, 1);
+    input.transformed = transformed;
+    input.right = right;
+    input.plane = DisparityPlane{10, 0.2, 0.25};  // of rows, of columns
+  }
+  static double first_u(double v) { return (10 + 0.2 * v) / 0.75; }
+};
+
+TEST(CommonView, BeginsWhereMatchOfRoadEntersRightImage) {
+  const TiltedRoad scene;
+  const CommonView view(scene.input, scene.cells);
+  for (int j = 0; j < scene.cells.height(); ++j) {
+    const double first_u = TiltedRoad::first_u(2 * j + 0.5);  // a cell's middle is at 2 i + 0.5, 2 j + 0.5
+    EXPECT_EQ(view.first_column(j), static_cast<int>(std::ceil((first_u - 0.5) / 2))) << j;
+    EXPECT_FALSE(view.contains(view.first_column(j) - 1, j));
+    EXPECT_TRUE(view.contains(view.first_column(j), j));
+    EXPECT_TRUE(view.is_on_border(view.first_column(j), j));
+  }
+  EXPECT_FALSE(view.is_on_border(40, 20));
+  EXPECT_TRUE(view.is_on_border(59, 20));
+  EXPECT_TRUE(view.is_on_border(40, 0));
+  EXPECT_TRUE(view.is_on_border(40, 39));
+}
+
+TEST(CommonView, IsWholeImageWithoutPlaneOrRightImage) {
+  TiltedRoad scene;
+  scene.input.plane.reset();
+  EXPECT_EQ(CommonView(scene.input, scene.cells).first_column(20), 0);
+  scene.input.plane = DisparityPlane{10, 0.2, 0.25};
+  scene.input.right = {};
+  EXPECT_EQ(CommonView(scene.input, scene.cells).first_column(20), 0);
+}
+
+TEST(CommonView, RemovesOnlyWhatIsOutside) {
+  TiltedRoad scene;
+  const CommonView view(scene.input, scene.cells);
+  view.remove_outside(scene.cells);
+  for (int j = 0; j < scene.cells.height(); ++j) {
+    for (int i = 0; i < scene.cells.width(); ++i) {
+      EXPECT_EQ(std::isnan(scene.cells.value(i, j)), i < view.first_column(j));
+    }
+  }
+}
+
+TEST(CommonView, RoadThatIsTooCloseIsNowhereInView) {
+  TiltedRoad scene;
+  scene.input.plane = DisparityPlane{200, 0, 0};
+  const CommonView view(scene.input, scene.cells);
+  EXPECT_EQ(view.first_column(0), scene.cells.width());
+  view.remove_outside(scene.cells);
+  EXPECT_TRUE(std::isnan(scene.cells.value(59, 39)));
+}
+
+}  // namespace
+}  // namespace roadstereo
