@@ -78,10 +78,19 @@ BoxMap smooth_grey_cells(const ImageEdges& image_edges, const CellBox& box, int 
   return result;
 }
 
+/// Log of the ratio of the likelihoods of a grey level under two normal distributions.
+double log_ratio(double grey, const RobustNormal& one, const RobustNormal& other) {
+  constexpr double min_sigma = 1;  // the unit, 1/16 grey level
+  const double sigma = std::max(one.sigma, min_sigma), other_sigma = std::max(other.sigma, min_sigma);
+  const double from_one = (grey - one.median) / sigma, from_other = (grey - other.median) / other_sigma;
+  return 0.5 * (from_other * from_other - from_one * from_one) + std::log(other_sigma / sigma);
+}
+
 }  // namespace
 
 void refine_outline_by_image(const ImageEdges& image_edges, int columns, int rows, BoxMask& region) {
-  constexpr double min_difference = 1.5;  // standard deviations
+  // One nat for the disparities: most of these cells were measured on the road.
+  constexpr double min_log_ratio = 1;
   constexpr std::size_t min_samples = 30;
   const int radius = image_edges.window_radius;
   const CellBox around = region.box().grown(3 * radius, columns, rows);
@@ -91,17 +100,17 @@ void refine_outline_by_image(const ImageEdges& image_edges, int columns, int row
   const RobustNormal inside = tone_of(grey, erode(region, 2, around), nullptr);
   const RobustNormal outside = tone_of(grey, far, &near);
   if (inside.samples < min_samples || outside.samples < min_samples) return;
-  const double sigma = std::sqrt(0.5 * (inside.sigma * inside.sigma + outside.sigma * outside.sigma));
-  if (std::abs(inside.median - outside.median) < min_difference * sigma || sigma == 0) return;
-  const double threshold = threshold_between(inside, outside);
   const bool is_dark = inside.median < outside.median;
+  const auto is_inside = [&](float level) {
+    return (level < outside.median) == is_dark && log_ratio(level, inside, outside) >= min_log_ratio;
+  };
   std::vector<CellIndex> front = contour_cells(region, columns, rows);
   region = region.cropped(around);
   while (!front.empty()) {
     const CellIndex cell = front.back();
     front.pop_back();
     for_each_neighbour(cell.column, cell.row, columns, rows, [&](int i, int j) {
-      if (region(i, j) || !near(i, j) || (grey(i, j) < threshold) != is_dark) return;
+      if (region(i, j) || !near(i, j) || !is_inside(grey(i, j))) return;
       region.set(i, j);
       front.push_back({i, j});
     });

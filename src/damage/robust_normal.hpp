@@ -22,11 +22,4 @@ inline RobustNormal robust_normal(std::vector<float>& values) {
   return {median, gaussian_mad * binned_median(values), values.size()};
 }
 
-/// Value at equal distance from both medians in standard deviations; the middle where both sigmas are 0.
-inline double threshold_between(const RobustNormal& one, const RobustNormal& other) {
-  const double sum = one.sigma + other.sigma;
-  if (!(sum > 0)) return 0.5 * (one.median + other.median);
-  return (one.median * other.sigma + other.median * one.sigma) / sum;
-}
-
 }  // namespace roadstereo
