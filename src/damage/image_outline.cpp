@@ -89,8 +89,8 @@ double log_ratio(double grey, const RobustNormal& one, const RobustNormal& other
 }  // namespace
 
 void refine_outline_by_image(const ImageEdges& image_edges, int columns, int rows, BoxMask& region) {
-  // One nat for the disparities: most of these cells were measured on the road.
-  constexpr double min_log_ratio = 1;
+  // For the disparities: most of these cells were measured on the road.
+  constexpr double min_log_ratio = 1.5;
   constexpr std::size_t min_samples = 30;
   const int radius = image_edges.window_radius;
   const CellBox around = region.box().grown(3 * radius, columns, rows);

@@ -52,16 +52,16 @@ int joined(const Image<std::int16_t>& grey, int& all) {
   return count;
 }
 
-// At the median inside the log of the likelihood ratio is ½ d², d the difference of the tones in standard deviations: 1
-// nat at √2.
-TEST(ImageOutline, GrowsWhereTonesDifferByMoreThanRootTwo) {
+// At the median inside the log of the likelihood ratio is ½ d², d the difference of the tones in standard
+// deviations: 1.5 at √3.
+TEST(ImageOutline, GrowsWhereTonesDifferByMoreThanRootThree) {
   int all = 0;
-  EXPECT_EQ(joined(dark_square(1.7), all), all);
-  EXPECT_EQ(joined(dark_square(-1.7), all), all);  // brighter than the road
-  EXPECT_EQ(joined(dark_square(1.15), all), 0);
+  EXPECT_EQ(joined(dark_square(2), all), all);
+  EXPECT_EQ(joined(dark_square(-2), all), all);  // brighter than the road
+  EXPECT_EQ(joined(dark_square(1.45), all), 0);
 }
 
-// Elsewhere it is d (d/2 − x), x standard deviations above that median: with d = 4 it is 1 at 1.75.
+// Elsewhere it is d (d/2 − x), x standard deviations above that median: with d = 4 it is 1.5 at 1.625.
 TEST(ImageOutline, GrowsLessTowardsToneOfRoad) {
   int all = 0;
   EXPECT_EQ(joined(dark_square(4, 1.4), all), all);
