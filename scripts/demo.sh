@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 ./scripts/install_deps.sh
-# A build with tests stays one.
+# An existing build keeps its options.
 options=()
 [ -f build/CMakeCache.txt ] || options=(-DROADSTEREO_BUILD_TESTS=OFF -DROADSTEREO_BUILD_BENCHMARKS=OFF)
 cmake --preset release "${options[@]}"

@@ -46,10 +46,11 @@ struct DamageInput {
   ImageView<const float> disparity;    ///< ℓ, pixels; required for metric results
   ImageView<const float> sigma;  ///< standard error of ℓ, pixels; when absent, noise is estimated from `transformed`
   int smoothing_px = 0;          ///< RefinementOptions::smoothing_px of `sigma`, 0 … 32; 0: `sigma` is noise alone
-  ImageView<const std::int16_t> grey;   ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
-  ImageView<const std::int16_t> right;  ///< right image; with `grey`, tells what one camera alone sees from damage
-  Misalignment misalignment;            ///< of `right`, as `disparity` has it undone
-  std::optional<DisparityPlane> plane;  ///< the road's plane in ℓ; required for metric results
+  ImageView<const std::int16_t> grey;  ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
+  ImageView<const std::int16_t>
+      right;  ///< right image: the view ends with it; with `grey`, tells what one camera sees from damage
+  Misalignment misalignment;                     ///< of `right`, as `disparity` has it undone
+  std::optional<DisparityPlane> plane;           ///< the road's plane in ℓ; required for metric results
   std::optional<StereoCalibration> calibration;  ///< required for metric results
 };
 

@@ -43,8 +43,8 @@ int resolve_threads(int threads) {
 }
 
 void parallel_for(int count, int threads, FunctionRef<void(int, int)> body) {
-  const int available = resolve_threads(threads);
-  if (std::min(available, count) <= 1) {
+  const int available = resolve_threads(threads), workers = std::min(available, count);
+  if (workers <= 1) {
     for (int i = 0; i < count; ++i) body(i, 0);
     return;
   }
@@ -76,7 +76,7 @@ void parallel_for(int count, int threads, FunctionRef<void(int, int)> body) {
   };
   {
     std::vector<std::jthread> pool;
-    for (int t = 1; t < std::min(available, count); ++t) pool.emplace_back(work, t);
+    for (int t = 1; t < workers; ++t) pool.emplace_back(work, t);
     work(0);
   }
   if (first_error) std::rethrow_exception(first_error);

@@ -20,8 +20,8 @@ struct SegmentationConstants {
   // Gaps without a measurement that belong to a depression: occluded or dark walls.
   float gap_depth_share = 0.5F;      ///< of the minimum depth of a core, from which a neighbour of the gap is deep
   double min_deep_gap_share = 0.35;  ///< of the neighbours of an enclosed gap that must be deep
-  double min_deep_cut_share = 0.6;   ///< of those of a gap that the border of the image cuts
-  std::size_t max_cut_divisor = 20;  ///< and that is up to 1/20 of the image
+  double min_deep_cut_share = 0.6;   ///< of those of a gap that the border of the image cuts, not only that of the view
+  std::size_t max_cut_divisor = 20;  ///< a gap that either cuts is up to 1/20 of the image
 
   // Extent of a region.
   float min_core_area_share = 0.1F;  ///< of the minimum area of a damage, for its core
@@ -53,8 +53,9 @@ struct SearchInput {
   DepthCells& depth_cells;  ///< `remove_outliers` changes it
   const Image<std::uint8_t>& road;
   const CommonView& view;
+  const Image<std::uint8_t>& known;      ///< 0 in gaps of the view
   const Image<std::uint8_t>& deep_gaps;  ///< 255 in gaps that belong to a depression
-  const Image<std::uint8_t>& unseen;     ///< 255 in other gaps that touch the border: what is not seen, or off road
+  const Image<std::uint8_t>& unseen;     ///< 255 in other gaps that touch its border: what is not seen, or off road
   const Thresholds& thresholds;
   const ImageEdges& image_edges;
 };
@@ -70,8 +71,8 @@ struct SearchImages {
   DepthField field() { return {depth, allowed, visited}; }
 };
 
-/// Gaps in the view: 0 where there is no measurement.
-Image<std::uint8_t> gaps_in_view(const Image<std::uint8_t>& valid, const CommonView& view) {
+/// Mask of the gaps in the view, 0 where there is no measurement.
+Image<std::uint8_t> known_cells(const Image<std::uint8_t>& valid, const CommonView& view) {
   Image<std::uint8_t> mask(valid.width(), valid.height());
   std::copy_n(valid.row(0), valid.pixels(), mask.row(0));
   for (int j = 0; j < mask.height(); ++j) std::fill_n(mask.row(j), view.first_column(j), std::uint8_t{255});
@@ -88,9 +89,10 @@ bool is_cut(const ConnectedComponent& gap, const CommonView& view) {
   });
 }
 
-/// Whether a gap belongs to a depression: most cells around it are deep. One in the intact road belongs to none.
-bool is_deep(const ConnectedComponent& gap, const DepthCells& cells, const Thresholds& thresholds) {
-  if (gap.touches_border && gap.size > cells.valid.pixels() / constants.max_cut_divisor) return false;
+/// Whether a gap, cut by the border of the view or not, belongs to a depression: most cells around it are deep. One in
+/// the intact road belongs to none.
+bool is_deep(const ConnectedComponent& gap, bool cut, const DepthCells& cells, const Thresholds& thresholds) {
+  if (cut && gap.size > cells.valid.pixels() / constants.max_cut_divisor) return false;
   int neighbours = 0;
   int deep = 0;
   for_each_neighbour(gap, cells.valid.width(), cells.valid.height(), [&](int i, int j) {
@@ -200,8 +202,7 @@ void extend_region(const SearchInput& input, SearchImages& images, Candidate& ca
     grow_to_wall_foot(images.field(), candidate.level, min_depth, candidate.cells);
   } else if (candidate.kind == DamageKind::depression) {
     const float min_depth = constants.min_level_sigmas * static_cast<float>(input.depth_cells.noise);
-    grow_over_gaps(images.field(), input.depth_cells.valid, min_depth, input.image_edges.window_radius,
-                   candidate.cells);
+    grow_over_gaps(images.field(), input.known, min_depth, input.image_edges.window_radius, candidate.cells);
   }
   fill_holes(candidate.cells.cells(), max_hole);
   update_extent(candidate, input.view, images.assigned);
@@ -390,16 +391,18 @@ void find_kind(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& a
 
 std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road, const CommonView& view,
                                        const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions) {
-  const ConnectedComponents gaps(gaps_in_view(depth_cells.valid, view), ConnectedComponents::Foreground::zero);
+  const Image<std::uint8_t> known = known_cells(depth_cells.valid, view);
+  const ConnectedComponents gaps(known, ConnectedComponents::Foreground::zero);
   Image<std::uint8_t> deep_gaps(road.width(), road.height(), 0), unseen = deep_gaps;
   for (const ConnectedComponent& gap : gaps) {
-    if (is_deep(gap, depth_cells, thresholds)) {
+    const bool cut = is_cut(gap, view);
+    if (is_deep(gap, cut, depth_cells, thresholds)) {
       fill_component(gap, 255, deep_gaps);
-    } else if (is_cut(gap, view)) {
+    } else if (cut) {
       fill_component(gap, 255, unseen);
     }
   }
-  const SearchInput input{depth_cells, road, view, deep_gaps, unseen, thresholds, image_edges};
+  const SearchInput input{depth_cells, road, view, known, deep_gaps, unseen, thresholds, image_edges};
   std::vector<Candidate> found;
   Image<std::uint8_t> assigned(road.width(), road.height(), 0);
   find_kind(input, DamageKind::depression, assigned, found);

@@ -88,6 +88,7 @@ void fill_road_rows(const DamageInput& input, const Segmentation& segmentation, 
       const float below = surface[u] - measured[u];
       depth[u] = std::abs(measured[u]) <= max_finite ? below : nan;
     }
+    std::fill_n(depth, std::min(width, segmentation.view.first_column(v / factor) * factor), nan);
   }
 }
 

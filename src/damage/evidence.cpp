@@ -24,7 +24,7 @@ double DamageEvidence::confidence() const {
   constexpr double per_log_significance = 2.15;
   constexpr double per_road_share = 4.4;
   constexpr double per_unseen_share = -9.5;
-  constexpr double per_squared_border_share = -18;  // the picture may cut a pothole, hardly along half of its rim
+  constexpr double per_squared_border_share = -18;  // the border may cut a pothole, hardly along half of its rim
   constexpr double max_significance = 100;          // more does not tell a pothole from a kerb
   const double log_odds = intercept + per_log_significance * std::log(std::clamp(significance, 1.0, max_significance)) +
                           per_road_share * road_share + per_unseen_share * unseen_share +

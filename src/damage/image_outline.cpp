@@ -89,7 +89,7 @@ double log_ratio(double grey, const RobustNormal& one, const RobustNormal& other
 }  // namespace
 
 void refine_outline_by_image(const ImageEdges& image_edges, int columns, int rows, BoxMask& region) {
-  // For the disparities: most of these cells were measured on the road.
+  // Prior log-odds of the road: most of these cells were measured on it.
   constexpr double min_log_ratio = 1.5;
   constexpr std::size_t min_samples = 30;
   const int radius = image_edges.window_radius;
@@ -99,10 +99,14 @@ void refine_outline_by_image(const ImageEdges& image_edges, int columns, int row
   const BoxMask far = dilate(region, 3 * radius, around);
   const RobustNormal inside = tone_of(grey, erode(region, 2, around), nullptr);
   const RobustNormal outside = tone_of(grey, far, &near);
-  if (inside.samples < min_samples || outside.samples < min_samples) return;
+  if (inside.samples < min_samples || outside.samples < min_samples || inside.median == outside.median) return;
   const bool is_dark = inside.median < outside.median;
-  const auto is_inside = [&](float level) {
-    return (level < outside.median) == is_dark && log_ratio(level, inside, outside) >= min_log_ratio;
+  const auto is_inside = [&](double level) {
+    if ((level < outside.median) != is_dark) return false;
+    // A darker part of a dark hole is at least as good as its median.
+    const bool beyond_median = (level < inside.median) == is_dark;
+    return log_ratio(level, inside, outside) >= min_log_ratio ||
+           (beyond_median && log_ratio(inside.median, inside, outside) >= min_log_ratio);
   };
   std::vector<CellIndex> front = contour_cells(region, columns, rows);
   region = region.cropped(around);

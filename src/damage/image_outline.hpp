@@ -15,9 +15,9 @@ struct ImageEdges {
 
 /// Region growing by grey level: extends a depression to its edge in the image. The support window of matching carries
 /// the disparity of the road over the rim of a steep wall, and occluded parts of the wall have no disparity; the image
-/// shows both. Cells within `window_radius` of the region join it if they are connected to it and the likelihood of
-/// their grey level inside is 4.5 times that on the road: the more alike the tones are, the fewer do. What is on the
-/// other side of the road's tone does not.
+/// shows both. Cells within `window_radius` of the region join it if they are connected to it and the likelihood
+/// of their grey level inside, or of the median there if they differ even more from the road, is at least 4.5 times
+/// that on the road. What is on the other side of the road's tone does not.
 void refine_outline_by_image(const ImageEdges& image_edges, int columns, int rows, BoxMask& region);
 
 }  // namespace roadstereo

@@ -23,6 +23,19 @@ TEST(ParallelThreads, VisitEveryIndexOnce) {
   }
 }
 
+TEST(ParallelThreads, FewerIndicesThanThreads) {
+  for (const int count : {1, 2, 3}) {
+    std::vector<std::atomic<int>> visits(static_cast<std::size_t>(count));
+    std::atomic<bool> in_range{true};
+    parallel_for(count, 7, [&](int i, int worker) {
+      ++visits[static_cast<std::size_t>(i)];
+      if (worker < 0 || worker >= 7) in_range = false;
+    });
+    for (const auto& visit : visits) EXPECT_EQ(visit, 1);
+    EXPECT_TRUE(in_range);
+  }
+}
+
 TEST(ParallelThreads, NeverShareWorkerNumber) {
   std::vector<std::atomic<int>> busy(4);
   std::atomic<bool> shared{false};

@@ -10,10 +10,10 @@ namespace roadstereo {
 namespace {
 
 /// Cells of 2×2 pixels of a pair on a tilted plane. The right image shows the road from u − d(u, v) = 0 on, which is
-/// u = (10 + 0.2 v) / (1 − 0.25).
+/// u = (10 + 1.5 v) / (1 − 0.25): two cells more each row.
 struct TiltedRoad {
-  Image<float> transformed{120, 80, 30.0F};
-  Image<std::int16_t> right{120, 80, std::int16_t{0}};
+  Image<float> transformed{240, 80, 30.0F};
+  Image<std::int16_t> right{240, 80, std::int16_t{0}};
   Cells cells;
   DamageInput input;
 
@@ -22,9 +22,9 @@ struct TiltedRoad {
     cells = make_cells(transformed, {}, 2, 1);
     input.transformed = transformed;
     input.right = right;
-    input.plane = DisparityPlane{10, 0.2, 0.25};  // of rows, of columns
+    input.plane = DisparityPlane{10, 1.5, 0.25};  // of rows, of columns
   }
-  static double first_u(double v) { return (10 + 0.2 * v) / 0.75; }
+  static double first_u(double v) { return (10 + 1.5 * v) / 0.75; }
 };
 
 TEST(CommonView, BeginsWhereMatchOfRoadEntersRightImage) {
@@ -37,17 +37,20 @@ TEST(CommonView, BeginsWhereMatchOfRoadEntersRightImage) {
     EXPECT_TRUE(view.contains(view.first_column(j), j));
     EXPECT_TRUE(view.is_on_border(view.first_column(j), j));
   }
-  EXPECT_FALSE(view.is_on_border(40, 20));
-  EXPECT_TRUE(view.is_on_border(59, 20));
-  EXPECT_TRUE(view.is_on_border(40, 0));
-  EXPECT_TRUE(view.is_on_border(40, 39));
+  // The neighbour below, only, is outside.
+  EXPECT_TRUE(view.is_on_border(view.first_column(20) + 1, 20));
+  EXPECT_FALSE(view.is_on_border(view.first_column(20) + 2, 20));
+  EXPECT_FALSE(view.is_on_border(118, 20));
+  EXPECT_TRUE(view.is_on_border(119, 20));
+  EXPECT_TRUE(view.is_on_border(118, 0));
+  EXPECT_TRUE(view.is_on_border(118, 39));
 }
 
 TEST(CommonView, IsWholeImageWithoutPlaneOrRightImage) {
   TiltedRoad scene;
   scene.input.plane.reset();
   EXPECT_EQ(CommonView(scene.input, scene.cells).first_column(20), 0);
-  scene.input.plane = DisparityPlane{10, 0.2, 0.25};
+  scene.input.plane = DisparityPlane{10, 1.5, 0.25};
   scene.input.right = {};
   EXPECT_EQ(CommonView(scene.input, scene.cells).first_column(20), 0);
 }
@@ -65,11 +68,11 @@ TEST(CommonView, RemovesOnlyWhatIsOutside) {
 
 TEST(CommonView, RoadThatIsTooCloseIsNowhereInView) {
   TiltedRoad scene;
-  scene.input.plane = DisparityPlane{200, 0, 0};
+  scene.input.plane = DisparityPlane{300, 0, 0};
   const CommonView view(scene.input, scene.cells);
   EXPECT_EQ(view.first_column(0), scene.cells.width());
   view.remove_outside(scene.cells);
-  EXPECT_TRUE(std::isnan(scene.cells.value(59, 39)));
+  EXPECT_TRUE(std::isnan(scene.cells.value(119, 39)));
 }
 
 }  // namespace

@@ -13,69 +13,79 @@ namespace {
 constexpr int side = 160, first = 32, last = 95, strip_columns = 4, radius = 8;
 constexpr double road_level = 1600, deviation = 32;               // 1/16 grey level
 constexpr double sigma = 1.4826 * deviation;                      // of the pattern, by its MAD
-constexpr std::array<int, 8> pattern{0, 1, -1, 1, 0, -1, 1, -1};  // of stripes 8 wide: median 0, MAD 1
+constexpr std::array<int, 8> pattern{1, -1, 1, 0, -1, 1, -1, 0};  // of stripes 8 wide: median 0, MAD 1
 
-/// A square `difference` standard deviations darker than the road, and right of it a strip of its median tone, or
-/// `strip` standard deviations above that.
-Image<std::int16_t> dark_square(double difference, double strip = 0) {
+/// A square whose median is `difference` standard deviations of the road below it and whose standard deviation is
+/// `roughness` times the road's, and right of it a strip `strip` standard deviations of the road above that median.
+struct Tones {
+  double difference = 0, strip = 0, roughness = 1;
+};
+
+Image<std::int16_t> square_on_road(const Tones& tones) {
   Image<std::int16_t> grey(side, side);
+  const double square_level = road_level - tones.difference * sigma;
   for (int v = 0; v < side; ++v) {
     for (int u = 0; u < side; ++u) {
       const bool in_rows = v >= first && v <= last;
-      const bool inside = in_rows && u >= first && u <= last;
-      const bool in_strip = in_rows && u > last && u <= last + strip_columns;
       const double noise = deviation * pattern[static_cast<std::size_t>(u / 8 % 8)];
-      const double level = inside     ? road_level - difference * sigma + noise
-                           : in_strip ? road_level + (strip - difference) * sigma
-                                      : road_level + noise;
+      double level = road_level + noise;
+      if (in_rows && u >= first && u <= last) level = square_level + tones.roughness * noise;
+      if (in_rows && u > last && u <= last + strip_columns) level = square_level + tones.strip * sigma;
       grey(u, v) = static_cast<std::int16_t>(std::lround(level));
     }
   }
   return grey;
 }
 
-/// Cells of the strip that join the square, of those whose 3×3 mean is the strip's level.
-int joined(const Image<std::int16_t>& grey, int& all) {
+/// Share of the cells of the strip that join the square, of those whose 3×3 mean is the strip's level.
+double joined(const Image<std::int16_t>& grey) {
   BoxMask region(CellBox{first, first, last, last});
   for (int j = first; j <= last; ++j) {
     for (int i = first; i <= last; ++i) region.set(i, j);
   }
   refine_outline_by_image({grey, 1, radius}, side, side, region);
-  int count = 0;
-  all = 0;
+  int count = 0, all = 0;
   for (int j = first + 1; j < last; ++j) {
     for (int i = last + 2; i < last + strip_columns; ++i) {
       ++all;
       count += region(i, j) ? 1 : 0;
     }
   }
-  return count;
+  return static_cast<double>(count) / all;
 }
 
 // At the median inside the log of the likelihood ratio is ½ d², d the difference of the tones in standard
-// deviations: 1.5 at √3.
+// deviations: 1.5 at √3 = 1.73.
 TEST(ImageOutline, GrowsWhereTonesDifferByMoreThanRootThree) {
-  int all = 0;
-  EXPECT_EQ(joined(dark_square(2), all), all);
-  EXPECT_EQ(joined(dark_square(-2), all), all);  // brighter than the road
-  EXPECT_EQ(joined(dark_square(1.45), all), 0);
+  EXPECT_EQ(joined(square_on_road({1.85})), 1);
+  EXPECT_EQ(joined(square_on_road({-1.85})), 1);  // brighter than the road
+  EXPECT_EQ(joined(square_on_road({1.6})), 0);
 }
 
 // Elsewhere it is d (d/2 − x), x standard deviations above that median: with d = 4 it is 1.5 at 1.625.
 TEST(ImageOutline, GrowsLessTowardsToneOfRoad) {
-  int all = 0;
-  EXPECT_EQ(joined(dark_square(4, 1.4), all), all);
-  EXPECT_EQ(joined(dark_square(4, 2.1), all), 0);
+  EXPECT_EQ(joined(square_on_road({4, 1.5})), 1);
+  EXPECT_EQ(joined(square_on_road({4, 1.75})), 0);
 }
 
+// Inside r times as rough: at the median ½ d² − ln r; with r = 3 it is 1.5 at √(3 + 2 ln 3) = 2.28.
+TEST(ImageOutline, RougherInsideNeedsMoreDifference) {
+  EXPECT_EQ(joined(square_on_road({2.5, 0, 3})), 1);
+  EXPECT_EQ(joined(square_on_road({2.05, 0, 3})), 0);
+}
+
+// The strip is brighter than the road by 6 standard deviations, which is likelier inside: 10/3 of the deviations there.
 TEST(ImageOutline, NeverGrowsBeyondOtherSideOfRoad) {
-  int all = 0;
-  EXPECT_EQ(joined(dark_square(4, 12), all), 0);
+  EXPECT_EQ(joined(square_on_road({4, 10, 3})), 0);
+}
+
+// A smoother inside: what is darker than all of it belongs to the hole, too.
+TEST(ImageOutline, DarkerThanInsideJoins) {
+  EXPECT_EQ(joined(square_on_road({4, -4, 0.25})), 1);
 }
 
 TEST(ImageOutline, EqualTonesChangeNothing) {
-  int all = 0;
-  EXPECT_EQ(joined(Image<std::int16_t>(side, side, std::int16_t{800}), all), 0);
+  EXPECT_EQ(joined(Image<std::int16_t>(side, side, std::int16_t{800})), 0);
 }
 
 }  // namespace
