@@ -47,8 +47,9 @@ struct DamageInput {
   ImageView<const float> sigma;  ///< standard error of ℓ, pixels; when absent, noise is estimated from `transformed`
   int smoothing_px = 0;          ///< RefinementOptions::smoothing_px of `sigma`, 0 … 32; 0: `sigma` is noise alone
   ImageView<const std::int16_t> grey;  ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
-  ImageView<const std::int16_t>
-      right;  ///< right image: the view ends with it; with `grey`, tells what one camera sees from damage
+  /// Right image. With `plane` it tells where the view of both cameras ends, with `grey` and `disparity` what one
+  /// camera alone sees from damage.
+  ImageView<const std::int16_t> right;
   Misalignment misalignment;                     ///< of `right`, as `disparity` has it undone
   std::optional<DisparityPlane> plane;           ///< the road's plane in ℓ; required for metric results
   std::optional<StereoCalibration> calibration;  ///< required for metric results
@@ -137,6 +138,7 @@ struct DamageMap {
   Image<float> surface;            ///< ℓ' of the undamaged road, pixels; extrapolated across damage and off the road
   Image<float> depth;   ///< depth below the undamaged road, negative above it: metres along the road's normal if
                         ///< `metric`, else pixels of ℓ'. Interpolated in the holes of damages; NaN in other holes
+                        ///< and where the right camera does not see the road
   double noise_px = 0;  ///< robust standard deviation of the intact road around `surface`, per cell, pixels; NaN
                         ///< without a road
   bool metric = false;  ///< whether `depth` is in metres
