@@ -49,6 +49,28 @@ TEST(CudaEmulation, MissingBarrierChangesResult) {
 }
 #endif
 
+#if defined(__SANITIZE_ADDRESS__)
+/// After a barrier, which leaves and enters every thread's stack again, the last thread writes one element too far.
+void write_beyond(int* array, int elements) {
+  int of_thread[4] = {1, 2, 3, 4};
+  int* written = array != nullptr ? array : of_thread;
+  __syncthreads();
+  written[threadIdx.x + 1 < blockDim.x ? 0 : elements] = 5;
+  __syncthreads();
+}
+
+TEST(CudaEmulationDeathTest, AddressSanitizerSeesWhatThreadsWrite) {
+  std::vector<int> array(64);
+  const auto run = [](int* written, int elements) {
+    launch("write_beyond", write_beyond, {1, 64}, nullptr, written, elements);
+    std::exit(0);
+  };
+  EXPECT_EXIT(run(nullptr, 3), testing::ExitedWithCode(0), "");
+  EXPECT_DEATH(run(nullptr, 4), "stack-buffer-overflow");
+  EXPECT_DEATH(run(array.data(), 64), "heap-buffer-overflow");
+}
+#endif
+
 TEST(CudaEmulation, ErrorNamesCallAndReason) {
   DeviceArray<float> array;
   try {
