@@ -362,7 +362,9 @@ void add_candidate(const SearchInput& input, const ConnectedComponent& core, Dam
   Candidate candidate = segment(input, core, kind, images);
   if (candidate.size == 0 || static_cast<float>(candidate.size) < min_cells) return;
   add_evidence(input, images, candidate);
-  if (candidate.evidence.confidence() < constants.min_confidence) return;
+  DamageEvidence steepest = candidate.evidence;  // the slope is measured later
+  if (kind == DamageKind::depression && input.thresholds.walls_measured()) steepest.possible_wall_slope = 1;
+  if (steepest.confidence() < constants.min_confidence) return;
   assign(candidate, images.assigned);
   found.push_back(std::move(candidate));
 }

@@ -23,18 +23,6 @@ bool is_along_road(const DamageMetrics& metrics) {
   return std::numbers::pi / 2 - std::abs(metrics.angle_rad) <= max_oblique_rad;
 }
 
-/// Horizontal distance between a quarter and three quarters of the depth.
-double run_m(const DamageMetrics& metrics) {
-  return 0.5 * metrics.max_depth_m.value / metrics.wall_slope;
-}
-
-/// Whether the wall is gentle even where it is as steep as the support window allows.
-bool is_gentle(const DamageMetrics& metrics, double wall_m) {
-  const double run = run_m(metrics);
-  const double true_run = std::sqrt(std::max(0.0, run * run - wall_m * wall_m));
-  return 0.5 * metrics.max_depth_m.value < max_gentle_slope * true_run;
-}
-
 bool is_kerb_step(const Damage& damage, const DamageMetrics& metrics, int image_width) {
   const bool at_side = damage.box_px[0] == 0 || damage.box_px[2] + 1 == image_width;
   return at_side && metrics.max_depth_m.value >= min_step_m && elongation(metrics) >= min_elongation &&
@@ -47,8 +35,8 @@ const char* name_of(DamageKind kind) {
   return kind == DamageKind::depression ? "depression" : "protrusion";
 }
 
-Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double wall_m, int image_width) {
-  const bool gentle = is_gentle(metrics, wall_m);
+Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double possible_slope, int image_width) {
+  const bool gentle = possible_slope < max_gentle_slope;
   if (!gentle && is_kerb_step(damage, metrics, image_width)) return Distress::kerb_step;
   if (damage.kind == DamageKind::protrusion) {
     return metrics.wall_slope > max_gentle_slope ? Distress::debris : Distress::bump;

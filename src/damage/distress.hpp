@@ -5,10 +5,9 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// Decide the distress of a damage from its metrics: side, slope of the wall, elongation, direction, height. `wall_m`
-/// is the width over which the support window spreads a vertical wall between a quarter and three quarters of its
-/// height, `image_width` in pixels.
-Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double wall_m, int image_width);
+/// Decide the distress of a damage from its metrics: side, slope of the wall, elongation, direction, height.
+/// `possible_slope` is the slope that the wall may have, `image_width` in pixels.
+Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double possible_slope, int image_width);
 
 /// Set quantity, unit, probabilities and severity by the table of the distress. `resolvable`: whether a depth is at
 /// least three of its standard errors.

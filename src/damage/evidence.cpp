@@ -16,6 +16,17 @@ double surface_log_odds(double significance) {
   return std::isnan(significance) ? 0 : std::min(max_log_odds, per_standard_error * (significance - even_odds));
 }
 
+/// Log-odds of damage that has a share of its outline on the border. It may cut a pothole, whose share is 0.4 if a disc
+/// is halved, hardly along more of its rim; and what is gentle there is the relief of the road rather than a wall. A
+/// protrusion has no slope: what is gentle may be a bump or the road, what is steep what stands at its side.
+double border_log_odds(double share, double wall_slope) {
+  constexpr double per_fourth_power = -35, per_log_slope = 16, of_unknown_slope = -18;
+  constexpr double min_slope = 0.05;
+  const double squared = share * share;
+  if (std::isnan(wall_slope)) return of_unknown_slope * squared;
+  return squared * (per_fourth_power * squared + per_log_slope * std::log(std::clamp(wall_slope, min_slope, 1.0)));
+}
+
 }  // namespace
 
 double DamageEvidence::confidence() const {
@@ -24,12 +35,11 @@ double DamageEvidence::confidence() const {
   constexpr double per_log_significance = 2.15;
   constexpr double per_road_share = 4.4;
   constexpr double per_unseen_share = -9.5;
-  constexpr double per_squared_border_share = -18;  // the border may cut a pothole, hardly along half of its rim
-  constexpr double max_significance = 100;          // more does not tell a pothole from a kerb
+  constexpr double max_significance = 100;  // more does not tell a pothole from a kerb
   const double log_odds = intercept + per_log_significance * std::log(std::clamp(significance, 1.0, max_significance)) +
-                          per_road_share * road_share + per_unseen_share * unseen_share +
-                          per_squared_border_share * border_share * border_share;
-  return probability_of(log_odds + surface_log_odds(surface_significance));
+                          per_road_share * road_share + per_unseen_share * unseen_share;
+  return probability_of(log_odds + border_log_odds(border_share, possible_wall_slope) +
+                        surface_log_odds(surface_significance));
 }
 
 }  // namespace roadstereo

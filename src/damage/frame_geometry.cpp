@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/order_statistics.hpp"
+#include "roadstereo/perspective_shift.hpp"
 
 namespace roadstereo {
 namespace {
@@ -24,10 +25,21 @@ double estimate_delta_t(const DamageInput& input) {
 
 }  // namespace
 
+StereoCalibration assumed_calibration(const DisparityPlane& model, int width, int height) {
+  StereoCalibration assumed;
+  assumed.focal_px = width;
+  assumed.cx_px = 0.5 * (width - 1);
+  assumed.cy_px = 0.5 * (height - 1);
+  const double at_centre = model.disparity(assumed.cx_px, assumed.cy_px) / assumed.focal_px;
+  assumed.baseline_m = PerspectiveShift::assumed_camera_height_m * std::hypot(model.a1, model.a2, at_centre);
+  return assumed;
+}
+
 FrameGeometry::FrameGeometry(const DamageInput& input)
-    : calibration_(*input.calibration),
+    : calibration_(input.calibration.value_or(
+          assumed_calibration(*input.plane, input.transformed.width(), input.transformed.height()))),
       disparity_plane_(*input.plane),
-      ground_plane_(ground_plane(*input.plane, *input.calibration)),
+      ground_plane_(ground_plane(*input.plane, calibration_)),
       axes_(road_axes(ground_plane_)),
       delta_t_(estimate_delta_t(input)) {}
 

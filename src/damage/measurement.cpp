@@ -110,7 +110,6 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   damage.cut_by_border = candidate.evidence.border_share > 0;
   const PixelBox box = pixel_box(candidate, segmentation.cells);
   damage.evidence.surface_significance = surface_significance(input, maps, damage.id, box, offset.value);
-  damage.confidence = damage.evidence.confidence();
   for_each_run(maps.ids, damage.id, box,
                [&](int v, int first, int last) { add_run(input, maps, v, first, last, sums); });
   if (damage.pixels > 0) {
@@ -202,8 +201,10 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
       const SurfaceOffset offset = estimate_surface_offset(segmentation, segmentation.candidates[k]);
       Damage& damage = result.damages[k] = measure_in_pixels(input, segmentation, k, offset, result);
       if (geometry && damage.pixels > 0) {
-        damage.metrics = compute_metrics(input, options, *geometry, offset, result, damage);
+        const DamageMetrics metrics = compute_metrics(input, options, *geometry, offset, result, damage);
+        if (result.metric) damage.metrics = metrics;
       }
+      damage.confidence = damage.evidence.confidence();
     });
   }
   const PixelBox all = box_around(result.damages);
@@ -215,7 +216,7 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
         if (ids[u] != 0) ids[u] = new_id[ids[u]];
       }
     }
-    for (int v = first; geometry && v < last; ++v) {
+    for (int v = first; result.metric && v < last; ++v) {
       geometry->depths_to_metres(v, result.ids.width(), result.surface.row(v), result.depth.row(v));
     }
   });

@@ -8,11 +8,14 @@ namespace roadstereo {
 
 /// Position of each cell on the road, and the change of ℓ' per unit of height there.
 struct SurfaceCoordinates {
-  Image<float> x, y;   ///< metres on the road if calibrated, else −1 … 1 over the image; NaN where there is no road
-  Image<float> scale;  ///< pixels of ℓ' per metre of height if calibrated, else 1; NaN where there is no road
+  /// Metres on the road, up to an affine map without a calibration, NaN where there is no road; without a plane −1 … 1
+  /// over the image.
+  Image<float> x, y;
+  Image<float> scale;  ///< pixels of ℓ' per metre of height, without a calibration as below 1.5 m; without a plane 1
 };
 
-/// Coordinates from the plane and the calibration if both are given, else from the image.
+/// Coordinates from the plane and the calibration, which is assumed where it is not given; without a plane of the
+/// image.
 SurfaceCoordinates surface_coordinates(const Cells& cells, const DamageInput& input, int threads);
 
 /// Undamaged road: a quadratic in the coordinates of the road, times `scale`. A plane does not fit a camber.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/parallel.hpp"
+#include "damage/frame_geometry.hpp"
 #include "damage/road_surface.hpp"
 #include "roadstereo/ground_plane.hpp"
 
@@ -97,8 +98,10 @@ SurfaceCoordinates road_coordinates(const Cells& cells, const DisparityPlane& mo
 }  // namespace
 
 SurfaceCoordinates surface_coordinates(const Cells& cells, const DamageInput& input, int threads) {
-  if (input.plane && input.calibration) return road_coordinates(cells, *input.plane, *input.calibration, threads);
-  return image_coordinates(cells);
+  if (!input.plane) return image_coordinates(cells);
+  const StereoCalibration calibration =
+      input.calibration.value_or(assumed_calibration(*input.plane, cells.image_width, cells.image_height));
+  return road_coordinates(cells, *input.plane, calibration, threads);
 }
 
 }  // namespace roadstereo

@@ -14,6 +14,8 @@ class Thresholds {
              const SurfaceCoordinates& coordinates, double noise, bool metric);
 
   bool metric() const { return metric_; }
+  /// Whether the slopes of walls will be measured.
+  bool walls_measured() const { return input_.plane && !input_.disparity.empty(); }
   /// Minimum depth of a core: the larger of threshold_sigma standard deviations and min_depth_m.
   float min_depth(int i, int j) const { return std::max(noise_, static_cast<float>(min_depth_m_ * scale_(i, j))); }
   /// Minimum depths of row j.

@@ -70,6 +70,23 @@ TEST(DamageEvidence, EveryPieceCountsByItself) {
       << "more does not tell a pothole from a kerb";
 }
 
+// Half of a disc has 0.39 of its outline on the border that cuts it, a strip more.
+TEST(DamageEvidence, BorderCutsWallsAndRelief) {
+  DamageEvidence half{20, 40, 1.2, 1, 0.39}, strip{20, 100, 4, 1, 0.65}, sag{6, 90, 2, 0.95, 0.51};
+  half.possible_wall_slope = strip.possible_wall_slope = 1;
+  sag.possible_wall_slope = 0.15;
+  EXPECT_GT(half.confidence(), 0.6) << "a pothole";
+  EXPECT_LT(strip.confidence(), 0.3) << "a kerb";
+  EXPECT_LT(sag.confidence(), 0.05) << "the road itself";
+  const double steep = half.confidence();
+  half.possible_wall_slope = 0.3;
+  EXPECT_LT(half.confidence(), steep);
+  half.border_share = 0;
+  const double inside = half.confidence();
+  half.possible_wall_slope = 0.05;
+  EXPECT_EQ(half.confidence(), inside) << "depressions are gentle";
+}
+
 TEST(DamageEvidence, DeepCompactRegionIsNeverVetoed) {
   EXPECT_GT((DamageEvidence{20, 150, 2.5, 0.4, 0}.confidence()), 0.8);
   EXPECT_LT((DamageEvidence{2, 6, 2, 1, 0}.confidence()), 0.2) << "as shallow as its surroundings are rough";
