@@ -16,6 +16,7 @@ import numpy as np
 
 MAX_SIGNIFICANCE = 100
 MIN_SLOPE = 0.05
+EVEN_SLOPE = 0.3
 RIDGE = 0.05
 REGIONS_PER_SOURCE = 20  # real and false ones of a source weigh as much as so many
 
@@ -30,9 +31,10 @@ def surface_log_odds(significance):
 
 def features(region):
     significance = min(max(region["significance"], 1), MAX_SIGNIFICANCE)
-    share, slope = region["border_share"], region["possible_wall_slope"]
-    border = [share**2, 0, 0] if slope is None else [0, share**4, share**2 * math.log(min(max(slope, MIN_SLOPE), 1))]
-    return [1, math.log(significance), region["road_share"], region["unseen_share"], *border]
+    share, slope = region["border_share"], region["likely_wall_slope"]
+    steeper = 0 if slope is None else math.log(min(max(slope, MIN_SLOPE), 1) / EVEN_SLOPE)
+    of_wall = [share**4 if slope is not None else 0, share**2 * steeper, min(0, steeper)]
+    return [1, math.log(significance), region["road_share"], region["unseen_share"], share**2, *of_wall]
 
 
 def fit(x, y, offset, weight):
@@ -79,8 +81,8 @@ def main():
             of_kind = (sources == name) & (y == truth)
             weight[of_kind] = min(1, REGIONS_PER_SOURCE / max(1, of_kind.sum()))
     coefficients = fit(x, y, offset, weight)
-    print("intercept, ln significance, road share, unseen share; border share² without a slope; border share⁴, border share²"
-          " × ln slope:", np.round(coefficients, 2))
+    print("intercept, ln significance, road share, unseen share, border share²; of a slope s: border share⁴, border share² ×"
+          " ln(s/0.3), min(0, ln(s/0.3)):", np.round(coefficients, 2))
     taking_part = predict(x, offset, coefficients)
     print(f"{'source':<12}{'damage':>7}{'found: all':>12}{'left out':>10}{'program':>9}"
           f"{'others':>8}{'wrong: all':>12}{'left out':>10}{'program':>9}")

@@ -102,9 +102,10 @@ struct DamageEvidence {
   /// along the undamaged road; NaN unknown. What one camera alone sees agrees along neither, the texture around it
   /// along the road.
   double surface_significance = std::numeric_limits<double>::quiet_NaN();
-  /// Slope that the wall of a depression may have, rise over run, at most 1: `DamageMetrics::wall_slope` without the
-  /// smoothing by the support window; NaN unknown. Where the border cuts it tells potholes from the relief of the road.
-  double possible_wall_slope = std::numeric_limits<double>::quiet_NaN();
+  /// Slope of the wall of a depression, rise over run, at most 1: geometric mean of `DamageMetrics::wall_slope` and of
+  /// the steepest that is as gentle behind the support window; NaN unknown. Where the border cuts a depression it tells
+  /// a pothole from the relief of the road.
+  double likely_wall_slope = std::numeric_limits<double>::quiet_NaN();
 
   /// Maximum depth in standard errors. Those of noise alone: smoothing only makes a damage shallower. Below 3 the
   /// damage is unresolvable, unless its mean depth is known better.

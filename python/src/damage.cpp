@@ -74,8 +74,8 @@ void bind_one_damage(py::module_& module) {
              "Share of the outline on a gap of the map that reaches that border, 0 … 1.")
       .field("surface_significance", &Evidence::surface_significance,
              "Standard errors by which the images agree better along the measured surface than the road; NaN unknown.")
-      .field("possible_wall_slope", &Evidence::possible_wall_slope,
-             "Slope that the wall of a depression may have, rise over run, at most 1; NaN unknown.")
+      .field("likely_wall_slope", &Evidence::likely_wall_slope,
+             "Slope of the wall of a depression, rise over run, between measured and possible, at most 1; NaN unknown.")
       .field("depth_significance", &Evidence::depth_significance,
              "Maximum depth, standard errors from noise alone; below 3 the depth is unresolvable.");
   Record<Damage>(module, "Damage", "One damage: a connected component of the left image.")

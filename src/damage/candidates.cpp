@@ -260,8 +260,8 @@ void measure_border(const BoxMask& region, const CommonView& view, const Image<s
   evidence.unseen_share = on_gap / contour;
 }
 
-/// Share of the band around a candidate that is road, or a hollow no deeper than the outline. Cells of other damages
-/// and outside the view do not count; 1 if no cell is left.
+/// Share of the band around a candidate that is road, the relief of a rough one included, or a hollow no deeper than
+/// the outline. Cells of other damages and outside the view do not count; 1 if no cell is left.
 double road_share(const SearchInput& input, const Candidate& candidate, const Image<std::uint8_t>& assigned) {
   const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
   const int margin = std::max(constants.min_margin_cells, static_cast<int>(constants.margin_radii * radius));
@@ -281,7 +281,8 @@ double road_share(const SearchInput& input, const Candidate& candidate, const Im
       ++cells;
       if (input.depth_cells.valid(i, j) == 0) continue;
       const float depth = sign * input.depth_cells.depth(i, j);
-      on_road += input.road(i, j) != 0 || (depth > 0 && depth <= max_hollow) ? 1 : 0;
+      const bool is_relief = std::abs(depth) < input.thresholds.relief(i, j);
+      on_road += input.road(i, j) != 0 || is_relief || (depth > 0 && depth <= max_hollow) ? 1 : 0;
     }
   }
   return cells == 0 ? 1 : on_road / cells;
@@ -363,7 +364,7 @@ void add_candidate(const SearchInput& input, const ConnectedComponent& core, Dam
   if (candidate.size == 0 || static_cast<float>(candidate.size) < min_cells) return;
   add_evidence(input, images, candidate);
   DamageEvidence steepest = candidate.evidence;  // the slope is measured later
-  if (kind == DamageKind::depression && input.thresholds.walls_measured()) steepest.possible_wall_slope = 1;
+  if (kind == DamageKind::depression && input.thresholds.walls_measured()) steepest.likely_wall_slope = 1;
   if (steepest.confidence() < constants.min_confidence) return;
   assign(candidate, images.assigned);
   found.push_back(std::move(candidate));

@@ -116,12 +116,11 @@ double wall_slope(const MetricSums& sums, const DamageMetrics& metrics) {
   return 0.5 * metrics.max_depth_m.value / std::max(run, std::sqrt(sums.area) * 1e-3);
 }
 
-/// Slope that the wall may have, at most 1, if the support window spreads a vertical wall over `window_m` between a
-/// quarter and three quarters of its height.
+/// Slope of the steepest wall that the support window, which spreads a vertical one over `window_m` between a quarter
+/// and three quarters of its height, makes as gentle as measured; infinite for a vertical one.
 double possible_wall_slope(const DamageMetrics& metrics, double window_m) {
   const double rise = 0.5 * metrics.max_depth_m.value, run = rise / metrics.wall_slope;
-  const double true_run = std::sqrt(std::max(0.0, run * run - window_m * window_m));
-  return rise < true_run ? rise / true_run : 1;
+  return rise / std::sqrt(std::max(0.0, run * run - window_m * window_m));
 }
 
 /// Corners of the outline on the road.
@@ -223,7 +222,9 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   metrics.outline_m = outline_on_road(geometry, maps, damage);
   const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
   const double possible_slope = possible_wall_slope(metrics, SmoothingError::window_radius_px * pixel_m);
-  if (damage.kind == DamageKind::depression) damage.evidence.possible_wall_slope = possible_slope;
+  if (damage.kind == DamageKind::depression) {
+    damage.evidence.likely_wall_slope = std::sqrt(std::min(1.0, metrics.wall_slope) * std::min(1.0, possible_slope));
+  }
   metrics.distress = classify_distress(damage, metrics, possible_slope, maps.ids.width());
   const bool resolvable = damage.evidence.is_depth_resolved() || metrics.mean_depth_m.is_resolved();
   grade(options.severity, resolvable, metrics);

@@ -17,7 +17,9 @@ class Thresholds {
   /// Whether the slopes of walls will be measured.
   bool walls_measured() const { return input_.plane && !input_.disparity.empty(); }
   /// Minimum depth of a core: the larger of threshold_sigma standard deviations and min_depth_m.
-  float min_depth(int i, int j) const { return std::max(noise_, static_cast<float>(min_depth_m_ * scale_(i, j))); }
+  float min_depth(int i, int j) const { return std::max(noise_, relief(i, j)); }
+  /// What is shallower is no damage, however low the noise: min_depth_m; 0 if it is not metric.
+  float relief(int i, int j) const { return static_cast<float>(min_depth_m_ * scale_(i, j)); }
   /// Minimum depths of row j.
   void min_depths(int j, float* row) const;
   /// Maximum depth of a depression; infinity if it is not metric.

@@ -138,7 +138,7 @@ std::vector<DamageColumn> pixel_columns() {
           {"border_share", evidence<&DamageEvidence::border_share>},
           {"unseen_share", evidence<&DamageEvidence::unseen_share>},
           {"surface_significance", evidence<&DamageEvidence::surface_significance>},
-          {"possible_wall_slope", evidence<&DamageEvidence::possible_wall_slope>},
+          {"likely_wall_slope", evidence<&DamageEvidence::likely_wall_slope>},
           {"depth_significance", evidence<&DamageEvidence::depth_significance>},
           {"cut_by_border", [](const Damage& d) -> DamageValue { return d.cut_by_border; }}};
 }

@@ -131,7 +131,7 @@ inline Damage damage_of(const synth::SyntheticPair& pair, const DamageMap& map, 
   const std::array<int, 2> middle{static_cast<int>(damage.centroid_px[0]), static_cast<int>(damage.centroid_px[1])};
   if (map.metric) {
     damage.metrics = metrics_of(pair, known, points, middle);
-    if (damage.kind == DamageKind::depression) damage.evidence.possible_wall_slope = damage.metrics->wall_slope;
+    if (damage.kind == DamageKind::depression) damage.evidence.likely_wall_slope = damage.metrics->wall_slope;
   }
   return damage;
 }

@@ -73,18 +73,19 @@ TEST(DamageEvidence, EveryPieceCountsByItself) {
 // Half of a disc has 0.39 of its outline on the border that cuts it, a strip more.
 TEST(DamageEvidence, BorderCutsWallsAndRelief) {
   DamageEvidence half{20, 40, 1.2, 1, 0.39}, strip{20, 100, 4, 1, 0.65}, sag{6, 90, 2, 0.95, 0.51};
-  half.possible_wall_slope = strip.possible_wall_slope = 1;
-  sag.possible_wall_slope = 0.15;
+  half.likely_wall_slope = strip.likely_wall_slope = 1;
+  sag.likely_wall_slope = 0.15;
   EXPECT_GT(half.confidence(), 0.6) << "a pothole";
   EXPECT_LT(strip.confidence(), 0.3) << "a kerb";
   EXPECT_LT(sag.confidence(), 0.05) << "the road itself";
   const double steep = half.confidence();
-  half.possible_wall_slope = 0.3;
+  half.likely_wall_slope = 0.3;
   EXPECT_LT(half.confidence(), steep);
-  half.border_share = 0;
-  const double inside = half.confidence();
-  half.possible_wall_slope = 0.05;
-  EXPECT_EQ(half.confidence(), inside) << "depressions are gentle";
+  DamageEvidence rut{10, 100, 2, 0.9, 0.2};
+  rut.likely_wall_slope = 0.05;
+  EXPECT_GT(rut.confidence(), 0.5) << "as wide as it is cut";
+  rut.border_share = 0;
+  EXPECT_GT(rut.confidence(), 0.9) << "depressions are gentle";
 }
 
 TEST(DamageEvidence, DeepCompactRegionIsNeverVetoed) {
@@ -237,6 +238,32 @@ TEST(FindDamage, RaggedHoleIsFoundWhereBorderCutsIt) {
     EXPECT_NEAR(found.damages[0].evidence.border_share, chord / (chord + 2 * half_angle), 0.12) << centre_v;
     EXPECT_GE(f_of(found, hole.inside), 0.85) << centre_v;
   }
+}
+
+/// Around a hole 20 mm deep the road undulates by 3 mm, 15 times its noise elsewhere. No damage is so shallow.
+TEST(FindDamage, ReliefOfRoughRoadIsRoad) {
+  constexpr int width = 640, height = 360;
+  constexpr double road_px = 50;  // 500 px · 0.1 m below 1 m: 0.05 px a millimetre
+  Image<float> transformed(width, height, 30.0F);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const double radius = std::hypot(u - 320, v - 180);
+      if (radius <= 40) transformed(u, v) -= 1;
+      if (radius > 40 && radius < 120) transformed(u, v) += ((u / 24 + v / 24) % 2 == 0 ? 0.15F : -0.15F);
+    }
+  }
+  transformed = with_noise(transformed, 0.01);
+  Image<float> disparity(width, height);
+  std::transform(transformed.row(0), transformed.row(0) + transformed.pixels(), disparity.row(0),
+                 [](float value) { return value - 30 + static_cast<float>(road_px); });
+  DamageInput input;
+  input.transformed = transformed;
+  input.disparity = disparity;
+  input.plane = DisparityPlane{road_px, 0, 0};
+  input.calibration = StereoCalibration{500, 319.5, 179.5, 0.1, 0, width, height};
+  const DamageMap map = find_damage(input);
+  ASSERT_EQ(map.damages.size(), 1U);
+  EXPECT_GT(map.damages[0].evidence.road_share, 0.9);
 }
 
 /// The right camera sees the road from column 50 on; left of it a quarter of the pixels have accidental matches below

@@ -65,6 +65,8 @@ struct QuadraticRoad {
     std::normal_distribution<double> normal(0, 1);
     std::uniform_real_distribution<double> share(0, 1);
     cells.factor = 1;
+    cells.image_width = 300;
+    cells.image_height = 200;
     cells.value.assign(300, 200, 30.0F);
     truth.assign(300, 200, 0);
     coordinates = surface_coordinates(cells, input, 1);
@@ -107,6 +109,18 @@ TEST(RoadSurface, IsExactDespiteOneSidedOutliers) {
     const QuadraticRoad road(metric ? calibrated() : DamageInput{}, metric ? camber_m : camber_px, 0, 0.3);
     EXPECT_LT(road.worst(fit_road_surface(road.cells, road.coordinates, 1)), 1e-4) << metric;
   }
+}
+
+/// The plane alone gives the coordinates of the calibration up to an affine map, and the image does not.
+TEST(RoadSurface, PlaneAloneFitsAsCalibrationDoes) {
+  DamageInput input = calibrated();
+  input.calibration->disparity_offset_px = 0;  // without a calibration it is not known
+  const QuadraticRoad road(input, camber_m, 0, 0.3);
+  input.calibration.reset();
+  const SurfaceCoordinates of_plane = surface_coordinates(road.cells, input, 1);
+  EXPECT_LT(road.worst(fit_road_surface(road.cells, of_plane, 1)), 1e-4);
+  const SurfaceCoordinates of_image = surface_coordinates(road.cells, {}, 1);
+  EXPECT_GT(road.worst(fit_road_surface(road.cells, of_image, 1)), 1e-2);
 }
 
 /// Six coefficients from n samples: the standard error of a value is σ·√(6/n) on average, thrice that in a corner; that

@@ -46,7 +46,7 @@ nlohmann::ordered_json regions_json(const std::vector<FoundRegion>& regions) {
                     {"border_share", number(evidence.border_share)},
                     {"unseen_share", number(evidence.unseen_share)},
                     {"surface_significance", number(evidence.surface_significance)},
-                    {"possible_wall_slope", number(evidence.possible_wall_slope)},
+                    {"likely_wall_slope", number(evidence.likely_wall_slope)},
                     {"confidence", number(region.damage.confidence)},
                     {"is_damage", region.is_damage}});
   }

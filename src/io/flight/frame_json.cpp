@@ -108,7 +108,7 @@ void each_field(DamageEvidence& evidence, Visit& visit) {
   visit("border_share", evidence.border_share);
   visit("unseen_share", evidence.unseen_share);
   visit("surface_significance", evidence.surface_significance);
-  visit("possible_wall_slope", evidence.possible_wall_slope);
+  visit("likely_wall_slope", evidence.likely_wall_slope);
   visit("depth_significance", evidence.depth_significance);
 }
 
