@@ -23,7 +23,8 @@ def columns(damage):
         row[name] = getattr(damage, name)
     for name in ("contrast_sigmas", "significance", "steepness", "road_share", "border_share", "unseen_share",
                  "surface_significance", "likely_wall_slope", "depth_significance"):
-        row[name] = getattr(evidence, name)
+        value = getattr(evidence, name)
+        row[name] = None if math.isnan(value) else value  # a protrusion has no likely slope
     for name in ("length_m", "width_m", "diameter_m", "distance_m", "resolvable_depth_m", "wall_slope", "quantity",
                  "distress", "unit", "severity_range"):
         row[name] = getattr(metrics, name)
