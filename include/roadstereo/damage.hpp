@@ -43,15 +43,15 @@ struct DamageOptions {
 /// Maps and geometry of one frame. All views are W×H; an empty view is absent.
 struct DamageInput {
   ImageView<const float> transformed;  ///< ℓ', pixels; NaN invalid. Depressions lie below the road, protrusions above
-  ImageView<const float> disparity;    ///< ℓ, pixels; required for metric results
+  ImageView<const float> disparity;    ///< ℓ, pixels; required for metric results, with `plane` for slopes of walls
   ImageView<const float> sigma;  ///< standard error of ℓ, pixels; when absent, noise is estimated from `transformed`
   int smoothing_px = 0;          ///< RefinementOptions::smoothing_px of `sigma`, 0 … 32; 0: `sigma` is noise alone
   ImageView<const std::int16_t> grey;  ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
   /// Right image. With `plane` it tells where the view of both cameras ends, with `grey` and `disparity` what one
   /// camera alone sees from damage.
   ImageView<const std::int16_t> right;
-  Misalignment misalignment;                     ///< of `right`, as `disparity` has it undone
-  std::optional<DisparityPlane> plane;           ///< the road's plane in ℓ; required for metric results
+  Misalignment misalignment;            ///< of `right`, as `disparity` has it undone
+  std::optional<DisparityPlane> plane;  ///< the road's plane in ℓ, in whose coordinates its surface is fitted; likewise
   std::optional<StereoCalibration> calibration;  ///< required for metric results
 };
 
@@ -103,8 +103,8 @@ struct DamageEvidence {
   /// along the road.
   double surface_significance = std::numeric_limits<double>::quiet_NaN();
   /// Slope of the wall of a depression, rise over run, at most 1: geometric mean of `DamageMetrics::wall_slope` and of
-  /// the steepest that is as gentle behind the support window; NaN unknown. Where the border cuts a depression it tells
-  /// a pothole from the relief of the road.
+  /// the steepest that the support window makes as gentle; NaN unknown, and of a protrusion. Where the border cuts a
+  /// depression it tells a pothole from the relief of the road.
   double likely_wall_slope = std::numeric_limits<double>::quiet_NaN();
 
   /// Maximum depth in standard errors. Those of noise alone: smoothing only makes a damage shallower. Below 3 the

@@ -75,7 +75,8 @@ void bind_one_damage(py::module_& module) {
       .field("surface_significance", &Evidence::surface_significance,
              "Standard errors by which the images agree better along the measured surface than the road; NaN unknown.")
       .field("likely_wall_slope", &Evidence::likely_wall_slope,
-             "Slope of the wall of a depression, rise over run, between measured and possible, at most 1; NaN unknown.")
+             "Slope of the wall of a depression, rise over run: mean of the measured and the steepest possible, at "
+             "most 1; NaN unknown.")
       .field("depth_significance", &Evidence::depth_significance,
              "Maximum depth, standard errors from noise alone; below 3 the depth is unresolvable.");
   Record<Damage>(module, "Damage", "One damage: a connected component of the left image.")

@@ -27,7 +27,7 @@ struct SegmentationConstants {
   float min_core_area_share = 0.1F;  ///< of the minimum area of a damage, for its core
   float min_level_sigmas = 2;        ///< minimum depth at the outline
   float foot_sigmas = 0.5F;          ///< minimum depth at the foot of the wall
-  double min_confidence = 0.05;      ///< below it a region is no candidate
+  double min_confidence = 0.05;      ///< below it, even with the steepest wall, a region is no candidate
   int max_level_attempts = 8;        ///< maximum number of levels to separate touching damages
   float max_level_share = 0.9F;      ///< of the floor's depth, the highest of these levels
   std::size_t max_hole_divisor = 4;  ///< holes up to 1/4 of the image are filled

@@ -83,7 +83,7 @@ void search_and_fill(const DamageInput& input, const DamageOptions& options, con
       segmentation.candidates = find_candidates(depth_cells, segmentation.road, segmentation.view, thresholds,
                                                 make_image_edges(input, segmentation.cells), options.protrusions);
     } else if (task == 1) {
-      if (input.plane && !input.disparity.empty()) geometry.emplace(input);
+      if (FrameGeometry::is_possible(input)) geometry.emplace(input);
     } else {
       const int first = (task - 2) * rows_per_band;
       fill_road_rows(input, segmentation, first, std::min(first + rows_per_band, height), result);

@@ -6,9 +6,9 @@
 
 namespace roadstereo {
 
-/// What a pair without a calibration lacks: a rig with the focal length of the image's width, 1.5 m above the road. The
-/// points of a plane, b/d·K⁻¹(u, v, 1), are linear in (u, v, 1)/d: a wrong K and b give points that an affine map turns
-/// into the right ones.
+/// What a pair without a calibration lacks: a rig with the focal length of the image's width, 1.5 m above the road,
+/// without an offset of the disparities. The points of a plane, b/d·K⁻¹(u, v, 1), are linear in (u, v, 1)/d: a wrong K
+/// and b give points that an affine map turns into the right ones.
 StereoCalibration assumed_calibration(const DisparityPlane& model, int width, int height);
 
 /// Metric geometry of the lines of sight of one frame and its undamaged road. Points are in the camera frame, metres.
@@ -16,8 +16,10 @@ class FrameGeometry {
  public:
   using Point = std::array<double, 3>;
 
-  /// `input` must have a disparity map and a plane. Without a calibration one is assumed: lengths are then right up to
-  /// a factor, slopes up to that of the focal length.
+  /// Whether `input` has what it takes: a disparity map and a plane.
+  static bool is_possible(const DamageInput& input) { return input.plane && !input.disparity.empty(); }
+  /// Without a calibration one is assumed: points are right up to an affine map, slopes in proportion to the focal
+  /// length.
   explicit FrameGeometry(const DamageInput& input);
 
   /// Disparity of the undamaged road at a pixel, from its ℓ'.

@@ -143,8 +143,7 @@ double depth_of(const Damage& damage) {
   return damage.metrics ? damage.metrics->max_depth_m.value : damage.max_depth_px.value;
 }
 
-/// Whether the values are finite and within the limits of the options. A damage that extends beyond the road has
-/// infinite values.
+/// Whether the values are finite and within the limits of the options.
 bool is_within_limits(const Damage& damage, const DamageOptions& options) {
   if (damage.pixels == 0) return false;
   if (!damage.metrics) return true;
@@ -201,8 +200,14 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
       const SurfaceOffset offset = estimate_surface_offset(segmentation, segmentation.candidates[k]);
       Damage& damage = result.damages[k] = measure_in_pixels(input, segmentation, k, offset, result);
       if (geometry && damage.pixels > 0) {
-        const DamageMetrics metrics = compute_metrics(input, options, *geometry, offset, result, damage);
-        if (result.metric) damage.metrics = metrics;
+        const Measurement max_depth_px = damage.max_depth_px;
+        DamageMetrics metrics = compute_metrics(input, options, *geometry, offset, result, damage);
+        if (!std::isfinite(metrics.area_m2.value)) damage.pixels = 0;  // extends beyond the road
+        if (result.metric) {
+          damage.metrics = std::move(metrics);
+        } else {
+          damage.max_depth_px = max_depth_px;
+        }
       }
       damage.confidence = damage.evidence.confidence();
     });

@@ -20,9 +20,9 @@ struct Segmentation {
   std::vector<Candidate> candidates;
 };
 
-/// Measure every candidate, in metres if there is a `geometry`, and complete the maps of `result`, which
-/// `fill_road_rows` has filled. Candidates that are not deep enough are removed; the others are numbered by decreasing
-/// depth.
+/// Measure every candidate, in metres if `result` is metric, slopes of walls if there is a `geometry`, and complete the
+/// maps of `result`, which `fill_road_rows` has filled. Candidates that are not deep enough are removed; the others are
+/// numbered by decreasing depth.
 void measure_damage(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
                     const std::optional<FrameGeometry>& geometry, int threads, DamageMap& result);
 

@@ -91,7 +91,7 @@ MetricSums sum_pixels(const DamageInput& input, const FrameGeometry& geometry, c
     }
     if (!is_on_rim(maps.ids, u, v)) return;
     const Point on_road = geometry.axes().to_road(road);
-    sums.rim.push_back({on_road[0], on_road[1]});
+    if (std::isfinite(on_road[0] + on_road[1])) sums.rim.push_back({on_road[0], on_road[1]});
     sums.perimeter += std::sqrt(area);
   };
   const auto& [u0, v0, u1, v1] = damage.box_px;

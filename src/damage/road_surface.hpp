@@ -11,7 +11,7 @@ struct SurfaceCoordinates {
   /// Metres on the road, up to an affine map without a calibration, NaN where there is no road; without a plane −1 … 1
   /// over the image.
   Image<float> x, y;
-  Image<float> scale;  ///< pixels of ℓ' per metre of height, without a calibration as below 1.5 m; without a plane 1
+  Image<float> scale;  ///< pixels of ℓ' per metre of height, without a calibration below a camera of 1.5 m; else 1
 };
 
 /// Coordinates from the plane and the calibration, which is assumed where it is not given; without a plane of the

@@ -52,9 +52,8 @@ RayComponent ray_component(const StereoCalibration& calibration, const std::arra
 /// Coordinates on the road, metres, and pixels of ℓ' per metre of height. A point on the plane has n·p = h. Raising it
 /// by z at a fixed pixel scales its distance by 1 − z/h, so that its disparity grows by (d + doffs)·z/h to first order.
 SurfaceCoordinates road_coordinates(const Cells& cells, const DisparityPlane& model,
-                                    const StereoCalibration& calibration, int threads) {
+                                    const StereoCalibration& calibration, double min_disparity_px, int threads) {
   constexpr int rows_per_band = 16;
-  constexpr double min_disparity_px = 2;
   constexpr double max_row_m = 1;  // maximum length of the road in one row of pixels
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   SurfaceCoordinates c;
@@ -99,9 +98,9 @@ SurfaceCoordinates road_coordinates(const Cells& cells, const DisparityPlane& mo
 
 SurfaceCoordinates surface_coordinates(const Cells& cells, const DamageInput& input, int threads) {
   if (!input.plane) return image_coordinates(cells);
-  const StereoCalibration calibration =
-      input.calibration.value_or(assumed_calibration(*input.plane, cells.image_width, cells.image_height));
-  return road_coordinates(cells, *input.plane, calibration, threads);
+  if (input.calibration) return road_coordinates(cells, *input.plane, *input.calibration, 2, threads);
+  const StereoCalibration assumed = assumed_calibration(*input.plane, cells.image_width, cells.image_height);
+  return road_coordinates(cells, *input.plane, assumed, 0, threads);
 }
 
 }  // namespace roadstereo

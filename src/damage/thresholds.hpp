@@ -1,6 +1,7 @@
 #pragma once
 
 #include "damage/cells.hpp"
+#include "damage/frame_geometry.hpp"
 #include "damage/road_surface.hpp"
 
 namespace roadstereo {
@@ -15,11 +16,14 @@ class Thresholds {
 
   bool metric() const { return metric_; }
   /// Whether the slopes of walls will be measured.
-  bool walls_measured() const { return input_.plane && !input_.disparity.empty(); }
+  bool walls_measured() const { return FrameGeometry::is_possible(input_); }
   /// Minimum depth of a core: the larger of threshold_sigma standard deviations and min_depth_m.
-  float min_depth(int i, int j) const { return std::max(noise_, relief(i, j)); }
-  /// What is shallower is no damage, however low the noise: min_depth_m; 0 if it is not metric.
-  float relief(int i, int j) const { return static_cast<float>(min_depth_m_ * scale_(i, j)); }
+  float min_depth(int i, int j) const { return std::max(noise_, static_cast<float>(min_depth_m_ * scale_(i, j))); }
+  /// Relief of a rough road, however low the noise: what is no damage by min_depth_m, at most 5 mm; 0 if not metric.
+  float relief(int i, int j) const {
+    constexpr double max_relief_m = 0.005;
+    return static_cast<float>(std::min(min_depth_m_, max_relief_m) * scale_(i, j));
+  }
   /// Minimum depths of row j.
   void min_depths(int j, float* row) const;
   /// Maximum depth of a depression; infinity if it is not metric.

@@ -126,13 +126,15 @@ Measurement fuse(const std::vector<Figure>& figures, double view_factor) {
 }
 
 /// Confidence of agreeing frames: the mean of the log-odds, and what the root of the number of independent views adds
-/// to the log of the significance. A frame that measures the place without a finding counts as the least confident one.
+/// to the log of the significance. A frame that measures the place without a finding counts as the least confident one,
+/// and none as less.
 double joint_confidence(const Group& group, int views, double view_factor) {
   constexpr double least_confidence = 0.05, per_log_significance = 2.15;
   std::set<std::pair<int, int>> frames;
   double sum = 0;
   for (const DamageSighting* sighting : group.sightings) {
-    if (frames.insert({sighting->pass, sighting->frame}).second) sum += log_odds(sighting->found.damage.confidence);
+    if (!frames.insert({sighting->pass, sighting->frame}).second) continue;
+    sum += log_odds(std::max(least_confidence, sighting->found.damage.confidence));
   }
   const auto seen = static_cast<double>(frames.size());
   const double all = std::max(seen, static_cast<double>(views));

@@ -129,10 +129,8 @@ inline Damage damage_of(const synth::SyntheticPair& pair, const DamageMap& map, 
   const auto& [u0, v0, u1, v1] = damage.box_px;
   damage.cut_by_border = u0 == 0 || v0 == 0 || u1 == pair.labels.width() - 1 || v1 == pair.labels.height() - 1;
   const std::array<int, 2> middle{static_cast<int>(damage.centroid_px[0]), static_cast<int>(damage.centroid_px[1])};
-  if (map.metric) {
-    damage.metrics = metrics_of(pair, known, points, middle);
-    if (damage.kind == DamageKind::depression) damage.evidence.likely_wall_slope = damage.metrics->wall_slope;
-  }
+  if (damage.kind == DamageKind::depression) damage.evidence.likely_wall_slope = 1;
+  if (map.metric) damage.metrics = metrics_of(pair, known, points, middle);
   return damage;
 }
 

@@ -35,12 +35,12 @@ struct Map {
     disparity = with_noise(disparity, 0.02);
   }
 
-  DamageMap find() const {
+  DamageMap find(bool calibrated = true) const {
     DamageInput input;
     input.transformed = disparity;
     input.disparity = disparity;
     input.plane = DisparityPlane{calibration.focal_px * baseline_m / height_m, 0, 0};
-    input.calibration = calibration;
+    if (calibrated) input.calibration = calibration;
     DamageOptions options;
     options.min_confidence = 0;
     return find_damage(input, options);
@@ -70,6 +70,24 @@ TEST(WallSlope, OfConeAndFrustum) {
   const DamageMap oval = Map([](double x, double y) { return frustum(std::hypot(x, y / 2), 0.06, 0.1, 0.16); }).find();
   EXPECT_GT(only(oval).wall_slope, 0.5);
   EXPECT_LT(only(oval).wall_slope, 1);
+}
+
+/// At 2 mm a pixel the window spreads a wall over 20 mm: that of 0.2 keeps its slope, that of 1 may be as steep as
+/// rise 30 mm over run √(30² − 20²) mm and counts as 1.
+TEST(WallSlope, LikelyOneIsEvidence) {
+  const Map cone([](double x, double y) { return frustum(std::hypot(x, y), 0.06, 0, 0.3); });
+  EXPECT_NEAR(cone.find().damages.at(0).evidence.likely_wall_slope, 0.2, 0.01);
+  const Map pit([](double x, double y) { return frustum(std::hypot(x, y), 0.06, 0.14, 0.20); });
+  EXPECT_GT(pit.find().damages.at(0).evidence.likely_wall_slope, 0.95);
+  const Map bump([](double x, double y) { return -frustum(std::hypot(x, y), 0.03, 0, 0.3); });
+  EXPECT_TRUE(std::isnan(bump.find().damages.at(0).evidence.likely_wall_slope));
+  // Without a calibration the focal length, 1000 px, is taken to be the width, 640 px: all is as much wider. The
+  // outline is at half of the depth, from where on the wall has half of its run.
+  const DamageMap pixels = cone.find(false);
+  EXPECT_FALSE(pixels.metric);
+  EXPECT_FALSE(pixels.damages.at(0).metrics.has_value());
+  EXPECT_GT(pixels.damages.at(0).evidence.likely_wall_slope, 0.2 * 0.64);
+  EXPECT_LT(pixels.damages.at(0).evidence.likely_wall_slope, 2 * 0.2 * 0.64);
 }
 
 TEST(Distress, FollowsShape) {

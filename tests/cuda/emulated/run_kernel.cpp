@@ -98,7 +98,7 @@ void accept([[maybe_unused]] void* at) {
 #endif
 }
 
-/// Not instrumented: the address sanitizer, which is told of the new stack, would ask the system for the signals' stack
+/// Not instrumented: the address sanitizer, which is told of the new stack, would ask the system for the signal stack
 /// before the jump, and take two thirds of the time of all tests for that.
 __attribute__((no_sanitize("address"))) void switch_fibers(Fiber& from, Fiber& to) {
 #if defined(__SANITIZE_ADDRESS__)
