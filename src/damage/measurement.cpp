@@ -122,8 +122,8 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   damage.mean_depth_px = std::max(0.0, damage.mean_depth_px + sign_of(damage.kind) * offset.value);
   Measurement& max_depth = damage.max_depth_px;
   max_depth.value = std::max(max_depth.value + sign_of(damage.kind) * offset.value, damage.mean_depth_px);
-  max_depth.std_error = std::hypot(max_depth.std_error, offset.std_error);
   const double bias = maps.metric ? sub_pixel_bias_px : 0;
+  max_depth.std_error = std::hypot(max_depth.std_error, offset.std_error, bias);
   damage.evidence.depth_significance = max_depth.value / std::hypot(noise, offset.std_error, bias);
   return damage;
 }
@@ -143,7 +143,8 @@ double depth_of(const Damage& damage) {
   return damage.metrics ? damage.metrics->max_depth_m.value : damage.max_depth_px.value;
 }
 
-/// Whether the values are finite and within the limits of the options.
+/// Whether the values are finite and within the limits of the options. A damage that extends beyond the road has
+/// infinite values.
 bool is_within_limits(const Damage& damage, const DamageOptions& options) {
   if (damage.pixels == 0) return false;
   if (!damage.metrics) return true;
@@ -200,14 +201,8 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
       const SurfaceOffset offset = estimate_surface_offset(segmentation, segmentation.candidates[k]);
       Damage& damage = result.damages[k] = measure_in_pixels(input, segmentation, k, offset, result);
       if (geometry && damage.pixels > 0) {
-        const Measurement max_depth_px = damage.max_depth_px;
         DamageMetrics metrics = compute_metrics(input, options, *geometry, offset, result, damage);
-        if (!std::isfinite(metrics.area_m2.value)) damage.pixels = 0;  // extends beyond the road
-        if (result.metric) {
-          damage.metrics = std::move(metrics);
-        } else {
-          damage.max_depth_px = max_depth_px;
-        }
+        if (result.metric) damage.metrics = std::move(metrics);
       }
       damage.confidence = damage.evidence.confidence();
     });

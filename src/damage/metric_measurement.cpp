@@ -138,7 +138,7 @@ std::vector<std::array<double, 2>> outline_on_road(const FrameGeometry& geometry
 /// (docs/accuracy.md): a hollow of the size of the window loses part of its depth, and the outline is accurate to a
 /// fifth of the window's radius.
 void set_standard_errors(const MetricSums& sums, const SurfaceOffset& offset, double noise_px, double sigma_px,
-                         double deepest_m_per_px, DamageMetrics& metrics, Damage& damage) {
+                         double deepest_m_per_px, const Damage& damage, DamageMetrics& metrics) {
   constexpr double mean_factor = 0.3;     // error of the mean depth, relative to that of one pixel
   constexpr double outline_factor = 0.2;  // error of the outline, relative to the radius of the window
   const double radius_px = std::sqrt(static_cast<double>(damage.pixels) / std::numbers::pi);
@@ -146,7 +146,6 @@ void set_standard_errors(const MetricSums& sums, const SurfaceOffset& offset, do
   const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
   const double surface_px = std::hypot(offset.std_error, sub_pixel_bias_px);
 
-  damage.max_depth_px.std_error = std::hypot(damage.max_depth_px.std_error, sub_pixel_bias_px);
   metrics.max_depth_m.std_error =
       std::hypot(damage.max_depth_px.std_error * deepest_m_per_px, smoothing.max_depth(metrics.max_depth_m.value));
   // The foot of a gentle wall is located to the distance over which it rises by two standard deviations.
@@ -205,7 +204,7 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   const Point deepest = geometry.point(u, v, road_disparity - signed_depth);
   metrics.max_depth_m.value = std::max(std::abs(geometry.depth_between(road, deepest)), metrics.mean_depth_m.value);
   set_standard_errors(sums, offset, noise_px, sigma_px,
-                      geometry.metres_per_pixel(deepest, road_disparity - signed_depth), metrics, damage);
+                      geometry.metres_per_pixel(deepest, road_disparity - signed_depth), damage, metrics);
 
   const OrientedBox box = oriented_box(sums.rim);
   metrics.length_m = box.length;
@@ -222,7 +221,7 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   metrics.outline_m = outline_on_road(geometry, maps, damage);
   const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
   const double possible_slope = possible_wall_slope(metrics, SmoothingError::window_radius_px * pixel_m);
-  if (damage.kind == DamageKind::depression) {
+  if (damage.kind == DamageKind::depression && std::isfinite(sums.area)) {  // else it extends beyond the road
     damage.evidence.likely_wall_slope = std::sqrt(std::min(1.0, metrics.wall_slope) * std::min(1.0, possible_slope));
   }
   metrics.distress = classify_distress(damage, metrics, possible_slope, maps.ids.width());

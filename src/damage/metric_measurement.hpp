@@ -14,7 +14,7 @@ struct SurfaceOffset {
 /// Estimate the offset as the median over a ring of intact road around the candidate.
 SurfaceOffset estimate_surface_offset(const Segmentation& segmentation, const Candidate& candidate);
 
-/// Compute the metric properties of a damage, its standard error of the depth in pixels and likely slope. The depths of
+/// Compute the metric properties of a damage, and the likely slope of its wall, evidence of it. The depths of
 /// `maps` are in pixels of ℓ'.
 DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
                               const SurfaceOffset& offset, const DamageMap& maps, Damage& damage);
