@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "roadstereo/alignment.hpp"
 #include "roadstereo/damage.hpp"
 #include "roadstereo/health.hpp"
 #include "roadstereo/pipeline.hpp"
@@ -119,6 +120,7 @@ void register_all() {
     for (const auto& size : sizes) entry->Args(size);
   };
   add_stage("grey", [](Frame& f) { to_grey(f.pair.left.view(), 0, f.left); });
+  add_stage("row_alignment", [](Frame& f) { measure_row_alignment(f.left, f.right, 0); });
   add_stage("estimate_road", [](Frame& f) { estimate_road_model(f.left, f.right, f.pair.calibration, {}); });
   add_stage("verify_road", [](Frame& f) {
     verify_road_model(f.left, f.right, {f.road.model, f.road.inlier_share}, f.pair.calibration, {});

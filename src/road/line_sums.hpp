@@ -12,6 +12,16 @@ struct VDisparity {
   const float* row(int r) const { return values + std::ptrdiff_t{r} * disparities; }
 };
 
+/// What every cell of a picture says to each disparity.
+struct DisparityCells {
+  const float* values;  ///< row by row of cells, `disparities` of each
+  int rows, columns, disparities;
+};
+
+/// Sum of the values at a plane that has the disparity `first` in the first cell, and so much more in the next row and
+/// column; linear between two disparities, nothing beyond 0 … last.
+double sum_along_plane(const DisparityCells& cells, float first, float row_step, float column_step);
+
 /// Elements behind the last line that sum_along_lines reads and writes.
 inline constexpr int line_sums_guard = 15;
 

@@ -13,9 +13,9 @@
 namespace roadstereo {
 namespace {
 
-constexpr double beyond_weight = 3.0;       ///< of evidence below the plane, against support along it
-constexpr double beyond_margin = 1.5;       ///< pixels of the downsampled image that the road may be uneven
-constexpr double full_weight_share = 0.15;  ///< of the largest disparity, from where a cell counts in full: the far
+constexpr float beyond_weight = 3.0f;       ///< of evidence below the plane, against support along it
+constexpr float beyond_margin = 1.5f;       ///< pixels of the downsampled image that the road may be uneven
+constexpr float full_weight_share = 0.15f;  ///< of the largest disparity, from where a cell counts in full: the far
                                             ///< road is a small patch that any surface there supports
 constexpr double base_row_weight = 0.2;     ///< of the uppermost row; the lowest has this and 1
 constexpr double max_slope = 0.3;           ///< disparity per column
@@ -153,19 +153,20 @@ PlaneEvidence::PlaneEvidence(const CoarseMatches& coarse)
       pixels_(coarse.pixels()),
       values_(
           scratch_vector<float>(static_cast<std::size_t>(rows_ * columns_) * static_cast<std::size_t>(disparities_))) {
-  const double full_weight = 1.0 / (full_weight_share * disparities_);
+  const float full_weight = 1 / (full_weight_share * static_cast<float>(disparities_));
+  constexpr auto margin = static_cast<int>(beyond_margin + 1);
+  constexpr float share = static_cast<float>(margin) - beyond_margin;
   for (int r = 0; r < rows_; ++r) {
     const double lower = row(r) / coarse.height;
-    const double weight = base_row_weight + lower * lower;
+    const auto weight = static_cast<float>(base_row_weight + lower * lower);
     for (int c = 0; c < columns_; ++c) {
       const float *support = coarse.evidence.support(r, c), *beyond = coarse.evidence.beyond(r, c);
       float* value = values_.data() + at(r, c);
-      for (int d = 0; d < disparities_; ++d) {
-        const double before = d - beyond_margin;
-        const int whole = static_cast<int>(std::floor(before));
-        const double share = before - whole;
-        const double below = whole < 0 ? 0 : (1 - share) * beyond[whole] + share * beyond[whole + 1];
-        value[d] = static_cast<float>(weight * (std::min(1.0, d * full_weight) * support[d] - beyond_weight * below));
+      const auto supported = [&](int d) { return std::min(1.0f, static_cast<float>(d) * full_weight) * support[d]; };
+      for (int d = 0; d < std::min(margin, disparities_); ++d) value[d] = weight * supported(d);
+      for (int d = margin; d < disparities_; ++d) {
+        const float below = (1 - share) * beyond[d - margin] + share * beyond[d - margin + 1];
+        value[d] = weight * (supported(d) - beyond_weight * below);
       }
     }
   }
@@ -173,22 +174,10 @@ PlaneEvidence::PlaneEvidence(const CoarseMatches& coarse)
 
 double PlaneEvidence::of_plane(const DisparityPlane& full_size) const {
   const DisparityPlane plane = downsample_plane(full_size, factor_);
-  double sum = 0;
-  const auto last = static_cast<float>(disparities_ - 1);
-  const auto step = static_cast<float>(plane.a2 * evidence_columns);
-  for (int r = 0; r < rows_; ++r) {
-    const auto first = static_cast<float>(plane.disparity(column(0), row(r)));
-    float of_row = 0;
-    for (int c = 0; c < columns_; ++c) {
-      const float d = first + step * static_cast<float>(c);
-      if (d <= 0 || d >= last) continue;
-      const int whole = static_cast<int>(d);
-      const float* value = values(r, c) + whole;
-      of_row += value[0] + (d - static_cast<float>(whole)) * (value[1] - value[0]);
-    }
-    sum += of_row;
-  }
-  return sum / pixels_;
+  return sum_along_plane(
+             {values_.data(), rows_, columns_, disparities_}, static_cast<float>(plane.disparity(column(0), row(0))),
+             static_cast<float>(plane.a1 * evidence_rows), static_cast<float>(plane.a2 * evidence_columns)) /
+         pixels_;
 }
 
 ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,

@@ -1,6 +1,7 @@
 #include "road/plane_match.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -38,59 +39,110 @@ PlaneMatches gather(const ScratchVector<RowCount>& rows, const ScratchVector<Dis
   return matches;
 }
 
-/// The right image along the rows of a block, each column shifted by the plane. The plane is taken at the block's own
-/// columns: over the range of the search it is the same to a small part of a pixel.
-void sample_around(ImageView<const std::int16_t> right, const CorrelationBlock& block, int u, int v,
-                   const DisparityPlane& plane, int range, Strip& strip) {
-  const int first = u - plane_block_half_width - range;
-  for (int y = 0; y < block.height; ++y) {
-    const int row = v + y - plane_block_half_height;
-    sample_strip(right.row(row), right.width(), first - plane.disparity(first, row), 1 - plane.a2,
-                 block.width + 2 * range, strip.row(y));
+/// Rows of the right image, each column shifted by the plane: what a block at column u of the left image matches around
+/// u. Blocks of one row of the grid share them.
+class ShiftedRows {
+ public:
+  static constexpr int max_range = 7;
+
+  ShiftedRows(ImageView<const std::int16_t> right, const DisparityPlane& plane, float min_deviation, int workers)
+      : right_(right),
+        plane_(plane),
+        min_deviation_(min_deviation),
+        pitch_(right.width() + max_range + Strip::guard + CorrelationBlock::max_width),
+        values_(scratch_vector<float>(static_cast<std::size_t>(workers) * size())) {}
+
+  /// The rows of the blocks around row v.
+  void sample(int v, int worker) {
+    float* const rows = memory(worker);
+    const double step = 1 - plane_.a2;
+    for (int y = 0; y < plane_block_height; ++y) {
+      const int row = v + y - plane_block_half_height;
+      const double shift = plane_.disparity(0, row);
+      // The columns that the right image sees.
+      const int columns = right_.width() + max_range;
+      const int first = static_cast<int>(std::clamp(std::ceil(shift / step), 0.0, 1.0 * columns));
+      const int last = static_cast<int>(std::clamp(std::ceil((right_.width() - 1 + shift) / step), 0.0, 1.0 * columns));
+      for (int u = first; u < last; u += max_sampled) {
+        sample_strip(right_.row(row), right_.width(), u * step - shift, step, std::min(max_sampled, last - u),
+                     rows + y * pitch_ + u);
+      }
+    }
+    describe_strip({rows, pitch_}, plane_block_width, plane_block_height,
+                   right_.width() - plane_block_width + max_range, min_deviation_, rows + plane_block_height * pitch_);
   }
-}
+
+  /// Correlates a block with the parts of the rows that begin at `count` columns from u on.
+  void correlate(const CorrelationBlock& block, int u, int count, int worker, StripCorrelations& correlations) {
+    const float* const first = memory(worker) + u;
+    correlate_strip(block, {first, pitch_}, first + plane_block_height * pitch_, count, correlations);
+  }
+
+ private:
+  /// The rows of a block, and the inverse deviations of the blocks that begin at each column.
+  std::size_t size() const { return static_cast<std::size_t>((plane_block_height + 1) * pitch_); }
+  float* memory(int worker) { return values_.data() + static_cast<std::size_t>(worker) * size(); }
+
+  ImageView<const std::int16_t> right_;
+  DisparityPlane plane_;
+  float min_deviation_;
+  std::ptrdiff_t pitch_;
+  ScratchVector<float> values_;
+};
+
+/// Correlations of a block with the residuals +range … −range, so that indices grow with the right image's columns.
+struct BlockCorrelations {
+  StripCorrelations values;
+  int highest;  ///< index
+};
 
 /// The highest correlation, where it lies within a pixel of the plane.
-std::optional<float> correlation_on_plane(const StripCorrelations& correlations, int range) {
+std::optional<float> correlation_on_plane(const BlockCorrelations& correlations, int range) {
   constexpr float min_correlation = 0.3F;  // below it chance decides
-  const float* first = correlations.data();
-  const float* at = std::max_element(first, first + std::ptrdiff_t{2} * range + 1);
-  if (std::abs(at - first - range) > 1 || *at < min_correlation) return std::nullopt;
-  return *at;
+  const float highest = correlations.values[static_cast<std::size_t>(correlations.highest)];
+  if (std::abs(correlations.highest - range) > 1 || highest < min_correlation) return std::nullopt;
+  return highest;
 }
 
-/// Residual of the highest correlation, refined by a parabola; nothing when it is low or at an end. Index 0 is +range,
-/// so that indices grow with the right image's columns.
-std::optional<double> best_residual(const StripCorrelations& correlations, int range) {
-  const float* first = correlations.data();
-  const float* last = first + std::ptrdiff_t{2} * range;
-  const float* at = std::max_element(first, last + 1);
-  if (*at < plane_match_min_correlation || at == first || at == last) return std::nullopt;
-  return range - (static_cast<double>(at - first) + parabola_offset(*(at - 1), *at, *(at + 1)));
+/// Residual of the value at an index, refined by a parabola. Both have neighbours.
+double residual_at(const float* value, std::ptrdiff_t index, int range) {
+  return range - (static_cast<double>(index) + parabola_offset(*(value - 1), *value, *(value + 1)));
+}
+
+/// Residual of the highest correlation; nothing when it is low or at an end.
+std::optional<double> best_residual(const BlockCorrelations& correlations, int range) {
+  const float* at = correlations.values.data() + correlations.highest;
+  if (*at < plane_match_min_correlation || correlations.highest == 0 || correlations.highest == 2 * range) {
+    return std::nullopt;
+  }
+  return residual_at(at, correlations.highest, range);
 }
 
 /// Searches around a plane at single samples.
 class PlaneSearch {
  public:
   PlaneSearch(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, const DisparityPlane& plane,
-              int range_px, float min_deviation, const MaskedBlocks& masked)
+              int range_px, float min_deviation, const MaskedBlocks& masked, int threads)
       : left_(left),
-        right_(right),
         plane_(plane),
         masked_(masked),
         range_(range_px),
         min_deviation_(min_deviation),
-        extent_(plane_search_extent(plane.a1, plane.a2, range_px)) {}
+        extent_(plane_search_extent(plane.a1, plane.a2, range_px)),
+        rows_(right, plane, min_deviation, resolve_threads(threads)) {}
 
-  /// Correlations of the block at (u, v) with the residuals +range … −range; false where there is no texture, the
-  /// search leaves the image, or the block is masked.
-  bool correlate(int u, int v, Strip& strip, StripCorrelations& correlations) const {
+  /// To be called before the blocks of a row are correlated.
+  void begin_row(int v, int worker) { rows_.sample(v, worker); }
+
+  /// False where there is no texture, the search leaves the image, or the block is masked.
+  bool correlate(int u, int v, int worker, BlockCorrelations& correlations) {
     if (!search_in_view(u, plane_.disparity(u, v), extent_, left_.width())) return false;
     if (masked_.contains(u, v, plane_block_half_width, plane_block_half_height)) return false;
     const CorrelationBlock block(left_, u, v, plane_block_half_width, plane_block_half_height);
     if (block.deviation < min_deviation_) return false;
-    sample_around(right_, block, u, v, plane_, range_, strip);
-    correlate_strip(block, strip, 2 * range_ + 1, min_deviation_, correlations);
+    const int count = 2 * range_ + 1;
+    rows_.correlate(block, u - plane_block_half_width - range_, count, worker, correlations.values);
+    correlations.highest = index_of_highest(correlations.values, count);
     return true;
   }
 
@@ -100,19 +152,29 @@ class PlaneSearch {
   }
 
  private:
-  ImageView<const std::int16_t> left_, right_;
+  ImageView<const std::int16_t> left_;
   DisparityPlane plane_;
   const MaskedBlocks& masked_;
   int range_;
   float min_deviation_;
   double extent_;
+  ShiftedRows rows_;
+};
+
+constexpr int cell_samples = 5;  ///< of a cell, along each side
+
+/// Sums over the samples of a cell.
+struct Cell {
+  std::array<float, 2 * ShiftedRows::max_range + 1> correlations{};
+  double u = 0, v = 0;
+  int samples = 0;
 };
 
 /// Residual at the peak of a cell's mean correlation; nothing when it does not stand out from the other residuals.
-std::optional<double> cell_residual(const StripCorrelations& sums, int range) {
+std::optional<double> cell_residual(const Cell& cell, int range) {
   constexpr double min_peak_sigmas = 2.5;
   const int count = 2 * range + 1;
-  const auto* first = sums.data();
+  const auto* first = cell.correlations.data();
   const auto* at = std::max_element(first, first + count);
   if (at == first || at == first + count - 1) return std::nullopt;
   double sum = 0, squares = 0;
@@ -127,7 +189,7 @@ std::optional<double> cell_residual(const StripCorrelations& sums, int range) {
   const double mean = sum / others;
   const double sigma = std::sqrt(std::max(0.0, squares / others - mean * mean));
   if (*at - mean < min_peak_sigmas * sigma) return std::nullopt;
-  return range - (static_cast<double>(at - first) + parabola_offset(*(at - 1), *at, *(at + 1)));
+  return residual_at(at, at - first, range);
 }
 
 }  // namespace
@@ -137,23 +199,22 @@ PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<con
                                const MaskedBlocks& masked) {
   const SampleGrid grid = sample_grid(left.width(), left.height(), range_px, places);
   if (std::abs(plane.a2) >= plane_match_max_slant) return {};
-  const PlaneSearch search(left, right, plane, range_px, plane_match_min_deviation, masked);
+  PlaneSearch search(left, right, plane, range_px, plane_match_min_deviation, masked, threads);
   auto points = scratch_vector<DisparityPoint>(static_cast<std::size_t>(grid.places()));
   auto near = scratch_vector<float>(static_cast<std::size_t>(grid.places()));
   auto rows = scratch_vector<RowCount>(static_cast<std::size_t>(grid.rows));
-  parallel_for(grid.rows, threads, [&](int grid_row, int) {
+  parallel_for(grid.rows, threads, [&](int grid_row, int worker) {
     RowCount& row = rows[static_cast<std::size_t>(grid_row)];
     DisparityPoint* of_row = points.data() + static_cast<std::ptrdiff_t>(grid_row) * grid.columns;
+    float* near_of_row = near.data() + static_cast<std::ptrdiff_t>(grid_row) * grid.columns;
     const int v = grid.row(grid_row);
-    Strip strip{};
-    StripCorrelations correlations{};
+    search.begin_row(v, worker);
+    BlockCorrelations correlations{};
     for (int column = 0; column < grid.columns; ++column) {
       const int u = grid.column(column);
-      if (!search.correlate(u, v, strip, correlations)) continue;
+      if (!search.correlate(u, v, worker, correlations)) continue;
       ++row.tried;
-      if (const auto correlation = correlation_on_plane(correlations, range_px)) {
-        near[static_cast<std::size_t>(grid_row * grid.columns) + row.near++] = *correlation;
-      }
+      if (const auto correlation = correlation_on_plane(correlations, range_px)) near_of_row[row.near++] = *correlation;
       if (const auto residual = best_residual(correlations, range_px)) {
         of_row[row.found++] = search.point(u, v, *residual);
       }
@@ -165,44 +226,47 @@ PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<con
 PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                      const DisparityPlane& plane, int range_px, int places, int threads,
                                      const MaskedBlocks& masked) {
-  constexpr int cell = 5;  // samples along each side
   // What a single block hides in noise the mean of a cell shows.
   constexpr float cell_min_deviation = plane_match_min_deviation / 2;
   const SampleGrid grid = sample_grid(left.width(), left.height(), range_px, places);
   if (std::abs(plane.a2) >= plane_match_max_slant) return {};
-  const PlaneSearch search(left, right, plane, range_px, cell_min_deviation, masked);
-  const int cell_rows = (grid.rows + cell - 1) / cell, cell_columns = (grid.columns + cell - 1) / cell;
-  auto points =
-      scratch_vector<DisparityPoint>(static_cast<std::size_t>(cell_rows) * static_cast<std::size_t>(cell_columns));
-  auto near =
-      scratch_vector<float>(static_cast<std::size_t>(cell_rows) * static_cast<std::size_t>(cell * grid.columns));
+  PlaneSearch search(left, right, plane, range_px, cell_min_deviation, masked, threads);
+  const int cell_rows = (grid.rows + cell_samples - 1) / cell_samples;
+  const int cell_columns = (grid.columns + cell_samples - 1) / cell_samples;
+  const std::size_t cells = static_cast<std::size_t>(cell_rows) * static_cast<std::size_t>(cell_columns);
+  auto cell_sums = scratch_vector<Cell>(cells);
+  auto points = scratch_vector<DisparityPoint>(cells);
+  auto near = scratch_vector<float>(static_cast<std::size_t>(cell_rows) *
+                                    static_cast<std::size_t>(cell_samples * grid.columns));
   auto rows = scratch_vector<RowCount>(static_cast<std::size_t>(cell_rows));
-  parallel_for(cell_rows, threads, [&](int cell_row, int) {
+  parallel_for(cell_rows, threads, [&](int cell_row, int worker) {
     RowCount& row = rows[static_cast<std::size_t>(cell_row)];
+    Cell* const cells_of_row = cell_sums.data() + static_cast<std::ptrdiff_t>(cell_row) * cell_columns;
     DisparityPoint* of_row = points.data() + static_cast<std::ptrdiff_t>(cell_row) * cell_columns;
-    Strip strip{};
-    StripCorrelations correlations{};
-    for (int cell_column = 0; cell_column < cell_columns; ++cell_column) {
-      StripCorrelations sums{};
-      double sum_u = 0, sum_v = 0;
-      int samples = 0;
-      for (int i = 0; i < cell * cell; ++i) {
-        const int grid_row = cell_row * cell + i / cell, grid_column = cell_column * cell + i % cell;
-        if (grid_row >= grid.rows || grid_column >= grid.columns) continue;
-        const int u = grid.column(grid_column), v = grid.row(grid_row);
-        if (!search.correlate(u, v, strip, correlations)) continue;
+    float* near_of_row = near.data() + static_cast<std::ptrdiff_t>(cell_row) * cell_samples * grid.columns;
+    const int first_row = cell_row * cell_samples;
+    BlockCorrelations correlations{};
+    for (int grid_row = first_row; grid_row < std::min(first_row + cell_samples, grid.rows); ++grid_row) {
+      const int v = grid.row(grid_row);
+      search.begin_row(v, worker);
+      for (int column = 0; column < grid.columns; ++column) {
+        const int u = grid.column(column);
+        if (!search.correlate(u, v, worker, correlations)) continue;
         if (const auto correlation = correlation_on_plane(correlations, range_px)) {
-          near[static_cast<std::size_t>(cell_row * cell * grid.columns) + row.near++] = *correlation;
+          near_of_row[row.near++] = *correlation;
         }
-        for (std::size_t k = 0; k <= 2 * static_cast<std::size_t>(range_px); ++k) sums[k] += correlations[k];
-        sum_u += u;
-        sum_v += v;
-        ++samples;
+        Cell& cell = cells_of_row[column / cell_samples];
+        for (std::size_t k = 0; k < cell.correlations.size(); ++k) cell.correlations[k] += correlations.values[k];
+        cell.u += u;
+        cell.v += v;
+        ++cell.samples;
       }
-      if (samples < cell * cell / 2) continue;
+    }
+    for (const Cell* cell = cells_of_row; cell < cells_of_row + cell_columns; ++cell) {
+      if (cell->samples < cell_samples * cell_samples / 2) continue;
       ++row.tried;
-      if (const auto residual = cell_residual(sums, range_px)) {
-        of_row[row.found++] = search.point(sum_u / samples, sum_v / samples, *residual);
+      if (const auto residual = cell_residual(*cell, range_px)) {
+        of_row[row.found++] = search.point(cell->u / cell->samples, cell->v / cell->samples, *residual);
       }
     }
   });

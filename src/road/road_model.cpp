@@ -1,7 +1,6 @@
 #include "roadstereo/road_model.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 
@@ -79,6 +78,34 @@ class FinePair {
   ImageView<const std::int16_t> left_, right_;
 };
 
+/// The pair at full size, and downsampled as for the coarse search, where noise that hides every block averages out;
+/// that is made when it is asked for.
+class FinePairs {
+ public:
+  static constexpr int count = 2;
+
+  FinePairs(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, ImageView<const std::uint8_t> mask,
+            int coarse_factor)
+      : left_(left),
+        right_(right),
+        mask_(mask),
+        coarse_factor_(coarse_factor),
+        full_(left, right, mask, fine_factor(left.width())) {}
+
+  const FinePair& operator[](int i) {
+    if (i == 0) return full_;
+    if (!downsampled_) downsampled_.emplace(left_, right_, mask_, coarse_factor_);
+    return *downsampled_;
+  }
+
+ private:
+  ImageView<const std::int16_t> left_, right_;
+  ImageView<const std::uint8_t> mask_;
+  int coarse_factor_;
+  FinePair full_;
+  std::optional<FinePair> downsampled_;
+};
+
 using PlaneMatcher = decltype(match_along_plane);
 
 Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneMatcher match, const FineSearch& search,
@@ -149,13 +176,14 @@ PlaneFitStatistics find_around(const FinePair& pair, const DisparityPlane& plane
       .last();
 }
 
-/// Assess one plane in the full-size pair, or in the downsampled one, where noise that hides every block averages out.
-RoadModelEstimate assess_plane(std::span<const FinePair> pairs, const PlaneHypothesis& hypothesis,
-                               const PlaneEvidence& evidence, const TiltLimit& limit, const RoadModelOptions& options,
-                               int threads, const RoadModelEstimate& matched) {
+/// Assess one plane in the full-size pair, or in the downsampled one.
+RoadModelEstimate assess_plane(FinePairs& pairs, const PlaneHypothesis& hypothesis, const PlaneEvidence& evidence,
+                               const TiltLimit& limit, const RoadModelOptions& options, int threads,
+                               const RoadModelEstimate& matched) {
   const auto weigh = [&](const DisparityPlane& plane) { return limit.level_weight(plane) * evidence.of_plane(plane); };
   RoadModelEstimate first = matched;
-  for (const FinePair& pair : pairs) {
+  for (int i = 0; i < FinePairs::count; ++i) {
+    const FinePair& pair = pairs[i];
     PlaneFitStatistics fit = find_around(pair, hypothesis.plane, options.with_roll, threads);
     if (fit.found) {
       const DisparityPlane even = fit_evenly(pair, fit.plane, limit, options.with_roll, threads);
@@ -164,13 +192,13 @@ RoadModelEstimate assess_plane(std::span<const FinePair> pairs, const PlaneHypot
     RoadModelEstimate assessed = matched;
     assess_found_road(fit, hypothesis.evidence, limit, options, assessed);
     if (assessed.has_road()) return assessed;
-    if (&pair == &pairs.front()) first = assessed;
+    if (i == 0) first = assessed;
   }
   return first;
 }
 
 /// Assess the planes in turn until one is a road. If none is, the reason is that of the first.
-RoadModelEstimate assess_planes(std::span<const FinePair> pairs, std::span<const PlaneHypothesis> planes,
+RoadModelEstimate assess_planes(FinePairs& pairs, std::span<const PlaneHypothesis> planes,
                                 const PlaneEvidence& evidence, const TiltLimit& limit, const RoadModelOptions& options,
                                 int threads, const RoadModelEstimate& matched) {
   RoadModelEstimate estimate = matched;
@@ -275,8 +303,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
     estimate.reason = few_match ? too_few(estimate.matches) : "no plane has more evidence for it than against it";
     return estimate;
   }
-  const std::array<FinePair, 2> pairs{FinePair{left, right, mask, fine_factor(left.width())},
-                                      FinePair{left, right, mask, factor}};
+  FinePairs pairs(left, right, mask, factor);
   RoadModelEstimate found = assess_planes(pairs, planes, evidence, limit, options, threads, estimate);
   if (few_match && !found.has_road()) found.reason = too_few(estimate.matches);
   measure_range(matches, found);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/mid_grey.hpp"
 #include "road/plane_search.hpp"
@@ -55,18 +56,18 @@ void cut_block(ImageView<const std::int16_t> image, int u, int v, CorrelationBlo
   }
 }
 
-/// Sums of the strip's columns and of their squares.
+/// Sums of a strip's columns and of their squares.
 struct ColumnSums {
   std::array<float, Strip::pitch> values, squares;
 };
 
-HWY_INLINE void sum_columns(const Strip& strip, int columns, int height, ColumnSums& sums) {
+HWY_INLINE void sum_columns(const StripView& strip, int first, int columns, int height, ColumnSums& sums) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   for (int x = 0; x < columns; x += lanes) {
     Float sum = hn::Zero(df), squares = hn::Zero(df);
     for (int y = 0; y < height; ++y) {
-      const Float value = hn::LoadU(df, strip.row(y) + x);
+      const Float value = hn::LoadU(df, strip.row(y) + first + x);
       sum = hn::Add(sum, value);
       squares = hn::MulAdd(value, value, squares);
     }
@@ -75,8 +76,32 @@ HWY_INLINE void sum_columns(const Strip& strip, int columns, int height, ColumnS
   }
 }
 
+void describe_strip(const StripView& strip, int width, int height, int count, float min_deviation,
+                    float* inverse_deviations) {
+  const Floats df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  const Float per_pixel = hn::Set(df, 1.0f / static_cast<float>(width * height));
+  const Float min_variance = hn::Set(df, min_deviation * min_deviation);
+  ColumnSums sums;
+  for (int first = 0; first < count; first += Strip::max_counts) {
+    const int counted = std::min(Strip::max_counts, count - first);
+    sum_columns(strip, first, counted + width - 1, height, sums);
+    for (int i = 0; i < counted; i += lanes) {
+      Float sum = hn::Zero(df), squares = hn::Zero(df);
+      for (int x = 0; x < width; ++x) {
+        sum = hn::Add(sum, hn::LoadU(df, sums.values.data() + i + x));
+        squares = hn::Add(squares, hn::LoadU(df, sums.squares.data() + i + x));
+      }
+      const Float mean = hn::Mul(sum, per_pixel);
+      const Float variance = hn::NegMulAdd(mean, mean, hn::Mul(squares, per_pixel));
+      const Float inverse = hn::Div(hn::Set(df, 1.0f), hn::Sqrt(variance));
+      hn::StoreU(hn::IfThenElseZero(hn::Ge(variance, min_variance), inverse), df, inverse_deviations + first + i);
+    }
+  }
+}
+
 /// Sums over the block of its values times the strip's, for the parts that begin at `first` and the columns behind it.
-HWY_INLINE Float sum_products(const CorrelationBlock& block, const Strip& strip, int first) {
+HWY_INLINE Float sum_products(const CorrelationBlock& block, const StripView& strip, int first) {
   const Floats df;
   Float even = hn::Zero(df), odd = hn::Zero(df);  // two chains hide each other's latency
   const float* value = block.values.data();
@@ -92,33 +117,38 @@ HWY_INLINE Float sum_products(const CorrelationBlock& block, const Strip& strip,
   return hn::Add(even, odd);
 }
 
-void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float min_deviation,
+void correlate_strip(const CorrelationBlock& block, const StripView& strip, const float* inverse_deviations, int count,
                      StripCorrelations& correlations) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
-  const Float per_pixel = hn::Set(df, 1.0f / static_cast<float>(block.width * block.height));
-  const Float min_variance = hn::Set(df, min_deviation * min_deviation);
-  const Float per_deviation = hn::Set(df, 1.0f / block.deviation);
-  ColumnSums sums;
-  sum_columns(strip, count + block.width - 1 + lanes, block.height, sums);
+  const Float scale = hn::Set(df, 1.0f / (block.deviation * static_cast<float>(block.width * block.height)));
   for (int i = 0; i < count; i += lanes) {
-    Float sum = hn::Zero(df), squares = hn::Zero(df);
-    for (int x = 0; x < block.width; ++x) {
-      sum = hn::Add(sum, hn::LoadU(df, sums.values.data() + i + x));
-      squares = hn::Add(squares, hn::LoadU(df, sums.squares.data() + i + x));
-    }
-    const Float mean = hn::Mul(sum, per_pixel);
-    const Float variance = hn::NegMulAdd(mean, mean, hn::Mul(squares, per_pixel));
-    const auto textured = hn::Ge(variance, min_variance);
-    const Float covariance = hn::Mul(sum_products(block, strip, i), per_pixel);
-    const Float safe = hn::IfThenElse(textured, variance, hn::Set(df, 1.0f));
-    const Float correlation = hn::Div(hn::Mul(covariance, per_deviation), hn::Sqrt(safe));
+    const Float inverse = hn::LoadU(df, inverse_deviations + i);
+    const Float correlation = hn::Mul(hn::Mul(sum_products(block, strip, i), scale), inverse);
+    const auto textured = hn::Gt(inverse, hn::Zero(df));
     hn::StoreU(hn::IfThenElse(textured, correlation, hn::Set(df, -1.0f)), df, correlations.data() + i);
   }
 }
 
-constexpr int max_sampled = 32;  ///< columns
-constexpr int max_drift = 16;    ///< pixels by which they may fall behind or run ahead along the strip
+int index_of_highest(const StripCorrelations& correlations, int count) {
+  const Floats df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  const Float beyond = hn::Set(df, -std::numeric_limits<float>::infinity());
+  const auto values = [&](int i) {
+    const auto counted = hn::FirstN(df, static_cast<std::size_t>(count - i));
+    return hn::IfThenElse(counted, hn::LoadU(df, correlations.data() + i), beyond);
+  };
+  Float highest = beyond;
+  for (int i = 0; i < count; i += lanes) highest = hn::Max(highest, values(i));
+  highest = hn::MaxOfLanes(df, highest);
+  for (int i = 0; i < count; i += lanes) {
+    const std::intptr_t lane = hn::FindFirstTrue(df, hn::Eq(values(i), highest));
+    if (lane >= 0) return i + static_cast<int>(lane);
+  }
+  return 0;
+}
+
+constexpr int max_drift = 16;  ///< pixels by which they may fall behind or run ahead along the strip
 
 /// A column lies between two pixels of a few that come into question; each counts by its distance from the column, and
 /// beyond a pixel's distance not at all.
@@ -163,7 +193,9 @@ HWY_AFTER_NAMESPACE();
 namespace roadstereo {
 
 HWY_EXPORT(cut_block);
+HWY_EXPORT(describe_strip);
 HWY_EXPORT(correlate_strip);
+HWY_EXPORT(index_of_highest);
 HWY_EXPORT(sample_strip);
 
 CorrelationBlock::CorrelationBlock(ImageView<const std::int16_t> image, int u, int v, int half_width, int half_height)
@@ -171,9 +203,18 @@ CorrelationBlock::CorrelationBlock(ImageView<const std::int16_t> image, int u, i
   HWY_DYNAMIC_DISPATCH(cut_block)(image, u - half_width, v - half_height, *this);
 }
 
-void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float min_deviation,
+void describe_strip(const StripView& strip, int width, int height, int count, float min_deviation,
+                    float* inverse_deviations) {
+  HWY_DYNAMIC_DISPATCH(describe_strip)(strip, width, height, count, min_deviation, inverse_deviations);
+}
+
+void correlate_strip(const CorrelationBlock& block, const StripView& strip, const float* inverse_deviations, int count,
                      StripCorrelations& correlations) {
-  HWY_DYNAMIC_DISPATCH(correlate_strip)(block, strip, count, min_deviation, correlations);
+  HWY_DYNAMIC_DISPATCH(correlate_strip)(block, strip, inverse_deviations, count, correlations);
+}
+
+int index_of_highest(const StripCorrelations& correlations, int count) {
+  return HWY_DYNAMIC_DISPATCH(index_of_highest)(correlations, count);
 }
 
 void sample_strip(const std::int16_t* image_row, int image_width, double x, double step, int count, float* strip_row) {

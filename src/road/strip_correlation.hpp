@@ -33,20 +33,39 @@ struct Strip {
   std::array<float, static_cast<std::size_t>(pitch* CorrelationBlock::max_height)> values;
 
   float* row(int y) { return values.data() + static_cast<std::ptrdiff_t>(y) * pitch; }
-  const float* row(int y) const { return values.data() + static_cast<std::ptrdiff_t>(y) * pitch; }
+};
+
+/// A strip, or as many columns of rows that are `pitch` apart and have a guard behind them, too.
+struct StripView {
+  const float* values;
+  std::ptrdiff_t pitch;
+
+  StripView(const Strip& strip) : values(strip.values.data()), pitch(Strip::pitch) {}
+  StripView(const float* first, std::ptrdiff_t row_pitch) : values(first), pitch(row_pitch) {}
+  const float* row(int y) const { return values + y * pitch; }
 };
 
 /// Correlation of a block with the part of a strip that begins at each column; the last `guard` mean nothing.
 using StripCorrelations = std::array<float, Strip::max_counts + Strip::guard>;
 
-/// Normalised correlations at the first `count` columns; −1 where the strip's part has a smaller standard deviation
-/// than `min_deviation`. The strip's grey levels should lie around 0, so that rounding does not count.
-void correlate_strip(const CorrelationBlock& block, const Strip& strip, int count, float min_deviation,
+/// One over the standard deviation of a strip's part of `width` × `height` pixels that begins at each of `count`
+/// columns; 0 where the deviation is below `min_deviation`. `inverse_deviations` has a guard behind them. The strip's
+/// grey levels should lie around 0, so that rounding does not count.
+void describe_strip(const StripView& strip, int width, int height, int count, float min_deviation,
+                    float* inverse_deviations);
+
+/// Normalised correlations at the first `count` columns; −1 where the inverse deviation is 0.
+void correlate_strip(const CorrelationBlock& block, const StripView& strip, const float* inverse_deviations, int count,
                      StripCorrelations& correlations);
+
+/// Index of the first of the highest of `count` correlations.
+int index_of_highest(const StripCorrelations& correlations, int count);
+
+inline constexpr int max_sampled = 32;  ///< columns that sample_strip fills at once
 
 /// Fills a row of a strip with the grey levels of an image at the columns x + k·step, k from 0 to count − 1, minus
 /// mid-grey, linear between the pixels. All of them must lie inside the row, `count` must be at
-/// most 32, and |1 − step| · count below 16.
+/// most max_sampled, and |1 − step| · count below 16.
 void sample_strip(const std::int16_t* image_row, int image_width, double x, double step, int count, float* strip_row);
 
 }  // namespace roadstereo

@@ -82,6 +82,31 @@ TEST_P(LineSumsTarget, MatchesSumOverRows) {
   }
 }
 
+// A plane that leaves the disparities at either end, and more rows than fill a vector.
+TEST_P(LineSumsTarget, PlaneIsInterpolatedInEveryCell) {
+  constexpr int rows = 19, columns = 5, disparities = 12;
+  std::vector<float> values(static_cast<std::size_t>(rows) * columns * disparities);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>((i * 7) % 31) - 11;
+  for (const float first : {-2.25F, 3.5F, 9.0F}) {
+    for (const float row_step : {-0.25F, 0.0F, 0.5F}) {
+      for (const float column_step : {-1.0F, 0.75F}) {
+        double expected = 0;
+        for (int r = 0; r < rows; ++r) {
+          for (int c = 0; c < columns; ++c) {
+            const double d = double{first} + double{row_step} * r + double{column_step} * c;
+            if (d <= 0 || d >= disparities - 1) continue;
+            const double whole = std::floor(d);
+            const auto at = static_cast<std::size_t>((r * columns + c) * disparities) + static_cast<std::size_t>(whole);
+            expected += (whole + 1 - d) * double{values[at]} + (d - whole) * double{values[at + 1]};
+          }
+        }
+        EXPECT_EQ(sum_along_plane({values.data(), rows, columns, disparities}, first, row_step, column_step), expected)
+            << first << ", " << row_step << ", " << column_step;
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Machine, LineSumsTarget, testing::ValuesIn(test::targets_of_this_machine()),
                          test::name_of_target);
 

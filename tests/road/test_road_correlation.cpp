@@ -32,8 +32,9 @@ TEST_P(RoadCorrelationTarget, StripsMatchDefinitionAtEveryColumn) {
       strip.row(y)[x] = static_cast<float>(mid(pair.target(first + x, v + y - half_height)));
     }
   }
-  StripCorrelations correlations{};
-  correlate_strip(block, strip, count, 1, correlations);
+  StripCorrelations inverse_deviations{}, correlations{};
+  describe_strip(strip, block.width, block.height, count, 1, inverse_deviations.data());
+  correlate_strip(block, strip, inverse_deviations.data(), count, correlations);
   for (int i = 0; i < count; ++i) {
     double l = 0, r = 0, ll = 0, rr = 0, lr = 0;
     const double n = block.width * block.height;
@@ -48,8 +49,52 @@ TEST_P(RoadCorrelationTarget, StripsMatchDefinitionAtEveryColumn) {
     EXPECT_NEAR(correlations[static_cast<std::size_t>(i)], expected, 1e-4) << i;
   }
   // What has less texture than asked for has no correlation.
-  correlate_strip(block, strip, count, grey_max, correlations);
+  describe_strip(strip, block.width, block.height, count, grey_max, inverse_deviations.data());
+  correlate_strip(block, strip, inverse_deviations.data(), count, correlations);
   EXPECT_EQ(correlations[3], -1);
+}
+
+// More columns than one chunk of the function has.
+TEST_P(RoadCorrelationTarget, InverseDeviationsMatchDefinition) {
+  constexpr int width = 15, height = 7, count = Strip::max_counts + 40;
+  constexpr std::ptrdiff_t pitch = count + width + Strip::guard;
+  const auto pair = test::textured_pair(static_cast<int>(pitch), height, [](double, double) { return 4; });
+  std::vector<float> values(static_cast<std::size_t>(pitch * height)), inverse(count + Strip::guard);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = static_cast<float>(mid(
+        pair.reference(static_cast<int>(i) % static_cast<int>(pitch), static_cast<int>(i) / static_cast<int>(pitch))));
+  }
+  const double min_deviation = 450;
+  describe_strip({values.data(), pitch}, width, height, count, static_cast<float>(min_deviation), inverse.data());
+  int below = 0;
+  for (int i = 0; i < count; ++i) {
+    double sum = 0, squares = 0;
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const double grey = mid(pair.reference(i + x, y));
+        sum += grey, squares += grey * grey;
+      }
+    }
+    const double n = width * height, deviation = std::sqrt(squares / n - std::pow(sum / n, 2));
+    if (std::abs(deviation - min_deviation) < 0.1) continue;
+    below += deviation < min_deviation ? 1 : 0;
+    EXPECT_NEAR(inverse[static_cast<std::size_t>(i)], deviation < min_deviation ? 0 : 1 / deviation, 1e-7) << i;
+  }
+  EXPECT_GT(below, 0);
+  EXPECT_LT(below, count);
+}
+
+TEST_P(RoadCorrelationTarget, FirstOfTheHighestIsFound) {
+  StripCorrelations correlations{};
+  correlations.fill(2);  // what lies behind the counted ones has no effect
+  for (const int count : {1, 9, 15, 16, 17, 40}) {
+    for (int i = 0; i < count; ++i) correlations[static_cast<std::size_t>(i)] = -0.5F;
+    for (const int highest : {0, count / 2, count - 1}) {
+      correlations[static_cast<std::size_t>(highest)] = correlations[static_cast<std::size_t>(count - 1)] = 0.25F;
+      EXPECT_EQ(index_of_highest(correlations, count), highest) << count;
+      correlations[static_cast<std::size_t>(highest)] = correlations[static_cast<std::size_t>(count - 1)] = -0.5F;
+    }
+  }
 }
 
 // In the middle and in two corners; from the lower right one whole vectors would leave the image.
