@@ -3,6 +3,7 @@
 #include <memory_resource>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Sets the memory resource of the scratch vectors of this thread until it goes out of scope: a pool that a pipeline
@@ -31,3 +32,4 @@ ScratchVector<T> scratch_vector(std::size_t size = 0, const T& value = T{}) {
 }
 
 }  // namespace roadstereo
+#pragma GCC visibility pop

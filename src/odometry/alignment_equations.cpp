@@ -117,7 +117,7 @@ struct EquationBatch {
     row[5].store(by_rotation.z);
   }
 
-  void append(int lane, int cell, std::vector<AlignmentEquation>& equations) const {
+  void append(int lane, int cell, ScratchVector<AlignmentEquation>& equations) const {
     AlignmentEquation& equation = equations.emplace_back();
     for (std::size_t i = 0; i < unknowns; ++i) equation.row[i] = row[i].at[lane];
     equation.residual = residual.at[lane];
@@ -287,6 +287,8 @@ void linearise_level(const std::vector<ReferencePoint>& points, const FrameMaps&
                      AlignmentEquations& equations) {
   equations.grey.clear();
   equations.disparity.clear();
+  equations.grey.reserve(points.size());
+  equations.disparity.reserve(points.size());
   equations.visible = 0;
   const std::size_t lanes = hn::Lanes(Doubles());
   Linearisation linearisation(current, calibration, level, state);

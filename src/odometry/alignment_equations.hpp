@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/cholesky.hpp"
+#include "core/scratch.hpp"
 #include "odometry/reference_points.hpp"
 #include "odometry/rigid_motion.hpp"
 #include "roadstereo/calibration.hpp"
@@ -29,8 +30,8 @@ struct AlignmentEquation {
 
 /// Equations of a level at the present motion.
 struct AlignmentEquations {
-  std::vector<AlignmentEquation> grey;
-  std::vector<AlignmentEquation> disparity;
+  ScratchVector<AlignmentEquation> grey = scratch_vector<AlignmentEquation>();
+  ScratchVector<AlignmentEquation> disparity = scratch_vector<AlignmentEquation>();
   double visible = 0;  ///< points, each by the area of what it stands for that is left
 };
 

@@ -12,10 +12,10 @@ namespace {
 
 /// Lowers the weights of cells whose residuals are larger than those of most cells: something moves there, or is seen
 /// by one frame only. A single residual cannot tell, since a wrong grey level may fit by chance.
-void weigh_cells(std::vector<AlignmentEquation>& equations, std::vector<double>& squares,
-                 std::vector<double>& scratch) {
+void weigh_cells(ScratchVector<AlignmentEquation>& equations, ScratchVector<double>& squares,
+                 ScratchVector<double>& scratch) {
   constexpr double usual_spread = 1.5;  // of the mean squares of cells that fit
-  std::vector<double> counts(squares.size(), 0);
+  auto counts = scratch_vector<double>(squares.size());
   std::fill(squares.begin(), squares.end(), 0.0);
   for (const AlignmentEquation& e : equations) {
     squares[static_cast<std::size_t>(e.cell)] += e.residual * e.residual / e.total_variance;
@@ -33,7 +33,7 @@ void weigh_cells(std::vector<AlignmentEquation>& equations, std::vector<double>&
 }
 
 /// How many times the variance of sums of a cell exceeds that of independent residuals.
-double correlation_factor(const std::vector<AlignmentEquation>& equations, std::vector<double>& sums) {
+double correlation_factor(const ScratchVector<AlignmentEquation>& equations, ScratchVector<double>& sums) {
   std::fill(sums.begin(), sums.end(), 0.0);
   double squares = 0;
   for (const AlignmentEquation& e : equations) {
@@ -46,14 +46,14 @@ double correlation_factor(const std::vector<AlignmentEquation>& equations, std::
   return squares > 0 ? std::max(of_sums / squares, 1.0) : 1;
 }
 
-void divide_weights(std::vector<AlignmentEquation>& equations, double factor) {
+void divide_weights(ScratchVector<AlignmentEquation>& equations, double factor) {
   for (AlignmentEquation& e : equations) e.weight /= factor;
 }
 
 }  // namespace
 
-void weigh_grey_levels(std::vector<AlignmentEquation>& equations, double& noise, std::vector<double>& sums,
-                       std::vector<double>& scratch) {
+void weigh_grey_levels(ScratchVector<AlignmentEquation>& equations, double& noise, ScratchVector<double>& sums,
+                       ScratchVector<double>& scratch) {
   constexpr double min_noise = 0.3;  // grey levels: that of rounding to 8 bits
   scratch.clear();
   for (const AlignmentEquation& e : equations)
@@ -67,8 +67,8 @@ void weigh_grey_levels(std::vector<AlignmentEquation>& equations, double& noise,
   divide_weights(equations, correlation_factor(equations, sums));
 }
 
-void weigh_disparities(std::vector<AlignmentEquation>& equations, std::vector<double>& sums,
-                       std::vector<double>& scratch) {
+void weigh_disparities(ScratchVector<AlignmentEquation>& equations, ScratchVector<double>& sums,
+                       ScratchVector<double>& scratch) {
   scratch.clear();
   for (const AlignmentEquation& e : equations) scratch.push_back(e.residual / std::sqrt(e.variance));
   constexpr double min_factor = 0.5;

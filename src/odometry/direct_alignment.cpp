@@ -32,7 +32,7 @@ struct NormalEquations {
   Matrix<unknowns> matrix{};
   Vector<unknowns> right{};
 
-  void add(const std::vector<AlignmentEquation>& equations) {
+  void add(const ScratchVector<AlignmentEquation>& equations) {
     for (const AlignmentEquation& e : equations) {
       if (e.weight <= 0) continue;
       for (std::size_t i = 0; i < unknowns; ++i) {
@@ -186,8 +186,8 @@ class Aligner {
 
   /// H⁻¹ (Σ g gᵀ) H⁻¹ with the scores g of the cells.
   Matrix<unknowns> sandwich(const Spread& spread) const {
-    std::vector<Vector<unknowns>> scores(sums_.size());
-    const auto add_scores = [&scores](const std::vector<AlignmentEquation>& equations) {
+    auto scores = scratch_vector<Vector<unknowns>>(sums_.size());
+    const auto add_scores = [&scores](const ScratchVector<AlignmentEquation>& equations) {
       for (const AlignmentEquation& e : equations) {
         Vector<unknowns>& score = scores[static_cast<std::size_t>(e.cell)];
         for (std::size_t i = 0; i < unknowns; ++i) score[i] += e.weight * e.residual * e.row[i];
@@ -245,8 +245,8 @@ class Aligner {
   AlignmentState state_;
   AlignmentEquations equations_;
   NormalEquations normal_;  ///< of the weighted equations
-  std::vector<double> scratch_;
-  std::vector<double> sums_;
+  ScratchVector<double> scratch_ = scratch_vector<double>();
+  ScratchVector<double> sums_ = scratch_vector<double>();
 };
 
 }  // namespace

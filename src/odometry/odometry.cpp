@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory_resource>
 #include <optional>
 #include <utility>
 
+#include "core/scratch.hpp"
 #include "odometry/image_pyramid.hpp"
 #include "odometry/link_estimator.hpp"
 #include "roadstereo/error.hpp"
@@ -44,6 +46,8 @@ struct Odometry::State {
   int reference() const { return reference_ ? reference_->pose.frame : -1; }
 
   LinkEstimator estimator;
+  std::pmr::unsynchronized_pool_resource scratch_memory{
+      {.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
   Trajectory trajectory;
   std::vector<FrameLink> links;
 
@@ -139,6 +143,7 @@ RigidMotion Odometry::State::predicted(int frame) const {
 
 const FramePose& Odometry::State::add(int frame, const OdometryFrame& maps) {
   require_valid(frame, maps);
+  const ScratchScope scratch(scratch_memory);
   keep_last(static_cast<std::size_t>(estimator.options().kept_frames), trajectory.frames);
   keep_last(static_cast<std::size_t>(estimator.options().kept_frames), links);
   width_ = maps.grey.width();

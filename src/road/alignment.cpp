@@ -120,15 +120,15 @@ Offset search(ImageView<const std::int16_t> left, const Place& place, ImageView<
   const int first = std::max(lowest.du, half_block - place.u);
   const int count = std::min(highest.du, right.width() - half_block - 1 - place.u) - first + 1;
   if (block.deviation < min_deviation || count < 1) return best;
-  StripCorrelations inverse_deviations, correlations;
+  StripValues inverse_deviations, correlations;
   for (int dv = lowest.dv; dv <= highest.dv; ++dv) {
     const int top = place.v + dv - half_block;
     if (top < 0 || top + block.height > right.height()) continue;
     for (int y = 0; y < block.height; ++y) {
       copy_strip(right.row(top + y) + place.u + first - half_block, count + block.width - 1, strip.row(y));
     }
-    describe_strip(strip, block.width, block.height, count, min_deviation, inverse_deviations.data());
-    correlate_strip(block, strip, inverse_deviations.data(), count, correlations);
+    find_inverse_deviations(strip.view(), block.width, block.height, count, min_deviation, inverse_deviations.data());
+    correlate_strip(block, strip.view(), inverse_deviations.data(), count, correlations);
     const int i = index_of_highest(correlations, count);
     const float correlation = correlations[static_cast<std::size_t>(i)];
     if (correlation > best.correlation) best = {first + i, dv, correlation};

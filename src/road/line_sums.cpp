@@ -57,8 +57,9 @@ double sum_along_plane(const DisparityCells& cells, float first, float row_step,
     }
     std::array<float, 16> of_rows;
     hn::StoreU(sums, df, of_rows.data());
-    for (int i = 0; i < std::min(lanes, cells.rows - r); ++i)
+    for (int i = 0; i < std::min(lanes, cells.rows - r); ++i) {
       sum += static_cast<double>(of_rows[static_cast<std::size_t>(i)]);
+    }
   }
   return sum;
 }

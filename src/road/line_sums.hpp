@@ -14,12 +14,12 @@ struct VDisparity {
 
 /// What every cell of a picture says to each disparity.
 struct DisparityCells {
-  const float* values;  ///< row by row of cells, `disparities` of each
+  const float* values;  ///< row by row of cells, `disparities` values a cell
   int rows, columns, disparities;
 };
 
-/// Sum of the values at a plane that has the disparity `first` in the first cell, and so much more in the next row and
-/// column; linear between two disparities, nothing beyond 0 … last.
+/// Sum of the values at a plane that has the disparity `first` in the first cell, `row_step` more in every further row
+/// and `column_step` more in every further column; linear between two disparities, nothing beyond 0 … last.
 double sum_along_plane(const DisparityCells& cells, float first, float row_step, float column_step);
 
 /// Elements behind the last line that sum_along_lines reads and writes.

@@ -43,56 +43,56 @@ PlaneMatches gather(const ScratchVector<RowCount>& rows, const ScratchVector<Dis
 /// u. Blocks of one row of the grid share them.
 class ShiftedRows {
  public:
-  static constexpr int max_range = 7;
-
   ShiftedRows(ImageView<const std::int16_t> right, const DisparityPlane& plane, float min_deviation, int workers)
       : right_(right),
         plane_(plane),
         min_deviation_(min_deviation),
-        pitch_(right.width() + max_range + Strip::guard + CorrelationBlock::max_width),
+        columns_(right.width() + plane_match_max_range),
+        pitch_(columns_ + Strip::guard),
         values_(scratch_vector<float>(static_cast<std::size_t>(workers) * size())) {}
 
-  /// The rows of the blocks around row v.
+  /// The rows of the blocks around row v. Columns that the right image does not show keep what they had; no search that
+  /// is in view reaches them.
   void sample(int v, int worker) {
     float* const rows = memory(worker);
     const double step = 1 - plane_.a2;
     for (int y = 0; y < plane_block_height; ++y) {
       const int row = v + y - plane_block_half_height;
-      const double shift = plane_.disparity(0, row);
-      // The columns that the right image sees.
-      const int columns = right_.width() + max_range;
-      const int first = static_cast<int>(std::clamp(std::ceil(shift / step), 0.0, 1.0 * columns));
-      const int last = static_cast<int>(std::clamp(std::ceil((right_.width() - 1 + shift) / step), 0.0, 1.0 * columns));
+      const double shift = plane_.disparity(0, row), columns = columns_;
+      const int first = static_cast<int>(std::clamp(std::ceil(shift / step), 0.0, columns));
+      const int last = static_cast<int>(std::clamp(std::ceil((right_.width() - 1 + shift) / step), 0.0, columns));
       for (int u = first; u < last; u += max_sampled) {
         sample_strip(right_.row(row), right_.width(), u * step - shift, step, std::min(max_sampled, last - u),
                      rows + y * pitch_ + u);
       }
     }
-    describe_strip({rows, pitch_}, plane_block_width, plane_block_height,
-                   right_.width() - plane_block_width + max_range, min_deviation_, rows + plane_block_height * pitch_);
+    find_inverse_deviations({rows, pitch_}, plane_block_width, plane_block_height, columns_ - plane_block_width + 1,
+                            min_deviation_, rows + plane_block_height * pitch_);
   }
 
-  /// Correlates a block with the parts of the rows that begin at `count` columns from u on.
-  void correlate(const CorrelationBlock& block, int u, int count, int worker, StripCorrelations& correlations) {
-    const float* const first = memory(worker) + u;
-    correlate_strip(block, {first, pitch_}, first + plane_block_height * pitch_, count, correlations);
+  /// Correlates a block with the parts that begin at the columns first … first + count − 1.
+  void correlate(const CorrelationBlock& block, int first, int count, int worker, StripValues& correlations) const {
+    const float* const rows = memory(worker) + first;
+    correlate_strip(block, {rows, pitch_}, rows + plane_block_height * pitch_, count, correlations);
   }
 
  private:
-  /// The rows of a block, and the inverse deviations of the blocks that begin at each column.
+  /// The rows of a block, and the inverse deviations of the parts that begin at each column.
   std::size_t size() const { return static_cast<std::size_t>((plane_block_height + 1) * pitch_); }
   float* memory(int worker) { return values_.data() + static_cast<std::size_t>(worker) * size(); }
+  const float* memory(int worker) const { return values_.data() + static_cast<std::size_t>(worker) * size(); }
 
   ImageView<const std::int16_t> right_;
   DisparityPlane plane_;
   float min_deviation_;
+  int columns_;
   std::ptrdiff_t pitch_;
   ScratchVector<float> values_;
 };
 
 /// Correlations of a block with the residuals +range … −range, so that indices grow with the right image's columns.
 struct BlockCorrelations {
-  StripCorrelations values;
+  StripValues values;
   int highest;  ///< index
 };
 
@@ -104,18 +104,19 @@ std::optional<float> correlation_on_plane(const BlockCorrelations& correlations,
   return highest;
 }
 
-/// Residual of the value at an index, refined by a parabola. Both have neighbours.
-double residual_at(const float* value, std::ptrdiff_t index, int range) {
-  return range - (static_cast<double>(index) + parabola_offset(*(value - 1), *value, *(value + 1)));
+/// Residual of a value that is neither the first nor the last, refined by a parabola.
+double residual_at(const float* values, std::ptrdiff_t index, int range) {
+  const float* at = values + index;
+  return range - (static_cast<double>(index) + parabola_offset(*(at - 1), *at, *(at + 1)));
 }
 
 /// Residual of the highest correlation; nothing when it is low or at an end.
 std::optional<double> best_residual(const BlockCorrelations& correlations, int range) {
-  const float* at = correlations.values.data() + correlations.highest;
-  if (*at < plane_match_min_correlation || correlations.highest == 0 || correlations.highest == 2 * range) {
+  const int at = correlations.highest;
+  if (correlations.values[static_cast<std::size_t>(at)] < plane_match_min_correlation || at == 0 || at == 2 * range) {
     return std::nullopt;
   }
-  return residual_at(at, correlations.highest, range);
+  return residual_at(correlations.values.data(), at, range);
 }
 
 /// Searches around a plane at single samples.
@@ -131,11 +132,16 @@ class PlaneSearch {
         extent_(plane_search_extent(plane.a1, plane.a2, range_px)),
         rows_(right, plane, min_deviation, resolve_threads(threads)) {}
 
-  /// To be called before the blocks of a row are correlated.
-  void begin_row(int v, int worker) { rows_.sample(v, worker); }
+  /// To be called before the blocks of a row are correlated; false above the horizon.
+  bool begin_row(int v, int worker) {
+    if (!(std::max(plane_.disparity(0, v), plane_.disparity(left_.width() - 1, v)) > 0)) return false;
+    rows_.sample(v, worker);
+    return true;
+  }
 
-  /// False where there is no texture, the search leaves the image, or the block is masked.
-  bool correlate(int u, int v, int worker, BlockCorrelations& correlations) {
+  /// Correlations of the block at (u, v) of the row that was begun; false where there is no texture, the search leaves
+  /// the image, or the block is masked.
+  bool correlate(int u, int v, int worker, BlockCorrelations& correlations) const {
     if (!search_in_view(u, plane_.disparity(u, v), extent_, left_.width())) return false;
     if (masked_.contains(u, v, plane_block_half_width, plane_block_half_height)) return false;
     const CorrelationBlock block(left_, u, v, plane_block_half_width, plane_block_half_height);
@@ -165,7 +171,7 @@ constexpr int cell_samples = 5;  ///< of a cell, along each side
 
 /// Sums over the samples of a cell.
 struct Cell {
-  std::array<float, 2 * ShiftedRows::max_range + 1> correlations{};
+  std::array<float, 2 * plane_match_max_range + 1> correlations{};
   double u = 0, v = 0;
   int samples = 0;
 };
@@ -189,7 +195,7 @@ std::optional<double> cell_residual(const Cell& cell, int range) {
   const double mean = sum / others;
   const double sigma = std::sqrt(std::max(0.0, squares / others - mean * mean));
   if (*at - mean < min_peak_sigmas * sigma) return std::nullopt;
-  return residual_at(at, at - first, range);
+  return residual_at(first, at - first, range);
 }
 
 }  // namespace
@@ -208,7 +214,7 @@ PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<con
     DisparityPoint* of_row = points.data() + static_cast<std::ptrdiff_t>(grid_row) * grid.columns;
     float* near_of_row = near.data() + static_cast<std::ptrdiff_t>(grid_row) * grid.columns;
     const int v = grid.row(grid_row);
-    search.begin_row(v, worker);
+    if (!search.begin_row(v, worker)) return;
     BlockCorrelations correlations{};
     for (int column = 0; column < grid.columns; ++column) {
       const int u = grid.column(column);
@@ -248,7 +254,7 @@ PlaneMatches match_cells_along_plane(ImageView<const std::int16_t> left, ImageVi
     BlockCorrelations correlations{};
     for (int grid_row = first_row; grid_row < std::min(first_row + cell_samples, grid.rows); ++grid_row) {
       const int v = grid.row(grid_row);
-      search.begin_row(v, worker);
+      if (!search.begin_row(v, worker)) continue;
       for (int column = 0; column < grid.columns; ++column) {
         const int u = grid.column(column);
         if (!search.correlate(u, v, worker, correlations)) continue;

@@ -16,8 +16,9 @@ struct PlaneMatches {
   int min_points = 0;           ///< fewer of them are no evidence of a plane
 };
 
-/// Looks for correspondences within `range_px` of the supposed road, on a grid of about `places` places: each block
-/// follows the slant of the plane, so that it matches sharply. `masked` blocks are left out.
+/// Looks for correspondences within `range_px` of the supposed road, at most plane_match_max_range, on a grid of about
+/// `places` places: each block follows the slant of the plane, so that it matches sharply. `masked` blocks are left
+/// out.
 PlaneMatches match_along_plane(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                const DisparityPlane& plane, int range_px, int places, int threads,
                                const MaskedBlocks& masked = {});

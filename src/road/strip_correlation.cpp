@@ -76,8 +76,8 @@ HWY_INLINE void sum_columns(const StripView& strip, int first, int columns, int 
   }
 }
 
-void describe_strip(const StripView& strip, int width, int height, int count, float min_deviation,
-                    float* inverse_deviations) {
+void find_inverse_deviations(const StripView& strip, int width, int height, int count, float min_deviation,
+                             float* inverse_deviations) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float per_pixel = hn::Set(df, 1.0f / static_cast<float>(width * height));
@@ -118,7 +118,7 @@ HWY_INLINE Float sum_products(const CorrelationBlock& block, const StripView& st
 }
 
 void correlate_strip(const CorrelationBlock& block, const StripView& strip, const float* inverse_deviations, int count,
-                     StripCorrelations& correlations) {
+                     StripValues& correlations) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float scale = hn::Set(df, 1.0f / (block.deviation * static_cast<float>(block.width * block.height)));
@@ -130,7 +130,7 @@ void correlate_strip(const CorrelationBlock& block, const StripView& strip, cons
   }
 }
 
-int index_of_highest(const StripCorrelations& correlations, int count) {
+int index_of_highest(const StripValues& correlations, int count) {
   const Floats df;
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float beyond = hn::Set(df, -std::numeric_limits<float>::infinity());
@@ -193,7 +193,7 @@ HWY_AFTER_NAMESPACE();
 namespace roadstereo {
 
 HWY_EXPORT(cut_block);
-HWY_EXPORT(describe_strip);
+HWY_EXPORT(find_inverse_deviations);
 HWY_EXPORT(correlate_strip);
 HWY_EXPORT(index_of_highest);
 HWY_EXPORT(sample_strip);
@@ -203,17 +203,17 @@ CorrelationBlock::CorrelationBlock(ImageView<const std::int16_t> image, int u, i
   HWY_DYNAMIC_DISPATCH(cut_block)(image, u - half_width, v - half_height, *this);
 }
 
-void describe_strip(const StripView& strip, int width, int height, int count, float min_deviation,
-                    float* inverse_deviations) {
-  HWY_DYNAMIC_DISPATCH(describe_strip)(strip, width, height, count, min_deviation, inverse_deviations);
+void find_inverse_deviations(const StripView& strip, int width, int height, int count, float min_deviation,
+                             float* inverse_deviations) {
+  HWY_DYNAMIC_DISPATCH(find_inverse_deviations)(strip, width, height, count, min_deviation, inverse_deviations);
 }
 
 void correlate_strip(const CorrelationBlock& block, const StripView& strip, const float* inverse_deviations, int count,
-                     StripCorrelations& correlations) {
+                     StripValues& correlations) {
   HWY_DYNAMIC_DISPATCH(correlate_strip)(block, strip, inverse_deviations, count, correlations);
 }
 
-int index_of_highest(const StripCorrelations& correlations, int count) {
+int index_of_highest(const StripValues& correlations, int count) {
   return HWY_DYNAMIC_DISPATCH(index_of_highest)(correlations, count);
 }
 

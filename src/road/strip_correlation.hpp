@@ -24,6 +24,14 @@ struct CorrelationBlock {
   CorrelationBlock(ImageView<const std::int16_t> image, int u, int v, int half_width, int half_height);
 };
 
+/// Rows that are `pitch` apart, each with a guard behind it: a strip, or a part of longer rows.
+struct StripView {
+  const float* values;
+  std::ptrdiff_t pitch;
+
+  const float* row(int y) const { return values + y * pitch; }
+};
+
 /// As many rows of another image as the block has, each of columns that the block can begin at.
 struct Strip {
   static constexpr int max_counts = 112;
@@ -33,33 +41,24 @@ struct Strip {
   std::array<float, static_cast<std::size_t>(pitch* CorrelationBlock::max_height)> values;
 
   float* row(int y) { return values.data() + static_cast<std::ptrdiff_t>(y) * pitch; }
+  StripView view() const { return {values.data(), pitch}; }
 };
 
-/// A strip, or as many columns of rows that are `pitch` apart and have a guard behind them, too.
-struct StripView {
-  const float* values;
-  std::ptrdiff_t pitch;
-
-  StripView(const Strip& strip) : values(strip.values.data()), pitch(Strip::pitch) {}
-  StripView(const float* first, std::ptrdiff_t row_pitch) : values(first), pitch(row_pitch) {}
-  const float* row(int y) const { return values + y * pitch; }
-};
-
-/// Correlation of a block with the part of a strip that begins at each column; the last `guard` mean nothing.
-using StripCorrelations = std::array<float, Strip::max_counts + Strip::guard>;
+/// One number for the part of a strip that begins at each column; the last `guard` mean nothing.
+using StripValues = std::array<float, Strip::max_counts + Strip::guard>;
 
 /// One over the standard deviation of a strip's part of `width` × `height` pixels that begins at each of `count`
 /// columns; 0 where the deviation is below `min_deviation`. `inverse_deviations` has a guard behind them. The strip's
 /// grey levels should lie around 0, so that rounding does not count.
-void describe_strip(const StripView& strip, int width, int height, int count, float min_deviation,
-                    float* inverse_deviations);
+void find_inverse_deviations(const StripView& strip, int width, int height, int count, float min_deviation,
+                             float* inverse_deviations);
 
 /// Normalised correlations at the first `count` columns; −1 where the inverse deviation is 0.
 void correlate_strip(const CorrelationBlock& block, const StripView& strip, const float* inverse_deviations, int count,
-                     StripCorrelations& correlations);
+                     StripValues& correlations);
 
 /// Index of the first of the highest of `count` correlations.
-int index_of_highest(const StripCorrelations& correlations, int count);
+int index_of_highest(const StripValues& correlations, int count);
 
 inline constexpr int max_sampled = 32;  ///< columns that sample_strip fills at once
 

@@ -92,7 +92,8 @@ TEST_P(AlignmentEquationsTarget, RowsAreDerivativesOfResiduals) {
   constexpr double step = 2e-3;
   for (std::size_t index = 0; index < unknowns; ++index) {
     const AlignmentEquations more = scene.at(index, step), less = scene.at(index, -step);
-    const auto compare = [&](const std::vector<AlignmentEquation>& equations, const auto& beyond, const auto& before) {
+    const auto compare = [&](const ScratchVector<AlignmentEquation>& equations, const auto& beyond,
+                             const auto& before) {
       ASSERT_EQ(beyond.size(), equations.size());
       ASSERT_EQ(before.size(), equations.size());
       for (std::size_t i = 0; i < equations.size(); ++i) {

@@ -32,9 +32,9 @@ TEST_P(RoadCorrelationTarget, StripsMatchDefinitionAtEveryColumn) {
       strip.row(y)[x] = static_cast<float>(mid(pair.target(first + x, v + y - half_height)));
     }
   }
-  StripCorrelations inverse_deviations{}, correlations{};
-  describe_strip(strip, block.width, block.height, count, 1, inverse_deviations.data());
-  correlate_strip(block, strip, inverse_deviations.data(), count, correlations);
+  StripValues inverse_deviations{}, correlations{};
+  find_inverse_deviations(strip.view(), block.width, block.height, count, 1, inverse_deviations.data());
+  correlate_strip(block, strip.view(), inverse_deviations.data(), count, correlations);
   for (int i = 0; i < count; ++i) {
     double l = 0, r = 0, ll = 0, rr = 0, lr = 0;
     const double n = block.width * block.height;
@@ -49,8 +49,8 @@ TEST_P(RoadCorrelationTarget, StripsMatchDefinitionAtEveryColumn) {
     EXPECT_NEAR(correlations[static_cast<std::size_t>(i)], expected, 1e-4) << i;
   }
   // What has less texture than asked for has no correlation.
-  describe_strip(strip, block.width, block.height, count, grey_max, inverse_deviations.data());
-  correlate_strip(block, strip, inverse_deviations.data(), count, correlations);
+  find_inverse_deviations(strip.view(), block.width, block.height, count, grey_max, inverse_deviations.data());
+  correlate_strip(block, strip.view(), inverse_deviations.data(), count, correlations);
   EXPECT_EQ(correlations[3], -1);
 }
 
@@ -65,7 +65,8 @@ TEST_P(RoadCorrelationTarget, InverseDeviationsMatchDefinition) {
         pair.reference(static_cast<int>(i) % static_cast<int>(pitch), static_cast<int>(i) / static_cast<int>(pitch))));
   }
   const double min_deviation = 450;
-  describe_strip({values.data(), pitch}, width, height, count, static_cast<float>(min_deviation), inverse.data());
+  find_inverse_deviations({values.data(), pitch}, width, height, count, static_cast<float>(min_deviation),
+                          inverse.data());
   int below = 0;
   for (int i = 0; i < count; ++i) {
     double sum = 0, squares = 0;
@@ -85,7 +86,7 @@ TEST_P(RoadCorrelationTarget, InverseDeviationsMatchDefinition) {
 }
 
 TEST_P(RoadCorrelationTarget, FirstOfTheHighestIsFound) {
-  StripCorrelations correlations{};
+  StripValues correlations{};
   correlations.fill(2);  // what lies behind the counted ones has no effect
   for (const int count : {1, 9, 15, 16, 17, 40}) {
     for (int i = 0; i < count; ++i) correlations[static_cast<std::size_t>(i)] = -0.5F;

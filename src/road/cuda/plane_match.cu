@@ -13,8 +13,7 @@ namespace roadstereo::cuda {
 namespace {
 
 constexpr int places_per_block = 4;
-constexpr int max_range = 7;
-constexpr int max_offsets = 2 * max_range + 1;
+constexpr int max_offsets = 2 * plane_match_max_range + 1;
 
 /// Sums over a row of a block, for one of the offsets.
 struct RowSums {
