@@ -63,16 +63,14 @@ struct Numbers {
 
 /// Points of the reference, and what the current frame shows of them.
 struct Batch {
-  int count = 0;
   Numbers u, v, disparity, sigma, grey, slope_u, slope_v;
   Numbers sample, per_column, per_row;  ///< grey level there, and its gradient
-  Numbers surface_disparity, surface_sigma;
-  bool has_sample[max_lanes] = {}, has_surface[max_lanes] = {};
+  Numbers has_sample;                   ///< 0 or 1
 
-  /// Lanes beyond `count` repeat the last point.
-  void read(const ReferencePoint* points) {
-    for (int i = 0; i < static_cast<int>(hn::Lanes(Doubles())); ++i) {
-      const ReferencePoint& point = points[std::min(i, count - 1)];
+  /// Points from `first` on; lanes beyond the last point repeat it.
+  void read(const std::vector<ReferencePoint>& points, std::size_t first) {
+    for (std::size_t i = 0; i < hn::Lanes(Doubles()); ++i) {
+      const ReferencePoint& point = points[std::min(first + i, points.size() - 1)];
       u.at[i] = point.u;
       v.at[i] = point.v;
       disparity.at[i] = point.disparity;
@@ -83,47 +81,101 @@ struct Batch {
     }
   }
 
-  /// Samples what the current frame has at the pixels (at_u, at_v) of the points that are in front of it.
-  void look(const FrameMaps& current, ImageView<const std::int16_t> level, double scale, const Numbers& at_u,
-            const Numbers& at_v, const bool* in_front) {
-    for (int i = 0; i < count; ++i) {
+  /// Samples the grey levels at the pixels (at_u, at_v) of the points that are in front of the camera.
+  void look(ImageView<const std::int16_t> level, double scale, const Numbers& at_u, const Numbers& at_v,
+            const Numbers& in_front) {
+    for (std::size_t i = 0; i < hn::Lanes(Doubles()); ++i) {
       GreySample there;
-      has_sample[i] =
-          in_front[i] && sample_grey(level, (at_u.at[i] + 0.5) * scale - 0.5, (at_v.at[i] + 0.5) * scale - 0.5, there);
+      const bool seen = in_front.at[i] != 0 &&
+                        sample_grey(level, (at_u.at[i] + 0.5) * scale - 0.5, (at_v.at[i] + 0.5) * scale - 0.5, there);
+      has_sample.at[i] = seen ? 1 : 0;
       sample.at[i] = static_cast<double>(there.grey);
       per_column.at[i] = static_cast<double>(there.per_column);
       per_row.at[i] = static_cast<double>(there.per_row);
-      SurfaceSample surface;
-      has_surface[i] = has_sample[i] && sample_surface(current, at_u.at[i], at_v.at[i], surface);
-      surface_disparity.at[i] = surface.disparity;
-      surface_sigma.at[i] = surface.sigma_px;
     }
   }
 };
 
-/// One equation of every point of a batch.
-struct EquationBatch {
-  std::array<Numbers, unknowns> row;
-  Numbers residual, variance;
+/// Disparities between pixels, bilinear, and their standard errors; only where the pixels around are of one surface.
+struct Surface {
+  Double disparity, sigma;
+  hn::Mask<Doubles> valid;
+};
 
+HWY_INLINE Surface sample_surface(ImageView<const float> disparity, ImageView<const float> sigma, Double u, Double v) {
+  const Doubles d;
+  const hn::Rebind<float, Doubles> df;
+  const hn::Rebind<std::int32_t, Doubles> di;
+  const auto inside = hn::And(hn::And(hn::Ge(u, all(0)), hn::Lt(u, all(disparity.width() - 1))),
+                              hn::And(hn::Ge(v, all(0)), hn::Lt(v, all(disparity.height() - 1))));
+  u = hn::IfThenElseZero(inside, u);
+  v = hn::IfThenElseZero(inside, v);
+  const auto x = hn::DemoteTo(di, u), y = hn::DemoteTo(di, v);
+  const Double fu = hn::Sub(u, hn::PromoteTo(d, x)), fv = hn::Sub(v, hn::PromoteTo(d, y));
+  const auto pitch = [&](ImageView<const float> map) { return hn::Set(di, static_cast<std::int32_t>(map.stride())); };
+  const auto at = hn::Add(hn::Mul(y, pitch(disparity)), x);
+  const auto pixel = [&](int du, int dv) { return hn::PromoteTo(d, hn::GatherIndex(df, disparity.row(dv) + du, at)); };
+  const Double a = pixel(0, 0), b = pixel(1, 0), c = pixel(0, 1), e = pixel(1, 1);
+  const auto between = [](Double share, Double first, Double second) {
+    return hn::Add(hn::Mul(hn::Sub(all(1), share), first), hn::Mul(share, second));
+  };
+  Surface surface;
+  surface.disparity = between(fv, between(fu, a, b), between(fu, c, e));
+  const Double jump = hn::Sub(hn::Max(hn::Max(a, b), hn::Max(c, e)), hn::Min(hn::Min(a, b), hn::Min(c, e)));
+  const auto nearest = [&](Double share, auto whole) {
+    return hn::Add(whole, hn::DemoteTo(di, hn::IfThenElseZero(hn::Gt(share, all(0.5)), all(1))));
+  };
+  const auto nearest_at = hn::Add(hn::Mul(nearest(fv, y), pitch(sigma)), nearest(fu, x));
+  surface.sigma = hn::PromoteTo(d, hn::GatherIndex(df, sigma.row(0), nearest_at));
+  surface.valid = hn::And(hn::And(inside, hn::Eq(surface.disparity, surface.disparity)),  // not NaN
+                          hn::And(hn::Lt(jump, all(max_jump_px)), hn::Gt(surface.sigma, all(0))));
+  return surface;
+}
+
+/// Some lanes of a block of equations, as many as a vector has.
+class BlockLanes {
+ public:
+  BlockLanes(EquationBlock& block, std::size_t first, hn::Mask<Doubles> valid)
+      : block_(block), first_(first), valid_(valid) {
+    put_valid();
+  }
+
+  /// Fewer lanes have an equation.
+  HWY_INLINE void restrict(hn::Mask<Doubles> valid) {
+    valid_ = hn::And(valid_, valid);
+    put_valid();
+  }
+
+  HWY_INLINE void put(std::size_t index, Double derivatives) { store(block_.row[index], derivatives); }
+  HWY_INLINE void put_residual(Double residuals) { store(block_.residual, residuals); }
+  HWY_INLINE void put_variance(Double variances) {
+    hn::Store(hn::IfThenElse(valid_, variances, all(1)), Doubles(), block_.variance.data() + first_);
+  }
   /// Derivatives by a translation and a rotation of q.
   HWY_INLINE void put_motion(const Vectors& by_q, const Vectors& q) {
     const Vectors by_rotation = cross(q, by_q);
-    row[0].store(by_q.x);
-    row[1].store(by_q.y);
-    row[2].store(by_q.z);
-    row[3].store(by_rotation.x);
-    row[4].store(by_rotation.y);
-    row[5].store(by_rotation.z);
+    put(0, by_q.x);
+    put(1, by_q.y);
+    put(2, by_q.z);
+    put(3, by_rotation.x);
+    put(4, by_rotation.y);
+    put(5, by_rotation.z);
   }
 
-  void append(int lane, int cell, ScratchVector<AlignmentEquation>& equations) const {
-    AlignmentEquation& equation = equations.emplace_back();
-    for (std::size_t i = 0; i < unknowns; ++i) equation.row[i] = row[i].at[lane];
-    equation.residual = residual.at[lane];
-    equation.variance = variance.at[lane];
-    equation.cell = cell;
+ private:
+  HWY_INLINE void put_valid() {
+    Numbers ones;
+    ones.store(hn::IfThenElseZero(valid_, all(1)));
+    for (std::size_t i = 0; i < hn::Lanes(Doubles()); ++i) block_.valid[first_ + i] = ones.at[i] != 0;
   }
+
+  HWY_INLINE void store(EquationBlock::Lanes& lanes, Double values) {
+    hn::Store(hn::IfThenElseZero(valid_, values), Doubles(), lanes.data() + first_);
+  }
+
+  EquationBlock& block_;
+  std::size_t first_;
+  hn::Mask<Doubles> valid_;
 };
 
 /// Points of the reference at the present motion.
@@ -134,6 +186,7 @@ struct MovedPoints {
   Double z;  ///< of the reference, metres
   Double disparity, shape;
   Vectors by_disparity, by_shutter;  ///< derivatives of q
+  hn::Mask<Doubles> in_front;
 };
 
 class Linearisation {
@@ -155,25 +208,30 @@ class Linearisation {
     shift_ = all(shift);
   }
 
-  void add(const ReferencePoint* points, int count, AlignmentEquations& equations) {
-    batch_.count = count;
-    batch_.read(points);
-    bool in_front[max_lanes];
-    const MovedPoints moved = move(in_front);
-    Numbers u, v;
+  /// The equations of the points from `first` on, as many as a vector has. Returns what area of theirs is seen.
+  double add(const std::vector<ReferencePoint>& points, std::size_t first, EquationBlock& grey,
+             EquationBlock& disparity) {
+    const std::size_t lane = first % EquationBlock::lanes;
+    batch_.read(points, first);
+    const MovedPoints moved = move();
+    Numbers u, v, in_front;
     u.store(moved.u);
     v.store(moved.v);
-    batch_.look(current_, grey_, scale_, u, v, in_front);
-    compare_grey_levels(moved);
-    compare_disparities(moved);
-    Numbers scale;
-    scale.store(hn::Div(moved.z, moved.q.z));
-    for (int i = 0; i < count; ++i) {
-      if (!batch_.has_sample[i]) continue;
-      equations.visible += std::min(1.0, scale.at[i] * scale.at[i]);
-      grey_equations_.append(i, points[i].cell, equations.grey);
-      if (has_plane_[i]) disparity_equations_.append(i, points[i].cell, equations.disparity);
+    in_front.store(hn::IfThenElseZero(moved.in_front, all(1)));
+    batch_.look(grey_, scale_, u, v, in_front);
+    const auto given = hn::FirstN(Doubles(), std::max(points.size(), first) - first);
+    const auto seen = hn::And(given, hn::Gt(batch_.has_sample.load(), all(0)));
+    compare_grey_levels(moved, BlockLanes(grey, lane, seen));
+    compare_disparities(moved, BlockLanes(disparity, lane, seen));
+    for (std::size_t i = 0; i < hn::Lanes(Doubles()); ++i) {
+      grey.cell[lane + i] = disparity.cell[lane + i] = points[std::min(first + i, points.size() - 1)].cell;
     }
+    const Double scale = hn::Div(moved.z, moved.q.z);
+    Numbers area;
+    area.store(hn::IfThenElseZero(seen, hn::Min(all(1), hn::Mul(scale, scale))));
+    double visible = 0;
+    for (std::size_t i = 0; i < hn::Lanes(Doubles()); ++i) visible += area.at[i];
+    return visible;
   }
 
  private:
@@ -189,7 +247,7 @@ class Linearisation {
                       hn::MulAdd(all(state_.growth_px), hn::Sub(shape, all(1)), all(calibration_.disparity_offset_px)));
   }
 
-  HWY_INLINE MovedPoints move(bool* in_front) const {
+  HWY_INLINE MovedPoints move() const {
     constexpr double min_depth_m = 0.05;
     MovedPoints moved;
     const Double u = batch_.u.load(), v = batch_.v.load(), measured = batch_.disparity.load();
@@ -213,61 +271,54 @@ class Linearisation {
       moved.by_shutter = times(hn::Div(hn::Sub(row, v), rows), speed);
       moved.q = plus(start, times(all(state_.shutter), moved.by_shutter));
     }
-    valid = hn::And(valid, hn::Gt(moved.q.z, all(min_depth_m)));
+    moved.in_front = hn::And(valid, hn::Gt(moved.q.z, all(min_depth_m)));
     moved.pixels_per_m = hn::Div(focal_, moved.q.z);
     moved.u = hn::MulAdd(moved.pixels_per_m, moved.q.x, all(calibration_.cx_px));
     moved.v = hn::MulAdd(moved.pixels_per_m, moved.q.y, all(calibration_.cy_px));
-    write(valid, in_front);
     return moved;
   }
 
-  HWY_INLINE static void write(hn::Mask<Doubles> mask, bool* flags) {
-    Numbers ones;
-    ones.store(hn::IfThenElseZero(mask, all(1)));
-    for (int i = 0; i < max_lanes; ++i) flags[i] = ones.at[i] != 0;
-  }
-
-  HWY_INLINE void compare_grey_levels(const MovedPoints& moved) {
+  HWY_INLINE void compare_grey_levels(const MovedPoints& moved, BlockLanes equation) const {
     const Vectors& q = moved.q;
     const Double scale = hn::Mul(all(scale_), moved.pixels_per_m), grey = batch_.grey.load();
     const Double gu = hn::Mul(batch_.per_column.load(), scale), gv = hn::Mul(batch_.per_row.load(), scale);
     const Vectors by_q{gu, gv, hn::Div(hn::Neg(hn::MulAdd(gu, q.x, hn::Mul(gv, q.y))), q.z)};
-    EquationBatch& equation = grey_equations_;
-    equation.residual.store(
+    equation.put_residual(
         hn::Sub(hn::Sub(batch_.sample.load(), hn::Mul(all(state_.gain), grey)), all(state_.brightness)));
     equation.put_motion(by_q, q);
-    equation.row[shutter_index].store(dot(by_q, moved.by_shutter));
-    equation.row[gain_index].store(hn::Neg(grey));
-    equation.row[brightness_index].store(all(-1));
+    equation.put(shutter_index, dot(by_q, moved.by_shutter));
+    equation.put(gain_index, hn::Neg(grey));
+    equation.put(brightness_index, all(-1));
     const Double by_offset = dot(by_q, moved.by_disparity);
-    equation.row[offset_index].store(hn::Mul(by_offset, moved.shape));
-    equation.row[growth_index].store(hn::Mul(by_offset, hn::Sub(moved.shape, all(1))));
+    equation.put(offset_index, hn::Mul(by_offset, moved.shape));
+    equation.put(growth_index, hn::Mul(by_offset, hn::Sub(moved.shape, all(1))));
     const Double error = hn::Mul(by_offset, batch_.sigma.load());
-    equation.variance.store(hn::Mul(error, error));
+    equation.put_variance(hn::Mul(error, error));
   }
 
   /// The measured disparity where a point is seen against that of the point, point to plane.
-  HWY_INLINE void compare_disparities(const MovedPoints& moved) {
+  HWY_INLINE void compare_disparities(const MovedPoints& moved, BlockLanes equation) const {
     const Vectors& q = moved.q;
+    const Surface surface = sample_surface(current_.disparity, current_.sigma, moved.u, moved.v);
     // N·p = b for points of the plane around the point of the reference.
     const Double slope_u = batch_.slope_u.load(), slope_v = batch_.slope_v.load();
     const Double along = hn::MulAdd(slope_u, hn::Sub(batch_.u.load(), all(calibration_.cx_px)),
                                     hn::Mul(slope_v, hn::Sub(batch_.v.load(), all(calibration_.cy_px))));
     const Vectors normal = rotated(state_.motion, {slope_u, slope_v, hn::Div(hn::Sub(moved.disparity, along), focal_)});
-    const Double towards = dot(normal, q), surface = batch_.surface_disparity.load();
-    write(hn::Gt(towards, all(0)), has_plane_);
-    for (int i = 0; i < max_lanes; ++i) has_plane_[i] = has_plane_[i] && batch_.has_surface[i];
-    const Double here = shape_of_offset(moved.u, surface), predicted = hn::Div(depth_scale_, q.z);
+    const Double towards = dot(normal, q);
+    equation.restrict(hn::And(surface.valid, hn::Gt(towards, all(0))));
+    const Double here = shape_of_offset(moved.u, surface.disparity), predicted = hn::Div(depth_scale_, q.z);
     const Vectors by_q = times(hn::Div(predicted, towards), normal);
-    EquationBatch& equation = disparity_equations_;
-    equation.residual.store(hn::Sub(hn::Add(surface, offset(here)), predicted));
+    equation.put_residual(hn::Sub(hn::Add(surface.disparity, offset(here)), predicted));
     equation.put_motion(by_q, q);
-    equation.row[shutter_index].store(dot(by_q, moved.by_shutter));
+    equation.put(shutter_index, dot(by_q, moved.by_shutter));
+    equation.put(gain_index, all(0));
+    equation.put(brightness_index, all(0));
     const Double by_offset = dot(by_q, moved.by_disparity);
-    equation.row[offset_index].store(hn::MulAdd(by_offset, moved.shape, here));
-    equation.row[growth_index].store(hn::MulAdd(by_offset, hn::Sub(moved.shape, all(1)), hn::Sub(here, all(1))));
-    const Double error = hn::Mul(by_offset, batch_.sigma.load()), own = batch_.surface_sigma.load();
-    equation.variance.store(hn::MulAdd(own, own, hn::Mul(error, error)));
+    equation.put(offset_index, hn::MulAdd(by_offset, moved.shape, here));
+    equation.put(growth_index, hn::MulAdd(by_offset, hn::Sub(moved.shape, all(1)), hn::Sub(here, all(1))));
+    const Double error = hn::Mul(by_offset, batch_.sigma.load());
+    equation.put_variance(hn::MulAdd(surface.sigma, surface.sigma, hn::Mul(error, error)));
   }
 
   const FrameMaps& current_;
@@ -278,22 +329,53 @@ class Linearisation {
   Double focal_, depth_scale_;
   Vectors turn_, shift_;
   Batch batch_;
-  EquationBatch grey_equations_, disparity_equations_;
-  bool has_plane_[max_lanes] = {};
 };
 
 void linearise_level(const std::vector<ReferencePoint>& points, const FrameMaps& current,
                      const StereoCalibration& calibration, int level, const AlignmentState& state,
                      AlignmentEquations& equations) {
-  equations.grey.clear();
-  equations.disparity.clear();
-  equations.grey.reserve(points.size());
-  equations.disparity.reserve(points.size());
+  const std::size_t blocks = (points.size() + EquationBlock::lanes - 1) / EquationBlock::lanes;
+  equations.grey.resize(blocks);
+  equations.disparity.resize(blocks);
+  equations.seen = 0;
   equations.visible = 0;
   const std::size_t lanes = hn::Lanes(Doubles());
   Linearisation linearisation(current, calibration, level, state);
-  for (std::size_t first = 0; first < points.size(); first += lanes) {
-    linearisation.add(points.data() + first, static_cast<int>(std::min(lanes, points.size() - first)), equations);
+  for (std::size_t i = 0; i < blocks * EquationBlock::lanes; i += lanes) {
+    EquationBlock &grey = equations.grey[i / EquationBlock::lanes],
+                  &disparity = equations.disparity[i / EquationBlock::lanes];
+    equations.visible += linearisation.add(points, i, grey, disparity);
+  }
+  for (const EquationBlock& block : equations.grey) {
+    for (const bool valid : block.valid) equations.seen += valid ? 1 : 0;
+  }
+}
+
+/// Sums of a lane of the blocks, added up last: they do not depend on the length of a vector.
+using LaneSums = std::array<std::array<EquationBlock::Lanes, unknowns + 1>, unknowns + 1>;
+
+void add_lanes(const EquationBlock& block, LaneSums& sums) {
+  const Doubles d;
+  const auto row = [&block](std::size_t i) { return i < unknowns ? block.row[i].data() : block.residual.data(); };
+  for (std::size_t lane = 0; lane < EquationBlock::lanes; lane += hn::Lanes(d)) {
+    const Double weight = hn::Load(d, block.weight.data() + lane);
+    for (std::size_t i = 0; i <= unknowns; ++i) {
+      const Double weighted = hn::Mul(weight, hn::Load(d, row(i) + lane));
+      for (std::size_t j = 0; j <= i; ++j) {
+        double* const sum = sums[i][j].data() + lane;
+        hn::Store(hn::MulAdd(weighted, hn::Load(d, row(j) + lane), hn::Load(d, sum)), d, sum);
+      }
+    }
+  }
+}
+
+void add_products_of_blocks(const EquationBlocks& equations, Matrix<unknowns + 1>& sums) {
+  alignas(64) LaneSums lanes{};
+  for (const EquationBlock& block : equations) add_lanes(block, lanes);
+  for (std::size_t i = 0; i <= unknowns; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      for (const double sum : lanes[i][j]) sums[i][j] += sum;
+    }
   }
 }
 
@@ -304,11 +386,16 @@ HWY_AFTER_NAMESPACE();
 namespace roadstereo {
 
 HWY_EXPORT(linearise_level);
+HWY_EXPORT(add_products_of_blocks);
 
 void linearise(const std::vector<ReferencePoint>& points, const FrameMaps& current,
                const StereoCalibration& calibration, int level, const AlignmentState& state,
                AlignmentEquations& equations) {
   HWY_DYNAMIC_DISPATCH(linearise_level)(points, current, calibration, level, state, equations);
+}
+
+void add_products(const EquationBlocks& equations, Matrix<unknowns + 1>& sums) {
+  HWY_DYNAMIC_DISPATCH(add_products_of_blocks)(equations, sums);
 }
 
 }  // namespace roadstereo

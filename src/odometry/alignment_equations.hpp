@@ -18,21 +18,28 @@ inline constexpr std::size_t unknowns = 11;
 inline constexpr std::size_t gain_index = 6, brightness_index = 7, offset_index = 8, growth_index = 9,
                              shutter_index = 10;
 
-/// One equation: residual + row·x = 0.
-struct AlignmentEquation {
-  std::array<double, unknowns> row{};
-  double residual = 0;
-  double variance = 0;  ///< known part
-  double total_variance = 0;
-  double weight = 0;
-  int cell = 0;
+/// Equations residual + row·x = 0 of neighbouring points of a reference, one in each lane. What has no equation has the
+/// weight 0 and the row 0.
+struct alignas(64) EquationBlock {
+  static constexpr std::size_t lanes = 8;
+  using Lanes = std::array<double, lanes>;
+
+  std::array<Lanes, unknowns> row;
+  Lanes residual;
+  Lanes variance;  ///< known part
+  Lanes total_variance;
+  Lanes weight;
+  std::array<int, lanes> cell;    ///< of the image
+  std::array<bool, lanes> valid;  ///< whether there is an equation
 };
+using EquationBlocks = ScratchVector<EquationBlock>;
 
 /// Equations of a level at the present motion.
 struct AlignmentEquations {
-  ScratchVector<AlignmentEquation> grey = scratch_vector<AlignmentEquation>();
-  ScratchVector<AlignmentEquation> disparity = scratch_vector<AlignmentEquation>();
-  double visible = 0;  ///< points, each by the area of what it stands for that is left
+  EquationBlocks grey = scratch_vector<EquationBlock>();
+  EquationBlocks disparity = scratch_vector<EquationBlock>();
+  std::size_t seen = 0;  ///< points that the frame shows: equations of grey levels
+  double visible = 0;    ///< the same, each by the area of what it stands for that is left
 };
 
 /// Present estimate of the unknowns.
@@ -46,9 +53,13 @@ struct AlignmentState {
 };
 
 /// Linearises the differences of grey levels and of disparities between the points of a level of a reference and a
-/// frame at `state`. Weights are left at 0.
+/// frame at `state`. Weights are left open.
 void linearise(const std::vector<ReferencePoint>& points, const FrameMaps& current,
                const StereoCalibration& calibration, int level, const AlignmentState& state,
                AlignmentEquations& equations);
+
+/// Adds the weighted products of every two elements of the equations' rows, the lower half of a matrix; the residual is
+/// the last element of a row.
+void add_products(const EquationBlocks& equations, Matrix<unknowns + 1>& sums);
 
 }  // namespace roadstereo

@@ -32,14 +32,14 @@ struct NormalEquations {
   Matrix<unknowns> matrix{};
   Vector<unknowns> right{};
 
-  void add(const ScratchVector<AlignmentEquation>& equations) {
-    for (const AlignmentEquation& e : equations) {
-      if (e.weight <= 0) continue;
-      for (std::size_t i = 0; i < unknowns; ++i) {
-        const double weighted = e.weight * e.row[i];
-        right[i] -= weighted * e.residual;
-        for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += weighted * e.row[j];
-      }
+  NormalEquations() = default;
+  explicit NormalEquations(const AlignmentEquations& equations) {
+    Matrix<unknowns + 1> products{};
+    add_products(equations.grey, products);
+    add_products(equations.disparity, products);
+    for (std::size_t i = 0; i < unknowns; ++i) {
+      right[i] = -products[unknowns][i];
+      std::copy_n(products[i].begin(), unknowns, matrix[i].begin());
     }
   }
 
@@ -83,7 +83,7 @@ class Aligner {
     AndersonAcceleration<unknowns> acceleration;
     for (int i = 0; i < max_iterations; ++i) {
       linearise(points, current_, calibration_, level, state_, equations_);
-      if (equations_.grey.size() < min_points) return;
+      if (equations_.seen < min_points) return;
       weigh();
       if (shift_px(step({prior_.sd_px, 0, 0}, acceleration), level) < converged_px) break;
     }
@@ -94,9 +94,10 @@ class Aligner {
     const std::vector<ReferencePoint>& points = reference_.levels[static_cast<std::size_t>(level)];
     linearise(points, current_, calibration_, level, state_, equations_);
     alignment.motion = state_.motion;
-    if (points.empty() || equations_.grey.size() < min_points) return alignment;
+    if (equations_.seen < min_points) return alignment;
     alignment.overlap = equations_.visible / static_cast<double>(points.size());
     weigh();
+    scatter_ = scatter_of_scores();
     fill_covariance(alignment);
     examine_rig(points, level, alignment);
     alignment.correlation = patch_correlation(reference_, current_, calibration_, state_.motion, state_.offset_px);
@@ -106,10 +107,8 @@ class Aligner {
  private:
   void weigh() {
     weigh_grey_levels(equations_.grey, noise_, sums_, scratch_);
-    if (!equations_.disparity.empty()) weigh_disparities(equations_.disparity, sums_, scratch_);
-    normal_ = {};
-    normal_.add(equations_.grey);
-    normal_.add(equations_.disparity);
+    weigh_disparities(equations_.disparity, sums_, scratch_);
+    normal_ = NormalEquations(equations_);
   }
 
   NormalEquations normal_equations(const Spread& spread) const {
@@ -165,8 +164,9 @@ class Aligner {
     for (int i = 0; i < steps; ++i) {
       if (i > 0) {
         linearise(points, current_, calibration_, level, state_, equations_);
-        if (equations_.grey.size() < min_points) break;
+        if (equations_.seen < min_points) break;
         weigh();
+        scatter_ = scatter_of_scores();
       }
       const Matrix<unknowns> covariance = sandwich(free);
       const Vector<unknowns> x = step(free, acceleration);
@@ -184,24 +184,37 @@ class Aligner {
     state_ = before;
   }
 
-  /// H⁻¹ (Σ g gᵀ) H⁻¹ with the scores g of the cells.
-  Matrix<unknowns> sandwich(const Spread& spread) const {
+  /// Scores of the cells: sums of the weighted residuals times their derivatives.
+  struct Scatter {
+    Matrix<unknowns> matrix{};  ///< Σ g gᵀ
+    std::size_t cells = 0;      ///< that have one
+  };
+
+  Scatter scatter_of_scores() const {
     auto scores = scratch_vector<Vector<unknowns>>(sums_.size());
-    const auto add_scores = [&scores](const ScratchVector<AlignmentEquation>& equations) {
-      for (const AlignmentEquation& e : equations) {
-        Vector<unknowns>& score = scores[static_cast<std::size_t>(e.cell)];
-        for (std::size_t i = 0; i < unknowns; ++i) score[i] += e.weight * e.residual * e.row[i];
+    const auto add_scores = [&scores](const EquationBlocks& equations) {
+      for (const EquationBlock& block : equations) {
+        for (std::size_t lane = 0; lane < EquationBlock::lanes; ++lane) {
+          const double weighted = block.weight[lane] * block.residual[lane];
+          Vector<unknowns>& score = scores[static_cast<std::size_t>(block.cell[lane])];
+          for (std::size_t i = 0; i < unknowns; ++i) score[i] += weighted * block.row[i][lane];
+        }
       }
     };
     add_scores(equations_.grey);
     add_scores(equations_.disparity);
-    std::size_t used = 0;
-    Matrix<unknowns> scatter{};  // of the scores
+    Scatter scatter;
     for (const Vector<unknowns>& score : scores) {
       if (std::all_of(score.begin(), score.end(), [](double s) { return s == 0; })) continue;
-      ++used;
-      add_outer(score, scatter);
+      ++scatter.cells;
+      add_outer(score, scatter.matrix);
     }
+    return scatter;
+  }
+
+  /// H⁻¹ (Σ g gᵀ) H⁻¹ with the scores g of the cells.
+  Matrix<unknowns> sandwich(const Spread& spread) const {
+    Matrix<unknowns> scatter = scatter_.matrix;
     const auto add_expectation = [&scatter](std::size_t index, double sd) {
       if (sd > 0) {
         scatter[index][index] += 1 / (sd * sd);
@@ -221,6 +234,7 @@ class Aligner {
       for (std::size_t i = j; i < unknowns; ++i) column[i] = scatter[i][j];
       add_outer(solve_factored(factor, column), covariance);
     }
+    const std::size_t used = scatter_.cells;
     const double count = static_cast<double>(used);
     const std::size_t estimated = spread.shutter > 0 ? unknowns : unknowns - 2;
     const double small_sample = used > 2 * estimated ? count / (count - static_cast<double>(estimated)) : 2;
@@ -245,6 +259,7 @@ class Aligner {
   AlignmentState state_;
   AlignmentEquations equations_;
   NormalEquations normal_;  ///< of the weighted equations
+  Scatter scatter_;         ///< of the same
   ScratchVector<double> scratch_ = scratch_vector<double>();
   ScratchVector<double> sums_ = scratch_vector<double>();
 };

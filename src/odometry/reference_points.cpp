@@ -9,8 +9,7 @@ namespace {
 constexpr int max_points = 5000;         // of level 0
 constexpr int max_coarse_points = 1500;  // of the other levels
 constexpr int max_patches = 400;
-constexpr int error_cell = 32;     // pixels: wider than the windows of matching and refinement
-constexpr double max_jump_px = 1;  // between neighbouring disparities of one surface
+constexpr int error_cell = 32;  // pixels: wider than the windows of matching and refinement
 
 /// Side of square cells of which `count` cover the image.
 int cell_side(int width, int height, int count) {
@@ -175,19 +174,6 @@ void select_points(const FrameMaps& frame, ReferencePoints& points) {
     select_patches(frame, level, points.patches[static_cast<std::size_t>(level - 1)]);
   }
   points.cells = Selector::cells_per_row(frame) * ((frame.disparity.height() + error_cell - 1) / error_cell);
-}
-
-bool sample_surface(const FrameMaps& frame, double u, double v, SurfaceSample& sample) {
-  if (!(u >= 0 && v >= 0 && u < frame.disparity.width() - 1 && v < frame.disparity.height() - 1)) return false;
-  const int x = static_cast<int>(u), y = static_cast<int>(v);
-  const float* row = frame.disparity.row(y) + x;
-  const float* next = frame.disparity.row(y + 1) + x;
-  const float lowest = std::min(std::min(row[0], row[1]), std::min(next[0], next[1]));
-  const float highest = std::max(std::max(row[0], row[1]), std::max(next[0], next[1]));
-  const double fu = u - x, fv = v - y;
-  sample.disparity = (1 - fv) * ((1 - fu) * row[0] + fu * row[1]) + fv * ((1 - fu) * next[0] + fu * next[1]);
-  sample.sigma_px = frame.sigma(x + (fu > 0.5 ? 1 : 0), y + (fv > 0.5 ? 1 : 0));
-  return !std::isnan(sample.disparity) && highest - lowest < max_jump_px && sample.sigma_px > 0;
 }
 
 }  // namespace roadstereo

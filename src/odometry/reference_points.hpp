@@ -39,6 +39,8 @@ struct ReferencePoints {
   int cells = 0;
 };
 
+inline constexpr double max_jump_px = 1;  ///< between neighbouring disparities of one surface
+
 /// Maps of a frame, W×H.
 struct FrameMaps {
   const ImagePyramid& pyramid;
@@ -49,13 +51,5 @@ struct FrameMaps {
 /// Selects the pixel with the largest gradient of every cell of a grid that has a disparity, per level of the pyramid,
 /// and patches of texture that verify an alignment.
 void select_points(const FrameMaps& frame, ReferencePoints& points);
-
-/// Disparity, its standard error and slopes at a position between pixels; bilinear. Nothing where one of the pixels
-/// around it is invalid or on another surface.
-struct SurfaceSample {
-  double disparity = 0;
-  double sigma_px = 0;
-};
-bool sample_surface(const FrameMaps& frame, double u, double v, SurfaceSample& sample);
 
 }  // namespace roadstereo

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,6 +24,33 @@ TEST(OrderStatistics, Medians) {
   EXPECT_EQ(central_median(std::vector(five)), 5);
   EXPECT_EQ(upper_median_magnitude(std::vector<double>{-8, 1, 2, -4}), 4);
   EXPECT_EQ(upper_median_magnitude(std::vector<double>{}), 0);
+}
+
+// Sizes around the one from which values are counted first: of all magnitudes, in steps, all alike, and infinite.
+TEST(OrderStatistics, MedianMagnitudesOfManyValues) {
+  std::uint32_t state = 1;
+  const auto next = [&state] { return static_cast<double>((state = state * 1664525U + 1013904223U) >> 8) * 0x1p-24; };
+  for (const std::size_t size : {499U, 500U, 501U, 5000U}) {
+    std::vector<std::vector<double>> all(5, std::vector<double>(size));
+    for (std::size_t i = 0; i < size; ++i) {
+      const double sign = next() < 0.5 ? -1 : 1;
+      all[0][i] = sign * std::exp(20 * next() - 10);
+      all[1][i] = sign * std::floor(6 * next());
+      all[2][i] = sign * 0.3;
+      all[3][i] = sign * (1 + 1e-9 * next());  // equal in single precision
+      all[4][i] = next() < 0.6 ? sign * INFINITY : next();
+    }
+    for (const std::vector<double>& values : all) {
+      std::vector<double> sorted(values), reordered(values);
+      for (double& value : sorted) value = std::abs(value);
+      std::sort(sorted.begin(), sorted.end());
+      EXPECT_EQ(upper_median_magnitude(reordered), sorted[size / 2]) << size;
+      EXPECT_TRUE(std::is_permutation(reordered.begin(), reordered.end(), values.begin()));
+      if (size > 501) continue;
+      std::vector<float> single(values.begin(), values.end());
+      EXPECT_EQ(upper_median_magnitude(single), static_cast<double>(static_cast<float>(sorted[size / 2]))) << size;
+    }
+  }
 }
 
 TEST(OrderStatistics, QuantilesDifferInTheirRanks) {

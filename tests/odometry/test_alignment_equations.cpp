@@ -12,6 +12,30 @@
 namespace roadstereo {
 namespace {
 
+struct Equation {
+  std::array<double, unknowns> row;
+  double residual, variance;
+  int cell;
+};
+
+/// Those of all blocks, in order.
+std::vector<Equation> listed(const EquationBlocks& blocks) {
+  std::vector<Equation> equations;
+  for (const EquationBlock& block : blocks) {
+    for (std::size_t lane = 0; lane < EquationBlock::lanes; ++lane) {
+      Equation e{{}, block.residual[lane], block.variance[lane], block.cell[lane]};
+      for (std::size_t i = 0; i < unknowns; ++i) e.row[i] = block.row[i][lane];
+      if (block.valid[lane]) equations.push_back(e);
+    }
+  }
+  return equations;
+}
+
+struct Equations {
+  std::vector<Equation> grey, disparity;
+  double visible;
+};
+
 using AlignmentEquationsTarget = test::EveryTarget;
 
 /// A plane that two frames see, and a ramp of grey levels: disparities and grey levels are exact between pixels.
@@ -52,9 +76,9 @@ class PlaneInTwoFrames {
   const StereoCalibration& calibration() const { return calibration_; }
 
   /// At the motion, with one unknown moved on.
-  AlignmentEquations at(std::size_t index = 0, double by = 0) const { return at(points_, index, by); }
+  Equations at(std::size_t index = 0, double by = 0) const { return at(points_, index, by); }
 
-  AlignmentEquations at(const std::vector<ReferencePoint>& points, std::size_t index = 0, double by = 0) const {
+  Equations at(const std::vector<ReferencePoint>& points, std::size_t index = 0, double by = 0) const {
     AlignmentState state;
     Twist twist{};
     if (index < twist.size()) twist[index] = by;
@@ -66,7 +90,8 @@ class PlaneInTwoFrames {
     if (index == shutter_index) state.shutter += by;
     AlignmentEquations equations;
     linearise(points, {pyramid_, moved_.view(), sigma_.view()}, calibration_, 0, state, equations);
-    return equations;
+    EXPECT_EQ(equations.seen, listed(equations.grey).size());
+    return {listed(equations.grey), listed(equations.disparity), equations.visible};
   }
 
   static constexpr double slope_u = 0.03, slope_v = 0.06, centre = 11;
@@ -85,15 +110,14 @@ const RigidMotion motion = rigid_motion({0.03, -0.02, 0.15, 0.01, -0.02, 0.015})
 
 TEST_P(AlignmentEquationsTarget, RowsAreDerivativesOfResiduals) {
   const PlaneInTwoFrames scene(motion);
-  const AlignmentEquations here = scene.at();
+  const Equations here = scene.at();
   ASSERT_GT(scene.points().size(), 100U);
   ASSERT_EQ(here.grey.size(), scene.points().size());
   ASSERT_EQ(here.disparity.size(), scene.points().size());
   constexpr double step = 2e-3;
   for (std::size_t index = 0; index < unknowns; ++index) {
-    const AlignmentEquations more = scene.at(index, step), less = scene.at(index, -step);
-    const auto compare = [&](const ScratchVector<AlignmentEquation>& equations, const auto& beyond,
-                             const auto& before) {
+    const Equations more = scene.at(index, step), less = scene.at(index, -step);
+    const auto compare = [&](const std::vector<Equation>& equations, const auto& beyond, const auto& before) {
       ASSERT_EQ(beyond.size(), equations.size());
       ASSERT_EQ(before.size(), equations.size());
       for (std::size_t i = 0; i < equations.size(); ++i) {
@@ -109,13 +133,13 @@ TEST_P(AlignmentEquationsTarget, RowsAreDerivativesOfResiduals) {
 
 TEST_P(AlignmentEquationsTarget, DisparitiesOfPlaneAgree) {
   const PlaneInTwoFrames scene(motion);
-  const AlignmentEquations equations = scene.at();
-  for (const AlignmentEquation& e : equations.disparity) EXPECT_NEAR(e.residual, 0, 1e-5);  // single precision
+  const Equations equations = scene.at();
+  for (const Equation& e : equations.disparity) EXPECT_NEAR(e.residual, 0, 1e-5);  // single precision
 }
 
 TEST_P(AlignmentEquationsTarget, VariancesAreThoseOfDisparities) {
   const PlaneInTwoFrames scene(motion);
-  const AlignmentEquations equations = scene.at();
+  const Equations equations = scene.at();
   for (std::size_t i = 0; i < equations.grey.size(); ++i) {
     // The offset moves the disparity of a point by its shape, 1 + x² of the right camera.
     const ReferencePoint& point = scene.points()[i];
@@ -144,10 +168,10 @@ TEST_P(AlignmentEquationsTarget, PointsSeenFromFartherAwayCountByTheirArea) {
 
 TEST_P(AlignmentEquationsTarget, NeighboursInVectorsDoNotMatter) {
   const PlaneInTwoFrames scene(motion);
-  const AlignmentEquations all = scene.at();
+  const Equations all = scene.at();
   ASSERT_NE(scene.points().size() % 8, 0U);  // the last vector is not full
   for (std::size_t i = 0; i < scene.points().size(); ++i) {
-    const AlignmentEquations one = scene.at({scene.points()[i]});
+    const Equations one = scene.at({scene.points()[i]});
     ASSERT_EQ(one.grey.size(), 1U);
     ASSERT_EQ(one.disparity.size(), 1U);
     EXPECT_EQ(one.grey[0].row, all.grey[i].row);
@@ -155,6 +179,36 @@ TEST_P(AlignmentEquationsTarget, NeighboursInVectorsDoNotMatter) {
     EXPECT_EQ(one.disparity[0].row, all.disparity[i].row);
     EXPECT_EQ(one.disparity[0].residual, all.disparity[i].residual);
     EXPECT_EQ(one.disparity[0].cell, scene.points()[i].cell);
+  }
+}
+
+// Numbers whose products and sums are exact.
+TEST_P(AlignmentEquationsTarget, ProductsAreSumsOverEquations) {
+  AlignmentEquations equations;
+  equations.grey.resize(3);
+  int number = 0;
+  const auto next = [&number] { return (++number * 7) % 23 - 11; };
+  for (EquationBlock& block : equations.grey) {
+    for (std::size_t lane = 0; lane < EquationBlock::lanes; ++lane) {
+      for (auto& row : block.row) row[lane] = next();
+      block.residual[lane] = next();
+      block.weight[lane] = next() * 0.25;
+    }
+  }
+  Matrix<unknowns + 1> sums{};
+  sums[3][2] = 5;  // is added to
+  add_products(equations.grey, sums);
+  for (std::size_t i = 0; i <= unknowns; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      double expected = i == 3 && j == 2 ? 5 : 0;
+      for (const EquationBlock& block : equations.grey) {
+        for (std::size_t lane = 0; lane < EquationBlock::lanes; ++lane) {
+          const auto element = [&](std::size_t k) { return k < unknowns ? block.row[k][lane] : block.residual[lane]; };
+          expected += block.weight[lane] * element(i) * element(j);
+        }
+      }
+      EXPECT_EQ(sums[i][j], expected) << i << ", " << j;
+    }
   }
 }
 
