@@ -101,7 +101,7 @@ const Loaded& LoopSearch::State::load(const LinkEstimator& estimator, std::size_
   loaded.index = index;
   loaded.maps = store.read(views[index].frame);
   loaded.pyramid.build(loaded.maps.grey);
-  loaded.reference = estimator.reference(loaded.view(), loaded.maps.view());
+  estimator.select(loaded.view(), loaded.maps.view(), loaded.reference);
   return loaded;
 }
 

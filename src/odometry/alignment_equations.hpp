@@ -40,6 +40,12 @@ struct AlignmentEquations {
   EquationBlocks disparity = scratch_vector<EquationBlock>();
   std::size_t seen = 0;  ///< points that the frame shows: equations of grey levels
   double visible = 0;    ///< the same, each by the area of what it stands for that is left
+
+  void reserve(std::size_t points) {
+    const std::size_t blocks = (points + EquationBlock::lanes - 1) / EquationBlock::lanes;
+    grey.reserve(blocks);
+    disparity.reserve(blocks);
+  }
 };
 
 /// Present estimate of the unknowns.

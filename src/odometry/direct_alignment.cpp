@@ -71,6 +71,7 @@ class Aligner {
     state_.motion = start;
     state_.offset_px = prior.mean_px;
     sums_.resize(static_cast<std::size_t>(reference.cells));
+    equations_.reserve(reference.levels.front().size());  // the most points
     for (const ReferencePoint& point : reference.levels.back()) scratch_.push_back(point.disparity);
     const double typical_disparity = scratch_.empty() ? 1 : upper_median(scratch_);
     typical_depth_m_ = calibration.focal_px * calibration.baseline_m / typical_disparity;

@@ -82,15 +82,14 @@ FrameLink frame_link(int from, int to, const Alignment& alignment, const Odometr
   return link;
 }
 
-LinkReference LinkEstimator::reference(const FrameMaps& maps, const OdometryFrame& frame) const {
-  LinkReference reference;
+void LinkEstimator::select(const FrameMaps& maps, const OdometryFrame& frame, LinkReference& reference) const {
   select_points(maps, reference.points);
+  reference.road.reset();
   FrameRoad road;
   if (frame.has_road && frame_road(frame.road, calibration_, frame.grey.width(), frame.grey.height(), road)) {
     reference.road = road;
     sample_ground(maps.pyramid, calibration_, road, road.grid, 0, reference.ground);
   }
-  return reference;
 }
 
 bool LinkEstimator::accepted(const Alignment& alignment) const {

@@ -36,7 +36,8 @@ class LinkEstimator {
   const StereoCalibration& calibration() const { return calibration_; }
   const OdometryOptions& options() const { return options_; }
 
-  LinkReference reference(const FrameMaps& maps, const OdometryFrame& frame) const;
+  /// Fills `reference`, whose memory is used again.
+  void select(const FrameMaps& maps, const OdometryFrame& frame, LinkReference& reference) const;
 
   /// Returns the alignment with the best correlation; nullopt if it or the overlap is too small.
   std::optional<Alignment> link(const LinkReference& from, const FrameMaps& maps, const OdometryFrame& frame,

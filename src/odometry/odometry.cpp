@@ -128,7 +128,9 @@ void Odometry::State::record(const Reference& from, int frame, const Alignment& 
 }
 
 void Odometry::State::make_reference(const FrameMaps& maps, const OdometryFrame& frame) {
-  reference_ = Reference{trajectory.frames.back(), estimator.reference(maps, frame)};
+  if (!reference_) reference_.emplace();
+  reference_->pose = trajectory.frames.back();
+  estimator.select(maps, frame, reference_->seen);
 }
 
 /// Motion from the camera of the reference, by the velocity of the last frames.
