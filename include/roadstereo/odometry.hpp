@@ -21,6 +21,7 @@ struct OdometryOptions {
   double reference_overlap = 0.7;  ///< below it the frame becomes the reference of the next ones, 0 … 1
   bool estimate_offset = true;     ///< estimate and undo an offset of the disparities at infinity
   int kept_frames = 0;             ///< poses and links that are kept, the last ones, at least; 0: all
+  int threads = 0;                 ///< worker threads, 0: all cores; they do not change the results
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;

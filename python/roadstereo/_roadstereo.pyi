@@ -471,6 +471,7 @@ class Odometry:
         min_overlap: float = ...,
         reference_overlap: float = ...,
         estimate_offset: bool = ...,
+        threads: int = ...,
     ) -> None: ...
     def add(self, frame: int, result: FrameResult) -> FramePose: ...
     @property

@@ -78,9 +78,14 @@ void bind_poses(py::module_& module) {
 
 std::unique_ptr<SharedOdometry> make_odometry(const StereoCalibration& calibration, double min_correlation,
                                               double weak_correlation, double min_overlap, double reference_overlap,
-                                              bool estimate_offset) {
-  return std::make_unique<SharedOdometry>(
-      calibration, OdometryOptions{min_correlation, weak_correlation, min_overlap, reference_overlap, estimate_offset});
+                                              bool estimate_offset, int threads) {
+  const OdometryOptions options{.min_correlation = min_correlation,
+                                .weak_correlation = weak_correlation,
+                                .min_overlap = min_overlap,
+                                .reference_overlap = reference_overlap,
+                                .estimate_offset = estimate_offset,
+                                .threads = threads};
+  return std::make_unique<SharedOdometry>(calibration, options);
 }
 
 constexpr const char* odometry_doc =
@@ -93,7 +98,7 @@ constexpr const char* odometry_init_doc =
 
 min_correlation: below it there is no link; weak_correlation: below it a link is weak; min_overlap: share of the view that
 a link needs; reference_overlap: below it the frame becomes the reference of the next ones; all 0 … 1. estimate_offset:
-estimate and undo an offset of the disparities at infinity.)";
+estimate and undo an offset of the disparities at infinity. threads: worker threads, 0: all cores.)";
 
 }  // namespace
 
@@ -104,7 +109,7 @@ void bind_odometry(py::module_& module) {
       .def(py::init(&make_odometry), py::arg("calibration"), py::kw_only(),
            py::arg("min_correlation") = usual.min_correlation, py::arg("weak_correlation") = usual.weak_correlation,
            py::arg("min_overlap") = usual.min_overlap, py::arg("reference_overlap") = usual.reference_overlap,
-           py::arg("estimate_offset") = usual.estimate_offset, odometry_init_doc)
+           py::arg("estimate_offset") = usual.estimate_offset, py::arg("threads") = usual.threads, odometry_init_doc)
       .def("add", &SharedOdometry::add, py::arg("frame"), py::arg("result"),
            "Add the result of a frame, whose index is above that of the last one; return its pose.\n\n"
            "Raises Error when sizes differ or the index does not grow.")

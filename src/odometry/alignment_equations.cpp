@@ -4,6 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
+
+#include "core/parallel.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "odometry/alignment_equations.cpp"
@@ -331,24 +334,19 @@ class Linearisation {
   Batch batch_;
 };
 
-void linearise_level(const std::vector<ReferencePoint>& points, const FrameMaps& current,
-                     const StereoCalibration& calibration, int level, const AlignmentState& state,
-                     AlignmentEquations& equations) {
-  const std::size_t blocks = (points.size() + EquationBlock::lanes - 1) / EquationBlock::lanes;
-  equations.grey.resize(blocks);
-  equations.disparity.resize(blocks);
-  equations.seen = 0;
-  equations.visible = 0;
-  const std::size_t lanes = hn::Lanes(Doubles());
+/// The blocks first … last − 1. Returns what area of the points is seen.
+double linearise_blocks(const std::vector<ReferencePoint>& points, const FrameMaps& current,
+                        const StereoCalibration& calibration, int level, const AlignmentState& state, int first,
+                        int last, AlignmentEquations& equations) {
   Linearisation linearisation(current, calibration, level, state);
-  for (std::size_t i = 0; i < blocks * EquationBlock::lanes; i += lanes) {
-    EquationBlock &grey = equations.grey[i / EquationBlock::lanes],
-                  &disparity = equations.disparity[i / EquationBlock::lanes];
-    equations.visible += linearisation.add(points, i, grey, disparity);
+  double visible = 0;
+  for (auto block = static_cast<std::size_t>(first); block < static_cast<std::size_t>(last); ++block) {
+    for (std::size_t lane = 0; lane < EquationBlock::lanes; lane += hn::Lanes(Doubles())) {
+      visible += linearisation.add(points, block * EquationBlock::lanes + lane, equations.grey[block],
+                                   equations.disparity[block]);
+    }
   }
-  for (const EquationBlock& block : equations.grey) {
-    for (const bool valid : block.valid) equations.seen += valid ? 1 : 0;
-  }
+  return visible;
 }
 
 /// Sums of a lane of the blocks, added up last: they do not depend on the length of a vector.
@@ -385,13 +383,26 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace roadstereo {
 
-HWY_EXPORT(linearise_level);
+HWY_EXPORT(linearise_blocks);
 HWY_EXPORT(add_products_of_blocks);
 
 void linearise(const std::vector<ReferencePoint>& points, const FrameMaps& current,
-               const StereoCalibration& calibration, int level, const AlignmentState& state,
+               const StereoCalibration& calibration, int level, const AlignmentState& state, int threads,
                AlignmentEquations& equations) {
-  HWY_DYNAMIC_DISPATCH(linearise_level)(points, current, calibration, level, state, equations);
+  constexpr int blocks_per_band = 40;
+  const int blocks = static_cast<int>(block_count(points.size()));
+  equations.grey.resize(static_cast<std::size_t>(blocks));
+  equations.disparity.resize(static_cast<std::size_t>(blocks));
+  auto visible = scratch_vector<double>(static_cast<std::size_t>(blocks / blocks_per_band) + 1);
+  parallel_rows(blocks, blocks_per_band, threads, [&](int first, int last, int) {
+    visible[static_cast<std::size_t>(first / blocks_per_band)] =
+        HWY_DYNAMIC_DISPATCH(linearise_blocks)(points, current, calibration, level, state, first, last, equations);
+  });
+  equations.visible = std::accumulate(visible.begin(), visible.end(), 0.0);
+  equations.seen = 0;
+  for (const EquationBlock& block : equations.grey) {
+    for (const bool valid : block.valid) equations.seen += valid ? 1 : 0;
+  }
 }
 
 void add_products(const EquationBlocks& equations, Matrix<unknowns + 1>& sums) {

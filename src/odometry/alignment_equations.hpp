@@ -34,6 +34,10 @@ struct alignas(64) EquationBlock {
 };
 using EquationBlocks = ScratchVector<EquationBlock>;
 
+inline std::size_t block_count(std::size_t points) {
+  return (points + EquationBlock::lanes - 1) / EquationBlock::lanes;
+}
+
 /// Equations of a level at the present motion.
 struct AlignmentEquations {
   EquationBlocks grey = scratch_vector<EquationBlock>();
@@ -41,8 +45,7 @@ struct AlignmentEquations {
   std::size_t seen = 0;  ///< points that the frame shows: equations of grey levels
   double visible = 0;    ///< the same, each by the area of what it stands for that is left
 
-  void reserve(std::size_t points) {
-    const std::size_t blocks = (points + EquationBlock::lanes - 1) / EquationBlock::lanes;
+  void reserve(std::size_t blocks) {
     grey.reserve(blocks);
     disparity.reserve(blocks);
   }
@@ -59,9 +62,9 @@ struct AlignmentState {
 };
 
 /// Linearises the differences of grey levels and of disparities between the points of a level of a reference and a
-/// frame at `state`. Weights are left open.
+/// frame at `state`, on up to `threads` threads (0: all cores). Weights are left open.
 void linearise(const std::vector<ReferencePoint>& points, const FrameMaps& current,
-               const StereoCalibration& calibration, int level, const AlignmentState& state,
+               const StereoCalibration& calibration, int level, const AlignmentState& state, int threads,
                AlignmentEquations& equations);
 
 /// Adds the weighted products of every two elements of the equations' rows, the lower half of a matrix; the residual is

@@ -43,10 +43,11 @@ void weigh_residuals(EquationBlocks& equations, const Total& total_of) {
 
 /// Lowers the weights of cells whose residuals are larger than those of most cells: something moves there, or is seen
 /// by one frame only. A single residual cannot tell, since a wrong grey level may fit by chance.
-void weigh_cells(EquationBlocks& equations, ScratchVector<double>& squares, ScratchVector<double>& scratch) {
+void weigh_cells(EquationBlocks& equations, WeightMemory& memory) {
   constexpr double usual_spread = 1.5;  // of the mean squares of cells that fit
-  auto counts = scratch_vector<double>(squares.size());
+  ScratchVector<double>&squares = memory.sums, &counts = memory.counts, &scratch = memory.scratch;
   std::fill(squares.begin(), squares.end(), 0.0);
+  std::fill(counts.begin(), counts.end(), 0.0);
   for (const EquationBlock& block : equations) {
     for (std::size_t i = 0; i < lanes; ++i) {
       if (!block.valid[i]) continue;
@@ -94,30 +95,29 @@ void divide_weights(EquationBlocks& equations, double factor) {
 
 }  // namespace
 
-void weigh_grey_levels(EquationBlocks& equations, double& noise, ScratchVector<double>& sums,
-                       ScratchVector<double>& scratch) {
+void weigh_grey_levels(EquationBlocks& equations, double& noise, WeightMemory& memory) {
   constexpr double min_noise = 0.3;  // grey levels: that of rounding to 8 bits
   const double before = noise;
-  collect(equations, scratch, [before](double residual, double variance) {
+  collect(equations, memory.values, [before](double residual, double variance) {
     return residual * before / std::sqrt(before * before + variance);
   });
-  noise = std::max(gaussian_mad * upper_median_magnitude(scratch), min_noise);
+  noise = std::max(gaussian_mad * upper_median_magnitude(memory.values), min_noise);
   weigh_residuals(equations, [now = noise](double variance) { return now * now + variance; });
-  weigh_cells(equations, sums, scratch);
-  divide_weights(equations, correlation_factor(equations, sums));
+  weigh_cells(equations, memory);
+  divide_weights(equations, correlation_factor(equations, memory.sums));
 }
 
-void weigh_disparities(EquationBlocks& equations, ScratchVector<double>& sums, ScratchVector<double>& scratch) {
-  collect(equations, scratch, [](double residual, double variance) { return residual / std::sqrt(variance); });
-  if (scratch.empty()) {
+void weigh_disparities(EquationBlocks& equations, WeightMemory& memory) {
+  collect(equations, memory.values, [](double residual, double variance) { return residual / std::sqrt(variance); });
+  if (memory.values.empty()) {
     weigh_residuals(equations, [](double variance) { return variance; });
     return;
   }
   constexpr double min_factor = 0.5;
-  const double factor = std::max(gaussian_mad * upper_median_magnitude(scratch), min_factor);
+  const double factor = std::max(gaussian_mad * upper_median_magnitude(memory.values), min_factor);
   weigh_residuals(equations, [factor](double variance) { return factor * factor * variance; });
-  weigh_cells(equations, sums, scratch);
-  divide_weights(equations, correlation_factor(equations, sums));
+  weigh_cells(equations, memory);
+  divide_weights(equations, correlation_factor(equations, memory.sums));
 }
 
 }  // namespace roadstereo

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/order_statistics.hpp"
+#include "core/parallel.hpp"
 #include "odometry/alignment_equations.hpp"
 #include "odometry/alignment_weights.hpp"
 #include "odometry/anderson_acceleration.hpp"
@@ -32,14 +33,11 @@ struct NormalEquations {
   Matrix<unknowns> matrix{};
   Vector<unknowns> right{};
 
-  NormalEquations() = default;
-  explicit NormalEquations(const AlignmentEquations& equations) {
-    Matrix<unknowns + 1> products{};
-    add_products(equations.grey, products);
-    add_products(equations.disparity, products);
+  /// Adds sums of `add_products`.
+  void add(const Matrix<unknowns + 1>& products) {
     for (std::size_t i = 0; i < unknowns; ++i) {
-      right[i] = -products[unknowns][i];
-      std::copy_n(products[i].begin(), unknowns, matrix[i].begin());
+      right[i] -= products[unknowns][i];
+      for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += products[i][j];
     }
   }
 
@@ -66,14 +64,20 @@ struct NormalEquations {
 class Aligner {
  public:
   Aligner(const ReferencePoints& reference, const FrameMaps& current, const StereoCalibration& calibration,
-          const RigidMotion& start, const OffsetPrior& prior)
-      : reference_(reference), current_(current), calibration_(calibration), prior_(prior) {
+          const RigidMotion& start, const OffsetPrior& prior, int threads)
+      : reference_(reference),
+        current_(current),
+        calibration_(calibration),
+        prior_(prior),
+        threads_(threads),
+        grey_memory_(memory_for(reference)),
+        disparity_memory_(memory_for(reference)) {
     state_.motion = start;
     state_.offset_px = prior.mean_px;
-    sums_.resize(static_cast<std::size_t>(reference.cells));
-    equations_.reserve(reference.levels.front().size());  // the most points
-    for (const ReferencePoint& point : reference.levels.back()) scratch_.push_back(point.disparity);
-    const double typical_disparity = scratch_.empty() ? 1 : upper_median(scratch_);
+    equations_.reserve(most_blocks(reference));
+    auto disparities = scratch_vector<double>();
+    for (const ReferencePoint& point : reference.levels.back()) disparities.push_back(point.disparity);
+    const double typical_disparity = disparities.empty() ? 1 : upper_median(disparities);
     typical_depth_m_ = calibration.focal_px * calibration.baseline_m / typical_disparity;
   }
 
@@ -83,7 +87,7 @@ class Aligner {
     const std::vector<ReferencePoint>& points = reference_.levels[static_cast<std::size_t>(level)];
     AndersonAcceleration<unknowns> acceleration;
     for (int i = 0; i < max_iterations; ++i) {
-      linearise(points, current_, calibration_, level, state_, equations_);
+      linearise(points, current_, calibration_, level, state_, threads_, equations_);
       if (equations_.seen < min_points) return;
       weigh();
       if (shift_px(step({prior_.sd_px, 0, 0}, acceleration), level) < converged_px) break;
@@ -93,7 +97,7 @@ class Aligner {
   Alignment result(int level) {
     Alignment alignment;
     const std::vector<ReferencePoint>& points = reference_.levels[static_cast<std::size_t>(level)];
-    linearise(points, current_, calibration_, level, state_, equations_);
+    linearise(points, current_, calibration_, level, state_, threads_, equations_);
     alignment.motion = state_.motion;
     if (equations_.seen < min_points) return alignment;
     alignment.overlap = equations_.visible / static_cast<double>(points.size());
@@ -106,10 +110,26 @@ class Aligner {
   }
 
  private:
+  static std::size_t most_blocks(const ReferencePoints& reference) {
+    return block_count(reference.levels.front().size());
+  }
+  static WeightMemory memory_for(const ReferencePoints& reference) {
+    return {most_blocks(reference), static_cast<std::size_t>(reference.cells)};
+  }
+
   void weigh() {
-    weigh_grey_levels(equations_.grey, noise_, sums_, scratch_);
-    weigh_disparities(equations_.disparity, sums_, scratch_);
-    normal_ = NormalEquations(equations_);
+    std::array<Matrix<unknowns + 1>, 2> products{};
+    parallel_for(2, threads_, [&](int kind, int) {
+      if (kind == 0) {
+        weigh_grey_levels(equations_.grey, noise_, grey_memory_);
+        add_products(equations_.grey, products[0]);
+      } else {
+        weigh_disparities(equations_.disparity, disparity_memory_);
+        add_products(equations_.disparity, products[1]);
+      }
+    });
+    normal_ = {};
+    for (const Matrix<unknowns + 1>& of_kind : products) normal_.add(of_kind);
   }
 
   NormalEquations normal_equations(const Spread& spread) const {
@@ -164,7 +184,7 @@ class Aligner {
     AndersonAcceleration<unknowns> acceleration;
     for (int i = 0; i < steps; ++i) {
       if (i > 0) {
-        linearise(points, current_, calibration_, level, state_, equations_);
+        linearise(points, current_, calibration_, level, state_, threads_, equations_);
         if (equations_.seen < min_points) break;
         weigh();
         scatter_ = scatter_of_scores();
@@ -192,7 +212,7 @@ class Aligner {
   };
 
   Scatter scatter_of_scores() const {
-    auto scores = scratch_vector<Vector<unknowns>>(sums_.size());
+    auto scores = scratch_vector<Vector<unknowns>>(static_cast<std::size_t>(reference_.cells));
     const auto add_scores = [&scores](const EquationBlocks& equations) {
       for (const EquationBlock& block : equations) {
         for (std::size_t lane = 0; lane < EquationBlock::lanes; ++lane) {
@@ -255,21 +275,21 @@ class Aligner {
   const FrameMaps& current_;
   const StereoCalibration& calibration_;
   OffsetPrior prior_;
+  int threads_;
   double typical_depth_m_ = 0;
   double noise_ = 10;  ///< of the grey levels; a start
   AlignmentState state_;
   AlignmentEquations equations_;
   NormalEquations normal_;  ///< of the weighted equations
   Scatter scatter_;         ///< of the same
-  ScratchVector<double> scratch_ = scratch_vector<double>();
-  ScratchVector<double> sums_ = scratch_vector<double>();
+  WeightMemory grey_memory_, disparity_memory_;
 };
 
 }  // namespace
 
 Alignment align(const ReferencePoints& reference, const FrameMaps& current, const StereoCalibration& calibration,
-                const RigidMotion& start, const OffsetPrior& offset, int coarsest, int finest) {
-  Aligner aligner(reference, current, calibration, start, offset);
+                const RigidMotion& start, const OffsetPrior& offset, int coarsest, int finest, int threads) {
+  Aligner aligner(reference, current, calibration, start, offset, threads);
   const int levels = std::min(current.pyramid.levels(), static_cast<int>(reference.levels.size()));
   constexpr double start_of_finer_px = 0.1, converged_px = 0.01;
   for (int level = std::min(coarsest, levels - 1); level >= finest; --level) {

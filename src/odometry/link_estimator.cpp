@@ -144,7 +144,7 @@ Alignment LinkEstimator::track(const LinkReference& from, const FrameMaps& maps,
   constexpr double as_usual = 0.93;  // of the correlation of the last links
   const double enough = prior.usual_correlation > 0 ? as_usual * prior.usual_correlation : options_.weak_correlation;
   constexpr int search_radius = 6, coarsest = 1, coarsest_search = 3;
-  Alignment best = align(from.points, maps, calibration_, start, prior.offset, coarsest, 0);
+  Alignment best = align(from.points, maps, calibration_, start, prior.offset, coarsest, 0, options_.threads);
   if (best.overlap < options_.min_overlap) best.correlation = 0;
   for (int top = 1; top <= std::min(maps.pyramid.levels() - 1, coarsest_search); ++top) {
     if (best.correlation >= enough) break;
@@ -152,7 +152,7 @@ Alignment LinkEstimator::track(const LinkReference& from, const FrameMaps& maps,
     for (int level = top; level >= 1; --level) {
       motion = match_patches(from.points, maps, calibration_, motion, prior.offset.mean_px, level, search_radius);
     }
-    const Alignment other = align(from.points, maps, calibration_, motion, prior.offset, coarsest, 0);
+    const Alignment other = align(from.points, maps, calibration_, motion, prior.offset, coarsest, 0, options_.threads);
     if (other.correlation > best.correlation && other.overlap >= options_.min_overlap) best = other;
   }
   return best;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "core/scratch.hpp"
 #include "odometry/image_pyramid.hpp"
 #include "odometry/link_estimator.hpp"
@@ -31,6 +32,7 @@ void OdometryOptions::validate() const {
   require_share("weak_correlation", weak_correlation);
   require_share("min_overlap", min_overlap);
   require_share("reference_overlap", reference_overlap);
+  resolve_threads(threads);
   if (kept_frames < 0) fail("kept_frames is ", kept_frames, "; it must be at least 0 (all)");
 }
 

@@ -89,7 +89,7 @@ class PlaneInTwoFrames {
     if (index == growth_index) state.growth_px += by;
     if (index == shutter_index) state.shutter += by;
     AlignmentEquations equations;
-    linearise(points, {pyramid_, moved_.view(), sigma_.view()}, calibration_, 0, state, equations);
+    linearise(points, {pyramid_, moved_.view(), sigma_.view()}, calibration_, 0, state, 1, equations);
     EXPECT_EQ(equations.seen, listed(equations.grey).size());
     return {listed(equations.grey), listed(equations.disparity), equations.visible};
   }

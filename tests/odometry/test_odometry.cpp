@@ -240,6 +240,22 @@ TEST(Odometry, FollowsStreetBackwards) {
   }
 }
 
+TEST(Odometry, ThreadsDoNotMatter) {
+  const StereoCalibration calibration = test::smaller_scene("uav", 2).rig.calibration();
+  OdometryOptions options;
+  options.threads = 1;
+  Odometry one(calibration, options);
+  options.threads = 3;
+  Odometry many(calibration, options);
+  for (int i = 0; i < 3; ++i) {
+    const auto frame = flight()[static_cast<std::size_t>(i)].maps();
+    const FramePose expected = one.add(i, frame), pose = many.add(i, frame);
+    EXPECT_EQ(pose.camera_to_world, expected.camera_to_world) << i;
+    EXPECT_EQ(pose.covariance, expected.covariance) << i;
+  }
+  EXPECT_EQ(one.trajectory().frames.back().piece, 0);
+}
+
 TEST(Odometry, ForgetsOldFramesOnly) {
   Odometry all(test::smaller_scene("uav", 2).rig.calibration());
   OdometryOptions options;
@@ -306,6 +322,9 @@ TEST(Odometry, RejectsInvalidFrames) {
   EXPECT_THROW(Odometry(test::smaller_scene("uav", 2).rig.calibration(), options), Error);
   options = {};
   options.kept_frames = -1;
+  EXPECT_THROW(Odometry(test::smaller_scene("uav", 2).rig.calibration(), options), Error);
+  options = {};
+  options.threads = -1;
   EXPECT_THROW(Odometry(test::smaller_scene("uav", 2).rig.calibration(), options), Error);
 }
 

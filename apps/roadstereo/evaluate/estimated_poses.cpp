@@ -30,7 +30,7 @@ std::vector<RigidTransform> estimated_poses(int frames, const std::function<synt
   const StereoCalibration calibration = scene_of(0).rig.calibration();
   const ScratchFolder folder;
   Pipeline pipeline(options, calibration);
-  Odometry odometry(calibration);
+  Odometry odometry(calibration, {.threads = options.threads});
   LoopSearch search(calibration, folder / "keyframes");
   PoseGraphInput input;
   std::mt19937 random(1);

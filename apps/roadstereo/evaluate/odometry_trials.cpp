@@ -318,7 +318,7 @@ OdometryTrials run_odometry_trials(const OdometryTrialOptions& options) {
   pipeline_options.threads = options.methods.threads;
   apply_settings(options.methods.settings, pipeline_options);
   Pipeline pipeline(pipeline_options, pairs.calibration);
-  Odometry odometry(pairs.calibration);
+  Odometry odometry(pairs.calibration, {.threads = options.methods.threads});
   const ScratchFolder folder;
   Peers peers(options, pairs.calibration, folder / "peers");
   std::optional<LoopSearch> search;

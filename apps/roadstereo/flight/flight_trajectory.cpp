@@ -118,8 +118,9 @@ const std::vector<std::string>& trajectory_file_names() {
   return names;
 }
 
-FlightTrajectory::FlightTrajectory(const StereoCalibration& calibration, const std::filesystem::path& keyframes)
-    : odometry_(calibration), road_odometry_(calibration), calibration_(calibration) {
+FlightTrajectory::FlightTrajectory(const StereoCalibration& calibration, const std::filesystem::path& keyframes,
+                                   int threads)
+    : odometry_(calibration, {.threads = threads}), road_odometry_(calibration), calibration_(calibration) {
   if (has_pose_graph()) loops_.emplace(calibration, keyframes);
 }
 

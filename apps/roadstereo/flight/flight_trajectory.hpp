@@ -20,7 +20,7 @@ const std::vector<std::string>& trajectory_file_names();
 class FlightTrajectory {
  public:
   /// `keyframes` becomes a folder of this trajectory's own, and is removed with it.
-  FlightTrajectory(const StereoCalibration& calibration, const std::filesystem::path& keyframes);
+  FlightTrajectory(const StereoCalibration& calibration, const std::filesystem::path& keyframes, int threads);
 
   /// Adds the next matched frame. Returns its pose for flight.mcap, if it has one.
   std::optional<io::RosPose> add(const io::FlightFrame& frame, const FrameResult& result);

@@ -208,7 +208,7 @@ void FlightPipeline::add_to_trajectory(FlightJob& job) {
   if (!flight_.trajectory) {
     const std::optional<StereoCalibration>& calibration = flight_.source.calibration();
     if (!calibration) fail("--trajectory needs --calibration");
-    flight_.trajectory.emplace(*calibration, flight_.folder.path() / ".keyframes");
+    flight_.trajectory.emplace(*calibration, flight_.folder.path() / ".keyframes", flight_.plan.options.threads);
   }
   job.pose = flight_.trajectory->add(job.frame, job.result);
 }
