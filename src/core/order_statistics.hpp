@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 // Order statistics by selection (quickselect) of n ≥ 1 values; x(0) ≤ … ≤ x(n − 1) are the sorted ones. Every function
-// reorders its values. They differ in the rank that they take between two values.
+// reorders its values. They differ in the rank that they take between two values. C++17, for kernels.
 
 namespace roadstereo {
 
@@ -40,7 +40,10 @@ double upper_median_magnitude(Values&& values) {
   if (values.size() >= min_counted) {
     constexpr int dropped_bits = 20;
     const auto bin_of = [](auto x) {
-      return std::bit_cast<std::uint32_t>(std::abs(static_cast<float>(x))) >> dropped_bits;
+      const float magnitude = std::abs(static_cast<float>(x));
+      std::uint32_t bits = 0;
+      std::memcpy(&bits, &magnitude, sizeof bits);
+      return bits >> dropped_bits;
     };
     std::array<std::uint32_t, std::size_t{1} << (31 - dropped_bits)> counts{};
     for (const auto x : values) ++counts[bin_of(x)];
