@@ -32,7 +32,7 @@ class SharedPipeline {
   std::unique_ptr<ProcessedFrame> process(const py::object& left, const py::object& right, const std::string& order) {
     const FrameView left_view = frame_view(left, "left", order);
     const FrameView right_view = frame_view(right, "right", order);
-    auto frame = std::make_unique<ProcessedFrame>(dropped_);
+    auto frame = std::make_unique<ProcessedFrame>();
     frame->calibration = calibration_;
     frame->options = pipeline_.options();
     call([&] { pipeline_.process(left_view, right_view, frame->result); });
@@ -85,7 +85,6 @@ class SharedPipeline {
 
   std::mutex mutex_;
   Pipeline pipeline_;
-  std::shared_ptr<DroppedResults> dropped_ = std::make_shared<DroppedResults>();
   std::optional<StereoCalibration> calibration_;
 };
 
