@@ -18,8 +18,8 @@ struct RoadModelOptions {
   bool with_roll = true;              ///< estimate a2; false is the paper's model, eq. (4)
   double max_disparity_share = 0.35;  ///< largest disparity searched, as a share of the image width, 0.05 … 0.9
   double max_road_tilt_deg = 30.0;    ///< steepest sideways tilt of a road; a steeper plane is a wall, 5 … 80
-  double min_evidence = 0.03;         ///< below this mean evidence per pixel there is no road, 0 … 1
-  double weak_evidence = 0.08;        ///< below this mean evidence per pixel the road is weak, 0 … 1
+  double min_evidence = 0.06;         ///< below this evidence (RoadModelEstimate) there is no road, 0 … 1
+  double weak_evidence = 0.15;        ///< below this evidence the road is weak, 0 … 1
   double verify_tolerance_px = 1.0;   ///< largest spread that a tracked road may leave, pixels, above 0 … 100
   double height_m = 0;                ///< expected height of the camera above the road, metres, 0 … 1000; 0: unknown
   double pitch_deg = unknown_pitch_deg;  ///< expected pitch of the camera below the horizon, −90 … 90; −90: unknown
@@ -42,7 +42,8 @@ struct RoadModelEstimate {
   DisparityPlane model;
   RoadStatus status = RoadStatus::none;
   std::string reason;           ///< why there is no road; empty when there is one
-  double evidence = 0;          ///< mean evidence for the plane per pixel, about 0 … 2; 0 when tracked
+  double evidence = 0;          ///< for the plane, per pixel of the part of the picture where it would be seen, at
+                                ///< least half of it; about 0 … 2; 0 when tracked
   double inlier_share = 0;      ///< share of the textured samples below the horizon that the plane explains, 0 … 1
   double correlation = 0;       ///< 10th percentile of the NCC of blocks on the road, 0.3 … 1; 0 when unknown
   int matches = 0;              ///< reliable correspondences found over the whole image

@@ -37,7 +37,8 @@ void bind_road_model(py::module_& module) {
       .field(
           "status", [](const Road& road) { return name_of(road.status); }, "'found', 'tracked', 'weak' or 'none'.")
       .field("reason", &Road::reason, "Why there is no road; empty when there is one.")
-      .field("evidence", &Road::evidence, "Mean evidence for the plane per pixel, about 0 … 2; 0 when tracked.")
+      .field("evidence", &Road::evidence,
+             "Evidence for the plane per pixel of its part of the picture, about 0 … 2; 0 when tracked.")
       .field("inlier_share", &Road::inlier_share, "Share of the textured samples that the plane explains, 0 … 1.")
       .field("correlation", &Road::correlation, "10th percentile of the NCC of blocks on the road; 0: unknown.")
       .field("matches", &Road::matches, "Reliable correspondences.")

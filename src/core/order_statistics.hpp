@@ -30,7 +30,8 @@ auto upper_median(Values&& values) {
 }
 
 /// Upper median of |x|; 0 of no values. Counts the values by exponent and three bits of the mantissa in single
-/// precision, which keep their order: only those of one bin, a tenth of the median wide, are left to select from.
+/// precision, which keep their order: only those of one bin, a tenth of the median wide, are left to select from. No
+/// value is NaN.
 template <class Values>
 double upper_median_magnitude(Values&& values) {
   constexpr std::size_t min_counted = 500;  // counting costs more than selecting from fewer

@@ -100,6 +100,7 @@ struct Batch {
 };
 
 /// Disparities between pixels, bilinear, and their standard errors; only where the pixels around are of one surface.
+/// The maps have 2×2 pixels at least.
 struct Surface {
   Double disparity, sigma;
   hn::Mask<Doubles> valid;
@@ -140,13 +141,9 @@ class BlockLanes {
  public:
   BlockLanes(EquationBlock& block, std::size_t first, hn::Mask<Doubles> valid)
       : block_(block), first_(first), valid_(valid) {
-    put_valid();
-  }
-
-  /// Fewer lanes have an equation.
-  HWY_INLINE void restrict(hn::Mask<Doubles> valid) {
-    valid_ = hn::And(valid_, valid);
-    put_valid();
+    Numbers ones;
+    ones.store(hn::IfThenElseZero(valid_, all(1)));
+    for (std::size_t i = 0; i < hn::Lanes(Doubles()); ++i) block_.valid[first_ + i] = ones.at[i] != 0;
   }
 
   HWY_INLINE void put(std::size_t index, Double derivatives) { store(block_.row[index], derivatives); }
@@ -166,12 +163,6 @@ class BlockLanes {
   }
 
  private:
-  HWY_INLINE void put_valid() {
-    Numbers ones;
-    ones.store(hn::IfThenElseZero(valid_, all(1)));
-    for (std::size_t i = 0; i < hn::Lanes(Doubles()); ++i) block_.valid[first_ + i] = ones.at[i] != 0;
-  }
-
   HWY_INLINE void store(EquationBlock::Lanes& lanes, Double values) {
     hn::Store(hn::IfThenElseZero(valid_, values), Doubles(), lanes.data() + first_);
   }
@@ -211,9 +202,10 @@ class Linearisation {
     shift_ = all(shift);
   }
 
-  /// The equations of the points from `first` on, as many as a vector has. Returns what area of theirs is seen.
-  double add(const std::vector<ReferencePoint>& points, std::size_t first, EquationBlock& grey,
-             EquationBlock& disparity) {
+  /// The equations of the points from `first` on, as many as a vector has. Adds the area of each that is seen to its
+  /// lane.
+  void add(const std::vector<ReferencePoint>& points, std::size_t first, EquationBlock& grey, EquationBlock& disparity,
+           EquationBlock::Lanes& visible) {
     const std::size_t lane = first % EquationBlock::lanes;
     batch_.read(points, first);
     const MovedPoints moved = move();
@@ -225,16 +217,14 @@ class Linearisation {
     const auto given = hn::FirstN(Doubles(), std::max(points.size(), first) - first);
     const auto seen = hn::And(given, hn::Gt(batch_.has_sample.load(), all(0)));
     compare_grey_levels(moved, BlockLanes(grey, lane, seen));
-    compare_disparities(moved, BlockLanes(disparity, lane, seen));
+    compare_disparities(moved, seen, lane, disparity);
     for (std::size_t i = 0; i < hn::Lanes(Doubles()); ++i) {
       grey.cell[lane + i] = disparity.cell[lane + i] = points[std::min(first + i, points.size() - 1)].cell;
     }
     const Double scale = hn::Div(moved.z, moved.q.z);
     Numbers area;
     area.store(hn::IfThenElseZero(seen, hn::Min(all(1), hn::Mul(scale, scale))));
-    double visible = 0;
-    for (std::size_t i = 0; i < hn::Lanes(Doubles()); ++i) visible += area.at[i];
-    return visible;
+    for (std::size_t i = 0; i < hn::Lanes(Doubles()); ++i) visible[lane + i] += area.at[i];
   }
 
  private:
@@ -300,7 +290,8 @@ class Linearisation {
   }
 
   /// The measured disparity where a point is seen against that of the point, point to plane.
-  HWY_INLINE void compare_disparities(const MovedPoints& moved, BlockLanes equation) const {
+  HWY_INLINE void compare_disparities(const MovedPoints& moved, hn::Mask<Doubles> seen, std::size_t lane,
+                                      EquationBlock& block) const {
     const Vectors& q = moved.q;
     const Surface surface = sample_surface(current_.disparity, current_.sigma, moved.u, moved.v);
     // N·p = b for points of the plane around the point of the reference.
@@ -309,7 +300,7 @@ class Linearisation {
                                     hn::Mul(slope_v, hn::Sub(batch_.v.load(), all(calibration_.cy_px))));
     const Vectors normal = rotated(state_.motion, {slope_u, slope_v, hn::Div(hn::Sub(moved.disparity, along), focal_)});
     const Double towards = dot(normal, q);
-    equation.restrict(hn::And(surface.valid, hn::Gt(towards, all(0))));
+    BlockLanes equation(block, lane, hn::And(hn::And(seen, surface.valid), hn::Gt(towards, all(0))));
     const Double here = shape_of_offset(moved.u, surface.disparity), predicted = hn::Div(depth_scale_, q.z);
     const Vectors by_q = times(hn::Div(predicted, towards), normal);
     equation.put_residual(hn::Sub(hn::Add(surface.disparity, offset(here)), predicted));
@@ -334,19 +325,20 @@ class Linearisation {
   Batch batch_;
 };
 
-/// The blocks first … last − 1. Returns what area of the points is seen.
+/// The blocks first … last − 1. Returns the area of the points that is seen; a point that is as near as it was
+/// counts 1.
 double linearise_blocks(const std::vector<ReferencePoint>& points, const FrameMaps& current,
                         const StereoCalibration& calibration, int level, const AlignmentState& state, int first,
                         int last, AlignmentEquations& equations) {
   Linearisation linearisation(current, calibration, level, state);
-  double visible = 0;
+  EquationBlock::Lanes visible{};
   for (auto block = static_cast<std::size_t>(first); block < static_cast<std::size_t>(last); ++block) {
     for (std::size_t lane = 0; lane < EquationBlock::lanes; lane += hn::Lanes(Doubles())) {
-      visible += linearisation.add(points, block * EquationBlock::lanes + lane, equations.grey[block],
-                                   equations.disparity[block]);
+      linearisation.add(points, block * EquationBlock::lanes + lane, equations.grey[block], equations.disparity[block],
+                        visible);
     }
   }
-  return visible;
+  return std::accumulate(visible.begin(), visible.end(), 0.0);
 }
 
 /// Sums of a lane of the blocks, added up last: they do not depend on the length of a vector.

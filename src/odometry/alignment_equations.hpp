@@ -18,8 +18,8 @@ inline constexpr std::size_t unknowns = 11;
 inline constexpr std::size_t gain_index = 6, brightness_index = 7, offset_index = 8, growth_index = 9,
                              shutter_index = 10;
 
-/// Equations residual + row·x = 0 of neighbouring points of a reference, one in each lane. What has no equation has the
-/// weight 0 and the row 0.
+/// Equations residual + row·x = 0 of neighbouring points of a reference, one in each lane. Where there is none, row and
+/// residual are 0 and the variance is 1.
 struct alignas(64) EquationBlock {
   static constexpr std::size_t lanes = 8;
   using Lanes = std::array<double, lanes>;

@@ -110,7 +110,7 @@ void weigh_grey_levels(EquationBlocks& equations, double& noise, WeightMemory& m
 void weigh_disparities(EquationBlocks& equations, WeightMemory& memory) {
   collect(equations, memory.values, [](double residual, double variance) { return residual / std::sqrt(variance); });
   if (memory.values.empty()) {
-    weigh_residuals(equations, [](double variance) { return variance; });
+    for (EquationBlock& block : equations) block.weight.fill(0);
     return;
   }
   constexpr double min_factor = 0.5;

@@ -76,6 +76,7 @@ class Aligner {
     state_.offset_px = prior.mean_px;
     equations_.reserve(most_blocks(reference));
     auto disparities = scratch_vector<double>();
+    disparities.reserve(reference.levels.back().size());
     for (const ReferencePoint& point : reference.levels.back()) disparities.push_back(point.disparity);
     const double typical_disparity = disparities.empty() ? 1 : upper_median(disparities);
     typical_depth_m_ = calibration.focal_px * calibration.baseline_m / typical_disparity;
@@ -111,7 +112,9 @@ class Aligner {
 
  private:
   static std::size_t most_blocks(const ReferencePoints& reference) {
-    return block_count(reference.levels.front().size());
+    std::size_t points = 0;
+    for (const std::vector<ReferencePoint>& level : reference.levels) points = std::max(points, level.size());
+    return block_count(points);
   }
   static WeightMemory memory_for(const ReferencePoints& reference) {
     return {most_blocks(reference), static_cast<std::size_t>(reference.cells)};

@@ -39,8 +39,8 @@ inline double offset_shape(const StereoCalibration& calibration, double u, doubl
 /// of the grey levels and offset of the disparities, coarse to fine, on differences of grey levels and of disparities.
 /// Both are weighted by their variances (M-estimator, Tukey's biweight); those of grey levels include the standard
 /// error of the depth. The covariance is the sandwich of cells of the image, whose residuals may be correlated. `start`
-/// is a first guess; `coarsest` the first level of the pyramid, `finest` the last. Up to `threads` threads (0: all
-/// cores) give the same bits.
+/// is a first guess; `coarsest` the first level of the pyramid, `finest` the last. It runs on up to
+/// `threads` threads (0: all cores); the result does not depend on how many.
 Alignment align(const ReferencePoints& reference, const FrameMaps& current, const StereoCalibration& calibration,
                 const RigidMotion& start, const OffsetPrior& offset, int coarsest, int finest, int threads);
 

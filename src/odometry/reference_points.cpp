@@ -152,7 +152,8 @@ void select_patches(const FrameMaps& frame, int level, std::vector<TexturePatch>
   for_each_cell(frame, level, max_patches, TexturePatch::radius + 1, [&](const Selector& selector, int u, int v) {
     TexturePatch patch;
     patch.point = selector.point(u, v);
-    if (patch.point.has_slope && fill_patch(frame.pyramid.level(level), u, v, patch)) patches.push_back(patch);
+    if (patch.point.has_slope && patch.point.sigma_px > 0 && fill_patch(frame.pyramid.level(level), u, v, patch))
+      patches.push_back(patch);
   });
 }
 
@@ -166,7 +167,7 @@ void select_points(const FrameMaps& frame, ReferencePoints& points) {
     for_each_cell(frame, level, level == 0 ? max_points : max_coarse_points, 1,
                   [&](const Selector& selector, int u, int v) {
                     const ReferencePoint point = selector.point(u, v);
-                    if (point.has_slope) selected.push_back(point);
+                    if (point.has_slope && point.sigma_px > 0) selected.push_back(point);
                   });
   }
   points.patches.resize(points.levels.size() - 1);

@@ -51,8 +51,10 @@ void visit_options(Options& o, Visitor visit) {
   visit("road_model.max_disparity_share", o.road_model.max_disparity_share,
         "largest disparity searched, share of the image width");
   visit("road_model.max_road_tilt_deg", o.road_model.max_road_tilt_deg, "steepest sideways tilt of a road, degrees");
-  visit("road_model.min_evidence", o.road_model.min_evidence, "mean evidence per pixel below which there is no road");
-  visit("road_model.weak_evidence", o.road_model.weak_evidence, "mean evidence per pixel below which a road is weak");
+  visit("road_model.min_evidence", o.road_model.min_evidence,
+        "evidence per pixel of its part of the picture below which there is no road");
+  visit("road_model.weak_evidence", o.road_model.weak_evidence,
+        "evidence per pixel of its part of the picture below which a road is weak");
   visit("road_model.verify_tolerance_px", o.road_model.verify_tolerance_px,
         "largest spread of a carried-over model, pixels");
 

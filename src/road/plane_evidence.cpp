@@ -20,6 +20,8 @@ constexpr float full_weight_share = 0.15f;  ///< of the largest disparity, from 
 constexpr double base_row_weight = 0.2;     ///< of the uppermost row; the lowest has this and 1
 constexpr double max_slope = 0.3;           ///< disparity per column
 constexpr double slope_step = 2.0;          ///< pixels of disparity at the left and right border
+constexpr double least_share = 0.5;         ///< of the picture that a plane's evidence is divided by: what is seen in
+                                            ///< a few rows only is no road
 constexpr int bottom_steps = 40, top_steps = 56;
 constexpr int row_step = 2;          ///< every second row of cells is enough to find a line
 constexpr double lowest_top = -0.6;  ///< disparity of the uppermost row, as a share of the largest
@@ -180,6 +182,15 @@ double PlaneEvidence::of_plane(const DisparityPlane& full_size) const {
          pixels_;
 }
 
+double PlaneEvidence::share_in_front(const DisparityPlane& full_size) const {
+  const DisparityPlane plane = downsample_plane(full_size, factor_);
+  int in_front = 0;
+  for (int r = 0; r < rows_; ++r) {
+    for (int c = 0; c < columns_; ++c) in_front += plane.disparity(column(c), row(r)) > 0 ? 1 : 0;
+  }
+  return static_cast<double>(in_front) / (rows_ * columns_);
+}
+
 ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
                                              const RigPrior& prior, int max_planes, int threads) {
   auto planes = scratch_vector<PlaneHypothesis>();
@@ -209,7 +220,8 @@ ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, cons
     candidate.weight = weight(plane);
   });
   for (const Candidate& candidate : choose(best, static_cast<std::size_t>(max_planes), slope_step)) {
-    planes.push_back({candidate.points.plane(evidence), candidate.score});
+    const DisparityPlane plane = candidate.points.plane(evidence);
+    planes.push_back({plane, candidate.score / std::max(evidence.share_in_front(plane), least_share)});
   }
   return planes;
 }

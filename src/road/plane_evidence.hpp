@@ -10,7 +10,7 @@ namespace roadstereo {
 /// A plane and what the whole picture says to it.
 struct PlaneHypothesis {
   DisparityPlane plane;  ///< in full-size pixels
-  double evidence = 0;   ///< PlaneEvidence::of_plane
+  double evidence = 0;   ///< RoadModelEstimate::evidence
 };
 
 /// What the cells of a downsampled pair say to planes. A plane gains where the pixels support its disparity and loses
@@ -30,6 +30,8 @@ class PlaneEvidence {
 
   /// Mean evidence for a plane per pixel, about −1 … 2. The plane is in full-size pixels.
   double of_plane(const DisparityPlane& plane) const;
+  /// Share of the picture where a plane lies in front of the camera.
+  double share_in_front(const DisparityPlane& plane) const;
 
  private:
   std::size_t at(int r, int c) const {

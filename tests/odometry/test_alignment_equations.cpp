@@ -94,6 +94,17 @@ class PlaneInTwoFrames {
     return {listed(equations.grey), listed(equations.disparity), equations.visible};
   }
 
+  /// Of the second frame.
+  Image<float>& disparity() { return moved_; }
+  Image<float>& sigma_map() { return sigma_; }
+  AlignmentEquations blocks(const std::vector<ReferencePoint>& points) const {
+    AlignmentEquations equations;
+    AlignmentState state;
+    state.motion = motion_;
+    linearise(points, {pyramid_, moved_.view(), sigma_.view()}, calibration_, 0, state, 1, equations);
+    return equations;
+  }
+
   static constexpr double slope_u = 0.03, slope_v = 0.06, centre = 11;
   static constexpr float sigma = 0.125F;
 
@@ -179,6 +190,42 @@ TEST_P(AlignmentEquationsTarget, NeighboursInVectorsDoNotMatter) {
     EXPECT_EQ(one.disparity[0].row, all.disparity[i].row);
     EXPECT_EQ(one.disparity[0].residual, all.disparity[i].residual);
     EXPECT_EQ(one.disparity[0].cell, scene.points()[i].cell);
+  }
+}
+
+// One point in each lane; what spoils it must not touch its neighbours.
+TEST_P(AlignmentEquationsTarget, WhatIsNotSeenHasNoEquation) {
+  PlaneInTwoFrames scene{RigidMotion{}};
+  std::vector<ReferencePoint> points;
+  for (std::size_t i = 0; i < EquationBlock::lanes; ++i) points.push_back(scene.points()[10 * i]);
+  const auto pixel = [&points](Image<float>& map, std::size_t i) -> float& {
+    return map(static_cast<int>(points[i].u), static_cast<int>(points[i].v));
+  };
+  const AlignmentEquations before = scene.blocks(points);
+  ASSERT_EQ(before.seen, points.size());
+  points[1].u = PlaneInTwoFrames::width - 1;
+  points[2].disparity = -5;  // behind the camera
+  pixel(scene.disparity(), 3) = NAN;
+  pixel(scene.disparity(), 4) += 2;  // another surface
+  pixel(scene.sigma_map(), 5) = 0;
+  pixel(scene.sigma_map(), 6) = NAN;
+  const AlignmentEquations after = scene.blocks(points);
+  EXPECT_EQ(after.seen, points.size() - 2);
+  const auto expect_none = [](const EquationBlock& block, std::size_t lane) {
+    EXPECT_FALSE(block.valid[lane]) << lane;
+    EXPECT_EQ(block.residual[lane], 0) << lane;
+    EXPECT_EQ(block.variance[lane], 1) << lane;
+    for (const EquationBlock::Lanes& row : block.row) EXPECT_EQ(row[lane], 0) << lane;
+  };
+  for (const std::size_t lane : {1U, 2U}) expect_none(after.grey[0], lane);
+  for (const std::size_t lane : {1U, 2U, 3U, 4U, 5U, 6U}) expect_none(after.disparity[0], lane);
+  for (const std::size_t lane : {0U, 3U, 4U, 5U, 6U, 7U}) {
+    EXPECT_TRUE(after.grey[0].valid[lane]) << lane;
+    EXPECT_EQ(after.grey[0].residual[lane], before.grey[0].residual[lane]) << lane;
+  }
+  for (const std::size_t lane : {0U, 7U}) {
+    EXPECT_TRUE(after.disparity[0].valid[lane]) << lane;
+    EXPECT_EQ(after.disparity[0].variance[lane], before.disparity[0].variance[lane]) << lane;
   }
 }
 

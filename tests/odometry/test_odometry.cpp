@@ -175,6 +175,8 @@ TEST(Odometry, FramesWithoutDisparitiesAreNotLinked) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(odometry.add(i, nothing.maps()).piece, i);
   EXPECT_EQ(odometry.add(3, flight()[0].maps()).piece, 3);
   EXPECT_EQ(odometry.add(4, flight()[1].maps()).piece, 3);
+  EXPECT_EQ(odometry.add(5, nothing.maps()).piece, 3);  // its grey levels are linked
+  EXPECT_EQ(odometry.add(6, flight()[2].maps()).piece, 3);
 }
 
 TEST(Odometry, OffsetAtInfinityIsUndone) {
@@ -254,6 +256,13 @@ TEST(Odometry, ThreadsDoNotMatter) {
     EXPECT_EQ(pose.covariance, expected.covariance) << i;
   }
   EXPECT_EQ(one.trajectory().frames.back().piece, 0);
+  ASSERT_EQ(one.links().size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const FrameLink &expected = one.links()[i], &link = many.links()[i];
+    EXPECT_EQ(link.overlap, expected.overlap);
+    EXPECT_EQ(link.measured_offset_px, expected.measured_offset_px);
+    EXPECT_EQ(link.shutter_sd, expected.shutter_sd);
+  }
 }
 
 TEST(Odometry, ForgetsOldFramesOnly) {

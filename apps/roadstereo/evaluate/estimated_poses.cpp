@@ -30,8 +30,9 @@ std::vector<RigidTransform> estimated_poses(int frames, const std::function<synt
   const StereoCalibration calibration = scene_of(0).rig.calibration();
   const ScratchFolder folder;
   Pipeline pipeline(options, calibration);
-  Odometry odometry(calibration, {.threads = options.threads});
-  LoopSearch search(calibration, folder / "keyframes");
+  const OdometryOptions odometry_options{.threads = options.threads};
+  Odometry odometry(calibration, odometry_options);
+  LoopSearch search(calibration, folder / "keyframes", odometry_options);
   PoseGraphInput input;
   std::mt19937 random(1);
   for (int i = 0; i < frames; ++i) {

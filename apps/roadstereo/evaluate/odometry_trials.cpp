@@ -318,11 +318,12 @@ OdometryTrials run_odometry_trials(const OdometryTrialOptions& options) {
   pipeline_options.threads = options.methods.threads;
   apply_settings(options.methods.settings, pipeline_options);
   Pipeline pipeline(pipeline_options, pairs.calibration);
-  Odometry odometry(pairs.calibration, {.threads = options.methods.threads});
+  const OdometryOptions odometry_options{.threads = options.methods.threads};
+  Odometry odometry(pairs.calibration, odometry_options);
   const ScratchFolder folder;
   Peers peers(options, pairs.calibration, folder / "peers");
   std::optional<LoopSearch> search;
-  if (has_pose_graph()) search.emplace(pairs.calibration, folder / "keyframes");
+  if (has_pose_graph()) search.emplace(pairs.calibration, folder / "keyframes", odometry_options);
   Track own;
   std::vector<Pose> truth;
   std::vector<double> matching_ms;

@@ -121,7 +121,7 @@ const std::vector<std::string>& trajectory_file_names() {
 FlightTrajectory::FlightTrajectory(const StereoCalibration& calibration, const std::filesystem::path& keyframes,
                                    int threads)
     : odometry_(calibration, {.threads = threads}), road_odometry_(calibration), calibration_(calibration) {
-  if (has_pose_graph()) loops_.emplace(calibration, keyframes);
+  if (has_pose_graph()) loops_.emplace(calibration, keyframes, OdometryOptions{.threads = threads});
 }
 
 std::optional<io::RosPose> FlightTrajectory::add(const io::FlightFrame& frame, const FrameResult& result) {

@@ -32,7 +32,7 @@ void PathFinder::begin_piece() {
   constexpr int kept = 100;
   OdometryOptions options;
   options.kept_frames = kept;
-  options.threads = 1;  // the others match
+  options.threads = 1;  // the other cores are busy matching
   odometry_.emplace(calibration_, options);
   on_road_.emplace(calibration_);
   piece_ = 0;
