@@ -99,13 +99,13 @@ struct Batch {
   }
 };
 
-/// Disparities between pixels, bilinear, and their standard errors; only where the pixels around are of one surface.
-/// The maps have 2×2 pixels at least.
+/// Disparities between pixels and their standard errors.
 struct Surface {
   Double disparity, sigma;
   hn::Mask<Doubles> valid;
 };
 
+/// Bilinear, of maps of 2×2 pixels at least; valid where the pixels around are of one surface.
 HWY_INLINE Surface sample_surface(ImageView<const float> disparity, ImageView<const float> sigma, Double u, Double v) {
   const Doubles d;
   const hn::Rebind<float, Doubles> df;

@@ -52,9 +52,9 @@ void visit_options(Options& o, Visitor visit) {
         "largest disparity searched, share of the image width");
   visit("road_model.max_road_tilt_deg", o.road_model.max_road_tilt_deg, "steepest sideways tilt of a road, degrees");
   visit("road_model.min_evidence", o.road_model.min_evidence,
-        "evidence per pixel of its part of the picture below which there is no road");
+        "evidence for the plane, per pixel of its part of the picture, below which there is no road");
   visit("road_model.weak_evidence", o.road_model.weak_evidence,
-        "evidence per pixel of its part of the picture below which a road is weak");
+        "evidence for the plane, per pixel of its part of the picture, below which the road is weak");
   visit("road_model.verify_tolerance_px", o.road_model.verify_tolerance_px,
         "largest spread of a carried-over model, pixels");
 
