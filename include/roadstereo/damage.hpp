@@ -106,6 +106,9 @@ struct DamageEvidence {
   /// the steepest that the support window makes as gentle; NaN unknown, and of a protrusion. Where the border cuts a
   /// depression it tells a pothole from the relief of the road.
   double likely_wall_slope = std::numeric_limits<double>::quiet_NaN();
+  /// Diameter of the circle of equal area over 1.5 m, half of the straightedge that the surface of the road is
+  /// estimated with: what is wider may be the shape of the road or what lies beside it. NaN without a calibration.
+  double extent = std::numeric_limits<double>::quiet_NaN();
 
   /// Maximum depth in standard errors. Those of noise alone: smoothing only makes a damage shallower. Below 3 the
   /// damage is unresolvable, unless its mean depth is known better.

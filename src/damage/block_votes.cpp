@@ -26,7 +26,7 @@ using Blocks = std::array<Lanes<float>, block_pixels>;
 
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
-/// ZNCC, 0 if negative; NaN if a value is NaN or a block has no contrast.
+/// ZNCC, 0 if negative; NaN if a value is NaN or a block has no more contrast than rounding gives it.
 void correlate(const Blocks& one, const Blocks& other, std::size_t lanes, Lanes<float>& result) {
   Lanes<float> a{}, b{}, aa{}, bb{}, ab{};
   for (std::size_t k = 0; k < block_pixels; ++k) {
@@ -42,9 +42,9 @@ void correlate(const Blocks& one, const Blocks& other, std::size_t lanes, Lanes<
   }
   constexpr float n = static_cast<float>(block_pixels);
   for (std::size_t l = 0; l < lanes; ++l) {
-    const float variances = (aa[l] - a[l] * a[l] / n) * (bb[l] - b[l] * b[l] / n);
-    const float zncc = std::max(0.0F, (ab[l] - a[l] * b[l] / n) / std::sqrt(variances));
-    result[l] = variances > 0 ? zncc : unknown;
+    const float one_sum = aa[l] - a[l] * a[l] / n, other_sum = bb[l] - b[l] * b[l] / n;
+    const float zncc = std::max(0.0F, (ab[l] - a[l] * b[l] / n) / std::sqrt(one_sum * other_sum));
+    result[l] = one_sum > n / 12 && other_sum > n / 12 ? zncc : unknown;  // 1/12: variance of rounding
   }
 }
 

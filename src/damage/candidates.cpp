@@ -27,9 +27,9 @@ struct SegmentationConstants {
   float min_core_area_share = 0.1F;  ///< of the minimum area of a damage, for its core
   float min_level_sigmas = 2;        ///< minimum depth at the outline
   float foot_sigmas = 0.5F;          ///< minimum depth at the foot of the wall
-  double min_confidence = 0.05;      ///< below it, even with the steepest wall, a region is no candidate
-  int max_level_attempts = 8;        ///< maximum number of levels to separate touching damages
-  float max_level_share = 0.9F;      ///< of the floor's depth, the highest of these levels
+  double min_confidence = 0.05;  ///< below it, even with the best of what is measured later, a region is no candidate
+  int max_level_attempts = 8;    ///< maximum number of levels to separate touching damages
+  float max_level_share = 0.9F;  ///< of the floor's depth, the highest of these levels
   std::size_t max_hole_divisor = 4;  ///< holes up to 1/4 of the image are filled
   float outlier_floors = 1.25F;      ///< minimum depth, in depths of the floor, of the cells around an impossible one
 
@@ -345,14 +345,29 @@ void remove_outliers(const SearchInput& input, const ConnectedComponent& core, D
 }
 
 /// Whether the floor of a core is deeper, or higher, than a damage can be.
-bool is_obstacle(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images) {
-  const CellRun& first = core.runs.front();
-  const float limit = max_depth(first.first, first.row, kind, input.thresholds);
-  const bool is_deep = std::any_of(core.runs.begin(), core.runs.end(), [&](const CellRun& run) {
-    const float* const row = images.depth.row(run.row);
-    return std::any_of(row + run.first, row + run.last + 1, [limit](float depth) { return depth > limit; });
-  });
-  return is_deep && floor_depth(images.field(), core) > limit;
+bool is_obstacle(const SearchInput& input, const ConnectedComponent& core, DamageKind kind,
+                 const SearchImages& images) {
+  if (!input.thresholds.metric()) return false;
+  std::vector<float> shares;  // of the depth that a damage can have at the cell
+  shares.reserve(core.size);
+  for (const CellRun& run : core.runs) {
+    for (int i = run.first; i <= run.last; ++i) {
+      shares.push_back(images.depth(i, run.row) / max_depth(i, run.row, kind, input.thresholds));
+    }
+  }
+  const bool is_deep = std::any_of(shares.begin(), shares.end(), [](float share) { return share > 1; });
+  return is_deep && floor_of(std::move(shares)) > 1;
+}
+
+/// Whether a cell of the candidate is measured, not interpolated.
+bool is_measured(const Candidate& candidate, const Image<std::uint8_t>& valid) {
+  const CellBox& box = candidate.box();
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      if (candidate.cells(i, j) && valid(i, j) != 0) return true;
+    }
+  }
+  return false;
 }
 
 /// Segment the region around a core and add it to `found` if it is large enough and surrounded by road.
@@ -362,10 +377,14 @@ void add_candidate(const SearchInput& input, const ConnectedComponent& core, Dam
   if (static_cast<float>(core.size) < constants.min_core_area_share * min_cells) return;
   Candidate candidate = segment(input, core, kind, images);
   if (candidate.size == 0 || static_cast<float>(candidate.size) < min_cells) return;
+  if (!is_measured(candidate, input.depth_cells.valid)) return;
   add_evidence(input, images, candidate);
-  DamageEvidence steepest = candidate.evidence;  // the slope is measured later
-  if (kind == DamageKind::depression && input.thresholds.walls_measured()) steepest.likely_wall_slope = 1;
-  if (steepest.confidence() < constants.min_confidence) return;
+  DamageEvidence best = candidate.evidence;  // the slope and the agreement of the pictures are measured later
+  if (kind == DamageKind::depression && input.thresholds.walls_measured()) {
+    best.likely_wall_slope = 1;
+    if (input.thresholds.pictures_compared()) best.surface_significance = HUGE_VAL;
+  }
+  if (best.confidence() < constants.min_confidence) return;
   assign(candidate, images.assigned);
   found.push_back(std::move(candidate));
 }
@@ -376,7 +395,8 @@ void find_kind(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& a
   SearchImages images = make_search_images(input, kind, assigned);
   const ConnectedComponents components(core_cells(images, input.thresholds));
   std::vector<ConnectedComponent> cores(components.begin(), components.end());
-  std::sort(cores.begin(), cores.end(), [](const auto& one, const auto& other) { return one.size > other.size; });
+  std::stable_sort(cores.begin(), cores.end(),
+                   [](const auto& one, const auto& other) { return one.size > other.size; });
   std::erase_if(cores, [&](const ConnectedComponent& core) {
     if (!is_obstacle(input, core, kind, images)) return false;
     for_each_impossible(input, core, kind, images, [&](int i, int j) { assigned(i, j) = obstacle_label; });

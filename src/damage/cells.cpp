@@ -38,8 +38,9 @@ struct ColumnSums {
   }
 };
 
-/// Means of a row of cells. The sums have `factor` columns per cell, also for a cell that the border clips.
-void mean_row(const ColumnSums& columns, int factor, bool last_row, int cells, float* means) {
+/// Means of a row of cells of `rows` × `factor` pixels, whose last one the border of the image may clip. The sums have
+/// `factor` columns for that one, too.
+void mean_row(const ColumnSums& columns, int factor, int rows, int width, int cells, float* means) {
   for (int i = 0; i < cells; ++i) {
     float sum = 0;
     int count = 0;
@@ -47,8 +48,7 @@ void mean_row(const ColumnSums& columns, int factor, bool last_row, int cells, f
       sum += columns.sum[static_cast<std::size_t>(k)];
       count += columns.count[static_cast<std::size_t>(k)];
     }
-    const bool may_be_clipped = last_row || i + 1 == cells;  // by the border of the image
-    const bool valid = count > 0 && (may_be_clipped ? 4 : 2) * count >= factor * factor;
+    const bool valid = count > 0 && 2 * count >= rows * std::min(factor, width - i * factor);
     means[i] = valid ? sum / static_cast<float>(count) : std::numeric_limits<float>::quiet_NaN();
   }
 }
@@ -92,10 +92,11 @@ Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigm
     const std::vector<float> zero_sigma(sigma.empty() ? static_cast<std::size_t>(transformed.width()) : 0, 0.0F);
     for (int j = first; j < last; ++j) {
       columns.clear();
-      for (int v = j * factor; v < std::min((j + 1) * factor, height); ++v) {
+      const int end = std::min((j + 1) * factor, height);
+      for (int v = j * factor; v < end; ++v) {
         columns.add(transformed.row(v), sigma.empty() ? zero_sigma.data() : sigma.row(v), transformed.width());
       }
-      mean_row(columns, factor, j + 1 == cells.height(), cells.width(), cells.value.row(j));
+      mean_row(columns, factor, end - j * factor, transformed.width(), cells.width(), cells.value.row(j));
     }
   });
   return cells;

@@ -20,6 +20,8 @@ class CommonView {
   bool is_on_border(int i, int j) const {
     return is_outside(i - 1, j) || is_outside(i + 1, j) || is_outside(i, j - 1) || is_outside(i, j + 1);
   }
+  /// Whether a cell in view is the first or the last of its row.
+  bool is_at_side(int i, int j) const { return i == first_column(j) || i + 1 == columns_; }
   /// Remove the measurements outside: what is matched there is not the road, but an accident in what is left of the
   /// search range.
   void remove_outside(Cells& cells) const;

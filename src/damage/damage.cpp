@@ -124,8 +124,10 @@ DamageMap find_damage(const DamageInput& input, const DamageOptions& options, in
 void find_damage(const DamageInput& input, const DamageOptions& options, int threads, DamageMap& result) {
   options.validate();
   require_input(input);
-  Cells cells = make_cells(input.transformed, input.sigma,
-                           cell_factor(input.transformed.width(), input.transformed.height()), threads);
+  // Errors of smoothing are large where damage bends the surface, and no reason to leave it out.
+  const ImageView<const float> noise = input.smoothing_px == 0 ? input.sigma : ImageView<const float>{};
+  Cells cells =
+      make_cells(input.transformed, noise, cell_factor(input.transformed.width(), input.transformed.height()), threads);
   const CommonView view(input, cells);
   view.remove_outside(cells);
   const SurfaceCoordinates coordinates = surface_coordinates(cells, input, threads);
@@ -136,7 +138,7 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
   result.metric = result.non_metric_reason.empty();
   result.noise_px = surface.noise;
   const Thresholds thresholds(input, options, cells, coordinates, depth_cells.noise, result.metric);
-  Segmentation segmentation{cells, view, surface, road, depth_cells, {}};
+  Segmentation segmentation{cells, view, coordinates, surface, road, depth_cells, {}};
   std::optional<FrameGeometry> geometry;
   search_and_fill(input, options, thresholds, depth_cells, threads, segmentation, geometry, result);
   measure_damage(input, options, segmentation, geometry, threads, result);

@@ -23,10 +23,14 @@ bool is_along_road(const DamageMetrics& metrics) {
   return std::numbers::pi / 2 - std::abs(metrics.angle_rad) <= max_oblique_rad;
 }
 
-bool is_kerb_step(const Damage& damage, const DamageMetrics& metrics, int image_width) {
-  const bool at_side = damage.box_px[0] == 0 || damage.box_px[2] + 1 == image_width;
+bool is_kerb_step(const DamageMetrics& metrics, bool at_side) {
   return at_side && metrics.max_depth_m.value >= min_step_m && elongation(metrics) >= min_elongation &&
          is_along_road(metrics);
+}
+
+/// Whether two standard errors of the area do not include 0.
+bool is_area_known(const DamageMetrics& metrics) {
+  return metrics.area_m2.std_error <= 0.5 * metrics.area_m2.value;
 }
 
 }  // namespace
@@ -35,9 +39,9 @@ const char* name_of(DamageKind kind) {
   return kind == DamageKind::depression ? "depression" : "protrusion";
 }
 
-Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double possible_slope, int image_width) {
+Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double possible_slope, bool at_side) {
   const bool gentle = possible_slope < max_gentle_slope;
-  if (!gentle && is_kerb_step(damage, metrics, image_width)) return Distress::kerb_step;
+  if (!gentle && is_kerb_step(metrics, at_side)) return Distress::kerb_step;
   if (damage.kind == DamageKind::protrusion) {
     return metrics.wall_slope > max_gentle_slope ? Distress::debris : Distress::bump;
   }
@@ -57,7 +61,6 @@ std::string distress_reason(const DamageMetrics& metrics) {
 }
 
 void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics) {
-  constexpr double max_area_error = 0.5;       // relative: two standard errors of the area include 0
   constexpr double section_of_parabola = 1.5;  // maximum over mean depth of a rut's cross-section
   const SeverityTable* const table = scheme.find(metrics.distress);
   metrics.severity_probabilities = {};
@@ -74,8 +77,7 @@ void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics
     }
     metrics.severity_probabilities =
         severity_probabilities(*table, depth, {metrics.diameter_m, 0.5 * metrics.diameter_m * area_error});
-    metrics.severity =
-        area_error > max_area_error ? Severity::uncertain : likely_severity(metrics.severity_probabilities);
+    metrics.severity = is_area_known(metrics) ? likely_severity(metrics.severity_probabilities) : Severity::uncertain;
   }
   if (!resolvable) metrics.severity = Severity::unresolvable;
 }
@@ -83,8 +85,7 @@ void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics
 std::string severity_text(const DamageMetrics& metrics) {
   if (metrics.severity == Severity::unknown) return "not graded";
   if (metrics.severity != Severity::uncertain) return name_of(metrics.severity);
-  const std::string range = severity_range(metrics.severity_probabilities);
-  return range.find("–") == std::string::npos ? "not graded" : range;
+  return is_area_known(metrics) ? severity_range(metrics.severity_probabilities) : "not graded";
 }
 
 }  // namespace roadstereo

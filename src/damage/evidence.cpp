@@ -8,12 +8,23 @@ namespace roadstereo {
 
 namespace {
 
-/// Log-odds of damage against what one camera alone sees. They count against it in full and for it by little: the
-/// agreement of the pictures shows a surface, not that it is damage. Fitted to regions of rendered roads with rain,
-/// snow and dead pixels (docs/method.md). A map alone, whose pictures are unknown, has neither.
-double surface_log_odds(double significance) {
-  constexpr double per_standard_error = 4.7, even_odds = 1.85, max_log_odds = 0.5;
-  return std::isnan(significance) ? 0 : std::min(max_log_odds, per_standard_error * (significance - even_odds));
+/// Log-odds of damage against what one camera alone sees, in full. For a protrusion the agreement of the pictures
+/// counts little: it shows a surface, and what stands on the road or beside it has one, too. A hollow that the pictures
+/// confirm is rarely anything but damage. Fitted to regions of rendered roads with rain, snow and dead pixels, and to
+/// hollows put into streets (docs/method.md). A map alone, whose pictures are unknown, has none.
+double surface_log_odds(double significance, bool is_hollow) {
+  constexpr double per_standard_error = 4.7, even_odds = 1.85, max_of_protrusion = 0.5;
+  constexpr double per_standard_error_of_hollow = 1.2, max_standard_errors = 3;
+  if (std::isnan(significance)) return 0;
+  const double above = significance - even_odds;
+  if (!is_hollow || above < 0) return std::min(max_of_protrusion, per_standard_error * above);
+  return per_standard_error_of_hollow * std::min(above, max_standard_errors);
+}
+
+/// Log-odds of what is wider than the reach of the surface: the road's own shape, a strip or a pavement beside it.
+double extent_log_odds(double extent) {
+  constexpr double per_log_extent = -5.6;
+  return extent > 1 ? per_log_extent * std::log(extent) : 0;  // 0 if unknown
 }
 
 /// Log-odds of damage whose outline lies on the border to a share, with a wall of a slope. The border may cut a
@@ -44,7 +55,8 @@ double DamageEvidence::confidence() const {
   const double log_odds = intercept + per_log_significance * std::log(std::clamp(significance, 1.0, max_significance)) +
                           per_road_share * road_share + per_unseen_share * unseen_share;
   return probability_of(log_odds + wall_log_odds(border_share, likely_wall_slope) +
-                        surface_log_odds(surface_significance));
+                        surface_log_odds(surface_significance, !std::isnan(likely_wall_slope)) +
+                        extent_log_odds(extent));
 }
 
 }  // namespace roadstereo

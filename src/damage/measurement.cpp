@@ -39,7 +39,7 @@ void add_run(const DamageInput& input, const DamageMap& maps, int v, int first, 
   for (int u = first; u <= last; ++u) {
     if (!std::isfinite(transformed[u])) continue;
     ++sums.measured;
-    sums.depth += std::abs(depth[u]);
+    sums.depth += sign_of(damage.kind) * depth[u];
   }
 }
 
@@ -70,8 +70,9 @@ double cell_noise(const DamageInput& input, const Cells& cells, int i, int j, do
   return count > 0 ? std::sqrt(std::max(0.0, sum) / count) : noise;
 }
 
-/// Find the smoothed depth cell that is deepest for certain: the one with the largest depth less its standard error
-/// from noise, so that what is measured badly is not the deepest because of that. Returns that standard error.
+/// Find the smoothed depth cell that is deepest for certain: the one with the largest depth on the road, less its
+/// standard error from noise, so that what is measured badly is not the deepest because of that. Returns that standard
+/// error.
 double find_deepest(const DamageInput& input, const Segmentation& segmentation, const Candidate& candidate,
                     Damage& damage) {
   const float sign = sign_of(candidate.kind);
@@ -84,10 +85,12 @@ double find_deepest(const DamageInput& input, const Segmentation& segmentation, 
     for (int i = box.first_column; i <= box.last_column; ++i) {
       const float depth = sign * depths.depth(i, j);
       if (!candidate.cells(i, j) || depths.valid(i, j) == 0 || depth <= 0) continue;
-      if (depth <= max_bound) continue;  // whatever its noise
+      const double scale = segmentation.coordinates.scale(i, j);  // to first order
+      if (!(depth > max_bound * scale)) continue;                 // whatever its noise
       const double noise = cell_noise(input, cells, i, j, depths.noise);
-      if (static_cast<double>(depth) - noise <= max_bound) continue;
-      max_bound = static_cast<double>(depth) - noise;
+      const double bound = (static_cast<double>(depth) - noise) / scale;
+      if (bound <= max_bound) continue;
+      max_bound = bound;
       deepest_noise = noise;
       damage.max_depth_px = {depth, std::hypot(noise, smoothing_error(depths.depth, reach, i, j))};
       // The centre of a cell that the border clips may lie outside the image.
@@ -126,6 +129,17 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   max_depth.std_error = std::hypot(max_depth.std_error, offset.std_error, bias);
   damage.evidence.depth_significance = max_depth.value / std::hypot(noise, offset.std_error, bias);
   return damage;
+}
+
+/// Whether a region reaches the first or the last column of the view.
+bool is_at_side(const Candidate& candidate, const CommonView& view) {
+  const CellBox& box = candidate.box();
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      if (candidate.cells(i, j) && view.is_at_side(i, j)) return true;
+    }
+  }
+  return false;
 }
 
 /// Box around all damages; empty without pixels.
@@ -201,7 +215,9 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
       const SurfaceOffset offset = estimate_surface_offset(segmentation, segmentation.candidates[k]);
       Damage& damage = result.damages[k] = measure_in_pixels(input, segmentation, k, offset, result);
       if (geometry && damage.pixels > 0) {
-        DamageMetrics metrics = compute_metrics(input, options, *geometry, offset, result, damage);
+        DamageMetrics metrics =
+            compute_metrics(input, options, *geometry, offset,
+                            is_at_side(segmentation.candidates[k], segmentation.view), result, damage);
         if (result.metric) damage.metrics = std::move(metrics);
       }
       damage.confidence = damage.evidence.confidence();

@@ -14,6 +14,7 @@ namespace roadstereo {
 struct Segmentation {
   const Cells& cells;
   const CommonView& view;
+  const SurfaceCoordinates& coordinates;
   const RoadSurface& surface;
   const Image<std::uint8_t>& road;
   const DepthCells& depth_cells;

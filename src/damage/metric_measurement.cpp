@@ -10,6 +10,7 @@
 #include "damage/oriented_box.hpp"
 #include "damage/pixel_runs.hpp"
 #include "damage/road_outline.hpp"
+#include "damage/road_undulation.hpp"
 #include "damage/smoothing_error.hpp"
 #include "roadstereo/resolution_limits.hpp"
 
@@ -48,9 +49,10 @@ struct PixelValues {
   Row<double> x, y, z;  ///< on the road
 };
 
-/// Values of the pixels from (u, v) on. The surface is raised by `offset`, pixels of ℓ'.
-void compute_values(const FrameGeometry& geometry, const DamageMap& maps, double offset, double max_depth, int u, int v,
-                    int count, PixelValues& values) {
+/// Values of the pixels from (u, v) on. The surface is raised by `offset`, pixels of ℓ'. `max_depth_m` is negative for
+/// protrusions.
+void compute_values(const FrameGeometry& geometry, const DamageMap& maps, double offset, double max_depth_m, int u,
+                    int v, int count, PixelValues& values) {
   const double f = geometry.focal_px();
   const float *const surface = maps.surface.row(v) + u, *const depths = maps.depth.row(v) + u;
   for (int i = 0; i < count; ++i) {
@@ -61,7 +63,7 @@ void compute_values(const FrameGeometry& geometry, const DamageMap& maps, double
     const Point road = geometry.point(u + i, v, road_disparity);
     const Point point = geometry.point(u + i, v, disparity);
     values.area[k] = geometry.pixel_area(road);
-    values.depth_share[k] = depth / max_depth;
+    values.depth_share[k] = geometry.depth_between(road, point) / max_depth_m;
     values.volume[k] = (point[2] * point[2] * point[2] - road[2] * road[2] * road[2]) / (3 * f * f);
     values.metres_per_pixel[k] = values.area[k] * geometry.metres_per_pixel(point, disparity);
     values.x[k] = road[0];
@@ -70,11 +72,10 @@ void compute_values(const FrameGeometry& geometry, const DamageMap& maps, double
   }
 }
 
-/// Sum over the pixels of a damage. Its surface is raised by `offset`, pixels of ℓ'.
+/// Sum over the pixels of a damage, `max_depth_m` deep. Its surface is raised by `offset`, pixels of ℓ'.
 MetricSums sum_pixels(const DamageInput& input, const FrameGeometry& geometry, const DamageMap& maps,
-                      const Damage& damage, double offset) {
+                      const Damage& damage, double offset, double max_depth_m) {
   MetricSums sums;
-  const double max_depth = sign_of(damage.kind) * damage.max_depth_px.value;
   PixelValues values;
   const auto add_pixel = [&](int u, int v, std::size_t k) {
     const double area = values.area[k];
@@ -98,7 +99,7 @@ MetricSums sum_pixels(const DamageInput& input, const FrameGeometry& geometry, c
   for_each_run(maps.ids, damage.id, {u0, v0, u1, v1}, [&](int v, int first, int last) {
     for (int u = first; u <= last; u += PixelValues::max_count) {
       const int count = std::min(last + 1 - u, PixelValues::max_count);
-      compute_values(geometry, maps, offset, max_depth, u, v, count, values);
+      compute_values(geometry, maps, offset, sign_of(damage.kind) * max_depth_m, u, v, count, values);
       for (int i = 0; i < count; ++i) add_pixel(u + i, v, static_cast<std::size_t>(i));
     }
   });
@@ -187,8 +188,14 @@ SurfaceOffset estimate_surface_offset(const Segmentation& segmentation, const Ca
 }
 
 DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
-                              const SurfaceOffset& offset, const DamageMap& maps, Damage& damage) {
-  const MetricSums sums = sum_pixels(input, geometry, maps, damage, offset.value);
+                              const SurfaceOffset& offset, bool at_side, const DamageMap& maps, Damage& damage) {
+  const auto [u, v] = damage.deepest_px;
+  const double signed_depth = sign_of(damage.kind) * damage.max_depth_px.value;
+  const double road_disparity = geometry.road_disparity(u, v, maps.surface(u, v) + offset.value);
+  const Point road = geometry.point(u, v, road_disparity);
+  const Point deepest = geometry.point(u, v, road_disparity - signed_depth);
+  const double max_depth_m = std::abs(geometry.depth_between(road, deepest));
+  const MetricSums sums = sum_pixels(input, geometry, maps, damage, offset.value, max_depth_m);
   const double noise_px = maps.noise_px;
   DamageMetrics metrics;
   const double metres_per_pixel = sums.metres_per_pixel / sums.area;
@@ -197,12 +204,7 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   metrics.area_m2.value = sums.area;
   metrics.volume_m3.value = std::abs(sums.volume);
   metrics.mean_depth_m.value = metrics.volume_m3.value / sums.area;
-  const auto [u, v] = damage.deepest_px;
-  const double signed_depth = sign_of(damage.kind) * damage.max_depth_px.value;
-  const double road_disparity = geometry.road_disparity(u, v, maps.surface(u, v) + offset.value);
-  const Point road = geometry.point(u, v, road_disparity);
-  const Point deepest = geometry.point(u, v, road_disparity - signed_depth);
-  metrics.max_depth_m.value = std::max(std::abs(geometry.depth_between(road, deepest)), metrics.mean_depth_m.value);
+  metrics.max_depth_m.value = std::max(max_depth_m, metrics.mean_depth_m.value);
   set_standard_errors(sums, offset, noise_px, sigma_px,
                       geometry.metres_per_pixel(deepest, road_disparity - signed_depth), damage, metrics);
 
@@ -224,7 +226,8 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   if (damage.kind == DamageKind::depression && std::isfinite(sums.area)) {  // else it extends beyond the road
     damage.evidence.likely_wall_slope = std::sqrt(std::min(1.0, metrics.wall_slope) * std::min(1.0, possible_slope));
   }
-  metrics.distress = classify_distress(damage, metrics, possible_slope, maps.ids.width());
+  if (input.calibration) damage.evidence.extent = metrics.diameter_m / (0.5 * straightedge_m);
+  metrics.distress = classify_distress(damage, metrics, possible_slope, at_side);
   const bool resolvable = damage.evidence.is_depth_resolved() || metrics.mean_depth_m.is_resolved();
   grade(options.severity, resolvable, metrics);
   return metrics;

@@ -14,9 +14,9 @@ struct SurfaceOffset {
 /// Estimate the offset as the median over a ring of intact road around the candidate.
 SurfaceOffset estimate_surface_offset(const Segmentation& segmentation, const Candidate& candidate);
 
-/// Compute the metric properties of a damage, and the likely slope of its wall, evidence of it. The depths of
-/// `maps` are in pixels of ℓ'.
+/// Compute the metric properties of a damage, and the likely slope of its wall, evidence of it. `at_side`: it reaches
+/// the side of the view. The depths of `maps` are in pixels of ℓ'.
 DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
-                              const SurfaceOffset& offset, const DamageMap& maps, Damage& damage);
+                              const SurfaceOffset& offset, bool at_side, const DamageMap& maps, Damage& damage);
 
 }  // namespace roadstereo

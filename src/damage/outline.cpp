@@ -100,20 +100,24 @@ RobustNormal depths_around(const DepthField& field, const BoxMask& region, int n
   return robust_normal(around);
 }
 
-float floor_depth(const DepthField& field, const ConnectedComponent& seeds) {
+float floor_of(std::vector<float> depths) {
   constexpr int iterations = 2;
-  std::vector<float> depths;
-  depths.reserve(seeds.size);
-  for (const CellRun& run : seeds.runs) {
-    const float* const row = field.depth.row(run.row);
-    depths.insert(depths.end(), row + run.first, row + run.last + 1);
-  }
   float floor = nearest_quantile(depths, 0.75);
   for (int k = 0; k < iterations; ++k) {
     std::erase_if(depths, [floor](float depth) { return depth < 0.5F * floor; });
     floor = nearest_quantile(depths, 0.75);
   }
   return floor;
+}
+
+float floor_depth(const DepthField& field, const ConnectedComponent& seeds) {
+  std::vector<float> depths;
+  depths.reserve(seeds.size);
+  for (const CellRun& run : seeds.runs) {
+    const float* const row = field.depth.row(run.row);
+    depths.insert(depths.end(), row + run.first, row + run.last + 1);
+  }
+  return floor_of(std::move(depths));
 }
 
 BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, float level) {

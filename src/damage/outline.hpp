@@ -20,8 +20,10 @@ BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, flo
 /// `band_radii` times the radius √(area / π) of the region, at least 3 cells.
 RobustNormal depths_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii);
 
-/// Depth of the floor: 75th percentile of the depths of those seeds that are deeper than half of it, robust against
-/// single outliers and independent of how much of a hollow the seeds cover.
+/// Depth of the floor of a hollow: 75th percentile of those depths that are deeper than half of it, robust against
+/// single outliers and independent of how much of the hollow they cover.
+float floor_of(std::vector<float> depths);
+/// Depth of the floor of the seeds.
 float floor_depth(const DepthField& field, const ConnectedComponent& seeds);
 
 /// Outline of a damage.

@@ -9,6 +9,8 @@
 #include "core/cholesky.hpp"
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
+#include "core/tukey.hpp"
+#include "damage/road_undulation.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -19,6 +21,8 @@ constexpr std::size_t plane_term_count = 3;
 constexpr std::size_t quadratic_term_count = 6;
 using Coefficients = Vector<quadratic_term_count>;
 using Values = std::vector<double>;
+
+constexpr double tukey_sigmas = 4.7;  // 95 % efficiency on normal residuals
 
 /// Sampled cells, structure of arrays. `residual` is the value minus the current fit.
 struct Samples {
@@ -174,34 +178,61 @@ double quadratic(const Coefficients& c, double x, double y, double scale) {
   return scale * (c[0] + x * (c[1] + c[3] * x + c[4] * y) + y * (c[2] + c[5] * y));
 }
 
+/// Estimate the standard deviation of the residuals from the MAD of those within three of the last ones; it at most
+/// halves. False when it is 0.
+bool update_sigma(const Samples& samples, double& sigma) {
+  constexpr double max_sigmas = 3;
+  const double max_residual = max_sigmas * sigma;
+  std::vector<float> magnitudes(samples.size());
+  BinnedSelection selection;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double magnitude = std::abs(samples.residual[k]);
+    magnitudes[k] = static_cast<float>(magnitude <= max_residual ? magnitude : HUGE_VAL);
+  }
+  const std::size_t inliers = selection.bin(magnitudes, 0, static_cast<float>(max_residual));
+  const double estimate = inliers > 0 ? gaussian_mad * double{selection.select(inliers / 2)} : 0;
+  sigma = std::max(estimate, 0.5 * sigma);
+  return estimate > 0;
+}
+
 /// Iteratively reweighted least squares (IRLS) with the first `count` terms. Updates the residuals and their standard
 /// deviation `sigma`, from the MAD, which at most halves in one iteration.
 template <std::size_t count>
 Coefficients fit_irls(Samples& samples, int iterations, double& sigma) {
-  constexpr double tukey_sigmas = 4.7;  // 95 % efficiency on normal residuals
-  constexpr double max_sigmas = 3;      // of the residuals from which sigma is estimated
   Coefficients solution{};
-  std::vector<float> magnitudes(samples.size());
-  BinnedSelection selection;
   for (int i = 0; i < iterations; ++i) {
     solution = solve<count>(accumulate<count>(samples, tukey_sigmas * sigma));
-    const double max_residual = max_sigmas * sigma;
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      const double residual = samples.value[k] - quadratic(solution, samples.x[k], samples.y[k], samples.scale[k]);
-      const double magnitude = std::abs(residual);
-      samples.residual[k] = residual;
-      magnitudes[k] = static_cast<float>(magnitude <= max_residual ? magnitude : HUGE_VAL);
+      samples.residual[k] = samples.value[k] - quadratic(solution, samples.x[k], samples.y[k], samples.scale[k]);
     }
-    const std::size_t inliers = selection.bin(magnitudes, 0, static_cast<float>(max_residual));
-    const double estimate = inliers > 0 ? gaussian_mad * double{selection.select(inliers / 2)} : 0;
-    sigma = std::max(estimate, 0.5 * sigma);
-    if (estimate == 0) break;
+    if (!update_sigma(samples, sigma)) break;
   }
   return solution;
 }
 
+/// Fit the undulation of the road to the residuals of its quadratic, by IRLS. Updates the residuals and `sigma`
+/// likewise.
+RoadUndulation fit_undulation(Samples& samples, int iterations, double& sigma) {
+  RoadUndulation undulation(samples.x, samples.y);
+  if (undulation.empty()) return undulation;
+  const Values deviation = samples.residual;
+  Values weight(samples.size());
+  for (int i = 0; i < iterations; ++i) {
+    const double inverse_max = 1 / (tukey_sigmas * sigma), inverse_variance = 1 / (sigma * sigma);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      weight[k] = inverse_variance * tukey_weight(samples.residual[k] * inverse_max);
+    }
+    undulation.fit(samples.scale, deviation, weight);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      samples.residual[k] = deviation[k] - samples.scale[k] * undulation.height(k);
+    }
+    if (!update_sigma(samples, sigma)) break;
+  }
+  return undulation;
+}
+
 /// Evaluate the surface at every cell.
-RoadSurface evaluate(const Coefficients& solution, double noise, const Cells& cells,
+RoadSurface evaluate(const Coefficients& solution, const RoadUndulation& undulation, double noise, const Cells& cells,
                      const SurfaceCoordinates& coordinates, int threads) {
   constexpr int rows_per_band = 32;
   RoadSurface surface;
@@ -214,6 +245,7 @@ RoadSurface evaluate(const Coefficients& solution, double noise, const Cells& ce
       for (int i = 0; i < cells.width(); ++i) {
         value[i] = static_cast<float>(quadratic(solution, double{x[i]}, double{y[i]}, double{scale[i]}));
       }
+      if (!undulation.empty()) undulation.add_to(x, y, scale, cells.width(), value);
     }
   });
   return surface;
@@ -231,7 +263,7 @@ RoadSurface fit_road_surface(const Cells& cells, const SurfaceCoordinates& coord
   double sigma = std::max({start.half_width, min_relative_sigma * std::abs(start.middle), 1e-9});
   fit_irls<plane_term_count>(samples, plane_iterations, sigma);
   const Coefficients solution = fit_irls<quadratic_term_count>(samples, quadratic_iterations, sigma);
-  return evaluate(solution, sigma, cells, coordinates, threads);
+  return evaluate(solution, RoadUndulation(), sigma, cells, coordinates, threads);
 }
 
 RoadSurface refit_road_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
@@ -241,7 +273,9 @@ RoadSurface refit_road_surface(const Cells& cells, const SurfaceCoordinates& coo
   Samples samples = sample_cells(cells, coordinates, &region, &earlier, sampling);
   double sigma = std::max(earlier.noise, 1e-9);
   const Coefficients solution = fit_irls<quadratic_term_count>(samples, iterations, sigma);
-  return evaluate(solution, sigma, cells, coordinates, threads);
+  const bool undulates = coordinates.is_metric && sampling == Sampling::fine;
+  const RoadUndulation undulation = undulates ? fit_undulation(samples, iterations, sigma) : RoadUndulation();
+  return evaluate(solution, undulation, sigma, cells, coordinates, threads);
 }
 
 }  // namespace roadstereo

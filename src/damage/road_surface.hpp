@@ -11,6 +11,7 @@ struct SurfaceCoordinates {
   /// Metres on the road, up to an affine map without a calibration, NaN where there is no road; without a plane −1 … 1
   /// over the image.
   Image<float> x, y;
+  bool is_metric = false;  ///< x and y are metres
   Image<float> scale;  ///< pixels of ℓ' per metre of height, without a calibration below a camera of 1.5 m; else 1
 };
 

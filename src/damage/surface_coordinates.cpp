@@ -99,7 +99,11 @@ SurfaceCoordinates road_coordinates(const Cells& cells, const DisparityPlane& mo
 SurfaceCoordinates surface_coordinates(const Cells& cells, const DamageInput& input, int threads) {
   if (!input.plane) return image_coordinates(cells);
   constexpr double min_disparity_px = 2, any_disparity_px = 0;  // without a calibration the unit may be any
-  if (input.calibration) return road_coordinates(cells, *input.plane, *input.calibration, min_disparity_px, threads);
+  if (input.calibration) {
+    SurfaceCoordinates metric = road_coordinates(cells, *input.plane, *input.calibration, min_disparity_px, threads);
+    metric.is_metric = true;
+    return metric;
+  }
   const StereoCalibration assumed = assumed_calibration(*input.plane, cells.image_width, cells.image_height);
   return road_coordinates(cells, *input.plane, assumed, any_disparity_px, threads);
 }

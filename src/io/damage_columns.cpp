@@ -139,6 +139,7 @@ std::vector<DamageColumn> pixel_columns() {
           {"unseen_share", evidence<&DamageEvidence::unseen_share>},
           {"surface_significance", evidence<&DamageEvidence::surface_significance>},
           {"likely_wall_slope", evidence<&DamageEvidence::likely_wall_slope>},
+          {"extent", evidence<&DamageEvidence::extent>},
           {"depth_significance", evidence<&DamageEvidence::depth_significance>},
           {"cut_by_border", [](const Damage& d) -> DamageValue { return d.cut_by_border; }}};
 }

@@ -10,7 +10,7 @@ namespace {
 /// Removes the ids of masked pixels, and damages that have half of their pixels or fewer left: what a damage has in a
 /// mask was interpolated. The others are numbered anew, in their order.
 void remove_masked(const Image<std::uint8_t>& mask, DamageMap& map) {
-  if (mask.empty()) return;
+  if (mask.empty() || map.damages.empty()) return;
   std::vector<std::size_t> seen(map.damages.size() + 1);
   for (int v = 0; v < mask.height(); ++v) {
     for (int u = 0; u < mask.width(); ++u) {

@@ -75,5 +75,18 @@ TEST(Cells, AverageValidPixels) {
   EXPECT_EQ(cells.value(3, 0), 5);
 }
 
+// 12 = 5 + 5 + 2: the last cells have 10 and 4 pixels, fewer than half of 25.
+TEST(Cells, CutByBorderAverageWhatTheyHave) {
+  Image<float> map(12, 12, 3.0F);
+  map(0, 0) = 28;
+  const Cells cells = make_cells(map, {}, 5, 1);
+  ASSERT_EQ(cells.width(), 3);
+  EXPECT_EQ(cells.value(0, 0), 4);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(cells.value(2, k), 3);
+    EXPECT_EQ(cells.value(k, 2), 3);
+  }
+}
+
 }  // namespace
 }  // namespace roadstereo

@@ -36,6 +36,9 @@ TEST(CommonView, BeginsWhereMatchOfRoadEntersRightImage) {
     EXPECT_FALSE(view.contains(view.first_column(j) - 1, j));
     EXPECT_TRUE(view.contains(view.first_column(j), j));
     EXPECT_TRUE(view.is_on_border(view.first_column(j), j));
+    EXPECT_TRUE(view.is_at_side(view.first_column(j), j));
+    EXPECT_TRUE(view.is_at_side(119, j));
+    EXPECT_FALSE(view.is_at_side(view.first_column(j) + 1, j));
   }
   // The neighbour below, only, is outside.
   EXPECT_TRUE(view.is_on_border(view.first_column(20) + 1, 20));

@@ -70,6 +70,7 @@ TEST(Grade, NeedsMajorityAndKnownArea) {
   metrics = pothole(0.046, 0.009, 0.07, 0.07 * 0.98);
   grade(astm_d6433(), true, metrics);
   EXPECT_EQ(metrics.severity, Severity::uncertain) << "an area known to ±98 %";
+  EXPECT_EQ(severity_text(metrics), "not graded");
   EXPECT_EQ(metrics.unit, DistressUnit::count);
   EXPECT_EQ(metrics.quantity, 1);
   grade(astm_d6433(), false, metrics);

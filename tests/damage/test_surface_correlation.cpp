@@ -92,5 +92,29 @@ TEST(DamageEvidence, SurfaceThatPicturesConfirmIsLittleEvidence) {
   EXPECT_NEAR(odds(), confirmed, 1e-9 * confirmed);
 }
 
+// What rises may be a kerb or a car with a surface of its own; a hollow that the pictures confirm is rarely anything
+// else.
+TEST(DamageEvidence, HollowThatPicturesConfirmIsDamage) {
+  DamageEvidence evidence{6, 6, 3, 1, 0};
+  evidence.likely_wall_slope = 0.4;
+  EXPECT_LT(evidence.confidence(), 0.25);
+  evidence.surface_significance = 4;
+  EXPECT_GT(evidence.confidence(), 0.6);
+  const double confirmed = evidence.confidence();
+  evidence.surface_significance = 30;
+  EXPECT_GT(evidence.confidence(), confirmed);
+  EXPECT_LT(evidence.confidence(), 0.95) << "three standard errors count";
+}
+
+// What is wider than half of a straightedge may be the shape of the road.
+TEST(DamageEvidence, ExtentCountsBeyondReachOfSurface) {
+  DamageEvidence evidence{20, 40, 3, 1, 0};
+  const double unknown = evidence.confidence();
+  evidence.extent = 1;
+  EXPECT_EQ(evidence.confidence(), unknown);
+  evidence.extent = 2;
+  EXPECT_LT(evidence.confidence(), 0.3);
+}
+
 }  // namespace
 }  // namespace roadstereo

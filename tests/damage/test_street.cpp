@@ -1,0 +1,137 @@
+// Damage of a street seen from a vehicle: the road undulates, and disparities differ by several times from near to far.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "damage/road_undulation.hpp"
+#include "tests/damage/damage_scene.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// A street 1.6 m below a camera that looks straight ahead; the horizon is above the picture.
+struct Street {
+  static constexpr int width = 1000, height = 200;
+  static constexpr double camera_m = 1.6;
+
+  StereoCalibration calibration{700, 499.5, -45, 0.5, 0, width, height};
+  Image<float> disparity{width, height};
+  DisparityPlane plane{0, calibration.baseline_m / camera_m, 0};
+
+  /// `lift` above the plane in metres at (x, y), to the right and ahead of the camera, metres.
+  explicit Street(const std::function<double(double x, double y)>& lift, double noise_px = 0.04) {
+    plane.a0 = -plane.a1 * calibration.cy_px;
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        const double down = (v - calibration.cy_px) / calibration.focal_px;
+        const double y = camera_m / down, x = (u - calibration.cx_px) / calibration.focal_px * y;
+        disparity(u, v) =
+            static_cast<float>(calibration.focal_px * calibration.baseline_m * down / (camera_m - lift(x, y)));
+      }
+    }
+    disparity = with_noise(disparity, noise_px);
+  }
+
+  DamageMap find(double min_confidence = 0.5) const {
+    Image<float> transformed(width, height);
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        transformed(u, v) = static_cast<float>(disparity(u, v) - plane.disparity(u, v) + true_road_px);
+      }
+    }
+    DamageInput input;
+    input.transformed = transformed;
+    input.disparity = disparity;
+    input.plane = plane;
+    input.calibration = calibration;
+    DamageOptions options;
+    options.min_confidence = min_confidence;
+    return find_damage(input, options);
+  }
+};
+
+/// 50 mm deep within 0.3 m of (1 m, 7 m), with a wall of 0.1 m.
+double pothole(double x, double y) {
+  return -0.05 * std::clamp((0.4 - std::hypot(x - 1, y - 7)) / 0.1, 0.0, 1.0);
+}
+
+/// Waves of 8 and 11 m, 20 and 15 mm high: no quadratic, but level over the 3 m of a straightedge.
+double waves(double x, double y) {
+  return 0.02 * std::sin(2 * std::numbers::pi * x / 8) + 0.015 * std::sin(2 * std::numbers::pi * y / 11);
+}
+
+TEST(Street, UndulationIsPartOfSurface) {
+  const DamageMap level = Street(pothole).find(),
+                  wavy = Street([](double x, double y) { return waves(x, y) + pothole(x, y); }).find();
+  for (const DamageMap* map : {&level, &wavy}) {
+    ASSERT_EQ(map->damages.size(), 1U);
+    const DamageMetrics& metrics = map->damages[0].metrics.value();
+    EXPECT_NEAR(metrics.max_depth_m.value, 0.05, 0.005);
+    EXPECT_NEAR(metrics.road_centroid_m[0], 1, 0.05);
+    EXPECT_GT(map->damages[0].evidence.extent, 0.7 / 1.5) << "its width at half of the depth";
+    EXPECT_LT(map->damages[0].evidence.extent, 1.0 / 1.5) << "the foot of its wall, a cell more on either side";
+  }
+  // The noise is that of means of four pixels, the waves a twentieth of what they are in pixels.
+  EXPECT_LT(level.noise_px, 0.03);
+  EXPECT_LT(wavy.noise_px, 0.06);
+  EXPECT_TRUE(Street(waves).find().damages.empty());
+}
+
+/// 48 mm at 6.2 m are fewer pixels than 40 mm at 4.5 m, where the disparity is larger.
+TEST(Street, DepthIsLargestInMetres) {
+  const DamageMap map = Street([](double x, double y) {
+                          const double side = std::clamp((0.5 - std::abs(x)) / 0.1, 0.0, 1.0);
+                          const double ends = std::clamp((1.4 - std::abs(y - 6.1)) / 0.1, 0.0, 1.0);
+                          return -std::min(side, ends) * (y < 6.2 ? 0.04 : 0.048);
+                        }).find();
+  ASSERT_EQ(map.damages.size(), 1U);
+  EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, 0.048, 0.002);
+  EXPECT_NEAR(map.damages[0].metrics->wall_slope, 0.45, 0.25);
+}
+
+/// A heave from 4.6 to 20 m: 4 cm are at its near end as many pixels as 12 cm, an obstacle, at its far one.
+TEST(Street, LongHeaveIsNoObstacle) {
+  const DamageMap map = Street([](double x, double y) {
+                          const double side = std::clamp((0.25 - std::abs(x)) / 0.1, 0.0, 1.0);
+                          return 0.04 * side * std::clamp((20 - y) / 0.2, 0.0, 1.0);
+                        }).find(0);
+  ASSERT_GE(map.damages.size(), 1U);
+  EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, 0.04, 0.004);
+  EXPECT_GT(map.damages[0].metrics->length_m, 10);
+}
+
+/// A function that is linear along both axes lies in the space of the grid; without a measurement heights return to 0.
+TEST(RoadUndulation, ReproducesLinearHeights) {
+  std::vector<double> x, y, scale, value, weight;
+  for (int i = 0; i <= 60; ++i) {
+    for (int j = 0; j <= 80; ++j) {
+      x.push_back(0.1 * i - 3);
+      y.push_back(4 + 0.1 * j);
+      scale.push_back(30 / y.back());
+      value.push_back(scale.back() * (0.01 * x.back() - 0.004 * (y.back() - 8)));
+      weight.push_back(1e6);
+    }
+  }
+  RoadUndulation undulation(x, y);
+  undulation.fit(scale, value, weight);
+  for (std::size_t k = 0; k < x.size(); k += 7) {
+    EXPECT_NEAR(undulation.height(k), 0.01 * x[k] - 0.004 * (y[k] - 8), 1e-3);
+  }
+  const float at[] = {1.0F, NAN}, ahead[] = {8.0F, 8.0F}, pixels[] = {10.0F, 10.0F};
+  float values[] = {2.0F, NAN};
+  undulation.add_to(at, ahead, pixels, 2, values);
+  EXPECT_NEAR(values[0], 2 + 10 * 0.01, 1e-3);
+  EXPECT_TRUE(std::isnan(values[1]));
+}
+
+TEST(RoadUndulation, NeedsMoreThanOneCell) {
+  const std::vector<double> x{0, 1.4, 0, 1.4}, y{2, 2, 3.4, 3.4};
+  EXPECT_TRUE(RoadUndulation(x, y).empty());
+  EXPECT_TRUE(RoadUndulation().empty());
+}
+
+}  // namespace
+}  // namespace roadstereo
