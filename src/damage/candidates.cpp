@@ -27,9 +27,8 @@ struct SegmentationConstants {
   float min_core_area_share = 0.1F;  ///< of the minimum area of a damage, for its core
   float min_level_sigmas = 2;        ///< minimum depth at the outline
   float foot_sigmas = 0.5F;          ///< minimum depth at the foot of the wall
-  double min_confidence = 0.05;  ///< below it, even with the best of what is measured later, a region is no candidate
-  int max_level_attempts = 8;    ///< maximum number of levels to separate touching damages
-  float max_level_share = 0.9F;  ///< of the floor's depth, the highest of these levels
+  int max_level_attempts = 8;        ///< maximum number of levels to separate touching damages
+  float max_level_share = 0.9F;      ///< of the floor's depth, the highest of these levels
   std::size_t max_hole_divisor = 4;  ///< holes up to 1/4 of the image are filled
   float outlier_floors = 1.25F;      ///< minimum depth, in depths of the floor, of the cells around an impossible one
 
@@ -384,7 +383,7 @@ void add_candidate(const SearchInput& input, const ConnectedComponent& core, Dam
     best.likely_wall_slope = 1;
     if (input.thresholds.pictures_compared()) best.surface_significance = HUGE_VAL;
   }
-  if (best.confidence() < constants.min_confidence) return;
+  if (best.confidence() < min_candidate_confidence) return;
   assign(candidate, images.assigned);
   found.push_back(std::move(candidate));
 }

@@ -16,6 +16,9 @@ inline float sign_of(DamageKind kind) {
   return kind == DamageKind::depression ? 1.0F : -1.0F;
 }
 
+/// Below this confidence a region is no candidate.
+inline constexpr double min_candidate_confidence = 0.05;
+
 /// Region of a damage before measurement.
 struct Candidate {
   DamageKind kind = DamageKind::depression;

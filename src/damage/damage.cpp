@@ -124,10 +124,8 @@ DamageMap find_damage(const DamageInput& input, const DamageOptions& options, in
 void find_damage(const DamageInput& input, const DamageOptions& options, int threads, DamageMap& result) {
   options.validate();
   require_input(input);
-  // Errors of smoothing are large where damage bends the surface, and no reason to leave it out.
-  const ImageView<const float> noise = input.smoothing_px == 0 ? input.sigma : ImageView<const float>{};
-  Cells cells =
-      make_cells(input.transformed, noise, cell_factor(input.transformed.width(), input.transformed.height()), threads);
+  Cells cells = make_cells(input.transformed, input.sigma,
+                           cell_factor(input.transformed.width(), input.transformed.height()), threads);
   const CommonView view(input, cells);
   view.remove_outside(cells);
   const SurfaceCoordinates coordinates = surface_coordinates(cells, input, threads);

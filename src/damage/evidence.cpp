@@ -8,17 +8,25 @@ namespace roadstereo {
 
 namespace {
 
-/// Log-odds of damage against what one camera alone sees, in full. For a protrusion the agreement of the pictures
-/// counts little: it shows a surface, and what stands on the road or beside it has one, too. A hollow that the pictures
-/// confirm is rarely anything but damage. Fitted to regions of rendered roads with rain, snow and dead pixels, and to
-/// hollows put into streets (docs/method.md). A map alone, whose pictures are unknown, has none.
-double surface_log_odds(double significance, bool is_hollow) {
+/// Logarithm of the slope of a wall over that of one that may be either.
+double log_steepness(double slope) {
+  constexpr double min_slope = 0.05, even_slope = 0.3;
+  return std::log(std::clamp(slope, min_slope, 1.0) / even_slope);
+}
+
+/// Log-odds of damage against what one camera alone sees, in full. For a protrusion, whose slope is unknown, the
+/// agreement of the pictures counts little: it shows a surface, and what stands on the road or beside it has one, too.
+/// A hollow with a wall that the pictures confirm is rarely anything but damage, a gentle one may be the relief of the
+/// road. Fitted to regions of rendered roads with rain, snow and dead pixels, and to hollows put into streets
+/// (docs/method.md). A map alone, whose pictures are unknown, has none.
+double surface_log_odds(double significance, double slope) {
   constexpr double per_standard_error = 4.7, even_odds = 1.85, max_of_protrusion = 0.5;
   constexpr double per_standard_error_of_hollow = 1.2, max_standard_errors = 3;
   if (std::isnan(significance)) return 0;
   const double above = significance - even_odds;
-  if (!is_hollow || above < 0) return std::min(max_of_protrusion, per_standard_error * above);
-  return per_standard_error_of_hollow * std::min(above, max_standard_errors);
+  if (std::isnan(slope) || above < 0) return std::min(max_of_protrusion, per_standard_error * above);
+  return per_standard_error_of_hollow * std::min(above, max_standard_errors) +
+         std::min(above, 1.0) * std::min(0.0, log_steepness(slope));
 }
 
 /// Log-odds of what is wider than the reach of the surface: the road's own shape, a strip or a pavement beside it.
@@ -35,10 +43,9 @@ double extent_log_odds(double extent) {
 double wall_log_odds(double border_share, double slope) {
   constexpr double per_square = -18, per_fourth_power = -35;  // of the border share
   constexpr double per_log_slope = 0.5, per_square_and_log_slope = 16;
-  constexpr double min_slope = 0.05, even_slope = 0.3;
   const double square = border_share * border_share;
   if (std::isnan(slope)) return per_square * square;
-  const double steeper = std::log(std::clamp(slope, min_slope, 1.0) / even_slope);
+  const double steeper = log_steepness(slope);
   return per_log_slope * std::min(0.0, steeper) +
          square * (per_square + per_fourth_power * square + per_square_and_log_slope * steeper);
 }
@@ -55,8 +62,7 @@ double DamageEvidence::confidence() const {
   const double log_odds = intercept + per_log_significance * std::log(std::clamp(significance, 1.0, max_significance)) +
                           per_road_share * road_share + per_unseen_share * unseen_share;
   return probability_of(log_odds + wall_log_odds(border_share, likely_wall_slope) +
-                        surface_log_odds(surface_significance, !std::isnan(likely_wall_slope)) +
-                        extent_log_odds(extent));
+                        surface_log_odds(surface_significance, likely_wall_slope) + extent_log_odds(extent));
 }
 
 }  // namespace roadstereo

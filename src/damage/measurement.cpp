@@ -186,6 +186,7 @@ std::vector<std::uint16_t> separate_candidates(const DamageOptions& options, Dam
     const bool is_damage =
         options.min_confidence == 0 || (damage.confidence >= options.min_confidence && is_resolvable(damage));
     if (!is_damage) {
+      if (damage.confidence < min_candidate_confidence) continue;
       result.candidates.push_back(damage);
       continue;
     }
