@@ -21,20 +21,29 @@ RIDGE = 0.05
 REGIONS_PER_SOURCE = 20  # real and false ones of a source weigh as much as so many
 
 
-def surface_log_odds(significance):
+def log_steepness(slope):
+    return math.log(min(max(slope, MIN_SLOPE), 1) / EVEN_SLOPE)
+
+
+def surface_log_odds(significance, slope):
     """As in src/damage/evidence.cpp; it is not fitted."""
-    per_standard_error, even_odds, max_log_odds = 4.7, 1.85, 0.5
+    per_standard_error, even_odds, max_of_protrusion = 4.7, 1.85, 0.5
+    per_standard_error_of_hollow, max_standard_errors = 1, 2
     if significance is None:
         return 0.0
-    return min(max_log_odds, per_standard_error * (significance - even_odds))
+    above = significance - even_odds
+    if slope is None or above < 0:
+        return min(max_of_protrusion, per_standard_error * above)
+    return per_standard_error_of_hollow * min(above, max_standard_errors) + min(above, 1) * min(0, log_steepness(slope))
 
 
 def features(region):
     significance = min(max(region["significance"], 1), MAX_SIGNIFICANCE)
     share, slope = region["border_share"], region["likely_wall_slope"]
-    steeper = 0 if slope is None else math.log(min(max(slope, MIN_SLOPE), 1) / EVEN_SLOPE)
+    steeper = 0 if slope is None else log_steepness(slope)
     of_wall = [share**4 if slope is not None else 0, share**2 * steeper, min(0, steeper)]
-    return [1, math.log(significance), region["road_share"], region["unseen_share"], share**2, *of_wall]
+    wider = math.log(max(1, region["extent"] or 0))
+    return [1, math.log(significance), region["road_share"], region["unseen_share"], share**2, *of_wall, wider]
 
 
 def fit(x, y, offset, weight):
@@ -73,7 +82,7 @@ def main():
     sources, rows = read(sys.argv[1:])
     x = np.array([features(row) for row in rows])
     y = np.array([float(row["is_damage"]) for row in rows])
-    offset = np.array([surface_log_odds(row["surface_significance"]) for row in rows])
+    offset = np.array([surface_log_odds(row["surface_significance"], row["likely_wall_slope"]) for row in rows])
     program = np.array([row["confidence"] for row in rows])
     weight = np.ones(len(rows))
     for name in set(sources):
@@ -82,7 +91,7 @@ def main():
             weight[of_kind] = min(1, REGIONS_PER_SOURCE / max(1, of_kind.sum()))
     coefficients = fit(x, y, offset, weight)
     print("intercept, ln significance, road share, unseen share, border share²; of a slope s: border share⁴, border share² ×"
-          " ln(s/0.3), min(0, ln(s/0.3)):", np.round(coefficients, 2))
+          " ln(s/0.3), min(0, ln(s/0.3)); ln extent beyond 1:", np.round(coefficients, 2))
     taking_part = predict(x, offset, coefficients)
     print(f"{'source':<12}{'damage':>7}{'found: all':>12}{'left out':>10}{'program':>9}"
           f"{'others':>8}{'wrong: all':>12}{'left out':>10}{'program':>9}")

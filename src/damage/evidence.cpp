@@ -21,7 +21,7 @@ double log_steepness(double slope) {
 /// (docs/method.md). A map alone, whose pictures are unknown, has none.
 double surface_log_odds(double significance, double slope) {
   constexpr double per_standard_error = 4.7, even_odds = 1.85, max_of_protrusion = 0.5;
-  constexpr double per_standard_error_of_hollow = 1.2, max_standard_errors = 3;
+  constexpr double per_standard_error_of_hollow = 1, max_standard_errors = 2;
   if (std::isnan(significance)) return 0;
   const double above = significance - even_odds;
   if (std::isnan(slope) || above < 0) return std::min(max_of_protrusion, per_standard_error * above);

@@ -98,12 +98,12 @@ TEST(DamageEvidence, HollowThatPicturesConfirmIsDamage) {
   DamageEvidence evidence{6, 6, 3, 1, 0};
   evidence.likely_wall_slope = 0.4;
   EXPECT_LT(evidence.confidence(), 0.25);
-  evidence.surface_significance = 4;
-  EXPECT_GT(evidence.confidence(), 0.6);
+  evidence.surface_significance = 3;
+  EXPECT_GT(evidence.confidence(), 0.4);
   const double confirmed = evidence.confidence();
   evidence.surface_significance = 30;
   EXPECT_GT(evidence.confidence(), confirmed);
-  EXPECT_LT(evidence.confidence(), 0.95) << "three standard errors count";
+  EXPECT_LT(evidence.confidence(), 0.8) << "two standard errors count";
 }
 
 // What is wider than half of a straightedge may be the shape of the road.
