@@ -56,7 +56,7 @@ RoadSurface find_road_surface(const DamageInput& input, const SurfaceCoordinates
                               Cells& cells) {
   RoadSurface surface = fit_road_surface(cells, coordinates, threads);
   const auto refit = [&](Sampling sampling) {
-    const Image<std::uint8_t> region = find_road_region(cells, surface, threads);
+    const Image<std::uint8_t> region = find_road_region(cells, coordinates, surface, 0, threads);
     surface = refit_road_surface(cells, coordinates, region, surface, sampling, threads);
   };
   refit(Sampling::coarse);
@@ -130,12 +130,12 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
   view.remove_outside(cells);
   const SurfaceCoordinates coordinates = surface_coordinates(cells, input, threads);
   const RoadSurface surface = find_road_surface(input, coordinates, threads, cells);
-  const Image<std::uint8_t> road = find_road_region(cells, surface, threads);
   DepthCells depth_cells = make_depth_cells(cells, surface, threads);
   result.non_metric_reason = reason_for_pixels(input);
   result.metric = result.non_metric_reason.empty();
   result.noise_px = surface.noise;
   const Thresholds thresholds(input, options, cells, coordinates, depth_cells.noise, result.metric);
+  const Image<std::uint8_t> road = find_road_region(cells, coordinates, surface, thresholds.relief_m(), threads);
   Segmentation segmentation{cells, view, coordinates, surface, road, depth_cells, {}};
   std::optional<FrameGeometry> geometry;
   search_and_fill(input, options, thresholds, depth_cells, threads, segmentation, geometry, result);

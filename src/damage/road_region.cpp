@@ -10,19 +10,25 @@
 namespace roadstereo {
 namespace {
 
-void mark_near(const float* measured, const float* road, float max_distance, int width, std::uint8_t* near) {
-  for (int i = 0; i < width; ++i) near[i] = std::abs(measured[i] - road[i]) <= max_distance ? 255 : 0;
+/// Mark the cells within `max_distance` pixels, or within a relief of `relief_m`, of the road.
+void mark_near(const float* measured, const float* road, const float* scale, float max_distance, float relief_m,
+               int width, std::uint8_t* near) {
+  for (int i = 0; i < width; ++i) {
+    near[i] = std::abs(measured[i] - road[i]) <= std::max(max_distance, relief_m * scale[i]) ? 255 : 0;
+  }
 }
 
 /// Mask of the cells near the surface.
-Image<std::uint8_t> cells_near_surface(const Cells& cells, const RoadSurface& surface, int threads) {
+Image<std::uint8_t> cells_near_surface(const Cells& cells, const SurfaceCoordinates& coordinates,
+                                       const RoadSurface& surface, double relief_m, int threads) {
   constexpr int rows_per_band = 64;
   constexpr double max_sigmas = 3;
   const auto max_distance = static_cast<float>(max_sigmas * surface.noise);
   Image<std::uint8_t> near(cells.width(), cells.height());
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int j = first; j < last; ++j) {
-      mark_near(cells.value.row(j), surface.value.row(j), max_distance, cells.width(), near.row(j));
+      mark_near(cells.value.row(j), surface.value.row(j), coordinates.scale.row(j), max_distance,
+                static_cast<float>(relief_m), cells.width(), near.row(j));
     }
   });
   return near;
@@ -40,10 +46,11 @@ Image<std::uint8_t> largest_component(const Image<std::uint8_t>& mask) {
 
 }  // namespace
 
-Image<std::uint8_t> find_road_region(const Cells& cells, const RoadSurface& surface, int threads) {
+Image<std::uint8_t> find_road_region(const Cells& cells, const SurfaceCoordinates& coordinates,
+                                     const RoadSurface& surface, double relief_m, int threads) {
   constexpr int opening_radius = 2;  // cells; connections of up to twice this width are cut
   constexpr std::size_t max_speck_cells = 30;
-  Image<std::uint8_t> road = cells_near_surface(cells, surface, threads);
+  Image<std::uint8_t> road = cells_near_surface(cells, coordinates, surface, relief_m, threads);
   fill_holes(road, max_speck_cells);
   const Image<std::uint8_t> region =
       dilate(largest_component(erode(road, opening_radius, threads)), opening_radius + 1, threads);

@@ -23,10 +23,11 @@ class Thresholds {
   /// Minimum depth of a core: the larger of threshold_sigma standard deviations and min_depth_m.
   float min_depth(int i, int j) const { return std::max(noise_, static_cast<float>(min_depth_m_ * scale_(i, j))); }
   /// Relief of a rough road, however low the noise: what is no damage by min_depth_m, at most 5 mm; 0 if not metric.
-  float relief(int i, int j) const {
+  double relief_m() const {
     constexpr double max_relief_m = 0.005;
-    return static_cast<float>(std::min(min_depth_m_, max_relief_m) * scale_(i, j));
+    return std::min(min_depth_m_, max_relief_m);
   }
+  float relief(int i, int j) const { return static_cast<float>(relief_m() * scale_(i, j)); }
   /// Minimum depths of row j.
   void min_depths(int j, float* row) const;
   /// Maximum depth of a depression; infinity if it is not metric.
