@@ -133,8 +133,9 @@ void solve(const GridEquations& equations, Image<float>& heights) {
     add_multiple(step, direction, solution);
     add_multiple(-step, product, residual);
     const double next = dot(residual, residual);
-    add_multiple(energy / next, residual, direction);
-    for (std::size_t n = 0; n < direction.pixels(); ++n) direction.row(0)[n] *= next / energy;
+    for (std::size_t n = 0; n < direction.pixels(); ++n) {
+      direction.row(0)[n] = residual.row(0)[n] + next / energy * direction.row(0)[n];
+    }
     energy = next;
   }
   std::transform(solution.row(0), solution.row(0) + solution.pixels(), heights.row(0),
