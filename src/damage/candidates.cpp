@@ -378,12 +378,10 @@ void add_candidate(const SearchInput& input, const ConnectedComponent& core, Dam
   if (candidate.size == 0 || static_cast<float>(candidate.size) < min_cells) return;
   if (!is_measured(candidate, input.depth_cells.valid)) return;
   add_evidence(input, images, candidate);
-  DamageEvidence best = candidate.evidence;  // the slope and the agreement of the pictures are measured later
-  if (kind == DamageKind::depression && input.thresholds.walls_measured()) {
-    best.likely_wall_slope = 1;
-    if (input.thresholds.pictures_compared()) best.surface_significance = HUGE_VAL;
-  }
-  if (best.confidence() < min_candidate_confidence) return;
+  // The slope is measured later, and so is the agreement of the pictures, which makes no damage of such a region.
+  DamageEvidence steepest = candidate.evidence;
+  if (kind == DamageKind::depression && input.thresholds.walls_measured()) steepest.likely_wall_slope = 1;
+  if (steepest.confidence() < min_candidate_confidence) return;
   assign(candidate, images.assigned);
   found.push_back(std::move(candidate));
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "damage/block_votes.hpp"
 #include "damage/cells.hpp"
 #include "damage/frame_geometry.hpp"
 #include "damage/road_surface.hpp"
@@ -18,8 +17,6 @@ class Thresholds {
   bool metric() const { return metric_; }
   /// Whether the slopes of walls will be measured.
   bool walls_measured() const { return FrameGeometry::is_possible(input_); }
-  /// Whether the pictures are there to confirm a surface.
-  bool pictures_compared() const { return has_blocks(input_); }
   /// Minimum depth of a core: the larger of threshold_sigma standard deviations and min_depth_m.
   float min_depth(int i, int j) const { return std::max(noise_, static_cast<float>(min_depth_m_ * scale_(i, j))); }
   /// Relief of a rough road, however low the noise: what is no damage by min_depth_m, at most 5 mm; 0 if not metric.
