@@ -120,9 +120,11 @@ def main():
     for name in names:
         left, right = (np.asarray(Image.open(source / folder / f"{name}.png").convert("L"), float)
                        for folder in ("image_2", "image_3"))
+        width = left.shape[1]
+        if width not in FOCAL_PX:
+            sys.exit(f"{source / 'image_2' / name}.png is {width} pixels wide; it must be one of {list(FOCAL_PX)}, as in KITTI")
         disparity = np.asarray(Image.open(source / "disp_noc_0" / f"{name}.png")) / 256.0
         street = Street(disparity, np.asarray(Image.open(source / "road" / f"{name}.png")))
-        width = left.shape[1]
         rig = f"p{1 + list(FOCAL_PX).index(width)}"
         (output / f"calibration_{rig}.yaml").write_text(
             f"focal_px: {FOCAL_PX[width]}\ncx_px: {CX_PX}\ncy_px: {CY_PX}\nbaseline_m: {BASELINE_M}\n", encoding="utf-8")
