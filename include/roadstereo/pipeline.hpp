@@ -32,7 +32,8 @@ struct PipelineOptions {
   std::string engine = "auto";  ///< a name from engines(), or "auto"
   int threads = 0;              ///< worker threads; 0 takes all cores
   double white_level = 0;       ///< sample value of white, 0 … 65535; 0 takes 255 or 65535 by the sample type
-  bool check_rows = true;       ///< measure whether the rows agree whenever the road model is estimated anew
+  bool check_rows = true;       ///< measure whether the rows agree: where the road model is estimated anew, and on
+                                ///< a tracked road every 100 frames, every 10 while they are unknown
   bool correct_rows = true;     ///< undo the misalignment, up to 8 px, that `check_rows` has measured
   bool narrow_search = true;    ///< search each tile only near the disparities that the coarse search finds there
   RoadModelOptions road_model;
@@ -86,7 +87,7 @@ struct FrameResult {
   double delta_t = 0;       ///< δt, pixels
   RoadResiduals spread;     ///< σ_d, eq. (37)
   double valid_share = 0;   ///< share of the pixels that have a disparity
-  RowAlignment rows;        ///< measured when the road model was estimated anew
+  RowAlignment rows;        ///< without points where it was not measured: PipelineOptions::check_rows
   StageTimes ms;
   double mde_per_s = 0;  ///< millions of disparity evaluations per second: W·H·D / total time
   std::vector<std::string> warnings;
@@ -99,7 +100,9 @@ struct PipelineState {
   int height = 0;                   ///< pixels
   std::optional<TrackedRoad> road;  ///< the last frame's road; absent when it had none
   double roll_rad = 0;              ///< ψ(t), start of the descent of ψ(t+1), eq. (25); 0 when not observable
-  Misalignment misalignment;        ///< of the target; measured whenever the road model is estimated anew
+  Misalignment misalignment;        ///< of the target, as last measured; zero where it is none, or unknown
+  bool rows_known = false;          ///< whether `misalignment` was measured
+  int frames_since_rows = 0;        ///< frames since the rows were last to be measured
 
   /// Throws Error naming the first value that no frame of this size leaves.
   void validate() const;

@@ -71,7 +71,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
 struct TrackedRoad {
   DisparityPlane model;
   double inlier_share = 0;  ///< RoadModelEstimate::inlier_share, 0 … 1
-  double correlation = 0;   ///< RoadModelEstimate::correlation; of the pair in which the road was found
+  double correlation = 0;   ///< RoadModelEstimate::correlation; stays where this pair tells none
 };
 
 /// Tracks the last frame's road: searches around `previous` and refits. The status is `none` when the road explains far

@@ -39,6 +39,11 @@ struct RefinedMaps {
   int pixel_step = 1;  ///< likewise
 };
 
+/// The same of every pixel.
+struct InterpolatedMaps {
+  ImageView<float> disparity, sigma;
+};
+
 /// Section 3.3.1 on one disparity map.
 struct RollFit {
   double valid_share = 0;                ///< share of the pixels that have a disparity
@@ -81,7 +86,7 @@ class FrameStages {
   /// refine_disparities.
   virtual RefinedMaps refine(const DisparityMaps& maps, const DisparityPlane& road) = 0;
   /// interpolate_disparities, where not every pixel was matched.
-  virtual ImageView<float> interpolate(const RefinedMaps& maps, const DisparityPlane& road) = 0;
+  virtual InterpolatedMaps interpolate(const RefinedMaps& maps, const DisparityPlane& road) = 0;
   /// lucas_kanade.
   virtual ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,
                                        const PerspectiveShift& shift) = 0;

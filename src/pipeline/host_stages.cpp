@@ -122,12 +122,12 @@ class HostStages final : public FrameStages {
     return {refined, sigma, maps.pixel_step};
   }
 
-  ImageView<float> interpolate(const RefinedMaps& maps, const DisparityPlane& road) override {
+  InterpolatedMaps interpolate(const RefinedMaps& maps, const DisparityPlane& road) override {
     if (maps.pixel_step > 1) {
       interpolate_disparities(maps.disparity, maps.sigma, road, left_.width(), left_.height(), threads_, disparity_,
                               sigma_);
     }
-    return disparity_;
+    return {disparity_, sigma_};
   }
 
   ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,

@@ -48,7 +48,8 @@ std::optional<Match> match_of(const FrameResult& frame, const DamageMap& damage,
 /// Share of the road's pixels in each view that are black or white, and the ratio of the levels of the others.
 void measure_exposure(const FrameResult& frame, const DamageMap& damage, PairHealth& health) {
   constexpr std::size_t min_pixels = 100;
-  const auto is_clipped = [](int level) { return level <= 0 || level >= grey_max; };
+  constexpr int white = grey_max - grey_scale / 4;  // of 10 bits or more, shifted to 16
+  const auto is_clipped = [](int level) { return level <= 0 || level >= white; };
   std::vector<float> ratios;
   std::size_t pixels = 0, left_clipped = 0, right_clipped = 0;
   for_each_sample(frame.grey, 0, [&](int u, int v) {

@@ -42,6 +42,11 @@ class StageTimer {
   Clock::time_point begin_ = Clock::now();
 };
 
+constexpr double min_correction_px = 0.05;  // interpolation between rows blurs: less is not worth it
+
+/// What a measurement of the rows goes with.
+enum class Rows { of_new_road, of_tracked_road };
+
 std::unique_ptr<FrameStages> make_stages(const std::string& engine, const PipelineOptions& options,
                                          const std::optional<StereoCalibration>& calibration) {
 #if defined(ROADSTEREO_WITH_CUDA)
@@ -79,7 +84,8 @@ struct Pipeline::State {
   GreyPair align_on_host(const GreyPair& pair);
   void estimate_road_model(const GreyPair& pair);
   void track_in_noise(const GreyPair& pair);
-  void measure_rows(const GreyPair& grey);
+  bool rows_are_due() const;
+  void measure_rows(const GreyPair& grey, Rows of);
   MatchInput transform_perspective(const GreyPair& pair);
   CoarseSearchOptions coarse_options(int factor, int block_radius) const;
   MatchInput search_coarsely(const MatchInput& pair);
@@ -87,7 +93,7 @@ struct Pipeline::State {
   DisparityMaps restore_disparity(const ResidualMaps& residual);
   RefinedMaps refine(const DisparityMaps& maps);
   ImageView<const float> interpolate(const RefinedMaps& maps);
-  void leave_out_mask(ImageView<float> disparity, int pixel_step) const;
+  void leave_out_mask(ImageView<float> map, int pixel_step) const;
   ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity);
   bool can_see_off_road() const;
   DisparityPriorView search_scene(const MatchInput& pair);
@@ -143,14 +149,14 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const StageTimer timer(result.ms.road_model);
   result.rows = {};
   if (carried.road) {
+    if (rows_are_due()) measure_rows(stages->on_host(pair), Rows::of_tracked_road);
     result.road = stages->verify_road_model(undo_misalignment(pair), *carried.road);
     if (!result.road.has_road()) track_in_noise(align_on_host(stages->on_host(pair)));
-    result.road.correlation = carried.road->correlation;
     if (result.road.has_road()) return;
     result.warnings.push_back(format_message("road-anew: the road model was estimated anew: ", result.road.reason));
   }
   const GreyPair on_host = stages->on_host(pair);
-  if (options.check_rows) measure_rows(on_host);
+  if (options.check_rows) measure_rows(on_host, Rows::of_new_road);
   const GreyPair grey = align_on_host(on_host);
   result.road =
       roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, pair.mask);
@@ -183,19 +189,40 @@ Misalignment misalignment_of(const RowOffset& rows, int width, int height,
   return {rows.at(cx, cy), rows.per_column, rows.per_row, cx, cy};
 }
 
-/// Measures the vertical offset of the pair, and keeps it where it is to be corrected.
-void Pipeline::State::measure_rows(const GreyPair& grey) {
+/// Whether the rows are to be measured although the road is tracked: a mount creeps, and where they could not be
+/// measured before, a better frame may tell.
+bool Pipeline::State::rows_are_due() const {
+  constexpr int frames_while_known = 100, frames_while_unknown = 10;
+  return options.check_rows &&
+         carried.frames_since_rows >= (carried.rows_known ? frames_while_known : frames_while_unknown);
+}
+
+/// Whether the misalignments differ by more than the error of the rows that the first is of.
+bool differ(const Misalignment& measured, const RowAlignment& rows, const Misalignment& last, int width, int height) {
+  constexpr double min_std_errors = 5;
+  const Misalignment change{measured.rows_px - last.rows_px, measured.turn_rad - last.turn_rad,
+                            measured.row_scale - last.row_scale, measured.cx_px, measured.cy_px};
+  const double std_error = rows.fit_sigma_px / std::sqrt(rows.points);
+  return change.largest_px(width, height) > std::max(min_correction_px, min_std_errors * std_error);
+}
+
+/// Measures the vertical offset of the pair, and keeps it where it is to be corrected. What was measured before stays
+/// where this pair tells none, and on a tracked road where this one tells nothing else.
+void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
   constexpr double max_offset_px = 0.5;
   constexpr double max_spread_px = 1.0;
   result.rows = measure_row_alignment(grey.left, grey.right, threads);
-  carried.misalignment = {};
+  carried.frames_since_rows = 0;
   if (!result.rows.known()) return;
-  constexpr double min_correction_px = 0.05;  // interpolation between rows blurs: less is not worth it
-  const Misalignment misalignment = misalignment_of(result.rows.fit, width, height, calibration);
-  const double largest = misalignment.largest_px(width, height);
-  if (options.correct_rows && largest >= min_correction_px && largest <= Misalignment::max_px &&
-      result.rows.fit_sigma_px <= max_spread_px) {
-    carried.misalignment = misalignment;
+  if (result.rows.fit_sigma_px <= max_spread_px) {
+    Misalignment measured = misalignment_of(result.rows.fit, width, height, calibration);
+    const double largest = measured.largest_px(width, height);
+    if (!options.correct_rows || largest < min_correction_px || largest > Misalignment::max_px) measured = {};
+    if (of == Rows::of_new_road || !carried.rows_known ||
+        differ(measured, result.rows, carried.misalignment, width, height)) {
+      carried.misalignment = measured;
+    }
+    carried.rows_known = true;
   }
   if (std::abs(result.rows.median_px) > max_offset_px || result.rows.sigma_px > max_spread_px) {
     result.warnings.push_back(format_message("rows-disagree: the rows of the pair do not agree: vertical offset ",
@@ -250,11 +277,11 @@ ResidualMaps Pipeline::State::match(const MatchInput& input) {
   return maps;
 }
 
-void Pipeline::State::leave_out_mask(ImageView<float> disparity, int pixel_step) const {
+void Pipeline::State::leave_out_mask(ImageView<float> map, int pixel_step) const {
   if (mask.empty()) return;
-  for (int y = 0; y < disparity.height(); ++y) {
-    for (int x = 0; x < disparity.width(); ++x) {
-      if (mask(x * pixel_step, y * pixel_step) != 0) disparity(x, y) = std::numeric_limits<float>::quiet_NaN();
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      if (mask(x * pixel_step, y * pixel_step) != 0) map(x, y) = std::numeric_limits<float>::quiet_NaN();
     }
   }
 }
@@ -274,9 +301,10 @@ RefinedMaps Pipeline::State::refine(const DisparityMaps& maps) {
 /// Pixels between those that were matched.
 ImageView<const float> Pipeline::State::interpolate(const RefinedMaps& maps) {
   const StageTimer timer(result.ms.refinement);
-  const ImageView<float> disparity = stages->interpolate(maps, result.shift.road);
-  leave_out_mask(disparity, 1);
-  return disparity;
+  const InterpolatedMaps interpolated = stages->interpolate(maps, result.shift.road);
+  leave_out_mask(interpolated.disparity, 1);
+  leave_out_mask(interpolated.sigma, 1);
+  return interpolated.disparity;
 }
 
 /// A Lucas–Kanade step undoes the pixel locking of eq. (13).
@@ -289,7 +317,8 @@ ImageView<const float> Pipeline::State::align(const MatchInput& input, ImageView
 /// horizon is not in it, a camera looks down on the road, which may be all there is: what is not confirmed is noise.
 bool Pipeline::State::can_see_off_road() const {
   const DisparityPlane& road = result.shift.road;
-  const bool horizon_in_picture = std::min(road.disparity(0, 0), road.disparity(width - 1, 0)) < 0;
+  const double at_infinity = -result.shift.disparity_offset_px;
+  const bool horizon_in_picture = std::min(road.disparity(0, 0), road.disparity(width - 1, 0)) < at_infinity;
   return result.shift.enabled && options.perspective.scope == Scope::road && horizon_in_picture &&
          options.off_road.max_sigma_px > 0 && options.lucas_kanade.radius > 0;
 }
@@ -383,6 +412,7 @@ void Pipeline::State::end_frame() {
   result.rig_bias = options.rig_bias;
   carried.width = width;
   carried.height = height;
+  if (options.check_rows) ++carried.frames_since_rows;
   carried.road.reset();
   if (result.road.has_road()) {
     carried.road = TrackedRoad{result.road.model, result.road.inlier_share, result.road.correlation};

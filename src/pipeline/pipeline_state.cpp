@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "core/require_range.hpp"
 #include "roadstereo/pipeline.hpp"
 
@@ -15,6 +17,7 @@ void PipelineState::validate() const {
     require_range("road", "correlation", road->correlation, -1.0, 1.0);
   }
   require_range("state", "roll_rad", roll_rad, -full_turn_rad, full_turn_rad);
+  require_range("state", "frames_since_rows", frames_since_rows, 0, std::numeric_limits<int>::max());
   require_range("misalignment", "largest_px", misalignment.largest_px(width, height), 0.0, Misalignment::max_px);
 }
 

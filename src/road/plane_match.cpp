@@ -98,9 +98,8 @@ struct BlockCorrelations {
 
 /// The highest correlation, where it lies within a pixel of the plane.
 std::optional<float> correlation_on_plane(const BlockCorrelations& correlations, int range) {
-  constexpr float min_correlation = 0.3F;  // below it chance decides
   const float highest = correlations.values[static_cast<std::size_t>(correlations.highest)];
-  if (std::abs(correlations.highest - range) > 1 || highest < min_correlation) return std::nullopt;
+  if (std::abs(correlations.highest - range) > 1 || highest < plane_match_min_telling_correlation) return std::nullopt;
   return highest;
 }
 

@@ -15,6 +15,7 @@ inline constexpr int plane_block_width = 2 * plane_block_half_width + 1;
 inline constexpr int plane_block_height = 2 * plane_block_half_height + 1;
 inline constexpr float plane_match_min_deviation = 1.5f * grey_scale;
 inline constexpr float plane_match_min_correlation = 0.75f;
+inline constexpr float plane_match_min_telling_correlation = 0.3f;  ///< below it chance decides
 inline constexpr double plane_match_max_slant = 0.5;  ///< no road's disparity changes by that much per column
 inline constexpr int plane_match_max_range = 7;       ///< pixels that a search may look to either side
 

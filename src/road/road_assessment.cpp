@@ -100,6 +100,7 @@ RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const Pl
                                       const RoadModelOptions& options) {
   RoadModelEstimate estimate;
   estimate.matches = around.points;
+  estimate.correlation = close.correlation > 0 ? close.correlation : previous.correlation;
   const TiltLimit limit(width, height, calibration, options.max_road_tilt_deg);
   estimate.reason = assess_plane_fit(around.found ? close : around, limit, estimate);
   const double least = std::max(min_share, min_share_of_last * previous.inlier_share);

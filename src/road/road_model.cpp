@@ -119,7 +119,7 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneM
   PlaneFitStatistics& evidence = result.evidence;
   evidence.tried = found.tried;
   if (found.correlations.size() >= static_cast<std::size_t>(min_matches)) {
-    evidence.correlation = lower_quantile(found.correlations, 0.1);
+    evidence.correlation = lower_quantile(found.correlations, correlation_p10);
   }
   result.points = points_to_full_resolution(std::move(found.points), factor);
   evidence.points = static_cast<int>(result.points.size());

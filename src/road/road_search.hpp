@@ -55,6 +55,9 @@ inline constexpr double fine_fit_scale = 0.5;
 inline constexpr double row_p05 = 0.05;
 inline constexpr double row_p95 = 0.95;
 
+/// RoadModelEstimate::correlation is this quantile of the correlations on the road.
+inline constexpr double correlation_p10 = 0.1;
+
 /// Shares of the residuals near the road that bound its range.
 inline constexpr double residual_p01 = 0.01;
 inline constexpr double residual_p99 = 0.99;

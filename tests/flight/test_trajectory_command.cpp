@@ -148,17 +148,17 @@ class TrackOfBend : public CommandTest {
     ASSERT_EQ(times_s_.size(), truth_.size());
   }
 
-  std::string track(double east_sign) const {
-    // Radii of curvature of WGS84 at 48°: metres per degree along the meridian and the parallel.
+  std::string track(double east_sign, double lat_deg = 48) const {
+    // Radii of curvature of WGS84: metres per degree along the meridian and the parallel.
     constexpr double a = 6378137, e2 = 0.00669437999014, degree = 3.14159265358979323846 / 180;
-    const double sine = std::sin(48 * degree), w = 1 - e2 * sine * sine;
+    const double sine = std::sin(lat_deg * degree), w = 1 - e2 * sine * sine;
     const double north_m = degree * a * (1 - e2) / std::pow(w, 1.5);
-    const double east_m = degree * a / std::sqrt(w) * std::cos(48 * degree);
+    const double east_m = degree * a / std::sqrt(w) * std::cos(lat_deg * degree);
     std::string text = "time,lat,lon,alt,h_acc,v_acc\n";
     for (std::size_t i = 0; i < times_s_.size(); ++i) {
       char line[160];
       std::snprintf(line, sizeof line, "%.6f,%.10f,%.10f,%.4f,0.05,0.1\n", times_s_[i] + 2.5,
-                    48 + truth_[i][1] / north_m, 9 + east_sign * truth_[i][0] / east_m, 300 + truth_[i][2]);
+                    lat_deg + truth_[i][1] / north_m, 9 + east_sign * truth_[i][0] / east_m, 300 + truth_[i][2]);
       text += line;
     }
     return text;
@@ -190,10 +190,29 @@ TEST_F(TrackOfBend, PlacesTrajectoryOnTheEarthUnlessMirrored) {
   EXPECT_EQ(read_text(folder_ / "out/loops.csv").rfind("from,to,used,", 0), 0U);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/.keyframes"));
 
+  // With synchronised clocks the place is as exact as the fixes.
+  ASSERT_EQ(
+      run("inspect flight --trajectory --track track.csv --track-offset 2.5 --track-offset-sd 0.001 --output sure")
+          .exit_code,
+      0);
+  const Trajectory sure = io::read_trajectory((folder_ / "sure/trajectory_kitti.txt").string());
+  EXPECT_NEAR(sure.frames[0].camera_to_world[3], 500000 + scale * truth_[0][0], 0.05);
+
   write("track.csv", track(-1));
   expect_complaint(run("inspect flight --trajectory --track track.csv --track-offset 2.5 --output other --quiet"),
                    "only mirrored");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "other/trajectory_kitti.txt"));  // without the track
+}
+
+// UTM ends at 84°: there are no poses in it, but all else.
+TEST_F(TrackOfBend, FailureOfPoseGraphLeavesInspection) {
+  if (!has_pose_graph()) GTEST_SKIP() << "a build without Ceres";
+  write("track.csv", track(1, 85.99));
+  expect_complaint(run("inspect flight --trajectory --track track.csv --track-offset 2.5 --output out --quiet"),
+                   "the trajectory is that of the odometry alone: ");
+  for (const char* name : {"damages.csv", "report.html", "flight.gpkg", "trajectory_kitti.txt"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / name)) << name;
+  }
 }
 
 TEST_F(SlowTrajectoryCommand, MapIsThatOfMapCommandAlsoAfterResume) {

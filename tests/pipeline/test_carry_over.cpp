@@ -228,6 +228,78 @@ TEST(CarryOver, FramesOfAnotherSizeResetTheState) {
   EXPECT_EQ(pipeline.carried().misalignment.rows_px, 0);
 }
 
+/// The small road with noise of so many grey levels and rows that are so far apart.
+synth::SyntheticPair degraded_road(double noise_grey, double row_offset_px) {
+  synth::Scene scene = small_road();
+  scene.degradation.noise_grey = noise_grey;
+  scene.degradation.row_offset_px = row_offset_px;
+  return synth::render(scene);
+}
+
+// Supports are chosen by the noise: it may come in the middle of a recording, and go.
+TEST(CarryOver, NoiseIsThatOfTheFrame) {
+  const synth::SyntheticPair clean = degraded_road(0, 0), noisy = degraded_road(20, 0);
+  Pipeline pipeline;
+  const double first = pipeline.process(clean.left.view(), clean.right.view()).road.correlation;
+  EXPECT_GT(first, 0.9);
+  const FrameResult& result = pipeline.process(noisy.left.view(), noisy.right.view());
+  EXPECT_EQ(result.road.status, RoadStatus::tracked);
+  EXPECT_LT(result.road.correlation, 0.6);
+  const double last = pipeline.process(clean.left.view(), clean.right.view()).road.correlation;
+  EXPECT_EQ(result.road.status, RoadStatus::tracked);
+  EXPECT_NEAR(last, first, 0.02);
+}
+
+TEST(CarryOverRows, StayWhereFrameDoesNotTellThem) {
+  const synth::SyntheticPair clean = degraded_road(0, 1.5), noisy = degraded_road(40, 1.5);
+  Pipeline pipeline;
+  pipeline.process(clean.left.view(), clean.right.view());
+  ASSERT_NEAR(pipeline.carried().misalignment.rows_px, 1.5, 0.1);
+  PipelineState without_road = pipeline.carried();
+  without_road.road.reset();
+  pipeline.restore(without_road);
+  const FrameResult& result = pipeline.process(noisy.left.view(), noisy.right.view());
+  EXPECT_FALSE(result.rows.known());
+  EXPECT_NEAR(result.shift.misalignment.rows_px, 1.5, 0.1);
+}
+
+TEST(CarryOverRows, AreMeasuredOnTrackedRoadUntilKnown) {
+  const synth::SyntheticPair pair = degraded_road(0, 1.5);
+  Pipeline pipeline;
+  pipeline.process(pair.left.view(), pair.right.view());
+  PipelineState unknown = pipeline.carried();
+  unknown.rows_known = false;
+  unknown.misalignment = {};
+  pipeline.restore(unknown);
+  const auto process = [&]() -> const FrameResult& { return pipeline.process(pair.left.view(), pair.right.view()); };
+  for (int frame = 1; frame < 10; ++frame) EXPECT_FALSE(process().rows.known());
+  const FrameResult& result = process();
+  EXPECT_EQ(result.road.status, RoadStatus::tracked);
+  EXPECT_TRUE(pipeline.carried().rows_known);
+  EXPECT_NEAR(result.shift.misalignment.rows_px, 1.5, 0.1);
+}
+
+// A mount that creeps by a pixel; one that stands still keeps its bits.
+TEST(CarryOverRows, FollowCreepingMount) {
+  const synth::SyntheticPair before = degraded_road(0, 0.4), after = degraded_road(0, 1.4);
+  Pipeline pipeline;
+  pipeline.process(before.left.view(), before.right.view());
+  const auto process_when_due = [&](const synth::SyntheticPair& pair) {
+    PipelineState state = pipeline.carried();
+    state.frames_since_rows = 100;
+    pipeline.restore(state);
+    const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+    EXPECT_EQ(result.road.status, RoadStatus::tracked);
+    EXPECT_TRUE(result.rows.known());
+    return result.shift.misalignment.rows_px;
+  };
+  const double first = pipeline.carried().misalignment.rows_px;
+  EXPECT_NEAR(first, 0.4, 0.1);
+  const synth::SyntheticPair little_noise = degraded_road(1, 0.4);
+  EXPECT_EQ(process_when_due(little_noise), first);
+  EXPECT_NEAR(process_when_due(after), 1.4, 0.1);
+}
+
 // What a damaged journal may hold: none of it reaches the images.
 TEST(CarryOver, StateThatNoFrameLeavesIsRefused) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -247,6 +319,9 @@ TEST(CarryOver, StateThatNoFrameLeavesIsRefused) {
     hostile.misalignment.rows_px = rows_px;
     EXPECT_THROW(pipeline.restore(hostile), Error) << rows_px;
   }
+  PipelineState before_first = state;
+  before_first.frames_since_rows = -1;
+  EXPECT_THROW(pipeline.restore(before_first), Error);
   for (const double turn : {0.5, nan}) {
     PipelineState hostile = state;
     hostile.misalignment.turn_rad = turn;

@@ -117,6 +117,20 @@ TEST(MeasureHealth, ExposureIsMeasured) {
   EXPECT_NE(clipped.found().find("clipped"), std::string::npos);
 }
 
+// The largest level of 10 bits, shifted to the top of 16.
+TEST(MeasureHealth, WhiteOfTenBitsIsClipped) {
+  ExactFrame exact;
+  constexpr int side = 32;
+  Frame white{{}, side, side, SampleType::u16, ChannelOrder::grey};
+  for (int k = 0; k < side * side; ++k) white.bytes.insert(white.bytes.end(), {0xC0, 0xFF});
+  GreyImage level;
+  to_grey(white.view(), 65535, level);
+  for (int u = 0; u < exact.frame.grey.width(); u += 5) {
+    for (int v = 0; v < exact.frame.grey.height(); ++v) exact.frame.grey(u, v) = level(0, 0);
+  }
+  EXPECT_NEAR(exact.health().clipped_left, 0.2, 0.02);
+}
+
 TEST(MeasureHealth, NoiseIsShareOfVariance) {
   const auto health_with = [](double sigma) {
     const ExactFrame noisy([sigma](Frame& left, Frame& right) {

@@ -89,6 +89,8 @@ void each_field(PipelineState& state, Visit& visit) {
   visit("road", state.road);
   visit("roll_rad", state.roll_rad);
   visit("misalignment", state.misalignment);
+  visit("rows_known", state.rows_known);
+  visit("frames_since_rows", state.frames_since_rows);
 }
 
 template <class Visit>

@@ -157,11 +157,11 @@ class DeviceStages final : public FrameStages {
     return {last, last_error, step};
   }
 
-  ImageView<float> interpolate(const RefinedMaps& maps, const DisparityPlane& road) override {
+  InterpolatedMaps interpolate(const RefinedMaps& maps, const DisparityPlane& road) override {
     if (maps.pixel_step > 1) {
       interpolate_disparities(maps.disparity, maps.sigma, road, maps_.disparity(), maps_.sigma(), stream());
     }
-    return maps_.disparity();
+    return {maps_.disparity(), maps_.sigma()};
   }
 
   ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,

@@ -60,17 +60,27 @@ class PlaceSearch {
     return deviation_ >= plane_match_min_deviation;
   }
 
-  /// Residual to the plane of the best correlation; NaN when it is low or at an end of the range.
-  __device__ float best_residual() {
+  __device__ void correlate() {
     sum_rows();
     __syncwarp();
     if (lane_ < offsets_) memory_.correlations[lane_] = correlation();
     __syncwarp();
     const float* of = memory_.correlations;
-    int best = 0;
-    for (int i = 1; i < offsets_; ++i) best = of[i] > of[best] ? i : best;
-    if (of[best] < plane_match_min_correlation || best == 0 || best == offsets_ - 1) return nanf("");
-    return static_cast<float>(range_ - (best + parabola_offset(of[best - 1], of[best], of[best + 1])));
+    for (int i = 1; i < offsets_; ++i) best_ = of[i] > of[best_] ? i : best_;
+  }
+
+  /// The highest correlation, where it lies within a pixel of the plane; NaN when it does not, or is chance.
+  __device__ float correlation_on_plane() const {
+    const float highest = memory_.correlations[best_];
+    const bool near = best_ >= range_ - 1 && best_ <= range_ + 1;
+    return near && highest >= plane_match_min_telling_correlation ? highest : nanf("");
+  }
+
+  /// Residual to the plane of the best correlation; NaN when it is low or at an end of the range.
+  __device__ float best_residual() const {
+    const float* of = memory_.correlations;
+    if (of[best_] < plane_match_min_correlation || best_ == 0 || best_ == offsets_ - 1) return nanf("");
+    return static_cast<float>(range_ - (best_ + parabola_offset(of[best_ - 1], of[best_], of[best_ + 1])));
   }
 
  private:
@@ -169,6 +179,7 @@ class PlaceSearch {
   int range_, offsets_, u_, v_, lane_;
   PlaceMemory& memory_;
   float mean_ = 0, deviation_ = 0;
+  int best_ = 0;  ///< index of the highest correlation
 };
 
 __global__ void match_places(GuidedPair pair, SampleGrid grid, PlaneSource source, const int* needed,
@@ -182,11 +193,15 @@ __global__ void match_places(GuidedPair pair, SampleGrid grid, PlaneSource sourc
   bool tried = (needed == nullptr || *needed != 0) && fabs(plane.a2) < plane_match_max_slant &&
                search_in_view(u, plane.disparity(u, v), plane_search_extent(plane.a1, plane.a2, grid.range_px),
                               pair.left.width());
-  float residual = nanf("");
+  float residual = nanf(""), correlation = nanf("");
   if (tried) {
     PlaceSearch search(pair, plane, grid.range_px, u, v, shared_memory<PlaceMemory>()[own]);
     tried = search.read();
-    if (tried) residual = search.best_residual();
+    if (tried) {
+      search.correlate();
+      residual = search.best_residual();
+      correlation = search.correlation_on_plane();
+    }
   }
   if (threadIdx.x % warp_lanes != 0) return;
   slots.u[place] = static_cast<float>(to_full_resolution(u, pair.factor));
@@ -194,6 +209,7 @@ __global__ void match_places(GuidedPair pair, SampleGrid grid, PlaneSource sourc
   // What was matched is the target column at u − residual of the shifted image.
   const double r = residual;
   slots.d[place] = static_cast<float>((plane.disparity(u - r, v) + r) * pair.factor);
+  slots.correlation[place] = correlation;
   slots.tried[place] = tried ? 1 : 0;
 }
 

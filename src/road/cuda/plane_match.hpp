@@ -21,8 +21,9 @@ struct GuidedPair {
 struct GuidedSlots {
   float* u;
   float* v;
-  float* d;    ///< NaN where nothing was matched
-  int* tried;  ///< 1: the place has texture and both views see it
+  float* d;            ///< NaN where nothing was matched
+  float* correlation;  ///< highest, however low, where it lies within a pixel of the plane; else NaN
+  int* tried;          ///< 1: the place has texture and both views see it
 };
 
 /// match_along_plane() on the device, around a plane in full-size coordinates; a warp for each place. Where `needed`,

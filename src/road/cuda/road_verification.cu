@@ -93,14 +93,30 @@ __device__ void measure_range(const SearchMemory& around, const DisparityPlane& 
   statistics.residual_p99_px = range.high;
 }
 
+/// Correlation of the blocks on the road.
+__device__ void measure_correlation(const SearchMemory& search, RegisterSelect& select,
+                                    VerificationStatistics& statistics) {
+  std::uint32_t correlations[fit_points_per_thread];
+  keys_of_thread(
+      search.count,
+      [&](int i) {
+        const float correlation = search.slots.correlation[i];
+        return correlation == correlation ? key_of(correlation) : RegisterSelect::no_key;
+      },
+      correlations);
+  const SelectedKey key = select.select<RegisterSelect::float_digits>(correlations, ShareRank{correlation_p10});
+  if (key.of >= min_matches) statistics.correlation = value_of(key.key);
+}
+
 __global__ void __launch_bounds__(max_fit_threads)
     fit_close(SearchMemory search, SearchMemory around, RobustFit fit, const SearchStatistics* found_around,
               VerificationStatistics* result) {
   begin_kernel();
-  VerificationStatistics own{*found_around, {}, 0, 0, 0};
+  VerificationStatistics own{*found_around, {}, 0, 0, 0, 0};
   RegisterSelect select(shared_memory<FitState>()->select);
   const bool needed = own.around.found != 0;
   if (needed) own.close = fit_search(search, own.around.fit.plane, fit, select);
+  if (needed) measure_correlation(search, select, own);
   if (own.close.fit.found != 0) measure_range(around, own.close.fit.plane, select, own);
   if (threadIdx.x == 0) *result = own;  // not read back: it lies in the host's memory
 }
@@ -114,9 +130,9 @@ LaunchShape fit_shape(int count) {
 SearchMemory RoadVerification::Search::memory(int places) {
   require_fit_points(places);
   const auto count = static_cast<std::size_t>(places > 0 ? places : 1);
-  for (DeviceArray<float>* of : {&u, &v, &d, &weights}) of->reserve(count);
+  for (DeviceArray<float>* of : {&u, &v, &d, &correlation, &weights}) of->reserve(count);
   tried.reserve(count);
-  return {{u.data(), v.data(), d.data(), tried.data()}, places, weights.data()};
+  return {{u.data(), v.data(), d.data(), correlation.data(), tried.data()}, places, weights.data()};
 }
 
 GuidedPair RoadVerification::downsampled(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,

@@ -32,7 +32,7 @@ class RoadVerification {
  private:
   /// The places of one search.
   struct Search {
-    DeviceArray<float> u, v, d, weights;
+    DeviceArray<float> u, v, d, correlation, weights;
     DeviceArray<int> tried;
 
     SearchMemory memory(int count);

@@ -27,9 +27,10 @@ RoadModelEstimate assess_road_verification(const VerificationStatistics& statist
                                            const RoadModelOptions& options) {
   const int factor = fine_factor(width);
   const int rows = height / factor * factor;
-  RoadModelEstimate estimate =
-      assess_tracked_road(statistics_of(statistics.around, rows), statistics_of(statistics.close, rows), previous,
-                          first_search_again.range_px, width, height, calibration, options);
+  PlaneFitStatistics close = statistics_of(statistics.close, rows);
+  close.correlation = static_cast<double>(statistics.correlation);
+  RoadModelEstimate estimate = assess_tracked_road(statistics_of(statistics.around, rows), close, previous,
+                                                   first_search_again.range_px, width, height, calibration, options);
   if (statistics.near >= min_matches) {
     estimate.residual_p01_px = statistics.residual_p01_px;
     estimate.residual_p99_px = statistics.residual_p99_px;

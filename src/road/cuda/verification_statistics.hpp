@@ -19,7 +19,7 @@ struct VerificationStatistics {
   SearchStatistics around, close;
   float residual_p01_px, residual_p99_px;  ///< 1st and 99th percentile of the residuals near the road
   int near;                                ///< correspondences near the road
-  int unused = 0;                          ///< in place of padding
+  float correlation;                       ///< PlaneFitStatistics::correlation of the close search
 };
 static_assert(sizeof(VerificationStatistics) == 2 * sizeof(SearchStatistics) + 4 * sizeof(int));
 

@@ -1,0 +1,48 @@
+// Positions of frames along a track.
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "flight/flight_positions.hpp"
+
+namespace roadstereo::cli {
+namespace {
+
+// 20 s at a stop, with positions that are 2 cm off to one side and the other, between two ways of 10 m at 1 m/s.
+TEST(FlightPositions, StationStandsStillWithCamera) {
+  constexpr double north_m = 111132.0;  // metres of a degree of latitude at 45°, to 1 mm over 20 m
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "station_track.csv";
+  std::ofstream text(file);
+  text << "time,lat,lon\n";
+  constexpr int frames = 400;
+  for (int i = 0; i <= frames; ++i) {
+    const double moved_m = i < 100 ? 0.1 * i : i < 300 ? 10 + (i % 2 == 0 ? 0.02 : -0.02) : 10 + 0.1 * (i - 300);
+    char line[80];
+    std::snprintf(line, sizeof line, "%.1f,%.10f,9\n", 0.1 * i, 45 + moved_m / north_m);
+    text << line;
+  }
+  text.close();
+  TrackSettings settings;
+  settings.file = file.string();
+  FlightPositions positions(settings);
+  for (int i = 0; i < frames; ++i) {
+    io::FlightFrame frame;
+    frame.index = i;
+    frame.time_s = 0.1 * i;
+    positions.add(frame, {});
+  }
+  std::filesystem::remove(file);
+  const auto station_m = [&](int i) { return positions.frames()[static_cast<std::size_t>(i)].station_m; };
+  EXPECT_EQ(station_m(0), 0);
+  EXPECT_NEAR(station_m(57), 5.7, 0.01);
+  EXPECT_NEAR(station_m(200), 10, 0.05);
+  EXPECT_NEAR(station_m(299), 10, 0.05);
+  EXPECT_NEAR(station_m(399), 19.9, 0.1);
+  for (int i = 1; i < frames; ++i) EXPECT_GE(station_m(i), station_m(i - 1)) << i;
+}
+
+}  // namespace
+}  // namespace roadstereo::cli
