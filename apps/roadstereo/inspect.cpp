@@ -214,6 +214,12 @@ void add_track_options(CLI::App& command, TrackSettings& track, bool& candidates
       .add_option("--track-offset", track.offset_s,
                   "Seconds added to the times of the frames, e.g. the start since 1970 if a recording counts from 0")
       ->type_name("S");
+  command
+      .add_option("--track-offset-sd", track.offset_sd_s,
+                  "Expected error of --track-offset, which --trajectory estimates: 0.01 with synchronised clocks")
+      ->check(CLI::Range(0.001, 600.0))
+      ->capture_default_str()
+      ->type_name("S");
   command.add_flag("--candidates", candidates, "Add a layer of candidates to the GIS files");
   command.add_option("--mount-yaw", track.mount_yaw_deg, "Yaw of the camera relative to the heading, clockwise")
       ->type_name("DEG");

@@ -112,6 +112,18 @@ std::string add_map(const FlightSettings& settings, const FlightPlan& plan, cons
   return {};
 }
 
+/// Closes the loops of a trajectory. What forbids it does not cost the inspection: returns the reason, else nothing.
+std::string optimise(FlightTrajectory& trajectory, const TrackSettings& track) {
+  try {
+    trajectory.optimise(track);
+  } catch (const SystemError&) {
+    throw;
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
 }  // namespace
 
 void inspect_flight(FlightSettings settings) {
@@ -147,8 +159,9 @@ void inspect_flight(FlightSettings settings) {
   run.seconds = progress.seconds();
   run.frames_per_second = progress.frames_per_second();
   progress.end();
+  std::string graph_error;
   if (trajectory) {
-    if (run.complete) trajectory->optimise(settings.track);
+    if (run.complete) graph_error = optimise(*trajectory, settings.track);
     folder.write(trajectory->files());
     for (const HealthFinding& finding : trajectory->findings()) results.add(finding);
   }
@@ -176,6 +189,7 @@ void inspect_flight(FlightSettings settings) {
   if (summary.frames == 0) fail(settings.source[0], ": there is no frame between --from and --to");
   if (summary.good == 0) fail("none of the ", summary.frames, " frames could be matched: ", summary.reasons.front());
   const std::string contradiction = trajectory ? trajectory->track_contradiction() : std::string();
+  if (!graph_error.empty()) fail("the trajectory is that of the odometry alone: ", graph_error);
   if (!contradiction.empty()) fail(settings.track.file, ": ", contradiction);
   if (!run.no_map_reason.empty()) fail("there is no map: ", run.no_map_reason);
 }

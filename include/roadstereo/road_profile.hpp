@@ -69,6 +69,10 @@ struct LaneProfiles {
   std::vector<RoughnessSection> sections;
 };
 
+/// Parts of a path, metres, that lead forward. Steps back are left out until the path is passed again; farther than 5 m
+/// they begin another part, as after a turn. Points closer than 2 cm are one.
+std::vector<std::vector<std::array<double, 2>>> forward_paths(std::span<const std::array<double, 2>> path);
+
 /// Measures profiles along a path, metres in the map. Heights of a profile are means over a strip; their standard
 /// errors count the cells of one support window of matching as one sample. The path ends where it turns back. Throws
 /// Error for options out of range.

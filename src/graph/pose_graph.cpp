@@ -145,7 +145,7 @@ class Optimiser {
   void add_track(PoseGraphProblem& problem) {
     constexpr double road_sd_rad = 3 * 3.14159265358979323846 / 180;
     const std::vector<PositionFix>& fixes = curve_->fixes();
-    const double frames_s = input_.times_s.back() - input_.times_s.front();
+    const double frames_s = recorded_s(input_.times_s, options_.max_fix_gap_s);
     const double shared_s = std::max(options_.fix_correlation_s, 0.0);
     const double count = std::max(1.0, shared_s * static_cast<double>(poses_.size()) / std::max(frames_s, 1e-3));
     std::size_t roads = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "core/order_statistics.hpp"
@@ -103,8 +104,9 @@ class Aligner {
     for (std::size_t i = 0; i < up.size(); ++i) {
       if (up[i]) level_[i] = Eigen::Quaterniond::FromTwoVectors(*up[i], Eigen::Vector3d::UnitZ());
     }
-    const double duration_s = frames.empty() ? 0 : frames.back().time_s - frames.front().time_s;
-    independent_ = std::max(1.0, duration_s / std::max(options.fix_correlation_s, 1.0));
+    std::vector<double> times_s;
+    for (const TimedPosition& frame : frames) times_s.push_back(frame.time_s);
+    independent_ = std::max(1.0, recorded_s(times_s, options.max_fix_gap_s) / std::max(options.fix_correlation_s, 1.0));
   }
 
   /// The best time offset: a coarse search, then a finer one around the best.
@@ -243,6 +245,17 @@ std::string refusal(const Aligner& aligner, double offset_s) {
 }
 
 }  // namespace
+
+double recorded_s(std::span<const double> times_s, double max_gap_s) {
+  double sum_s = 0, last_s = std::numeric_limits<double>::quiet_NaN();
+  for (const double time_s : times_s) {
+    if (std::isnan(time_s)) continue;
+    const double step_s = time_s - last_s;
+    if (step_s > 0 && step_s <= max_gap_s) sum_s += step_s;
+    last_s = time_s;
+  }
+  return sum_s;
+}
 
 TrackAlignment align_to_track(const std::vector<TimedPosition>& frames,
                               const std::vector<std::optional<Eigen::Vector3d>>& up, const FixCurve& curve,

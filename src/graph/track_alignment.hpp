@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct TrackAlignment {
   std::string unused;                            ///< why the fixes cannot be used, a sentence; empty: they can
   bool contradicts = false;                      ///< they do not fit
 };
+
+/// Time that frames cover: the sum of the steps between them that are no longer than `max_gap_s`. NaN are left out.
+double recorded_s(std::span<const double> times_s, double max_gap_s);
 
 /// Fits the pieces of a trajectory to fixes: for every time offset the turn about the vertical and the shift of each
 /// piece (least squares, once more without what is off by more than three medians); the most likely offset.

@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "core/require_range.hpp"
 #include "roadstereo/road_profile.hpp"
@@ -24,27 +25,54 @@ struct Station {
   }
 };
 
+constexpr double min_step_m = 0.02;
+
+/// Builds the parts of forward_paths().
+class PathParts {
+ public:
+  using Point = std::array<double, 2>;
+
+  void add(const Point& point) {
+    constexpr double max_back_m = 5;  // farther back is another pass
+    if (parts_.empty()) parts_.push_back({point});
+    const double step_m = distance(parts_.back().back(), point);
+    if (step_m < min_step_m) return;
+    if (is_ahead(parts_.back(), point)) {
+      parts_.back().push_back(point);
+      back_.clear();
+      return;
+    }
+    back_.push_back(point);
+    if (step_m <= max_back_m) return;
+    const std::vector<Point> next = std::exchange(back_, {});
+    parts_.push_back({next.front()});
+    for (const Point& each : next) add(each);
+  }
+  std::vector<std::vector<Point>> take() { return std::move(parts_); }
+
+ private:
+  static double distance(const Point& a, const Point& b) { return std::hypot(b[0] - a[0], b[1] - a[1]); }
+  static bool is_ahead(const std::vector<Point>& part, const Point& point) {
+    if (part.size() < 2) return true;
+    const Point &before = part[part.size() - 2], &last = part.back();
+    return (point[0] - last[0]) * (last[0] - before[0]) + (point[1] - last[1]) * (last[1] - before[1]) >= 0;
+  }
+
+  std::vector<std::vector<Point>> parts_;
+  std::vector<Point> back_;  ///< points behind the end of the last part
+};
+
 /// A path by distance travelled, up to where it turns back.
 class Path {
  public:
   explicit Path(std::span<const std::array<double, 2>> points) {
-    constexpr double min_step_m = 0.02;
-    for (const auto& point : points) {
-      if (points_.empty()) {
-        points_.push_back(point);
-        distance_.push_back(0);
-        continue;
-      }
-      const double dx = point[0] - points_.back()[0], dy = point[1] - points_.back()[1];
-      const double step = std::hypot(dx, dy);
-      if (step < min_step_m) continue;
-      if (points_.size() >= 2) {
-        const auto& before = points_[points_.size() - 2];
-        const double turn = dx * (points_.back()[0] - before[0]) + dy * (points_.back()[1] - before[1]);
-        if (turn < 0) break;
-      }
-      distance_.push_back(distance_.back() + step);
-      points_.push_back(point);
+    const auto parts = forward_paths(points);
+    if (parts.empty()) return;
+    points_ = parts.front();
+    distance_.push_back(0);
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      distance_.push_back(distance_.back() +
+                          std::hypot(points_[i][0] - points_[i - 1][0], points_[i][1] - points_[i - 1][1]));
     }
   }
 
@@ -261,6 +289,12 @@ void measure_along(MapReader& reader, const Path& path, double offset_m, const L
 }
 
 }  // namespace
+
+std::vector<std::vector<std::array<double, 2>>> forward_paths(std::span<const std::array<double, 2>> path) {
+  PathParts parts;
+  for (const auto& point : path) parts.add(point);
+  return parts.take();
+}
 
 void LaneOptions::validate() const {
   require_range("lane", "lane_width_m", lane_width_m, 0.5, 20.0);

@@ -67,7 +67,8 @@ struct Odometry::State {
 
   ImagePyramid pyramid_;
   std::optional<Reference> reference_;
-  std::optional<Reference> lost_;        ///< reference of the last piece
+  std::optional<Reference> lost_;        ///< reference of the last piece of more than one frame
+  bool is_linked_ = false;               ///< whether a frame was linked since the piece began
   std::optional<RigidMotion> velocity_;  ///< from camera to camera per frame
   double offset_px_ = 0;                 ///< disparity offset at infinity, filtered
   double offset_variance_ = 0.25;        ///< pixels²; before the first link that of any rig
@@ -170,10 +171,12 @@ const FramePose& Odometry::State::add(int frame, const OdometryFrame& maps) {
     pose.piece = pieces_++;
     trajectory.frames.push_back(pose);
     velocity_.reset();
-    lost_ = std::exchange(reference_, std::nullopt);
+    if (is_linked_ || !lost_) lost_ = std::exchange(reference_, std::nullopt);
+    is_linked_ = false;
     make_reference(own, maps);
     return trajectory.frames.back();
   }
+  is_linked_ = true;
   constexpr double memory = 0.8;
   measure_offset(*alignment);
   usual_correlation_ = usual_correlation_ > 0 ? memory * usual_correlation_ + (1 - memory) * alignment->correlation

@@ -185,6 +185,28 @@ TEST_F(MapCommand, FarPoseIsNamed) {
   expect_complaint(map("--trajectory far.txt"), "(limit 8e+09); frame 2 is 141421 m from the middle");
 }
 
+// Of the second recording, too, when the first has been mapped.
+TEST_F(MapCommand, FarPoseOfLaterRecordingIsNamed) {
+  make_flight("160x90");
+  const std::string poses = read_text(folder_ / "flight/trajectory_kitti.txt");
+  write("far.txt", poses.substr(0, poses.find('\n') + 1) + "1 0 0 100000 0 1 0 100000 0 0 1 0\n");
+  expect_complaint(run("map flight flight --calibration flight/calibration.yaml --output map --trajectory "
+                       "flight/trajectory_kitti.txt --trajectory far.txt"),
+                   "far.txt: its poses and what is mapped lie in a box of ");
+}
+
+// Looking at the sky no cell is seen: the other day has its map.
+TEST_F(MapCommand, DayWithoutCellsCostsNoOther) {
+  make_flight("160x90");
+  write("sky.txt", std::string("1 0 0 0 0 -1 0 0 0 0 -1 0\n1 0 0 0 0 -1 0 0 0 0 -1 0\n"));
+  const Outcome outcome =
+      run("map flight flight --calibration flight/calibration.yaml --output map --day a --day b "
+          "--trajectory flight/trajectory_kitti.txt --trajectory sky.txt --quiet");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json map = json_file("map/map.json");
+  EXPECT_NE(map["reasons"].dump().find("the map of b is empty"), std::string::npos) << map["reasons"];
+}
+
 TEST_F(MapCommand, NamesNeedNotBeUtf8) {
   make_flight("160x90");
   const std::string name = "fl\xff\xfe";

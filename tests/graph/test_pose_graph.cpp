@@ -158,7 +158,9 @@ struct Survey {
   std::array<double, 3> lever_arm_m{0.4, -0.3, 0};
   double clock_s = 0;  ///< of the receiver, ahead of the camera's
   double noise_m = 0;
+  double pause_s = 0;  ///< after 30 s, without frames and fixes
 
+  double time_s(double flown_s) const { return flown_s + (flown_s < 30 ? 0 : pause_s); }
   static RigidMotion at(double time_s) {
     const double phase = 2 * std::numbers::pi * (time_s / 60 + 0.03 * std::sin(2 * std::numbers::pi * time_s / 30));
     const double x = 20 * std::cos(phase) + 4 * std::sin(2 * phase), y = 10 * std::sin(phase);
@@ -173,12 +175,12 @@ struct Survey {
     std::mt19937 random(1);
     std::normal_distribution<double> noise(0, noise_m);
     for (int i = 0; i < frames; ++i) {
-      result.times_s.push_back(0.1 * i);
+      result.times_s.push_back(time_s(0.1 * i));
       result.road_up.push_back(std::array<double, 3>{0, 0, -1});
     }
     for (int i = -60; i < frames / 2 + 60; ++i) {
       const Vector<3> antenna = at(0.2 * i)(lever_arm_m);
-      PositionFix fix{0.2 * i + clock_s, antenna, 0.02, 0.04};
+      PositionFix fix{time_s(0.2 * i) + clock_s, antenna, 0.02, 0.04};
       for (double& value : fix.position_m) value += noise_m > 0 ? noise(random) : 0;
       result.fixes.push_back(fix);
     }
@@ -208,6 +210,20 @@ TEST(PoseGraphTrack, LeverArmAndTimeOffsetAreFound) {
     EXPECT_NEAR(pose[3], truth.translation[0], 0.06) << i;
     EXPECT_NEAR(pose[7], truth.translation[1], 0.06) << i;
     EXPECT_NEAR(pose[0], truth.rotation[0][0], 0.01) << i;
+  }
+}
+
+// An hour between two sessions is no time over which the noise of fixes averages out.
+TEST(PoseGraphTrack, PauseMakesFixesNoBetter) {
+  Survey survey;
+  survey.noise_m = 0.02;
+  const PoseGraphResult whole = optimise_poses(survey.input());
+  survey.pause_s = 3600;
+  const PoseGraphResult paused = optimise_poses(survey.input());
+  ASSERT_TRUE(whole.track && paused.track);
+  for (const std::size_t i : {0U, 299U, 599U}) {
+    const double sd = std::sqrt(whole.trajectory.frames[i].covariance[0]);
+    EXPECT_NEAR(std::sqrt(paused.trajectory.frames[i].covariance[0]), sd, 0.2 * sd) << i;
   }
 }
 

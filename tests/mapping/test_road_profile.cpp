@@ -51,5 +51,37 @@ TEST(StraightedgeNoiseGap, OfThreeHeightsIsKnown) {
   EXPECT_NEAR(straightedge_noise_gap(3, 0.1, 0.2), std::sqrt(1.5 / (2 * 3.14159265)), 0.12);
 }
 
+std::vector<std::array<double, 2>> drive(const std::vector<double>& stops_m) {
+  std::vector<std::array<double, 2>> path{{stops_m[0], 0}};
+  for (std::size_t k = 1; k < stops_m.size(); ++k) {
+    const int steps = static_cast<int>(std::lround(std::abs(stops_m[k] - stops_m[k - 1]) / 0.1));
+    for (int i = 1; i <= steps; ++i) path.push_back({stops_m[k - 1] + (stops_m[k] - stops_m[k - 1]) * i / steps, 0});
+  }
+  return path;
+}
+
+TEST(ForwardPaths, GoOnAfterBackingUp) {
+  const auto parts = forward_paths(drive({0, 2, 1.4, 6}));
+  ASSERT_EQ(parts.size(), 1U);
+  ASSERT_EQ(parts[0].size(), 61U);
+  for (std::size_t i = 0; i < parts[0].size(); ++i) EXPECT_NEAR(parts[0][i][0], 0.1 * static_cast<double>(i), 1e-9);
+}
+
+TEST(ForwardPaths, BeginAnewAfterTurn) {
+  const auto parts = forward_paths(drive({0, 12, 3}));
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].size(), 121U);
+  EXPECT_EQ(parts[1].size(), 90U);  // but for the turning point, which the first part has
+  EXPECT_NEAR(parts[1].front()[0], 11.9, 1e-9);
+  EXPECT_NEAR(parts[1].back()[0], 3, 1e-9);
+}
+
+TEST(ForwardPaths, OfNothingAndOfStandstill) {
+  EXPECT_TRUE(forward_paths({}).empty());
+  const std::vector<std::array<double, 2>> still(5, {1, 1});
+  ASSERT_EQ(forward_paths(still).size(), 1U);
+  EXPECT_EQ(forward_paths(still)[0].size(), 1U);
+}
+
 }  // namespace
 }  // namespace roadstereo

@@ -126,6 +126,22 @@ TEST(Odometry, CutStartsNewPiece) {
   EXPECT_EQ(odometry.links().size(), 2U);
 }
 
+// Two frames in succession that show nothing of the road, and not the same, as in glare.
+TEST(Odometry, PieceGoesOnAfterSeveralUnusableFrames) {
+  synth::Scene elsewhere = test::smaller_scene("uav", 2);
+  elsewhere.rig.y_m = 50;
+  Odometry odometry(elsewhere.rig.calibration());
+  odometry.add(0, flight()[0].maps());
+  odometry.add(1, flight()[1].maps());
+  for (const int frame : {2, 3}) {
+    elsewhere.road.seed = 97 + static_cast<std::uint32_t>(frame);
+    EXPECT_EQ(odometry.add(frame, known_frame(elsewhere).maps()).piece, frame - 1);
+  }
+  const FramePose& back = odometry.add(4, flight()[3].maps());
+  EXPECT_EQ(back.piece, 0);
+  EXPECT_LT(distance(pose_error(back, flight()[0], flight()[3])), 1.2e-3);
+}
+
 TEST(Odometry, BlurredFrameIsLinked) {
   synth::Scene scene = test::smaller_scene("uav", 2);
   scene.rig.y_m = 0.1;

@@ -49,9 +49,7 @@ void FlightPositions::add(const io::FlightFrame& frame, const std::vector<std::i
   geo.time_s = frame.time_s + offset_s_;
   if (std::isfinite(geo.time_s)) geo.position = io::position_at(track_, geo.time_s);
   if (geo.position) {
-    if (last_) station_m_ += io::distance_m(*last_, *geo.position);
-    geo.station_m = station_m_;
-    last_ = geo.position;
+    geo.station_m = station_at(*geo.position);
     ++located_;
   }
   geo.footprint_deg = on_earth(frame.footprint_m, geo.position);
@@ -66,6 +64,19 @@ void FlightPositions::add(const io::FlightFrame& frame, const std::vector<std::i
                           position_of(frame.damages[i], geo.position, frame.height_m)});
   }
   frames_.push_back(std::move(geo));
+}
+
+/// Distance along the track. Steps are taken from the last position that is well away, so that the noise of the
+/// positions does not add up while the camera stands.
+double FlightPositions::station_at(const io::GeoPosition& position) {
+  constexpr double min_step_m = 0.5;
+  const double step_m = last_ ? io::distance_m(*last_, position) : min_step_m;
+  const double station_m = last_ ? last_station_m_ + step_m : 0;
+  if (step_m >= min_step_m) {
+    last_ = position;
+    last_station_m_ = station_m;
+  }
+  return station_m_ = std::max(station_m_, station_m);
 }
 
 void FlightPositions::locate(io::RoadDamage& damage) const {

@@ -37,13 +37,16 @@ class FlightPositions {
   std::vector<StagedFile> files(std::span<const io::RoadDamage> damages, bool with_candidates) const;
 
  private:
+  double station_at(const io::GeoPosition& position);
+
   double offset_s_;
   io::Track track_;
   std::vector<io::GeoFrame> frames_;
   std::vector<io::GeoSighting> sightings_;
   std::size_t located_ = 0;
-  double station_m_ = 0;  ///< of the last frame with a position
-  std::optional<io::GeoPosition> last_;
+  double station_m_ = 0;                 ///< of the last frame with a position
+  std::optional<io::GeoPosition> last_;  ///< position that steps are taken from
+  double last_station_m_ = 0;            ///< its station
 };
 
 }  // namespace roadstereo::cli

@@ -21,6 +21,7 @@ FrameFile frame_file(const std::string& name);
 struct TrackSettings {
   std::string file;          ///< empty: no track
   double offset_s = 0;       ///< added to the times of the frames
+  double offset_sd_s = 10;   ///< expected error of `offset_s`, for the trajectory
   double mount_yaw_deg = 0;  ///< yaw of the camera relative to the heading, clockwise
 };
 

@@ -36,7 +36,7 @@ constexpr const char* matrix_names = "r11,r12,r13,x_m,r21,r22,r23,y_m,r31,r32,r3
 constexpr const char* deviation_names = "sd_x_m,sd_y_m,sd_z_m,sd_rx_rad,sd_ry_rad,sd_rz_rad";
 
 std::string poses_csv(const Trajectory& trajectory, const std::vector<double>& times_s) {
-  std::string text = fmt::format("frame,time_s,piece,{},{}\n", matrix_names, deviation_names);
+  std::string text = fmt::format("frame,time_s,piece,{},{}\r\n", matrix_names, deviation_names);
   for (std::size_t i = 0; i < trajectory.frames.size(); ++i) {
     const FramePose& pose = trajectory.frames[i];
     io::CsvLine line;
@@ -51,7 +51,7 @@ std::string poses_csv(const Trajectory& trajectory, const std::vector<double>& t
 std::string links_csv(const std::vector<FrameLink>& links) {
   std::string text = fmt::format(
       "from,to,status,correlation,overlap,{},{},offset_px,sd_offset_px,rig_offset_px,sd_rig_offset_px,shutter,sd_"
-      "shutter\n",
+      "shutter\r\n",
       matrix_names, deviation_names);
   for (const FrameLink& link : links) {
     io::CsvLine line;
@@ -80,7 +80,7 @@ double path_length(const Trajectory& trajectory) {
 }
 
 std::string loops_csv(const std::vector<LoopLink>& loops) {
-  std::string text = fmt::format("from,to,used,correlation,overlap,misclosure_before_m,misclosure_after_m,{},{}\n",
+  std::string text = fmt::format("from,to,used,correlation,overlap,misclosure_before_m,misclosure_after_m,{},{}\r\n",
                                  matrix_names, deviation_names);
   for (const LoopLink& loop : loops) {
     io::CsvLine line;
@@ -151,7 +151,9 @@ void FlightTrajectory::optimise(const TrackSettings& track) {
     input.fixes = axes->fixes();
     for (double& time_s : input.times_s) time_s += track.offset_s;
   }
-  graph_ = close_loops(std::move(input), *loops_);
+  PoseGraphOptions options;
+  options.time_offset_sd_s = track.offset_sd_s;
+  graph_ = close_loops(std::move(input), *loops_, options);
   loops_.reset();
   if (!graph_.track) return;
   crs_ = axes->crs();

@@ -18,6 +18,7 @@
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/trajectory_file.hpp"
 #include "roadstereo/pipeline.hpp"
+#include "roadstereo/road_profile.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -91,7 +92,14 @@ class MapBuilder {
 
   BuiltMap result() {
     BuiltMap built;
-    for (auto& entry : days_) built.days.push_back(std::move(entry.second));
+    for (auto& entry : days_) {
+      std::vector<std::vector<std::array<double, 2>>> paths;
+      for (const auto& path : entry.second.paths) {
+        for (auto& part : forward_paths(path)) paths.push_back(std::move(part));
+      }
+      entry.second.paths = std::move(paths);
+      built.days.push_back(std::move(entry.second));
+    }
     const bool named =
         std::any_of(plan_.passes.begin(), plan_.passes.end(), [](auto& pass) { return !pass.day.empty(); });
     if (!named) {  // dates
@@ -128,6 +136,7 @@ class MapBuilder {
     if (state_.white_level > 0) pass.source->set_white_level(state_.white_level);
     std::optional<Pipeline> pipeline;
     std::int64_t next = 0;
+    bool has_extent = false;
     for (auto pose = pass.poses.lower_bound(state_.next_frame); pose != pass.poses.end(); ++pose) {
       if (stop_.wait(0)) {
         save();
@@ -137,9 +146,12 @@ class MapBuilder {
       const std::optional<io::SourcePair> pair = pass.source->next();
       if (!pair) break;
       next = pair->index + 1;
-      const bool is_first = days_.empty();
+      const std::int64_t mapped = state_.mapped;
       add_pair(from, *pass.source, *pair, pose->second, pipeline);
-      if (is_first && !days_.empty()) require_extent(pass, from);
+      if (!has_extent && state_.mapped > mapped) {
+        require_extent(pass, from);
+        has_extent = true;
+      }
       state_.next_frame = next;
       progress.frame_done();
       if (++state_.frames % frames_per_save == 0) save();
@@ -269,7 +281,8 @@ class MapBuilder {
     }
   }
 
-  /// Throws Error if the box around the poses of a recording has too many cells for rasters.
+  /// Throws Error if the box around the poses of a recording and what is mapped of its day has too many cells for
+  /// rasters.
   void require_extent(const Pass& pass, const MapPass& from) const {
     constexpr double max_cells = 8e9;  // about twenty minutes of writing
     std::array<std::vector<double>, 2> at;
@@ -277,10 +290,13 @@ class MapBuilder {
       const RigidTransform camera_to_map = compose(state_.world_to_map, pose.camera_to_world);
       for (std::size_t axis = 0; axis < 2; ++axis) at[axis].push_back(camera_to_map[4 * axis + 3]);
     }
+    const MapBox mapped = days_.at(*state_.day).map.bounds();
+    const std::array<int, 2> first{mapped.i0, mapped.j0}, count{mapped.columns, mapped.rows};
     std::array<double, 2> size_m{}, middle_m{};
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const auto [low, high] = std::minmax_element(at[axis].begin(), at[axis].end());
-      size_m[axis] = *high - *low;
+      const double first_m = state_.cell_m * first[axis], last_m = first_m + state_.cell_m * count[axis];
+      size_m[axis] = std::max(*high, last_m) - std::min(*low, first_m);
       middle_m[axis] = central_median(std::vector(at[axis]));
     }
     const double cells = size_m[0] / state_.cell_m * (size_m[1] / state_.cell_m);
@@ -291,7 +307,7 @@ class MapBuilder {
       if (distance_m(k) > distance_m(farthest)) farthest = k;
     }
     const std::int64_t frame = std::next(pass.poses.begin(), static_cast<std::ptrdiff_t>(farthest))->first;
-    fail(from.trajectory, ": its poses lie in a box of ",
+    fail(from.trajectory, ": its poses and what is mapped lie in a box of ",
          fmt::format("{:.0f} × {:.0f} m, which has {:.2g} cells of {} m (limit {:.0g}); frame {} is {:.0f} m from the "
                      "middle of the others: leave out what is wrong (nan), map parts, or use a larger --cell",
                      size_m[0], size_m[1], cells, state_.cell_m, max_cells, frame, distance_m(farthest)));

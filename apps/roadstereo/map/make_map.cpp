@@ -1,8 +1,12 @@
 #include "map/make_map.hpp"
 
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
 #include <filesystem>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "io/geo/map_crs.hpp"
 #include "map/build_map.hpp"
@@ -17,13 +21,18 @@ namespace {
 
 BuiltMap built_map(const MapPlan& plan, const std::filesystem::path& tiles, const StopSignals& stop) {
   BuiltMap built = build_map(plan, tiles, stop);
-  for (const DayMap& day : built.days) {
-    if (!day.map.bounds().empty()) continue;
+  const bool had_days = !built.days.empty();
+  std::erase_if(built.days, [&](const DayMap& day) {
+    if (!day.map.bounds().empty()) return false;
+    built.reasons.push_back("the map of " + (day.name.empty() ? std::string("a day") : day.name) + " is empty");
+    return true;
+  });
+  if (!built.days.empty()) return built;
+  if (had_days) {
     fail(
         "the map is empty: no frame shows the road sharply enough for a cell. Are the poses in metres, with z up, and ",
-        "the cells of --cell not larger than what frames show?");
+        "the cells of --cell not larger than what frames show? ", fmt::format("{}", fmt::join(built.reasons, "; ")));
   }
-  if (!built.days.empty()) return built;
   std::error_code ignored;
   std::filesystem::remove_all(tiles, ignored);
   fail("none of the ", built.frames, " frames with a pose has a road",

@@ -37,8 +37,8 @@ bool is_worse(const RoadDamage& one, const RoadDamage& other);
 std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool candidates);
 
 /// Tracks damages over the frames of a flight. Sightings in successive frames are one damage if their boxes overlap
-/// after the image motion is compensated. Tracking restarts at a frame whose road model was estimated anew; frames too
-/// far apart to overlap yield one damage per sighting.
+/// after the image motion is compensated. Tracking restarts where the road jumps: at a frame whose road model was
+/// estimated anew after one that had a road. Frames too far apart to overlap yield one damage per sighting.
 /// A damage of the road is one in at least one frame, and the two frames that are surest of it agree: the mean of their
 /// log-odds is at least that of the minimum confidence. Of many frames noise makes one that is sure. What a single
 /// frame shows is decided by that.
@@ -76,6 +76,8 @@ class FlightInventory {
   std::vector<Agreement> agreements_;  ///< of each of them
   std::vector<Sighting> recent_;
   std::array<double, 2> motion_px_{};  ///< image motion from frame to frame
+  bool motion_known_ = false;          ///< whether damages of the last frame told it
+  bool had_road_ = false;              ///< whether the last frame had a road
   std::int64_t sequence_ = 0;
 };
 

@@ -64,7 +64,8 @@ std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool
   return sorted;
 }
 
-/// Returns the recent sighting with the largest overlap, or null.
+/// Returns the recent sighting with the largest overlap, or null. While no damage has told the image motion, a camera
+/// that stands still is as likely as one that goes on.
 const FlightInventory::Sighting* FlightInventory::seen_before(const Damage& damage,
                                                               const std::vector<std::int64_t>& taken) const {
   constexpr double min_overlap = 0.2;
@@ -74,8 +75,8 @@ const FlightInventory::Sighting* FlightInventory::seen_before(const Damage& dama
     if (sighting.damage.kind != damage.kind) continue;
     if (std::find(taken.begin(), taken.end(), sighting.id) != taken.end()) continue;
     const auto frames = static_cast<double>(sequence_ - sighting.sequence);
-    const double share =
-        overlap(sighting.damage.box_px, {frames * motion_px_[0], frames * motion_px_[1]}, damage.box_px);
+    double share = overlap(sighting.damage.box_px, {frames * motion_px_[0], frames * motion_px_[1]}, damage.box_px);
+    if (share <= min_overlap && !motion_known_) share = overlap(sighting.damage.box_px, {}, damage.box_px);
     if (share <= max_share) continue;
     max_share = share;
     best = &sighting;
@@ -93,7 +94,8 @@ void FlightInventory::remember(const std::vector<Sighting>& sightings) {
     along_u.push_back((now.damage.centroid_px[0] - before->damage.centroid_px[0]) / frames);
     along_v.push_back((now.damage.centroid_px[1] - before->damage.centroid_px[1]) / frames);
   }
-  if (!along_u.empty()) motion_px_ = {upper_median(along_u), upper_median(along_v)};
+  motion_known_ = !along_u.empty();
+  if (motion_known_) motion_px_ = {upper_median(along_u), upper_median(along_v)};
   const auto outdated = [&](const Sighting& old) {
     return sequence_ - old.sequence > max_gap ||
            std::any_of(sightings.begin(), sightings.end(), [&](const Sighting& now) { return now.id == old.id; });
@@ -109,8 +111,9 @@ bool FlightInventory::agree(const Agreement& frames, std::int64_t sightings) con
 
 std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
   ++sequence_;
-  if (frame.status == FrameStatus::good && frame.road_status != RoadStatus::tracked)
-    recent_.clear();  // tracking was lost
+  const bool has_road = frame.status == FrameStatus::good && frame.road_status != RoadStatus::none;
+  if (has_road && had_road_ && frame.road_status != RoadStatus::tracked) recent_.clear();
+  had_road_ = has_road;
   std::vector<std::int64_t> ids;
   std::vector<Sighting> sightings;
   const auto add_one = [&](const Damage& damage, bool candidate) {

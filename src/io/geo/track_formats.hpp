@@ -9,6 +9,9 @@
 
 namespace roadstereo::io {
 
+/// Slower than this a receiver's course over ground is noise, metres per second.
+inline constexpr double min_course_m_s = 0.5;
+
 /// A track file as text.
 struct TrackText {
   std::string path;

@@ -2,6 +2,7 @@
 #include <array>
 #include <pugixml.hpp>
 
+#include "io/calibration_formats.hpp"
 #include "io/geo/track_formats.hpp"
 #include "roadstereo/error.hpp"
 
@@ -55,13 +56,19 @@ std::string_view attribute(const std::string& where, const pugi::xml_node& node,
   return found.value();
 }
 
-/// GPX 1.0 has <course> in the point; in 1.1 it is in vendor extensions.
+/// The first node of that name in a point. GPX 1.0 has <course> and <speed> in the point; in 1.1 they are in vendor
+/// extensions.
+pugi::xml_node find_in(const pugi::xml_node& point, const char* name) {
+  return point.find_node([name](const pugi::xml_node& each) { return is_called(each, name); });
+}
+
 double heading_of(const std::string& where, const pugi::xml_node& node) {
-  for (const char* name : {"heading", "yaw", "course"}) {
-    const pugi::xml_node found = node.find_node([name](const pugi::xml_node& each) { return is_called(each, name); });
-    if (found) return parse_heading(where, name, text_of(found));
+  for (const char* name : {"heading", "yaw"}) {
+    if (const pugi::xml_node found = find_in(node, name)) return parse_heading(where, name, text_of(found));
   }
-  return parse_heading(where, "course", "");
+  const std::string_view speed = text_of(find_in(node, "speed"));
+  const bool moves = speed.empty() || parse_number(where, "speed", speed) >= min_course_m_s;
+  return parse_heading(where, "course", moves ? text_of(find_in(node, "course")) : std::string_view());
 }
 
 TrackLine read_point(const std::string& path, const pugi::xml_node& node, LineCount& lines) {

@@ -93,7 +93,10 @@ class NmeaReader {
     point.time_s = day_s(where, fields[9]) + last_second_;
     point.lat_deg = angle_of(where, "latitude", fields[3], fields[4]);
     point.lon_deg = angle_of(where, "longitude", fields[5], fields[6]);
-    point.heading_deg = parse_heading(where, "course", fields[8]);
+    constexpr double metres_per_second = 1852.0 / 3600;  // of a knot
+    const bool moves =
+        fields[7].empty() || parse_number(where, "speed", fields[7]) * metres_per_second >= min_course_m_s;
+    point.heading_deg = parse_heading(where, "course", moves ? fields[8] : std::string_view());
     if (altitude_.second_of_day == last_second_) point.alt_m = altitude_.metres;
     points.push_back({point, number});
   }

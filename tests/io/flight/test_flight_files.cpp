@@ -296,6 +296,30 @@ TEST(FlightInventory, CutStartsNewDamages) {
       << "over a frame that is missing";
 }
 
+TEST(FlightInventory, FrameWithoutRoadIsNoCut) {
+  FlightInventory inventory;
+  inventory.add(frame_of(0, {pothole(100, 100)}));
+  FlightFrame glare = frame_of(1, {});
+  glare.road_status = RoadStatus::none;
+  inventory.add(glare);
+  FlightFrame again = frame_of(2, {pothole(100, 100)});
+  again.road_status = RoadStatus::found;
+  EXPECT_EQ(inventory.add(again), std::vector<std::int64_t>{1});
+}
+
+// No damage tells that the camera has stopped, or drives back: boxes of 40 px would have to be 45 px farther down.
+TEST(FlightInventory, MotionMayEndWhileNoDamageIsSeen) {
+  for (const int step : {0, 10, -10}) {
+    FlightInventory inventory;
+    for (const int v : {20, 20, 40, 70, 108, 153, 198}) inventory.add(frame_of(v, {pothole(100, v)}));
+    ASSERT_EQ(inventory.damages().size(), 1U);
+    for (int i = 0; i < 4; ++i) inventory.add(frame_of(200 + i, {}));
+    for (int i = 0; i < 5; ++i) {
+      EXPECT_EQ(inventory.add(frame_of(204 + i, {pothole(100, 150 + i * step)})), std::vector<std::int64_t>{2}) << step;
+    }
+  }
+}
+
 TEST(FlightInventory, PrefersWholeSightingsAndSortsBySeverity) {
   FlightInventory inventory;
   Damage cut = pothole(100, 100, 0.05, 0.0001);

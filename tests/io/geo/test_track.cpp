@@ -383,6 +383,38 @@ TEST_F(TrackFile, ReadsNmea) {
   expect_refused("$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6B\n", "right checksum");
 }
 
+std::string nmea_line(const std::string& body) {
+  unsigned sum = 0;
+  for (const char letter : body) sum ^= static_cast<unsigned char>(letter);
+  char line[120];
+  std::snprintf(line, sizeof line, "$%s*%02X\r\n", body.c_str(), sum);
+  return line;
+}
+
+// A receiver that stands still tells any course. 0.5 m/s are 0.972 knots.
+TEST_F(TrackFile, CourseOfStandingReceiverIsNoHeading) {
+  std::string nmea;
+  for (const auto& [second, speed, course] :
+       {std::tuple{"19", "005.0", "084.4"}, std::tuple{"20", "000.05", "211.0"}, std::tuple{"21", "000.96", "300.0"},
+        std::tuple{"22", "000.98", "090.0"}}) {
+    nmea += nmea_line(std::string("GPRMC,1235") + second + ",A,4807.038,N,01131.000,E," + speed + "," + course +
+                      ",230394,003.1,W");
+  }
+  const std::vector<TrackPoint> read = points(nmea);
+  ASSERT_EQ(read.size(), 4U);
+  const double expected[] = {84.4, 84.4, 84.4, 90.0};  // the last one stays
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(read[i].heading_deg, expected[i]) << i;
+
+  std::string segment = "<gpx><trk><trkseg>";
+  for (const auto& [second, speed, course] : {std::tuple{"19", "5", "84.4"}, std::tuple{"20", "0.4", "211"}}) {
+    segment += std::string("<trkpt lat=\"48\" lon=\"11\"><time>1994-03-23T12:35:") + second + "Z</time><course>" +
+               course + "</course><speed>" + speed + "</speed></trkpt>";
+  }
+  const std::vector<TrackPoint> of_gpx = points(segment + "</trkseg></trk></gpx>");
+  ASSERT_EQ(of_gpx.size(), 2U);
+  for (const TrackPoint& point : of_gpx) EXPECT_DOUBLE_EQ(point.heading_deg, 84.4);
+}
+
 TEST_F(TrackFile, ReadsSubtitlesOfDrones) {
   const std::vector<TrackPoint> read = points(
       "1\n00:00:00,000 --> 00:00:00,033\n<font size=\"28\">SrtCnt : 1, DiffTime : 33ms\n2022-08-22 10:13:23.001\n"
