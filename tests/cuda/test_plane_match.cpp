@@ -19,6 +19,7 @@ constexpr DisparityPlane road{6, 0.06, -0.03};
 
 struct Found {
   std::vector<DisparityPoint> points;
+  std::vector<float> correlations;
   int tried = 0;
 };
 
@@ -27,16 +28,18 @@ Found search_on_device(const test::TexturedPair& pair, const DisparityPlane& pla
   test::DevicePlane<std::int16_t> left(pair.reference), right(pair.target);
   const SampleGrid grid = sample_grid(pair.reference.width(), pair.reference.height(), range, places);
   const auto count = static_cast<std::size_t>(grid.places());
-  DeviceArray<float> u(count), v(count), d(count);
+  DeviceArray<float> u(count), v(count), d(count), correlation(count);
   DeviceArray<int> tried(count);
   match_along_plane({left.view(), right.view(), factor}, grid, {nullptr, {plane.a0, plane.a1, plane.a2}}, needed,
-                    {u.data(), v.data(), d.data(), tried.data()}, nullptr);
+                    {u.data(), v.data(), d.data(), correlation.data(), tried.data()}, nullptr);
   const auto us = test::to_host(u.data(), count), vs = test::to_host(v.data(), count),
              ds = test::to_host(d.data(), count);
+  const auto cs = test::to_host(correlation.data(), count);
   const auto ts = test::to_host(tried.data(), count);
   Found found;
   for (std::size_t i = 0; i < count; ++i) {
     found.tried += ts[i];
+    if (!std::isnan(cs[i])) found.correlations.push_back(cs[i]);
     if (!std::isnan(ds[i])) found.points.push_back({us[i], vs[i], ds[i]});
   }
   return found;
@@ -56,6 +59,12 @@ void expect_same(const Found& device, const PlaneMatches& host) {
   }
   EXPECT_LE(host.points.size() - common, max_missing);
   EXPECT_LE(device.points.size() - common, max_missing);
+  ASSERT_NEAR(static_cast<double>(device.correlations.size()), static_cast<double>(host.correlations.size()),
+              static_cast<double>(max_missing));
+  if (device.correlations.size() != host.correlations.size()) return;
+  for (std::size_t i = 0; i < host.correlations.size(); ++i) {
+    EXPECT_NEAR(device.correlations[i], host.correlations[i], 1e-4) << i;
+  }
 }
 
 test::TexturedPair textured_road(int width, int height) {

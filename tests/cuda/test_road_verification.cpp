@@ -60,6 +60,7 @@ void expect_same(const RoadModelEstimate& device, const RoadModelEstimate& host,
   // One point more in some hundred moves order statistics and planes.
   const bool same_points = device.matches == host.matches && device.inliers == host.inliers;
   const double looser = test::kernels_round_as_host || same_points ? 1 : 100;
+  EXPECT_NEAR(device.correlation, host.correlation, looser * 1e-4);
   EXPECT_NEAR(device.residual_px, host.residual_px, looser * 1e-5);
   EXPECT_NEAR(device.residual_p01_px, host.residual_p01_px, looser * 1e-4);
   EXPECT_NEAR(device.residual_p99_px, host.residual_p99_px, looser * 1e-4);
@@ -96,6 +97,18 @@ TEST_F(CudaRoadVerification, FlightMatchesHost) {
   expect_agreement(render_pair(synth::flight_frame(scene, path, 2)), previous, strict);
   EXPECT_NE(host_.reason.find("leaves"), std::string::npos) << host_.reason;
   EXPECT_EQ(host_.model.a2, 0);
+}
+
+TEST_F(CudaRoadVerification, NoiseIsThatOfHost) {
+  synth::Scene scene = road_scene(208, 117);
+  const DisparityPlane previous = render_pair(scene).plane;
+  for (const double noise_grey : {2.0, 5.0}) {
+    scene.degradation.noise_grey = noise_grey;
+    expect_agreement(render_pair(scene), previous);
+    EXPECT_EQ(host_.status, RoadStatus::tracked) << host_.reason;
+  }
+  EXPECT_LT(host_.correlation, 0.9);
+  EXPECT_GT(host_.correlation, 0.3);
 }
 
 TEST_F(CudaRoadVerification, JumpHasReasonOfHost) {
