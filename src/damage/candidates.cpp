@@ -24,13 +24,15 @@ struct SegmentationConstants {
   std::size_t max_cut_divisor = 20;  ///< a gap that either cuts is up to 1/20 of the image
 
   // Extent of a region.
-  float min_core_area_share = 0.1F;  ///< of the minimum area of a damage, for its core
-  float min_level_sigmas = 2;        ///< minimum depth at the outline
-  float foot_sigmas = 0.5F;          ///< minimum depth at the foot of the wall
-  int max_level_attempts = 8;        ///< maximum number of levels to separate touching damages
-  float max_level_share = 0.9F;      ///< of the floor's depth, the highest of these levels
-  std::size_t max_hole_divisor = 4;  ///< holes up to 1/4 of the image are filled
-  float outlier_floors = 1.25F;      ///< minimum depth, in depths of the floor, of the cells around an impossible one
+  float min_core_area_share = 0.1F;   ///< of the minimum area of a damage, for its core
+  float min_level_sigmas = 2;         ///< minimum depth at the outline
+  float foot_sigmas = 0.5F;           ///< minimum depth at the foot of the wall
+  int max_level_attempts = 8;         ///< maximum number of levels to separate touching damages
+  float max_level_share = 0.9F;       ///< of the floor's depth, the highest of these levels
+  int likelier_levels = 3;            ///< levels at which a region that is unlikely a damage is tried again
+  float likelier_level_share = 0.7F;  ///< of the floor's depth, the highest of these
+  std::size_t max_hole_divisor = 4;   ///< holes up to 1/4 of the image are filled
+  float outlier_floors = 1.25F;       ///< minimum depth, in depths of the floor, of the cells around an impossible one
 
   // Surroundings.
   double margin_radii = 0.5;     ///< width of the band around the region
@@ -369,19 +371,53 @@ bool is_measured(const Candidate& candidate, const Image<std::uint8_t>& valid) {
   return false;
 }
 
+/// Confidence of a region before its wall is measured, and the agreement of the pictures, which makes no damage of one
+/// that none could be: that of a steep wall.
+double confidence_at_best(const Candidate& candidate, const Thresholds& thresholds) {
+  DamageEvidence steepest = candidate.evidence;
+  if (candidate.kind == DamageKind::depression && thresholds.walls_measured()) steepest.likely_wall_slope = 1;
+  return steepest.confidence();
+}
+
+/// The hollow around a core at a higher level, if it is likelier a damage there. Where the relief of the road is as
+/// steep as the wall, the outline runs out of the hole into a shallow one, and the contrast is lost.
+void raise_level(const SearchInput& input, const ConnectedComponent& core, float min_cells, SearchImages& images,
+                 Candidate& candidate) {
+  const float first = candidate.level;
+  const float last = constants.likelier_level_share * floor_depth(images.field(), core);
+  double confidence = confidence_at_best(candidate, input.thresholds);
+  for (int k = 1; k <= constants.likelier_levels && last > first; ++k) {
+    Candidate raised;
+    raised.kind = candidate.kind;
+    raised.evidence.steepness = candidate.evidence.steepness;
+    raised.level = first + (last - first) * static_cast<float>(k) / static_cast<float>(constants.likelier_levels);
+    raised.cells = flood_fill(images.field(), core, raised.level);
+    if (raised.box().empty() || overlaps_other(raised, images.assigned)) continue;
+    extend_region(input, images, raised);
+    if (static_cast<float>(raised.size) < min_cells || !is_measured(raised, input.depth_cells.valid)) continue;
+    add_evidence(input, images, raised);
+    const double likelier = confidence_at_best(raised, input.thresholds);
+    if (likelier <= confidence) continue;
+    confidence = likelier;
+    candidate = std::move(raised);
+  }
+}
+
 /// Segment the region around a core and add it to `found` if it is large enough and surrounded by road.
 void add_candidate(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images,
                    std::vector<Candidate>& found) {
+  constexpr double even = 0.5;
   const float min_cells = input.thresholds.min_cells(core.runs.front().first, core.runs.front().row);
   if (static_cast<float>(core.size) < constants.min_core_area_share * min_cells) return;
   Candidate candidate = segment(input, core, kind, images);
   if (candidate.size == 0 || static_cast<float>(candidate.size) < min_cells) return;
   if (!is_measured(candidate, input.depth_cells.valid)) return;
   add_evidence(input, images, candidate);
-  // The slope is measured later, and so is the agreement of the pictures, which makes no damage of such a region.
-  DamageEvidence steepest = candidate.evidence;
-  if (kind == DamageKind::depression && input.thresholds.walls_measured()) steepest.likely_wall_slope = 1;
-  if (steepest.confidence() < min_candidate_confidence) return;
+  const bool is_hollow = kind == DamageKind::depression && input.thresholds.metric();
+  if (is_hollow && confidence_at_best(candidate, input.thresholds) < even) {
+    raise_level(input, core, min_cells, images, candidate);
+  }
+  if (confidence_at_best(candidate, input.thresholds) < min_candidate_confidence) return;
   assign(candidate, images.assigned);
   found.push_back(std::move(candidate));
 }

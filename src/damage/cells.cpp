@@ -12,6 +12,23 @@
 namespace roadstereo {
 namespace {
 
+constexpr float max_sigma_px = 1;
+
+/// Squared error of smoothing of a hollow narrower than `reach`, pixels², along the directions in which both sides rise
+/// about alike; 0 on walls. Smoothing takes from the depth of such a hollow; that it is one is certain.
+float hollow_error2(ImageView<const float> map, int reach, int u, int v) {
+  constexpr float min_rise = 0.75;  // of the lower side, of the mean of both
+  const float here = map(u, v);
+  float sum = 0;
+  const auto add = [&](float before, float after) {
+    const float rise = std::min(before, after) - here, error = 0.5F * (before + after) - here;
+    if (rise > min_rise * error) sum += error * error;
+  };
+  if (u >= reach && u + reach < map.width()) add(map(u - reach, v), map(u + reach, v));
+  if (v >= reach && v + reach < map.height()) add(map(u, v - reach), map(u, v + reach));
+  return sum;
+}
+
 /// Column sums over the pixel rows of one row of cells.
 struct ColumnSums {
   std::vector<float> sum;
@@ -24,7 +41,6 @@ struct ColumnSums {
   }
   /// Add the valid pixels of an image row.
   void add(const float* values, const float* sigma, int width) {
-    constexpr float max_sigma_px = 1;
     constexpr float max_finite = std::numeric_limits<float>::max();
     float* const sums = sum.data();
     int* const counts = count.data();
@@ -78,8 +94,20 @@ int cell_factor(int width, int height) {
   return std::max(pixels > min_pixels ? 2 : 1, static_cast<int>(std::ceil(std::sqrt(pixels / max_cells))));
 }
 
-Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigma, int factor, int threads) {
+Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigma, int smoothing_px, int factor,
+                 int threads) {
   constexpr int rows_per_band = 16;
+  const int width = transformed.width();
+  // Standard errors of a row, without those of smoothing in narrow hollows where they would make a pixel invalid.
+  const auto certain = [&](int v, float* errors) -> const float* {
+    const float* const row = sigma.row(v);
+    std::copy_n(row, width, errors);
+    for (int u = 0; u < width && smoothing_px > 0; ++u) {
+      if (!(row[u] > max_sigma_px)) continue;
+      errors[u] = std::sqrt(std::max(0.0F, row[u] * row[u] - hollow_error2(transformed, smoothing_px, u, v)));
+    }
+    return errors;
+  };
   require_variation(transformed);
   const int height = transformed.height();
   Cells cells;
@@ -89,12 +117,13 @@ Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigm
   cells.value.resize((transformed.width() + factor - 1) / factor, (height + factor - 1) / factor);
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     ColumnSums columns(cells.width() * factor);
-    const std::vector<float> zero_sigma(sigma.empty() ? static_cast<std::size_t>(transformed.width()) : 0, 0.0F);
+    const std::vector<float> zero_sigma(sigma.empty() ? static_cast<std::size_t>(width) : 0, 0.0F);
+    std::vector<float> own(sigma.empty() ? 0 : static_cast<std::size_t>(width));
     for (int j = first; j < last; ++j) {
       columns.clear();
       const int end = std::min((j + 1) * factor, height);
       for (int v = j * factor; v < end; ++v) {
-        columns.add(transformed.row(v), sigma.empty() ? zero_sigma.data() : sigma.row(v), transformed.width());
+        columns.add(transformed.row(v), sigma.empty() ? zero_sigma.data() : certain(v, own.data()), width);
       }
       mean_row(columns, factor, end - j * factor, transformed.width(), cells.width(), cells.value.row(j));
     }

@@ -29,8 +29,10 @@ struct Cells {
 /// Side of a cell, pixels, so that an image has at most some 300 000 cells.
 int cell_factor(int width, int height);
 
-/// Downsample a W×H map to cells. Pixels whose `sigma` exceeds 1 px count as invalid; `sigma` is W×H or empty. Throws
-/// Error when no pixel of the map is valid, or all valid pixels have one value.
-Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigma, int factor, int threads);
+/// Downsample a W×H map to cells. Pixels whose `sigma` exceeds 1 px count as invalid, except for the error of smoothing
+/// over `smoothing_px` in hollows that are narrower; `sigma` is W×H or empty. Throws Error when no pixel of the map is
+/// valid, or all valid pixels have one value.
+Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigma, int smoothing_px, int factor,
+                 int threads);
 
 }  // namespace roadstereo

@@ -124,7 +124,7 @@ DamageMap find_damage(const DamageInput& input, const DamageOptions& options, in
 void find_damage(const DamageInput& input, const DamageOptions& options, int threads, DamageMap& result) {
   options.validate();
   require_input(input);
-  Cells cells = make_cells(input.transformed, input.sigma,
+  Cells cells = make_cells(input.transformed, input.sigma, input.smoothing_px,
                            cell_factor(input.transformed.width(), input.transformed.height()), threads);
   const CommonView view(input, cells);
   view.remove_outside(cells);

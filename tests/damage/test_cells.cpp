@@ -66,7 +66,7 @@ TEST(Cells, AverageValidPixels) {
   map(2, 2) = std::numeric_limits<float>::infinity();
   map(2, 3) = 3;
   map(6, 0) = 5;  // half of a cell that the border cuts
-  const Cells cells = make_cells(map, {}, 2, 1);
+  const Cells cells = make_cells(map, {}, 0, 2, 1);
   ASSERT_EQ(cells.width(), 4);
   ASSERT_EQ(cells.height(), 3);
   EXPECT_EQ(cells.value(0, 0), 3);
@@ -75,11 +75,32 @@ TEST(Cells, AverageValidPixels) {
   EXPECT_EQ(cells.value(3, 0), 5);
 }
 
+// A hollow of 4 rows and a step, both 3 px deep. Half the second difference over 6 px is 3 in the hollow, and 1.5 at
+// the step, whose place is not known: there the pixels stay out.
+TEST(Cells, HollowNarrowerThanSmoothingIsCertain) {
+  constexpr int smoothing_px = 6;
+  Image<float> map(40, 60, 20.0F), sigma(40, 60, 0.1F);
+  for (int v = 0; v < map.height(); ++v) {
+    const bool in_hollow = v >= 20 && v < 24, below_step = v >= 40;
+    for (int u = 0; u < map.width(); ++u) {
+      if (in_hollow || below_step) map(u, v) = 17;
+      if (in_hollow) sigma(u, v) = std::hypot(0.1F, 3.0F);
+      if (v >= 40 && v < 46) sigma(u, v) = std::hypot(0.1F, 1.5F);
+    }
+  }
+  const Cells cells = make_cells(map, sigma, smoothing_px, 2, 1);
+  for (int j : {10, 11}) EXPECT_EQ(cells.value(10, j), 17);
+  for (int j : {20, 21, 22}) EXPECT_TRUE(std::isnan(cells.value(10, j))) << j;
+  EXPECT_EQ(cells.value(10, 24), 17);
+  for (int v = 20; v < 24; ++v) std::fill_n(sigma.row(v), 40, std::hypot(1.1F, 3.0F));  // noise alone is too much
+  for (int j : {10, 11}) EXPECT_TRUE(std::isnan(make_cells(map, sigma, smoothing_px, 2, 1).value(10, j))) << j;
+}
+
 // 12 = 5 + 5 + 2: the last cells have 10 and 4 pixels, fewer than half of 25.
 TEST(Cells, CutByBorderAverageWhatTheyHave) {
   Image<float> map(12, 12, 3.0F);
   map(0, 0) = 28;
-  const Cells cells = make_cells(map, {}, 5, 1);
+  const Cells cells = make_cells(map, {}, 0, 5, 1);
   ASSERT_EQ(cells.width(), 3);
   EXPECT_EQ(cells.value(0, 0), 4);
   for (int k = 0; k < 3; ++k) {

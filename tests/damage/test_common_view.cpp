@@ -19,7 +19,7 @@ struct TiltedRoad {
 
   TiltedRoad() {
     for (int u = 0; u < transformed.width(); u += 3) transformed(u, 0) = 31;
-    cells = make_cells(transformed, {}, 2, 1);
+    cells = make_cells(transformed, {}, 0, 2, 1);
     input.transformed = transformed;
     input.right = right;
     input.plane = DisparityPlane{10, 1.5, 0.25};  // of rows, of columns

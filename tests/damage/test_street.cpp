@@ -133,5 +133,18 @@ TEST(RoadUndulation, NeedsMoreThanOneCell) {
   EXPECT_TRUE(RoadUndulation().empty());
 }
 
+// Waves of 32 mm across the road: the outline of a pothole runs out into the dip that it lies in, where there is hardly
+// a contrast. At a higher level there is.
+TEST(Street, PotholeAmongDipsIsFound) {
+  const auto lift = [](double x, double y) {
+    const double hole = -0.05 * std::clamp((0.55 - std::hypot(x - 1, y - 7)) / 0.1, 0.0, 1.0);
+    return hole - 0.016 * std::cos(2 * std::numbers::pi * (x - 1) / 3) * std::cos(2 * std::numbers::pi * (y - 7) / 1.1);
+  };
+  const DamageMap found = Street(lift).find();
+  ASSERT_EQ(found.damages.size(), 1U);
+  EXPECT_NEAR(found.damages[0].metrics->road_centroid_m[0], 1, 0.15);
+  EXPECT_NEAR(found.damages[0].metrics->road_centroid_m[1], 7, 0.4);
+}
+
 }  // namespace
 }  // namespace roadstereo
