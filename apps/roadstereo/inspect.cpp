@@ -216,8 +216,7 @@ void add_track_options(CLI::App& command, TrackSettings& track, bool& candidates
       ->type_name("S");
   command
       .add_option("--track-offset-sd", track.offset_sd_s,
-                  "Expected error of --track-offset, which --trajectory estimates: 0.01 with synchronised clocks")
-      ->check(CLI::Range(0.001, 600.0))
+                  "Expected error of --track-offset, for --trajectory; 0.01: synchronised clocks")
       ->capture_default_str()
       ->type_name("S");
   command.add_flag("--candidates", candidates, "Add a layer of candidates to the GIS files");

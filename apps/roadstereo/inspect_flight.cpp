@@ -138,6 +138,7 @@ void inspect_flight(FlightSettings settings) {
   }
   RectifiedSource source(std::move(frames), settings.calibration);
   if (source.source().live()) fail(settings.source[0], ": cameras are not supported by inspect; use roadstereo live");
+  if (!plan.find_white_level) source.ignore_white_level();
   require_calibration(plan, settings.trajectory, source);
   require_frames(settings, source.source());
   FlightFolder folder(settings.output);

@@ -40,8 +40,13 @@ struct LimitsArguments {
 
 StereoCalibration read_file(const LimitsArguments& arguments) {
   const std::string& path = arguments.calibration.front();
-  const io::CalibrationFile file =
+  io::CalibrationFile file =
       io::read_calibration(path, arguments.calibration.size() > 1 ? arguments.calibration[1] : "");
+  if (!file.rigs.empty()) {
+    if (arguments.size.empty()) fail(path, " has rigs of several sizes; choose one with --size WIDTHxHEIGHT");
+    const ImageSize size = parse_image_size(arguments.size);
+    file.select_size(size.width, size.height, path);
+  }
   if (!file.rectified) fail(path, ": the rig is not rectified; use the calibration of the rectified pair");
   return *file.rectified;
 }

@@ -101,8 +101,9 @@ void read_disparity_map(const MapFiles& files, TransformedMap& map) {
 }
 
 void read_rig(const MapFiles& files, TransformedMap& map) {
-  const io::CalibrationFile file =
+  io::CalibrationFile file =
       io::read_calibration(files.calibration.front(), files.calibration.size() > 1 ? files.calibration[1] : "");
+  file.select_size(map.transformed.width(), map.transformed.height(), files.calibration.front());
   if (!file.rectified) {
     fail(files.calibration.front(), ": the rig is not rectified; use the calibration of the rectified pair");
   }

@@ -132,7 +132,7 @@ struct Damage {
   double mean_depth_px = 0;             ///< mean |depth| over the pixels with a disparity
   double confidence = 0;                ///< that this is damage, 0 … 1: `DamageEvidence::confidence`
   DamageEvidence evidence;
-  bool cut_by_border = false;            ///< touches the border of what both cameras see: it may continue outside
+  bool cut_by_border = false;  ///< touches the border of what both cameras see, or what is masked: it may be larger
   std::optional<DamageMetrics> metrics;  ///< absent without a calibration
 };
 

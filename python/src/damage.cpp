@@ -93,7 +93,8 @@ void bind_one_damage(py::module_& module) {
       .field("mean_depth_px", &Damage::mean_depth_px, "Mean depth over the pixels with a disparity, pixels.")
       .field("confidence", &Damage::confidence, "Probability that this is damage, 0 … 1.")
       .field("evidence", &Damage::evidence, "What the confidence rests on.")
-      .field("cut_by_border", &Damage::cut_by_border, "Whether it touches the border of what both cameras see.")
+      .field("cut_by_border", &Damage::cut_by_border,
+             "Whether it touches the border of what both cameras see, or a mask.")
       .field("metrics", &Damage::metrics, "Metric properties; None without a calibration.");
 }
 

@@ -176,16 +176,17 @@ bool overlaps_other(const Candidate& candidate, const Image<std::uint8_t>& assig
   return false;
 }
 
-/// Remove assigned cells and those outside the view, and recompute the bounding box and the size.
-void update_extent(Candidate& candidate, const CommonView& view, const Image<std::uint8_t>& assigned) {
+/// Remove assigned cells, those outside the view and what is not seen, and recompute the bounding box and the size.
+void update_extent(const SearchInput& input, const Image<std::uint8_t>& assigned, Candidate& candidate) {
   const CellBox around = candidate.box();
   CellBox box;
   candidate.size = 0;
   for (int j = around.first_row; j <= around.last_row; ++j) {
     std::uint8_t* const cells = candidate.cells.cells().row(j - around.first_row);
     const std::uint8_t* const labels = assigned.row(j) + around.first_column;
+    const std::uint8_t* const unseen = input.unseen.row(j) + around.first_column;
     for (int i = 0; i < around.columns(); ++i) {
-      if (labels[i] != 0 || !view.contains(around.first_column + i, j)) cells[i] = 0;
+      if (labels[i] != 0 || unseen[i] != 0 || !input.view.contains(around.first_column + i, j)) cells[i] = 0;
       if (cells[i] == 0) continue;
       box.add(around.first_column + i, j);
       ++candidate.size;
@@ -206,11 +207,11 @@ void extend_region(const SearchInput& input, SearchImages& images, Candidate& ca
     grow_over_gaps(images.field(), input.known, min_depth, input.image_edges.window_radius, candidate.cells);
   }
   fill_holes(candidate.cells.cells(), max_hole);
-  update_extent(candidate, input.view, images.assigned);
+  update_extent(input, images.assigned, candidate);
   if (candidate.size == 0 || candidate.kind == DamageKind::protrusion || input.image_edges.grey.empty()) return;
-  refine_outline_by_image(input.image_edges, images.depth.width(), images.depth.height(), candidate.cells);
+  refine_outline_by_image(input.image_edges, input.unseen, candidate.cells);
   fill_holes(candidate.cells.cells(), max_hole);
-  update_extent(candidate, input.view, images.assigned);
+  update_extent(input, images.assigned, candidate);
 }
 
 /// Segment the region around a core. If it runs into another damage or an obstacle, the level is raised above the
@@ -249,7 +250,7 @@ void measure_border(const BoxMask& region, const CommonView& view, const Image<s
       if (!region(i, j)) continue;
       const bool at_border = view.is_on_border(i, j);
       bool at_gap = false;
-      for_each_neighbour(i, j, columns, rows, [&](int x, int y) { at_gap |= unseen(x, y) != 0; });
+      for_each_neighbour(i, j, columns, rows, [&](int x, int y) { at_gap |= unseen(x, y) != 0 && !region(x, y); });
       if (!at_border && !at_gap && !is_on_contour(region, i, j, columns, rows)) continue;
       ++contour;
       on_border += at_border ? 1 : 0;

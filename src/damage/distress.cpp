@@ -13,6 +13,7 @@ constexpr double max_gentle_slope = 0.2;  // rise over run: depressions of D6433
 constexpr double min_elongation = 3;      // of ruts and cracks
 constexpr double min_pothole_m = 0.1;     // diameter, ASTM D6433: narrower long damages are cracks
 constexpr double min_step_m = 0.025;      // ASTM D6433, lane/shoulder drop-off
+constexpr double min_kerb_m = 0.75;       // ASTM D6433, potholes count by number up to that: what the side cuts of one
 constexpr double max_oblique_rad = std::numbers::pi / 6;  // from the direction of the road
 
 double elongation(const DamageMetrics& metrics) {
@@ -24,8 +25,8 @@ bool is_along_road(const DamageMetrics& metrics) {
 }
 
 bool is_kerb_step(const DamageMetrics& metrics, bool at_side) {
-  return at_side && metrics.max_depth_m.value >= min_step_m && elongation(metrics) >= min_elongation &&
-         is_along_road(metrics);
+  return at_side && metrics.max_depth_m.value >= min_step_m && metrics.length_m >= min_kerb_m &&
+         elongation(metrics) >= min_elongation && is_along_road(metrics);
 }
 
 /// Whether two standard errors of the area do not include 0.

@@ -88,16 +88,23 @@ double log_ratio(double grey, const RobustNormal& one, const RobustNormal& other
 
 }  // namespace
 
-void refine_outline_by_image(const ImageEdges& image_edges, int columns, int rows, BoxMask& region) {
+void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uint8_t>& unseen, BoxMask& region) {
   // Prior log-odds of the road: most of these cells were measured on it.
   constexpr double min_log_ratio = 1.5;
   constexpr std::size_t min_samples = 30;
-  const int radius = image_edges.window_radius;
+  const int radius = image_edges.window_radius, columns = unseen.width(), rows = unseen.height();
   const CellBox around = region.box().grown(3 * radius, columns, rows);
   const BoxMap grey = smooth_grey_cells(image_edges, around, columns, rows);
   const BoxMask near = dilate(region, radius, around);
-  const BoxMask far = dilate(region, 3 * radius, around);
-  const RobustNormal inside = tone_of(grey, erode(region, 2, around), nullptr);
+  BoxMask far = dilate(region, 3 * radius, around), core = erode(region, 2, around);
+  for (int j = around.first_row; j <= around.last_row; ++j) {
+    for (int i = around.first_column; i <= around.last_column; ++i) {
+      if (unseen(i, j) == 0) continue;
+      far.set(i, j, false);
+      core.set(i, j, false);
+    }
+  }
+  const RobustNormal inside = tone_of(grey, core, nullptr);
   const RobustNormal outside = tone_of(grey, far, &near);
   if (inside.samples < min_samples || outside.samples < min_samples || inside.median == outside.median) return;
   const bool is_dark = inside.median < outside.median;
@@ -114,7 +121,7 @@ void refine_outline_by_image(const ImageEdges& image_edges, int columns, int row
     const CellIndex cell = front.back();
     front.pop_back();
     for_each_neighbour(cell.column, cell.row, columns, rows, [&](int i, int j) {
-      if (region(i, j) || !near(i, j) || !is_inside(grey(i, j))) return;
+      if (region(i, j) || !near(i, j) || unseen(i, j) != 0 || !is_inside(grey(i, j))) return;
       region.set(i, j);
       front.push_back({i, j});
     });

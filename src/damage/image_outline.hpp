@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "damage/box_mask.hpp"
+#include "roadstereo/image.hpp"
 
 namespace roadstereo {
 
@@ -17,7 +18,8 @@ struct ImageEdges {
 /// the disparity of the road over the rim of a steep wall, and occluded parts of the wall have no disparity; the image
 /// shows both. Cells within `window_radius` of the region join it if they are connected to it and the likelihood
 /// of their grey level inside, or of the median there if they differ even more from the road, is at least 4.5 times
-/// that on the road. What is on the other side of the road's tone does not.
-void refine_outline_by_image(const ImageEdges& image_edges, int columns, int rows, BoxMask& region);
+/// that on the road. What is on the other side of the road's tone does not, nor does what is `unseen` (not 0), of the
+/// size of the image of cells: under a mask the picture shows no road.
+void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uint8_t>& unseen, BoxMask& region);
 
 }  // namespace roadstereo

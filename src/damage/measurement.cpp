@@ -110,7 +110,8 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   damage.id = static_cast<int>(k + 1);
   damage.kind = candidate.kind;
   damage.evidence = candidate.evidence;
-  damage.cut_by_border = candidate.evidence.border_share > 0;
+  constexpr double min_unseen_share = 0.1;  // single cells without a measurement cut nothing
+  damage.cut_by_border = candidate.evidence.border_share > 0 || candidate.evidence.unseen_share >= min_unseen_share;
   const PixelBox box = pixel_box(candidate, segmentation.cells);
   damage.evidence.surface_significance = surface_significance(input, maps, damage.id, box, offset.value);
   for_each_run(maps.ids, damage.id, box,

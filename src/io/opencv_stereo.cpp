@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cctype>
 #include <initializer_list>
+#include <string_view>
 
 #include "io/calibration_formats.hpp"
 #include "io/opencv_file.hpp"
@@ -17,6 +19,19 @@ class Storage {
   }
 
   const std::string& path() const { return path_; }
+
+  /// Returns the first key that begins with `start`, in whatever case, but for "distortion_model"; empty: none.
+  std::string first_key_with(std::string_view start) const {
+    for (const auto& entry : entries_) {
+      const std::string& key = entry.first;
+      const bool begins = key.size() >= start.size() &&
+                          std::equal(start.begin(), start.end(), key.begin(), [](char expected, char letter) {
+                            return expected == std::tolower(static_cast<unsigned char>(letter));
+                          });
+      if (begins && key != "distortion_model") return key;
+    }
+    return {};
+  }
 
   /// Returns the first existing entry of `keys` and its name, or null.
   const OpenCvEntry* find(std::initializer_list<const char*> keys, std::string& name) const {
@@ -82,6 +97,16 @@ std::vector<double> read_distortion(const Storage& storage, const char* key) {
   return entry == nullptr ? std::vector<double>{} : values_of(storage, key, *entry);
 }
 
+/// A rectified pair has no distortion. One of a lens must not get lost because it has another name.
+void require_distortion(const Storage& storage) {
+  std::string name;
+  const bool left = storage.find({"D1"}, name) != nullptr, right = storage.find({"D2"}, name) != nullptr;
+  const std::string other = storage.first_key_with("dist");
+  if (left == right && (left || other.empty())) return;
+  fail(storage.path(), ": ", left ? "D2" : "D1", " is missing", other.empty() ? "" : "; there is a key " + other,
+       "; a lens without distortion has 0 0 0 0 0");
+}
+
 int read_side(const Storage& storage, std::initializer_list<const char*> keys, std::size_t index) {
   std::string key;
   const OpenCvEntry* entry = storage.find(keys, key);
@@ -96,9 +121,22 @@ bool read_fisheye(const Storage& storage) {
   std::string key;
   const OpenCvEntry* entry = storage.find({"fisheye", "distortion_model", "camera_model"}, key);
   if (entry == nullptr || entry->kind != OpenCvEntry::Kind::text) return false;
-  constexpr std::array<std::string_view, 6> names = {"1",           "true",        "fisheye",
-                                                     "equidistant", "\"fisheye\"", "\"equidistant\""};
-  return std::find(names.begin(), names.end(), entry->words[0]) != names.end();
+  std::string name;
+  for (const char letter : entry->words[0]) {
+    if (std::isalnum(static_cast<unsigned char>(letter)) == 0) continue;  // quotes, "plumb_bob"
+    name += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  }
+  const auto is_one_of = [&](std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (is_one_of({"1", "true", "fisheye", "equidistant", "equi", "kannalabrandt", "kannalabrandt4", "kannalabrandt8"})) {
+    return true;
+  }
+  if (is_one_of({"0", "false", "pinhole", "plumbbob", "radtan", "radialtangential", "brown", "brownconrady", "opencv",
+                 "rationalpolynomial", "perspective", "standard", ""})) {
+    return false;
+  }
+  fail(storage.path(), ": ", key, " is ", entry->words[0], "; it must be radtan or equidistant (fisheye)");
 }
 
 StereoRig read_rig(const CalibrationText& file, const CalibrationText* second) {
@@ -106,6 +144,7 @@ StereoRig read_rig(const CalibrationText& file, const CalibrationText* second) {
   StereoRig rig;
   rig.left_matrix = read_matrix<9>(storage, {"K1", "M1"});
   rig.right_matrix = read_matrix<9>(storage, {"K2", "M2"});
+  require_distortion(storage);
   rig.left_distortion = read_distortion(storage, "D1");
   rig.right_distortion = read_distortion(storage, "D2");
   rig.rotation = read_matrix<9>(storage, {"R"});

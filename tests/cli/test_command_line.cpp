@@ -31,7 +31,7 @@ TEST_F(CommandLine, HelpHasExamples) {
 TEST_F(CommandLine, InspectHelpFitsOnePage) {
   const Outcome help = run("inspect --help");
   EXPECT_EQ(help.out.rfind("Compute disparity", 0), 0U);
-  EXPECT_LE(std::count(help.out.begin(), help.out.end(), '\n'), 66);
+  EXPECT_LE(std::count(help.out.begin(), help.out.end(), '\n'), 67);
   EXPECT_NE(help.out.find("roadstereo options"), std::string::npos);
 }
 

@@ -38,12 +38,12 @@ Image<std::int16_t> square_on_road(const Tones& tones) {
 }
 
 /// Share of the cells of the strip that join the square, of those whose 3×3 mean is the strip's level.
-double joined(const Image<std::int16_t>& grey) {
+double joined(const Image<std::int16_t>& grey, const Image<std::uint8_t>& unseen = Image<std::uint8_t>(side, side, 0)) {
   BoxMask region(CellBox{first, first, last, last});
   for (int j = first; j <= last; ++j) {
     for (int i = first; i <= last; ++i) region.set(i, j);
   }
-  refine_outline_by_image({grey, 1, radius}, side, side, region);
+  refine_outline_by_image({grey, 1, radius}, unseen, region);
   int count = 0, all = 0;
   for (int j = first + 1; j < last; ++j) {
     for (int i = last + 2; i < last + strip_columns; ++i) {

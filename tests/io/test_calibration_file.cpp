@@ -172,6 +172,27 @@ TEST_F(ReadCalibration, ReadsOpenCvStereoYaml) {
   expect_refused(fisheye, "the fisheye model has 4");
 }
 
+std::string without(std::string text, const std::string& word, const std::string& instead) {
+  const std::size_t at = text.find(word);
+  return text.replace(at, word.size(), instead);
+}
+
+// Read as none, a distortion costs the damage of a whole recording.
+TEST_F(ReadCalibration, DistortionOfOpenCvStereoIsNotLost) {
+  const std::string good = opencv_file("K", "-0.12, 0, 0");
+  expect_refused(without(good, "D2:", "E2:"), "D2 is missing");
+  expect_refused(without(without(good, "D1:", "dist1:"), "D2:", "dist2:"), "D1 is missing; there is a key dist1");
+  expect_refused(good + "distortion_model: mei\n", "distortion_model is mei");
+  const std::string four = opencv_file("K", "-0.12, 0, 0", "0.1, -0.2, 0.01, 0.02");
+  const std::string short_file = without(without(four, "cols: 5", "cols: 4"), "cols: 5", "cols: 4");
+  for (const char* model : {"KannalaBrandt8", "\"equidistant\"", "equi", "Fisheye"}) {
+    EXPECT_TRUE(read_calibration(write(short_file + "distortion_model: " + model + "\n")).rig->fisheye) << model;
+  }
+  for (const char* model : {"plumb_bob", "radtan", "\"Brown\""}) {
+    EXPECT_FALSE(read_calibration(write(short_file + "distortion_model: " + model + "\n")).rig->fisheye) << model;
+  }
+}
+
 TEST_F(ReadCalibration, ReadsOpenCvStereoXmlOfRectifiedPair) {
   const auto matrix = [](const std::string& key, const std::string& size, const std::string& data) {
     return "<" + key + " type_id=\"opencv-matrix\">" + size + "<dt>d</dt><data>" + data + "</data></" + key + ">\n";

@@ -267,6 +267,45 @@ TEST(PipelineMask, MaskedPixelsHaveNeitherDisparityNorDamage) {
   EXPECT_GT(damaged(mask), 0);
 }
 
+// What lies under a mask, a dark or a bright bonnet, tells nothing of the pothole that it cuts.
+TEST(PipelineMask, GreyUnderMaskHasNoInfluence) {
+  synth::SyntheticPair pair = scene("demo");
+  const int width = pair.left.width, height = pair.left.height;
+  PipelineOptions options = preset("default");
+  options.engine = "cpu";
+  const auto damages_under = [&](const Image<std::uint8_t>& mask, const std::optional<std::uint8_t>& grey) {
+    Frame left = pair.left;
+    const std::size_t channels = left.bytes.size() / static_cast<std::size_t>(width * height);
+    for (int v = 0; v < height && grey; ++v) {
+      for (int u = 0; u < width; ++u) {
+        if (mask(u, v) == 0) continue;
+        std::fill_n(left.bytes.begin() + static_cast<std::ptrdiff_t>(v * width + u) * std::ptrdiff_t(channels),
+                    channels, *grey);
+      }
+    }
+    Pipeline pipeline(options, pair.calibration);
+    pipeline.set_mask(mask);
+    pipeline.process(left.view(), pair.right.view());
+    return pipeline.find_damage().damages;
+  };
+  Pipeline whole(options, pair.calibration);
+  whole.process(pair.left.view(), pair.right.view());
+  const DamageMap damage = whole.find_damage();
+  ASSERT_FALSE(damage.damages.empty());
+  const auto& box = damage.damages[0].box_px;
+  Image<std::uint8_t> mask(width, height, 0);
+  for (int v = box[3] - (box[3] - box[1]) / 5; v < height; ++v) std::fill_n(mask.row(v), width, std::uint8_t{255});
+  for (const int grey : {20, 90, 250}) {
+    const std::vector<Damage> found = damages_under(mask, static_cast<std::uint8_t>(grey));
+    const auto cut = std::find_if(found.begin(), found.end(), [&](const Damage& each) {
+      return each.kind == damage.damages[0].kind && each.centroid_px[0] > box[0] && each.centroid_px[0] < box[2];
+    });
+    ASSERT_NE(cut, found.end()) << grey;
+    EXPECT_TRUE(cut->cut_by_border);
+    EXPECT_NEAR(cut->metrics->max_depth_m.value, damage.damages[0].metrics->max_depth_m.value, 0.01);
+  }
+}
+
 TEST(PipelineMask, OfAnotherSizeIsRejected) {
   const synth::SyntheticPair pair = scene("demo");
   PipelineOptions options = preset("fast");

@@ -50,6 +50,10 @@ void FlightSettings::validate() const {
   if (from < 0) fail("--from is ", from, "; it must be at least 0");
   if (to && *to < from) fail("--to is ", *to, "; it must be at least --from, which is ", from);
   if (!std::isfinite(track.offset_s)) fail("--track-offset is ", track.offset_s, "; it must be a number of seconds");
+  constexpr double min_sd_s = 0.001, max_sd_s = 600;
+  if (!(track.offset_sd_s >= min_sd_s && track.offset_sd_s <= max_sd_s)) {
+    fail("--track-offset-sd is ", track.offset_sd_s, "; it must be between ", min_sd_s, " and ", max_sd_s, " s");
+  }
   constexpr std::int64_t max_every = 1'000'000'000;
   if (every < 1 || every > max_every) fail("--every is ", every, "; it must be between 1 and ", max_every);
 }

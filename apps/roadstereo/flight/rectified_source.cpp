@@ -48,10 +48,22 @@ void RectifiedSource::set_white_level(double level) {
   white_known_ = true;
 }
 
+/// What is clipped at a white level that the first, dark pair suggested is no measurement.
+void RectifiedSource::require_white_level(const io::SourcePair& pair) const {
+  if (!checks_white_ || white_level_ <= 0 || pair.left.sample != SampleType::u16 ||
+      pair.right.sample != SampleType::u16)
+    return;
+  const double white = io::find_white_level(pair.left.view(), pair.right.view());
+  if (white <= white_level_) return;
+  fail("the image has samples above ", white_level_,
+       ", which the first pair tells to be white; set --set white_level=", white);
+}
+
 void RectifiedSource::rectify(io::SourcePair& pair) {
   if (!pair.error.empty()) return;
   try {
     if (!prepared_) prepare(pair);
+    require_white_level(pair);
     if (rectifier_) {
       io::RectifiedPair rectified = rectifier_->rectify(pair.left, pair.right);
       pair.left = std::move(rectified.left);

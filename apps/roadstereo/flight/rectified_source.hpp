@@ -37,9 +37,12 @@ class RectifiedSource {
 
   /// Sets the white level instead of determining it.
   void set_white_level(double level);
+  /// Accepts samples above the white level, which somebody else sets.
+  void ignore_white_level() { checks_white_ = false; }
 
  private:
   void prepare(const io::SourcePair& first);
+  void require_white_level(const io::SourcePair& pair) const;
 
   std::unique_ptr<io::FrameSource> source_;
   std::optional<io::CalibrationFile> file_;
@@ -49,6 +52,7 @@ class RectifiedSource {
   std::optional<io::Rectifier> rectifier_;
   double white_level_ = 0;
   bool white_known_ = false;
+  bool checks_white_ = true;
   bool prepared_ = false;
 };
 

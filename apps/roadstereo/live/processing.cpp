@@ -15,6 +15,7 @@ Processing::Processing(const ProcessingOptions& options, std::unique_ptr<Rectifi
       captured_(captured),
       auto_mask_(options.auto_mask) {
   options_.pipeline.validate();
+  if (!options_.find_white_level) rectifier_->ignore_white_level();
 }
 
 /// Creates the pipeline on first use, when the white level is known.

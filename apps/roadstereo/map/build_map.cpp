@@ -116,6 +116,7 @@ class MapBuilder {
     Pass pass;
     pass.source =
         std::make_unique<RectifiedSource>(io::open_source(from.source, from.source_options), from.calibration);
+    if (!from.find_white_level) pass.source->ignore_white_level();
     if (pass.source->source().live()) fail(from.source[0], ": a camera has no trajectory; record it first");
     const Trajectory trajectory = io::read_trajectory(from.trajectory);
     for (const FramePose& pose : trajectory.frames) {

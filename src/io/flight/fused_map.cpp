@@ -14,6 +14,7 @@ constexpr double mm = 1000;  // in a metre
 Damage fused(const RoadDamageRecord& record) {
   Damage damage = record.best.damage;
   if (damage.metrics) {
+    damage.metrics->area_m2 = record.area_m2;  // severity_text() tells a range only where it is known
     damage.metrics->severity = record.severity;
     damage.metrics->severity_probabilities = record.severity_probabilities;
   }

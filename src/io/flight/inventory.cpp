@@ -22,6 +22,16 @@ double error_of(const Damage& damage) {
   return damage.metrics ? damage.metrics->max_depth_m.std_error : damage.max_depth_px.std_error;
 }
 
+/// Severity as a number; the expected class where none has more than half of the probability.
+double severity_rank(const Damage& damage) {
+  const Severity severity = severity_of(damage);
+  const auto rank = [](Severity of) { return static_cast<double>(of); };
+  if (severity != Severity::uncertain || !damage.metrics) return rank(severity);
+  const SeverityProbabilities& of = damage.metrics->severity_probabilities;
+  return of.minor * rank(Severity::minor) + of.low * rank(Severity::low) + of.medium * rank(Severity::medium) +
+         of.high * rank(Severity::high);
+}
+
 /// Whether the damage is measured better: not cut by the border, then smaller error.
 bool is_better(const Damage& one, const Damage& other) {
   return std::tuple(one.cut_by_border, error_of(one)) < std::tuple(other.cut_by_border, error_of(other));
@@ -51,7 +61,7 @@ void measure(const FlightFrame& frame, const Damage& damage, RoadDamage& known) 
 
 bool is_worse(const RoadDamage& one, const RoadDamage& other) {
   const auto rank = [](const RoadDamage& damage) {
-    return std::tuple(-static_cast<int>(severity_of(damage.best)), -depth_of(damage.best), damage.id);
+    return std::tuple(-severity_rank(damage.best), -depth_of(damage.best), damage.id);
   };
   return rank(one) < rank(other);
 }

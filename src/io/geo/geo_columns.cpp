@@ -30,6 +30,7 @@ template <class Row>
 GeoColumn<Row> damage_property(const DamageColumn& column, const Damage Row::*member) {
   Damage known;
   known.metrics.emplace();
+  known.evidence.surface_significance = known.evidence.likely_wall_slope = known.evidence.extent = 0;
   return {column.name, std::visit(TypeOf{}, column.value(known)), [value = column.value, member](const Row& row) {
             return std::visit([](const auto& each) -> GeoValue { return each; }, value(row.*member));
           }};

@@ -85,15 +85,36 @@ bool share_a_key(const std::vector<ViewFile>& left, const std::vector<ViewFile>&
   return std::any_of(left.begin(), left.end(), [&](const ViewFile& view) { return keys.count(view.key) > 0; });
 }
 
-/// Uses the number as key if the names differ by camera ("left0001", "right0001").
+/// Numbers in a name, from the first to the last, without leading zeros.
+std::vector<std::string> numbers_in(const std::string& stem) {
+  constexpr const char* digits = "0123456789";
+  std::vector<std::string> numbers;
+  for (auto first = stem.find_first_of(digits); first != std::string::npos;) {
+    const std::size_t end = std::min(stem.find_first_not_of(digits, first), stem.size());
+    const std::size_t significant = std::min(stem.find_first_not_of('0', first), end - 1);
+    numbers.push_back(stem.substr(significant, end - significant));
+    first = stem.find_first_of(digits, end);
+  }
+  return numbers;
+}
+
+/// Uses the number as key if the names differ by camera ("left0001", "right0001"): the last one that is not the same in
+/// all names ("0001_left8bit").
 void key_by_number(std::vector<ViewFile>& views) {
-  for (ViewFile& view : views) {
-    const auto last = view.stem.find_last_of("0123456789");
-    const auto before = last == std::string::npos ? last : view.stem.find_last_not_of("0123456789", last);
-    if (last == std::string::npos) continue;
-    const std::size_t first = before == std::string::npos ? 0 : before + 1;
-    const std::size_t significant = std::min(view.stem.find_first_not_of('0', first), last);
-    view.key = view.stem.substr(significant, last - significant + 1);
+  std::vector<std::vector<std::string>> numbers;
+  for (const ViewFile& view : views) numbers.push_back(numbers_in(view.stem));
+  const std::vector<std::string>& some = numbers.front();
+  const bool alike =
+      std::all_of(numbers.begin(), numbers.end(), [&](const auto& of) { return of.size() == some.size(); });
+  std::size_t behind = 0;  // numbers that are the same in all names
+  while (alike && views.size() > 1 && behind < some.size()) {
+    const auto is_same = [&](const auto& of) { return of[of.size() - 1 - behind] == some[some.size() - 1 - behind]; };
+    if (!std::all_of(numbers.begin(), numbers.end(), is_same)) break;
+    ++behind;
+  }
+  if (behind == some.size()) behind = 0;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (numbers[i].size() > behind) views[i].key = numbers[i][numbers[i].size() - 1 - behind];
   }
 }
 
@@ -183,8 +204,12 @@ std::unique_ptr<FrameSource> open_folder(const std::string& folder, const Source
 
 std::unique_ptr<FrameSource> open_two_folders(const std::string& left, const std::string& right,
                                               const SourceOptions& options) {
-  const fs::path left_path = fs::path(left).lexically_normal();
-  return folder_pair(left_path.parent_path(), left_path, fs::path(right).lexically_normal(), options);
+  const auto without_slash = [](const std::string& folder) {
+    const fs::path path = fs::path(folder).lexically_normal();
+    return path.has_filename() ? path : path.parent_path();
+  };
+  const fs::path left_path = without_slash(left);
+  return folder_pair(left_path.parent_path(), left_path, without_slash(right), options);
 }
 
 }  // namespace roadstereo::io

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "io/geo/utc_time.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
@@ -71,6 +72,9 @@ std::vector<double> read_times(const std::filesystem::path& file, std::size_t co
     if (!time) {
       fail(file.string(), ", line ", number, ": \"", text,
            "\" is not a time; it must be seconds or YYYY-MM-DD hh:mm:ss.fff");
+    }
+    if (*time > latest_unix_s) {
+      fail(file.string(), ", line ", number, ": ", text, " is after the year 2100; times are seconds, not nanoseconds");
     }
     times.push_back(*time);
   }

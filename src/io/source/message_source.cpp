@@ -42,6 +42,7 @@ class MessageSource final : public FrameSource {
   std::optional<std::int64_t> size() const override { return std::max(left_.messages, right_.messages); }
 
   std::optional<CalibrationFile> calibration() const override {
+    if (!info_error_.empty()) fail(info_error_);
     if (!left_info_ || !right_info_) return std::nullopt;
     if (left_info_->k(0, 0) == 0 && right_info_->k(0, 0) == 0) return std::nullopt;  // not calibrated
     return join_camera_infos(*left_info_, *right_info_);
@@ -63,7 +64,15 @@ class MessageSource final : public FrameSource {
       log_->select({name});
       const std::optional<LoggedMessage> message = log_->next();
       if (!message) return std::nullopt;
-      CameraInfo camera = read_camera_info(file_ + ": " + name, message->bytes, topic.format);
+      CameraInfo camera;
+      try {
+        camera = read_camera_info(file_ + ": " + name, message->bytes, topic.format);
+      } catch (const SystemError&) {
+        throw;
+      } catch (const Error& error) {  // matters to nobody who has a calibration file
+        info_error_ = error.what();
+        return std::nullopt;
+      }
       if (image.name.find("/image_rect") != std::string::npos) {
         camera.k = camera.p.get_minor<3, 3>(0, 0);
         camera.r = cv::Matx33d::eye();
@@ -122,6 +131,7 @@ class MessageSource final : public FrameSource {
   BagTopic left_, right_;
   NearestPairs pairs_;
   std::optional<CameraInfo> left_info_, right_info_;
+  std::string info_error_;  ///< why there is none
   std::int64_t index_ = 0;
   bool finished_ = false;
 };

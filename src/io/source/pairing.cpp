@@ -5,6 +5,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "roadstereo/error.hpp"
+
 namespace roadstereo::io {
 namespace {
 
@@ -116,11 +118,18 @@ bool natural_less(const std::string& one, const std::string& other) {
 
 std::vector<ImagePair> pair_views(std::vector<ViewFile> left, std::vector<ViewFile> right,
                                   double max_time_difference_s) {
-  const auto by_key = [](const ViewFile& a, const ViewFile& b) { return natural_less(a.key, b.key); };
-  std::sort(left.begin(), left.end(), by_key);
-  std::sort(right.begin(), right.end(), by_key);
-  if (!named_by_time(left) || !named_by_time(right)) return pair_by_key(left, right);
-  return pair_by_time(left, right, max_time_difference_s);
+  const bool by_time = named_by_time(left) && named_by_time(right);
+  const auto is_before = [by_time](const ViewFile& a, const ViewFile& b) {
+    return by_time ? *a.time_s < *b.time_s : natural_less(a.key, b.key);
+  };
+  for (std::vector<ViewFile>* views : {&left, &right}) {
+    std::sort(views->begin(), views->end(), is_before);
+    const auto same = std::adjacent_find(views->begin(), views->end(),
+                                         [&](const auto& a, const auto& b) { return !is_before(a, b); });
+    if (same == views->end()) continue;
+    fail(same->path, " and ", std::next(same)->path, " are one frame by their names; there must be one image of each");
+  }
+  return by_time ? pair_by_time(left, right, max_time_difference_s) : pair_by_key(left, right);
 }
 
 }  // namespace roadstereo::io

@@ -296,6 +296,23 @@ TEST(FlightInventory, CutStartsNewDamages) {
       << "over a frame that is missing";
 }
 
+// One that is medium or high, about as likely, is worse than a minor one, and than a medium one if that is shallower.
+TEST(FlightInventory, UncertainSeverityRanksAsExpectedClass) {
+  FlightInventory inventory;
+  std::vector<Damage> damages{pothole(100, 100), pothole(300, 100), pothole(500, 100)};
+  const auto grade = [&](std::size_t k, Severity severity, const SeverityProbabilities& of) {
+    damages[k].metrics->severity = severity;
+    damages[k].metrics->severity_probabilities = of;
+  };
+  grade(0, Severity::minor, {.minor = 1, .low = 0, .medium = 0, .high = 0});
+  grade(1, Severity::uncertain, {.minor = 0, .low = 0, .medium = 0.5, .high = 0.5});
+  grade(2, Severity::medium, {.minor = 0, .low = 0, .medium = 1, .high = 0});
+  inventory.add(frame_of(0, damages));
+  std::vector<std::int64_t> order;
+  for (const RoadDamage& damage : worst_first(inventory.damages(), false)) order.push_back(damage.id);
+  EXPECT_EQ(order, (std::vector<std::int64_t>{2, 3, 1}));
+}
+
 TEST(FlightInventory, FrameWithoutRoadIsNoCut) {
   FlightInventory inventory;
   inventory.add(frame_of(0, {pothole(100, 100)}));

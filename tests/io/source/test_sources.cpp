@@ -190,6 +190,59 @@ TEST_F(FolderSource, PairsTwoFoldersByNumber) {
   expect_numbers(*pair, 7, 8);
 }
 
+// Of several numbers in a name that counts which is not the same in all of them.
+TEST_F(FolderSource, NumberOfFrameIsOneThatChanges) {
+  for (const std::uint8_t i : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{10}}) {
+    const std::string name = "street_000003_" + std::to_string(i);
+    image("a/" + name + "_leftImg8bit.png", i);
+    image("b/" + name + "_rightImg8bit.png", i);
+  }
+  const auto source = open_source({(folder_ / "a").string(), (folder_ / "b").string()});
+  for (const int i : {1, 2, 10}) {
+    const auto pair = source->next();
+    ASSERT_TRUE(pair);
+    expect_numbers(*pair, i, i);
+  }
+}
+
+TEST_F(FolderSource, TwoImagesOfOneFrameAreAnError) {
+  image("left/1.png", 1);
+  image("left/01.png", 1);
+  image("right/1.png", 1);
+  EXPECT_NE(complaint(".").find("one frame by their names"), std::string::npos) << complaint(".");
+}
+
+// As a shell completes them.
+TEST_F(FolderSource, SlashBehindFolderChangesNothing) {
+  image("left/1.png", 1);
+  image("right/1.png", 2);
+  text("times.txt", "0.5\n");
+  text("calibration.yaml", "focal_px: 300\ncx_px: 15.5\ncy_px: 11.5\nbaseline_m: 0.12\n");
+  const auto source = open_source({(folder_ / "left").string() + "/", (folder_ / "right").string() + "/"});
+  EXPECT_EQ(source->description().substr(0, 22), "folders left and right") << source->description();
+  EXPECT_FALSE(source->calibration_file().empty());
+  EXPECT_EQ(source->next()->time_s, 0.5);
+}
+
+// Python's str(time.time()) has as many decimals as it needs.
+TEST_F(FolderSource, TimesInNamesAreNumbers) {
+  const char* const names[] = {"1700000000.0933876", "1700000000.1", "1700000000.700015", "1700000001.25"};
+  for (std::uint8_t i = 0; i < 4; ++i) {
+    image(std::string("left/") + names[i] + ".png", i);
+    image(std::string("right/") + names[i] + ".png", i);
+  }
+  const std::vector<SourcePair> pairs = all();
+  ASSERT_EQ(pairs.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) expect_numbers(pairs[i], static_cast<int>(i), static_cast<int>(i));
+}
+
+TEST_F(FolderSource, NanosecondsAreNoSeconds) {
+  image("left/1.png", 1);
+  image("right/1.png", 2);
+  text("times.txt", "1403636579763555584\n");
+  EXPECT_NE(complaint(".").find("not nanoseconds"), std::string::npos) << complaint(".");
+}
+
 /// synth and live --record write calibration.yaml beside the pictures.
 TEST_F(FolderSource, TakesCalibrationBesideImages) {
   image("left/0.png", 0);
