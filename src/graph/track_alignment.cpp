@@ -104,8 +104,8 @@ class Aligner {
     for (std::size_t i = 0; i < up.size(); ++i) {
       if (up[i]) level_[i] = Eigen::Quaterniond::FromTwoVectors(*up[i], Eigen::Vector3d::UnitZ());
     }
-    std::vector<double> times_s;
-    for (const TimedPosition& frame : frames) times_s.push_back(frame.time_s);
+    std::vector<double> times_s(frames.size());
+    std::transform(frames.begin(), frames.end(), times_s.begin(), [](const auto& frame) { return frame.time_s; });
     independent_ = std::max(1.0, recorded_s(times_s, options.max_fix_gap_s) / std::max(options.fix_correlation_s, 1.0));
   }
 

@@ -101,8 +101,8 @@ std::vector<std::string> numbers_in(const std::string& stem) {
 /// Uses the number as key if the names differ by camera ("left0001", "right0001"): the last one that is not the same in
 /// all names ("0001_left8bit").
 void key_by_number(std::vector<ViewFile>& views) {
-  std::vector<std::vector<std::string>> numbers;
-  for (const ViewFile& view : views) numbers.push_back(numbers_in(view.stem));
+  std::vector<std::vector<std::string>> numbers(views.size());
+  std::transform(views.begin(), views.end(), numbers.begin(), [](const auto& view) { return numbers_in(view.stem); });
   const std::vector<std::string>& some = numbers.front();
   const bool alike =
       std::all_of(numbers.begin(), numbers.end(), [&](const auto& of) { return of.size() == some.size(); });
