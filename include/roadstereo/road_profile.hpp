@@ -74,8 +74,8 @@ struct LaneProfiles {
 std::vector<std::vector<std::array<double, 2>>> forward_paths(std::span<const std::array<double, 2>> path);
 
 /// Measures profiles along a path, metres in the map. Heights of a profile are means over a strip; their standard
-/// errors count the cells of one support window of matching as one sample. The path ends where it turns back. Throws
-/// Error for options out of range.
+/// errors count the cells of one support window of matching as one sample. Only the first of its forward_paths()
+/// counts. Throws Error for options out of range.
 LaneProfiles measure_lane(const RoadMap& map, std::span<const std::array<double, 2>> path, const LaneOptions& options);
 
 }  // namespace roadstereo

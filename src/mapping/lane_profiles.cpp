@@ -62,7 +62,7 @@ class PathParts {
   std::vector<Point> back_;  ///< points behind the end of the last part
 };
 
-/// A path by distance travelled, up to where it turns back.
+/// The first forward part of a path, by distance travelled.
 class Path {
  public:
   explicit Path(std::span<const std::array<double, 2>> points) {

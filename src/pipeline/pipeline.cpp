@@ -47,6 +47,23 @@ constexpr double min_correction_px = 0.05;  // interpolation between rows blurs:
 /// What a measurement of the rows goes with.
 enum class Rows { of_new_road, of_tracked_road };
 
+/// The misalignment that makes the offsets of the rows.
+Misalignment misalignment_of(const RowOffset& rows, int width, int height,
+                             const std::optional<StereoCalibration>& calibration) {
+  const double cx = calibration ? calibration->cx_px + calibration->disparity_offset_px : 0.5 * (width - 1);
+  const double cy = calibration ? calibration->cy_px : 0.5 * (height - 1);
+  return {rows.at(cx, cy), rows.per_column, rows.per_row, cx, cy};
+}
+
+/// Whether the misalignments differ by more than the error of the rows that the first is of.
+bool differ(const Misalignment& measured, const RowAlignment& rows, const Misalignment& last, int width, int height) {
+  constexpr double min_std_errors = 5;
+  const Misalignment change{measured.rows_px - last.rows_px, measured.turn_rad - last.turn_rad,
+                            measured.row_scale - last.row_scale, measured.cx_px, measured.cy_px};
+  const double std_error = rows.fit_sigma_px / std::sqrt(rows.points);
+  return change.largest_px(width, height) > std::max(min_correction_px, min_std_errors * std_error);
+}
+
 std::unique_ptr<FrameStages> make_stages(const std::string& engine, const PipelineOptions& options,
                                          const std::optional<StereoCalibration>& calibration) {
 #if defined(ROADSTEREO_WITH_CUDA)
@@ -181,29 +198,12 @@ void Pipeline::State::track_in_noise(const GreyPair& pair) {
   if (tracked.has_road()) result.road = tracked;
 }
 
-/// The misalignment that makes the offsets of the rows.
-Misalignment misalignment_of(const RowOffset& rows, int width, int height,
-                             const std::optional<StereoCalibration>& calibration) {
-  const double cx = calibration ? calibration->cx_px + calibration->disparity_offset_px : 0.5 * (width - 1);
-  const double cy = calibration ? calibration->cy_px : 0.5 * (height - 1);
-  return {rows.at(cx, cy), rows.per_column, rows.per_row, cx, cy};
-}
-
 /// Whether the rows are to be measured although the road is tracked: a mount creeps, and where they could not be
 /// measured before, a better frame may tell.
 bool Pipeline::State::rows_are_due() const {
   constexpr int frames_while_known = 100, frames_while_unknown = 10;
   return options.check_rows &&
          carried.frames_since_rows >= (carried.rows_known ? frames_while_known : frames_while_unknown);
-}
-
-/// Whether the misalignments differ by more than the error of the rows that the first is of.
-bool differ(const Misalignment& measured, const RowAlignment& rows, const Misalignment& last, int width, int height) {
-  constexpr double min_std_errors = 5;
-  const Misalignment change{measured.rows_px - last.rows_px, measured.turn_rad - last.turn_rad,
-                            measured.row_scale - last.row_scale, measured.cx_px, measured.cy_px};
-  const double std_error = rows.fit_sigma_px / std::sqrt(rows.points);
-  return change.largest_px(width, height) > std::max(min_correction_px, min_std_errors * std_error);
 }
 
 /// Measures the vertical offset of the pair, and keeps it where it is to be corrected. What was measured before stays
