@@ -6,8 +6,9 @@
 namespace roadstereo {
 
 /// Find the road region: cells within 3 standard deviations of the surface, or as near as the relief of a road, in
-/// units of the coordinates, that belong to its largest connected component after a morphological opening. Verges and
-/// walls of the same height are separate components. 255 inside; holes of more than 30 cells, such as damage, stay 0.
+/// units of the coordinates, that belong to its largest connected component after bands of small errors across
+/// it are closed and a morphological opening. Verges and walls of the same height are separate components. 255 inside;
+/// holes of more than 30 cells, such as damage, stay 0.
 Image<std::uint8_t> find_road_region(const Cells& cells, const SurfaceCoordinates& coordinates,
                                      const RoadSurface& surface, double relief_m, int threads);
 

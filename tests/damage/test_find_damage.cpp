@@ -313,6 +313,29 @@ TEST(FindDamage, SmoothingDoesNotMakeDepthUnresolvable) {
   EXPECT_NEAR(known.damages[0].max_depth_px.std_error, total_px, 0.03 * total_px);
 }
 
+/// Matching that shifts rows by whole pixels errs by up to half of one in bands, where blocks straddle two shifts.
+TEST(FindDamage, BandsOfErrorsDoNotDivideRoad) {
+  ExactMaps maps(damaged_scene());
+  for (int v = 0; v < maps.disparity.height(); ++v) {
+    constexpr int spacing = 40, half_width = 2;
+    const int phase = v % spacing - half_width;
+    if (std::abs(phase) > half_width) continue;
+    const float error = phase < 0 ? 0.4F : -0.4F;
+    for (int u = 0; u < maps.disparity.width(); ++u) {
+      maps.disparity(u, v) += error;
+      maps.transformed(u, v) += error;
+    }
+  }
+  const DamageMap map = find_damage(maps.metric());
+  std::size_t road = 0;
+  for (int v = 0; v < map.road.height(); ++v) {
+    road += static_cast<std::size_t>(std::count(map.road.row(v), map.road.row(v) + map.road.width(), 255));
+  }
+  EXPECT_GT(static_cast<double>(road), 0.5 * static_cast<double>(map.road.pixels())) << "not one band of nine";
+  ASSERT_EQ(map.damages.size(), 2U);
+  EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, 0.06, 0.012);
+}
+
 TEST(FindDamage, IntactRoadHasNone) {
   synth::Scene scene = intact_scene();
   for (const double camber : {0.0, 0.02, 0.04}) {
