@@ -15,6 +15,7 @@ struct TransformedPair {
   ImageView<const std::int16_t> reference, target;
   const int* first_column = nullptr;  ///< of each row of the target that is not empty; nullptr: 0
   PerspectiveShift shift;
+  ImageView<const std::uint8_t> mask{};  ///< of the reference, not 0 masked; empty: none
 };
 
 }  // namespace roadstereo

@@ -13,6 +13,7 @@ namespace roadstereo {
 ///   road-anew        the last frame's road did not fit: it was searched anew
 ///   unexpected-pose  height or pitch are not what was expected
 ///   rows-disagree    the rows of the pair are shifted: it is not rectified
+///   rows-unknown     too few points tell whether they are
 ///   few-disparities  too few pixels have a disparity
 ///   static-mask      a part of the picture never moves and is ignored from this frame on
 ///   no-damage        damage could not be searched

@@ -2,14 +2,12 @@
 #include <cstdlib>
 
 #include "core/grey_weights.hpp"
+#include "core/require_size.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/image.hpp"
 
 namespace roadstereo {
 namespace {
-
-constexpr int min_side = 32;
-constexpr int max_side = 8192;
 
 /// Shares of the samples of one pixel in its grey value.
 struct Shares {
@@ -139,12 +137,16 @@ FrameView FrameView::rgba16(const std::uint16_t* data, int width, int height, st
   return view_of(data, width, height, stride_bytes, SampleType::u16, ChannelOrder::rgba);
 }
 
+void require_image_size(int width, int height) {
+  constexpr int min_side = 32, max_side = 8192;
+  if (width >= min_side && height >= min_side && width <= max_side && height <= max_side) return;
+  fail("the image has ", width, "×", height, " pixels; it must have between ", min_side, "×", min_side, " and ",
+       max_side, "×", max_side);
+}
+
 GreyWeights grey_weights(const FrameView& frame, double white_level) {
   if (frame.data == nullptr) fail("the image has no data");
-  if (frame.width < min_side || frame.height < min_side || frame.width > max_side || frame.height > max_side) {
-    fail("the image has ", frame.width, "×", frame.height, " pixels; it must have between ", min_side, "×", min_side,
-         " and ", max_side, "×", max_side);
-  }
+  require_image_size(frame.width, frame.height);
   require_layout(frame);
   const double largest = frame.sample == SampleType::u16 ? 65535 : 255;
   if (!(white_level >= 0 && white_level <= largest)) {

@@ -16,6 +16,9 @@ inline void require_one_size(const ImageSize& left, const ImageSize& right) {
        right.height, "; a pair must have one size");
 }
 
+/// 32×32 … 8192×8192 pixels.
+void require_image_size(int width, int height);
+
 /// A mask may be empty.
 inline void require_mask_size(const ImageSize& mask, const ImageSize& pair) {
   if (mask.width == 0 || mask == pair) return;

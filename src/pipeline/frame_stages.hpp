@@ -87,9 +87,9 @@ class FrameStages {
   virtual RefinedMaps refine(const DisparityMaps& maps, const DisparityPlane& road) = 0;
   /// interpolate_disparities, where not every pixel was matched.
   virtual InterpolatedMaps interpolate(const RefinedMaps& maps, const DisparityPlane& road) = 0;
-  /// lucas_kanade.
+  /// lucas_kanade; `mask` of the left image, not 0 masked, or empty.
   virtual ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,
-                                       const PerspectiveShift& shift) = 0;
+                                       const PerspectiveShift& shift, ImageView<const std::uint8_t> mask) = 0;
   /// reject_off_road; the step before must have run.
   virtual ImageView<const float> reject_off_road(ImageView<const float> disparity, const DisparityPriorView& scene,
                                                  const PerspectiveShift& shift, const OffRoadOptions& options) = 0;

@@ -14,6 +14,7 @@
 #include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
+#include "stereo/adaptive_support.hpp"
 #include "stereo/coarse/coarse_search.hpp"
 #include "stereo/window.hpp"
 
@@ -44,7 +45,7 @@ class HostStages final : public FrameStages {
  public:
   HostStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
       : options_(options),
-        sampled_(options.matcher),
+        sampled_(without_prior(options.matcher)),
         samples_(effective_samples(options.matcher)),
         calibration_(calibration),
         threads_(resolve_threads(options.threads)),
@@ -130,10 +131,10 @@ class HostStages final : public FrameStages {
     return {disparity_, sigma_};
   }
 
-  ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,
-                               const PerspectiveShift& shift) override {
+  ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity, const PerspectiveShift& shift,
+                               ImageView<const std::uint8_t> mask) override {
     if (options_.lucas_kanade.radius == 0) return disparity;
-    const TransformedPair pair{input.reference, input.target, input.first_column, shift};
+    const TransformedPair pair{input.reference, input.target, input.first_column, shift, mask};
     lucas_kanade(pair, disparity, options_.lucas_kanade, threads_, restored_, correlation_);
     std::swap(disparity_, restored_);
     return disparity_;
@@ -201,10 +202,11 @@ class HostStages final : public FrameStages {
     return options.pixel_step;
   }
 
-  /// effective_samples, computed where the options have changed only.
+  /// effective_samples, computed where the options have changed only; the prior has no effect on it.
   double samples_of(const MatcherOptions& options) {
-    if (!(options == sampled_)) {
-      sampled_ = options;
+    const MatcherOptions support = without_prior(options);
+    if (!(support == sampled_)) {
+      sampled_ = support;
       samples_ = effective_samples(options);
     }
     return samples_;

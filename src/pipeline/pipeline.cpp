@@ -58,8 +58,9 @@ Misalignment misalignment_of(const RowOffset& rows, int width, int height,
 /// Whether the misalignments differ by more than the error of the rows that the first is of.
 bool differ(const Misalignment& measured, const RowAlignment& rows, const Misalignment& last, int width, int height) {
   constexpr double min_std_errors = 5;
+  const Misalignment& centre = measured.is_zero() ? last : measured;  // without a correction it has none
   const Misalignment change{measured.rows_px - last.rows_px, measured.turn_rad - last.turn_rad,
-                            measured.row_scale - last.row_scale, measured.cx_px, measured.cy_px};
+                            measured.row_scale - last.row_scale, centre.cx_px, centre.cy_px};
   const double std_error = rows.fit_sigma_px / std::sqrt(rows.points);
   return change.largest_px(width, height) > std::max(min_correction_px, min_std_errors * std_error);
 }
@@ -213,7 +214,13 @@ void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
   constexpr double max_spread_px = 1.0;
   result.rows = measure_row_alignment(grey.left, grey.right, threads);
   carried.frames_since_rows = 0;
-  if (!result.rows.known()) return;
+  if (!result.rows.known()) {
+    if (of == Rows::of_new_road) {
+      result.warnings.push_back(format_message("rows-unknown: whether the rows of the pair agree is unknown: ",
+                                               result.rows.points, " points are too few to tell"));
+    }
+    return;
+  }
   if (result.rows.fit_sigma_px <= max_spread_px) {
     Misalignment measured = misalignment_of(result.rows.fit, width, height, calibration);
     const double largest = measured.largest_px(width, height);
@@ -310,7 +317,7 @@ ImageView<const float> Pipeline::State::interpolate(const RefinedMaps& maps) {
 /// A Lucas–Kanade step undoes the pixel locking of eq. (13).
 ImageView<const float> Pipeline::State::align(const MatchInput& input, ImageView<const float> disparity) {
   const StageTimer timer(result.ms.refinement);
-  return stages->align(input, disparity, result.shift);
+  return stages->align(input, disparity, result.shift, mask);
 }
 
 /// Whether only disparities near the road are searched in a picture that shows other things, too. Where the road's

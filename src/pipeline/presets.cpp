@@ -79,6 +79,9 @@ void PipelineOptions::validate() const {
   coarse_search.validate();
   matcher.validate();
   lucas_kanade.validate();
+  if (perspective.shift == ShiftPrecision::whole_pixel && lucas_kanade.radius > 0) {
+    fail("perspective.shift is whole_pixel; lucas_kanade.radius must be 0 with it, but is ", lucas_kanade.radius);
+  }
   off_road.validate();
   refinement.validate();
   roll.validate();

@@ -124,20 +124,24 @@ std::vector<Measurement> smooth_series(std::span<const SeriesSample> samples) {
   constexpr std::size_t min_samples = 5;
   std::vector<Measurement> result;
   std::vector<std::size_t> known;
-  bool have_errors = true;
+  std::vector<double> errors;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     result.push_back({samples[k].value, samples[k].std_error});
     if (!std::isfinite(samples[k].value)) continue;
     known.push_back(k);
-    have_errors = have_errors && samples[k].std_error > 0 && std::isfinite(samples[k].std_error);
+    if (samples[k].std_error > 0 && std::isfinite(samples[k].std_error)) errors.push_back(samples[k].std_error);
   }
+  const bool have_errors = !errors.empty();
+  const double typical_error = have_errors ? upper_median(errors) : 1;
   if (known.size() < min_samples) return result;
   std::vector<Known> series;
   std::vector<double> variances;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const SeriesSample& sample = samples[known[i]];
     const double step = i == 0 ? 0 : std::max(0.0, sample.time - samples[known[i - 1]].time);
-    variances.push_back(have_errors ? sample.std_error * sample.std_error : 1);
+    const bool is_known = sample.std_error > 0 && std::isfinite(sample.std_error);
+    const double std_error = is_known ? sample.std_error : typical_error;
+    variances.push_back(std_error * std_error);
     series.push_back({step, sample.value, variances.back()});
   }
   std::vector<Filtered> filtered;

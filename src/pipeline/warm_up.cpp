@@ -1,6 +1,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/require_size.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo {
@@ -40,6 +41,7 @@ class SyntheticTexture {
 }  // namespace
 
 void Pipeline::warm_up(int width, int height) {
+  require_image_size(width, height);
   const SyntheticTexture left(width, height, options().white_level, false);
   const SyntheticTexture right(width, height, options().white_level, true);
   constexpr int frames = 2;  // found anew, and carried over

@@ -111,38 +111,41 @@ class LeftBlock {
   std::array<Columns, 2 * max_radius + 1> rows_{};
 };
 
-/// A row between those of the right image, from a column on: grey levels, those of linear interpolation, and their
-/// slope down. The last column that was read is there twice; what lies beside is finite.
+/// A row between those of the right image, from a column on: grey levels and their slopes. The last column that was read
+/// is there twice; what lies beside is finite.
 class BetweenRows {
  public:
   static constexpr int margin = 10;  ///< a block of 17 pixels that is stretched by half is so much wider
 
   void read(ImageView<const std::int16_t> right, int first, int count, int v, float low) {
     constexpr float unit = 1.0f / grey_scale;
-    const CubicWeights weights = cubic_weights(low);
+    const CubicWeights weights = cubic_weights(low), slopes = cubic_slope_weights(low);
     const std::int16_t *const before = right.row(v - 1) + first, *const at = right.row(v) + first;
     const std::int16_t *const after = right.row(v + 1) + first, *const beyond = right.row(v + 2) + first;
-    float *HWY_RESTRICT grey = grey_.data() + margin, *HWY_RESTRICT linear = linear_.data() + margin;
-    float* HWY_RESTRICT down = down_.data() + margin;
+    float *HWY_RESTRICT grey = grey_.data() + margin, *HWY_RESTRICT down = down_.data() + margin;
+    float *HWY_RESTRICT linear = linear_.data() + margin, *HWY_RESTRICT across = across_.data() + margin;
     for (int i = 0; i < count; ++i) {
+      const auto above = static_cast<float>(before[i]), below = static_cast<float>(beyond[i]);
       const auto top = static_cast<float>(at[i]), bottom = static_cast<float>(after[i]);
       // Linear interpolation blurs between two rows and not on one, which would draw the block towards whole rows.
-      grey[i] = unit * weighted(weights, static_cast<float>(before[i]), top, bottom, static_cast<float>(beyond[i]));
+      grey[i] = unit * weighted(weights, above, top, bottom, below);
       linear[i] = unit * (top + low * (bottom - top));
-      down[i] = unit * (bottom - top);
+      down[i] = unit * weighted(slopes, above, top, bottom, below);
     }
-    grey[count] = grey[count - 1];
-    linear[count] = linear[count - 1];
-    down[count] = down[count - 1];
+    // Slopes are those at the place itself: half a pixel off they are correlated with the noise of the residual.
+    for (int i = 1; i + 1 < count; ++i) across[i] = 0.5F * (linear[i + 1] - linear[i - 1]);
+    across[0] = linear[1] - linear[0];
+    across[count - 1] = linear[count - 1] - linear[count - 2];
+    for (float* const values : {grey, down, across}) values[count] = values[count - 1];
   }
   /// At column i + offset.
   const float* grey(int offset) const { return grey_.data() + margin + offset; }
-  const float* linear(int offset) const { return linear_.data() + margin + offset; }
+  const float* across(int offset) const { return across_.data() + margin + offset; }
   const float* down(int offset) const { return down_.data() + margin + offset; }
 
  private:
   static constexpr std::size_t capacity = columns + std::size_t{2} * margin + 2;
-  std::array<float, capacity> grey_{}, linear_{}, down_{};
+  std::array<float, capacity> grey_{}, down_{}, across_{}, linear_{};
 };
 
 /// Adds what the columns i + offset and i + offset + 1 of a row give to pixel i of the block, which lies at column
@@ -154,11 +157,9 @@ HWY_INLINE void add_columns(const BetweenRows& between, int offset, float slide,
   for (std::size_t i = 0; i < columns; i += hn::Lanes(df)) {
     const Float place = hn::MulAdd(hn::Iota(df, static_cast<float>(i)), hn::Set(df, stretch), hn::Set(df, slide));
     const Float weight = hn::Max(zero, hn::Sub(one, hn::Abs(hn::Sub(place, here))));
-    const Float slope =
-        hn::Sub(hn::LoadU(df, between.linear(offset + 1) + i), hn::LoadU(df, between.linear(offset) + i));
     add(row.grey.data() + i, hn::Mul(weight, hn::LoadU(df, between.grey(offset) + i)));
     add(row.down.data() + i, hn::Mul(weight, hn::LoadU(df, between.down(offset) + i)));
-    add(row.across.data() + i, hn::IfThenElseZero(hn::Eq(hn::Floor(place), here), slope));
+    add(row.across.data() + i, hn::Mul(weight, hn::LoadU(df, between.across(offset) + i)));
   }
 }
 
@@ -172,8 +173,10 @@ bool sample_row(ImageView<const std::int16_t> right, const LeftBlock& block, con
   if (!(std::abs(p[3]) <= max_stretch && at_v >= 1 && at_v < right.height() - 2 && start >= 0 &&
         end < right.width() - 1))
     return false;
-  const int v = static_cast<int>(at_v), first = static_cast<int>(start);
-  between.read(right, first, static_cast<int>(end) + 2 - first, v, static_cast<float>(at_v - v));
+  // A column more on either side, for the slopes.
+  const int v = static_cast<int>(at_v), first = std::max(0, static_cast<int>(start) - 1);
+  const int behind = std::min(right.width(), static_cast<int>(end) + 3);
+  between.read(right, first, behind - first, v, static_cast<float>(at_v - v));
   const auto slide = static_cast<float>(start - first), stretch = static_cast<float>(p[3]);
   const float last = slide + static_cast<float>(block.width() - 1) * stretch;
   row = {};

@@ -20,6 +20,15 @@ ROADSTEREO_HD inline CubicWeights cubic_weights(Real f) {
           static_cast<float>(half * f + 2 * f2 - one_and_half * f3), static_cast<float>(half * (f3 - f2))};
 }
 
+/// Those of its derivative.
+template <class Real>
+ROADSTEREO_HD inline CubicWeights cubic_slope_weights(Real f) {
+  constexpr Real half = Real(0.5), one_and_half = Real(1.5), four_and_half = Real(4.5);
+  const Real f2 = f * f;
+  return {static_cast<float>(2 * f - half - one_and_half * f2), static_cast<float>(four_and_half * f2 - 5 * f),
+          static_cast<float>(half + 4 * f - four_and_half * f2), static_cast<float>(one_and_half * f2 - f)};
+}
+
 /// What lies between four rows.
 ROADSTEREO_HD inline float weighted(const CubicWeights& weight, float before, float at, float after, float beyond) {
   return weight.before * before + weight.at * at + weight.after * after + weight.beyond * beyond;

@@ -38,4 +38,10 @@ inline MatcherOptions adapt_support(MatcherOptions options, double correlation) 
   return options;
 }
 
+/// The options that the costs depend on.
+inline MatcherOptions without_prior(MatcherOptions options) {
+  options.prior_weight = options.prior_truncation_px = 0;
+  return options;
+}
+
 }  // namespace roadstereo

@@ -1,4 +1,5 @@
 #include <cstddef>
+#include <mutex>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -57,6 +58,8 @@ Registry find_device_engine() {
 /// Looks for a device, which makes a CUDA context of some hundred megabytes: only where one may be used.
 const Registry& registry() {
   static Registry of_this_machine = find_device_engine();
+  static std::mutex mutex;  // pipelines of several threads may be the first
+  const std::lock_guard lock(mutex);
   Registry& all = of_this_machine;
   for (; all.host_engines < host_engines().size(); ++all.host_engines) {
     all.usable.push_back(host_engines()[all.host_engines]);

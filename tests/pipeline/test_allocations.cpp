@@ -72,7 +72,12 @@ TEST(StaticMaskAllocations, ForFirstFrameAndWhenItJudgesOnly) {
   EXPECT_EQ(allocations()->count - before, 0U);
 }
 
-class PresetAllocations : public testing::TestWithParam<std::string> {};
+/// Presets, and the noise of the pictures: its correlation, which the weight of the prior follows, is never the same.
+class PresetAllocations : public testing::TestWithParam<std::tuple<std::string, int>> {
+ protected:
+  static const std::string& preset_name() { return std::get<0>(GetParam()); }
+  static int noise_grey() { return std::get<1>(GetParam()); }
+};
 
 TEST_P(PresetAllocations, NoneAfterFirstFrames) {
   SKIP_WITHOUT_COUNT();
@@ -80,13 +85,14 @@ TEST_P(PresetAllocations, NoneAfterFirstFrames) {
   scene.rig.width = 320;
   scene.rig.height = 240;
   scene.supersampling = 1;
+  scene.degradation.noise_grey = noise_grey();
   std::vector<synth::SyntheticPair> frames;
   for (int i = 0; i < 3; ++i) {
     frames.push_back(synth::render(scene));
     scene = synth::next_frame(scene, i + 1, 0.05);
   }
   for (int threads = 1; threads <= max_threads; ++threads) {
-    PipelineOptions options = preset(GetParam());
+    PipelineOptions options = preset(preset_name());
     options.engine = "cpu";  // what CUDA's runtime takes of the host is its own affair
     options.threads = threads;
     options.perspective.disparities = 32;
@@ -102,8 +108,11 @@ TEST_P(PresetAllocations, NoneAfterFirstFrames) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Presets, PresetAllocations, testing::ValuesIn(preset_names()),
-                         [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Presets, PresetAllocations,
+                         testing::Combine(testing::ValuesIn(preset_names()), testing::Values(0, 8)),
+                         [](const auto& test) {
+                           return std::get<0>(test.param) + "Noise" + std::to_string(std::get<1>(test.param));
+                         });
 
 /// Most bytes that matching needs beyond the images and maps that exist before.
 std::size_t matching_memory(int width, int height, int disparities, const MatcherOptions& options) {

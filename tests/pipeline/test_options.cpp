@@ -70,6 +70,14 @@ TEST(SetOption, ErrorSaysExpectedValue) {
   EXPECT_NE(refusal("matcher.sigma_space", ""), "accepted");
 }
 
+TEST(PipelineOptions, WholePixelShiftsNeedNoLucasKanadeStep) {
+  PipelineOptions options = preset("default");
+  options.perspective.shift = ShiftPrecision::whole_pixel;
+  EXPECT_THROW(options.validate(), Error);
+  options.lucas_kanade.radius = 0;
+  EXPECT_NO_THROW(options.validate());
+}
+
 TEST(ListOptions, EveryOptionRoundTrips) {
   PipelineOptions options = preset("paper");
   options.matcher.sigma_space = 1.0 / 3;

@@ -306,6 +306,32 @@ TEST(PipelineMask, GreyUnderMaskHasNoInfluence) {
   }
 }
 
+TEST(Pipeline, WarmUpChecksSizeFirst) {
+  Pipeline pipeline(preset("default"));
+  for (const auto& [width, height] : {std::pair{-1, 3}, {1'000'000, 1'000'000}, {31, 64}}) {
+    try {
+      pipeline.warm_up(width, height);
+      FAIL() << width;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(std::to_string(width)), std::string::npos) << error.what();
+    }
+  }
+}
+
+/// Stripes along the rows tell nothing of the rows.
+TEST(Pipeline, SaysThatRowsAreUnknown) {
+  std::vector<std::uint8_t> stripes(std::size_t{320} * 240);
+  for (std::size_t k = 0; k < stripes.size(); ++k) stripes[k] = static_cast<std::uint8_t>(120 + (k % 320 * 37) % 90);
+  const FrameView picture = FrameView::grey8(stripes.data() + 4, 300, 240, 320);
+  const FrameView moved = FrameView::grey8(stripes.data(), 300, 240, 320);
+  Pipeline pipeline(preset("default"));
+  const FrameResult& result = pipeline.process(moved, picture);
+  EXPECT_FALSE(result.rows.known());
+  const bool is_said = std::any_of(result.warnings.begin(), result.warnings.end(),
+                                   [](const std::string& warning) { return warning_code(warning) == "rows-unknown"; });
+  EXPECT_TRUE(is_said);
+}
+
 TEST(PipelineMask, OfAnotherSizeIsRejected) {
   const synth::SyntheticPair pair = scene("demo");
   PipelineOptions options = preset("fast");

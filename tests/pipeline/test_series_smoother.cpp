@@ -101,6 +101,14 @@ TEST(SmoothSeries, WeighsSamplesByTheirErrors) {
   EXPECT_GT(score(smooth_series(equal), weighted.truth).rms, 0.1);
 }
 
+/// An error of 0 is none: it must not discard those of the others.
+TEST(SmoothSeries, OneSampleWithoutErrorTakesThatOfTheOthers) {
+  Swing swing(0.1);
+  for (SeriesSample& sample : swing.samples) sample.std_error = 1;
+  swing.samples[7].std_error = 0;
+  for (const Measurement& value : smooth_series(swing.samples)) EXPECT_NEAR(value.std_error, 1, 0.02);
+}
+
 TEST(SmoothSeries, UnitsHaveNoEffect) {
   const Swing swing(0.2, 100);
   std::vector<SeriesSample> scaled = swing.samples;

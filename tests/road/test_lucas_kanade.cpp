@@ -57,6 +57,38 @@ TEST(LucasKanade, UndoesPixelLocking) {
   }
 }
 
+/// A bright bar that never moves, masked: what its edges add to the filtered rows beside it is not used.
+TEST(LucasKanade, LeavesOutWhatMaskTouches) {
+  constexpr double truth = 6.3;
+  constexpr int first = 70, last = 85;
+  test::TexturedPair pair = test::textured_pair(width, height, [](double, double) { return truth; });
+  Image<float> disparity(width, height, static_cast<float>(truth));
+  Image<std::uint8_t> mask(width, height, 0);
+  for (int v = 0; v < height; ++v) {
+    for (int u = first; u <= last; ++u) {
+      pair.reference(u, v) = pair.target(u, v) = static_cast<std::int16_t>(grey_max);
+      mask(u, v) = 255;
+      disparity(u, v) = nan;
+    }
+    for (int u = last + 1; u <= last + 8; ++u) {  // what the bar hides from the other camera
+      mask(u, v) = 255;
+      disparity(u, v) = nan;
+    }
+  }
+  const auto error_beside = [&](ImageView<const std::uint8_t> used) {
+    Image<float> aligned;
+    TransformedPair masked{pair.reference, pair.target, nullptr, no_shift(), used};
+    lucas_kanade(masked, disparity, {}, 1, aligned);
+    double sum = 0;
+    for (int v = 20; v < height - 20; ++v) {
+      for (int u = first - 6; u < first; ++u) sum += std::pow(static_cast<double>(aligned(u, v)) - truth, 2);
+    }
+    return std::sqrt(sum / (6.0 * (height - 40)));
+  };
+  EXPECT_GT(error_beside({}), 0.04);
+  EXPECT_LT(error_beside(mask), 0.02);
+}
+
 TEST(LucasKanade, IgnoresGainAndOffset) {
   constexpr double truth = 6.3;
   test::TexturedPair pair = test::textured_pair(width, height, [](double, double) { return truth; });

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
@@ -26,6 +28,14 @@ class ConstantEngine final : public StereoEngine {
 
 std::unique_ptr<StereoEngine> make_constant(int /*threads*/) {
   return std::make_unique<ConstantEngine>();
+}
+
+TEST(Engines, AreListedFromManyThreads) {
+  std::vector<std::string> first(8);
+  std::vector<std::thread> threads;
+  for (std::string& name : first) threads.emplace_back([&name] { name = engines().front().name; });
+  for (std::thread& thread : threads) thread.join();
+  for (const std::string& name : first) EXPECT_EQ(name, engines().front().name);
 }
 
 TEST(RegisterEngine, PipelineUsesIt) {

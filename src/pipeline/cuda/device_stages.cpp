@@ -164,8 +164,9 @@ class DeviceStages final : public FrameStages {
     return {maps_.disparity(), maps_.sigma()};
   }
 
-  ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity,
-                               const PerspectiveShift& shift) override {
+  /// There is never a mask on a device.
+  ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity, const PerspectiveShift& shift,
+                               ImageView<const std::uint8_t>) override {
     if (options_.lucas_kanade.radius > 0) {
       const TransformedPair pair{input.reference, input.target, input.first_column, shift};
       correlation_ = lucas_kanade_.run(pair, disparity, options_.lucas_kanade.radius,

@@ -49,8 +49,10 @@ class WorkerRows {
   void add(const TransformedPair& pair, ImageView<const float> disparity, int v) {
     prefilter_row(pair.reference.row(v), width_, row(0));
     prefilter_row(pair.target.row(v), width_, row(1));
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
     std::copy_n(disparity.row(v), width_, row(2));
-    std::fill_n(row(2) + width_, sample_guard, std::numeric_limits<float>::quiet_NaN());
+    std::fill_n(row(2) + width_, sample_guard, none);
+    if (!pair.mask.empty()) leave_out_beside(pair.mask.row(v));
     const int first = pair.first_column != nullptr ? pair.first_column[v] : 0;
     const SampleRow samples{row(0), row(1), row(2), first, width_, shift_line(pair.shift, v)};
     add_samples(samples, static_cast<std::ptrdiff_t>(pitch_), row(3));
@@ -68,6 +70,16 @@ class WorkerRows {
 
  private:
   float* row(std::size_t k) { return memory_ + k * pitch_ + sample_guard; }
+
+  /// Pixels whose filtered grey levels or gradients take in masked ones give no sample.
+  void leave_out_beside(const std::uint8_t* mask) {
+    constexpr int reach = prefilter_radius + 1;
+    for (int u = 0; u < width_; ++u) {
+      if (mask[u] == 0) continue;
+      const int first = std::max(0, u - reach), last = std::min(width_ - 1, u + reach);
+      std::fill(row(2) + first, row(2) + last + 1, std::numeric_limits<float>::quiet_NaN());
+    }
+  }
 
   float* memory_;
   int width_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "stereo/adaptive_support.hpp"
 #include "stereo/cpu/view_matcher.hpp"
 #include "stereo/trim_window.hpp"
 #include "stereo/window.hpp"
@@ -121,9 +122,12 @@ class CpuEngine final : public StereoEngine {
   }
 
  private:
+  /// The weight of the prior differs from frame to frame in noise: nothing is prepared anew for that.
   void use(const MatcherOptions& options) {
-    if (options_ == options) return;
-    options_ = options;
+    for (ViewMatcher& matcher : matchers_) matcher.set_prior(options);
+    const MatcherOptions support = without_prior(options);
+    if (options_ == support) return;
+    options_ = support;
     taps_ = trimmed_taps(options);
     prepared_columns_ = prepared_disparities_ = 0;
   }

@@ -43,14 +43,17 @@ void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& op
   const AggregationScratchSize scratch = aggregation_scratch(ring_, static_cast<int>(taps.size()), pitch);
   scratch_.resize(1, 0, scratch.numbers);
   effective_samples_ = static_cast<float>(effective_samples(options));
-  prior_weight_ = static_cast<float>(options.prior_weight);
-  prior_truncation_px_ = static_cast<float>(options.prior_truncation_px);
   for (std::vector<float>* end : {&prior_low_, &prior_high_}) end->resize(static_cast<std::size_t>(padded));
   steps_.resize(static_cast<std::size_t>(scratch.pointers));
   winner_.resize(static_cast<std::size_t>(padded));
   offset_.resize(static_cast<std::size_t>(padded));
   variance_.resize(static_cast<std::size_t>(padded));
   window_.reserve(static_cast<std::size_t>(ring_));
+}
+
+void ViewMatcher::set_prior(const MatcherOptions& options) {
+  prior_weight_ = static_cast<float>(options.prior_weight);
+  prior_truncation_px_ = static_cast<float>(options.prior_truncation_px);
 }
 
 void ViewMatcher::match(const MatchView& view, const Tile& tile, MatchMaps& maps, Image<float>& offset) {

@@ -31,6 +31,9 @@ class ViewMatcher {
   /// Allocates memory for tiles of up to `columns` pixels across.
   void prepare(int columns, int disparities, const MatcherOptions& options, std::span<const Tap> taps);
 
+  /// Sets weight and truncation of the prior.
+  void set_prior(const MatcherOptions& options);
+
   /// Writes the winners of a tile of the view into `maps`, for the reference view also their variances and sub-pixel
   /// offsets.
   void match(const MatchView& view, const Tile& tile, MatchMaps& maps, Image<float>& offset);
