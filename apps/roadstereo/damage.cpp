@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "flight/flight_folder.hpp"
 #include "map_source.hpp"
 #include "processing_options.hpp"
 #include "report_head.hpp"
@@ -66,6 +67,9 @@ DamageMap find_in(const TransformedMap& map, const DamageArguments& arguments) {
 void run(const DamageArguments& arguments) {
   make_options(arguments.settings, arguments.severity);  // checked first
   const TransformedMap map = read_transformed_map(arguments.files);
+  if (is_pair_folder(arguments.output) || is_flight_folder(arguments.output)) {
+    fail(arguments.output, ": this folder has the results of inspect; choose another one");
+  }
   io::OutputFolder folder(arguments.output);
   const MapFiles& files = arguments.files;
   for (const auto& inputs : {std::vector{files.transformed, files.image, files.disparity}, files.calibration}) {

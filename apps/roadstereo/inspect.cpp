@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -96,7 +97,15 @@ void reject_flight_options(const FlightSettings& settings) {
   if (settings.map) reject("--map");
   if (settings.candidates) reject("--candidates");
   if (!settings.auto_mask) reject("--no-auto-mask");
-  if (!settings.source_settings.camera_size.empty()) reject("--camera-size");
+  if (settings.track.offset_s != 0) reject("--track-offset");
+  if (settings.track.offset_sd_s != TrackSettings().offset_sd_s) reject("--track-offset-sd");
+  if (settings.track.mount_yaw_deg != 0) reject("--mount-yaw");
+  const SourceSettings& source = settings.source_settings;
+  if (!source.camera_size.empty()) reject("--camera-size");
+  if (source.layout != SourceSettings().layout) reject("--layout");
+  if (!source.topics.empty()) reject("--topics");
+  if (source.max_time_difference_ms != SourceSettings().max_time_difference_ms) reject("--max-time-difference");
+  if (source.rate_hz != 0) reject("--rate");
   if (!settings.disparity.empty() && !settings.processing.rig_bias.empty()) {
     fail("--rig-bias is that of matching; the map of --disparity is taken as it is");
   }
@@ -115,11 +124,13 @@ void inspect_pair(const FlightSettings& settings) {
   if (is_flight_folder(settings.output)) {
     fail(settings.output, ": this folder has the results of a recording; choose another one for a pair");
   }
+  const bool wants_cloud = std::find(settings.write.begin(), settings.write.end(), "cloud") != settings.write.end();
   Inspection inspection;
   inspection.options = make_options(settings);
   inspection.preset = settings.processing.preset;
   inspection.files = pair_files(settings);
   inspection.pair = read_pair(inspection.files);
+  if (wants_cloud && !inspection.pair.calibration) fail("--write cloud needs --calibration");
   inspection.head = settings.head;
   inspection.mask_file = settings.mask;
   inspection.rig_bias_file = settings.processing.rig_bias;
@@ -128,9 +139,7 @@ void inspect_pair(const FlightSettings& settings) {
   if (!sets_white_level(settings.processing)) inspection.options.white_level = inspection.pair.white_level;
 
   io::OutputFolder folder(settings.output);  // fails early
-  for (const auto& inputs : {settings.source, settings.calibration, std::vector{settings.disparity}}) {
-    for (const std::string& input : inputs) folder.protect(input);
-  }
+  for (const std::string& input : input_files(settings)) folder.protect(input);
   process(inspection);
   auto stop = std::make_unique<StopSignals>();  // staged files do not stay
   add_result_files(settings.write, inspection, folder);

@@ -51,6 +51,10 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   if (summary.static_mask.share > 0) text += "  mask      " + static_mask_text(summary.static_mask) + "\n";
   text += fmt::format("  damage    {} damages in {} sightings, {} candidates\n", summary.damages, summary.sightings,
                       summary.candidates);
+  if (const std::string none = summary.no_road_text(); !none.empty()) text += "            " + none + "\n";
+  for (const HealthFinding& finding : summary.health.findings()) {
+    text += fmt::format("  health    {}: {}\n", finding.id, finding.text);
+  }
   if (summary.located)
     text += fmt::format("  track     {} of {} frames have a position\n", *summary.located, summary.frames);
   if (!summary.no_position_reason.empty()) text += fmt::format("            {}\n", summary.no_position_reason);
@@ -60,6 +64,9 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   }
   text += fmt::format("  time      {:.1f} s, {:.1f} frames/s\n", run.seconds, run.frames_per_second);
   for (const std::string& reason : summary.reasons) text += fmt::format("  no result {}\n", reason);
+  if (summary.further_reasons() > 0) {
+    text += fmt::format("            and {} more: see frames.csv\n", summary.further_reasons());
+  }
   return text + fmt::format("  report    {}\n", (folder.path() / "report.html").string());
 }
 
@@ -141,15 +148,20 @@ void inspect_flight(FlightSettings settings) {
   if (!plan.find_white_level) source.ignore_white_level();
   require_calibration(plan, settings.trajectory, source);
   require_frames(settings, source.source());
-  FlightFolder folder(settings.output);
-  for (const auto& inputs :
-       {settings.source, settings.calibration, std::vector{settings.track.file, settings.processing.rig_bias}}) {
-    for (const std::string& input : inputs) folder.protect(input);
+  if (is_pair_folder(settings.output)) {
+    fail(settings.output, ": this folder has the results of a pair; choose another one for a recording");
   }
+  FlightFolder folder(settings.output);
+  for (const std::string& input : input_files(settings)) folder.protect(input);
   io::FlightJournal journal = open_journal(settings, run.options, folder);
   journal.for_each([&](const io::FlightFrame& frame) { results.add(frame); });
   if (journal.last() && journal.last()->white_level > 0) source.set_white_level(journal.last()->white_level);
   run.resumed_at = journal.frames();
+  if (const auto done = journal.last(); settings.to && done && done->index > *settings.to) {
+    fail(settings.output, ": frames up to ", done->index, " are finished; --to is ", *settings.to);
+  }
+  if (settings.track.file.empty()) folder.remove_track_files();
+  if (!settings.trajectory) folder.remove_trajectory_files();
 
   std::optional<io::McapWriter> mcap = open_mcap(plan, settings, source, results, folder);
   Progress progress(frames_to_do(settings, source.source()), journal.frames(), settings.quiet);

@@ -71,13 +71,21 @@ std::string time_text(const FrameResult& result) {
                      result.ms.match);
 }
 
-std::string picture_lines(const std::filesystem::path& folder, bool has_sigma) {
-  std::string lines = line("report", (folder / "report.html").string());
-  lines += line("images", (folder / "overlay.png").string());
-  lines += line("", (folder / "sheet.png").string());
-  lines += line("", (folder / "disparity_color.png").string());
-  if (has_sigma) lines += line("", (folder / "sigma_color.png").string());
-  lines += line("", (folder / "transformed_color.png").string());
+/// Names the report and the pictures that were written.
+std::string picture_lines(const Inspection& inspection, const std::filesystem::path& folder) {
+  std::string lines;
+  const auto add = [&](const std::string& title, const char* name) {
+    const bool is_written = std::any_of(inspection.files_written.begin(), inspection.files_written.end(),
+                                        [name](const auto& file) { return file.first == name; });
+    if (is_written) lines += line(title, (folder / name).string());
+    return is_written;
+  };
+  add("report", "report.html");
+  std::string title = "images";
+  for (const char* name :
+       {"overlay.png", "sheet.png", "disparity_color.png", "sigma_color.png", "transformed_color.png"}) {
+    if (add(title, name)) title.clear();
+  }
   return lines;
 }
 
@@ -136,7 +144,7 @@ std::string summary(const Inspection& inspection, const std::filesystem::path& f
   text += line("damage", damage_text(inspection.damage));
   text += line("time", time_text(result));
   for (const std::string& warning : inspection.warnings) text += line("warning", warning);
-  return text + picture_lines(folder, !result.sigma.empty());
+  return text + picture_lines(inspection, folder);
 }
 
 }  // namespace roadstereo::cli

@@ -146,8 +146,9 @@ void bind_calibration(py::module_& module) {
       },
       py::arg("path"), py::arg("right_path") = py::none(),
       "Read a calibration file: a Calibration, or a StereoRig if its pairs must be rectified first.\n\n"
-      "The format is recognised by content: plain YAML, OpenCV stereo (YAML or XML), ROS camera_info (two files, left\n"
-      "and right), KITTI, Middlebury or K.txt. Raises Error naming the file and the bad value.");
+      "The format is recognised by content: plain YAML, OpenCV stereo (YAML or XML), ROS camera_info and EuRoC\n"
+      "sensor.yaml (two files, left and right), Kalibr, ZED, RealSense, DepthAI, COLMAP, KITTI, Middlebury or K.txt.\n"
+      "Raises Error naming the file and the bad value.");
 }
 
 }  // namespace roadstereo::python

@@ -336,6 +336,53 @@ TEST_F(InspectCommand, KeepsInputsInOutputFolder) {
   EXPECT_EQ(run("inspect road/left.png road/right.png --output road --quiet").exit_code, 0) << "other names";
 }
 
+TEST_F(InspectCommand, KeepsMaskInOutputFolder) {
+  make_road();
+  const std::vector<std::uint8_t> white(std::size_t{320} * 180, 255);
+  const Frame mask{white, 320, 180};
+  fs::create_directories(folder_ / "result");
+  write("result/overlay.png", io::encode_png(mask.view()));
+  const std::string before = read_text(folder_ / "result/overlay.png");
+  expect_complaint(inspect("--mask result/overlay.png"), 2, "would be overwritten");
+  EXPECT_EQ(read_text(folder_ / "result/overlay.png"), before);
+}
+
+TEST_F(InspectCommand, MaskWithoutWhiteIsRefused) {
+  make_road();
+  Frame mask{std::vector<std::uint8_t>(std::size_t{320} * 180, 0), 320, 180};
+  std::fill_n(mask.bytes.begin(), 1000, std::uint8_t{1});
+  write("mask.png", io::encode_png(mask.view()));
+  expect_complaint(inspect("--mask mask.png"), 2, "mask.png: the mask has no pixel of 255");
+  std::fill_n(mask.bytes.begin(), 1000, std::uint8_t{0});
+  write("mask.png", io::encode_png(mask.view()));
+  EXPECT_EQ(inspect("--mask mask.png --quiet").exit_code, 0) << "nothing is left out";
+}
+
+TEST_F(InspectCommand, OptionsOfRecordingsAreRefused) {
+  make_road();
+  for (const std::string option : {"--rate 5", "--topics a,b", "--layout top-bottom", "--max-time-difference 3",
+                                   "--mount-yaw 3", "--track-offset 5", "--track-offset-sd 1"}) {
+    expect_complaint(inspect(option), 2, option.substr(0, option.find(' ')) + " is for recordings only");
+  }
+}
+
+TEST_F(InspectCommand, SummaryNamesOnlyWhatWasWritten) {
+  make_road();
+  const Outcome disparity = inspect("--write disparity");
+  ASSERT_EQ(disparity.exit_code, 0) << disparity.err;
+  EXPECT_NE(disparity.out.find("result/disparity_color.png"), std::string::npos);
+  for (const char* name : {"report.html", "overlay.png", "sheet.png", "sigma_color.png"}) {
+    EXPECT_EQ(disparity.out.find(name), std::string::npos) << name;
+  }
+  expect_complaint(inspect("--write cloud"), 2, "--write cloud needs --calibration");
+}
+
+TEST_F(InspectCommand, DamageIsNotWrittenIntoItsResults) {
+  make_road();
+  ASSERT_EQ(inspect().exit_code, 0);
+  expect_complaint(run("damage result/transformed.tiff --output result"), 2, "results of inspect");
+}
+
 TEST_F(InspectCommand, InterruptedLeavesNoFiles) {
   make_road();
   std::set<std::string> without_clouds = result_files;

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
 
+#include "roadstereo/io/image_file.hpp"
+#include "roadstereo/io/label_image.hpp"
 #include "tests/cli/command_test.hpp"
 
 namespace roadstereo {
@@ -72,6 +75,18 @@ TEST_F(EvaluateDamage, LabelledPairsNeedNoScan) {
   const auto row = json_file("score.json")["rows"][0];
   EXPECT_EQ(row["frame"], "p1_00");
   EXPECT_GT(row["found"], 0) << row;
+  // The same grey levels in 10 of 16 bits.
+  for (const std::string view : {"left", "right"}) {
+    const std::string file = "pairs/" + view + "/p1_00.png";
+    GreyImage grey;
+    to_grey(io::read_frame((folder_ / file).string()).view(), 0, grey);
+    Image<std::uint16_t> deep(grey.width(), grey.height());
+    std::transform(grey.row(0), grey.row(0) + grey.pixels(), deep.row(0),
+                   [](std::int16_t level) { return static_cast<std::uint16_t>(level / (grey_scale / 4)); });
+    write(file, io::encode_label_png(deep));
+  }
+  ASSERT_EQ(run("evaluate damage pairs --json deep.json").exit_code, 0);
+  EXPECT_NEAR(json_file("deep.json")["rows"][0]["f"].get<double>(), row["f"].get<double>(), 0.02);
 }
 
 /// Scores of the frames of a folder, without the line of them all.

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <random>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -331,6 +332,46 @@ TEST_F(FlightCommand, PairIsNotWrittenIntoFlight) {
   const std::string report = read_text(folder_ / "out/report.html");
   expect_complaint(run("inspect left/0.png right/0.png --output out --quiet"), "results of a recording");
   EXPECT_EQ(read_text(folder_ / "out/report.html"), report);
+}
+
+TEST_F(FlightCommand, IsNotWrittenIntoResultsOfPair) {
+  write_list(3);
+  ASSERT_EQ(run("inspect left/0.png right/0.png --output out --quiet").exit_code, 0);
+  const std::string report = read_text(folder_ / "out/report.html");
+  expect_complaint(run("inspect flight.txt --output out --quiet"), "results of a pair");
+  EXPECT_EQ(read_text(folder_ / "out/report.html"), report);
+}
+
+/// A road in the first frame, then nothing but noise.
+TEST_F(FlightCommand, TellsInHowManyFramesThereIsNoRoad) {
+  write_list(5);
+  std::mt19937 random(1);
+  Frame noise{std::vector<std::uint8_t>(std::size_t{256} * 144), 256, 144};
+  for (const char* name : {"left/1.png", "right/1.png", "left/2.png", "right/2.png"}) {
+    std::generate(noise.bytes.begin(), noise.bytes.end(), [&] { return static_cast<std::uint8_t>(random() >> 24); });
+    write(name, io::encode_png(noise.view()));
+  }
+  const Outcome outcome = run("inspect flight.txt --calibration rig.yaml --output out --to 2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("No road was found in 2 of 3 frames"), std::string::npos) << outcome.out;
+  const std::string report = read_text(folder_ / "out/report.html");
+  EXPECT_NE(report.find("No road was found in 2 of 3 frames"), std::string::npos);
+  EXPECT_EQ(report.find("No damage found.</strong>"), std::string::npos) << "without a word of the other frames";
+  EXPECT_EQ(json_file("out/summary.json")["frames"]["inspected"], 1);
+}
+
+TEST_F(FlightCommand, ResumeLeavesNothingOfAnEarlierRun) {
+  write_list(3);
+  write("track.csv", std::string("time,lat,lon\n0,48.5,9.05\n1,48.5001,9.05\n"));
+  const std::string flight = "inspect flight.txt --calibration rig.yaml --output out --quiet ";
+  ASSERT_EQ(run(flight + "--track track.csv --trajectory").exit_code, 0);
+  ASSERT_TRUE(fs::exists(folder_ / "out/segments.csv"));
+  ASSERT_TRUE(fs::exists(folder_ / "out/trajectory_kitti.txt"));
+  ASSERT_EQ(run(flight + "--resume").exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "out/segments.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/damages.geojson"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/trajectory_kitti.txt"));
+  expect_complaint(run(flight + "--resume --to 1"), "frames up to 2 are finished; --to is 1");
 }
 
 TEST_F(FlightCommand, ListInOutputFolderIsKept) {

@@ -61,6 +61,21 @@ TEST_F(FlightHealthCommand, NamesSpecksOfOneLens) {
   EXPECT_NE(report.find("the same 6 places of the left picture"), std::string::npos);
 }
 
+TEST_F(FlightHealthCommand, PauseIsNoLoss) {
+  const Outcome made = run("synth --scene uav --size 320x180 --frames 12 --output flight --quiet");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const auto write_times = [this](double pause_s) {
+    std::string times;
+    for (int i = 0; i < 12; ++i) times += std::to_string(i / 30.0 + (i < 6 ? 0 : pause_s)) + "\n";
+    write("flight/times.txt", times);
+  };
+  write_times(60);
+  findings_of("flight");
+  EXPECT_EQ(health_["lost_share"], 0);
+  write_times(0.1);  // three periods
+  EXPECT_NE(findings_of("flight").find("lost-pairs"), std::string::npos);
+}
+
 TEST_F(FlightHealthCommand, TellsWrongOffsetOfDisparities) {
   ASSERT_EQ(run("synth --scene uav --size 320x180 --frames 24 --quiet --output flight --flight step=0.5").exit_code, 0);
   EXPECT_EQ(findings_of("flight --trajectory"), "");

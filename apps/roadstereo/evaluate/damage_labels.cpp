@@ -32,9 +32,9 @@ void count_regions(const DamageMap& map, const Image<std::uint8_t>& label, Label
   for (int v = 0; v < label.height(); ++v) {
     for (int u = 0; u < label.width(); ++u) {
       const int region = regions.ids(u, v);
-      if (region == 0 || !is_depression(map, map.ids(u, v))) continue;
-      ++covered[static_cast<std::size_t>(region - 1)];
-      ++labelled_pixels[map.ids(u, v)];
+      if (label(u, v) == 0 || !is_depression(map, map.ids(u, v))) continue;
+      ++labelled_pixels[map.ids(u, v)];  // also of components too small to count
+      if (region != 0) ++covered[static_cast<std::size_t>(region - 1)];
     }
   }
   result.labels = regions.sizes.size();

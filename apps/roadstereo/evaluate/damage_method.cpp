@@ -27,13 +27,16 @@ void find_damage_or_none(const StereoPair& pair, const DamageOptions& options, F
 FrameDamage find_damage_of(const DamageMethod& method, const StereoPair& pair, const std::string& frame) {
   FrameDamage found;
   if (!method.maps) {
-    Pipeline pipeline(preset(method.name), pair.calibration);
+    PipelineOptions options = preset(method.name);
+    options.white_level = pair.white_level;
+    Pipeline pipeline(options, pair.calibration);
     pipeline.process(pair.left.view(), pair.right.view(), found.frame);
     find_damage_or_none(pair, pipeline.options().damage, found);
     return found;
   }
   Inspection inspection;
   inspection.options = preset("default");
+  inspection.options.white_level = pair.white_level;
   inspection.pair = pair;
   inspection.pair.disparity = read_given_map(*method.maps, frame, pair.left.width, pair.left.height);
   use_given_disparity(inspection);

@@ -37,6 +37,13 @@ struct SceneCase {
   const DamageMap& map;
 };
 
+/// Whether something nearer than the road, or without a true disparity, hides what is beside the pixel.
+bool is_beside_occluder(const Image<double>& disparity, int u, int v) {
+  constexpr double min_step_px = 1;
+  const auto hides = [&](int x, int y) { return !(disparity(x, y) < disparity(u, v) + min_step_px); };
+  return hides(u - 1, v) || hides(u + 1, v) || hides(u, v - 1) || hides(u, v + 1);
+}
+
 std::map<int, Cover> covers_of(const SceneCase& scene) {
   std::map<int, Cover> covers;
   const auto& labels = scene.pair.labels;
@@ -46,7 +53,10 @@ std::map<int, Cover> covers_of(const SceneCase& scene) {
       Cover& cover = covers[labels(u, v)];
       ++cover.pixels;
       cover.disparity += scene.pair.disparity(u, v);
-      if (u == 0 || v == 0 || u + 1 == labels.width() || v + 1 == labels.height()) cover.fully_visible = false;
+      if (u == 0 || v == 0 || u + 1 == labels.width() || v + 1 == labels.height() ||
+          is_beside_occluder(scene.pair.disparity, u, v)) {
+        cover.fully_visible = false;
+      }
       if (!scene.frame.sigma.empty() && !std::isnan(scene.frame.sigma(u, v)))
         cover.sigmas.push_back(scene.frame.sigma(u, v));
       if (scene.map.ids(u, v) != 0) ++cover.found[scene.map.ids(u, v)];

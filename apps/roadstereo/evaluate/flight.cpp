@@ -52,10 +52,12 @@ double maximum(const std::vector<double>& values) {
 
 /// Maximum excess of the error of a tracked frame over that of the same frame processed independently.
 double max_excess(const FlightTrials& frames, Stage stage, Quantity quantity) {
-  const std::vector<double> tracked = errors(frames, &FlightTrial::tracked, stage, quantity);
-  const std::vector<double> fresh = errors(frames, &FlightTrial::fresh, stage, quantity);
   std::vector<double> excess;
-  for (std::size_t i = 0; i < tracked.size(); ++i) excess.push_back(tracked[i] - fresh[i]);
+  excess.reserve(frames.size());
+  for (const FlightTrial& frame : frames) {
+    const double tracked = frame.tracked.*stage.*quantity, fresh = frame.fresh.*stage.*quantity;
+    if (std::isfinite(tracked) && std::isfinite(fresh)) excess.push_back(tracked - fresh);
+  }
   return maximum(excess);
 }
 

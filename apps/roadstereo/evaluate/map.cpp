@@ -11,6 +11,7 @@
 #include "evaluate/map_trials.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/table.hpp"
+#include "finite_values.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -86,8 +87,8 @@ Table figure_table(const MapTrials& trials, const DamageFigures& figures, double
   constexpr double mm = 1000;
   table.rows = {{"height between two passes, RMS / standard error", Cell(ratio(trials.forward), 2), "≤ 1.2"},
                 {"the same, second pass in the other direction", Cell(ratio(trials.reverse), 2), "≤ 1.2"},
-                {"standard error of a height, median: one frame, mm", Cell(mm * trials.single_sigma_m, 2), ""},
-                {"the same, all frames, mm", Cell(mm * trials.fused_sigma_m, 2), ""},
+                {"standard error of a height, median: one frame, mm", Cell(mm * median(trials.single_sigma_m), 2), ""},
+                {"the same, all frames, mm", Cell(mm * median(trials.fused_sigma_m), 2), ""},
                 {"depth, damage seen ≥ 5 times: RMS error, mm", Cell(mm * rms(figures.fused), 1), ""},
                 {"the same of the best frame, mm", Cell(mm * rms(figures.best), 1), ""},
                 {"quotient", Cell(rms(figures.fused) / rms(figures.best), 2), "≤ 0.7"},

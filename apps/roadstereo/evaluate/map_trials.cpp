@@ -156,9 +156,9 @@ class RoadTrial {
     trials.forward.push_back(compare(maps_[0], maps_[1]));
     trials.reverse.push_back(compare(maps_[0], maps_[2]));
     const RoadMap& all = maps_.back();
-    trials.single_sigma_m = single_sigma_m_;
+    trials.single_sigma_m.push_back(single_sigma_m_);
     trials.loops.insert(trials.loops.end(), loops_.begin(), loops_.end());
-    trials.fused_sigma_m = median_sigma(all);
+    trials.fused_sigma_m.push_back(median_sigma(all));
     DamageOptions everything = damage_;
     everything.min_confidence = 0;
     const std::vector<RoadDamageRecord> records =

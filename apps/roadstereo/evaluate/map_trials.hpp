@@ -43,9 +43,9 @@ struct MapTrials {
   std::vector<PassDifference> reverse;  ///< pass in the other direction against the first
   std::vector<MapDamageTrial> damages;
   int false_records = 0;
-  double single_sigma_m = 0;    ///< median standard error of a height, one frame
-  double fused_sigma_m = 0;     ///< and of the map of all passes
-  std::vector<LoopLink> loops;  ///< with estimated poses
+  std::vector<double> single_sigma_m;  ///< of each road, median standard error of a height, one frame
+  std::vector<double> fused_sigma_m;   ///< and of the map of all passes
+  std::vector<LoopLink> loops;         ///< with estimated poses
 };
 
 /// Renders roads with random potholes and bumps that a rig flies over three times, the third time in the other

@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <fstream>
@@ -43,29 +44,15 @@ int lock_folder(const fs::path& folder) {
   fail(folder.parent_path().string(), ": another process is writing to this folder");
 }
 
-/// What a flight writes besides the files of its frames.
-constexpr std::array flight_files = {"frames.csv",
-                                     "pose.csv",
-                                     "damages.csv",
-                                     "candidates.csv",
-                                     "sightings.csv",
-                                     "segments.csv",
-                                     "summary.json",
-                                     "report.html",
-                                     static_mask_file,
-                                     "rig_bias.json",
-                                     "frames.geojson",
-                                     "footprints.geojson",
-                                     "damages.geojson",
-                                     "sightings.geojson",
-                                     "candidates.geojson",
-                                     "flight.gpkg",
-                                     "flight.mcap",
-                                     "damages",
-                                     "map",
-                                     "flight/thumbnails",
-                                     "flight/sections",
-                                     "flight/journal.jsonl"};
+/// What a flight writes besides the files of its frames, its track and its trajectory.
+constexpr std::array flight_files = {
+    "frames.csv",   "pose.csv",    "damages.csv",       "candidates.csv",  "sightings.csv",
+    "summary.json", "report.html", static_mask_file,    "rig_bias.json",   "flight.mcap",
+    "damages",      "map",         "flight/thumbnails", "flight/sections", "flight/journal.jsonl"};
+
+/// What is written with --track.
+constexpr std::array track_files = {"segments.csv",      "frames.geojson",     "footprints.geojson", "damages.geojson",
+                                    "sightings.geojson", "candidates.geojson", "flight.gpkg"};
 
 }  // namespace
 
@@ -87,10 +74,12 @@ fs::path FlightFolder::journal() const {
 
 void FlightFolder::protect(const fs::path& input) {
   std::error_code absent;
-  for (const char* name : flight_files) {
-    if (!fs::equivalent(path() / name, input, absent)) continue;
+  const auto require_other = [&](const char* name) {
+    if (!fs::equivalent(path() / name, input, absent)) return;
     fail(input.string(), ": this input would be overwritten; choose another output folder");
-  }
+  };
+  std::for_each(flight_files.begin(), flight_files.end(), require_other);
+  std::for_each(track_files.begin(), track_files.end(), require_other);
   files_.protect(input);
 }
 
@@ -106,6 +95,17 @@ void FlightFolder::remove_earlier_flight() {
   for (const char* name : flight_files) {
     fs::remove_all(path() / name, ignored);
   }
+  remove_track_files();
+  remove_trajectory_files();
+}
+
+void FlightFolder::remove_track_files() {
+  std::error_code ignored;
+  for (const char* name : track_files) fs::remove(path() / name, ignored);
+}
+
+void FlightFolder::remove_trajectory_files() {
+  std::error_code ignored;
   for (const std::string& name : trajectory_file_names()) fs::remove(path() / name, ignored);
 }
 
@@ -123,6 +123,11 @@ std::vector<std::uint8_t> FlightFolder::read(const std::string& name) const {
 bool is_flight_folder(const fs::path& folder) {
   std::error_code absent;
   return fs::exists(folder / "flight" / "journal.jsonl", absent);
+}
+
+bool is_pair_folder(const fs::path& folder) {
+  std::error_code absent;
+  return fs::exists(folder / "result.json", absent);
 }
 
 std::optional<std::string> thumbnail_name(std::int64_t sequence) {

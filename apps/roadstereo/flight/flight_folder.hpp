@@ -31,6 +31,10 @@ class FlightFolder {
   /// Removes the files of an earlier flight.
   void remove_earlier_flight();
 
+  /// Removes the files of an earlier run of this flight that a run without a track, or trajectory, does not write.
+  void remove_track_files();
+  void remove_trajectory_files();
+
   /// Writes files atomically.
   void write(const std::vector<StagedFile>& files);
 
@@ -44,6 +48,9 @@ class FlightFolder {
 
 /// Returns whether the folder has the results of a flight, finished or not.
 bool is_flight_folder(const std::filesystem::path& folder);
+
+/// Returns whether the folder has the results of a pair.
+bool is_pair_folder(const std::filesystem::path& folder);
 
 /// Returns the file name of a frame's thumbnail, or nullopt if the frame has none. A flight of any length has 17 to 32
 /// evenly spaced thumbnails.

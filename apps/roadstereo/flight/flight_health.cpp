@@ -73,10 +73,12 @@ double FlightHealth::vibration_px() const {
 double FlightHealth::missing_pairs() const {
   std::vector<double> periods;
   for (std::size_t i = 1; i < times_s_.size(); ++i) periods.push_back(times_s_[i] - times_s_[i - 1]);
+  constexpr double max_missing_periods = 10;  // a longer gap is a pause of the recording
   double missing = 0;
   const double period = median_or_unknown(periods);
   for (const double gap : periods) {
-    if (period > 0 && gap > 1.5 * period) missing += std::round(gap / period) - 1;
+    const bool is_gap = period > 0 && gap > 1.5 * period && gap <= max_missing_periods * period;
+    if (is_gap) missing += std::round(gap / period) - 1;
   }
   return missing;
 }

@@ -36,6 +36,7 @@ Json frames_json(const FlightSummary& summary) {
           {"failed", summary.failed},
           {"road_estimated", summary.road_estimated},
           {"road_unknown", summary.road_unknown},
+          {"inspected", summary.inspected},
           {"located", summary.located ? Json(*summary.located) : Json(nullptr)},
           {"reasons", summary.reasons}};
 }

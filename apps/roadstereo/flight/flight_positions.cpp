@@ -57,7 +57,7 @@ void FlightPositions::add(const io::FlightFrame& frame, const std::vector<std::i
   geo.height_m = frame.height_m;
   geo.sigma_d_px = frame.sigma_d_px;
   geo.valid_share = frame.valid_share;
-  geo.damages = static_cast<int>(frame.damages.size());
+  if (std::isfinite(frame.sigma_d_px)) geo.damages = static_cast<std::int64_t>(frame.damages.size());
   geo.status = name_of(frame.status);
   for (std::size_t i = 0; i < frame.damages.size(); ++i) {
     sightings_.push_back({road_damages[i], geo.index, geo.name, geo.time_s, frame.damages[i],

@@ -74,11 +74,13 @@ std::vector<std::string> notices_of(const FlightRun& run, const FlightSummary& s
     notices.push_back(static_mask_text(summary.static_mask) + " (" + static_mask_file + ").");
   }
   for (const HealthFinding& finding : summary.health.findings()) notices.push_back("Health: " + finding.text + ".");
+  if (const std::string text = summary.no_road_text(); !text.empty()) notices.push_back(text + ".");
   const std::int64_t without = summary.rejected + summary.failed;
   if (without == 0) return notices;
   std::string text =
       fmt::format("{} of {} frames have no result (frames.csv has the reasons)", without, summary.frames);
   for (std::size_t i = 0; i < summary.reasons.size(); ++i) text += (i == 0 ? ": " : "; ") + summary.reasons[i];
+  if (summary.further_reasons() > 0) text += fmt::format("; and {} more", summary.further_reasons());
   notices.push_back(text);
   return notices;
 }

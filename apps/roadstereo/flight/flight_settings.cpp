@@ -1,5 +1,6 @@
 #include "flight/flight_settings.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -37,7 +38,15 @@ PipelineOptions make_options(const FlightSettings& settings) {
 
 Image<std::uint8_t> read_ignored(const FlightSettings& settings) {
   constexpr int white = 255;
-  return settings.mask.empty() ? Image<std::uint8_t>() : read_mask(settings.mask, white);
+  if (settings.mask.empty()) return {};
+  Image<std::uint8_t> mask = read_mask(settings.mask, white);
+  const auto has_any = [](const Image<std::uint8_t>& marked) {
+    return std::any_of(marked.row(0), marked.row(0) + marked.pixels(), [](std::uint8_t value) { return value != 0; });
+  };
+  if (!has_any(mask) && has_any(read_mask(settings.mask, 1))) {
+    fail(settings.mask, ": the mask has no pixel of 255, which --mask leaves out, but darker ones; white must be 255");
+  }
+  return mask;
 }
 
 void require_mask_size(const FlightSettings& settings, const Image<std::uint8_t>& mask, int width, int height) {
@@ -56,6 +65,14 @@ void FlightSettings::validate() const {
   }
   constexpr std::int64_t max_every = 1'000'000'000;
   if (every < 1 || every > max_every) fail("--every is ", every, "; it must be between 1 and ", max_every);
+}
+
+std::vector<std::string> input_files(const FlightSettings& settings) {
+  std::vector<std::string> files = settings.source;
+  files.insert(files.end(), settings.calibration.begin(), settings.calibration.end());
+  files.insert(files.end(), {settings.disparity, settings.mask, settings.track.file, settings.processing.rig_bias,
+                             settings.processing.severity});
+  return files;
 }
 
 FlightPlan resolve(const FlightSettings& settings) {

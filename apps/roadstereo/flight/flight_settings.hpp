@@ -58,11 +58,15 @@ struct FlightSettings {
 /// unknown or out of range.
 PipelineOptions make_options(const FlightSettings& settings);
 
-/// Reads --mask: 255 where the picture has 255; empty without --mask.
+/// Reads --mask: 255 where the picture has 255; empty without --mask. Throws Error if the picture has values above 0,
+/// and none of 255.
 Image<std::uint8_t> read_ignored(const FlightSettings& settings);
 
 /// Throws Error unless the mask is empty or has the size of the frames.
 void require_mask_size(const FlightSettings& settings, const Image<std::uint8_t>& mask, int width, int height);
+
+/// Files that must not be overwritten or removed.
+std::vector<std::string> input_files(const FlightSettings& settings);
 
 /// Parsed and checked options of a flight.
 struct FlightPlan {

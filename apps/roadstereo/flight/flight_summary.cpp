@@ -1,5 +1,7 @@
 #include "flight/flight_summary.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,6 +21,7 @@ void FlightSummary::add(const io::FlightFrame& frame) {
   if (frame.status == io::FrameStatus::good) {
     road_unknown += frame.road_status == RoadStatus::none ? 1 : 0;
     road_estimated += frame.road_status == RoadStatus::found || frame.road_status == RoadStatus::weak ? 1 : 0;
+    inspected += std::isfinite(frame.sigma_d_px) ? 1 : 0;
     matching_ms.push_back(frame.matching_ms);
     damage_ms.push_back(frame.damage_ms);
     valid_share.push_back(frame.valid_share);
@@ -31,6 +34,12 @@ void FlightSummary::add(const io::FlightFrame& frame) {
   curves.roll_deg.push_back(frame.roll_observable ? frame.roll_rad * degrees : io::FlightFrame::unknown);
   curves.height_m.push_back(frame.height_m);
   curves.sigma_d_px.push_back(frame.sigma_d_px);
+}
+
+std::string FlightSummary::no_road_text() const {
+  if (inspected == good) return {};
+  return fmt::format("No road was found in {} of {} frames: nothing is known of its damage there", good - inspected,
+                     frames);
 }
 
 void FlightSummary::settle_times() {

@@ -19,13 +19,14 @@ struct FlightSummary {
   std::int64_t rejected = 0;
   std::int64_t failed = 0;
   std::int64_t road_estimated = 0;      ///< frames whose road model was estimated, not tracked
-  std::int64_t road_unknown = 0;        ///< frames without a road model before matching
+  std::int64_t road_unknown = 0;        ///< good frames without a road model before matching
+  std::int64_t inspected = 0;           ///< frames with a road after matching
   std::optional<std::int64_t> located;  ///< frames with a position; absent without a track
   std::string no_position_reason;       ///< reason if no frame has a position
   std::int64_t damages = 0;             ///< road damages (FlightInventory)
   std::int64_t candidates = 0;          ///< of the road
   std::int64_t sightings = 0;           ///< damages of all frames
-  std::vector<std::string> reasons;     ///< first distinct reasons why frames are not good
+  std::vector<std::string> reasons;     ///< why frames are not good; of the first few
   double first_time_s = io::FlightFrame::unknown;
   double last_time_s = io::FlightFrame::unknown;
   io::StaticMaskRecord static_mask;  ///< of the last frame
@@ -37,6 +38,12 @@ struct FlightSummary {
   std::vector<double> damage_ms;
 
   void add(const io::FlightFrame& frame);
+
+  /// Says in how many frames no road was found; empty if in none.
+  std::string no_road_text() const;
+
+  /// Number of frames that are not good and whose reason is not in `reasons`.
+  std::int64_t further_reasons() const { return rejected + failed - static_cast<std::int64_t>(reasons.size()); }
 
   /// Converts the times of the curves to seconds since the first frame if all are known, else to frame numbers.
   void settle_times();

@@ -28,7 +28,7 @@ struct GeoFrame {
   double height_m = std::numeric_limits<double>::quiet_NaN();
   double sigma_d_px = std::numeric_limits<double>::quiet_NaN();
   double valid_share = std::numeric_limits<double>::quiet_NaN();
-  int damages = 0;
+  std::optional<std::int64_t> damages;  ///< nothing: no road, so that nothing is known of damage
   std::string status;
 };
 

@@ -14,19 +14,20 @@ namespace roadstereo::io {
 struct RoadSegment {
   double from_m = 0, to_m = 0;  ///< stations: distance along the positions of the frames
   std::int64_t frames = 0;
-  std::int64_t damages = 0;  ///< without candidates
-  double area_m2 = 0;        ///< sum over its damages
-  std::int64_t worst = 0;    ///< id of its worst damage; 0: none
-  double roll_rad = 0;       ///< median over its frames
-  double height_m = 0;       ///< of the camera above the road, median over its frames
+  std::int64_t inspected = 0;  ///< frames with a road; if there is none, nothing is known of damage
+  std::int64_t damages = 0;    ///< without candidates
+  double area_m2 = 0;          ///< sum over its damages
+  std::int64_t worst = 0;      ///< id of its worst damage; 0: none
+  double roll_rad = 0;         ///< median over its frames
+  double height_m = 0;         ///< of the camera above the road, median over its frames
 };
 
 /// Divides the road into segments of `length_m`. Empty if no frame has a position.
 std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::span<const RoadDamage> damages,
                                        double length_m = 20);
 
-/// Returns segments.csv: from_m, to_m, frames, damages, area_m2, worst, worst_distress, worst_severity, roll_deg,
-/// height_m.
+/// Returns segments.csv: from_m, to_m, frames, inspected, damages, area_m2, worst, worst_distress, worst_severity,
+/// roll_deg, height_m.
 std::string segments_csv(std::span<const RoadSegment> segments, std::span<const RoadDamage> damages);
 
 }  // namespace roadstereo::io

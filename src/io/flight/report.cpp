@@ -31,10 +31,11 @@ std::string notices_of(const FlightReportInput& input) {
   std::string html;
   for (const std::string& notice : input.notices) html += "<p class=\"notice\">" + escaped(notice) + "</p>\n";
   const std::vector<double>& of_frames = input.curves.sigma_d_px;
-  const bool inspected =
-      std::any_of(of_frames.begin(), of_frames.end(), [](double sigma_d_px) { return std::isfinite(sigma_d_px); });
+  const auto inspected =
+      std::count_if(of_frames.begin(), of_frames.end(), [](double sigma_d_px) { return std::isfinite(sigma_d_px); });
+  const auto frames = static_cast<std::ptrdiff_t>(of_frames.size());
   const std::size_t in_map = input.map ? input.map->damages.size() : 0;
-  if (!inspected) {
+  if (inspected == 0) {
     html +=
         "<p class=\"notice\"><strong>Not inspected.</strong> No frame has a road, so that nothing is known of its "
         "damage; frames.csv has the reasons.</p>";
@@ -43,8 +44,10 @@ std::string notices_of(const FlightReportInput& input) {
             std::to_string(in_map) + ": see \"Damages on the map\".</p>";
   } else if (input.damages.empty()) {
     html +=
-        "<p class=\"notice good\"><strong>No damage found.</strong> No part of the visible road deviates from its "
-        "surface by more than the resolvable depth of this rig.</p>";
+        "<p class=\"notice good\"><strong>No damage found" +
+        (inspected < frames ? " in " + std::to_string(inspected) + " of " + std::to_string(frames) + " frames" : "") +
+        ".</strong> No part of the visible road deviates from its surface by more than the resolvable depth of this "
+        "rig.</p>";
   }
   if (!input.metric) {
     html +=
@@ -186,7 +189,10 @@ std::string segments_of(const FlightReportInput& input) {
   static const std::vector<ReportColumn<S>> columns{
       {"From", "m", [](const S& s) { return fixed_cell(s.from_m, 0); }},
       {"To", "m", [](const S& s) { return fixed_cell(s.to_m, 0); }},
-      {"Damages", "", [](const S& s) { return fixed_cell(static_cast<double>(s.damages), 0); }},
+      {"Damages", "",
+       [](const S& s) {
+         return s.inspected > 0 ? fixed_cell(static_cast<double>(s.damages), 0) : ReportCell{"not inspected", -1.0};
+       }},
       {"Area", "m²",
        [](const S& s) {
          return s.damages > 0 ? plain_cell(s.area_m2) : ReportCell{"", 0.0};

@@ -46,6 +46,8 @@ std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::sp
     segment.from_m = static_cast<double>(i) * length_m;
     segment.to_m = std::min(segment.from_m + length_m, std::max(end_m, segment.from_m));
     segment.frames = static_cast<std::int64_t>(members[i].size());
+    segment.inspected = std::count_if(members[i].begin(), members[i].end(),
+                                      [](const GeoFrame* frame) { return std::isfinite(frame->sigma_d_px); });
     segment.worst = worst[i] == nullptr ? 0 : worst[i]->id;
     segment.roll_rad = median_of(members[i], &GeoFrame::roll_rad);
     segment.height_m = median_of(members[i], &GeoFrame::height_m);
@@ -55,13 +57,18 @@ std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::sp
 
 std::string segments_csv(std::span<const RoadSegment> segments, std::span<const RoadDamage> damages) {
   CsvLine line;
-  for (const char* name : {"from_m", "to_m", "frames", "damages", "area_m2", "worst", "worst_distress",
+  for (const char* name : {"from_m", "to_m", "frames", "inspected", "damages", "area_m2", "worst", "worst_distress",
                            "worst_severity", "roll_deg", "height_m"}) {
     line.add(name);
   }
   std::string text = line.end();
   for (const RoadSegment& segment : segments) {
-    line.add(segment.from_m, 1).add(segment.to_m, 1).add(segment.frames).add(segment.damages).add(segment.area_m2);
+    line.add(segment.from_m, 1).add(segment.to_m, 1).add(segment.frames).add(segment.inspected);
+    if (segment.inspected > 0) {
+      line.add(segment.damages).add(segment.area_m2);
+    } else {
+      line.add_nothing().add_nothing();
+    }
     const auto worst = std::find_if(damages.begin(), damages.end(),
                                     [&](const RoadDamage& damage) { return damage.id == segment.worst; });
     if (worst == damages.end()) {

@@ -61,7 +61,7 @@ std::vector<FrameColumn> frame_columns() {
       {"time_utc", GeoType::time, [](const GeoFrame& f) { return geo_time(f.time_s); }},
       {"time_s", GeoType::number, [](const GeoFrame& f) { return number(f.time_s); }},
       {"status", GeoType::text, [](const GeoFrame& f) { return GeoValue(f.status); }},
-      {"damages", GeoType::whole, [](const GeoFrame& f) { return GeoValue(std::int64_t{f.damages}); }},
+      {"damages", GeoType::whole, [](const GeoFrame& f) { return f.damages ? GeoValue(*f.damages) : GeoValue(); }},
       {"station_m", GeoType::number, [](const GeoFrame& f) { return number(f.station_m); }},
       {"heading_deg", GeoType::number,
        [](const GeoFrame& f) { return number(f.position.value_or(GeoPosition{}).heading_deg); }},

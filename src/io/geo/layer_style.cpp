@@ -12,6 +12,8 @@ namespace {
 constexpr std::array severities{Severity::high,      Severity::medium,       Severity::low,    Severity::minor,
                                 Severity::uncertain, Severity::unresolvable, Severity::unknown};
 
+constexpr Rgb not_graded{60, 130, 210};
+
 std::string rgb_text(const Rgb& colour) {
   return std::to_string(colour[0]) + "," + std::to_string(colour[1]) + "," + std::to_string(colour[2]);
 }
@@ -44,10 +46,12 @@ LayerStyle severity_style(const std::string& layer) {
   std::string categories, symbols;
   for (std::size_t i = 0; i < severities.size(); ++i) {
     const std::string name = name_of(severities[i]);
-    const Fields fields{{"index", std::to_string(i)},
-                        {"severity", name},
-                        {"label", severities[i] == Severity::unknown ? "not graded" : name},
-                        {"rgb", rgb_text(damage_colour(DamageKind::depression, severities[i]))}};
+    const Fields fields{
+        {"index", std::to_string(i)},
+        {"severity", name},
+        {"label", severities[i] == Severity::unknown ? "not graded" : name},
+        {"rgb", rgb_text(severities[i] == Severity::unknown ? not_graded  // potholes and bumps alike
+                                                            : damage_colour(DamageKind::depression, severities[i]))}};
     categories += fill(geo_templates::category, fields);
     symbols += fill(geo_templates::symbol, fields);
   }

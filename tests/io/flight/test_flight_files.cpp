@@ -360,6 +360,7 @@ TEST(RoadSegments, CountByStation) {
     frames[i].station_m = 5.0 * static_cast<double>(i) + 2;
     frames[i].height_m = i == 3 ? 9 : 2;
     frames[i].roll_rad = 0.1 * static_cast<double>(i);
+    if (frames[i].station_m > 40 || i == 0) frames[i].sigma_d_px = 0.1;  // the others show no road
   }
   std::vector<RoadDamage> damages(4);
   const std::array<double, 4> stations{12, 19.9, 41, FlightFrame::unknown};
@@ -381,7 +382,11 @@ TEST(RoadSegments, CountByStation) {
   EXPECT_NEAR(segments[1].roll_rad, 0.6, 1e-12) << "upper median of 0.4 … 0.7";
   EXPECT_EQ(segments[2].damages, 1);
   EXPECT_DOUBLE_EQ(segments[2].to_m, 42);
-  EXPECT_EQ(segments_csv(segments, damages).substr(0, 200).find("from_m,to_m,frames,damages"), 0U);
+  EXPECT_EQ(segments[0].inspected, 1);
+  EXPECT_EQ(segments[1].inspected, 0);
+  const std::string csv = segments_csv(segments, damages);
+  EXPECT_EQ(csv.find("from_m,to_m,frames,inspected,damages"), 0U);
+  EXPECT_NE(csv.find("\n20.0,40.0,4,0,,,"), std::string::npos) << "nothing is known of damage there: " << csv;
   EXPECT_TRUE(road_segments({}, damages).empty());
 }
 
@@ -418,7 +423,7 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   candidate.id = 8;
   input.candidates = {candidate};
   input.track_deg = {{9.249, 48.5}, {9.25, 48.5}, {9.251, 48.5}};
-  input.segments = {{20, 40, 5, 1, 0.25, 7, 0.01, 2}};
+  input.segments = {{20, 40, 5, 5, 1, 0.25, 7, 0.01, 2}};
   input.metric = true;
   const std::string html = flight_report(input);
   for (const char* part :
