@@ -111,8 +111,8 @@ class LeftBlock {
   std::array<Columns, 2 * max_radius + 1> rows_{};
 };
 
-/// A row between those of the right image, from a column on: grey levels and their slopes. The last column that was read
-/// is there twice; what lies beside is finite.
+/// A row between those of the right image, from a column on: grey levels and their slopes. The last column that was
+/// read is there twice; what lies beside is finite.
 class BetweenRows {
  public:
   static constexpr int margin = 10;  ///< a block of 17 pixels that is stretched by half is so much wider
@@ -258,7 +258,7 @@ std::optional<Equations> set_up(const LeftBlock& block, ImageView<const std::int
 std::optional<BlockAlignment> align_block(ImageView<const std::int16_t> left, int u, int v,
                                           ImageView<const std::int16_t> right, const BlockAlignment& start,
                                           int radius) {
-  constexpr int max_steps = 12;
+  constexpr int max_steps = 24;
   constexpr double converged_px = 0.01;
   constexpr double farthest_px = 1.5;
   constexpr double min_correlation = 0.85;

@@ -13,11 +13,6 @@ namespace {
 /// Slopes need more: errors are not normal, and a few wrong ones at one side of the image look like a turn.
 constexpr double min_offset_std_errors = 3, min_slope_std_errors = 5;
 
-/// Slopes that a fit has.
-struct Slopes {
-  bool per_column = false, per_row = false;
-};
-
 /// A robust fit of a constant, or of a plane, to the offsets; relative to the weighted mean of the samples, so that the
 /// errors of the constant and of the slopes are independent.
 struct Fit {
@@ -30,18 +25,18 @@ struct Fit {
     return constant + per_column * (sample.u + sample.du - u) + per_row * (sample.v - v);
   }
   bool has_offset() const { return std::abs(constant) * std::sqrt(moments.n) > min_offset_std_errors * sigma; }
-  /// The slopes that are significant, with the other one unknown.
-  Slopes significant_slopes() const {
+  bool has_slopes() const {
+    // Standard errors of the slopes along each axis, with the other one unknown.
     const double determinant = moments.uu * moments.vv - moments.uv * moments.uv;
-    if (!(determinant > 0)) return {};
+    if (!(determinant > 0)) return false;
     const double of_column = sigma * std::sqrt(moments.vv / determinant);
     const double of_row = sigma * std::sqrt(moments.uu / determinant);
-    return {std::abs(per_column) > min_slope_std_errors * of_column, std::abs(per_row) > min_slope_std_errors * of_row};
+    return std::abs(per_column) > min_slope_std_errors * of_column || std::abs(per_row) > min_slope_std_errors * of_row;
   }
   RowOffset line() const { return {constant - per_column * u - per_row * v, per_column, per_row}; }
 };
 
-void refit(const std::vector<RowSample>& samples, Slopes slopes, Fit& fit) {
+void refit(const std::vector<RowSample>& samples, bool with_slopes, Fit& fit) {
   std::vector<double> residuals;
   residuals.reserve(samples.size());
   for (const RowSample& sample : samples) residuals.push_back(sample.dv - fit.at(sample));
@@ -69,20 +64,14 @@ void refit(const std::vector<RowSample>& samples, Slopes slopes, Fit& fit) {
     fit.moments.vd += weight * y * d;
   }
   fit.per_column = fit.per_row = 0;
-  if (slopes.per_column && slopes.per_row) {
-    solve_slopes(fit.moments, true, fit.per_row, fit.per_column);
-  } else if (slopes.per_column && fit.moments.uu > 0) {
-    fit.per_column = fit.moments.ud / fit.moments.uu;
-  } else if (slopes.per_row && fit.moments.vv > 0) {
-    fit.per_row = fit.moments.vd / fit.moments.vv;
-  }
+  if (with_slopes) solve_slopes(fit.moments, true, fit.per_row, fit.per_column);
 }
 
-Fit fit_robustly(const std::vector<RowSample>& samples, double start, Slopes slopes) {
+Fit fit_robustly(const std::vector<RowSample>& samples, double start, bool with_slopes) {
   constexpr int iterations = 8;
   Fit fit;
   fit.constant = start;
-  for (int i = 0; i < iterations; ++i) refit(samples, slopes, fit);
+  for (int i = 0; i < iterations; ++i) refit(samples, with_slopes, fit);
   return fit;
 }
 
@@ -93,9 +82,9 @@ RowOffset fit_row_offset(const std::vector<RowSample>& samples) {
   offsets.reserve(samples.size());
   for (const RowSample& sample : samples) offsets.push_back(sample.dv);
   const double median = upper_median(offsets);
-  const Slopes slopes = fit_robustly(samples, median, {true, true}).significant_slopes();
-  if (slopes.per_column || slopes.per_row) return fit_robustly(samples, median, slopes).line();
-  const Fit constant = fit_robustly(samples, median, {});
+  const Fit plane = fit_robustly(samples, median, true);
+  if (plane.has_slopes()) return plane.line();
+  const Fit constant = fit_robustly(samples, median, false);
   return constant.has_offset() ? constant.line() : RowOffset{};
 }
 

@@ -44,12 +44,5 @@ TEST(FitRowOffset, LeavesOutWhatIsNotSignificant) {
   EXPECT_EQ(fit_row_offset(samples_of({}, 0.05)).constant_px, 0);
 }
 
-/// Of a turn alone, the slope down the picture is noise.
-TEST(FitRowOffset, JudgesSlopesOneByOne) {
-  const RowOffset fit = fit_row_offset(samples_of({-0.3, 7e-4, 0}, 0.05));
-  EXPECT_NEAR(fit.per_column, 7e-4, 1e-4);
-  EXPECT_EQ(fit.per_row, 0);
-}
-
 }  // namespace
 }  // namespace roadstereo
