@@ -30,7 +30,7 @@ class StaticMask {
 
   /// Adds the next pair of a recording, by its grey levels. With `road`, its plane, only what lies below the horizon is
   /// masked, and what hides the road from the right camera, too. Returns whether this pair was the one that judged.
-  /// Does nothing after that. Allocates only for the first frame and when it judges.
+  /// Does nothing after that. Allocates only for the first frame, and after half of the frames and all of them.
   bool add(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
            const std::optional<DisparityPlane>& road);
 
@@ -46,6 +46,7 @@ class StaticMask {
  private:
   StaticMaskOptions options_;
   CellLevels left_, right_;
+  bool has_half_ = false;  ///< the first half of the frames has moved
   bool judged_ = false;
   Image<std::uint8_t> mask_;
 };

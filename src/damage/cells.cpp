@@ -29,6 +29,12 @@ float hollow_error2(ImageView<const float> map, int reach, int u, int v) {
   return sum;
 }
 
+bool has_uncertain(const float* sigma, int width) {
+  int count = 0;
+  for (int u = 0; u < width; ++u) count += sigma[u] > max_sigma_px ? 1 : 0;
+  return count > 0;
+}
+
 /// Column sums over the pixel rows of one row of cells.
 struct ColumnSums {
   std::vector<float> sum;
@@ -101,8 +107,9 @@ Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigm
   // Standard errors of a row, without those of smoothing in narrow hollows where they would make a pixel invalid.
   const auto certain = [&](int v, float* errors) -> const float* {
     const float* const row = sigma.row(v);
+    if (smoothing_px == 0 || !has_uncertain(row, width)) return row;
     std::copy_n(row, width, errors);
-    for (int u = 0; u < width && smoothing_px > 0; ++u) {
+    for (int u = 0; u < width; ++u) {
       if (!(row[u] > max_sigma_px)) continue;
       errors[u] = std::sqrt(std::max(0.0F, row[u] * row[u] - hollow_error2(transformed, smoothing_px, u, v)));
     }

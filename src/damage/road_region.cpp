@@ -35,28 +35,42 @@ Image<std::uint8_t> cells_near_surface(const Cells& cells, const SurfaceCoordina
   return near;
 }
 
+/// Of the cells of a row, how many rows lie between each and the last cell above that is set: all of them within a
+/// pixel of the surface, `limit` rows at most, else `limit`. `closed`: that number where a gap ends in this row, else
+/// 0. Returns whether any does.
+bool update_gaps(const std::uint8_t* mask, const float* value, const float* road, int width, std::uint8_t limit,
+                 std::uint8_t* gaps, std::uint8_t* closed) {
+  constexpr float max_band_error = 1;  // pixels
+  std::uint8_t any = 0;
+  for (int i = 0; i < width; ++i) {
+    const std::uint8_t gap = gaps[i], is_set = mask[i];
+    const std::uint8_t ends = is_set != 0 && gap < limit ? gap : std::uint8_t{0};
+    const bool continues = std::abs(value[i] - road[i]) <= max_band_error && gap < limit;
+    const auto longer = static_cast<std::uint8_t>(gap + 1);
+    gaps[i] = is_set != 0 ? std::uint8_t{0} : continues ? longer : limit;
+    closed[i] = ends;
+    any |= ends;
+  }
+  return any != 0;
+}
+
 /// Close gaps of a mask along the columns, of up to `max_gap` cells that all lie within a pixel of the surface. Blocks
 /// that straddle two whole-pixel shifts of the rows err by up to a pixel, in bands across the whole road.
 Image<std::uint8_t> close_bands(const Image<std::uint8_t>& mask, const Cells& cells, const RoadSurface& surface,
                                 int max_gap) {
-  constexpr float max_band_error = 1;  // pixels
-  Image<std::uint8_t> closed(mask.width(), mask.height());
-  std::vector<int> gap(static_cast<std::size_t>(mask.width()), max_gap + 1);  // cells since the last cell set
+  const auto limit = static_cast<std::uint8_t>(max_gap + 1);
+  Image<std::uint8_t> result = mask;
+  std::vector<std::uint8_t> gaps(static_cast<std::size_t>(mask.width()), limit), closed(gaps.size());
   for (int j = 0; j < mask.height(); ++j) {
-    const float *const value = cells.value.row(j), *const road = surface.value.row(j);
+    if (!update_gaps(mask.row(j), cells.value.row(j), surface.value.row(j), mask.width(), limit, gaps.data(),
+                     closed.data())) {
+      continue;
+    }
     for (int i = 0; i < mask.width(); ++i) {
-      int& length = gap[static_cast<std::size_t>(i)];
-      closed(i, j) = mask(i, j);
-      if (mask(i, j) == 0) {
-        const bool is_near = std::abs(value[i] - road[i]) <= max_band_error;
-        length = is_near && length <= max_gap ? length + 1 : max_gap + 1;
-      } else {
-        for (int k = 1; k <= length && length <= max_gap; ++k) closed(i, j - k) = 255;
-        length = 0;
-      }
+      for (int k = closed[static_cast<std::size_t>(i)]; k > 0; --k) result(i, j - k) = 255;
     }
   }
-  return closed;
+  return result;
 }
 
 /// Largest connected component of a mask.

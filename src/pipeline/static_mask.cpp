@@ -81,14 +81,20 @@ bool StaticMask::add(ImageView<const std::int16_t> left, ImageView<const std::in
   if (judged_) return false;
   left_.add(left);
   right_.add(right);
-  if (left_.frames() < options_.frames || right_.frames() < options_.frames) return false;
+  const int frames = std::min(left_.frames(), right_.frames());
+  // In noise a vehicle that stands seems to move a little: the first half alone must move, too.
+  const bool is_half = !has_half_ && frames >= options_.frames / 2;
+  if (!is_half && frames < options_.frames) return false;
   const auto still_left = find_still_cells(left_, options_.max_variance_ratio);
   const auto still_right = find_still_cells(right_, options_.max_variance_ratio);
   if (!still_left || !still_right) {  // anew
     left_ = CellLevels(least_moving_share);
     right_ = CellLevels(least_moving_share);
+    has_half_ = false;
     return false;
   }
+  has_half_ = true;
+  if (frames < options_.frames) return false;
   judged_ = true;
   mask_.assign(left.width(), left.height(), 0);
   // A cell at the edge of what is still moves in part.

@@ -64,7 +64,11 @@ TEST(StaticMaskAllocations, ForFirstFrameAndWhenItJudgesOnly) {
   };
   add(1);
   std::size_t before = allocations()->count;
-  for (int i = 2; i <= 39; ++i) add(i);
+  for (int i = 2; i <= 19; ++i) add(i);
+  EXPECT_EQ(allocations()->count - before, 0U);
+  EXPECT_FALSE(add(20));
+  before = allocations()->count;
+  for (int i = 21; i <= 39; ++i) add(i);
   EXPECT_EQ(allocations()->count - before, 0U);
   ASSERT_TRUE(add(40));
   before = allocations()->count;
