@@ -56,6 +56,8 @@ if(NOT BUILD_SHARED_LIBS)
     string(APPEND private_libraries " -lhwy")
   endif()
 endif()
+# Relative, so that any --prefix of an installation will do.
+file(RELATIVE_PATH prefix_of_pkgconfig /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/roadstereo.pc.in ${PROJECT_BINARY_DIR}/roadstereo.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/roadstereo.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)

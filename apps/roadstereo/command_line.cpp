@@ -1,7 +1,6 @@
 #include "command_line.hpp"
 
 #include <fmt/core.h>
-#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -114,21 +113,11 @@ void report_large_files() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-/// Keeps freed memory in the process for the next frame; returning it to the system costs about 1 ms per frame.
-void keep_memory() {
-#ifdef __GLIBC__
-  constexpr int max_kept = 64 << 20;
-  ::mallopt(M_MMAP_THRESHOLD, max_kept);
-  ::mallopt(M_TRIM_THRESHOLD, 4 * max_kept);
-#endif
-}
-
 }  // namespace
 
 int roadstereo::cli::run_command_line(int argc, char** argv) {
   try {
     quieten_decoders();
-    keep_memory();
     report_large_files();
     CLI::App app;
     describe(app);

@@ -37,13 +37,13 @@ StopSignals::~StopSignals() {
 bool StopSignals::wait(double seconds) const {
   constexpr double nanoseconds = 1e9;
   timespec until{};
-  ::clock_gettime(CLOCK_REALTIME, &until);
+  ::clock_gettime(CLOCK_MONOTONIC, &until);  // which nobody sets
   const double end = static_cast<double>(until.tv_nsec) + seconds * nanoseconds;
   until.tv_sec += static_cast<time_t>(end / nanoseconds);
   until.tv_nsec = static_cast<long>(std::fmod(end, nanoseconds));
   int result = 0;
   do {
-    result = ::sem_timedwait(&arrived, &until);
+    result = ::sem_clockwait(&arrived, CLOCK_MONOTONIC, &until);
   } while (result != 0 && errno == EINTR);
   if (result == 0) ::sem_post(&arrived);  // stays true
   return result == 0;

@@ -6,9 +6,6 @@
 namespace roadstereo::cli {
 namespace {
 
-/// Maximum time between two sightings of a damage, seconds.
-constexpr double memory_s = 1;
-
 double half_diagonal(const Damage& damage) {
   const auto& [u0, v0, u1, v1] = damage.box_px;
   return std::hypot(u1 - u0 + 1, v1 - v0 + 1) / 2;
@@ -89,9 +86,14 @@ void DamageList::begin(const Damage& damage, const LiveView& view) {
 }
 
 void DamageList::add(const LiveView& view) {
+  // Maximum time between two sightings of a damage: that of three views, at least.
+  constexpr double min_memory_s = 1, min_memory_views = 3;
+  const double since_last_s = last_view_ ? seconds_between(*last_view_, view.arrival) : 0;
+  last_view_ = view.arrival;
+  const double memory_s = std::max(min_memory_s, min_memory_views * since_last_s);
   tracks_.erase(
       std::remove_if(tracks_.begin(), tracks_.end(),
-                     [&view](const Track& track) { return seconds_between(track.seen, view.arrival) > memory_s; }),
+                     [&](const Track& track) { return seconds_between(track.seen, view.arrival) > memory_s; }),
       tracks_.end());
   std::vector<bool> taken(tracks_.size(), false);
   for (const Damage& damage : view.damages) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "live/live_view.hpp"
@@ -51,6 +52,7 @@ class DamageList {
   std::vector<Track> tracks_;
   std::array<double, 2> common_speed_{};  ///< of the last tracked damage, pixels per second
   std::int64_t found_ = 0;
+  std::optional<Clock::time_point> last_view_;
 };
 
 }  // namespace roadstereo::cli

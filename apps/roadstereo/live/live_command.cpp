@@ -89,6 +89,8 @@ void live(const LiveCommandArguments& arguments, const NamedOpener& opener) {
   LiveSummary summary{session.description(), seconds_between(start, Clock::now()), session.board().status(),
                       session.board().latency_of_all()};
   fmt::print("{}", arguments.json ? summary_json(summary) : summary_text(summary));
+  const std::string& stopped = summary.status.recording.message;
+  if (!stopped.empty()) fail<SystemError>(arguments.record, ": ", stopped);
 }
 
 constexpr const char* footer =
@@ -106,7 +108,8 @@ the token in the printed address. Port 0: any free port.
 and skips frames rather than delay them. A frame that cannot be linked begins a new path.
 
 --dds DOMAIN (ROS_DOMAIN_ID, usually 0) publishes what inspect --write mcap writes (docs/file_formats.md): image, disparities,
-points, damages, odometry and /tf. A message is dropped rather than waited for.
+points, damages, odometry and /tf. A message is dropped rather than waited for; odometry is computed for subscribers only, and
+as for --trajectory.
 
 The status line shows the latency (median/95th percentile), the height, and the damages (current/total). Ctrl-C stops and
 prints a summary.

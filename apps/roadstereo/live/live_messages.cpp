@@ -6,23 +6,21 @@ namespace roadstereo::cli {
 
 LiveMessages::LiveMessages(std::uint32_t domain, const std::optional<StereoCalibration>& calibration)
     : calibration_(calibration), publisher_(domain, io::flight_topics(calibration.has_value(), true)) {
-  if (!calibration) return;
-  odometry_.emplace(*calibration);
-  road_odometry_.emplace(*calibration);
+  if (calibration) path_.emplace(*calibration);
 }
 
 std::optional<io::RosPose> LiveMessages::next_pose(const FrameResult& result) {
-  if (!odometry_) return std::nullopt;
-  const FramePose& pose = odometry_->add(static_cast<int>(sequence_), result);
-  return road_odometry_->add(pose, result.roll_found ? std::optional(result.geometry.plane) : std::nullopt);
+  if (!path_ || !path_->is_due()) return std::nullopt;
+  return path_->follow({result.grey, result.disparity, result.sigma,
+                        result.roll_found ? std::optional(result.geometry.plane) : std::nullopt, Clock::now()});
 }
 
 void LiveMessages::publish(const FrameView& left, double white_level, double clock_s, const FrameResult& result,
                            const DamageMap& damage) {
   io::RosFrame frame;
-  frame.pose = next_pose(result);
   frame.sequence = sequence_++;
   if (!publisher_.has_subscribers()) return;
+  frame.pose = next_pose(result);
   frame.time_s = clock_s;
   frame.left = left;
   frame.white_level = white_level;

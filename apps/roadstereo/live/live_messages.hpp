@@ -5,13 +5,13 @@
 #include <optional>
 
 #include "io/ros/dds_publisher.hpp"
-#include "io/ros/road_odometry.hpp"
-#include "roadstereo/odometry.hpp"
+#include "live/path_finder.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::cli {
 
-/// Publishes processed pairs as ROS 2 messages by DDS, with the topics of flight.mcap.
+/// Publishes processed pairs as ROS 2 messages by DDS, with the topics of flight.mcap. Only while there are
+/// subscribers; poses only of those frames that a bounded share of the time allows.
 class LiveMessages {
  public:
   /// `calibration` absent: image and disparities only. Throws Error if the domain cannot be joined.
@@ -26,8 +26,7 @@ class LiveMessages {
 
   std::optional<StereoCalibration> calibration_;
   io::DdsPublisher publisher_;
-  std::optional<Odometry> odometry_;  // with a calibration
-  std::optional<io::RoadOdometry> road_odometry_;
+  std::optional<PathFinder> path_;  // with a calibration
   std::uint32_t sequence_ = 0;
 };
 

@@ -60,7 +60,7 @@ std::optional<io::RosPose> PathFinder::locate(const FollowedFrame& frame) {
   return on_road_->add(*pose, frame.road);
 }
 
-SharedPath PathFinder::path(const io::RosPose& pose, Clock::time_point now) const {
+SharedPath PathFinder::path(const io::RosPose& pose) const {
   constexpr double ms = 1000;
   LivePath path;
   path.points_m = path_.points_m();
@@ -68,27 +68,31 @@ SharedPath PathFinder::path(const io::RosPose& pose, Clock::time_point now) cons
   path.length_m = path_.length_m();
   path.pieces = pieces_;
   path.odometry_ms = ms * spent_s_ / frames_;
-  const double elapsed_s = seconds_between(start_, std::max(now, due_));
+  const double elapsed_s = seconds_between(start_, std::max(Clock::now(), due_));
   path.share = elapsed_s > 0 ? spent_s_ / elapsed_s : 0;
   return std::make_shared<const LivePath>(std::move(path));
 }
 
-SharedPath PathFinder::add(const FollowedFrame& frame) {
+std::optional<io::RosPose> PathFinder::follow(const FollowedFrame& frame) {
+  if (!is_due()) return std::nullopt;
   const Clock::time_point begin = Clock::now();
-  if (frames_ > 0 && begin < due_) return nullptr;
   if (frames_ == 0) {
     first_arrival_ = frame.arrival;
     start_ = begin;
   }
   const std::optional<io::RosPose> pose = locate(frame);
-  const Clock::time_point end = Clock::now();
-  const double took_s = seconds_between(begin, end);
+  const double took_s = seconds_between(begin, Clock::now());
   spent_s_ += took_s;
   ++frames_;
   due_ = begin + clock_span(took_s / max_share);
+  return pose;
+}
+
+SharedPath PathFinder::add(const FollowedFrame& frame) {
+  const std::optional<io::RosPose> pose = follow(frame);
   if (!pose) return nullptr;
   path_.add(pose->camera_to_odom[3], pose->camera_to_odom[7]);
-  return path(*pose, end);
+  return path(*pose);
 }
 
 }  // namespace roadstereo::cli

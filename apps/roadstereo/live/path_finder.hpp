@@ -26,13 +26,19 @@ class PathFinder {
 
   explicit PathFinder(const StereoCalibration& calibration);
 
-  /// Adds the next frame. Returns the path, or null if the frame was skipped or has no place yet.
+  /// Whether the next frame would not be skipped.
+  bool is_due() const { return frames_ == 0 || Clock::now() >= due_; }
+
+  /// Adds the next frame. Returns its pose, or nothing if the frame was skipped or has no place yet.
+  std::optional<io::RosPose> follow(const FollowedFrame& frame);
+
+  /// The same, and the path so far.
   SharedPath add(const FollowedFrame& frame);
 
  private:
   std::optional<io::RosPose> locate(const FollowedFrame& frame);
   void begin_piece();
-  SharedPath path(const io::RosPose& pose, Clock::time_point now) const;
+  SharedPath path(const io::RosPose& pose) const;
 
   StereoCalibration calibration_;
   std::optional<Odometry> odometry_;

@@ -12,7 +12,9 @@ namespace roadstereo::cli {
 class Playback {
  public:
   /// `rate_hz`: pairs per second; 0: times of the recording.
-  explicit Playback(double rate_hz) : rate_hz_(rate_hz) {}
+  explicit Playback(double rate_hz) : rate_hz_(rate_hz) {
+    if (rate_hz > 0) interval_s_ = 1 / rate_hz;
+  }
 
   /// Returns when the pair is due. The first pair is due now; the schedule restarts if times decrease. Throws Error if
   /// there is neither a rate nor a time.

@@ -105,6 +105,16 @@ void RecordingFolder::write(const RecordedPair& pair) {
     throw;
   }
   ++pairs_;
+  save_now_and_then();
+}
+
+/// A vehicle is switched off without a word: what is older than a second is on the disk.
+void RecordingFolder::save_now_and_then() {
+  constexpr double period_s = 1;
+  const Clock::time_point now = Clock::now();
+  if (seconds_between(saved_, now) < period_s) return;
+  ::syncfs(times_);  // the images, too
+  saved_ = Clock::now();
 }
 
 }  // namespace roadstereo::cli

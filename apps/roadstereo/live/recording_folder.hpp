@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "live/clock.hpp"
 #include "live/recorder.hpp"
 
 namespace roadstereo::cli {
 
 /// Writes a recording for `roadstereo inspect`: left/NNNNNN.png, right/NNNNNN.png, times.txt (seconds, one per line)
-/// and the calibration. Pairs are written atomically.
+/// and the calibration. Pairs are written atomically, and are on the disk about a second later.
 class RecordingFolder {
  public:
   /// Creates the folder if it is missing and copies the calibration files to it. Throws Error naming it if it cannot be
@@ -28,10 +29,12 @@ class RecordingFolder {
 
  private:
   void write_time(double time_s);
+  void save_now_and_then();
 
   std::filesystem::path folder_;
   std::int64_t pairs_ = 0;
   int times_ = -1;  ///< file descriptor of times.txt
+  Clock::time_point saved_{};
 };
 
 }  // namespace roadstereo::cli

@@ -33,8 +33,11 @@ class RoadStereoNode : public rclcpp::Node {
       set_option(options_, setting.substr(0, equals), setting.substr(equals + 1));
     }
     options_.validate();
-    disparity_ = create_publisher<stereo_msgs::msg::DisparityImage>("disparity", rclcpp::SensorDataQoS());
-    points_ = create_publisher<sensor_msgs::msg::PointCloud2>("points", rclcpp::SensorDataQoS());
+    // RViz and others subscribe reliably, and would get nothing of best effort. Views further apart in time are no pair.
+    const rclcpp::QoS reliable(queue_length);
+    synchronizer_.setMaxIntervalDuration(rclcpp::Duration::from_seconds(max_time_difference_s));
+    disparity_ = create_publisher<stereo_msgs::msg::DisparityImage>("disparity", reliable);
+    points_ = create_publisher<sensor_msgs::msg::PointCloud2>("points", reliable);
     damages_ = create_publisher<visualization_msgs::msg::MarkerArray>("damages", rclcpp::QoS(1));
     synchronizer_.registerCallback(std::bind(&RoadStereoNode::process, this, std::placeholders::_1,
                                              std::placeholders::_2, std::placeholders::_3, std::placeholders::_4));
@@ -50,6 +53,7 @@ class RoadStereoNode : public rclcpp::Node {
   using CameraInfo = sensor_msgs::msg::CameraInfo;
   using Policy = message_filters::sync_policies::ApproximateTime<Image, CameraInfo, Image, CameraInfo>;
   static constexpr std::uint32_t queue_length = 5;
+  static constexpr double max_time_difference_s = 0.005;
 
   void process(const Image::ConstSharedPtr& left, const CameraInfo::ConstSharedPtr& left_info,
                const Image::ConstSharedPtr& right, const CameraInfo::ConstSharedPtr& right_info) {

@@ -64,7 +64,9 @@ std::vector<double> read_times(const std::filesystem::path& file, std::size_t co
   if (!stream) fail(file.string(), ": cannot be read");
   std::vector<double> times;
   std::string line;
+  bool text_ends_line = true;
   for (int number = 1; std::getline(stream, line); ++number) {
+    text_ends_line = !stream.eof();
     const std::string text = trimmed(line);
     if (text.empty() || text[0] == '#') continue;
     const auto seconds = whole_number(text);
@@ -78,7 +80,10 @@ std::vector<double> read_times(const std::filesystem::path& file, std::size_t co
     }
     times.push_back(*time);
   }
-  if (times.size() != count && times.size() + 1 != count) {
+  // After a power cut the last line may be torn: its time lies before the one above.
+  const bool is_torn = !text_ends_line && times.size() > 1 && times.back() < times[times.size() - 2];
+  if (is_torn) times.pop_back();
+  if (times.size() > count || 2 * times.size() < count) {
     fail(file.string(), " has ", times.size(), " times, but there are ", count, " left images");
   }
   return times;

@@ -4,6 +4,7 @@
 #include <gst/video/video.h>
 
 #include <chrono>
+#include <limits>
 
 #include "roadstereo/error.hpp"
 
@@ -114,8 +115,11 @@ void GStreamerPipeline::throw_failure() const {
 }
 
 double GStreamerPipeline::taken_at(const GstBuffer* buffer) const {
+  constexpr double never = std::numeric_limits<double>::quiet_NaN();
+  // A recording has its own times, which begin at 0.
+  if (!live_) return GST_BUFFER_PTS_IS_VALID(buffer) ? 1e-9 * static_cast<double>(GST_BUFFER_PTS(buffer)) : never;
   const double now_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-  GstClock* clock = live_ ? gst_element_get_clock(pipeline_.get()) : nullptr;
+  GstClock* clock = gst_element_get_clock(pipeline_.get());
   if (clock == nullptr) return now_s;
   const GstClockTime now = gst_clock_get_time(clock);
   gst_object_unref(clock);

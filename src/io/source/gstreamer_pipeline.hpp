@@ -12,7 +12,7 @@ namespace roadstereo::io {
 /// An image of a pipeline.
 struct PipelinePicture {
   cv::Mat samples;    ///< BGR or grey, 8 bits
-  double time_s = 0;  ///< since 1970: capture time if live, else time of arrival
+  double time_s = 0;  ///< capture time since 1970 if live, else that of the recording, from 0; NaN unknown
 };
 
 /// A GStreamer pipeline that ends in an appsink. Used instead of OpenCV's capture, which hangs if an element is missing

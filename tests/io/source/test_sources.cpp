@@ -321,6 +321,23 @@ TEST_F(FolderSource, RecordingKilledInLastPairLosesThatOnly) {
   }
 }
 
+/// What a power cut leaves: pairs whose times were not on the disk yet, and half a line.
+TEST_F(FolderSource, PairsAfterLastWrittenTimeAreRejected) {
+  for (int i = 1; i <= 5; ++i) {
+    image("left/" + std::to_string(i) + ".png", 1);
+    image("right/" + std::to_string(i) + ".png", 1);
+  }
+  for (const char* times :
+       {"1795751061.5\n1795751061.6\n1795751061.7\n", "1795751061.5\n1795751061.6\n1795751061.7\n179575"}) {
+    text("times.txt", times);
+    const auto source = open_source({folder_.string()});
+    ASSERT_EQ(source->size(), 5);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(source->next()->error, "") << times;
+    for (int i = 3; i < 5; ++i)
+      EXPECT_NE(source->next()->error.find("the recording ended"), std::string::npos) << times;
+  }
+}
+
 TEST_F(FolderSource, RejectsOtherNumberOfTimes) {
   image("left/1.png", 1);
   image("right/1.png", 1);
