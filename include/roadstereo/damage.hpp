@@ -50,7 +50,8 @@ struct DamageInput {
   /// Right image. With `plane` it tells where the view of both cameras ends, with `grey` and `disparity` what one
   /// camera alone sees from damage.
   ImageView<const std::int16_t> right;
-  Misalignment misalignment;            ///< of `right`, as `disparity` has it undone
+  ImageView<const std::uint8_t> mask{};  ///< not 0: outside of the view, as beyond the border of the image; empty: none
+  Misalignment misalignment;             ///< of `right`, as `disparity` has it undone
   std::optional<DisparityPlane> plane;  ///< the road's plane in ℓ, in whose coordinates its surface is fitted; likewise
   std::optional<StereoCalibration> calibration;  ///< required for metric results
 };

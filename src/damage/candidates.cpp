@@ -76,7 +76,7 @@ struct SearchImages {
 Image<std::uint8_t> known_cells(const Image<std::uint8_t>& valid, const CommonView& view) {
   Image<std::uint8_t> mask(valid.width(), valid.height());
   std::copy_n(valid.row(0), valid.pixels(), mask.row(0));
-  for (int j = 0; j < mask.height(); ++j) std::fill_n(mask.row(j), view.first_column(j), std::uint8_t{255});
+  view.fill_outside(mask);
   return mask;
 }
 

@@ -7,6 +7,7 @@ namespace roadstereo {
 
 CommonView::CommonView(const DamageInput& input, const Cells& cells)
     : columns_(cells.width()), first_columns_(static_cast<std::size_t>(cells.height()), 0) {
+  if (!input.mask.empty()) mark_masked(input.mask, cells);
   if (input.right.empty() || !input.plane) return;
   for (int j = 0; j < cells.height(); ++j) {
     int& first = first_columns_[static_cast<std::size_t>(j)];
@@ -15,9 +16,28 @@ CommonView::CommonView(const DamageInput& input, const Cells& cells)
   }
 }
 
+void CommonView::mark_masked(ImageView<const std::uint8_t> mask, const Cells& cells) {
+  masked_.assign(cells.width(), cells.height(), 0);
+  for (int v = 0; v < mask.height(); ++v) {
+    const std::uint8_t* const row = mask.row(v);
+    std::uint8_t* const of_cells = masked_.row(v / cells.factor);
+    for (int u = 0; u < mask.width(); ++u) of_cells[u / cells.factor] |= row[u];
+  }
+}
+
 void CommonView::remove_outside(Cells& cells) const {
   for (int j = 0; j < cells.height(); ++j) {
-    std::fill_n(cells.value.row(j), first_column(j), std::numeric_limits<float>::quiet_NaN());
+    for (int i = 0; i < columns_; ++i) {
+      if (!contains(i, j)) cells.value(i, j) = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+}
+
+void CommonView::fill_outside(Image<std::uint8_t>& mask) const {
+  for (int j = 0; j < mask.height(); ++j) {
+    for (int i = 0; i < columns_; ++i) {
+      if (!contains(i, j)) mask(i, j) = 255;
+    }
   }
 }
 

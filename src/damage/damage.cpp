@@ -38,6 +38,7 @@ void require_input(const DamageInput& input) {
   require_size(input.sigma, map, "map of standard errors");
   require_size(input.grey, map, "image");
   require_size(input.right, map, "right image");
+  require_size(input.mask, map, "mask");
   require_range("damage", "smoothing_px", input.smoothing_px, 0, 32);
   if (input.calibration) input.calibration->validate(map.width(), map.height(), "calibration");
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "road/black_border.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 
@@ -58,6 +59,9 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
   input.smoothing_px = frame.smoothing_px;
   input.grey = frame.grey;
   input.right = frame.right;
+  Image<std::uint8_t> outside;
+  const bool has_border = find_black_border(frame.grey, frame.mask, outside);
+  input.mask = has_border ? outside : frame.mask;
   input.misalignment = frame.shift.misalignment;
   input.plane = frame.geometry.plane;
   input.calibration = calibration;

@@ -10,6 +10,7 @@
 #include "core/require_size.hpp"
 #include "core/scratch.hpp"
 #include "pipeline/host_stages.hpp"
+#include "road/black_border.hpp"
 #include "road/rig_prior.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
@@ -82,7 +83,8 @@ struct Pipeline::State {
   std::string engine_name;
   int threads = 1;
   std::unique_ptr<FrameStages> stages;
-  Image<std::uint8_t> mask;  ///< not 0 masked; empty: none
+  Image<std::uint8_t> mask;     ///< not 0 masked; empty: none
+  Image<std::uint8_t> outside;  ///< scratch: of the picture, where it has a black border
 
   PipelineState carried;
   Clock::time_point begin;    ///< of the frame
@@ -176,8 +178,10 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const GreyPair on_host = stages->on_host(pair);
   if (options.check_rows) measure_rows(on_host, Rows::of_new_road);
   const GreyPair grey = align_on_host(on_host);
+  const bool has_border = find_black_border(grey.left, mask, outside);
+  const ImageView<const std::uint8_t> left_out = has_border ? outside : mask;
   result.road =
-      roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, pair.mask);
+      roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, left_out);
   if (!result.road.has_road()) {
     result.warnings.push_back(format_message("no-road: no road was found (", result.road.reason,
                                              "): matched without perspective transformation over the full range"));

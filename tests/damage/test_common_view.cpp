@@ -49,6 +49,23 @@ TEST(CommonView, BeginsWhereMatchOfRoadEntersRightImage) {
   EXPECT_TRUE(view.is_on_border(118, 39));
 }
 
+TEST(CommonView, EndsAtMask) {
+  TiltedRoad scene;
+  Image<std::uint8_t> mask(scene.cells.image_width, scene.cells.image_height, 0);
+  mask(201, 60) = 1;  // of cell (100, 30)
+  scene.input.mask = mask;
+  const CommonView view(scene.input, scene.cells);
+  EXPECT_FALSE(view.contains(100, 30));
+  EXPECT_TRUE(view.contains(101, 30));
+  EXPECT_TRUE(view.is_on_border(101, 30));
+  EXPECT_TRUE(view.is_on_border(100, 31));
+  EXPECT_FALSE(view.is_on_border(102, 30));
+  Image<std::uint8_t> known(scene.cells.width(), scene.cells.height(), 0);
+  view.fill_outside(known);
+  EXPECT_EQ(known(100, 30), 255);
+  EXPECT_EQ(known(101, 30), 0);
+}
+
 TEST(CommonView, IsWholeImageWithoutPlaneOrRightImage) {
   TiltedRoad scene;
   scene.input.plane.reset();

@@ -336,6 +336,43 @@ TEST(FindDamage, BandsOfErrorsDoNotDivideRoad) {
   EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, 0.06, 0.012);
 }
 
+/// A bonnet over a fifth of a pothole, masked, is like the border of the image: not a gap, and not road that is
+/// missing.
+TEST(FindDamage, MaskEndsViewAsBorderDoes) {
+  ExactMaps maps(damaged_scene());
+  const DamageMap whole = find_damage(maps.metric());
+  ASSERT_FALSE(whole.damages.empty());
+  const auto& box = whole.damages[0].box_px;
+  const int width = maps.disparity.width(), height = maps.disparity.height(), end = box[3] - (box[3] - box[1]) / 5;
+  Image<std::uint8_t> mask(width, height, 0);
+  for (int v = end; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      maps.forget(u, v);
+      mask(u, v) = 255;
+    }
+  }
+  DamageInput input = maps.metric();
+  const auto cut_pothole = [&] {
+    DamageOptions options;
+    options.min_confidence = 0;
+    const DamageMap map = find_damage(input, options);
+    const auto cut = std::find_if(map.damages.begin(), map.damages.end(), [&](const Damage& damage) {
+      return damage.kind == DamageKind::depression && damage.box_px[3] >= end - 6;
+    });
+    EXPECT_NE(cut, map.damages.end());
+    return cut == map.damages.end() ? Damage() : *cut;
+  };
+  const Damage beside_gap = cut_pothole();
+  input.mask = mask;
+  const Damage beside_mask = cut_pothole();
+  EXPECT_TRUE(beside_mask.cut_by_border);
+  EXPECT_GT(beside_mask.evidence.border_share, 0.1);
+  EXPECT_EQ(beside_mask.evidence.unseen_share, 0);
+  EXPECT_GT(beside_mask.confidence, 0.9);
+  EXPECT_LT(beside_gap.confidence, beside_mask.confidence);
+  EXPECT_NEAR(beside_mask.metrics->max_depth_m.value, whole.damages[0].metrics->max_depth_m.value, 0.01);
+}
+
 TEST(FindDamage, IntactRoadHasNone) {
   synth::Scene scene = intact_scene();
   for (const double camber : {0.0, 0.02, 0.04}) {

@@ -71,9 +71,19 @@ TEST(DamageList, OtherPlaceOrTimeIsNewDamage) {
   EXPECT_EQ(list.entries()[0].id, 3) << "newest first";
 }
 
+TEST(DamageList, SightingsOfSlowViewsAreOneDamage) {
+  DamageList list;
+  list.add(view_at(1, 0, {}));
+  for (int i = 1; i < 6; ++i) list.add(view_at(i + 1, 1.5 * i, {damage_at(50, 50, DamageKind::depression, 0.1)}));
+  EXPECT_EQ(list.found(), 1);
+}
+
 TEST(DamageList, KeepsLatestHundred) {
   DamageList list;
-  for (int i = 0; i < 130; ++i) list.add(view_at(i + 1, 2.0 * i, {damage_at(50, 50, DamageKind::depression, 0.1)}));
+  for (int i = 0; i < 130; ++i) {
+    list.add(view_at(2 * i + 1, 2.0 * i, {damage_at(50, 50, DamageKind::depression, 0.1)}));
+    list.add(view_at(2 * i + 2, 2.0 * i + 0.03, {}));
+  }
   EXPECT_EQ(list.found(), 130);
   EXPECT_EQ(list.entries().size(), 100U);
   EXPECT_EQ(list.entries().front().id, 130);

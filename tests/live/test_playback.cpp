@@ -41,12 +41,28 @@ TEST(Playback, CountsOverduePairs) {
   Playback playback(10);
   const Clock::time_point start{};
   playback.due(pair_at(0), start);
-  EXPECT_EQ(playback.overdue(start + 500ms), 0) << "one pair tells no interval";
+  EXPECT_EQ(playback.overdue(start + 500ms), 4);
   playback.due(pair_at(1), start);  // at 0.1 s; the next ones at 0.2, 0.3, ...
   EXPECT_EQ(playback.overdue(start + 150ms), 0);
   EXPECT_EQ(playback.overdue(start + 250ms), 0) << "the one of 0.2 s is the newest";
   EXPECT_EQ(playback.overdue(start + 350ms), 1);
   EXPECT_EQ(playback.overdue(start + 1050ms), 8);
+}
+
+TEST(Playback, OnePairWithoutRateTellsNoInterval) {
+  Playback playback(0);
+  const Clock::time_point start{};
+  playback.due(pair_at(0, 100), start);
+  EXPECT_EQ(playback.overdue(start + 500ms), 0);
+}
+
+/// One pair, again and again.
+TEST(Playback, RateHoldsForLoopOfOnePair) {
+  Playback playback(2);
+  const Clock::time_point start{};
+  playback.due(pair_at(0), start);
+  playback.begin_again();
+  EXPECT_NEAR(seconds_between(start, playback.due(pair_at(0), start)), 0.5, 1e-6);
 }
 
 TEST(Playback, NextRoundFollowsLastPair) {

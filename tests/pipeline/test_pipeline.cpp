@@ -332,6 +332,36 @@ TEST(Pipeline, SaysThatRowsAreUnknown) {
   EXPECT_TRUE(is_said);
 }
 
+/// Bars beside the picture match where they stand, at a disparity of 0: that is no evidence against the road.
+TEST(Pipeline, FindsRoadBetweenBlackBars) {
+  synth::SyntheticPair pair = scene("street");
+  const int width = pair.left.width, height = pair.left.height;
+  const std::size_t channels = pair.left.bytes.size() / static_cast<std::size_t>(width * height);
+  for (Frame* const view : {&pair.left, &pair.right}) {
+    for (int v = 0; v < height; ++v) {
+      const auto row = view->bytes.begin() + static_cast<std::ptrdiff_t>(v * width) * std::ptrdiff_t(channels);
+      const auto bar = static_cast<std::ptrdiff_t>(width / 5) * std::ptrdiff_t(channels);
+      std::fill(row, row + bar, std::uint8_t{0});
+      std::fill(row + std::ptrdiff_t(channels) * width - bar, row + std::ptrdiff_t(channels) * width, std::uint8_t{0});
+    }
+  }
+  PipelineOptions options = preset("default");
+  options.engine = "cpu";
+  Image<std::uint8_t> mask(width, height, 0);
+  for (int v = 0; v < height; ++v) {
+    std::fill_n(mask.row(v), width / 5, std::uint8_t{255});
+    std::fill_n(mask.row(v) + width - width / 5, width / 5, std::uint8_t{255});
+  }
+  Pipeline pipeline(options, pair.calibration), masked(options, pair.calibration);
+  masked.set_mask(mask);
+  const RoadModelEstimate& road = pipeline.process(pair.left.view(), pair.right.view()).road;
+  ASSERT_EQ(road.status, RoadStatus::found) << road.reason;
+  EXPECT_NEAR(road.evidence, masked.process(pair.left.view(), pair.right.view()).road.evidence, 0.01);
+  for (const int v : {height - 1, 2 * height / 3}) {
+    EXPECT_NEAR(road.model.disparity(width / 2, v), pair.plane.disparity(width / 2, v), 0.5);
+  }
+}
+
 TEST(PipelineMask, OfAnotherSizeIsRejected) {
   const synth::SyntheticPair pair = scene("demo");
   PipelineOptions options = preset("fast");

@@ -53,6 +53,7 @@ class DamageList {
   std::array<double, 2> common_speed_{};  ///< of the last tracked damage, pixels per second
   std::int64_t found_ = 0;
   std::optional<Clock::time_point> last_view_;
+  double interval_s_ = 0;  ///< between the last two views
 };
 
 }  // namespace roadstereo::cli

@@ -8,6 +8,7 @@
 #include <message_filters/sync_policies/approximate_time.h>
 #include <message_filters/synchronizer.h>
 #endif
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -33,9 +34,7 @@ class RoadStereoNode : public rclcpp::Node {
       set_option(options_, setting.substr(0, equals), setting.substr(equals + 1));
     }
     options_.validate();
-    // RViz and others subscribe reliably, and would get nothing of best effort. Views further apart in time are no pair.
-    const rclcpp::QoS reliable(queue_length);
-    synchronizer_.setMaxIntervalDuration(rclcpp::Duration::from_seconds(max_time_difference_s));
+    const rclcpp::QoS reliable(queue_length);  // RViz and others would get nothing of best effort
     disparity_ = create_publisher<stereo_msgs::msg::DisparityImage>("disparity", reliable);
     points_ = create_publisher<sensor_msgs::msg::PointCloud2>("points", reliable);
     damages_ = create_publisher<visualization_msgs::msg::MarkerArray>("damages", rclcpp::QoS(1));
@@ -53,11 +52,21 @@ class RoadStereoNode : public rclcpp::Node {
   using CameraInfo = sensor_msgs::msg::CameraInfo;
   using Policy = message_filters::sync_policies::ApproximateTime<Image, CameraInfo, Image, CameraInfo>;
   static constexpr std::uint32_t queue_length = 5;
-  static constexpr double max_time_difference_s = 0.005;
+
+  /// The synchroniser takes the nearest views, however far apart they are.
+  static void require_one_moment(const std_msgs::msg::Header& left, const std_msgs::msg::Header& right) {
+    constexpr double max_difference_s = 0.005, nanosecond = 1e-9;
+    const double seconds = static_cast<double>(left.stamp.sec) - static_cast<double>(right.stamp.sec);
+    const double rest_s = nanosecond * (static_cast<double>(left.stamp.nanosec) - right.stamp.nanosec);
+    if (std::abs(seconds + rest_s) <= max_difference_s) return;
+    roadstereo::fail("left and right were taken ", std::abs(seconds + rest_s), " s apart; the limit is ",
+                     max_difference_s, " s");
+  }
 
   void process(const Image::ConstSharedPtr& left, const CameraInfo::ConstSharedPtr& left_info,
                const Image::ConstSharedPtr& right, const CameraInfo::ConstSharedPtr& right_info) {
     try {
+      require_one_moment(left->header, right->header);
       if (!pipeline_ || left_info->p != left_p_ || right_info->p != right_p_) {
         calibration_ = stereo_calibration(*left_info, *right_info);
         pipeline_.emplace(options_, calibration_);

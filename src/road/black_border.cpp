@@ -1,0 +1,64 @@
+#include "road/black_border.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace roadstereo {
+namespace {
+
+constexpr std::int16_t black = 3 * grey_scale;  // of 255 levels: compression leaves a little
+
+/// Marks what is black from the first and the last column on.
+std::size_t mark_sides(const std::int16_t* grey, int width, std::uint8_t* outside) {
+  const auto* const end = grey + width;
+  const auto is_picture = [](std::int16_t level) { return level > black; };
+  const auto left = std::find_if(grey, end, is_picture) - grey;
+  if (left == width) {
+    std::fill_n(outside, width, std::uint8_t{255});
+    return static_cast<std::size_t>(width);
+  }
+  std::ptrdiff_t right = 0;
+  while (grey[width - 1 - right] <= black) ++right;
+  std::fill_n(outside, left, std::uint8_t{255});
+  std::fill_n(outside + width - right, right, std::uint8_t{255});
+  return static_cast<std::size_t>(left + right);
+}
+
+/// Marks in row v what is black and marked in the row before it, `step` away.
+std::size_t continue_columns(ImageView<const std::int16_t> grey, int v, int step, Image<std::uint8_t>& outside) {
+  const std::int16_t* const level = grey.row(v);
+  const std::uint8_t* const before = outside.row(v - step);
+  std::uint8_t* const here = outside.row(v);
+  std::size_t marked = 0;
+  for (int u = 0; u < grey.width(); ++u) {
+    const bool continues = before[u] != 0 && level[u] <= black && here[u] == 0;
+    here[u] = continues ? std::uint8_t{255} : here[u];
+    marked += continues ? 1 : 0;
+  }
+  return marked;
+}
+
+}  // namespace
+
+bool find_black_border(ImageView<const std::int16_t> grey, ImageView<const std::uint8_t> mask,
+                       Image<std::uint8_t>& outside) {
+  constexpr std::size_t noteworthy = 500;  // one in so many pixels
+  const int width = grey.width(), height = grey.height();
+  outside.assign(width, height, 0);
+  std::size_t marked = 0;
+  for (int v = 0; v < height; ++v) marked += mark_sides(grey.row(v), width, outside.row(v));
+  for (const int v : {0, height - 1}) {
+    std::transform(grey.row(v), grey.row(v) + width, outside.row(v),
+                   [](std::int16_t level) { return level <= black ? std::uint8_t{255} : std::uint8_t{0}; });
+  }
+  for (int v = 1; v < height; ++v) marked += continue_columns(grey, v, 1, outside);
+  for (int v = height - 2; v >= 0; --v) marked += continue_columns(grey, v, -1, outside);
+  if (marked * noteworthy < outside.pixels()) return false;
+  for (int v = 0; v < height && !mask.empty(); ++v) {
+    std::transform(mask.row(v), mask.row(v) + width, outside.row(v), outside.row(v),
+                   [](std::uint8_t masked, std::uint8_t here) { return masked != 0 ? std::uint8_t{255} : here; });
+  }
+  return true;
+}
+
+}  // namespace roadstereo
