@@ -9,14 +9,14 @@
 namespace roadstereo {
 namespace {
 
-constexpr int width = 200, height = 120;
+constexpr int picture_width = 200, picture_height = 120;
 
 /// Grey 80, and black where `outside` says so.
 template <class Outside>
 GreyImage picture_with(const Outside& outside) {
-  GreyImage grey(width, height, static_cast<std::int16_t>(80 * grey_scale));
-  for (int v = 0; v < height; ++v) {
-    for (int u = 0; u < width; ++u) {
+  GreyImage grey(picture_width, picture_height, static_cast<std::int16_t>(80 * grey_scale));
+  for (int v = 0; v < picture_height; ++v) {
+    for (int u = 0; u < picture_width; ++u) {
       if (outside(u, v)) grey(u, v) = static_cast<std::int16_t>((u + v) % 3 * grey_scale);  // of compression
     }
   }
@@ -31,8 +31,8 @@ TEST(BlackBorder, IsFoundOnAllSidesAndOfAnyShape) {
   };
   Image<std::uint8_t> found;
   ASSERT_TRUE(find_black_border(picture_with(outside), {}, found));
-  for (int v = 0; v < height; ++v) {
-    for (int u = 0; u < width; ++u) ASSERT_EQ(found(u, v) != 0, outside(u, v)) << u << ", " << v;
+  for (int v = 0; v < picture_height; ++v) {
+    for (int u = 0; u < picture_width; ++u) ASSERT_EQ(found(u, v) != 0, outside(u, v)) << u << ", " << v;
   }
 }
 
@@ -43,7 +43,7 @@ TEST(BlackBorder, DarkPlacesInsidePictureAreNone) {
 }
 
 TEST(BlackBorder, KeepsMask) {
-  Image<std::uint8_t> mask(width, height, 0), found;
+  Image<std::uint8_t> mask(picture_width, picture_height, 0), found;
   mask(100, 60) = 1;
   ASSERT_TRUE(find_black_border(picture_with([](int u, int) { return u < 8; }), mask, found));
   EXPECT_EQ(found(100, 60), 255);
