@@ -160,8 +160,8 @@ void inspect_flight(FlightSettings settings) {
   if (const auto done = journal.last(); settings.to && done && done->index > *settings.to) {
     fail(settings.output, ": frames up to ", done->index, " are finished; --to is ", *settings.to);
   }
-  if (settings.track.file.empty()) folder.remove_track_files();
-  if (!settings.trajectory) folder.remove_trajectory_files();
+  if (run.resumed_at > 0 && settings.track.file.empty()) folder.remove_track_files();
+  if (run.resumed_at > 0 && !settings.trajectory) folder.remove_trajectory_files();
 
   std::optional<io::McapWriter> mcap = open_mcap(plan, settings, source, results, folder);
   Progress progress(frames_to_do(settings, source.source()), journal.frames(), settings.quiet);
