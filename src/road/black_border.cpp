@@ -8,6 +8,20 @@ namespace {
 
 constexpr std::int16_t black = 3 * grey_scale;  // of 255 levels: compression leaves a little
 
+/// Whether enough of the pixels along the sides are black for a border: of most pictures nothing else need be looked
+/// at.
+bool has_black_sides(ImageView<const std::int16_t> grey) {
+  constexpr int least = 50;  // one in so many pixels
+  const int width = grey.width(), height = grey.height();
+  int count = 0;
+  for (const int v : {0, height - 1}) {
+    const std::int16_t* const row = grey.row(v);
+    count += static_cast<int>(std::count_if(row, row + width, [](std::int16_t level) { return level <= black; }));
+  }
+  for (int v = 0; v < height; ++v) count += (grey(0, v) <= black ? 1 : 0) + (grey(width - 1, v) <= black ? 1 : 0);
+  return least * count >= 2 * (width + height);
+}
+
 /// Marks what is black from the first and the last column on.
 std::size_t mark_sides(const std::int16_t* grey, int width, std::uint8_t* outside) {
   const auto* const end = grey + width;
@@ -43,6 +57,7 @@ std::size_t continue_columns(ImageView<const std::int16_t> grey, int v, int step
 bool find_black_border(ImageView<const std::int16_t> grey, ImageView<const std::uint8_t> mask,
                        Image<std::uint8_t>& outside) {
   constexpr std::size_t noteworthy = 500;  // one in so many pixels
+  if (!has_black_sides(grey)) return false;
   const int width = grey.width(), height = grey.height();
   outside.assign(width, height, 0);
   std::size_t marked = 0;
