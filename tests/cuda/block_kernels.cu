@@ -63,6 +63,32 @@ __global__ void value_of_rank(const float* values, int count, RankOf rank, Selec
   if (threadIdx.x == blockDim.x - 1) *selected = {same ? value_of(found.key) : nanf(""), found.of};
 }
 
+struct ThreeRanks {
+  RankOf of[3];
+};
+
+__global__ void values_of_ranks(const float* values, int count, ThreeRanks ranks, Selected* selected) {
+  auto& scratch = *shared_memory<RanksScratch<3>>();
+  std::uint32_t keys[2][values_of_thread];
+  for (int k = 0; k < values_of_thread; ++k) {
+    const int i = static_cast<int>(threadIdx.x) + k * static_cast<int>(blockDim.x);
+    keys[0][k] = i < count && values[i] == values[i] ? key_of(values[i]) : RegisterSelect::no_key;
+    keys[1][k] = i < count && values[i] > 0 ? key_of(values[i]) : RegisterSelect::no_key;
+  }
+  // Twice: nobody may still be reading what the first time left.
+  SelectedKey found[3];
+  for (int time = 0; time < 2; ++time) {
+    const SelectedKey* of = select_ranks<RegisterSelect::float_digits, 0, 0, 1>(keys, ranks.of, scratch);
+    for (int r = 0; r < 3; ++r) {
+      const bool same = time == 0 || (of[r].key == found[r].key && of[r].of == found[r].of);
+      found[r] = same ? of[r] : SelectedKey{0, -1};
+    }
+    __syncthreads();
+  }
+  if (threadIdx.x != blockDim.x - 1) return;
+  for (int r = 0; r < 3; ++r) selected[r] = {value_of(found[r].key), found[r].of};
+}
+
 __global__ void number_of_rank(const float* values, int count, RankOf rank, const int* first_digits,
                                Selected* selected) {
   const auto key = [&](int i, std::uint32_t& out) {
@@ -121,6 +147,12 @@ void find_extremes(const float* values, unsigned threads, float* found) {
 void select_value(const float* values, int count, unsigned threads, Rank rank, Selected* selected) {
   launch("value_of_rank", value_of_rank, {1, threads, sizeof(RegisterSelectScratch)}, nullptr, values, count,
          RankOf{rank}, selected);
+}
+
+void select_ranks_of_two_sets(const float* values, int count, unsigned threads, const Rank (&ranks)[3],
+                              Selected* selected) {
+  launch("values_of_ranks", values_of_ranks, {1, threads, sizeof(RanksScratch<3>)}, nullptr, values, count,
+         ThreeRanks{{{ranks[0]}, {ranks[1]}, {ranks[2]}}}, selected);
 }
 
 void select_number(const float* values, int count, unsigned threads, Rank rank, const int* first_digits,

@@ -25,6 +25,10 @@ struct Selected {
 /// Selects floats, at most eight for each of the threads, which hold them in registers.
 void select_value(const float* values, int count, unsigned threads, Rank rank, Selected* selected);
 
+/// Selects three ranks at once: the first two of all values, the third of those above zero.
+void select_ranks_of_two_sets(const float* values, int count, unsigned threads, const Rank (&ranks)[3],
+                              Selected* selected);
+
 /// Selects whole numbers below 2²², in floats, by keys of two digits, the first of which were counted before:
 /// `first_digits` are 2048 numbers.
 void select_number(const float* values, int count, unsigned threads, Rank rank, const int* first_digits,

@@ -88,6 +88,24 @@ TEST_F(CudaBlock, SelectsExactOrderStatistics) {
   }
 }
 
+TEST_F(CudaBlock, SelectsSeveralRanksAtOnce) {
+  cuda::DeviceArray<test::Selected> out(3);
+  for (const int count : {5, 33, 500, 3001}) {
+    const std::vector<float> values = scattered(count);
+    std::vector<float> positive;
+    std::copy_if(values.begin(), values.end(), std::back_inserter(positive), [](float v) { return v > 0; });
+    const auto in = test::to_device(values);
+    test::select_ranks_of_two_sets(in.data(), count, count > 1024 ? 480 : 128, {{0.05}, {0.95}, {-1}}, out.data());
+    const std::vector<test::Selected> selected = test::to_host(out.data(), 3);
+    EXPECT_EQ(selected[0].of, count_of(values)) << count;
+    EXPECT_EQ(selected[1].of, count_of(values)) << count;
+    ASSERT_EQ(selected[2].of, count_of(positive)) << count;
+    EXPECT_EQ(selected[0].value, expected_of(values, 0.05)) << count;
+    EXPECT_EQ(selected[1].value, expected_of(values, 0.95)) << count;
+    EXPECT_EQ(selected[2].value, expected_of(positive, -1)) << count;
+  }
+}
+
 /// Whole numbers of two digits, whose first ones others have counted.
 TEST_F(CudaBlock, SelectsNumbersWhoseFirstDigitsAreCounted) {
   constexpr int count = 2000, bins = 2048;

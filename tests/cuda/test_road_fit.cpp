@@ -55,7 +55,10 @@ class CudaRoadFit : public test::OnDevice {
     std::optional<test::DevicePlane<std::uint8_t>> device_mask;
     if (mask) device_mask.emplace(mask->view());
     const MaskedMap masked{disparity.view(), mask ? device_mask->view() : ImageView<const std::uint8_t>{}};
-    const auto wait = [] { ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr)); };
+    const auto wait = [this] {
+      fit_->join(nullptr);
+      ROADSTEREO_CUDA(cudaStreamSynchronize(nullptr));
+    };
     if (options.solver == RollSolver::robust) {
       const auto start = test::to_device(std::vector{DisparityPlane{prior->a0, prior->a1, prior->a2}});
       fit_->run(masked, {start.data(), {}}, options.max_iterations, nullptr);

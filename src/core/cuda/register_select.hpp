@@ -63,16 +63,7 @@ class RegisterSelect {
     return selected;
   }
 
- private:
-  static constexpr int of_lane = Scratch::bins / warp_lanes;  ///< neighbouring values of a digit
-
-  __device__ void clear(int turn) {
-    for (int i = static_cast<int>(threadIdx.x); i < Scratch::bins; i += static_cast<int>(blockDim.x)) {
-      scratch_.counts[turn].of_bin[i] = 0;
-    }
-  }
-
-  /// Every warp finds the value of a digit that the key of the rank has, and its rank among the keys with that value.
+  /// A whole warp finds the value of a digit that the key of the rank has, and its rank among the keys with that value.
   template <class RankOf>
   __device__ static bool choose(bool first, const int* counts, RankOf rank_of, SelectedKey& selected, int& rank) {
     const int lane = static_cast<int>(threadIdx.x) % warp_lanes;
@@ -108,8 +99,72 @@ class RegisterSelect {
     return true;
   }
 
+ private:
+  static constexpr int of_lane = Scratch::bins / warp_lanes;  ///< neighbouring values of a digit
+
+  __device__ void clear(int turn) {
+    for (int i = static_cast<int>(threadIdx.x); i < Scratch::bins; i += static_cast<int>(blockDim.x)) {
+      scratch_.counts[turn].of_bin[i] = 0;
+    }
+  }
+
   Scratch& scratch_;
   int turn_ = 0;
 };
+
+/// Shared memory of select_ranks().
+template <int ranks>
+struct RanksScratch {
+  RegisterSelectScratch::Counts counts[ranks];
+  SelectedKey selected[ranks];
+  int rank[ranks];
+};
+
+/// The keys of several ranks at a time, for which all barriers serve: number r is that of `rank_of[r]` among the keys
+/// of set `set_of_rank`. Every thread may read them until the next call.
+template <int digits, int... set_of_rank, int sets, int count, class RankOf>
+__device__ const SelectedKey* select_ranks(const std::uint32_t (&keys)[sets][count],
+                                           const RankOf (&rank_of)[sizeof...(set_of_rank)],
+                                           RanksScratch<sizeof...(set_of_rank)>& scratch) {
+  using Scratch = RegisterSelectScratch;
+  constexpr int ranks = sizeof...(set_of_rank);
+  constexpr int set_of[ranks] = {set_of_rank...};
+  const int thread = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
+  if (thread < ranks) scratch.selected[thread] = {0, 0};
+  ROADSTEREO_DO_NOT_UNROLL
+  for (int digit = 0; digit < digits; ++digit) {
+    for (int i = thread; i < ranks * Scratch::bins; i += threads) {
+      scratch.counts[i / Scratch::bins].of_bin[i % Scratch::bins] = 0;
+    }
+    __syncthreads();
+    const int shift = Scratch::bits * (digits - 1 - digit);
+    const std::uint32_t others = 0xFFFFFFFFU >> (32 - Scratch::bits - shift);
+    ROADSTEREO_UNROLL
+    for (int r = 0; r < ranks; ++r) {
+      Scratch::Counts& counts = scratch.counts[r];
+      const std::uint32_t known = digit == 0 ? 0 : scratch.selected[r].key << (shift + Scratch::bits);
+      int* of_none = counts.of_none + thread % warp_lanes;
+      ROADSTEREO_UNROLL
+      for (int k = 0; k < count; ++k) {
+        const std::uint32_t key = keys[set_of[r]][k];
+        const bool counted = key != RegisterSelect::no_key && (key ^ known) <= others;
+        atomicAdd(counted ? counts.of_bin + (key >> shift) % Scratch::bins : of_none, 1);
+      }
+    }
+    __syncthreads();
+    for (int r = thread / warp_lanes; r < ranks; r += threads / warp_lanes) {
+      SelectedKey selected = scratch.selected[r];
+      int rank = scratch.rank[r];
+      if (digit > 0 && selected.of == 0) continue;
+      RegisterSelect::choose(digit == 0, scratch.counts[r].of_bin, rank_of[r], selected, rank);
+      __syncwarp();  // all lanes have read
+      if (thread % warp_lanes != 0) continue;
+      scratch.selected[r] = selected;
+      scratch.rank[r] = rank;
+    }
+    __syncthreads();
+  }
+  return scratch.selected;
+}
 
 }  // namespace roadstereo::cuda

@@ -60,6 +60,8 @@ class DeviceStages final : public FrameStages {
 
   void abandon() noexcept override {
     stream().settle();
+    matcher_.settle();
+    fit_.settle();
     maps_.settle();
   }
 
@@ -328,6 +330,7 @@ RollFit DeviceStages::estimate_roll(ImageView<const float> disparity, const std:
   if (transformed_) {
     mark(StageClock::fitted);
     enqueue_transform(disparity, {robust ? fit_.plane() : sums_.plane(), {}}, shift);
+    fit_.join(stream());
   }
   wait();
   RollFit fit{static_cast<double>(transform_.statistics().valid) / (static_cast<double>(width_) * height_),

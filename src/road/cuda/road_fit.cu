@@ -108,12 +108,12 @@ struct SolvedMoments {
   float p0, pu, pv, bend;  ///< BendFit
 };
 
-/// Shared memory of fit_map; the residuals follow.
-struct MapFitState {
-  FitState fit;
+/// Shared memory of measure_fit; the residuals follow.
+struct MeasuringState {
+  double scratch[sums_scratch(8)];
   SolvedMoments solved;
 };
-static_assert(sizeof(MapFitState) + max_fit_points * sizeof(float) <= (48U << 10),
+static_assert(sizeof(MeasuringState) + max_fit_points * sizeof(float) <= (48U << 10),
               "every device has 48 KB for a block");
 
 /// Moments and means from the sums of the plane, about the centre of the map.
@@ -142,7 +142,7 @@ __device__ void solve_bend(const double* t, SolvedMoments& solved) {
 }
 
 /// Fits the bend of the residuals.
-__device__ void fit_bend(const SampledMap& sampled, const float* residuals, MapFitState& state) {
+__device__ void fit_bend(const SampledMap& sampled, const float* residuals, MeasuringState& state) {
   SolvedMoments& solved = state.solved;
   float of_thread[8] = {};
   for (int i = thread(); i < sampled.sample.count(); i += threads()) {
@@ -156,13 +156,13 @@ __device__ void fit_bend(const SampledMap& sampled, const float* residuals, MapF
   }
   double own[8];
   for (int k = 0; k < 8; ++k) own[k] = of_thread[k];
-  const double* t = block_sums(own, state.fit.scratch);
+  const double* t = block_sums(own, state.scratch);
   if (thread() == 0) solve_bend(t, solved);
   __syncthreads();
 }
 
 /// Adds up the scores of a cell before they are squared; a thread for each cell, its points in the host's order.
-__device__ void sum_scores(const SampledMap& sampled, const float* residuals, MapFitState& state) {
+__device__ void sum_scores(const SampledMap& sampled, const float* residuals, MeasuringState& state) {
   SolvedMoments& solved = state.solved;
   double own[4] = {};
   for (int cell = thread(); cell < cells_per_side * cells_per_side; cell += threads()) {
@@ -186,7 +186,7 @@ __device__ void sum_scores(const SampledMap& sampled, const float* residuals, Ma
     own[2] += static_cast<double>(along_v) * along_v;
     own[3] += static_cast<double>(along_bend) * along_bend;
   }
-  const double* sums = block_sums(own, state.fit.scratch);
+  const double* sums = block_sums(own, state.scratch);
   if (thread() != 0) return;
   FitMoments& moments = solved.moments;
   moments.score_uu = sums[0];
@@ -198,7 +198,7 @@ __device__ void sum_scores(const SampledMap& sampled, const float* residuals, Ma
 
 /// Leaves the moments in shared memory, for the first thread. `residuals`, in shared memory, receives those of all
 /// points. A thread adds up a few points in single precision.
-__device__ void fit_moments(const SampledMap& sampled, const DisparityPlane& plane, MapFitState& state,
+__device__ void fit_moments(const SampledMap& sampled, const DisparityPlane& plane, MeasuringState& state,
                             float* residuals) {
   const double centre_u = sampled.width / 2.0, centre_v = sampled.height / 2.0;
   float of_thread[8] = {};
@@ -213,7 +213,7 @@ __device__ void fit_moments(const SampledMap& sampled, const DisparityPlane& pla
   }
   double own[8];
   for (int k = 0; k < 8; ++k) own[k] = of_thread[k];
-  const double* s = block_sums(own, state.fit.scratch);
+  const double* s = block_sums(own, state.scratch);
   if (thread() == 0) solve_moments(s, sampled, plane, state.solved);
   __syncthreads();
   fit_bend(sampled, residuals, state);
@@ -222,44 +222,51 @@ __device__ void fit_moments(const SampledMap& sampled, const DisparityPlane& pla
 
 /// `max_iterations` 0 measures the plane as it is.
 __global__ void __launch_bounds__(max_fit_threads)
-    fit_map(MaskedMap map, SampledMap sampled, PlaneSource source, int max_iterations, RoadFitStatistics* statistics,
-            RoadFitStatistics* result) {
+    fit_map(MaskedMap map, SampledMap sampled, PlaneSource source, int max_iterations, RoadFitStatistics* statistics) {
   begin_kernel();
-  MapFitState& state = *shared_memory<MapFitState>();
+  FitState& state = *shared_memory<FitState>();
   const DisparityPlane start = source.get();
   RoadFitStatistics own{start, {start, 0, 0, 0, 0}, 0, 1, {}};
   take_sample(map, sampled);
-  auto* residuals = reinterpret_cast<float*>(&state + 1);
   if (max_iterations > 0) {
     const DevicePoints points{sampled.u, sampled.v, sampled.d, sampled.sample.count()};
     const RobustFit fit{0, true, max_iterations};
-    RegisterSelect select(state.fit.select);
-    own.fit = BlockFit(points, fit, state.fit, select).run(start, sampled.weights);
+    RegisterSelect select(state.select);
+    own.fit = BlockFit(points, fit, state, select).run(start, sampled.weights);
     own.plane = own.fit.plane;
     own.points = own.fit.points;
   }
   if (own.fit.found == 0) {
-    own.points = count_all(sampled, state.fit);
-    if (max_iterations > 0) own.has_plane = fit_least_squares(sampled, state.fit, own.plane) ? 1 : 0;
+    own.points = count_all(sampled, state);
+    if (max_iterations > 0) own.has_plane = fit_least_squares(sampled, state, own.plane) ? 1 : 0;
   }
-  if (own.has_plane != 0) fit_moments(sampled, own.plane, state, residuals);
+  if (thread() == 0) *statistics = own;
+}
+
+/// Completes what fit_map has left: the transformation of the map does not wait for it.
+__global__ void __launch_bounds__(max_fit_threads)
+    measure_fit(SampledMap sampled, const RoadFitStatistics* statistics, RoadFitStatistics* result) {
+  begin_kernel();
+  MeasuringState& state = *shared_memory<MeasuringState>();
+  RoadFitStatistics own = *statistics;
+  if (own.has_plane != 0) fit_moments(sampled, own.plane, state, reinterpret_cast<float*>(&state + 1));
   if (thread() != 0) return;
   if (own.has_plane != 0) own.moments = state.solved.moments;
-  *statistics = own;
   *result = own;  // not read back: it lies in the host's memory
 }
 
 }  // namespace
 
 void RoadFit::run(const MaskedMap& map, const PlaneSource& prior, int max_iterations, StreamView stream) {
-  enqueue(map, prior, max_iterations, stream);
+  enqueue(map, prior, max_iterations, false, stream);
 }
 
 void RoadFit::measure(const MaskedMap& map, const PlaneSource& plane, StreamView stream) {
-  enqueue(map, plane, 0, stream);
+  enqueue(map, plane, 0, true, stream);
 }
 
-void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, StreamView stream) {
+void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, bool beside,
+                      StreamView stream) {
   const int width = map.disparity.width(), height = map.disparity.height();
   const MapSample sample = map_sample(width, height);
   require_fit_points(sample.count());
@@ -267,9 +274,14 @@ void RoadFit::enqueue(const MaskedMap& map, const PlaneSource& plane, int max_it
     of->reserve(static_cast<std::size_t>(sample.count()));
   }
   const SampledMap sampled{sample, width, height, u_.data(), v_.data(), d_.data(), weights_.data()};
-  const std::size_t shared_bytes = sizeof(MapFitState) + static_cast<std::size_t>(sample.count()) * sizeof(float);
-  launch("fit_map", fit_map, {1, fit_threads(sample.count()), shared_bytes}, stream, map, sampled, plane,
-         max_iterations, statistics_.data(), result_.data());
+  const unsigned threads = fit_threads(sample.count());
+  const std::size_t residual_bytes = static_cast<std::size_t>(sample.count()) * sizeof(float);
+  StreamView in = beside ? branch_.fork(stream) : stream;
+  launch("fit_map", fit_map, {1, threads, sizeof(FitState)}, in, map, sampled, plane, max_iterations,
+         statistics_.data());
+  if (!beside) in = branch_.fork(stream);
+  launch("measure_fit", measure_fit, {1, threads, sizeof(MeasuringState) + residual_bytes}, in, sampled,
+         statistics_.data(), result_.data());
 }
 
 }  // namespace roadstereo::cuda

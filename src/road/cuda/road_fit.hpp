@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/cuda/branch.hpp"
 #include "core/cuda/memory.hpp"
 #include "core/cuda/stream.hpp"
 #include "road/cuda/road_fit_statistics.hpp"
@@ -16,7 +17,8 @@ struct MaskedMap {
   ImageView<const std::uint8_t> mask;
 };
 
-/// The device's part of estimate_roll(), one launch of one block; finish_road_fit() does the rest on the host.
+/// The device's part of estimate_roll(), two launches of one block; finish_road_fit() does the rest on the host. What
+/// only the host wants to know runs beside the stream.
 /// The robust solver needs a prior here: without one the host's function searches for a start, and must be called
 /// instead. The other solvers are those of MapSums, whose plane `measure` takes.
 class RoadFit {
@@ -26,15 +28,21 @@ class RoadFit {
   /// Enqueues only what tells how well the map fits a plane that was found elsewhere.
   void measure(const MaskedMap& map, const PlaneSource& plane, StreamView stream);
 
-  const DisparityPlane* plane() const { return &statistics_.data()->plane; }  ///< in device memory
-  const RoadFitStatistics& statistics() const { return *result_.data(); }     ///< once the stream was synchronised
+  /// What `stream` gets from now on waits for the statistics.
+  void join(StreamView stream) { branch_.join(stream); }
+  /// Waits for them where nobody can be told of an error.
+  void settle() const noexcept { branch_.settle(); }
+
+  const DisparityPlane* plane() const { return &statistics_.data()->plane; }  ///< in device memory, after run()
+  const RoadFitStatistics& statistics() const { return *result_.data(); }     ///< once joined and synchronised
 
  private:
-  void enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, StreamView stream);
+  void enqueue(const MaskedMap& map, const PlaneSource& plane, int max_iterations, bool beside, StreamView stream);
 
   DeviceArray<float> u_, v_, d_, weights_;
   DeviceArray<RoadFitStatistics> statistics_{1};
   PinnedArray<RoadFitStatistics> result_{1};
+  Branch branch_;
 };
 
 }  // namespace roadstereo::cuda

@@ -22,90 +22,101 @@ __device__ void count_places(const SearchMemory& search, FitState& state, Search
   statistics.tried = sums[1];
 }
 
-/// The values that the shares `low` and `high` of the floats lie below, and how many floats there are.
-struct KeyRange {
-  float low, high;
-  int of;
-};
-__device__ KeyRange range_of_keys(const std::uint32_t (&keys)[fit_points_per_thread], double low, double high,
-                                  RegisterSelect& select) {
-  KeyRange range{};
-  ROADSTEREO_DO_NOT_UNROLL
-  for (int end = 0; end < 2; ++end) {
-    const SelectedKey key = select.select<RegisterSelect::float_digits>(keys, ShareRank{end == 0 ? low : high});
-    (end == 0 ? range.low : range.high) = value_of(key.key);
-    range.of = key.of;
-  }
-  return range;
-}
-
-/// Inliers and the rows that they cover; a thread's own weights are visible to it.
-__device__ void count_inliers(const SearchMemory& search, RegisterSelect& select, SearchStatistics& statistics) {
-  std::uint32_t rows[fit_points_per_thread];
+/// The rows of the inliers as keys; a thread's own weights are visible to it.
+__device__ void keys_of_rows(const SearchMemory& search, bool fitted, std::uint32_t (&keys)[fit_points_per_thread]) {
   keys_of_thread(
-      search.count, [&](int i) { return search.weights[i] > 0 ? key_of(search.slots.v[i]) : RegisterSelect::no_key; },
-      rows);
-  const KeyRange range = range_of_keys(rows, row_p05, row_p95, select);
-  statistics.inliers = range.of;
-  statistics.found = range.of >= min_matches ? 1 : 0;
-  if (statistics.found == 0) return;
-  statistics.lowest_row = range.low;
-  statistics.highest_row = range.high;
+      search.count,
+      [&](int i) { return fitted && search.weights[i] > 0 ? key_of(search.slots.v[i]) : RegisterSelect::no_key; },
+      keys);
 }
 
-/// The fit to what a search found; all threads get the statistics.
+/// Inliers and the rows that they cover.
+__device__ void take_rows(const SelectedKey& low, const SelectedKey& high, SearchStatistics& statistics) {
+  statistics.inliers = low.of;
+  statistics.found = low.of >= min_matches ? 1 : 0;
+  if (statistics.found == 0) return;
+  statistics.lowest_row = value_of(low.key);
+  statistics.highest_row = value_of(high.key);
+}
+
+/// The fit to what a search found, without its rows; all threads get the statistics.
 __device__ SearchStatistics fit_search(const SearchMemory& search, const DisparityPlane& start, const RobustFit& fit,
-                                       RegisterSelect& select) {
-  FitState& state = *shared_memory<FitState>();
+                                       FitState& state, RegisterSelect& select) {
   SearchStatistics statistics{{start, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
   count_places(search, state, statistics);
   if (statistics.points < min_matches) return statistics;
   const DevicePoints points{search.slots.u, search.slots.v, search.slots.d, search.count};
   statistics.fit = BlockFit(points, fit, state, select).run(start, search.weights);
-  if (statistics.fit.found != 0) count_inliers(search, select, statistics);
   return statistics;
 }
+
+/// Shared memory of a kernel that selects so many ranks.
+template <int ranks>
+struct SearchState {
+  FitState fit;
+  RanksScratch<ranks> ranks_scratch;
+};
+using AroundState = SearchState<2>;
+using CloseState = SearchState<5>;
 
 __global__ void __launch_bounds__(max_fit_threads)
     fit_around(SearchMemory search, PlaneSource previous, RobustFit fit, SearchStatistics* around) {
   begin_kernel();
-  RegisterSelect select(shared_memory<FitState>()->select);
-  const SearchStatistics found = fit_search(search, previous.get(), fit, select);
-  if (threadIdx.x == 0) *around = found;
+  AroundState& state = *shared_memory<AroundState>();
+  RegisterSelect select(state.fit.select);
+  SearchStatistics found = fit_search(search, previous.get(), fit, state.fit, select);
+  std::uint32_t rows[1][fit_points_per_thread];
+  keys_of_rows(search, found.fit.found != 0, rows[0]);
+  const ShareRank ranks[2] = {{row_p05}, {row_p95}};
+  const SelectedKey* keys = select_ranks<RegisterSelect::float_digits, 0, 0>(rows, ranks, state.ranks_scratch);
+  if (threadIdx.x != 0) return;
+  take_rows(keys[0], keys[1], found);
+  *around = found;
 }
 
 /// Where the correspondences of the first search lie that are near the road.
-__device__ void measure_range(const SearchMemory& around, const DisparityPlane& road, RegisterSelect& select,
-                              VerificationStatistics& statistics) {
-  std::uint32_t residuals[fit_points_per_thread];
+__device__ void keys_of_residuals(const SearchMemory& around, bool fitted, const DisparityPlane& road,
+                                  std::uint32_t (&keys)[fit_points_per_thread]) {
   keys_of_thread(
       around.count,
       [&](int i) {
         const double expected = road.disparity(around.slots.u[i], around.slots.v[i]);
         const double value = around.slots.d[i] - expected;
-        return near_road(value, expected) ? key_of(static_cast<float>(value)) : RegisterSelect::no_key;
+        return fitted && near_road(value, expected) ? key_of(static_cast<float>(value)) : RegisterSelect::no_key;
       },
-      residuals);
-  const KeyRange range = range_of_keys(residuals, residual_p01, residual_p99, select);
-  statistics.near = range.of;
-  if (range.of < min_matches) return;
-  statistics.residual_p01_px = range.low;
-  statistics.residual_p99_px = range.high;
+      keys);
 }
 
 /// Correlation of the blocks on the road.
-__device__ void measure_correlation(const SearchMemory& search, RegisterSelect& select,
-                                    VerificationStatistics& statistics) {
-  std::uint32_t correlations[fit_points_per_thread];
+__device__ void keys_of_correlations(const SearchMemory& search, std::uint32_t (&keys)[fit_points_per_thread]) {
   keys_of_thread(
       search.count,
       [&](int i) {
         const float correlation = search.slots.correlation[i];
         return correlation == correlation ? key_of(correlation) : RegisterSelect::no_key;
       },
-      correlations);
-  const SelectedKey key = select.select<RegisterSelect::float_digits>(correlations, ShareRank{correlation_p10});
-  if (key.of >= min_matches) statistics.correlation = value_of(key.key);
+      keys);
+}
+
+/// The fit to the second search, and what both tell of the road.
+__device__ void measure_close(const SearchMemory& search, const SearchMemory& around, const RobustFit& fit,
+                              CloseState& state, VerificationStatistics& own) {
+  RegisterSelect select(state.fit.select);
+  own.close = fit_search(search, own.around.fit.plane, fit, state.fit, select);
+  const bool fitted = own.close.fit.found != 0;
+  std::uint32_t keys[3][fit_points_per_thread];
+  keys_of_rows(search, fitted, keys[0]);
+  keys_of_correlations(search, keys[1]);
+  keys_of_residuals(around, fitted, own.close.fit.plane, keys[2]);
+  const ShareRank ranks[5] = {{row_p05}, {row_p95}, {correlation_p10}, {residual_p01}, {residual_p99}};
+  const SelectedKey* of = select_ranks<RegisterSelect::float_digits, 0, 0, 1, 2, 2>(keys, ranks, state.ranks_scratch);
+  if (threadIdx.x != 0) return;
+  take_rows(of[0], of[1], own.close);
+  if (of[2].of >= min_matches) own.correlation = value_of(of[2].key);
+  own.near = of[3].of;
+  if (own.near < min_matches) return;
+  own.residual_p01_px = value_of(of[3].key);
+  own.residual_p99_px = value_of(of[4].key);
 }
 
 __global__ void __launch_bounds__(max_fit_threads)
@@ -113,16 +124,13 @@ __global__ void __launch_bounds__(max_fit_threads)
               VerificationStatistics* result) {
   begin_kernel();
   VerificationStatistics own{*found_around, {}, 0, 0, 0, 0};
-  RegisterSelect select(shared_memory<FitState>()->select);
-  const bool needed = own.around.found != 0;
-  if (needed) own.close = fit_search(search, own.around.fit.plane, fit, select);
-  if (needed) measure_correlation(search, select, own);
-  if (own.close.fit.found != 0) measure_range(around, own.close.fit.plane, select, own);
+  if (own.around.found != 0) measure_close(search, around, fit, *shared_memory<CloseState>(), own);
   if (threadIdx.x == 0) *result = own;  // not read back: it lies in the host's memory
 }
 
+template <class State>
 LaunchShape fit_shape(int count) {
-  return {1, fit_threads(count), sizeof(FitState)};
+  return {1, fit_threads(count), sizeof(State)};
 }
 
 }  // namespace
@@ -159,10 +167,10 @@ void RoadVerification::run(ImageView<const std::int16_t> left, ImageView<const s
   const RobustFit fit{fine_fit_scale * pair.factor, with_roll, fine_fit_iterations};
   SearchStatistics* found_around = found_around_.data();
   match_along_plane(pair, first, previous, nullptr, around.slots, stream);
-  launch("fit_around", fit_around, fit_shape(around.count), stream, around, previous, fit, found_around);
+  launch("fit_around", fit_around, fit_shape<AroundState>(around.count), stream, around, previous, fit, found_around);
   match_along_plane(pair, second, {&found_around->fit.plane, {}}, &found_around->found, close.slots, stream);
-  launch("fit_close", fit_close, fit_shape(close.count > around.count ? close.count : around.count), stream, close,
-         around, fit, found_around, result_.data());
+  launch("fit_close", fit_close, fit_shape<CloseState>(close.count > around.count ? close.count : around.count), stream,
+         close, around, fit, found_around, result_.data());
 }
 
 }  // namespace roadstereo::cuda

@@ -13,7 +13,7 @@ class CudaEngine final : public StereoEngine {
  public:
   explicit CudaEngine(const Device& device) : device_(device.index), matcher_(device.multiprocessors) {}
   /// Memory goes only when no kernel uses it any more.
-  ~CudaEngine() override { stream().settle(); }
+  ~CudaEngine() override { settle(); }
   CudaEngine(const CudaEngine&) = delete;
   CudaEngine& operator=(const CudaEngine&) = delete;
 
@@ -28,7 +28,7 @@ class CudaEngine final : public StereoEngine {
       download(found.winner, maps.winner);
       download(found.target_winner, maps.target_winner);
     } catch (...) {
-      stream().settle();  // what copies still read or write is the caller's
+      settle();  // what copies still read or write is the caller's
       throw;
     }
     stream().wait();
@@ -36,6 +36,10 @@ class CudaEngine final : public StereoEngine {
 
  private:
   StreamView stream() const { return stream_.get(); }
+  void settle() const noexcept {
+    stream().settle();
+    matcher_.settle();
+  }
 
   /// The input in device memory.
   MatchInput upload(const MatchInput& input) {

@@ -91,17 +91,22 @@ const DeviceMatchMaps& DeviceMatcher::match(const MatchInput& input, const Match
   const int columns = matched_pixels(width, options), rows = matched_pixels(height, options);
   reserve(width, height, columns, rows);
   const ViewLaunch plan = plan_view_launch(settings_, width, height, input.disparities, multiprocessors_);
-  energies_.reserve(static_cast<std::size_t>(plan.blocks) * plan.energies_per_block);
+  const std::size_t energies = static_cast<std::size_t>(plan.blocks) * plan.energies_per_block;
+  energies_.reserve(options.match_both_views ? 2 * energies : energies);
+  reserve_cleared(drawn_, 2, stream.get());
 
   const ImageView<const std::int16_t> images[2]{input.reference, input.target};
   const ImageView offset(offset_.data(), columns, rows);
   sum_blocks(images, input.first_column, options.block_radius, settings_.noise_variance, sums_, stream);
-  match_view(view_of(input, false), settings_, taps_.data(), plan, energies_.data(),
-             {maps_.winner, offset, maps_.variance}, stream);
-  if (options.match_both_views) {
-    match_view(view_of(input, true), settings_, taps_.data(), plan, energies_.data(), {maps_.target_winner, {}, {}},
-               stream);
-  }
+  const auto match_one = [&](std::size_t view, const ViewWinners& winners, const StreamView& in) {
+    drawn_before_[view] +=
+        match_view(view_of(input, view == 1), settings_, taps_.data(), plan, energies_.data() + view * energies,
+                   {drawn_.data() + view, drawn_before_[view]}, winners, in);
+  };
+  // Where the blocks of one view come to their ends, those of the other begin.
+  if (options.match_both_views) match_one(1, {maps_.target_winner, {}, {}}, target_branch_.fork(stream));
+  match_one(0, {maps_.winner, offset, maps_.variance}, stream);
+  if (options.match_both_views) target_branch_.join(stream);
   finish_rows(maps_.winner, maps_.target_winner, offset, finish_settings(options), !options.match_both_views,
               options.pixel_step, maps_.disparity, maps_.variance, stream);
   return maps_;

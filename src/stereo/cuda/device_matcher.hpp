@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/cuda/branch.hpp"
 #include "core/cuda/memory.hpp"
 #include "core/cuda/stream.hpp"
 #include "roadstereo/image_view.hpp"
@@ -26,6 +27,8 @@ class DeviceMatcher {
 
   /// `input` lies in device memory; the options must be valid. The maps are valid until the next call.
   const DeviceMatchMaps& match(const MatchInput& input, const MatcherOptions& options, StreamView stream);
+  /// Waits for what does not run in the caller's stream.
+  void settle() const noexcept { target_branch_.settle(); }
 
  private:
   void use(const MatcherOptions& options, StreamView stream);
@@ -44,6 +47,9 @@ class DeviceMatcher {
   DeviceArray<std::int16_t> winner_, target_winner_;
   BlockSums sums_{};
   DeviceMatchMaps maps_{};
+  DeviceArray<unsigned> drawn_;  ///< TileTickets of both views
+  unsigned drawn_before_[2] = {};
+  Branch target_branch_;
 };
 
 }  // namespace roadstereo::cuda

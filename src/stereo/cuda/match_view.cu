@@ -1,3 +1,6 @@
+#include <cmath>
+#include <type_traits>
+
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
 #include "stereo/cuda/match_view/aggregation.hpp"
@@ -8,7 +11,7 @@
 #include "stereo/cuda/match_view/winner_take_all.hpp"
 
 // A block of threads matches one tile of 32×8 matched pixels, four disparities at a time: the grey levels around it are
-// staged in shared memory, column sums of their products slide down the tile and its halo, costs replace them, and
+// staged in shared memory, column sums of their products slide down the tile and its halo, costs are made of them, and
 // every thread aggregates its own pixel with weights that it computed once. The weight of the prior depends on the
 // smallest energy, so that the energies of a tile are kept in a slice of global memory that is written and read by the
 // same thread and stays in L2.
@@ -25,12 +28,15 @@
 namespace roadstereo::cuda {
 namespace {
 
-/// `known_radius`: of the blocks, whose pixels are staged then, or 0.
+/// `known_radius`: of the blocks, whose pixels are staged and whose costs lie apart then, or 0. `rows` is shared memory
+/// of plan_view_launch.
 template <int max_taps, int known_radius>
-__device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings, const TapOffsets<max_taps>& offsets,
+__device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings, const TapTable<max_taps>& taps,
                            const Tile& tile, bool staged, float* energies_of_block, const ViewWinners& winners) {
-  int4* products = shared_memory<int4>();
-  auto* rows = reinterpret_cast<CostRow*>(products + tile.halo.rows * tile.halo.product_columns);
+  constexpr bool apart = known_radius > 0;
+  int4* products = shared_memory<int4>() + 1;  // after the number of the next tile
+  int4* costs = apart ? products + tile.halo.rows * tile.halo.product_columns : products;
+  auto* rows = reinterpret_cast<CostRow*>(costs + tile.halo.rows * tile.halo.cost_columns);
   for (int row = static_cast<int>(threadIdx.x); row < tile.halo.rows; row += threads) {
     rows[row] = cost_row(view, settings, tile, row);
   }
@@ -45,15 +51,15 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
   PixelWeights<max_taps> weights{};
   const int grey = wanted ? __ldg(view.own.row(v) + image_column(view, i)) : 0;
   if (max_taps > 0 && wanted) {
-    float sum = 0;
-    ROADSTEREO_UNROLL
-    for (int t = 0; t < max_taps; ++t) {
-      weights.of_tap[t] = t < settings.tap_count ? tap_weight(view, settings, settings.taps[t], i, v, grey) : 0.0F;
-      sum += weights.of_tap[t];
+    if (staged) {
+      const int row = y * tile.halo.step + settings.window_half_height + settings.block_radius;
+      const int column = x * tile.halo.step + settings.window_half_width + settings.block_radius;
+      weigh_staged<max_taps>(taps, pixels.own(row, column), settings.log2_colour, weights);
+    } else {
+      weigh<max_taps>(view, settings, i, v, grey, weights);
     }
-    weights.inverse_sum = 1 / sum;
   }
-  const int4* centre = products + (y + settings.window_half_height / tile.halo.step) * tile.halo.product_columns + x +
+  const int4* centre = costs + (y + settings.window_half_height / tile.halo.step) * tile.halo.cost_columns + x +
                        settings.window_half_width / tile.halo.step;
   for (int d = tile.range.first; d < tile.range.end; d += chunk) {
     if (staged) {
@@ -66,20 +72,20 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
       sum_products(view, tile, settings.block_radius, d, products);
     }
     __syncthreads();
-    make_costs<known_radius>(view, settings, tile, rows, d, products);
+    make_costs<known_radius, apart>(view, settings, tile, rows, d, products, costs);
     __syncthreads();
     if (wanted) {
       const bool whole = halo_whole(view, tile, latest_first, d);
       const float4 four = max_taps > 0 && whole
-                              ? whole_energies<max_taps>(settings.tap_count, offsets, weights, centre)
-                              : clipped_energies(*centre, aggregate_clipped<max_taps>(view, settings, tile, offsets,
+                              ? whole_energies<max_taps>(settings.tap_count, taps, weights, centre)
+                              : clipped_energies(*centre, aggregate_clipped<max_taps>(view, settings, tile, taps,
                                                                                       weights, i, v, grey, centre));
       energies.set(d, four.x);
       energies.set(d + 1, four.y);
       energies.set(d + 2, four.z);
       energies.set(d + 3, four.w);
     }
-    __syncthreads();
+    if (!apart) __syncthreads();
   }
   if (wanted) choose(view, settings, energies, image_column(view, i), v, winners);
 }
@@ -92,37 +98,54 @@ constexpr int resident_blocks(int taps) {
 
 template <int max_taps, int known_radius>
 __global__ void __launch_bounds__(threads, resident_blocks(max_taps))
-    match_tiles(ViewToMatch view, ViewSettings settings, Halo halo, TapOffsets<max_taps> offsets, bool staged,
-                float* energies, std::size_t energies_per_block, ViewWinners winners) {
+    match_tiles(ViewToMatch view, ViewSettings settings, Halo halo, TapTable<max_taps> taps, bool staged,
+                float* energies, std::size_t energies_per_block, TileTickets tickets, ViewWinners winners) {
   begin_kernel();
-  const int tiles =
-      tiles_along(view.own.width(), settings, tile_columns) * tiles_along(view.own.height(), settings, tile_rows);
-  for (int index = static_cast<int>(blockIdx.x); index < tiles; index += static_cast<int>(gridDim.x)) {
+  const int tiles = tiles_of(view.own.width(), view.own.height(), settings), blocks = static_cast<int>(gridDim.x);
+  int* next = shared_memory<int>();  // a word before the rest
+  int index = static_cast<int>(blockIdx.x);
+  while (index < tiles) {
+    // Ranges make tiles unequal: who has matched one takes the next. Every tile draws a ticket, also the last ones.
+    if (threadIdx.x == 0) {
+      *next = blocks < tiles ? blocks + static_cast<int>(atomicAdd(tickets.drawn, 1U) - tickets.already) : tiles;
+    }
     const Tile tile = locate_tile(view, settings, halo, index);
-    match_tile<max_taps, known_radius>(view, settings, offsets, tile, known_radius > 0 || staged,
+    match_tile<max_taps, known_radius>(view, settings, taps, tile, known_radius > 0 || staged,
                                        energies + blockIdx.x * energies_per_block, winners);
     __syncthreads();
+    index = *next;
+    __syncthreads();  // before the next ticket is written
   }
+}
+
+/// Of the presets. The kernel for any number of taps is for any blocks, too.
+constexpr int usual_radius(int tap_count) {
+  if (tap_count > taps_of_paper) return 0;
+  return tap_count > 1 && tap_count <= taps_of_default ? 2 : 5;
 }
 
 template <int max_taps>
 void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
-                  const ViewLaunch& plan, float* energies, const ViewWinners& winners, StreamView stream) {
-  const Halo halo = halo_of(settings);
-  TapOffsets<max_taps> offsets{};
-  for (int t = 0; max_taps > 0 && t < settings.tap_count; ++t) {
-    const int rows_away = taps_on_host[t].dv / halo.step, columns_away = taps_on_host[t].du / halo.step;
-    const int costs_away = rows_away * halo.product_columns + columns_away;
-    offsets.bytes[t] = costs_away * static_cast<int>(sizeof(int4));
+                  const ViewLaunch& plan, float* energies, const TileTickets& tickets, const ViewWinners& winners,
+                  StreamView stream) {
+  const Halo halo = halo_of(settings, plan.costs_apart);
+  TapTable<max_taps> taps{};
+  for (int t = 0; t < max_taps; ++t) {
+    taps.log2_space[t] = -INFINITY;
+    if (t >= settings.tap_count) continue;
+    const WindowTap& tap = taps_on_host[t];
+    const int costs_away = tap.dv / halo.step * halo.cost_columns + tap.du / halo.step;
+    const int pixels_away = tap.dv * halo.product_columns + tap.du;
+    taps.cost_bytes[t] = costs_away * static_cast<int>(sizeof(int4));
+    taps.pixel_bytes[t] = pixels_away * static_cast<int>(sizeof(short));
+    taps.log2_space[t] = tap.log2_space;
   }
   const auto run = [&](auto kernel) {
     launch("match_tiles", kernel, {static_cast<unsigned>(plan.blocks), threads, plan.shared_bytes}, stream, view,
-           settings, halo, offsets, plan.staged, energies, plan.energies_per_block, winners);
+           settings, halo, taps, plan.staged, energies, plan.energies_per_block, tickets, winners);
   };
-  // Of the presets. The kernel for any number of taps is for any blocks, too.
-  constexpr int usual_radius = max_taps == 0 ? 0 : max_taps == taps_of_default ? 2 : 5;
-  if (plan.staged && settings.block_radius == usual_radius) {
-    run(match_tiles<max_taps, usual_radius>);
+  if (plan.costs_apart) {
+    run(match_tiles<max_taps, usual_radius(max_taps > 0 ? max_taps : taps_of_paper + 1)>);
   } else {
     run(match_tiles<max_taps, 0>);
   }
@@ -137,31 +160,40 @@ ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height,
   // The number of disparities follows the road: a few more in the next frame need no new memory.
   const int with_reserve = reserve * static_cast<int>(blocks_for(disparities, reserve));
   plan.energies_per_block = static_cast<std::size_t>(threads) * static_cast<std::size_t>(with_reserve);
-  const int tiles = tiles_along(width, settings, tile_columns) * tiles_along(height, settings, tile_rows);
+  const int tiles = tiles_of(width, height, settings);
   const auto room = static_cast<int>(max_energies / plan.energies_per_block);
   const int resident = resident_blocks(settings.tap_count) * multiprocessors;
   plan.blocks = tiles < resident ? tiles : resident;
   plan.blocks = plan.blocks < room ? plan.blocks : room;
-  const Halo halo = halo_of(settings);
-  plan.shared_bytes = sizeof(int4) * static_cast<std::size_t>(halo.rows * halo.product_columns + 1) +
+  const Halo halo = halo_of(settings, false);
+  plan.shared_bytes = sizeof(int4) * static_cast<std::size_t>(1 + halo.rows * halo.product_columns + 1) +
                       sizeof(CostRow) * static_cast<std::size_t>(halo.rows);
   const std::size_t staged_bytes = plan.shared_bytes + StagedPixels::bytes(halo, settings.block_radius);
+  const std::size_t apart_bytes = staged_bytes + sizeof(int4) * static_cast<std::size_t>(halo.rows * halo.columns);
   plan.staged = staged_bytes <= max_shared_bytes;
-  if (plan.staged) plan.shared_bytes = staged_bytes;
+  const int usual = usual_radius(settings.tap_count);
+  plan.costs_apart = usual > 0 && settings.block_radius == usual && apart_bytes <= max_shared_bytes;
+  if (plan.staged) plan.shared_bytes = plan.costs_apart ? apart_bytes : staged_bytes;
   return plan;
 }
 
-void match_view(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
-                const ViewLaunch& plan, float* energies, const ViewWinners& winners, StreamView stream) {
+unsigned match_view(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
+                    const ViewLaunch& plan, float* energies, const TileTickets& tickets, const ViewWinners& winners,
+                    StreamView stream) {
+  const auto launch_for = [&](auto most_taps) {
+    launch_tiles<decltype(most_taps)::value>(view, settings, taps_on_host, plan, energies, tickets, winners, stream);
+  };
   if (settings.tap_count == 1) {
-    launch_tiles<1>(view, settings, taps_on_host, plan, energies, winners, stream);
+    launch_for(std::integral_constant<int, 1>{});
   } else if (settings.tap_count <= taps_of_default) {
-    launch_tiles<taps_of_default>(view, settings, taps_on_host, plan, energies, winners, stream);
+    launch_for(std::integral_constant<int, taps_of_default>{});
   } else if (settings.tap_count <= taps_of_paper) {
-    launch_tiles<taps_of_paper>(view, settings, taps_on_host, plan, energies, winners, stream);
+    launch_for(std::integral_constant<int, taps_of_paper>{});
   } else {
-    launch_tiles<0>(view, settings, taps_on_host, plan, energies, winners, stream);
+    launch_for(std::integral_constant<int, 0>{});
   }
+  const int tiles = tiles_of(view.own.width(), view.own.height(), settings);
+  return plan.blocks < tiles ? static_cast<unsigned>(tiles) : 0;
 }
 
 }  // namespace roadstereo::cuda

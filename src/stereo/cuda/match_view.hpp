@@ -61,7 +61,15 @@ struct ViewLaunch {
   int blocks;
   std::size_t energies_per_block;  ///< floats
   std::size_t shared_bytes;
-  bool staged;  ///< the pixels of a tile and its halo have room in shared memory
+  bool staged;       ///< the pixels of a tile and its halo have room in shared memory
+  bool costs_apart;  ///< so have the costs beside the products, for the blocks and the window of a preset
+};
+
+/// Numbers of tiles that blocks take in turn when they have matched their first: counted from launch to launch, so that
+/// nothing is cleared.
+struct TileTickets {
+  unsigned* drawn;   ///< in device memory
+  unsigned already;  ///< by the launches before
 };
 
 /// For a device with so many multiprocessors.
@@ -69,8 +77,9 @@ ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height,
 
 /// Matches one view in one kernel: matching costs, eq. (8), bilateral aggregation, eqs. (11) and (30), and
 /// winner-take-all. Costs lie in shared memory, energies in a slice of `energies` that stays in the cache.
-/// `taps_on_host`: the settings' taps in host memory.
-void match_view(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
-                const ViewLaunch& plan, float* energies, const ViewWinners& winners, StreamView stream);
+/// `taps_on_host`: the settings' taps in host memory. Returns the tickets that are drawn.
+unsigned match_view(const ViewToMatch& view, const ViewSettings& settings, const WindowTap* taps_on_host,
+                    const ViewLaunch& plan, float* energies, const TileTickets& tickets, const ViewWinners& winners,
+                    StreamView stream);
 
 }  // namespace roadstereo::cuda

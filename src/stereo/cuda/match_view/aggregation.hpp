@@ -10,26 +10,37 @@ namespace roadstereo::cuda {
 /// Largest windows of the kernels that keep the weights of the taps in registers.
 inline constexpr int taps_of_default = 25, taps_of_paper = 60;
 
-/// Offsets of the window's taps in shared memory, in bytes: kernel parameters are constants that become part of the
-/// address of a load. As indices, the compiler would compute all addresses beforehand and keep them in local memory.
+/// The window's taps as kernel parameters, which are constants. Offsets in shared memory, in bytes, become part of the
+/// address of a load; as indices, the compiler would compute all addresses beforehand and keep them in local memory.
 template <int max_taps>
-struct TapOffsets {
-  int bytes[max_taps > 0 ? max_taps : 1];
+struct TapTable {
+  static constexpr int size = max_taps > 0 ? max_taps : 1;
+  int cost_bytes[size];
+  int pixel_bytes[size];   ///< in the staged pixels of the own view
+  float log2_space[size];  ///< of padding taps −∞: their weight is 0
 
   __device__ const int4& costs(const int4* centre, int tap) const {
-    return *reinterpret_cast<const int4*>(reinterpret_cast<const unsigned char*>(centre) + bytes[tap]);
+    return *reinterpret_cast<const int4*>(reinterpret_cast<const unsigned char*>(centre) + cost_bytes[tap]);
+  }
+  __device__ int pixel(const short* centre, int tap) const {
+    return *reinterpret_cast<const short*>(reinterpret_cast<const unsigned char*>(centre) + pixel_bytes[tap]);
   }
 };
 
-/// Taps are loaded in groups of this size; padding taps have zero weight.
+/// Taps are loaded in groups of this size.
 inline constexpr int taps_at_once = 5;
 
-/// ω of a tap of the pixel (i, v): eqs. (31), (32).
+/// ω: eqs. (31), (32).
+__device__ inline float tap_weight(float log2_space, float log2_colour, int grey_difference) {
+  const auto difference = static_cast<float>(grey_difference);
+  return exp2f(log2_space + log2_colour * difference * difference);
+}
+
+/// ω of a tap of the pixel (i, v), from the image.
 __device__ inline float tap_weight(const ViewToMatch& view, const ViewSettings& settings, const WindowTap& tap, int i,
                                    int v, int grey) {
   const int q = min(max(i + tap.du, 0), view.own.width() - 1), row = min(max(v + tap.dv, 0), view.own.height() - 1);
-  const auto difference = static_cast<float>(__ldg(view.own.row(row) + image_column(view, q)) - grey);
-  return exp2f(tap.log2_space + settings.log2_colour * difference * difference);
+  return tap_weight(tap.log2_space, settings.log2_colour, __ldg(view.own.row(row) + image_column(view, q)) - grey);
 }
 
 /// Weights of a pixel's taps: in registers where there are `max_taps` of them, else made anew for every chunk.
@@ -38,6 +49,34 @@ struct PixelWeights {
   float of_tap[max_taps > 0 ? max_taps : 1];
   float inverse_sum;
 };
+
+/// Weights of a pixel whose surroundings are staged. Outside of the image they are of some grey level or other: there
+/// is no cost.
+template <int max_taps>
+__device__ void weigh_staged(const TapTable<max_taps>& taps, const short* centre, float log2_colour,
+                             PixelWeights<max_taps>& weights) {
+  const int grey = *centre;
+  float sum = 0;
+  ROADSTEREO_UNROLL
+  for (int t = 0; t < max_taps; ++t) {
+    weights.of_tap[t] = tap_weight(taps.log2_space[t], log2_colour, taps.pixel(centre, t) - grey);
+    sum += weights.of_tap[t];
+  }
+  weights.inverse_sum = 1 / sum;
+}
+
+/// The same from the image, for a pixel (i, v).
+template <int max_taps>
+__device__ void weigh(const ViewToMatch& view, const ViewSettings& settings, int i, int v, int grey,
+                      PixelWeights<max_taps>& weights) {
+  float sum = 0;
+  ROADSTEREO_UNROLL
+  for (int t = 0; t < max_taps; ++t) {
+    weights.of_tap[t] = t < settings.tap_count ? tap_weight(view, settings, settings.taps[t], i, v, grey) : 0.0F;
+    sum += weights.of_tap[t];
+  }
+  weights.inverse_sum = 1 / sum;
+}
 
 /// Σ ω c and Σ ω of four disparities.
 struct Aggregate {
@@ -69,18 +108,18 @@ __device__ inline void add_clipped(const int4& costs, float weight, Aggregate& s
 /// Σ ω c and Σ ω where a cost may be missing: the weights are those of the others.
 template <int max_taps>
 __device__ Aggregate aggregate_clipped(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile,
-                                       const TapOffsets<max_taps>& offsets, const PixelWeights<max_taps>& weights,
-                                       int i, int v, int grey, const int4* centre) {
+                                       const TapTable<max_taps>& taps, const PixelWeights<max_taps>& weights, int i,
+                                       int v, int grey, const int4* centre) {
   Aggregate sums{make_float4(0, 0, 0, 0), make_float4(0, 0, 0, 0)};
   if (max_taps > 0) {
     ROADSTEREO_UNROLL
     for (int t = 0; t < max_taps; ++t) {
-      if (t < settings.tap_count) add_clipped(offsets.costs(centre, t), weights.of_tap[t], sums);
+      if (t < settings.tap_count) add_clipped(taps.costs(centre, t), weights.of_tap[t], sums);
     }
   } else {
     for (int t = 0; t < settings.tap_count; ++t) {
       const WindowTap tap = settings.taps[t];
-      const int4& costs = centre[tap.dv / tile.halo.step * tile.halo.product_columns + tap.du / tile.halo.step];
+      const int4& costs = centre[tap.dv / tile.halo.step * tile.halo.cost_columns + tap.du / tile.halo.step];
       add_clipped(costs, tap_weight(view, settings, tap, i, v, grey), sums);
     }
   }
@@ -89,15 +128,15 @@ __device__ Aggregate aggregate_clipped(const ViewToMatch& view, const ViewSettin
 
 /// Energies E_d of one pixel at four disparities (eq. (11)) where no cost is missing.
 template <int max_taps>
-__device__ float4 whole_energies(int tap_count, const TapOffsets<max_taps>& offsets,
-                                 const PixelWeights<max_taps>& weights, const int4* centre) {
+__device__ float4 whole_energies(int tap_count, const TapTable<max_taps>& taps, const PixelWeights<max_taps>& weights,
+                                 const int4* centre) {
   Aggregate sums{make_float4(0, 0, 0, 0), make_float4(0, 0, 0, 0)};
   ROADSTEREO_UNROLL
   for (int first = 0; first < max_taps; first += taps_at_once) {
     if (first >= tap_count) continue;
     ROADSTEREO_UNROLL
     for (int t = first; t < first + taps_at_once; ++t) {
-      if (t < max_taps) add_whole(offsets.costs(centre, t), weights.of_tap[t], sums);
+      if (t < max_taps) add_whole(taps.costs(centre, t), weights.of_tap[t], sums);
     }
   }
   const float scale = weights.inverse_sum;

@@ -3,7 +3,7 @@
 #include "core/cuda/unroll.hpp"
 #include "stereo/cuda/match_view/tile.hpp"
 
-// Matching costs, eq. (8), of the halo at four disparities, in the memory of the column products.
+// Matching costs, eq. (8), of the halo at four disparities.
 
 namespace roadstereo::cuda {
 
@@ -118,26 +118,25 @@ __device__ inline CostRow cost_row(const ViewToMatch& view, const ViewSettings& 
   return row;
 }
 
-/// Replaces the products by the costs of the matched pixels of the halo, as many at a time as there are threads: all
-/// have read before one writes. Cost x of a row stands where product x stood, and cost x reads products from x on, so
-/// that those of the pixels that follow are still there.
-template <int known_radius>
+/// The costs of the matched pixels of the halo from the products, as many at a time as there are threads. Without
+/// memory of their own, `costs` are the products: cost x of a row takes the place of product x when all have read, and
+/// cost x reads products from x on, so that those of the pixels that follow are still there.
+template <int known_radius, bool apart>
 __device__ void make_costs(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile, const CostRow* rows,
-                           int d, int4* products) {
+                           int d, const int4* products, int4* costs) {
   const int columns = tile.halo.columns;
   const int rows_a_round = threads / columns, rest = threads - rows_a_round * columns;
   int y = static_cast<int>(threadIdx.x) / columns, x = static_cast<int>(threadIdx.x) - y * columns;
   for (int first = 0; first < columns * tile.halo.rows; first += threads) {
-    int4* row_products = products + y * tile.halo.product_columns;
-    float4 costs{};
+    float4 four{};
     if (y < tile.halo.rows) {
-      costs = four_costs<known_radius>(view, rows[y], row_products, settings.noise_variance, tile.halo_i,
-                                       tile.halo_i + x * tile.halo.step, d);
+      four = four_costs<known_radius>(view, rows[y], products + y * tile.halo.product_columns, settings.noise_variance,
+                                      tile.halo_i, tile.halo_i + x * tile.halo.step, d);
     }
-    __syncthreads();
+    if (!apart) __syncthreads();
     if (y < tile.halo.rows) {
-      row_products[x] =
-          make_int4(__float_as_int(costs.x), __float_as_int(costs.y), __float_as_int(costs.z), __float_as_int(costs.w));
+      costs[y * tile.halo.cost_columns + x] =
+          make_int4(__float_as_int(four.x), __float_as_int(four.y), __float_as_int(four.z), __float_as_int(four.w));
     }
     x += rest;
     y += rows_a_round + (x >= columns ? 1 : 0);

@@ -17,6 +17,7 @@ struct Halo {
   int step;             ///< pixels from one column or row to the next
   int columns, rows;    ///< of a tile with the window's taps
   int product_columns;  ///< pixels across, with the blocks' radius on both sides
+  int cost_columns;     ///< from one row of costs to the next: `columns`, or as the products, whose memory they take
 };
 
 /// Where the tile and its halo lie, in the view's own coordinates. Columns and rows of both are matched pixels.
@@ -45,23 +46,32 @@ ROADSTEREO_HD inline int tiles_along(int pixels, const ViewSettings& settings, i
   return (matched + size - 1) / size;
 }
 
-inline Halo halo_of(const ViewSettings& settings) {
+/// Tiles of a view.
+ROADSTEREO_HD inline int tiles_of(int width, int height, const ViewSettings& settings) {
+  return tiles_along(width, settings, tile_columns) * tiles_along(height, settings, tile_rows);
+}
+
+/// `costs_apart`: costs have memory of their own.
+inline Halo halo_of(const ViewSettings& settings, bool costs_apart) {
   const int step = settings.pixel_step;
   Halo halo{step, tile_columns + 2 * (settings.window_half_width / step),
-            tile_rows + 2 * (settings.window_half_height / step), 0};
+            tile_rows + 2 * (settings.window_half_height / step), 0, 0};
   halo.product_columns = (halo.columns - 1) * step + 1 + 2 * settings.block_radius;
+  halo.cost_columns = costs_apart ? halo.columns : halo.product_columns;
   return halo;
 }
 
+/// Tiles are counted down the columns, from the side where blocks are clipped: those take longest, and begin first.
 __device__ inline Tile locate_tile(const ViewToMatch& view, const ViewSettings& settings, const Halo& halo, int index) {
-  const int width = view.own.width(), across = tiles_along(width, settings, tile_columns);
+  const int width = view.own.width(), down = tiles_along(view.own.height(), settings, tile_rows);
+  const int across = tiles_along(width, settings, tile_columns), column = index / down;
   Tile tile;
   tile.halo = halo;
-  const int first_u = index % across * tile_columns * tile.halo.step;
+  const int first_u = (view.mirrored ? across - 1 - column : column) * tile_columns * tile.halo.step;
   const int end_u = min(first_u + tile_columns * tile.halo.step, width);
   tile.first_i = view.mirrored ? width - end_u : first_u;
   tile.columns = (end_u - first_u + tile.halo.step - 1) / tile.halo.step;
-  tile.first_v = index / across * tile_rows * tile.halo.step;
+  tile.first_v = index % down * tile_rows * tile.halo.step;
   tile.halo_i = tile.first_i - settings.window_half_width;
   tile.halo_v = tile.first_v - settings.window_half_height;
   tile.range = {0, static_cast<std::int16_t>(view.disparities)};
