@@ -188,16 +188,18 @@ std::size_t tile_bytes(int rows, int border) {
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
                         const RefinementSettings& settings, ImageView<float> refined, ImageView<float> error,
                         StreamView stream) {
-  constexpr int rows_each = 2;
+  constexpr unsigned few_blocks = 256;  // about two a multiprocessor: then a thread's way through its pixels counts
   const Maps maps{disparity, variance, road};
   const dim3 block(tile_columns, thread_rows);
   const auto grid = [&](int rows) {
     return dim3(blocks_for(refined.width(), tile_columns), blocks_for(refined.height(), rows));
   };
+  const dim3 of_two_rows = grid(2 * thread_rows);
+  const int rows_each = of_two_rows.x * of_two_rows.y < few_blocks ? 1 : 2;
   const std::size_t bytes = tile_bytes(rows_each * thread_rows, settings.pass.radius);
   if (bytes <= max_shared_bytes) {
-    launch("refine_tiles", refine_tiles<rows_each>, {grid(rows_each * thread_rows), block, bytes}, stream, maps,
-           settings, refined, error);
+    launch("refine_tiles", rows_each == 1 ? refine_tiles<1> : refine_tiles<2>,
+           {grid(rows_each * thread_rows), block, bytes}, stream, maps, settings, refined, error);
   } else {
     launch("refine_untiled", refine_untiled, {grid(thread_rows), block}, stream, maps, settings, refined, error);
   }

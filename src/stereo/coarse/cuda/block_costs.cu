@@ -230,7 +230,9 @@ __global__ void block_costs_of_segments(CoarsePair pair, float noise_variance, R
                                         ImageView<RoadCost> roads, int* first_seen) {
   begin_kernel();
   constexpr int segment = warps * columns_each;
-  const int v = costs.first_row + static_cast<int>(blockIdx.y), first = static_cast<int>(blockIdx.x) * segment;
+  // The blocks of one column of segments follow each other, so that the clipped ones, which take longest, do not all go
+  // to the same multiprocessors.
+  const int v = costs.first_row + static_cast<int>(blockIdx.x), first = static_cast<int>(blockIdx.y) * segment;
   const int radius = prior.block_radius, first_row = v - radius, last_row = v + radius;
   const int inside = (last_row < pair.reference.height() ? last_row : pair.reference.height() - 1) -
                      (first_row > 0 ? first_row : 0) + 1;
@@ -241,7 +243,7 @@ __global__ void block_costs_of_segments(CoarsePair pair, float noise_variance, R
   of.rows = inside;
   of.noise_variance = noise_variance;
   of.inverse_whole = 1.0F / static_cast<float>((2 * radius + 1) * inside);
-  if (blockIdx.x == 0 && threadIdx.x == 0) first_seen[v] = of.first_visible;
+  if (blockIdx.y == 0 && threadIdx.x == 0) first_seen[v] = of.first_visible;
   prepare<known_block>(of, pair, prior, first, v);
   const int begin = first + static_cast<int>(threadIdx.x) / warp_lanes * columns_each;
   const int end = begin + columns_each < costs.columns ? begin + columns_each : costs.columns;
@@ -277,7 +279,7 @@ void block_costs(const CoarsePair& pair, float noise_variance, const RoadPrior& 
                  ImageView<RoadCost> roads, int* first_seen, StreamView stream) {
   const auto run = [&](auto kernel, int columns_each) {
     const int segment = warps * columns_each;
-    const LaunchShape shape{dim3(blocks_for(costs.columns, segment), static_cast<unsigned>(costs.rows)),
+    const LaunchShape shape{dim3(static_cast<unsigned>(costs.rows), blocks_for(costs.columns, segment)),
                             warps * warp_lanes, shared_bytes(segment, prior.block_radius, costs.disparities)};
     launch("block_costs", kernel, shape, stream, pair, noise_variance, prior, costs, roads, first_seen);
   };
