@@ -28,8 +28,7 @@
 namespace roadstereo::cuda {
 namespace {
 
-/// `known_radius`: of the blocks, whose pixels are staged and whose costs lie apart then, or 0. `rows` is shared memory
-/// of plan_view_launch.
+/// `known_radius`: of the blocks, whose pixels are staged and whose costs lie apart then, or 0.
 template <int max_taps, int known_radius>
 __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings, const TapTable<max_taps>& taps,
                            const Tile& tile, bool staged, float* energies_of_block, const ViewWinners& winners) {
