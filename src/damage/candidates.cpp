@@ -195,6 +195,20 @@ void update_extent(const SearchInput& input, const Image<std::uint8_t>& assigned
   candidate.cells = candidate.cells.cropped(box);
 }
 
+/// Cells within a support window of a region that are deeper than its outline, yet not connected with it at that depth:
+/// other hollows, beyond a saddle.
+BoxMask hollows_beside(const Candidate& candidate, int window_radius, const SearchImages& images) {
+  const CellBox around = candidate.box().grown(window_radius, images.depth.width(), images.depth.height());
+  BoxMask hollows(around);
+  for (int j = around.first_row; j <= around.last_row; ++j) {
+    for (int i = around.first_column; i <= around.last_column; ++i) {
+      const bool is_deep = images.allowed(i, j) != 0 && images.depth(i, j) > candidate.level;
+      hollows.set(i, j, is_deep && !candidate.cells(i, j));
+    }
+  }
+  return hollows;
+}
+
 /// Extend the region from the flood fill at its level to its outline: to the foot of the wall, and for depressions to
 /// the edge in the image, up to the cells of other damages.
 void extend_region(const SearchInput& input, SearchImages& images, Candidate& candidate) {
@@ -209,7 +223,8 @@ void extend_region(const SearchInput& input, SearchImages& images, Candidate& ca
   fill_holes(candidate.cells.cells(), max_hole);
   update_extent(input, images.assigned, candidate);
   if (candidate.size == 0 || candidate.kind == DamageKind::protrusion || input.image_edges.grey.empty()) return;
-  refine_outline_by_image(input.image_edges, input.unseen, candidate.cells);
+  const BoxMask other_hollows = hollows_beside(candidate, input.image_edges.window_radius, images);
+  refine_outline_by_image(input.image_edges, input.unseen, other_hollows, candidate.cells);
   fill_holes(candidate.cells.cells(), max_hole);
   update_extent(input, images.assigned, candidate);
 }

@@ -88,7 +88,8 @@ double log_ratio(double grey, const RobustNormal& one, const RobustNormal& other
 
 }  // namespace
 
-void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uint8_t>& unseen, BoxMask& region) {
+void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uint8_t>& unseen,
+                             const BoxMask& other_hollows, BoxMask& region) {
   // Prior log-odds of the road: most of these cells were measured on it.
   constexpr double min_log_ratio = 1.5;
   constexpr std::size_t min_samples = 30;
@@ -121,7 +122,7 @@ void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uin
     const CellIndex cell = front.back();
     front.pop_back();
     for_each_neighbour(cell.column, cell.row, columns, rows, [&](int i, int j) {
-      if (region(i, j) || !near(i, j) || unseen(i, j) != 0 || !is_inside(grey(i, j))) return;
+      if (region(i, j) || !near(i, j) || unseen(i, j) != 0 || other_hollows(i, j) || !is_inside(grey(i, j))) return;
       region.set(i, j);
       front.push_back({i, j});
     });

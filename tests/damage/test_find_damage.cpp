@@ -455,6 +455,48 @@ TEST(FindDamage, FindsShallowDamageBesidePothole) {
   }
 }
 
+/// Picture in which damages and what lies closer to one than `margin` are dark, in 1/16 grey levels.
+GreyImage dark_damages(const Image<std::uint16_t>& labels, int margin) {
+  constexpr float road_level = 1600, dark_level = 1000, texture = 32;
+  Image<float> levels(labels.width(), labels.height());
+  for (int v = 0; v < labels.height(); ++v) {
+    for (int u = 0; u < labels.width(); ++u) {
+      bool is_dark = false;
+      for (int y = std::max(0, v - margin); y <= std::min(labels.height() - 1, v + margin); ++y) {
+        for (int x = std::max(0, u - margin); x <= std::min(labels.width() - 1, u + margin); ++x) {
+          is_dark |= labels(x, y) != 0;
+        }
+      }
+      levels(u, v) = is_dark ? dark_level : road_level;
+    }
+  }
+  levels = with_noise(levels, texture);
+  GreyImage grey(labels.width(), labels.height());
+  for (std::size_t k = 0; k < levels.pixels(); ++k) {
+    grey.row(0)[k] = static_cast<std::int16_t>(std::lround(levels.row(0)[k]));
+  }
+  return grey;
+}
+
+/// Where the strip between two damages is as dark as they are, the shallow one does not take cells of the deep one, nor
+/// its depth.
+TEST(FindDamage, ToneJoinsNoCellsOfDeeperPothole) {
+  synth::Scene scene = intact_scene();
+  scene.road.blobs = {{-0.05, 0.65, 0.2, 0.014, 0, 0.3, 3}, {0.265, 0.65, 0.1, 0.09, 0, 0.1, 8}};
+  const ExactMaps maps(scene);
+  const GreyImage grey = dark_damages(maps.pair.labels, 5);
+  DamageInput input = maps.metric();
+  input.grey = grey;
+  const DamageMap map = find_damage(input);
+  ASSERT_EQ(map.damages.size(), 2U);
+  for (const synth::DamageTruth& known : maps.pair.damages) {
+    const Damage* found = find(map, maps.pair, known.id);
+    ASSERT_NE(found, nullptr) << known.depth_m;
+    EXPECT_NEAR(found->metrics->max_depth_m.value, known.depth_m, 0.15 * known.depth_m);
+    EXPECT_EQ(maps.pair.labels(found->deepest_px[0], found->deepest_px[1]), known.id);
+  }
+}
+
 /// Potholes around a bump are not what it is compared with.
 TEST(FindDamage, FindsLowBumpBetweenPotholes) {
   synth::Scene scene = intact_scene();

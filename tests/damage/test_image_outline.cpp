@@ -38,12 +38,13 @@ Image<std::int16_t> square_on_road(const Tones& tones) {
 }
 
 /// Share of the cells of the strip that join the square, of those whose 3×3 mean is the strip's level.
-double joined(const Image<std::int16_t>& grey, const Image<std::uint8_t>& unseen = Image<std::uint8_t>(side, side, 0)) {
+double joined(const Image<std::int16_t>& grey, const Image<std::uint8_t>& unseen = Image<std::uint8_t>(side, side, 0),
+              const BoxMask& other_hollows = {}) {
   BoxMask region(CellBox{first, first, last, last});
   for (int j = first; j <= last; ++j) {
     for (int i = first; i <= last; ++i) region.set(i, j);
   }
-  refine_outline_by_image({grey, 1, radius}, unseen, region);
+  refine_outline_by_image({grey, 1, radius}, unseen, other_hollows, region);
   int count = 0, all = 0;
   for (int j = first + 1; j < last; ++j) {
     for (int i = last + 2; i < last + strip_columns; ++i) {
@@ -82,6 +83,14 @@ TEST(ImageOutline, NeverGrowsBeyondOtherSideOfRoad) {
 // A smoother inside: what is darker than all of it belongs to the hole, too.
 TEST(ImageOutline, DarkerThanInsideJoins) {
   EXPECT_EQ(joined(square_on_road({4, -4, 0.25})), 1);
+}
+
+// A wall of another hollow across the strip: neither it nor what lies behind it joins.
+TEST(ImageOutline, DoesNotCrossAnotherHollow) {
+  BoxMask other_hollows(CellBox{last + 2, 0, last + 2, side - 1});
+  for (int j = 0; j < side; ++j) other_hollows.set(last + 2, j);
+  EXPECT_EQ(joined(square_on_road({4})), 1);
+  EXPECT_EQ(joined(square_on_road({4}), Image<std::uint8_t>(side, side, 0), other_hollows), 0);
 }
 
 TEST(ImageOutline, EqualTonesChangeNothing) {
