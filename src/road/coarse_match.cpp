@@ -15,7 +15,8 @@ namespace {
 
 constexpr int half_width = row_block_half_width;
 constexpr int half_height = row_block_half_height;
-/// Added to the variance of a block: what has less texture correlates with nothing.
+/// Noise of a pixel. That of the shrunk images, whose pixels are means, is added to the variance of a block: what has
+/// less texture correlates with nothing.
 constexpr float noise_deviation = 1.0f * grey_scale;
 constexpr float min_correlation = 0.7f;
 constexpr float min_margin = 0.03f;  ///< by which the best must beat every other but its neighbours
@@ -102,8 +103,8 @@ std::int32_t block_sum(const std::int32_t* centre) {
   return sum;
 }
 
-void describe_blocks(const PaddedImage& image, int v, int width, const MaskedBlocks& masked, BandMemory& memory,
-                     const BlockRow& blocks) {
+void describe_blocks(const PaddedImage& image, int v, int width, float noise, const MaskedBlocks& masked,
+                     BandMemory& memory, const BlockRow& blocks) {
   std::int32_t* sums = memory.column_sums();
   std::int32_t* squares = memory.column_squares();
   std::fill_n(sums, width, 0);
@@ -119,9 +120,8 @@ void describe_blocks(const PaddedImage& image, int v, int width, const MaskedBlo
     const float mean = static_cast<float>(block_sum(sums + u)) / row_block_pixels;
     const float variance = static_cast<float>(block_sum(squares + u)) / row_block_pixels - mean * mean;
     blocks.mean[u] = mean;
-    blocks.inverse_deviation[u] = masked.contains(u, v, half_width, half_height)
-                                      ? 0.0f
-                                      : 1 / std::sqrt(std::max(variance, 0.0f) + noise_deviation * noise_deviation);
+    blocks.inverse_deviation[u] =
+        masked.contains(u, v, half_width, half_height) ? 0.0f : 1 / std::sqrt(std::max(variance, 0.0f) + noise * noise);
   }
 }
 
@@ -162,6 +162,7 @@ struct SmallPair {
 std::size_t match_band(const SmallPair& pair, int first, int last, BandMemory& memory, DisparityPoint* matches,
                        DisparityEvidence& evidence) {
   const int width = pair.layout.width;
+  const float noise = noise_deviation / static_cast<float>(pair.factor);
   const RowCorrelations row{memory.values(), pair.layout.pitch, width, pair.layout.disparities};
   const auto add = [&](int v, int sign) {
     add_products(pair.left.row(v), pair.right.row(v), row, sign, memory.sums());
@@ -172,8 +173,8 @@ std::size_t match_band(const SmallPair& pair, int first, int last, BandMemory& m
   for (int top = first; top < last; ++top) {
     const int v = top + half_height;
     add(v + half_height, 1);
-    describe_blocks(pair.left, v, width, pair.masked, memory, memory.left());
-    describe_blocks(pair.right, v, width, {}, memory, memory.right());
+    describe_blocks(pair.left, v, width, noise, pair.masked, memory, memory.left());
+    describe_blocks(pair.right, v, width, noise, {}, memory, memory.right());
     memory.clear_best();
     correlate_row(memory.sums(), memory.left(), memory.right(), row, memory.best_of_left(), memory.best_of_right());
     found += collect(row, memory, v, pair.factor, matches + found);

@@ -99,6 +99,28 @@ TEST(DisparityPlane, UnrelatedImagesAreUnreliable) {
   EXPECT_FALSE(road.reason.empty());
 }
 
+/// A sixth of the light in pictures of 8 bits: the texture is some grey levels strong, which the means of the shrunk
+/// images keep.
+TEST(DisparityPlane, DarkRoadHasEvidenceOfBrightOne) {
+  const Pair bright = render_scene("uav");
+  const auto darkened = [](const GreyImage& image) {
+    GreyImage dark(image.width(), image.height());
+    for (int v = 0; v < image.height(); ++v) {
+      for (int u = 0; u < image.width(); ++u) {
+        const double level = static_cast<double>(image(u, v)) / grey_scale;
+        dark(u, v) = static_cast<std::int16_t>(grey_scale * std::lround(level / 6));
+      }
+    }
+    return dark;
+  };
+  const auto evidence_of = [&](const GreyImage& left, const GreyImage& right) {
+    return estimate_road_model(left, right, bright.truth.calibration, RoadModelOptions{}).evidence;
+  };
+  const double expected = evidence_of(bright.left, bright.right);
+  EXPECT_GT(expected, 0.3);
+  EXPECT_GT(evidence_of(darkened(bright.left), darkened(bright.right)), 0.8 * expected);
+}
+
 /// A drone over a bent road in noise: seven single blocks are reliable.
 TEST(DisparityPlane, EvidenceFindsRoadThatHardlyAnyBlockShows) {
   synth::Scene wide = synth::random_wide_scene(39);
