@@ -130,7 +130,10 @@ __device__ const SelectedKey* select_ranks(const std::uint32_t (&keys)[sets][cou
   constexpr int ranks = sizeof...(set_of_rank);
   constexpr int set_of[ranks] = {set_of_rank...};
   const int thread = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
-  if (thread < ranks) scratch.selected[thread] = {0, 0};
+  if (thread < ranks) {
+    scratch.selected[thread] = {0, 0};
+    scratch.rank[thread] = 0;
+  }
   ROADSTEREO_DO_NOT_UNROLL
   for (int digit = 0; digit < digits; ++digit) {
     for (int i = thread; i < ranks * Scratch::bins; i += threads) {
