@@ -130,10 +130,7 @@ __device__ const SelectedKey* select_ranks(const std::uint32_t (&keys)[sets][cou
   constexpr int ranks = sizeof...(set_of_rank);
   constexpr int set_of[ranks] = {set_of_rank...};
   const int thread = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
-  if (thread < ranks) {
-    scratch.selected[thread] = {0, 0};
-    scratch.rank[thread] = 0;
-  }
+  if (thread < ranks) scratch.selected[thread] = {0, 0};
   ROADSTEREO_DO_NOT_UNROLL
   for (int digit = 0; digit < digits; ++digit) {
     for (int i = thread; i < ranks * Scratch::bins; i += threads) {
@@ -157,7 +154,7 @@ __device__ const SelectedKey* select_ranks(const std::uint32_t (&keys)[sets][cou
     __syncthreads();
     for (int r = thread / warp_lanes; r < ranks; r += threads / warp_lanes) {
       SelectedKey selected = scratch.selected[r];
-      int rank = scratch.rank[r];
+      int rank = digit > 0 ? scratch.rank[r] : 0;
       if (digit > 0 && selected.of == 0) continue;
       RegisterSelect::choose(digit == 0, scratch.counts[r].of_bin, rank_of[r], selected, rank);
       __syncwarp();  // all lanes have read

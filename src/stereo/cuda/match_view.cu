@@ -53,9 +53,19 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
     if (staged) {
       const int row = y * tile.halo.step + settings.window_half_height + settings.block_radius;
       const int column = x * tile.halo.step + settings.window_half_width + settings.block_radius;
-      weigh_staged<max_taps>(taps, pixels.own(row, column), settings.log2_colour, weights);
+      const short* pixel = pixels.own(row, column);  // outside of the image of any grey level: there is no cost
+      const int staged_grey = *pixel;
+      weigh_taps<max_taps>(
+          [&](int t) {
+            return tap_weight(taps.log2_space[t], settings.log2_colour, taps.pixel(pixel, t) - staged_grey);
+          },
+          weights);
     } else {
-      weigh<max_taps>(view, settings, i, v, grey, weights);
+      weigh_taps<max_taps>(
+          [&](int t) {
+            return t < settings.tap_count ? tap_weight(view, settings, settings.taps[t], i, v, grey) : 0.0F;
+          },
+          weights);
     }
   }
   const int4* centre = costs + (y + settings.window_half_height / tile.halo.step) * tile.halo.cost_columns + x +

@@ -50,29 +50,13 @@ struct PixelWeights {
   float inverse_sum;
 };
 
-/// Weights of a pixel whose surroundings are staged. Outside of the image they are of some grey level or other: there
-/// is no cost.
-template <int max_taps>
-__device__ void weigh_staged(const TapTable<max_taps>& taps, const short* centre, float log2_colour,
-                             PixelWeights<max_taps>& weights) {
-  const int grey = *centre;
+/// Fills them in with what `weight_of(tap)` returns.
+template <int max_taps, class WeightOf>
+__device__ void weigh_taps(WeightOf weight_of, PixelWeights<max_taps>& weights) {
   float sum = 0;
   ROADSTEREO_UNROLL
   for (int t = 0; t < max_taps; ++t) {
-    weights.of_tap[t] = tap_weight(taps.log2_space[t], log2_colour, taps.pixel(centre, t) - grey);
-    sum += weights.of_tap[t];
-  }
-  weights.inverse_sum = 1 / sum;
-}
-
-/// The same from the image, for a pixel (i, v).
-template <int max_taps>
-__device__ void weigh(const ViewToMatch& view, const ViewSettings& settings, int i, int v, int grey,
-                      PixelWeights<max_taps>& weights) {
-  float sum = 0;
-  ROADSTEREO_UNROLL
-  for (int t = 0; t < max_taps; ++t) {
-    weights.of_tap[t] = t < settings.tap_count ? tap_weight(view, settings, settings.taps[t], i, v, grey) : 0.0F;
+    weights.of_tap[t] = weight_of(t);
     sum += weights.of_tap[t];
   }
   weights.inverse_sum = 1 / sum;
