@@ -37,6 +37,12 @@ def surface_log_odds(significance, slope):
     return per_standard_error_of_hollow * min(above, max_standard_errors) + min(above, 1) * min(0, log_steepness(slope))
 
 
+def range_log_odds(vote):
+    """As in src/damage/evidence.cpp; it is not fitted."""
+    per_vote, even_odds = 20, 0.3
+    return 0.0 if vote is None else per_vote * min(0, vote - even_odds)
+
+
 def features(region):
     significance = min(max(region["significance"], 1), MAX_SIGNIFICANCE)
     share, slope = region["border_share"], region["likely_wall_slope"]
@@ -82,7 +88,8 @@ def main():
     sources, rows = read(sys.argv[1:])
     x = np.array([features(row) for row in rows])
     y = np.array([float(row["is_damage"]) for row in rows])
-    offset = np.array([surface_log_odds(row["surface_significance"], row["likely_wall_slope"]) for row in rows])
+    offset = np.array([surface_log_odds(row["surface_significance"], row["likely_wall_slope"]) +
+                       range_log_odds(row["range_vote"]) for row in rows])
     program = np.array([row["confidence"] for row in rows])
     weight = np.ones(len(rows))
     for name in set(sources):

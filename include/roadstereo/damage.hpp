@@ -51,7 +51,7 @@ struct DamageInput {
   /// camera alone sees from damage.
   ImageView<const std::int16_t> right;
   ImageView<const std::uint8_t> mask{};  ///< not 0: outside of the view, as beyond the border of the image; empty: none
-  Misalignment misalignment;             ///< of `right`, as `disparity` has it undone
+  std::optional<PerspectiveShift> shift;  ///< with which `disparity` was matched: range searched, misalignment
   std::optional<DisparityPlane> plane;  ///< the road's plane in ℓ, in whose coordinates its surface is fitted; likewise
   std::optional<StereoCalibration> calibration;  ///< required for metric results
 };
@@ -103,6 +103,10 @@ struct DamageEvidence {
   /// along the undamaged road; NaN unknown. What one camera alone sees agrees along neither, the texture around it
   /// along the road.
   double surface_significance = std::numeric_limits<double>::quiet_NaN();
+  /// Mean vote of the windows inside, −1 … 1, for the measured disparities against all that were not searched, by their
+  /// correlation between the pictures; NaN unknown. 0 or less where the picture shows something else, such as the roof
+  /// of a vehicle.
+  double range_vote = std::numeric_limits<double>::quiet_NaN();
   /// Slope of the wall of a depression, rise over run, at most 1: geometric mean of `DamageMetrics::wall_slope` and of
   /// the steepest that the support window makes as gentle; NaN unknown, and of a protrusion. Where the border cuts a
   /// depression it tells a pothole from the relief of the road.

@@ -74,6 +74,8 @@ void bind_one_damage(py::module_& module) {
              "Share of the outline on a gap of the map that reaches that border, 0 … 1.")
       .field("surface_significance", &Evidence::surface_significance,
              "Standard errors by which the images agree better along the measured surface than the road; NaN unknown.")
+      .field("range_vote", &Evidence::range_vote,
+             "Mean vote of the images for the measured disparities against those not searched, -1 … 1; NaN unknown.")
       .field("likely_wall_slope", &Evidence::likely_wall_slope,
              "Slope of the wall of a depression, rise over run: mean of the measured and the steepest possible, at "
              "most 1; NaN unknown.")

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "damage/likelihood_vote.hpp"
 #include "road/cubic.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -78,7 +79,10 @@ struct Places {
 class RightRow {
  public:
   RightRow(const DamageInput& input, int v)
-      : image_(input.right), misalignment_(input.misalignment), v_(v), is_aligned_(misalignment_.is_zero()) {}
+      : image_(input.right),
+        misalignment_(input.shift ? input.shift->misalignment : Misalignment{}),
+        v_(v),
+        is_aligned_(misalignment_.is_zero()) {}
 
   /// Columns x; NaN outside.
   void read(const Lanes<float>& x, std::size_t lanes, Lanes<float>& values) const {
@@ -152,21 +156,14 @@ class RightRow {
   }
 
   ImageView<const std::int16_t> image_;
-  const Misalignment& misalignment_;
+  Misalignment misalignment_;
   int v_;
   bool is_aligned_;
 };
 
-/// Log likelihood of a block along a surface, but for a constant: grey levels differ by normal noise.
-float log_likelihood(float correlation) {
-  constexpr float min_noise_share = 1e-4F;
-  return -0.5F * static_cast<float>(block_pixels) * std::log(std::max(1 - correlation * correlation, min_noise_share));
-}
-
 /// Votes of the blocks from `first` on, up to as many as are compared together.
 void vote_lanes(const DamageInput& input, int v, std::span<const int> u, std::span<const float> surface,
                 std::size_t first, std::span<float> votes) {
-  constexpr float max_log_ratio = 2;  // an object that one camera alone sees counts no more than a block of the road
   const int width = input.grey.width();
   const std::size_t lanes = std::min(u.size() - first, max_lanes);
   Lanes<int> column;
@@ -202,8 +199,7 @@ void vote_lanes(const DamageInput& input, int v, std::span<const int> u, std::sp
   correlate(left, road, lanes, along_road);
   for (std::size_t l = 0; l < lanes; ++l) {
     if (u[first + l] != column[l]) continue;  // the block is not inside the image
-    const float log_ratio = log_likelihood(along_measured[l]) - log_likelihood(along_road[l]);
-    votes[first + l] = std::isnan(log_ratio) ? 0 : std::clamp(log_ratio / max_log_ratio, -1.0F, 1.0F);
+    votes[first + l] = likelihood_vote(along_measured[l], along_road[l], block_pixels);
   }
 }
 

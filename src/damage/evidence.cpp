@@ -29,6 +29,13 @@ double surface_log_odds(double significance, double slope) {
          std::min(above, 1.0) * std::min(0.0, log_steepness(slope));
 }
 
+/// Log-odds of damage where disparities that were not searched fit the pictures as well or better: matches by chance
+/// have votes of 0 and less, damage in the faintest texture 0.35 and more. That says nothing else for damage.
+double range_log_odds(double vote) {
+  constexpr double per_vote = 20, even_odds = 0.3;
+  return vote < even_odds ? per_vote * (vote - even_odds) : 0;
+}
+
 /// Log-odds of what is wider than the reach of the surface: the road's own shape, a strip or a pavement beside it.
 double extent_log_odds(double extent) {
   constexpr double per_log_extent = -5.6;
@@ -62,7 +69,8 @@ double DamageEvidence::confidence() const {
   const double log_odds = intercept + per_log_significance * std::log(std::clamp(significance, 1.0, max_significance)) +
                           per_road_share * road_share + per_unseen_share * unseen_share;
   return probability_of(log_odds + wall_log_odds(border_share, likely_wall_slope) +
-                        surface_log_odds(surface_significance, likely_wall_slope) + extent_log_odds(extent));
+                        surface_log_odds(surface_significance, likely_wall_slope) + range_log_odds(range_vote) +
+                        extent_log_odds(extent));
 }
 
 }  // namespace roadstereo

@@ -10,6 +10,7 @@
 #include "damage/damage_maps.hpp"
 #include "damage/metric_measurement.hpp"
 #include "damage/pixel_runs.hpp"
+#include "damage/searched_range.hpp"
 #include "damage/surface_correlation.hpp"
 #include "road/refinement/smoothing_error.hpp"
 #include "roadstereo/resolution_limits.hpp"
@@ -222,6 +223,10 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
                             is_at_side(segmentation.candidates[k], segmentation.view), result, damage);
         if (result.metric) damage.metrics = std::move(metrics);
       }
+      damage.confidence = damage.evidence.confidence();
+      if (damage.confidence < min_candidate_confidence) return;
+      const PixelBox box = pixel_box(segmentation.candidates[k], segmentation.cells);
+      damage.evidence.range_vote = range_vote(input, result, damage.id, box);
       damage.confidence = damage.evidence.confidence();
     });
   }

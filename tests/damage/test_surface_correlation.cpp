@@ -66,7 +66,7 @@ TEST(SurfaceCorrelation, RowOffsetIsUndone) {
   }
   DamageInput input = claimed.input();
   input.right = lower;
-  input.misalignment.rows_px = rows;
+  input.shift.emplace().misalignment.rows_px = rows;
   const DamageMap map = find_damage(input);
   ASSERT_EQ(map.damages.size(), 2U);
   for (const Damage& damage : map.damages) EXPECT_GT(damage.evidence.surface_significance, 3);

@@ -30,7 +30,8 @@ template <class Row>
 GeoColumn<Row> damage_property(const DamageColumn& column, const Damage Row::*member) {
   Damage known;
   known.metrics.emplace();
-  known.evidence.surface_significance = known.evidence.likely_wall_slope = known.evidence.extent = 0;
+  DamageEvidence& evidence = known.evidence;
+  evidence.surface_significance = evidence.range_vote = evidence.likely_wall_slope = evidence.extent = 0;
   return {column.name, std::visit(TypeOf{}, column.value(known)), [value = column.value, member](const Row& row) {
             return std::visit([](const auto& each) -> GeoValue { return each; }, value(row.*member));
           }};
