@@ -13,6 +13,11 @@
 namespace roadstereo {
 
 /// Shape of the aggregation window.
+/// Curve through the costs of the winner and its neighbours. `parabola`: eq. (13), which pulls the disparities of fine
+/// texture towards whole pixels, by a third of a small depth. `gaussian`: a parabola through the logarithms of the
+/// correlations, as of texture that the lens has blurred.
+enum class PeakFit { parabola, gaussian };
+
 enum class WindowShape { square, disc };
 
 /// Options of section 3.2: matching cost, aggregation, winner-take-all, left–right check, sub-pixel disparity.
@@ -46,7 +51,8 @@ struct MatcherOptions {
   /// Standard error added to disparities that fail the check, pixels, 0 … 10: refinement keeps them where neighbours
   /// with smaller errors agree. 0 makes them invalid, as the paper does.
   double occlusion_sigma_px = 1.0;
-  bool sub_pixel = true;               ///< eq. (13)
+  bool sub_pixel = true;  ///< refine the winner, by `peak_fit`
+  PeakFit peak_fit = PeakFit::gaussian;
   bool reject_range_boundary = false;  ///< make winners at an end of their search range invalid
 
   /// Throws Error naming the first option that is out of range.

@@ -14,7 +14,7 @@ struct RefinementOptions {
   int passes = 2;                       ///< 1 … 3
   int radius = 12;                      ///< of the first window, pixels, 0 … 32; 0 switches the refinement off
   int step = 6;                         ///< distance between its neighbours, pixels, 1 … 16
-  double truncation_sigmas = 2.5;       ///< difference with weight 0, joint standard errors, 0.5 … 100
+  double truncation_sigmas = 2.75;      ///< difference with weight 0, joint standard errors, 0.5 … 100
   double max_agreement_sigma_px = 0.6;  ///< upper bound on σ in that test, pixels, min_sigma_px … 10
   double min_sigma_px = 0.02;           ///< standard error of interpolation and calibration, pixels, 0.001 … 1
   double max_sigma_px = 1.0;            ///< disparities with a larger σ become invalid, pixels, above 0

@@ -30,6 +30,11 @@ const Words<WindowShape>& words(WindowShape) {
   return all;
 }
 
+const Words<PeakFit>& words(PeakFit) {
+  static const Words<PeakFit> all{{"parabola", PeakFit::parabola}, {"gaussian", PeakFit::gaussian}};
+  return all;
+}
+
 const Words<RollSolver>& words(RollSolver) {
   static const Words<RollSolver> all{{"gradient_descent", RollSolver::gradient_descent},
                                      {"closed_form", RollSolver::closed_form},
@@ -115,7 +120,8 @@ void visit_options(Options& o, Visitor visit) {
         "largest difference of the left-right check, pixels (delta r of eq. 12 is its square)");
   visit("matcher.occlusion_sigma_px", o.matcher.occlusion_sigma_px,
         "standard error added to what fails the left-right check, pixels; 0 makes it invalid");
-  visit("matcher.sub_pixel", o.matcher.sub_pixel, "refine the winner by a parabola");
+  visit("matcher.sub_pixel", o.matcher.sub_pixel, "refine the winner between whole pixels");
+  visit("matcher.peak_fit", o.matcher.peak_fit, "curve through the correlations around the winner");
   visit("matcher.reject_range_boundary", o.matcher.reject_range_boundary,
         "a winner at the end of its range is invalid");
 

@@ -318,7 +318,7 @@ ImageView<const float> Pipeline::State::interpolate(const RefinedMaps& maps) {
   return interpolated.disparity;
 }
 
-/// A Lucas–Kanade step undoes the pixel locking of eq. (13).
+/// A Lucas–Kanade step undoes the rest of pixel locking.
 ImageView<const float> Pipeline::State::align(const MatchInput& input, ImageView<const float> disparity) {
   const StageTimer timer(result.ms.refinement);
   return stages->align(input, disparity, result.shift, mask);

@@ -26,6 +26,7 @@ PipelineOptions paper_preset() {
   options.matcher.ncc_noise_sigma = 0;  // eq. (8) as written
   options.matcher.lr_max_diff_px = 1;   // δr
   options.matcher.occlusion_sigma_px = 0;
+  options.matcher.peak_fit = PeakFit::parabola;  // eq. (13)
   options.matcher.reject_range_boundary = false;
   options.lucas_kanade.radius = 0;
   options.off_road.max_sigma_px = 0;

@@ -18,7 +18,7 @@ struct FinishSettings {
 
 /// Returns the disparity of a winner (−1: none), NaN where it is invalid; adds to `variance` where the check fails. The
 /// shift of the perspective transformation depends on the target pixel alone, so that it cancels in the check.
-/// `target_winner` is the winner of the target pixel that it meets, `offset` that of eq. (13), NaN without two
+/// `target_winner` is the winner of the target pixel that it meets, `offset` its sub-pixel offset, NaN without two
 /// neighbours.
 ROADSTEREO_HD inline float finish_disparity(int winner, int target_winner, float offset, const FinishSettings& settings,
                                             float& variance) {

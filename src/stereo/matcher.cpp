@@ -90,6 +90,10 @@ std::vector<Tap> window_taps(const MatcherOptions& options) {
   return taps;
 }
 
+double peak_floor(const MatcherOptions& options) {
+  return options.peak_fit == PeakFit::gaussian ? 1 / std::sqrt(effective_samples(options)) : 0;
+}
+
 double effective_samples(const MatcherOptions& options) {
   const double side = 2 * options.block_radius + 1;
   double weights = 0, squares = 0;

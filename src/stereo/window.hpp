@@ -28,6 +28,9 @@ std::vector<Tap> window_taps(const MatcherOptions& options);
 /// added.
 double effective_samples(const MatcherOptions& options);
 
+/// Returns what a Gaussian peak adds to the correlations before their logarithm, see `fit_peak`; 0: a parabola.
+double peak_floor(const MatcherOptions& options);
+
 /// Writes for every row v the first target column that is valid in all rows of the block around v: blocks are
 /// rectangles, so that the common view of a block begins there.
 void block_first_columns(const MatchInput& input, int block_radius, std::vector<int>& first);

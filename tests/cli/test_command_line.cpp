@@ -56,7 +56,8 @@ TEST_F(CommandLine, OptionsOfOneGroupHaveTheirRanges) {
   const Outcome matcher = run("options matcher");
   EXPECT_EQ(matcher.exit_code, 0);
   EXPECT_EQ(matcher.out.find("roll."), std::string::npos);
-  for (const char* part : {"pixels; between 1 and 10\n", "window; square or disc\n", "parabola; true or false\n"}) {
+  for (const char* part : {"pixels; between 1 and 10\n", "window; square or disc\n", "whole pixels; true or false\n",
+                           "winner; parabola or gaussian\n"}) {
     EXPECT_NE(matcher.out.find(part), std::string::npos) << part;
   }
   EXPECT_NE(run("options coarse_search").out.find("; 2, 4 or 8, or 0 to derive it\n"), std::string::npos);

@@ -201,7 +201,7 @@ TEST_P(PipelinePreset, PotholesLieBelowRoadInTransformedMap) {
 // `paper` shifts by whole pixels, which leaves a saw-tooth of up to half a pixel.
 INSTANTIATE_TEST_SUITE_P(Presets, PipelinePreset,
                          testing::Values(PresetFigures{"default", {0.00616, 0, 0}, 0.00068, 0.0705, 0.0631},
-                                         PresetFigures{"fast", {0.0224, 0, 0.00199}, 0.00084, 0.0602, 0.0651},
+                                         PresetFigures{"fast", {0.0224, 0, 0.00199}, 0.00084, 0.0602, 0.0816},
                                          PresetFigures{"paper", {0.0675, 0, 0}, 0.00034, 0.174, 0.126}),
                          [](const auto& test) { return std::string(test.param.preset); });
 
@@ -605,7 +605,7 @@ TEST_P(PipelineSigma, CoversErrors) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PipelineSigma,
-                         testing::Values(SigmaFigures{"uav", 0.00994, 0.589}, SigmaFigures{"noise", 0.0612, 1.036}),
+                         testing::Values(SigmaFigures{"uav", 0.00994, 0.589}, SigmaFigures{"noise", 0.0612, 0.962}),
                          [](const auto& test) { return std::string(test.param.scene); });
 
 TEST(Pipeline, ColourAndSixteenBitsGiveSameMap) {

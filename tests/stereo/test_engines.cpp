@@ -36,6 +36,7 @@ MatcherOptions paper_options() {
   options.sigma_space = 1.5;
   options.sigma_colour = 5.5;
   options.ncc_noise_sigma = 0;
+  options.peak_fit = PeakFit::parabola;
   options.match_both_views = true;
   options.reject_range_boundary = false;
   return options;

@@ -46,6 +46,7 @@ TEST(ReferenceEngine, WinnerAndParabolaFollowCosts) {
   options.block_radius = 3;
   options.aggregation_radius = 0;
   options.ncc_noise_sigma = 0;
+  options.peak_fit = PeakFit::parabola;
   options.left_right_check = false;
   MatchMaps maps;
   make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 12}, options, maps);
@@ -82,6 +83,7 @@ TEST(ReferenceEngine, AggregationIsBilateralMeanOfCosts) {
   options.sigma_space = 1.5;
   options.sigma_colour = 5.5;
   options.ncc_noise_sigma = 0;
+  options.peak_fit = PeakFit::parabola;
   options.left_right_check = false;
   MatchMaps maps;
   make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 10}, options, maps);

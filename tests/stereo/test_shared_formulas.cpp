@@ -96,28 +96,52 @@ TEST(BlockCostLimits, LargestSumsFitInt) {
   EXPECT_EQ(correlation_cost(part_of(halves, 0), part_of(flat, 0), products, 1.0F / 441), 1);  // no texture: neutral
 }
 
-TEST(FitParabola, FindsVertex) {
+TEST(FitPeak, FindsVertex) {
   for (const float vertex : {-0.4F, -0.1F, 0.0F, 0.25F, 0.5F}) {
     const auto cost = [vertex](float d) { return 0.2F + 0.3F * (d - vertex) * (d - vertex); };
-    const SubPixel found = fit_parabola(cost(-1), cost(0), cost(1), 50);
+    const SubPixel found = fit_peak(cost(-1), cost(0), cost(1), 50, 0);
     EXPECT_NEAR(found.offset, vertex, 1e-6);
     EXPECT_NEAR(found.variance, 2 * cost(0) / (50 * 0.6), 1e-6);  // 2 E / (n K)
   }
 }
 
-TEST(FitParabola, WinnerBesideMinimumIsClampedUnlessPrecise) {
+TEST(FitPeak, WinnerBesideMinimumIsClampedUnlessPrecise) {
   const auto cost = [](float d) { return 0.1F + 0.3F * (d - 1.2F) * (d - 1.2F); };
-  const SubPixel sure = fit_parabola(cost(-1), cost(0), cost(1), 1000);
+  const SubPixel sure = fit_peak(cost(-1), cost(0), cost(1), 1000, 0);
   EXPECT_NEAR(sure.offset, 1.2, 1e-5);
-  const SubPixel doubtful = fit_parabola(cost(-1), cost(0), cost(1), 10);
+  const SubPixel doubtful = fit_peak(cost(-1), cost(0), cost(1), 10, 0);
   EXPECT_EQ(doubtful.offset, 0.5F);
   EXPECT_NEAR(doubtful.variance, 2 * cost(0) / (10 * 0.6) + 0.7 * 0.7, 1e-5);
 }
 
-TEST(FitParabola, FlatCostsGiveInfiniteVariance) {
-  EXPECT_EQ(fit_parabola(0.5F, 0.5F, 0.5F, 50).offset, 0);
-  EXPECT_TRUE(std::isinf(fit_parabola(0.5F, 0.5F, 0.5F, 50).variance));
-  EXPECT_TRUE(std::isinf(fit_parabola(0.4F, 0.5F, 0.4F, 50).variance));
+// Correlations of a Gaussian peak. A parabola through them finds a vertex nearer to the whole pixel.
+TEST(FitPeak, GaussianIsNotPulledToWholePixels) {
+  for (const float width : {0.7F, 1.0F, 2.0F}) {
+    for (const float vertex : {-0.45F, -0.2F, 0.0F, 0.1F, 0.3F, 0.5F}) {
+      const auto cost = [&](float d) {
+        const float x = (d - vertex) / width;
+        return 1 - 0.9F * std::exp(-0.5F * x * x);
+      };
+      const auto offset = [&](float floor) { return fit_peak(cost(-1), cost(0), cost(1), 1000, floor).offset; };
+      EXPECT_NEAR(offset(1e-6F), vertex, 1e-4) << width;
+      const float locking = std::abs(offset(0) - vertex);
+      EXPECT_LE(std::abs(offset(0.1F) - vertex), 0.55F * locking + 1e-6F) << width << ", " << vertex;
+    }
+  }
+}
+
+// Costs of one and more are correlations of 0: finite, whatever they are.
+TEST(FitPeak, GaussianThroughNoCorrelationIsFinite) {
+  const SubPixel found = fit_peak(1.8F, 0.7F, 1.0F, 50, 0.1F);
+  EXPECT_EQ(found.offset, 0) << "both neighbours have none";
+  EXPECT_TRUE(std::isfinite(found.variance));
+  EXPECT_GT(fit_peak(1.2F, 0.7F, 0.9F, 50, 0.1F).offset, 0);
+}
+
+TEST(FitPeak, FlatCostsGiveInfiniteVariance) {
+  EXPECT_EQ(fit_peak(0.5F, 0.5F, 0.5F, 50, 0).offset, 0);
+  EXPECT_TRUE(std::isinf(fit_peak(0.5F, 0.5F, 0.5F, 50, 0).variance));
+  EXPECT_TRUE(std::isinf(fit_peak(0.4F, 0.5F, 0.4F, 50, 0).variance));
 }
 
 TEST(PriorCost, IsTruncatedLinear) {

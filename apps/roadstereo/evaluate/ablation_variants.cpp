@@ -22,7 +22,8 @@ std::vector<Variant> default_variants() {
       {"no left-right check", "default", {"matcher.left_right_check=false"}},
       {"every pixel matched", "default", {"matcher.pixel_step=1"}},
       {"target volume matched too", "default", {"matcher.pixel_step=1", "matcher.match_both_views=true"}},
-      {"no sub-pixel parabola", "default", {"matcher.sub_pixel=false"}},
+      {"no sub-pixel disparities", "default", {"matcher.sub_pixel=false"}},
+      {"sub-pixel parabola", "default", {"matcher.peak_fit=parabola"}},
       {"range ends dropped", "default", {"matcher.reject_range_boundary=true"}},
       {"no refinement", "default", {"refinement.radius=0"}},
       {"all kept off the road", "default", {"off_road.max_sigma_px=0"}},
@@ -46,6 +47,7 @@ std::vector<Variant> paper_variants() {
        "paper",
        {"matcher.block_radius=2", "matcher.aggregation_radius=6", "matcher.aggregation_step=2",
         "matcher.aggregation_shape=disc", "matcher.sigma_space=6", "matcher.sigma_colour=20"}},
+      {"paper + Gaussian peak", "paper", {"matcher.peak_fit=gaussian"}},
       {"paper + range ends dropped", "paper", {"matcher.reject_range_boundary=true"}},
       {"paper + refinement", "paper", {"refinement.radius=8"}},
   };

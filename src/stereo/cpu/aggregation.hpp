@@ -44,12 +44,13 @@ struct AggregationRow {
   std::span<const float* const> weights;  ///< ω of every tap, row by row: weights[tap][column]
   PriorRow prior;
   float effective_samples = 1;  ///< of an energy (stereo/window.hpp)
+  float peak_floor = 0;         ///< of the offset (stereo/window.hpp)
 };
 
 /// Output of winner-take-all for the columns [first, end), from index 0 on; whole strips are written.
 struct WinnerRow {
   std::int16_t* winner;  ///< −1 where nothing can match
-  float* offset;         ///< eq. (13); NaN when the winner has no neighbour on one side; null: not written
+  float* offset;         ///< from the winner; NaN when the winner has no neighbour on one side; null: not written
   float* variance;       ///< of the disparity, pixels²; infinite where undetermined; written with `offset`
 };
 

@@ -147,7 +147,7 @@ class CpuEngine final : public StereoEngine {
   int prepared_disparities_ = 0;
   std::vector<ViewMatcher> matchers_;
   std::vector<int> first_columns_;
-  Image<float> offset_;  ///< eq. (13), pixels from the winner; NaN without two neighbours
+  Image<float> offset_;  ///< sub-pixel disparity less the winner, pixels; NaN without two neighbours
   std::vector<Job> jobs_;
 };
 

@@ -43,6 +43,7 @@ void ViewMatcher::prepare(int columns, int disparities, const MatcherOptions& op
   const AggregationScratchSize scratch = aggregation_scratch(ring_, static_cast<int>(taps.size()), pitch);
   scratch_.resize(1, 0, scratch.numbers);
   effective_samples_ = static_cast<float>(effective_samples(options));
+  peak_floor_ = static_cast<float>(peak_floor(options));
   for (std::vector<float>* end : {&prior_low_, &prior_high_}) end->resize(static_cast<std::size_t>(padded));
   steps_.resize(static_cast<std::size_t>(scratch.pointers));
   winner_.resize(static_cast<std::size_t>(padded));
@@ -92,7 +93,8 @@ void ViewMatcher::match_row(const MatchView& view, int y, const Tile& tile, Matc
                            .rows = window_,
                            .weights = tile_weights_.compute(y),
                            .prior = prior_row(view, y, tile),
-                           .effective_samples = effective_samples_};
+                           .effective_samples = effective_samples_,
+                           .peak_floor = peak_floor_};
   const bool reference = view.side() == MatchView::reference;
   const auto original = [&](std::int16_t winner) {
     return static_cast<std::int16_t>(winner < 0 ? winner : winner + tile.range.first);

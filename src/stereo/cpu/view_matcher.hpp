@@ -60,7 +60,7 @@ class ViewMatcher {
   std::vector<WindowRow> window_;
   PaddedRows<float> scratch_;
   std::vector<const float*> steps_;
-  float effective_samples_ = 1;
+  float effective_samples_ = 1, peak_floor_ = 0;
   float prior_weight_ = 0, prior_truncation_px_ = 0;
   std::vector<float> prior_low_, prior_high_;
   std::vector<std::int16_t> winner_;

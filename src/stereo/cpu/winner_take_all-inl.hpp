@@ -1,4 +1,4 @@
-// Winner-take-all with the prior, and sub-pixel offset, eq. (13), of one strip.
+// Winner-take-all with the prior, and sub-pixel offset, of one strip.
 
 #include <hwy/highway.h>
 
@@ -13,6 +13,8 @@
 #else
 #define ROADSTEREO_STEREO_CPU_WINNER_TAKE_ALL_INL
 #endif
+#include <hwy/contrib/math/math-inl.h>
+
 #include "stereo/cpu/vector-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -181,8 +183,20 @@ HWY_INLINE void find_winners(const AggregationRow& row, int strip, float* energi
   }
 }
 
+/// See `gaussian_vertex`.
+HWY_INLINE Float gaussian_vertices(Float before, Float best, Float after, Float floor) {
+  const Floats df;
+  const auto raised = [&](Float cost) {
+    return hn::Add(hn::Max(hn::Sub(hn::Set(df, 1.0f), cost), hn::Zero(df)), floor);
+  };
+  const Float low = raised(before), at = raised(best), high = raised(after);
+  const Float curvature = hn::Log(df, hn::Div(hn::Mul(at, at), hn::Mul(low, high)));
+  const Float slope = hn::Mul(hn::Set(df, 0.5f), hn::Log(df, hn::Div(high, low)));
+  return hn::Div(slope, hn::Max(curvature, hn::Set(df, min_curvature)));
+}
+
 /// Writes winners, offsets and variances of a strip: for every column −1 and NaN where nothing can match, else the
-/// winner and eq. (13), NaN where the winner has no neighbour on one side. The variance is derived in
+/// winner and its offset, NaN where the winner has no neighbour on one side. The variance is derived in
 /// stereo/window.hpp.
 HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns, const StripWinners& found,
                               const WinnerRow& out) {
@@ -205,7 +219,9 @@ HWY_INLINE void write_winners(const AggregationRow& row, int strip, int columns,
     const Float curvature = hn::Sub(hn::Add(before, after), hn::Add(best, best));
     const auto curved = hn::Gt(curvature, hn::Set(df, min_curvature));
     const Float half = hn::Set(df, 0.5f);
-    const Float vertex = hn::IfThenElseZero(curved, hn::Div(hn::Mul(half, hn::Sub(before, after)), curvature));
+    const Float peak = row.peak_floor > 0 ? gaussian_vertices(before, best, after, hn::Set(df, row.peak_floor))
+                                          : hn::Div(hn::Mul(half, hn::Sub(before, after)), curvature);
+    const Float vertex = hn::IfThenElseZero(curved, peak);
     const Float noise =
         hn::Div(hn::Mul(hn::Set(df, 2 / row.effective_samples), hn::Max(best, hn::Zero(df))), curvature);
     // With a prior the winner need not be a minimum of the costs.

@@ -35,6 +35,7 @@ void DeviceMatcher::use(const MatcherOptions& options, StreamView stream) {
   settings_.tap_count = static_cast<int>(taps.size());
   settings_.log2_colour = static_cast<float>(-std::numbers::log2e / (sigma_colour * sigma_colour));
   settings_.effective_samples = static_cast<float>(effective_samples(options));
+  settings_.peak_floor = static_cast<float>(peak_floor(options));
   settings_.prior_weight = static_cast<float>(options.prior_weight);
   settings_.prior_truncation_px = static_cast<float>(options.prior_truncation_px);
   stream.upload(taps_on_device_.data(), taps_.data(), taps.size() * sizeof(WindowTap));

@@ -44,6 +44,7 @@ struct ViewSettings {
   int window_half_height;
   float log2_colour;        ///< −log2 e / σ1², per squared step of grey
   float effective_samples;  ///< of an energy (stereo/window.hpp)
+  float peak_floor;         ///< of the offset (stereo/window.hpp)
   float prior_weight;
   float prior_truncation_px;
 };

@@ -44,7 +44,7 @@ struct Scene {
   const MatchInput& input;
   const MatcherOptions& options;
   std::vector<Tap> window = window_taps(options);
-  double support = effective_samples(options);
+  double support = effective_samples(options), floor = peak_floor(options);
   std::vector<int> first_column{};  ///< per row: first target column that the whole block of the row sees
 
   Scene(const MatchInput& match_input, const MatcherOptions& match_options)
@@ -204,8 +204,9 @@ struct Refined {
   double variance = std::numeric_limits<double>::infinity();
 };
 
-/// Eq. (13), on the aggregated costs, and the variance that they tell of (stereo/window.hpp). A winner at the end
-/// of its range has no neighbour on one side; one that leans on the prior need not be a minimum of the costs.
+/// Eq. (13), or a Gaussian, on the aggregated costs, and the variance that they tell of (stereo/window.hpp). A winner
+/// at the end of its range has no neighbour on one side; one that leans on the prior need not be a minimum of the
+/// costs.
 Refined refine(const Scene& scene, const CostVolume& energy, const SearchRange& searched, int u, int v, int d) {
   Refined refined;
   const bool first = d == searched.first;
@@ -218,7 +219,12 @@ Refined refine(const Scene& scene, const CostVolume& energy, const SearchRange& 
   const double curvature = before + after - 2 * best;
   refined.disparity = d;
   if (curvature <= double{min_curvature}) return refined;
-  const double vertex = (before - after) / (2 * curvature);
+  double vertex = (before - after) / (2 * curvature);
+  if (scene.options.peak_fit == PeakFit::gaussian) {
+    const auto log_of = [&](double cost) { return -std::log(std::max(1 - cost, 0.0) + scene.floor); };
+    const double sharpness = log_of(before) + log_of(after) - 2 * log_of(best);
+    vertex = (log_of(before) - log_of(after)) / (2 * std::max(sharpness, double{min_curvature}));
+  }
   const double noise = 2 * std::max(best, 0.0) / (scene.support * curvature);
   const double max_offset = noise < double{low_noise_variance} ? double{low_noise_truncation_px} : 0.5;
   const double offset = std::clamp(vertex, -max_offset, max_offset);

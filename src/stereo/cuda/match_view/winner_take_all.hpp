@@ -3,7 +3,7 @@
 #include "stereo/cuda/match_view/tile.hpp"
 #include "stereo/sub_pixel.hpp"
 
-// Winner-take-all with the prior, and sub-pixel offset, eq. (13), of one pixel.
+// Winner-take-all with the prior, and sub-pixel offset, of one pixel.
 
 namespace roadstereo::cuda {
 
@@ -64,7 +64,8 @@ __device__ inline void choose(const ViewToMatch& view, const ViewSettings& setti
   SubPixel sub_pixel{NAN, INFINITY};
   const bool bracketed = winner > energies.first() && winner + 1 < energies.end() && energies(winner + 1) < INFINITY;
   if (bracketed) {
-    sub_pixel = fit_parabola(energies(winner - 1), energies(winner), energies(winner + 1), settings.effective_samples);
+    sub_pixel = fit_peak(energies(winner - 1), energies(winner), energies(winner + 1), settings.effective_samples,
+                         settings.peak_floor);
   }
   winners.offset(x, y) = sub_pixel.offset;
   winners.variance(x, y) = sub_pixel.variance;
