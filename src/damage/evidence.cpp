@@ -30,7 +30,7 @@ double surface_log_odds(double significance, double slope) {
 }
 
 /// Log-odds of damage where disparities that were not searched fit the pictures as well or better: matches by chance
-/// have votes of 0 and less, damage in the faintest texture 0.35 and more. That says nothing else for damage.
+/// have votes of 0 and less, damage in the faintest texture 0.35 and more. A higher vote says nothing more.
 double range_log_odds(double vote) {
   constexpr double per_vote = 20, even_odds = 0.3;
   return vote < even_odds ? per_vote * (vote - even_odds) : 0;

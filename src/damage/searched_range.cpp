@@ -98,9 +98,11 @@ class RightImage {
 /// Compares the measured disparities of windows with those that were not searched.
 class RangeVote {
  public:
-  RangeVote(const DamageInput& input) : input_(input), shift_(*input.shift), right_(input.right, shift_.misalignment) {}
+  explicit RangeVote(const DamageInput& input)
+      : input_(input), shift_(*input.shift), right_(input.right, shift_.misalignment) {}
 
-  /// Vote of the window around (u, v) for the measured disparities; nothing if it is not inside the picture.
+  /// Vote of the window around (u, v) for the measured disparities; nothing if it is not inside the picture or has no
+  /// contrast along either.
   std::optional<float> at(int u, int v) {
     const int width = input_.grey.width(), height = input_.grey.height();
     const bool inside =
@@ -126,7 +128,9 @@ class RangeVote {
       const WindowSums sums{static_cast<float>(window_pixels), a, b_[k], aa, bb_[k], ab_[k]};
       best = std::fmax(best, sums.zncc());
     }
-    return likelihood_vote(measured.zncc(), best, window_pixels);
+    const float along_measured = measured.zncc();
+    if (std::isnan(along_measured) || std::isnan(best)) return {};
+    return likelihood_vote(along_measured, best, window_pixels);
   }
 
  private:

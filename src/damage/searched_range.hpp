@@ -10,8 +10,8 @@ namespace roadstereo {
 
 /// Mean vote, −1 … 1, of windows of 15×15 pixels on damage `id` for the measured disparities against the best of those
 /// that were not searched, parallel to the road and from infinity to half of its distance. 0 or less: the measured ones
-/// are a match by chance. NaN if unknown: without a right image or the range that was searched, and where no window is
-/// inside the picture.
+/// are a match by chance. NaN if unknown: without a right image or the range that was searched, and where no window
+/// with contrast is inside the picture.
 double range_vote(const DamageInput& input, const DamageMap& maps, int id, const PixelBox& box);
 
 }  // namespace roadstereo
