@@ -46,7 +46,7 @@ namespace {
 HWY_EXPORT(add_row_sums);
 
 constexpr int window_radius = 7, window_side = 2 * window_radius + 1;
-constexpr std::size_t window_pixels = window_side * window_side;
+constexpr std::size_t window_pixels = std::size_t{window_side} * window_side;
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
 /// Sums over a window; grey levels relative to its centre.
@@ -140,7 +140,7 @@ class RangeVote {
     const double nearest = 2 * (shift_.road.disparity(u, v) - at_infinity) + at_infinity;
     largest_ = std::max(static_cast<int>(nearest - shift), shift_.disparities + 1);
     const int smallest = std::min(static_cast<int>(at_infinity - shift), -2);
-    const auto count = static_cast<std::size_t>(largest_ - smallest + 1);
+    const auto count = static_cast<std::size_t>(largest_ - smallest) + 1;
     for (auto* sums : {&b_, &bb_, &ab_}) sums->assign(count, 0.0F);
     line_.resize(count + window_side - 1);
   }
