@@ -188,6 +188,14 @@ def sigma(result):
     return markdown(["group", "within σ %", "within 2σ %", "on damage, within σ %", "within 2σ %"], table)
 
 
+@needs("subpixel")
+def subpixel(result):
+    table = [[number(row["noise_grey"], 0), METHODS[row["method"]], number(row["max_bias_px"], 4),
+              number(row["noise_px"], 4), number(row["support_px"], 1), number(row["bound_px"], 4),
+              number(row["ratio"], 2)] for row in result["methods"]]
+    return markdown(["noise, grey levels", "", "largest bias px", "noise px", "window px", "bound px", "noise / bound"], table)
+
+
 @needs("roll")
 def roll(result):
     table = [[row["maps"], row["solver"].replace("_", " "), *(f"{row[key]:.6f}" for key in ("mean_rad", "max_rad"))]

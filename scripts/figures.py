@@ -36,6 +36,7 @@ EXPERIMENTS = {
     "kitti_wider_scene": "evaluate kitti {data}/wider/kitti2015 --set perspective.scope=scene",
     "synth": "evaluate synth",
     "sigma": "evaluate sigma",
+    "subpixel": "evaluate subpixel",
     "roll": "evaluate roll",
     "lambda": "evaluate lambda",
     "flatness": "evaluate flatness {data}/kitti2015",
@@ -73,12 +74,12 @@ EXPERIMENTS |= {
 UNCHECKED = ("ablation", "benchmark", "lambda", "raw")
 # What the tables do not need: values of single frames and trials.
 LEFT_OUT = {"trials", "frames", "bins", "damage_bins", "found_regions", "times", "common", "common_damage", "best_visible",
-            "best_damage", "version", "peak_memory_bytes"}
+            "best_damage", "phases", "version", "peak_memory_bytes"}
 
-SHARES = re.compile(r"(density|completeness|covered|measured|within_\w*)_percent$|_percent_within$")
+SHARES = re.compile(r"(density|valid|completeness|covered|measured|within_\w*)_percent$|_percent_within$")
 SHARES_OF_ONE = {"precision", "recall", "f", "iou"}
 ERRORS = re.compile(r"^(e_r|e_p|median_error_px|rms|p\d+_mm|median_mm|false_|ripple|gradient_descent_px|closed_form_px"
-                    r"|robust_px|translation_percent|rotation_deg_per_m|ate_percent|link_|mean_abs_error|mean_rad|max_rad|roll_\w+_rad|plane_)")
+                    r"|robust_px|translation_percent|rotation_deg_per_m|ate_percent|link_|mean_abs_error|mean_rad|max_rad|roll_\w+_rad|plane_|max_bias_px|ratio$)")
 
 
 def real_data():

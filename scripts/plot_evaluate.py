@@ -85,6 +85,21 @@ def plot_synth(document):
     return figure
 
 
+def plot_subpixel(document):
+    """Mean error by sub-pixel phase, and noise against its bound."""
+    figure, axes = plt.subplots(1, 2, figsize=(16, 6))
+    noises = sorted({row["noise_grey"] for row in document["methods"]})
+    for phases in rows_of(document["phases"], noise_grey=noises[len(noises) // 2]):
+        axes[0].plot(phases["phase_px"], [number(v) for v in phases["mean_error_px"]], "o-", label=phases["method"])
+    reference_lines(axes[0], -0.01, 0, 0.01)
+    curves_over(axes[0], f"Bias, noise of {noises[len(noises) // 2]:.0f} grey levels",
+                "phase of the disparity that is fitted, px", "mean error, px")
+    series = {method: column(rows_of(document["methods"], method=method), "ratio")
+              for method in names_of(document["methods"], "method")}
+    group_bars(axes[1], "Noise over its Cramér–Rao bound", "ratio", [f"{noise:.0f} grey levels" for noise in noises], series)
+    return figure
+
+
 def plot_sigma(document):
     """Actual against predicted errors, and the share within 2 σ by σ and by group."""
     figure, axes = plt.subplot_mosaic([["size", "share"], ["groups", "groups"]], figsize=(16, 11))

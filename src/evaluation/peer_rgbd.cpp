@@ -1,5 +1,6 @@
 #include "evaluation/peer_rgbd.hpp"
 
+#include <algorithm>
 #include <opencv2/rgbd/depth.hpp>
 
 #include "evaluation/peer_maps.hpp"
@@ -40,9 +41,7 @@ std::optional<std::array<double, 12>> RgbdOdometry::add(const GreyImage& grey, c
   if (!s.odometry->compute(last, frame, found, s.motion)) return std::nullopt;
   found.convertTo(s.motion, CV_64F);
   std::array<double, 12> motion{};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 4; ++j) motion[static_cast<std::size_t>(4 * i + j)] = s.motion.at<double>(i, j);
-  }
+  std::copy_n(s.motion.ptr<double>(), motion.size(), motion.begin());  // row-major, 4×4
   return motion;
 }
 

@@ -102,7 +102,7 @@ TEST_F(Evaluate, RejectsFoldersOfOtherLayout) {
 TEST_F(Evaluate, HelpNamesEveryExperiment) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const std::string name : {"score", "kitti", "middlebury", "synth", "sigma", "ablation"}) {
+  for (const std::string name : {"score", "kitti", "middlebury", "synth", "sigma", "subpixel", "ablation"}) {
     EXPECT_NE(help.out.find(name), std::string::npos) << name;
     EXPECT_NE(run(name + " --help").out.find("roadstereo evaluate " + name), std::string::npos) << name;
   }

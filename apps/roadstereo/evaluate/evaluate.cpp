@@ -26,6 +26,7 @@ void add_evaluate(CLI::App& app) {
   add_middlebury(*command);
   add_synth_accuracy(*command);
   add_sigma(*command);
+  add_subpixel(*command);
   add_ablation(*command);
   add_lambda(*command);
   add_roll(*command);

@@ -13,6 +13,7 @@ void add_middlebury(CLI::App& evaluate);
 void add_score(CLI::App& evaluate);
 void add_synth_accuracy(CLI::App& evaluate);
 void add_sigma(CLI::App& evaluate);
+void add_subpixel(CLI::App& evaluate);
 void add_ablation(CLI::App& evaluate);
 void add_lambda(CLI::App& evaluate);
 void add_roll(CLI::App& evaluate);

@@ -58,6 +58,10 @@ std::vector<std::string> method_names(const MethodSettings& settings) {
   return names;
 }
 
+bool is_preset(const std::string& name) {
+  return std::find(presets.begin(), presets.end(), name) != presets.end();
+}
+
 std::size_t method_index(const std::string& name) {
   const std::vector<std::string> names = method_names();
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());

@@ -29,6 +29,9 @@ std::vector<std::string> method_names();
 /// The same, then the names of the given maps.
 std::vector<std::string> method_names(const MethodSettings& settings);
 
+/// Whether a method is a preset.
+bool is_preset(const std::string& name);
+
 /// Index of a method in method_names(); their number if there is none of that name.
 std::size_t method_index(const std::string& name);
 
