@@ -86,11 +86,25 @@ class RightImage {
     if (!(column >= 0 && column < image_.width() - 1)) return unknown;
     const auto whole = static_cast<int>(column);
     const auto offset = static_cast<float>(column - whole);
-    const std::int16_t* const grey = image_.row(row) + whole;
-    return (1 - offset) * static_cast<float>(grey[0]) + offset * static_cast<float>(grey[1]);
+    return interpolate(image_.row(row) + whole, offset);
+  }
+  /// Grey levels at the columns x, x + 1, … of row v, which is found in `row`; NaN outside.
+  void read(double x, int v, int row, std::vector<float>& line) const {
+    const double column = x + misalignment_.columns_at(v), whole = std::floor(column);
+    const auto offset = static_cast<float>(column - whole);
+    const int size = static_cast<int>(line.size()), left = static_cast<int>(whole);
+    const int first = std::clamp(-left, 0, size), end = std::clamp(image_.width() - 1 - left, first, size);
+    std::fill_n(line.begin(), first, unknown);
+    std::fill(line.begin() + end, line.end(), unknown);
+    const std::int16_t* const grey = image_.row(row);
+    for (int k = first; k < end; ++k) line[static_cast<std::size_t>(k)] = interpolate(grey + left + k, offset);
   }
 
  private:
+  static float interpolate(const std::int16_t* grey, float offset) {
+    return (1 - offset) * static_cast<float>(grey[0]) + offset * static_cast<float>(grey[1]);
+  }
+
   ImageView<const std::int16_t> image_;
   const Misalignment& misalignment_;
 };
@@ -153,10 +167,8 @@ class RangeVote {
       left_[static_cast<std::size_t>(x)] = static_cast<float>(input_.grey(u - window_radius + x, y)) - centre;
     }
     const double shift = shift_.at(u, y), first = u - window_radius - shift - largest_;
-    const int row = right_.row(u - shift, y);
-    for (std::size_t k = 0; k < line_.size(); ++k) {
-      line_[k] = right_(first + static_cast<double>(k), y, row) - centre;
-    }
+    right_.read(first, y, right_.row(u - shift, y), line_);
+    for (float& right : line_) right -= centre;
   }
 
   void add_measured(int u, int v, int y, WindowSums& sums) const {
