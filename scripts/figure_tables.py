@@ -139,12 +139,12 @@ def robustness(result):
 
 @needs("robustness")
 def robustness_disparities(result):
-    keys = [("density_percent", 1), ("e_r_px", 3), ("e_p_2px_percent", 2), ("e_p_3px_percent", 2),
+    keys = [("density_percent", 1), ("e_r_px", 3), ("error_sd_px", 3), ("e_p_2px_percent", 2), ("e_p_3px_percent", 2),
             ("e_p_or_missing_0.5px_percent", 1), ("e_p_or_missing_1px_percent", 2),
             ("e_p_or_missing_2px_percent", 2)]
     table = [[row["source"], METHODS[row["method"]]] + [number(row[key], decimals) for key, decimals in keys]
              for row in result["disparities"]]
-    return markdown(["source", "", "density %", "e_r px", "e_p(2) %", "e_p(3) %", "e_p+(0.5) %", "e_p+(1) %",
+    return markdown(["source", "", "density %", "e_r px", "less bias px", "e_p(2) %", "e_p(3) %", "e_p+(0.5) %", "e_p+(1) %",
                      "e_p+(2) %"], table)
 
 

@@ -61,7 +61,7 @@ DisparityScore score_disparity(ImageView<const float> disparity, ImageView<const
     score.bad_or_missing_share.push_back(labelled > 0 ? (bad + labelled - valid) / labelled : nan);
   }
   if (errors.empty()) {
-    score.rms_px = score.mean_px = score.median_px = nan;
+    score.rms_px = score.mean_px = score.sd_px = score.median_px = nan;
     return score;
   }
   double sum = 0, squares = 0;
@@ -71,6 +71,7 @@ DisparityScore score_disparity(ImageView<const float> disparity, ImageView<const
   }
   score.mean_px = sum / valid;
   score.rms_px = std::sqrt(squares / valid);
+  score.sd_px = std::sqrt(std::max(0.0, squares / valid - score.mean_px * score.mean_px));
   score.median_px = median_magnitude(errors);
   return score;
 }

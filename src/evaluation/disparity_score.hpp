@@ -17,6 +17,7 @@ struct DisparityScore {
   double density = 0;               ///< share of the labelled pixels with a disparity, 0 … 1; 0 if none is labelled
   double rms_px = 0;                ///< e_r, pixels (eq. (34), e_rms)
   double mean_px = 0;               ///< mean signed error (map − truth), pixels
+  double sd_px = 0;                 ///< standard deviation of the signed error: e_r without the mean, pixels
   double median_px = 0;             ///< median absolute error, pixels
   /// e_p for each tolerance, as a share of the valid pixels, 0 … 1 (eq. (33), e_pep).
   std::vector<double> bad_share;

@@ -37,6 +37,7 @@ TEST(DisparityScore, MatchesExampleByHand) {
   EXPECT_DOUBLE_EQ(score.density, 0.8);
   EXPECT_DOUBLE_EQ(score.rms_px, std::sqrt(14.0 / 4));
   EXPECT_DOUBLE_EQ(score.mean_px, 1.0);
+  EXPECT_DOUBLE_EQ(score.sd_px, std::sqrt(10.0 / 4));
   EXPECT_DOUBLE_EQ(score.median_px, 1.5);
   // An error of exactly the tolerance is none (eq. (35)).
   EXPECT_EQ(score.bad_share, (std::vector{0.75, 0.25, 0.0}));

@@ -111,7 +111,7 @@ std::vector<Cell> published(const std::string& name, double rms_px, double above
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   DisparityScore score;
   score.rms_px = rms_px;
-  score.mean_px = score.median_px = nan;
+  score.mean_px = score.sd_px = score.median_px = nan;
   score.bad_share = {nan, above_2 / 100, above_3 / 100};
   score.bad_or_missing_share = {nan, nan, nan};
   std::vector<Cell> row = score_cells(score);

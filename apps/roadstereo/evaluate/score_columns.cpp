@@ -28,7 +28,8 @@ std::string tolerance_text(double tolerance_px) {
 }
 
 std::vector<Column> score_columns(const std::vector<double>& tolerances_px) {
-  std::vector<Column> columns{{"e_r px", "e_r_px"}, {"bias px", "mean_error_px"}, {"median px", "median_error_px"}};
+  std::vector<Column> columns{
+      {"e_r px", "e_r_px"}, {"bias px", "mean_error_px"}, {"sd px", "error_sd_px"}, {"median px", "median_error_px"}};
   for (const double tolerance : tolerances_px) {
     const std::string text = tolerance_text(tolerance);
     columns.push_back({"e_p(" + text + ") %", "e_p_" + text + "px_percent"});
@@ -43,7 +44,7 @@ std::vector<Column> score_columns(const std::vector<double>& tolerances_px) {
 
 std::vector<Cell> score_cells(const DisparityScore& score) {
   constexpr double percent = 100;
-  std::vector<Cell> cells{{score.rms_px, 3}, {score.mean_px, 3}, {score.median_px, 3}};
+  std::vector<Cell> cells{{score.rms_px, 3}, {score.mean_px, 3}, {score.sd_px, 3}, {score.median_px, 3}};
   for (const double share : score.bad_share) cells.emplace_back(percent * share, 3);
   cells.emplace_back(percent * score.density, 2);
   for (const double share : score.bad_or_missing_share) cells.emplace_back(percent * share, 3);
@@ -64,6 +65,7 @@ DisparityScore mean_score(const std::vector<DisparityScore>& scores) {
   mean.density = mean_of(scores, [](const DisparityScore& score) { return score.density; });
   mean.rms_px = mean_of(scores, [](const DisparityScore& score) { return score.rms_px; });
   mean.mean_px = mean_of(scores, [](const DisparityScore& score) { return score.mean_px; });
+  mean.sd_px = mean_of(scores, [](const DisparityScore& score) { return score.sd_px; });
   mean.median_px = mean_of(scores, [](const DisparityScore& score) { return score.median_px; });
   const std::size_t tolerances = scores.empty() ? 0 : scores.front().bad_share.size();
   for (std::size_t i = 0; i < tolerances; ++i) {
