@@ -405,6 +405,11 @@ SUMMARY = [
      lambda result: (lambda row: "{:.0f} frame, {:.0f}; {:.0f}".format(
          row["found_percent"] * row["frame_count"] / 100, row["none_percent"] * row["frame_count"] / 100,
          row["damages"]))(row_where(result["drives"], drive="wider/odometry"))),
+    (("subpixel",), "Sub-pixel bias, noise against its Cramér–Rao bound, at most; OpenCV's best of each",
+     lambda result: "{} px, {}; {} px, {}".format(
+         *(number(max(row[key] for row in rows_where(result["methods"], method="default")), decimals)
+           for key, decimals in (("max_bias_px", 3), ("ratio", 2))),
+         *(number(best(result["methods"], key), decimals) for key, decimals in (("max_bias_px", 3), ("ratio", 2))))),
     (("sigma",), "Errors within two of the standard errors that come with the map, the same scenes",
      lambda sigma: number(row_where(sigma["groups"], group="all", where="visible")["within_2_sigma_percent"], 1) + " %"),
     (("damage_maps", "damage_pairs"),
