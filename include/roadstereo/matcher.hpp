@@ -12,12 +12,12 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// Shape of the aggregation window.
 /// Curve through the costs of the winner and its neighbours. `parabola`: eq. (13), which pulls the disparities of fine
 /// texture towards whole pixels, by a third of a small depth. `gaussian`: a parabola through the logarithms of the
 /// correlations, as of texture that the lens has blurred.
 enum class PeakFit { parabola, gaussian };
 
+/// Shape of the aggregation window.
 enum class WindowShape { square, disc };
 
 /// Options of section 3.2: matching cost, aggregation, winner-take-all, left–right check, sub-pixel disparity.
