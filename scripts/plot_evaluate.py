@@ -56,7 +56,7 @@ def group_bars(axes, title, label, groups, series, cut_all_but=None):
                           ha="center", va="top", fontsize=7)
     axes.set(title=title, ylabel=label, ylim=(0, top))
     axes.set_xticks(range(len(groups)), groups)
-    axes.legend(ncol=4, fontsize=8)
+    axes.legend(ncol=len(series), fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.07), frameon=False)
     axes.grid(axis="y", alpha=0.3)
 
 

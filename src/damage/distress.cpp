@@ -14,6 +14,7 @@ constexpr double min_elongation = 3;      // of ruts and cracks
 constexpr double min_pothole_m = 0.1;     // diameter, ASTM D6433: narrower long damages are cracks
 constexpr double min_step_m = 0.025;      // ASTM D6433, lane/shoulder drop-off
 constexpr double min_kerb_m = 0.75;       // ASTM D6433, potholes count by number up to that: what the side cuts of one
+constexpr double max_object_m = 1.5;      // twice that: potholes are not as long, objects on the road not as wide
 constexpr double max_oblique_rad = std::numbers::pi / 6;  // from the direction of the road
 
 double elongation(const DamageMetrics& metrics) {
@@ -29,9 +30,21 @@ bool is_kerb_step(const DamageMetrics& metrics, bool at_side) {
          elongation(metrics) >= min_elongation && is_along_road(metrics);
 }
 
-/// Whether two standard errors of the area do not include 0.
-bool is_area_known(const DamageMetrics& metrics) {
-  return metrics.area_m2.std_error <= 0.5 * metrics.area_m2.value;
+/// Whether two standard errors of a value do not include 0.
+bool is_known(const Measurement& value) {
+  return value.std_error <= 0.5 * value.value;
+}
+
+/// Depth that the severity is decided by.
+Measurement graded_depth(const DamageMetrics& metrics) {
+  constexpr double section_of_parabola = 1.5;  // maximum over mean depth of a rut's cross-section
+  if (metrics.distress != Distress::rut) return metrics.max_depth_m;
+  return {std::min(metrics.max_depth_m.value, section_of_parabola * metrics.mean_depth_m.value),
+          section_of_parabola * metrics.mean_depth_m.std_error};
+}
+
+bool is_size_known(const DamageMetrics& metrics) {
+  return is_known(metrics.area_m2) && is_known(graded_depth(metrics));
 }
 
 }  // namespace
@@ -44,11 +57,14 @@ Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, d
   const bool gentle = possible_slope < max_gentle_slope;
   if (!gentle && is_kerb_step(metrics, at_side)) return Distress::kerb_step;
   if (damage.kind == DamageKind::protrusion) {
-    return metrics.wall_slope > max_gentle_slope ? Distress::debris : Distress::bump;
+    const bool object = metrics.wall_slope > max_gentle_slope && metrics.diameter_m <= max_object_m;
+    return object ? Distress::debris : Distress::bump;
   }
   const bool long_one = elongation(metrics) >= min_elongation;
-  if (gentle) return long_one && is_along_road(metrics) ? Distress::rut : Distress::depression;
-  return long_one && metrics.area_m2.value < min_pothole_m * metrics.length_m ? Distress::crack : Distress::pothole;
+  const bool along = long_one && is_along_road(metrics);
+  if (gentle) return along ? Distress::rut : Distress::depression;
+  if (long_one && metrics.area_m2.value < min_pothole_m * metrics.length_m) return Distress::crack;
+  return along && metrics.length_m > max_object_m ? Distress::rut : Distress::pothole;
 }
 
 std::string distress_reason(const DamageMetrics& metrics) {
@@ -62,7 +78,6 @@ std::string distress_reason(const DamageMetrics& metrics) {
 }
 
 void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics) {
-  constexpr double section_of_parabola = 1.5;  // maximum over mean depth of a rut's cross-section
   const SeverityTable* const table = scheme.find(metrics.distress);
   metrics.severity_probabilities = {};
   metrics.severity = Severity::unknown;
@@ -71,14 +86,9 @@ void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics
       table == nullptr ? 1 : table->quantity(metrics.area_m2.value, metrics.length_m, metrics.diameter_m);
   const double area_error = metrics.area_m2.std_error / metrics.area_m2.value;
   if (table != nullptr && !table->classes.empty()) {
-    Measurement depth = metrics.max_depth_m;
-    if (metrics.distress == Distress::rut) {
-      depth.value = std::min(depth.value, section_of_parabola * metrics.mean_depth_m.value);
-      depth.std_error = section_of_parabola * metrics.mean_depth_m.std_error;
-    }
-    metrics.severity_probabilities =
-        severity_probabilities(*table, depth, {metrics.diameter_m, 0.5 * metrics.diameter_m * area_error});
-    metrics.severity = is_area_known(metrics) ? likely_severity(metrics.severity_probabilities) : Severity::uncertain;
+    metrics.severity_probabilities = severity_probabilities(
+        *table, graded_depth(metrics), {metrics.diameter_m, 0.5 * metrics.diameter_m * area_error});
+    metrics.severity = is_size_known(metrics) ? likely_severity(metrics.severity_probabilities) : Severity::uncertain;
   }
   if (!resolvable) metrics.severity = Severity::unresolvable;
 }
@@ -86,7 +96,7 @@ void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics
 std::string severity_text(const DamageMetrics& metrics) {
   if (metrics.severity == Severity::unknown) return "not graded";
   if (metrics.severity != Severity::uncertain) return name_of(metrics.severity);
-  return is_area_known(metrics) ? severity_range(metrics.severity_probabilities) : "not graded";
+  return is_size_known(metrics) ? severity_range(metrics.severity_probabilities) : "not graded";
 }
 
 }  // namespace roadstereo

@@ -113,6 +113,29 @@ TEST(Distress, FollowsShape) {
   }
 }
 
+/// Steep ones of 200 mm and more: what is three times as long as wide and longer than 1.5 m is no pothole, what is
+/// wider than that is no object on the road.
+TEST(Distress, FollowsSize) {
+  constexpr double steep = 0.5, along_road = std::numbers::pi / 2;
+  const auto distress = [](DamageKind kind, double length_m, double width_m, double angle_rad) {
+    DamageMetrics metrics;
+    metrics.length_m = length_m;
+    metrics.width_m = width_m;
+    metrics.angle_rad = angle_rad;
+    metrics.area_m2.value = 0.8 * length_m * width_m;
+    metrics.diameter_m = 2 * std::sqrt(metrics.area_m2.value / std::numbers::pi);
+    metrics.wall_slope = steep;
+    Damage damage;
+    damage.kind = kind;
+    return classify_distress(damage, metrics, steep, false);
+  };
+  EXPECT_EQ(distress(DamageKind::depression, 2.4, 0.45, along_road), Distress::rut);
+  EXPECT_EQ(distress(DamageKind::depression, 2.4, 0.45, 0), Distress::pothole) << "across the road";
+  EXPECT_EQ(distress(DamageKind::depression, 1.2, 0.3, along_road), Distress::pothole) << "as short as potholes are";
+  EXPECT_EQ(distress(DamageKind::protrusion, 0.3, 0.3, 0), Distress::debris);
+  EXPECT_EQ(distress(DamageKind::protrusion, 2.4, 2, 0), Distress::bump) << "a speed table";
+}
+
 /// The area inside the outline is that of the damage, whose corners are counterclockwise.
 TEST(Outline, EnclosesArea) {
   const DamageMap map = Map([](double x, double y) { return frustum(std::hypot(x, y / 2), 0.06, 0.1, 0.13); }).find();

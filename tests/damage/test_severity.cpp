@@ -61,7 +61,7 @@ DamageMetrics pothole(double depth_m, double depth_error_m, double area_m2, doub
 }
 
 /// 46 mm ± 9 mm, 300 mm wide: Φ((50 − 46) / 9) − Φ((25 − 46) / 9) = 0.671639 − 0.009815 are medium, the rest high.
-TEST(Grade, NeedsMajorityAndKnownArea) {
+TEST(Grade, NeedsMajorityAndKnownSize) {
   DamageMetrics metrics = pothole(0.046, 0.009, 0.07, 0.001);
   grade(astm_d6433(), true, metrics);
   EXPECT_EQ(metrics.severity, Severity::medium);
@@ -71,6 +71,9 @@ TEST(Grade, NeedsMajorityAndKnownArea) {
   grade(astm_d6433(), true, metrics);
   EXPECT_EQ(metrics.severity, Severity::uncertain) << "an area known to ±98 %";
   EXPECT_EQ(severity_text(metrics), "not graded");
+  metrics = pothole(0.128, 0.144, 0.07, 0.001);
+  grade(astm_d6433(), true, metrics);
+  EXPECT_EQ(severity_text(metrics), "not graded") << "a depth known to ±112 %";
   EXPECT_EQ(metrics.unit, DistressUnit::count);
   EXPECT_EQ(metrics.quantity, 1);
   grade(astm_d6433(), false, metrics);

@@ -7,7 +7,9 @@ std::vector<Variant> default_variants() {
   return {
       {"default", "default"},
       {"perspective off", "default", {}, false},
-      {"whole-pixel shift", "default", {"perspective.shift=whole_pixel", "lucas_kanade.radius=0"}},
+      {"whole-pixel shift, no Lucas–Kanade step",
+       "default",
+       {"perspective.shift=whole_pixel", "lucas_kanade.radius=0"}},
       {"shift without roll", "default", {"road_model.with_roll=false"}},
       {"rows not corrected", "default", {"correct_rows=false"}},
       {"search not narrowed", "default", {"narrow_search=false"}},

@@ -233,7 +233,8 @@ std::string map_json(const MapPlan& plan, const BuiltMap& built, const MapResult
 std::string map_text(const MapPlan& plan, const BuiltMap& built, const MapResults& results) {
   const MapBox bounds = bounds_of(built);
   const double cell_m = built.days.back().map.options().cell_m;
-  std::string text = fmt::format("roadstereo {}: map of {} recordings\n", version, plan.passes.size());
+  std::string text = fmt::format("roadstereo {}: map of {} recording{}\n", version, plan.passes.size(),
+                                 plan.passes.size() == 1 ? "" : "s");
   text += fmt::format("  frames    {} with a pose, {} mapped\n", built.frames, built.mapped);
   text += fmt::format("  map       {:.1f} × {:.1f} m, cells of {:g} mm\n", bounds.columns * cell_m,
                       bounds.rows * cell_m, 1000 * cell_m);

@@ -43,11 +43,14 @@ std::string notices_of(const FlightReportInput& input) {
     html += "<p class=\"notice\"><strong>No damage found in single frames.</strong> Their map shows " +
             std::to_string(in_map) + ": see \"Damages on the map\".</p>";
   } else if (input.damages.empty()) {
-    html +=
-        "<p class=\"notice good\"><strong>No damage found" +
-        (inspected < frames ? " in " + std::to_string(inspected) + " of " + std::to_string(frames) + " frames" : "") +
-        ".</strong> No part of the visible road deviates from its surface by more than the resolvable depth of this "
-        "rig.</p>";
+    const std::string where =
+        inspected < frames ? " in " + std::to_string(inspected) + " of " + std::to_string(frames) + " frames" : "";
+    html += input.candidates.empty()
+                ? "<p class=\"notice good\"><strong>No damage found" + where +
+                      ".</strong> No part of the visible road deviates from its surface by more than the resolvable "
+                      "depth of this rig.</p>"
+                : "<p class=\"notice\"><strong>No damage found" + where +
+                      ".</strong> Regions that may be damage are listed as candidates.</p>";
   }
   if (!input.metric) {
     html +=
@@ -157,7 +160,7 @@ std::string candidates_of(const FlightReportInput& input) {
   rows.resize(std::min(rows.size(), max_rows));
   return table_of(input, "candidates", "Candidates",
                   "Regions that may be damage: below the required confidence, or shallower than three standard errors "
-                  "of their depth. They are not counted above. candidates.csv has all " +
+                  "of their depth. They are not counted above. Number in candidates.csv: " +
                       std::to_string(input.candidates.size()) + ".",
                   rows);
 }

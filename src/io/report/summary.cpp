@@ -103,7 +103,9 @@ std::string deepest_card(const Damages& damages) {
 
 std::string damages_cards(const Damages& damages, std::size_t candidates, bool metric) {
   if (damages.empty()) return "";
-  const std::string apart = candidates == 0 ? "" : "; " + std::to_string(candidates) + " candidates apart";
+  const std::string apart =
+      candidates == 0 ? ""
+                      : "; " + std::to_string(candidates) + (candidates == 1 ? " candidate" : " candidates") + " apart";
   std::string cards = card("Damages", std::to_string(damages.size()), distress_counts(damages) + apart);
   if (metric) {
     cards += "<div class=\"card\"><div class=\"name\">Severity</div><div class=\"chips\">" + severity_chips(damages) +
@@ -122,10 +124,14 @@ std::string summary_notices(const DamageMap& map) {
            escaped(map.non_metric_reason) + ".</p>";
   }
   std::string notices;
-  if (map.damages.empty()) {
+  if (map.damages.empty() && map.candidates.empty()) {
     notices +=
         "<p class=\"notice good\"><strong>No damage found.</strong> No part of the visible road deviates from its "
         "surface by more than the resolvable depth of this rig.</p>";
+  } else if (map.damages.empty()) {
+    notices +=
+        "<p class=\"notice\"><strong>No damage found.</strong> Regions that may be damage are listed as "
+        "candidates.</p>";
   }
   if (!map.metric) {
     const std::string why = map.non_metric_reason.empty() ? "the frame has no calibration" : map.non_metric_reason;
