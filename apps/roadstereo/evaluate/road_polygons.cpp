@@ -39,7 +39,7 @@ std::map<std::string, std::vector<Polygon>> read_road_polygons(const std::string
   if (!document.is_object()) fail(path, ": this is not a JSON object of polygons by frame");
   std::map<std::string, std::vector<Polygon>> frames;
   for (const auto& [frame, polygons] : document.items()) {
-    const std::string where = path + ": " + frame;
+    const std::string where = std::string(path).append(": ").append(frame);
     if (!polygons.is_array()) fail(where, ": the value must be a list of polygons");
     for (const nlohmann::json& corners : polygons) frames[frame].push_back(read_polygon(where, corners));
   }

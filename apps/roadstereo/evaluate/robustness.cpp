@@ -167,6 +167,7 @@ void robustness(const RobustnessArguments& arguments) {
   }
   if (arguments.figure.empty()) return;
   std::vector<std::vector<io::SheetCell>> sheet;
+  sheet.reserve(sources.size());
   for (SourceTrials& source : sources) sheet.push_back(std::move(source.worst_row));
   constexpr int cell_width = 620;
   write_figure(arguments.figure, io::picture_sheet(sheet, cell_width));
