@@ -86,8 +86,8 @@ struct DamageMetrics {
 std::string distress_reason(const DamageMetrics& metrics);
 
 /// Return the severity in words: a class, a range such as "medium–high" where no class has more than half of the
-/// probability, "unresolvable", or "not graded" without a table and where the area or the depth is known worse than ±50
-/// %.
+/// probability, "unresolvable", or "not graded" without a table and where the area or the depth is known worse
+/// than ±50 %.
 std::string severity_text(const DamageMetrics& metrics);
 
 /// What distinguishes a damage from noise and from what is not road. No number decides alone.

@@ -14,7 +14,7 @@ constexpr double min_elongation = 3;      // of ruts and cracks
 constexpr double min_pothole_m = 0.1;     // diameter, ASTM D6433: narrower long damages are cracks
 constexpr double min_step_m = 0.025;      // ASTM D6433, lane/shoulder drop-off
 constexpr double min_kerb_m = 0.75;       // ASTM D6433, potholes count by number up to that: what the side cuts of one
-constexpr double max_object_m = 1.5;      // twice that: potholes are not as long, objects on the road not as wide
+constexpr double max_object_m = 1.5;      // twice 0.75 m: no pothole is as long, no object on the road as wide
 constexpr double max_oblique_rad = std::numbers::pi / 6;  // from the direction of the road
 
 double elongation(const DamageMetrics& metrics) {

@@ -74,7 +74,7 @@ void SubPixelNoise::add(ImageView<const float> first, ImageView<const float> sec
       pixels_ += 1;
       squares_ += error * error;
       products_ += error * sums.around(u, v, max_distance_px);
-      inverse_noise_2_ += gradient * gradient / (2 * noise_grey * noise_grey);
+      information_ += gradient * gradient / (2 * noise_grey * noise_grey);
     }
   }
 }
@@ -88,7 +88,7 @@ double SubPixelNoise::support_px() const {
 }
 
 double SubPixelNoise::bound_px() const {
-  return 1 / std::sqrt(support_px() * support_px() * inverse_noise_2_ / pixels_);
+  return 1 / std::sqrt(support_px() * support_px() * information_ / pixels_);
 }
 
 double SubPixelNoise::ratio() const {

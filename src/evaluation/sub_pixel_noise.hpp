@@ -18,8 +18,7 @@ class SubPixelNoise {
   /// Adds two maps (pixels, NaN invalid) of one scene; `derivative` is that of the noiseless left image along its rows,
   /// grey levels a pixel, `noise_grey` the standard deviation of the noise of each image, grey levels. Counts the
   /// pixels where the mask is not 0 and the maps differ by at most a pixel, and that are not closer to the border than
-  /// `max_distance_px`. Throws Error when the
-  /// sizes differ.
+  /// `max_distance_px`. Throws Error when the sizes differ.
   void add(ImageView<const float> first, ImageView<const float> second, ImageView<const float> derivative,
            ImageView<const std::uint8_t> mask, double noise_grey);
 
@@ -30,9 +29,9 @@ class SubPixelNoise {
 
  private:
   double pixels_ = 0;
-  double squares_ = 0;          ///< of the errors, pixels²
-  double products_ = 0;         ///< error times the sum of the errors around it, pixels²
-  double inverse_noise_2_ = 0;  ///< I_x² / (2σ²), pixels⁻²
+  double squares_ = 0;      ///< of the errors, pixels²
+  double products_ = 0;     ///< error times the sum of the errors around it, pixels²
+  double information_ = 0;  ///< Fisher information, I_x² / (2σ²), pixels⁻²
 };
 
 }  // namespace roadstereo

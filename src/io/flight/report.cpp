@@ -45,12 +45,7 @@ std::string notices_of(const FlightReportInput& input) {
   } else if (input.damages.empty()) {
     const std::string where =
         inspected < frames ? " in " + std::to_string(inspected) + " of " + std::to_string(frames) + " frames" : "";
-    html += input.candidates.empty()
-                ? "<p class=\"notice good\"><strong>No damage found" + where +
-                      ".</strong> No part of the visible road deviates from its surface by more than the resolvable "
-                      "depth of this rig.</p>"
-                : "<p class=\"notice\"><strong>No damage found" + where +
-                      ".</strong> Regions that may be damage are listed as candidates.</p>";
+    html += no_damage_notice(where, !input.candidates.empty());
   }
   if (!input.metric) {
     html +=

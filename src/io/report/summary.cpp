@@ -118,21 +118,21 @@ std::string damages_cards(const Damages& damages, std::size_t candidates, bool m
   return "<div class=\"cards\">" + cards + "</div>";
 }
 
+std::string no_damage_notice(const std::string& where, bool has_candidates) {
+  const char* const text = has_candidates ? "Regions that may be damage are listed as candidates."
+                                          : "No part of the visible road deviates from its surface by more than the "
+                                            "resolvable depth of this rig.";
+  return std::string("<p class=\"notice") + (has_candidates ? "" : " good") + "\"><strong>No damage found" + where +
+         ".</strong> " + text + "</p>";
+}
+
 std::string summary_notices(const DamageMap& map) {
   if (!map.has_road()) {
     return "<p class=\"notice\"><strong>Not inspected.</strong> Nothing is known of the damage of the road: " +
            escaped(map.non_metric_reason) + ".</p>";
   }
   std::string notices;
-  if (map.damages.empty() && map.candidates.empty()) {
-    notices +=
-        "<p class=\"notice good\"><strong>No damage found.</strong> No part of the visible road deviates from its "
-        "surface by more than the resolvable depth of this rig.</p>";
-  } else if (map.damages.empty()) {
-    notices +=
-        "<p class=\"notice\"><strong>No damage found.</strong> Regions that may be damage are listed as "
-        "candidates.</p>";
-  }
+  if (map.damages.empty()) notices += no_damage_notice("", !map.candidates.empty());
   if (!map.metric) {
     const std::string why = map.non_metric_reason.empty() ? "the frame has no calibration" : map.non_metric_reason;
     notices += "<p class=\"notice\"><strong>Pixels only.</strong> There are no metric values and no severities: " +
