@@ -43,6 +43,12 @@ def range_log_odds(vote):
     return 0.0 if vote is None else per_vote * min(0, vote - even_odds)
 
 
+def specular_log_odds(excess):
+    """Likewise."""
+    per_excess, even_odds = -50, 0.03
+    return 0.0 if excess is None else per_excess * max(0, excess - even_odds)
+
+
 def features(region):
     significance = min(max(region["significance"], 1), MAX_SIGNIFICANCE)
     share, slope = region["border_share"], region["likely_wall_slope"]
@@ -89,7 +95,7 @@ def main():
     x = np.array([features(row) for row in rows])
     y = np.array([float(row["is_damage"]) for row in rows])
     offset = np.array([surface_log_odds(row["surface_significance"], row["likely_wall_slope"]) +
-                       range_log_odds(row["range_vote"]) for row in rows])
+                       range_log_odds(row["range_vote"]) + specular_log_odds(row["specular_excess"]) for row in rows])
     program = np.array([row["confidence"] for row in rows])
     weight = np.ones(len(rows))
     for name in set(sources):

@@ -108,6 +108,9 @@ struct DamageEvidence {
   /// correlation between the pictures; NaN unknown. 0 or less where the picture shows something else, such as the roof
   /// of a vehicle.
   double range_vote = std::numeric_limits<double>::quiet_NaN();
+  /// RMS of the brightness of one image above that of the other inside, as far as it is brighter than the road around,
+  /// in brightnesses of that road; NaN unknown. Matte surfaces have 0.02 and less, glint on a wet road up to 0.5.
+  double specular_excess = std::numeric_limits<double>::quiet_NaN();
   /// Slope of the wall of a depression, rise over run, at most 1: geometric mean of `DamageMetrics::wall_slope` and of
   /// the steepest that the support window makes as gentle; NaN unknown, and of a protrusion. Where the border cuts a
   /// depression it tells a pothole from the relief of the road.

@@ -76,6 +76,9 @@ void bind_one_damage(py::module_& module) {
              "Standard errors by which the images agree better along the measured surface than the road; NaN unknown.")
       .field("range_vote", &Evidence::range_vote,
              "Mean vote of the images for the measured disparities against those not searched, -1 … 1; NaN unknown.")
+      .field("specular_excess", &Evidence::specular_excess,
+             "RMS of the light that one image shows above the other and above the road around, in brightnesses of that "
+             "road: glint on a wet road; NaN unknown.")
       .field("likely_wall_slope", &Evidence::likely_wall_slope,
              "Slope of the wall of a depression, rise over run: mean of the measured and the steepest possible, at "
              "most 1; NaN unknown.")

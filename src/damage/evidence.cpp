@@ -36,6 +36,13 @@ double range_log_odds(double vote) {
   return vote < even_odds ? per_vote * (vote - even_odds) : 0;
 }
 
+/// Log-odds of damage where one image is brighter than the other and than the road: glint. Damage, dry or wet, has 0.02
+/// and less.
+double specular_log_odds(double excess) {
+  constexpr double per_excess = -50, even_odds = 0.03;
+  return excess > even_odds ? per_excess * (excess - even_odds) : 0;  // 0 if unknown
+}
+
 /// Log-odds of what is wider than the reach of the surface: the road's own shape, a strip or a pavement beside it.
 double extent_log_odds(double extent) {
   constexpr double per_log_extent = -5.6;
@@ -70,7 +77,7 @@ double DamageEvidence::confidence() const {
                           per_road_share * road_share + per_unseen_share * unseen_share;
   return probability_of(log_odds + wall_log_odds(border_share, likely_wall_slope) +
                         surface_log_odds(surface_significance, likely_wall_slope) + range_log_odds(range_vote) +
-                        extent_log_odds(extent));
+                        specular_log_odds(specular_excess) + extent_log_odds(extent));
 }
 
 }  // namespace roadstereo

@@ -11,6 +11,7 @@
 #include "damage/metric_measurement.hpp"
 #include "damage/pixel_runs.hpp"
 #include "damage/searched_range.hpp"
+#include "damage/specular_excess.hpp"
 #include "damage/surface_correlation.hpp"
 #include "road/refinement/smoothing_error.hpp"
 #include "roadstereo/resolution_limits.hpp"
@@ -227,6 +228,7 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
       if (damage.confidence < min_candidate_confidence) return;
       const PixelBox box = pixel_box(segmentation.candidates[k], segmentation.cells);
       damage.evidence.range_vote = range_vote(input, result, damage.id, box);
+      damage.evidence.specular_excess = specular_excess(input, result, damage.id, box);
       damage.confidence = damage.evidence.confidence();
     });
   }

@@ -152,7 +152,8 @@ TEST(DamageTables, UncalibratedOmitMetresWithReason) {
   std::size_t metric = 0;
   for (std::size_t k = 0; k < lines[0].size(); ++k) {
     const bool is_metric = metric_names.count(lines[0][k]) > 0;
-    const bool needs_right_image = lines[0][k] == "surface_significance" || lines[0][k] == "range_vote";
+    const bool needs_right_image =
+        lines[0][k] == "surface_significance" || lines[0][k] == "range_vote" || lines[0][k] == "specular_excess";
     const bool needs_metres = lines[0][k] == "extent";
     const bool expected_empty = is_metric || needs_right_image || needs_metres;
     metric += is_metric ? 1 : 0;

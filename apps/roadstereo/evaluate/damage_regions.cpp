@@ -47,6 +47,7 @@ nlohmann::ordered_json regions_json(const std::vector<FoundRegion>& regions) {
                     {"unseen_share", number(evidence.unseen_share)},
                     {"surface_significance", number(evidence.surface_significance)},
                     {"range_vote", number(evidence.range_vote)},
+                    {"specular_excess", number(evidence.specular_excess)},
                     {"likely_wall_slope", number(evidence.likely_wall_slope)},
                     {"extent", number(evidence.extent)},
                     {"confidence", number(region.damage.confidence)},

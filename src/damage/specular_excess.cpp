@@ -1,0 +1,97 @@
+#include "damage/specular_excess.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "core/order_statistics.hpp"
+#include "damage/block_votes.hpp"
+#include "damage/rectified_right_image.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Mean grey levels of windows of both images, structure of arrays.
+struct Brightness {
+  std::vector<double> left, right;
+};
+
+/// Means of windows of 11×11 pixels, clipped to the image, along the measured disparities.
+class WindowMeans {
+ public:
+  explicit WindowMeans(const DamageInput& input)
+      : input_(input), right_(input.right, input.shift ? input.shift->misalignment : Misalignment{}) {}
+
+  /// Add those around (u, v), unless less than half of the window is known.
+  void add(int u, int v, Brightness& to) const {
+    constexpr int radius = 5;
+    const int u0 = std::max(u - radius, 0), u1 = std::min(u + radius, input_.grey.width() - 1);
+    const int v0 = std::max(v - radius, 0), v1 = std::min(v + radius, input_.grey.height() - 1);
+    double left = 0, right = 0;
+    int count = 0;
+    for (int y = v0; y <= v1; ++y) {
+      const float* const disparity = input_.disparity.row(y);
+      const int row = right_.row(u, y);
+      for (int x = u0; x <= u1; ++x) {
+        const double at = x - double{disparity[x]};
+        const float grey = std::isnan(at) ? right_.unknown : right_(at, y, row);
+        if (std::isnan(grey)) continue;
+        left += input_.grey(x, y);
+        right += double{grey};
+        ++count;
+      }
+    }
+    if (2 * count < (u1 - u0 + 1) * (v1 - v0 + 1)) return;
+    to.left.push_back(left / count);
+    to.right.push_back(right / count);
+  }
+
+ private:
+  const DamageInput& input_;
+  RectifiedRightImage right_;
+};
+
+/// Means of at most about `max_windows` windows on a regular grid of the box, where the damage `id` is; 0: the road.
+Brightness brightness_of(const WindowMeans& means, const DamageMap& maps, int id, const PixelBox& box,
+                         double max_windows) {
+  constexpr int min_step = 4;
+  const int step = std::max(min_step, static_cast<int>(std::ceil(std::sqrt(box.width() * box.height() / max_windows))));
+  Brightness brightness;
+  for (int v = box.v0; v <= box.v1; v += step) {
+    for (int u = box.u0; u <= box.u1; u += step) {
+      if (maps.ids(u, v) == id && maps.road(u, v) != 0) means.add(u, v, brightness);
+    }
+  }
+  return brightness;
+}
+
+}  // namespace
+
+double specular_excess(const DamageInput& input, const DamageMap& maps, int id, const PixelBox& box) {
+  constexpr double max_inside = 64, max_around = 256;
+  constexpr int min_margin = 16;
+  constexpr std::size_t min_around = 8;
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (!has_blocks(input)) return unknown;
+  const WindowMeans means(input);
+  const Brightness inside = brightness_of(means, maps, id, box, max_inside);
+  const int margin = min_margin + std::max(box.width(), box.height()) / 2;
+  const PixelBox around_box{std::max(0, box.u0 - margin), std::max(0, box.v0 - margin),
+                            std::min(input.grey.width() - 1, box.u1 + margin),
+                            std::min(input.grey.height() - 1, box.v1 + margin)};
+  Brightness around = brightness_of(means, maps, 0, around_box, max_around);
+  if (inside.left.empty() || around.left.size() < min_around) return unknown;
+  const double road = central_median(around.left), gain = road / central_median(around.right);
+  if (!(road > 0 && std::isfinite(gain))) return unknown;
+  double sum = 0;
+  for (std::size_t k = 0; k < inside.left.size(); ++k) {
+    const double left = inside.left[k], right = gain * inside.right[k];
+    const double excess = std::min(std::abs(left - right), std::max(0.0, std::max(left, right) - road)) / road;
+    sum += excess * excess;
+  }
+  return std::sqrt(sum / static_cast<double>(inside.left.size()));
+}
+
+}  // namespace roadstereo
