@@ -49,6 +49,12 @@ def specular_log_odds(excess):
     return 0.0 if excess is None else per_excess * max(0, excess - even_odds)
 
 
+def pixel_log_odds(significance):
+    """Likewise."""
+    per_log_significance, even_odds = 1.5, 5
+    return 0.0 if significance is None else per_log_significance * min(0, math.log(max(significance, 1) / even_odds))
+
+
 def features(region):
     significance = min(max(region["significance"], 1), MAX_SIGNIFICANCE)
     share, slope = region["border_share"], region["likely_wall_slope"]
@@ -95,7 +101,8 @@ def main():
     x = np.array([features(row) for row in rows])
     y = np.array([float(row["is_damage"]) for row in rows])
     offset = np.array([surface_log_odds(row["surface_significance"], row["likely_wall_slope"]) +
-                       range_log_odds(row["range_vote"]) + specular_log_odds(row["specular_excess"]) for row in rows])
+                       range_log_odds(row["range_vote"]) + specular_log_odds(row["specular_excess"]) +
+                       pixel_log_odds(row["pixel_significance"]) for row in rows])
     program = np.array([row["confidence"] for row in rows])
     weight = np.ones(len(rows))
     for name in set(sources):

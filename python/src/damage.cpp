@@ -79,6 +79,8 @@ void bind_one_damage(py::module_& module) {
       .field("specular_excess", &Evidence::specular_excess,
              "RMS of the light that one image shows above the other and above the road around, in brightnesses of that "
              "road: glint on a wet road; NaN unknown.")
+      .field("pixel_significance", &Evidence::pixel_significance,
+             "Upper quartile of the depths of the pixels in their standard errors; NaN unknown.")
       .field("likely_wall_slope", &Evidence::likely_wall_slope,
              "Slope of the wall of a depression, rise over run: mean of the measured and the steepest possible, at "
              "most 1; NaN unknown.")

@@ -36,6 +36,14 @@ double range_log_odds(double vote) {
   return vote < even_odds ? per_vote * (vote - even_odds) : 0;
 }
 
+/// Log-odds of damage of which at least a quarter of the pixels lie so many of their own standard errors off the road.
+/// The noise of the intact road does not tell how well a region is measured that has less texture than the road.
+double pixel_log_odds(double significance) {
+  constexpr double per_log_significance = 1.5, even_odds = 5;
+  if (std::isnan(significance)) return 0;
+  return per_log_significance * std::min(0.0, std::log(std::max(significance, 1.0) / even_odds));
+}
+
 /// Log-odds of damage where one image is brighter than the other and than the road: glint. Damage, dry or wet, has 0.02
 /// and less.
 double specular_log_odds(double excess) {
@@ -77,7 +85,8 @@ double DamageEvidence::confidence() const {
                           per_road_share * road_share + per_unseen_share * unseen_share;
   return probability_of(log_odds + wall_log_odds(border_share, likely_wall_slope) +
                         surface_log_odds(surface_significance, likely_wall_slope) + range_log_odds(range_vote) +
-                        specular_log_odds(specular_excess) + extent_log_odds(extent));
+                        pixel_log_odds(pixel_significance) + specular_log_odds(specular_excess) +
+                        extent_log_odds(extent));
 }
 
 }  // namespace roadstereo

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <vector>
 
+#include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
 #include "damage/damage_maps.hpp"
 #include "damage/metric_measurement.hpp"
@@ -19,16 +21,33 @@
 namespace roadstereo {
 namespace {
 
+/// Error of smoothing over `reach` pixels at (u, v) of a map; 0 at its border.
+double smoothing_error(ImageView<const float> map, int reach, int u, int v) {
+  const bool inside = u >= reach && v >= reach && u + reach < map.width() && v + reach < map.height();
+  if (reach == 0 || !inside) return 0;
+  return with_smoothing_error(0, map(u, v), map(u - reach, v) + map(u + reach, v),
+                              map(u, v - reach) + map(u, v + reach));
+}
+
+/// Variance of the disparity at (u, v) by noise alone, without the error of smoothing; NaN without a measurement.
+double noise_variance(const DamageInput& input, int u, int v) {
+  const int reach = input.disparity.empty() ? 0 : input.smoothing_px;
+  const double sigma = input.sigma(u, v), smoothing = smoothing_error(input.disparity, reach, u, v);
+  return sigma * sigma - smoothing * smoothing;
+}
+
 /// Sums over the pixels of one damage. Depths are in pixels of ℓ'.
 struct PixelSums {
   Damage damage;
   std::int64_t u = 0, v = 0;
   double depth = 0;
   std::size_t measured = 0;
+  std::vector<float> significances;  ///< depths in their standard errors, of every second pixel of every second row
 };
 
 /// Add the pixels `first` … `last` of row v.
-void add_run(const DamageInput& input, const DamageMap& maps, int v, int first, int last, PixelSums& sums) {
+void add_run(const DamageInput& input, const DamageMap& maps, double offset, int v, int first, int last,
+             PixelSums& sums) {
   Damage& damage = sums.damage;
   if (damage.pixels == 0) damage.box_px = {first, v, last, v};
   damage.box_px = {std::min(damage.box_px[0], first), std::min(damage.box_px[1], v), std::max(damage.box_px[2], last),
@@ -43,29 +62,27 @@ void add_run(const DamageInput& input, const DamageMap& maps, int v, int first, 
     ++sums.measured;
     sums.depth += sign_of(damage.kind) * depth[u];
   }
-}
-
-/// Error of smoothing over `reach` pixels at (u, v) of a map; 0 at its border.
-double smoothing_error(ImageView<const float> map, int reach, int u, int v) {
-  const bool inside = u >= reach && v >= reach && u + reach < map.width() && v + reach < map.height();
-  if (reach == 0 || !inside) return 0;
-  return with_smoothing_error(0, map(u, v), map(u - reach, v) + map(u + reach, v),
-                              map(u, v - reach) + map(u, v + reach));
+  if (input.sigma.empty() || v % 2 != 0) return;
+  constexpr double min_variance = 1e-8;
+  for (int u = first + first % 2; u <= last; u += 2) {
+    const double variance = noise_variance(input, u, v);
+    if (!std::isfinite(transformed[u]) || !std::isfinite(variance)) continue;
+    const double height = sign_of(damage.kind) * (double{depth[u]} + offset);
+    sums.significances.push_back(static_cast<float>(height / std::sqrt(std::max(variance, min_variance))));
+  }
 }
 
 /// Root mean square of the standard errors of the pixels of a cell without their errors of smoothing; `noise` where
 /// there are none, without measurement.
 double cell_noise(const DamageInput& input, const Cells& cells, int i, int j, double noise) {
   if (input.sigma.empty()) return noise;
-  const int reach = input.disparity.empty() ? 0 : input.smoothing_px;
   double sum = 0;
   int count = 0;
   for (int v = j * cells.factor; v < std::min((j + 1) * cells.factor, cells.image_height); ++v) {
     for (int u = i * cells.factor; u < std::min((i + 1) * cells.factor, cells.image_width); ++u) {
-      const double sigma = input.sigma(u, v);
-      if (!std::isfinite(sigma)) continue;
-      const double smoothing = smoothing_error(input.disparity, reach, u, v);
-      sum += sigma * sigma - smoothing * smoothing;
+      const double variance = noise_variance(input, u, v);
+      if (!std::isfinite(variance)) continue;
+      sum += variance;
       ++count;
     }
   }
@@ -117,7 +134,11 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   const PixelBox box = pixel_box(candidate, segmentation.cells);
   damage.evidence.surface_significance = surface_significance(input, maps, damage.id, box, offset.value);
   for_each_run(maps.ids, damage.id, box,
-               [&](int v, int first, int last) { add_run(input, maps, v, first, last, sums); });
+               [&](int v, int first, int last) { add_run(input, maps, offset.value, v, first, last, sums); });
+  constexpr double quartile = 0.75;
+  if (!sums.significances.empty()) {
+    damage.evidence.pixel_significance = double{lower_quantile(sums.significances, quartile)};
+  }
   if (damage.pixels > 0) {
     const auto pixels = static_cast<double>(damage.pixels);
     damage.centroid_px = {static_cast<double>(sums.u) / pixels, static_cast<double>(sums.v) / pixels};

@@ -140,6 +140,7 @@ std::vector<DamageColumn> pixel_columns() {
           {"surface_significance", evidence<&DamageEvidence::surface_significance>},
           {"range_vote", evidence<&DamageEvidence::range_vote>},
           {"specular_excess", evidence<&DamageEvidence::specular_excess>},
+          {"pixel_significance", evidence<&DamageEvidence::pixel_significance>},
           {"likely_wall_slope", evidence<&DamageEvidence::likely_wall_slope>},
           {"extent", evidence<&DamageEvidence::extent>},
           {"depth_significance", evidence<&DamageEvidence::depth_significance>},

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "roadstereo/damage.hpp"
 #include "tests/damage/damage_checks.hpp"
@@ -350,6 +352,40 @@ TEST(FindDamage, CandidatesAreNotCounted) {
   EXPECT_TRUE(all.candidates.empty());
   for (const Damage& damage : all.damages)
     EXPECT_LE(damage.metrics->mean_depth_m.value, damage.metrics->max_depth_m.value);
+}
+
+/// Upper quartile of the depths over a standard error that is the same everywhere: with the true depths of the scene.
+TEST(DamageEvidence, PixelSignificanceIsDepthInStandardErrors) {
+  constexpr float sigma_px = 0.2F;
+  const Image<float> sigma(640, 360, sigma_px);
+  DamageInput input = damaged().metric();
+  EXPECT_TRUE(std::isnan(find_damage(input).damages.at(0).evidence.pixel_significance)) << "the errors are unknown";
+  input.sigma = sigma;
+  const DamageMap map = find_damage(input);
+  ASSERT_EQ(map.damages.size(), 2U);
+  for (const Damage& damage : map.damages) {
+    std::vector<double> depths;
+    for (int v = 0; v < map.ids.height(); ++v) {
+      for (int u = 0; u < map.ids.width(); ++u) {
+        if (map.ids(u, v) == damage.id) depths.push_back(std::abs(true_road_px - damaged().transformed(u, v)));
+      }
+    }
+    std::sort(depths.begin(), depths.end());
+    const double expected = depths[depths.size() * 3 / 4] / sigma_px;
+    EXPECT_NEAR(damage.evidence.pixel_significance, expected, 0.1 * expected);
+  }
+}
+
+TEST(DamageEvidence, DepthsOfAFewStandardErrorsAreLessLikelyDamage) {
+  DamageEvidence evidence{20, 40, 3, 1, 0};
+  const double unknown = evidence.confidence();
+  const auto log_odds = [](double p) { return std::log(p / (1 - p)); };
+  evidence.pixel_significance = 5;
+  EXPECT_EQ(evidence.confidence(), unknown);
+  evidence.pixel_significance = 2.5;
+  EXPECT_NEAR(log_odds(evidence.confidence()), log_odds(unknown) - 1.5 * std::log(2), 1e-6);
+  evidence.pixel_significance = -3;
+  EXPECT_NEAR(log_odds(evidence.confidence()), log_odds(unknown) - 1.5 * std::log(5), 1e-6);
 }
 
 /// A depth of which neither the maximum nor the mean is three of its standard errors is unresolvable, whatever its

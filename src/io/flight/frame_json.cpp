@@ -112,6 +112,7 @@ void each_field(DamageEvidence& evidence, Visit& visit) {
   visit("surface_significance", evidence.surface_significance);
   visit("range_vote", evidence.range_vote);
   visit("specular_excess", evidence.specular_excess);
+  visit("pixel_significance", evidence.pixel_significance);
   visit("likely_wall_slope", evidence.likely_wall_slope);
   visit("extent", evidence.extent);
   visit("depth_significance", evidence.depth_significance);

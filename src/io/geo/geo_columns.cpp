@@ -32,7 +32,7 @@ GeoColumn<Row> damage_property(const DamageColumn& column, const Damage Row::*me
   known.metrics.emplace();
   DamageEvidence& evidence = known.evidence;
   evidence.surface_significance = evidence.range_vote = evidence.specular_excess = 0;
-  evidence.likely_wall_slope = evidence.extent = 0;
+  evidence.pixel_significance = evidence.likely_wall_slope = evidence.extent = 0;
   return {column.name, std::visit(TypeOf{}, column.value(known)), [value = column.value, member](const Row& row) {
             return std::visit([](const auto& each) -> GeoValue { return each; }, value(row.*member));
           }};
