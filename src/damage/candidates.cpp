@@ -214,8 +214,8 @@ BoxMask hollows_beside(const Candidate& candidate, int window_radius, const Sear
 void extend_region(const SearchInput& input, SearchImages& images, Candidate& candidate) {
   const std::size_t max_hole = images.depth.pixels() / constants.max_hole_divisor;
   if (input.thresholds.metric()) {
-    const float min_depth = constants.foot_sigmas * static_cast<float>(input.depth_cells.noise);
-    grow_to_wall_foot(images.field(), candidate.level, min_depth, candidate.cells);
+    const float noise_depth = constants.foot_sigmas * static_cast<float>(input.depth_cells.noise);
+    grow_to_wall_foot(images.field(), candidate.level, std::max(candidate.rim, noise_depth), candidate.cells);
   } else if (candidate.kind == DamageKind::depression) {
     const float min_depth = constants.min_level_sigmas * static_cast<float>(input.depth_cells.noise);
     grow_over_gaps(images.field(), input.known, min_depth, input.image_edges.window_radius, candidate.cells);
@@ -240,6 +240,10 @@ Candidate segment(const SearchInput& input, const ConnectedComponent& core, Dama
   const float min_level = constants.min_level_sigmas * static_cast<float>(input.depth_cells.noise);
   const Outline outline = find_outline(field, core, floor, min_level, metric);
   candidate.level = outline.level;
+  if (metric && kind == DamageKind::depression) {
+    candidate.rim = floor * rim_depth_share(outline.wall_width);
+    candidate.level = std::max(candidate.level, candidate.rim);
+  }
   candidate.evidence.steepness = outline.steepness;
   const float max_level = std::max(candidate.level, constants.max_level_share * floor);
   const int raises = constants.max_level_attempts - 1;
@@ -406,6 +410,7 @@ void raise_level(const SearchInput& input, const ConnectedComponent& core, float
     Candidate raised;
     raised.kind = candidate.kind;
     raised.evidence.steepness = candidate.evidence.steepness;
+    raised.rim = candidate.rim;
     raised.level = first + (last - first) * static_cast<float>(k) / static_cast<float>(constants.likelier_levels);
     raised.cells = flood_fill(images.field(), core, raised.level);
     if (raised.box().empty() || overlaps_other(raised, images.assigned)) continue;

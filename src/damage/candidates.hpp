@@ -24,6 +24,7 @@ struct Candidate {
   DamageKind kind = DamageKind::depression;
   BoxMask cells;         ///< stored in its bounding box
   std::size_t size = 0;  ///< cells
+  float rim = 0;         ///< least depth of a hollow: that of its rim in the smoothed depths, pixels of ℓ'
   float level = 0;       ///< depth at the outline, pixels of ℓ'
   DamageEvidence evidence;
 
