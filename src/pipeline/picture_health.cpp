@@ -70,39 +70,62 @@ void measure_exposure(const FrameResult& frame, const DamageMap& damage, PairHea
 
 /// Sum of the squared differences of every second pixel of two rows, where both are road, and their number.
 struct SquaredDifferences {
+  static constexpr int step = 2, max_run = 512;  ///< 256 differences of at most grey_max, squared, fit into 32 bits
   std::uint64_t sum = 0, count = 0;
 
   void add(const std::int16_t* image, const std::int16_t* other, const std::uint8_t* road,
            const std::uint8_t* other_road, int width) {
-    constexpr int step = 2, run = 512;  // 256 differences of at most grey_max, squared, fit into 32 bits
-    for (int first = 0; first < width; first += run) {
-      std::uint32_t part = 0, pixels = 0;
-      for (int u = first; u < std::min(first + run, width); u += step) {
-        const int difference = other[u] - image[u];
-        const std::uint32_t both = (road[u] & other_road[u]) != 0 ? 1 : 0;
-        part += both * static_cast<std::uint32_t>(difference * difference);
-        pixels += both;
-      }
-      sum += part;
-      count += pixels;
+    std::uint32_t part = 0, pixels = 0;
+    for (int u = 0; u < width; u += step) {
+      const int difference = other[u] - image[u];
+      const std::uint32_t both = (road[u] & other_road[u]) != 0 ? 1 : 0;
+      part += both * static_cast<std::uint32_t>(difference * difference);
+      pixels += both;
     }
+    sum += part;
+    count += pixels;
   }
+  double mean() const { return static_cast<double>(sum) / static_cast<double>(count); }
 };
 
-/// Mean square of the differences of pixels `lag` apart, along rows or columns, over the road. Of large images it takes
-/// some 128 rows, an odd number apart, so that they lie everywhere in the blocks of 8×8 pixels of JPEG.
-double structure_function(Grey image, const DamageMap& damage, int lag, bool down) {
-  constexpr int rows = 128;
-  const int every = image.height() / rows, step = every > 2 ? every | 1 : 2;
-  const int du = down ? 0 : lag, dv = down ? lag : 0;
-  SquaredDifferences differences;
-  for (int v = 0; v + dv < image.height(); v += step) {
-    differences.add(image.row(v), image.row(v + dv) + du, damage.road.row(v), damage.road.row(v + dv) + du,
-                    image.width() - du);
-  }
+/// Two lags of a structure function, pixels.
+struct Lags {
+  int near, far;
+};
+
+/// Ratio of the structure function, the mean square of the differences of pixels `lag` apart, at two lags along rows or
+/// columns, over the road: of the sharpest tenth of tiles. A lens or motion blurs all of them; the edge of a shadow has
+/// the same ratio as blur. Of large images it takes some 128 rows, an odd number apart, so that they lie everywhere in
+/// the blocks of 8×8 pixels of JPEG.
+double structure_ratio(Grey image, const DamageMap& damage, Lags lags, bool down) {
+  constexpr int rows = 128, tiles_across = 20, min_tile = 32;
   constexpr std::uint64_t min_count = 100;
-  return differences.count >= min_count ? static_cast<double>(differences.sum) / static_cast<double>(differences.count)
-                                        : PairHealth::unknown;
+  constexpr double sharpest = 0.9;
+  const int every = image.height() / rows, step = every > 2 ? every | 1 : 2;
+  const int tile = std::clamp(image.width() / tiles_across, min_tile, SquaredDifferences::max_run);
+  const int right = image.width() - (down ? 0 : lags.far), bottom = image.height() - (down ? lags.far : 0);
+  std::vector<double> ratios;
+  std::vector<SquaredDifferences> near, far;
+  for (int v0 = 0; v0 < bottom; v0 += tile) {
+    near.assign(static_cast<std::size_t>(std::max(0, right) / tile + 1), {});
+    far = near;
+    const auto add = [&](int v, int u, int lag, SquaredDifferences& differences) {
+      const int du = down ? 0 : lag, dv = down ? lag : 0;
+      differences.add(image.row(v) + u, image.row(v + dv) + u + du, damage.road.row(v) + u,
+                      damage.road.row(v + dv) + u + du, std::min(tile, right - u));
+    };
+    for (int v = v0; v < std::min(v0 + tile, bottom); v += step) {
+      for (int u = 0; u < right; u += tile) {
+        add(v, u, lags.near, near[static_cast<std::size_t>(u / tile)]);
+        add(v, u, lags.far, far[static_cast<std::size_t>(u / tile)]);
+      }
+    }
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      const bool is_known = std::min(near[k].count, far[k].count) >= min_count && far[k].sum > 0;
+      if (is_known) ratios.push_back(near[k].mean() / far[k].mean());
+    }
+  }
+  return ratios.empty() ? PairHealth::unknown : nearest_quantile(ratios, sharpest);
 }
 
 /// Gaussian blur σ of white texture whose structure function, 1 − exp(−lag² / 4σ²), has that ratio at the two lags.
@@ -120,12 +143,12 @@ double blur_of_ratio(double ratio, double near, double far) {
 
 /// The larger blur of the two directions.
 double blur_of(Grey image, const DamageMap& damage) {
-  constexpr int near = 2, far = 12;
+  constexpr Lags lags{2, 12};
   double blur = 0;
   for (const bool down : {false, true}) {
-    const double ratio = structure_function(image, damage, near, down) / structure_function(image, damage, far, down);
+    const double ratio = structure_ratio(image, damage, lags, down);
     if (std::isnan(ratio)) return PairHealth::unknown;
-    blur = std::max(blur, blur_of_ratio(ratio, near, far));
+    blur = std::max(blur, blur_of_ratio(ratio, lags.near, lags.far));
   }
   return blur;
 }

@@ -94,6 +94,51 @@ struct ExactFrame {
   }
 };
 
+/// White noise blurred by a Gaussian, with the contrast of asphalt, below soft shadows if they are wanted.
+Frame blurred_texture(double sigma_px, bool with_shadows) {
+  constexpr int width = 640, height = 360;
+  std::mt19937 random(5);
+  std::normal_distribution<float> white;
+  Image<float> texture(width, height);
+  for (int v = 0; v < height; ++v) std::generate_n(texture.row(v), width, [&] { return white(random); });
+  const auto blur = [&](int du, int dv) {
+    const int reach = static_cast<int>(std::ceil(4 * sigma_px));
+    Image<float> sum(width, height, 0);
+    for (int k = -reach; k <= reach; ++k) {
+      const auto weight = static_cast<float>(std::exp(-0.5 * k * k / (sigma_px * sigma_px)));
+      for (int v = 0; v < height; ++v) {
+        for (int u = 0; u < width; ++u) {
+          sum(u, v) += weight * texture((u + k * du + width) % width, (v + k * dv + height) % height);
+        }
+      }
+    }
+    texture = sum;
+  };
+  blur(1, 0);
+  blur(0, 1);
+  // The squares of the weights have the sum √π σ in either direction.
+  const double unit = std::sqrt(std::numbers::pi) * sigma_px;
+  Frame frame{{}, width, height};
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const double shade = with_shadows ? std::tanh(0.15 * (20 + std::min(u % 160, 160 - u % 160) - 60)) : 0;
+      const double grey = 120 * (1 + 0.5 * shade) + 12 * double{texture(u, v)} / unit;
+      frame.bytes.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(grey), 0L, 255L)));
+    }
+  }
+  return frame;
+}
+
+TEST(MeasureHealth, BlurIsThatOfTheTextureNotOfShadows) {
+  for (const double sigma_px : {1.0, 1.5, 2.5}) {
+    for (const bool with_shadows : {false, true}) {
+      const ExactFrame exact(
+          [&](Frame& left, Frame& right) { left = right = blurred_texture(sigma_px, with_shadows); });
+      EXPECT_NEAR(exact.health().blur_left_px, sigma_px, 0.15 * sigma_px) << with_shadows;
+    }
+  }
+}
+
 TEST(MeasureHealth, PerfectPairHasNoFinding) {
   const ExactFrame exact;
   EXPECT_EQ(exact.found(), "");
