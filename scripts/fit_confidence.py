@@ -44,13 +44,13 @@ def range_log_odds(vote):
 
 
 def specular_log_odds(excess):
-    """Likewise."""
+    """As in src/damage/evidence.cpp; it is not fitted."""
     per_excess, even_odds = -50, 0.03
     return 0.0 if excess is None else per_excess * max(0, excess - even_odds)
 
 
 def pixel_log_odds(significance):
-    """Likewise."""
+    """As in src/damage/evidence.cpp; it is not fitted."""
     per_log_significance, even_odds = 1.5, 5
     return 0.0 if significance is None else per_log_significance * min(0, math.log(max(significance, 1) / even_odds))
 

@@ -111,8 +111,9 @@ struct DamageEvidence {
   /// RMS of the brightness of one image above that of the other inside, as far as it is brighter than the road around,
   /// in brightnesses of that road; NaN unknown. Matte surfaces have 0.02 and less, glint on a wet road up to 0.5.
   double specular_excess = std::numeric_limits<double>::quiet_NaN();
-  /// Upper quartile of the depths of the pixels inside, each in its own standard errors, `DamageInput::sigma`; NaN
-  /// without them. Where matching failed, errors are as large as the depths.
+  /// Upper quartile of the depths, or heights, of the pixels inside, each in its own standard errors of noise alone:
+  /// `DamageInput::sigma` without the error of smoothing; NaN without them. Where matching failed, errors are as large
+  /// as the depths.
   double pixel_significance = std::numeric_limits<double>::quiet_NaN();
   /// Slope of the wall of a depression, rise over run, at most 1: geometric mean of `DamageMetrics::wall_slope` and of
   /// the steepest that the support window makes as gentle; NaN unknown, and of a protrusion. Where the border cuts a

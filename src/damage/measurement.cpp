@@ -29,7 +29,8 @@ double smoothing_error(ImageView<const float> map, int reach, int u, int v) {
                               map(u, v - reach) + map(u, v + reach));
 }
 
-/// Variance of the disparity at (u, v) by noise alone, without the error of smoothing; NaN without a measurement.
+/// Variance of the disparity at (u, v) by noise alone, without the error of smoothing; NaN without a measurement, 0 or
+/// less by rounding.
 double noise_variance(const DamageInput& input, int u, int v) {
   const int reach = input.disparity.empty() ? 0 : input.smoothing_px;
   const double sigma = input.sigma(u, v), smoothing = smoothing_error(input.disparity, reach, u, v);
@@ -63,12 +64,11 @@ void add_run(const DamageInput& input, const DamageMap& maps, double offset, int
     sums.depth += sign_of(damage.kind) * depth[u];
   }
   if (input.sigma.empty() || v % 2 != 0) return;
-  constexpr double min_variance = 1e-8;
   for (int u = first + first % 2; u <= last; u += 2) {
     const double variance = noise_variance(input, u, v);
-    if (!std::isfinite(transformed[u]) || !std::isfinite(variance)) continue;
-    const double height = sign_of(damage.kind) * (double{depth[u]} + offset);
-    sums.significances.push_back(static_cast<float>(height / std::sqrt(std::max(variance, min_variance))));
+    if (!std::isfinite(transformed[u]) || !(variance > 0) || !std::isfinite(variance)) continue;
+    const double off_road = sign_of(damage.kind) * (double{depth[u]} + offset);
+    sums.significances.push_back(static_cast<float>(off_road / std::sqrt(variance)));
   }
 }
 

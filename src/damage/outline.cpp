@@ -179,7 +179,7 @@ Outline find_outline(const DepthField& field, const ConnectedComponent& seeds, f
 }
 
 float rim_depth_share(double wall_width) {
-  constexpr double step_width = 3.2;  // of a step, from the steepest slope of its means 0, 1/16, 5/16, 11/16, 15/16, 1
+  constexpr double step_width = 3.2;  // of a step: the central difference of its means 0, 1/16, 5/16, 11/16, … is 5/16
   if (wall_width <= step_width) return 0.5F;
   const double ratio = step_width / wall_width;
   const double from_foot = (1 - std::sqrt(1 - ratio * ratio)) / 2;

@@ -11,6 +11,7 @@
 #include "damage/block_votes.hpp"
 #include "damage/likelihood_vote.hpp"
 #include "damage/rectified_right_image.hpp"
+#include "damage/sampling_step.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "damage/searched_range.cpp"
@@ -155,9 +156,8 @@ class RangeVote {
 
 double range_vote(const DamageInput& input, const DamageMap& maps, int id, const PixelBox& box) {
   constexpr double max_windows = 64;
-  constexpr int min_step = 4;
   if (!has_blocks(input) || !input.shift) return double{unknown};
-  const int step = std::max(min_step, static_cast<int>(std::ceil(std::sqrt(box.width() * box.height() / max_windows))));
+  const int step = sampling_step(box, max_windows);
   RangeVote vote(input);
   double votes = 0, windows = 0;
   for (int v = box.v0; v <= box.v1; v += step) {

@@ -9,6 +9,8 @@
 #include "core/order_statistics.hpp"
 #include "damage/block_votes.hpp"
 #include "damage/rectified_right_image.hpp"
+#include "damage/sampling_step.hpp"
+#include "roadstereo/grey_scale.hpp"
 
 namespace roadstereo {
 namespace {
@@ -33,10 +35,10 @@ class WindowMeans {
     int count = 0;
     for (int y = v0; y <= v1; ++y) {
       const float* const disparity = input_.disparity.row(y);
-      const int row = right_.row(u, y);
       for (int x = u0; x <= u1; ++x) {
         const double at = x - double{disparity[x]};
-        const float grey = std::isnan(at) ? right_.unknown : right_(at, y, row);
+        if (!std::isfinite(at)) continue;
+        const float grey = right_(at, y, right_.row(at, y));
         if (std::isnan(grey)) continue;
         left += input_.grey(x, y);
         right += double{grey};
@@ -56,8 +58,7 @@ class WindowMeans {
 /// Means of at most about `max_windows` windows on a regular grid of the box, where the damage `id` is; 0: the road.
 Brightness brightness_of(const WindowMeans& means, const DamageMap& maps, int id, const PixelBox& box,
                          double max_windows) {
-  constexpr int min_step = 4;
-  const int step = std::max(min_step, static_cast<int>(std::ceil(std::sqrt(box.width() * box.height() / max_windows))));
+  const int step = sampling_step(box, max_windows);
   Brightness brightness;
   for (int v = box.v0; v <= box.v1; v += step) {
     for (int u = box.u0; u <= box.u1; u += step) {
@@ -85,9 +86,10 @@ double specular_excess(const DamageInput& input, const DamageMap& maps, int id, 
   if (inside.left.empty() || around.left.size() < min_around) return unknown;
   const double road = central_median(around.left), gain = road / central_median(around.right);
   if (!(road > 0 && std::isfinite(gain))) return unknown;
+  const double white = grey_max * std::min(1.0, gain);  // what is brighter is white in one image only
   double sum = 0;
   for (std::size_t k = 0; k < inside.left.size(); ++k) {
-    const double left = inside.left[k], right = gain * inside.right[k];
+    const double left = std::min(inside.left[k], white), right = std::min(gain * inside.right[k], white);
     const double excess = std::min(std::abs(left - right), std::max(0.0, std::max(left, right) - road)) / road;
     sum += excess * excess;
   }

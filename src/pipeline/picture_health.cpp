@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/order_statistics.hpp"
@@ -73,6 +74,7 @@ struct SquaredDifferences {
   static constexpr int step = 2, max_run = 512;  ///< 256 differences of at most grey_max, squared, fit into 32 bits
   std::uint64_t sum = 0, count = 0;
 
+  /// `width`: at most max_run.
   void add(const std::int16_t* image, const std::int16_t* other, const std::uint8_t* road,
            const std::uint8_t* other_road, int width) {
     std::uint32_t part = 0, pixels = 0;
@@ -94,20 +96,21 @@ struct Lags {
 };
 
 /// Ratio of the structure function, the mean square of the differences of pixels `lag` apart, at two lags along rows or
-/// columns, over the road: of the sharpest tenth of tiles. A lens or motion blurs all of them; the edge of a shadow has
-/// the same ratio as blur. Of large images it takes some 128 rows, an odd number apart, so that they lie everywhere in
-/// the blocks of 8×8 pixels of JPEG.
+/// columns, over the road: what a tenth of the tiles exceed, since the edges of shadows have the ratio of blur. Tiles
+/// with less than half of the median contrast show noise, and do not count. Of large images it takes some 128 rows, an
+/// odd number apart, so that they lie everywhere in the blocks of 8×8 pixels of JPEG.
 double structure_ratio(Grey image, const DamageMap& damage, Lags lags, bool down) {
   constexpr int rows = 128, tiles_across = 20, min_tile = 32;
   constexpr std::uint64_t min_count = 100;
-  constexpr double sharpest = 0.9;
+  constexpr double sharpest = 0.9, min_variance_share = 0.25;
   const int every = image.height() / rows, step = every > 2 ? every | 1 : 2;
-  const int tile = std::clamp(image.width() / tiles_across, min_tile, SquaredDifferences::max_run);
+  const int side = std::max(image.width(), image.height());
+  const int tile = std::clamp(side / tiles_across, min_tile, SquaredDifferences::max_run);
   const int right = image.width() - (down ? 0 : lags.far), bottom = image.height() - (down ? lags.far : 0);
-  std::vector<double> ratios;
+  std::vector<double> ratios, variances;
   std::vector<SquaredDifferences> near, far;
   for (int v0 = 0; v0 < bottom; v0 += tile) {
-    near.assign(static_cast<std::size_t>(std::max(0, right) / tile + 1), {});
+    near.assign(static_cast<std::size_t>(std::max(0, right) / tile) + 1, {});
     far = near;
     const auto add = [&](int v, int u, int lag, SquaredDifferences& differences) {
       const int du = down ? 0 : lag, dv = down ? lag : 0;
@@ -122,10 +125,18 @@ double structure_ratio(Grey image, const DamageMap& damage, Lags lags, bool down
     }
     for (std::size_t k = 0; k < near.size(); ++k) {
       const bool is_known = std::min(near[k].count, far[k].count) >= min_count && far[k].sum > 0;
-      if (is_known) ratios.push_back(near[k].mean() / far[k].mean());
+      if (!is_known) continue;
+      ratios.push_back(near[k].mean() / far[k].mean());
+      variances.push_back(far[k].mean());
     }
   }
-  return ratios.empty() ? PairHealth::unknown : nearest_quantile(ratios, sharpest);
+  if (ratios.empty()) return PairHealth::unknown;
+  const double min_variance = min_variance_share * upper_median(std::vector(variances));
+  std::size_t with_contrast = 0;
+  for (std::size_t k = 0; k < ratios.size(); ++k) {
+    if (variances[k] >= min_variance) ratios[with_contrast++] = ratios[k];
+  }
+  return nearest_quantile(std::span(ratios).first(with_contrast), sharpest);
 }
 
 /// Gaussian blur σ of white texture whose structure function, 1 − exp(−lag² / 4σ²), has that ratio at the two lags.

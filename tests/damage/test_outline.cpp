@@ -17,7 +17,7 @@ TEST(WallRim, IsWhereTheWallBegan) {
   EXPECT_NEAR(rim_depth_share(4), 0.104, 1e-6);
   EXPECT_EQ(rim_depth_share(3.2), 0.5F) << "a step";
   EXPECT_EQ(rim_depth_share(1), 0.5F);
-  EXPECT_LT(rim_depth_share(16), 1e-3);
+  EXPECT_LT(rim_depth_share(16), 0.01) << "a gentle wall keeps its foot";
 }
 
 /// A hole with walls as steep as can be, seen from above.

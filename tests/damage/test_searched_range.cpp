@@ -102,7 +102,10 @@ TEST(SearchedRange, RowOffsetIsUndone) {
   EXPECT_LT(vote_around(input, scene.u, scene.v), -0.9);
   const DamageMap map = find_damage(input);
   ASSERT_EQ(map.damages.size(), 2U) << "the pothole and the bump of the scene";
-  for (const Damage& damage : map.damages) EXPECT_GT(damage.evidence.range_vote, 0.9);
+  for (const Damage& damage : map.damages) {
+    EXPECT_GT(damage.evidence.range_vote, 0.9);
+    EXPECT_LT(damage.evidence.specular_excess, 0.02) << "a matte road";
+  }
 }
 
 // Heights of which the camera at 1.5 m searches none: matched to noise over the whole top.

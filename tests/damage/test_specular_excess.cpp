@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "damage/specular_excess.hpp"
+#include "roadstereo/grey_scale.hpp"
 #include "tests/damage/damage_scene.hpp"
 
 namespace roadstereo {
@@ -69,15 +71,25 @@ TEST(SpecularExcess, WhatIsDarkerThanTheRoadOrBrightInBothIsNoGlint) {
 }
 
 TEST(SpecularExcess, ExposureOfOneCameraIsUndone) {
-  EvenPair pair(road_grey * 2);
-  EXPECT_EQ(pair.excess(), 0);
-  pair.paint(road_grey * 3 / 2, road_grey * 2);
+  EvenPair pair(road_grey * 3 / 2);
+  EXPECT_NEAR(pair.excess(), 0, 1e-9);
+  pair.paint(road_grey * 3 / 2, road_grey * 3 / 2);
   EXPECT_NEAR(pair.excess(), 0.5, 1e-9);
+}
+
+/// Paint that the brighter camera shows white, and no brighter than that.
+TEST(SpecularExcess, WhatIsWhiteInOneImageIsNoGlint) {
+  EvenPair pair(road_grey * 2);
+  pair.paint(road_grey * 3 / 2, grey_max);
+  EXPECT_LT(pair.excess(), 0.01);
 }
 
 TEST(SpecularExcess, UnknownWithoutARightImageOrARoadAround) {
   EvenPair pair;
   std::fill_n(pair.map.road.row(0), pair.map.road.pixels(), std::uint8_t{0});
+  for (int v = region.v0; v <= region.v1; ++v) {
+    std::fill_n(pair.map.road.row(v) + region.u0, region.width(), std::uint8_t{255});
+  }
   EXPECT_TRUE(std::isnan(pair.excess()));
   DamageInput input;
   input.transformed = input.disparity = pair.disparity;

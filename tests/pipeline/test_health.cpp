@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/picture_health.hpp"
 #include "pipeline/rectification_error.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/health.hpp"
@@ -94,9 +95,12 @@ struct ExactFrame {
   }
 };
 
-/// White noise blurred by a Gaussian, with the contrast of asphalt, below soft shadows if they are wanted.
-Frame blurred_texture(double sigma_px, bool with_shadows) {
-  constexpr int width = 640, height = 360;
+/// What lies over a texture.
+enum class Scenery { none, shadows, dark_quarter };
+
+/// White noise blurred by a Gaussian, with the contrast of asphalt, below soft shadows, or with noise and a dark
+/// quarter.
+Frame blurred_texture(int width, int height, double sigma_px, Scenery scenery) {
   std::mt19937 random(5);
   std::normal_distribution<float> white;
   Image<float> texture(width, height);
@@ -121,21 +125,42 @@ Frame blurred_texture(double sigma_px, bool with_shadows) {
   Frame frame{{}, width, height};
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
-      const double shade = with_shadows ? std::tanh(0.15 * (20 + std::min(u % 160, 160 - u % 160) - 60)) : 0;
-      const double grey = 120 * (1 + 0.5 * shade) + 12 * double{texture(u, v)} / unit;
+      const double shade = std::tanh(0.15 * (std::min(u % 160, 160 - u % 160) - 40));
+      double grey = 120 + 12 * double{texture(u, v)} / unit;
+      if (scenery == Scenery::shadows) grey += 60 * shade;
+      if (scenery == Scenery::dark_quarter) {
+        const bool is_dark = u < width / 2 && v < height / 2;
+        grey = (is_dark ? 0.25 : 1) * grey + double{white(random)};
+      }
       frame.bytes.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(grey), 0L, 255L)));
     }
   }
   return frame;
 }
 
-TEST(MeasureHealth, BlurIsThatOfTheTextureNotOfShadows) {
+/// Blur that is measured on a road that fills a picture of that size.
+double measured_blur(int width, int height, double sigma_px, Scenery scenery) {
+  FrameResult frame;
+  to_grey(blurred_texture(width, height, sigma_px, scenery).view(), 255, frame.grey);
+  frame.right = frame.grey;
+  frame.disparity.assign(width, height, 1);
+  DamageMap damage = make_empty_damage_map(width, height, "");
+  std::fill_n(damage.road.row(0), damage.road.pixels(), std::uint8_t{255});
+  PairHealth health;
+  measure_pictures(frame, damage, health);
+  return health.blur_left_px;
+}
+
+TEST(MeasureHealth, BlurIsThatOfTheTextureNotOfWhatLiesOverIt) {
+  constexpr double tolerance =
+      0.2;  // a tile has some hundred differences: 0.1 of their mean square, 1.3 times exceeded
   for (const double sigma_px : {1.0, 1.5, 2.5}) {
-    for (const bool with_shadows : {false, true}) {
-      const ExactFrame exact(
-          [&](Frame& left, Frame& right) { left = right = blurred_texture(sigma_px, with_shadows); });
-      EXPECT_NEAR(exact.health().blur_left_px, sigma_px, 0.15 * sigma_px) << with_shadows;
+    for (const Scenery scenery : {Scenery::none, Scenery::shadows, Scenery::dark_quarter}) {
+      EXPECT_NEAR(measured_blur(640, 360, sigma_px, scenery), sigma_px, tolerance * sigma_px)
+          << static_cast<int>(scenery);
     }
+    EXPECT_NEAR(measured_blur(360, 640, sigma_px, Scenery::none), sigma_px, tolerance * sigma_px) << "upright";
+    EXPECT_NEAR(measured_blur(720, 1280, sigma_px, Scenery::none), sigma_px, tolerance * sigma_px) << "upright, larger";
   }
 }
 
