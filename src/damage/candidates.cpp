@@ -202,20 +202,20 @@ BoxMask hollows_beside(const Candidate& candidate, int window_radius, const Sear
   BoxMask hollows(around);
   for (int j = around.first_row; j <= around.last_row; ++j) {
     for (int i = around.first_column; i <= around.last_column; ++i) {
-      const bool is_deep = images.allowed(i, j) != 0 && images.depth(i, j) > candidate.outline_level();
+      const bool is_deep = images.allowed(i, j) != 0 && images.depth(i, j) > candidate.level;
       hollows.set(i, j, is_deep && !candidate.cells(i, j));
     }
   }
   return hollows;
 }
 
-/// Extend the region from the flood fill at its level to its outline: to the foot of the wall, of a hollow at most to
-/// its rim, and for depressions to the edge in the image, up to the cells of other damages.
+/// Extend the region from the flood fill at its level to its outline: to the foot of the wall, and for depressions to
+/// the edge in the image, up to the cells of other damages.
 void extend_region(const SearchInput& input, SearchImages& images, Candidate& candidate) {
   const std::size_t max_hole = images.depth.pixels() / constants.max_hole_divisor;
   if (input.thresholds.metric()) {
-    const float noise_depth = constants.foot_sigmas * static_cast<float>(input.depth_cells.noise);
-    grow_to_wall_foot(images.field(), candidate.level, std::max(candidate.rim, noise_depth), candidate.cells);
+    const float min_depth = constants.foot_sigmas * static_cast<float>(input.depth_cells.noise);
+    grow_to_wall_foot(images.field(), candidate.level, min_depth, candidate.cells);
   } else if (candidate.kind == DamageKind::depression) {
     const float min_depth = constants.min_level_sigmas * static_cast<float>(input.depth_cells.noise);
     grow_over_gaps(images.field(), input.known, min_depth, input.image_edges.window_radius, candidate.cells);
@@ -240,17 +240,14 @@ Candidate segment(const SearchInput& input, const ConnectedComponent& core, Dama
   const float min_level = constants.min_level_sigmas * static_cast<float>(input.depth_cells.noise);
   const Outline outline = find_outline(field, core, floor, min_level, metric);
   candidate.level = outline.level;
-  if (metric && kind == DamageKind::depression) {
-    candidate.rim = floor * rim_depth_share(outline.wall_width);
-  }
   candidate.evidence.steepness = outline.steepness;
   const float max_level = std::max(candidate.level, constants.max_level_share * floor);
   const int raises = constants.max_level_attempts - 1;
   const float factor = std::pow(max_level / candidate.level, 1.0F / static_cast<float>(raises));
-  candidate.cells = flood_fill(field, core, candidate.outline_level());
+  candidate.cells = flood_fill(field, core, candidate.level);
   for (int i = 0; i < raises && overlaps_other(candidate, images.assigned); ++i) {
     candidate.level *= factor;
-    candidate.cells = flood_fill(field, core, candidate.outline_level());
+    candidate.cells = flood_fill(field, core, candidate.level);
   }
   if (!candidate.box().empty()) extend_region(input, images, candidate);
   return candidate;
@@ -409,9 +406,8 @@ void raise_level(const SearchInput& input, const ConnectedComponent& core, float
     Candidate raised;
     raised.kind = candidate.kind;
     raised.evidence.steepness = candidate.evidence.steepness;
-    raised.rim = candidate.rim;
     raised.level = first + (last - first) * static_cast<float>(k) / static_cast<float>(constants.likelier_levels);
-    raised.cells = flood_fill(images.field(), core, raised.outline_level());
+    raised.cells = flood_fill(images.field(), core, raised.level);
     if (raised.box().empty() || overlaps_other(raised, images.assigned)) continue;
     extend_region(input, images, raised);
     if (static_cast<float>(raised.size) < min_cells || !is_measured(raised, input.depth_cells.valid)) continue;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "damage/box_mask.hpp"
@@ -25,13 +24,10 @@ struct Candidate {
   DamageKind kind = DamageKind::depression;
   BoxMask cells;         ///< stored in its bounding box
   std::size_t size = 0;  ///< cells
-  float level = 0;       ///< depth that separates it from the surroundings, pixels of ℓ'
-  float rim = 0;         ///< depth of its rim in the smoothed depths, beyond which no hollow grows; 0: no limit
+  float level = 0;       ///< depth at the outline, pixels of ℓ'
   DamageEvidence evidence;
 
   const CellBox& box() const { return cells.box(); }
-  /// Depth at the outline before it grows.
-  float outline_level() const { return std::max(level, rim); }
 };
 
 /// Find candidates: connected components deeper than the thresholds (cores), extended to their outlines, with the

@@ -172,18 +172,9 @@ Outline find_outline(const DepthField& field, const ConnectedComponent& seeds, f
   for (std::size_t k = 0; k < contour_level_count; ++k) steepness[k] = steepness_of(contours[k], floor);
   auto k = static_cast<std::size_t>(std::max_element(steepness.begin(), steepness.end()) - steepness.begin());
   const double max_steepness = steepness[k];
-  const double wall_width = double{floor} / contours[k].slope;
   const double min_steepness = std::min(wall_steepness, min_share * max_steepness);
   while (k > 0 && steepness[k - 1] >= min_steepness) --k;
-  return {metric ? level[k] : half_height(field, seeds, floor, min_level), max_steepness, wall_width};
-}
-
-float rim_depth_share(double wall_width) {
-  constexpr double step_width = 3.2;  // of a step: the central difference of its means 0, 1/16, 5/16, 11/16, … is 5/16
-  if (wall_width <= step_width) return 0.5F;
-  const double ratio = step_width / wall_width;
-  const double from_foot = (1 - std::sqrt(1 - ratio * ratio)) / 2;
-  return static_cast<float>(from_foot * from_foot * (3 - 2 * from_foot));
+  return {metric ? level[k] : half_height(field, seeds, floor, min_level), max_steepness};
 }
 
 void grow_over_gaps(const DepthField& field, const Image<std::uint8_t>& valid, float min_level, int window_radius,

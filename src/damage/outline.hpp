@@ -32,8 +32,6 @@ struct Outline {
   /// Maximum over the levels of the mean slope on the contour, relative to that of a cone of the same area and depth: 1
   /// for a cone, 2 for a paraboloid.
   double steepness = 0;
-  /// From the rim to the floor with the mean slope of the steepest contour, cells; infinite if that is 0.
-  double wall_width = 0;
 };
 
 /// Select the level of the outline from the slopes of the contours around `seeds` in the component tree. A wide shallow
@@ -43,11 +41,6 @@ struct Outline {
 /// depth of a hollow is not known in metres; the level is then halfway between the floor and the surroundings.
 Outline find_outline(const DepthField& field, const ConnectedComponent& seeds, float floor, float min_level,
                      bool metric);
-
-/// Depth of the rim of a hollow, as a share of its floor's, 0 … 0.5, where the binomial mean of the depth cells has
-/// made its wall `wall_width` cells wide. Widths add in quadrature about the middle of the wall, and the wall is
-/// rounded like 3x² − 2x³: an approximation, of a wall that is not rounded at its foot the rim is deeper.
-float rim_depth_share(double wall_width);
 
 /// Grow a region over the allowed cells near gaps. Where matching failed on a ragged wall, the depth between the road
 /// and the floor is smeared: cells no farther than the radius of the support window from a cell that is not `valid`

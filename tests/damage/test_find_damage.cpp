@@ -246,6 +246,23 @@ TEST(FindDamage, InfinityIsInvalidLikeNan) {
   }
 }
 
+/// Metric input of a road at δt = 30 px, seen straight down from 2 m: d = 50 px, f = 1000 px, b = 0.1 m.
+struct FromAbove {
+  Image<float> disparity;
+  DamageInput input;
+
+  explicit FromAbove(const Image<float>& transformed) : disparity(transformed) {
+    const int width = transformed.width(), height = transformed.height();
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) disparity(u, v) += 20;
+    }
+    input.transformed = transformed;
+    input.disparity = disparity;
+    input.plane = DisparityPlane{50, 0, 0};
+    input.calibration = StereoCalibration{1000, 0.5 * (width - 1), 0.5 * (height - 1), 0.1, 0, width, height};
+  }
+};
+
 /// Deepest in the last row of a picture whose cells do not divide it: 1000 = 333·3 + 1.
 TEST(FindDamage, DeepestPointIsInsideImage) {
   constexpr int width = 1300, height = 1000, radius = 90;
