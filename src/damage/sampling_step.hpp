@@ -7,11 +7,9 @@
 
 namespace roadstereo {
 
-/// Step of a regular grid of at most about `max_samples` pixels in a box: at least every fourth pixel of every fourth
-/// row.
-inline int sampling_step(const PixelBox& box, double max_samples) {
-  constexpr int min_step = 4;
-  const double pixels = double{1} * box.width() * box.height();
+/// Step, at least `min_step`, of a regular grid of at most about `max_samples` pixels in a box.
+inline int sampling_step(const PixelBox& box, double max_samples, int min_step) {
+  const double pixels = static_cast<double>(box.width()) * box.height();
   return std::max(min_step, static_cast<int>(std::ceil(std::sqrt(pixels / max_samples))));
 }
 

@@ -156,8 +156,9 @@ class RangeVote {
 
 double range_vote(const DamageInput& input, const DamageMap& maps, int id, const PixelBox& box) {
   constexpr double max_windows = 64;
+  constexpr int min_step = 4;
   if (!has_blocks(input) || !input.shift) return double{unknown};
-  const int step = sampling_step(box, max_windows);
+  const int step = sampling_step(box, max_windows, min_step);
   RangeVote vote(input);
   double votes = 0, windows = 0;
   for (int v = box.v0; v <= box.v1; v += step) {

@@ -58,7 +58,8 @@ class WindowMeans {
 /// Means of at most about `max_windows` windows on a regular grid of the box, where the damage `id` is; 0: the road.
 Brightness brightness_of(const WindowMeans& means, const DamageMap& maps, int id, const PixelBox& box,
                          double max_windows) {
-  const int step = sampling_step(box, max_windows);
+  constexpr int min_step = 4;
+  const int step = sampling_step(box, max_windows, min_step);
   Brightness brightness;
   for (int v = box.v0; v <= box.v1; v += step) {
     for (int u = box.u0; u <= box.u1; u += step) {

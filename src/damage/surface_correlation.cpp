@@ -7,6 +7,7 @@
 
 #include "core/parallel.hpp"
 #include "damage/block_votes.hpp"
+#include "damage/sampling_step.hpp"
 #include "damage/smoothing_error.hpp"
 
 namespace roadstereo {
@@ -102,8 +103,7 @@ double surface_significance(const DamageInput& input, const DamageMap& maps, int
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   if (!has_blocks(input)) return unknown;
   constexpr double max_blocks = 2000;
-  const int step =
-      std::max(block_radius, static_cast<int>(std::ceil(std::sqrt(box.width() * box.height() / max_blocks))));
+  const int step = sampling_step(box, max_blocks, block_radius);
   double votes = 0, blocks = 0;
   RowOfBlocks row;
   for (int v = box.v0; v <= box.v1; v += step) {
