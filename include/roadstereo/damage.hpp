@@ -123,6 +123,10 @@ struct DamageEvidence {
   /// estimated with: what is wider may be the shape of the road or what lies beside it. NaN without a calibration.
   double extent = std::numeric_limits<double>::quiet_NaN();
 
+  /// Depth below a straightedge across the road of the rut that the region lies in, in standard errors, times the share
+  /// of the region that does; 0 if it lies in none. A rut goes on along the road and is as gentle as its relief.
+  double rut_significance = 0;
+
   /// Maximum depth in standard errors. Those of noise alone: smoothing only makes a damage shallower. Below 3 the
   /// damage is unresolvable, unless its mean depth is known better.
   double depth_significance = 0;

@@ -53,6 +53,13 @@ struct Crack {
   std::uint32_t seed = 1;                       ///< of the width
 };
 
+/// Rut: a groove along a straight line, with a parabola as its section; it runs out over its width at both ends.
+struct Rut {
+  std::array<double, 2> from_m{0, -10}, to_m{0, 60};  ///< ends (x, y), at least `width_m` apart
+  double width_m = 0.7;                               ///< 0.05 … 5
+  double depth_m = 0.015;                             ///< 0.0001 … 1
+};
+
 /// Kerb: the road right of x_m is higher by height_m.
 struct Kerb {
   double x_m = 1.5;
@@ -85,6 +92,7 @@ struct Road {
   double verge_right_m = 1e5;     ///< X of the right edge of the road
   std::vector<Blob> blobs;
   std::vector<Crack> cracks;
+  std::vector<Rut> ruts;
   std::vector<Kerb> kerbs;
   std::vector<Box> boxes;
   std::uint32_t seed = 1;
@@ -129,7 +137,7 @@ struct Scene {
 /// Ground truth of one damage.
 struct DamageTruth {
   int id = 0;               ///< value in `SyntheticPair::labels`
-  std::string kind;         ///< "pothole", "bump" or "crack"
+  std::string kind;         ///< "pothole", "bump", "crack" or "rut"
   double x_m = 0, y_m = 0;  ///< centroid on the road
   double depth_m = 0;       ///< maximum depth below the undamaged road; height above it for a bump
   double mean_depth_m = 0;

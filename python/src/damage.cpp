@@ -85,6 +85,9 @@ void bind_one_damage(py::module_& module) {
              "Slope of the wall of a depression, rise over run: mean of the measured and the steepest possible, at "
              "most 1; NaN unknown.")
       .field("extent", &Evidence::extent, "Diameter of the circle of equal area over 1.5 m; NaN without a calibration.")
+      .field("rut_significance", &Evidence::rut_significance,
+             "Depth below a straightedge across the road of the rut that the region lies in, in standard errors, times "
+             "the share of the region that does; 0 if it lies in none.")
       .field("depth_significance", &Evidence::depth_significance,
              "Maximum depth, standard errors from noise alone; below 3 the depth is unresolvable.");
   Record<Damage>(module, "Damage", "One damage: a connected component of the left image.")

@@ -54,6 +54,7 @@ struct SearchInput {
   DepthCells& depth_cells;  ///< `remove_outliers` changes it
   const Image<std::uint8_t>& road;
   const CommonView& view;
+  const Ruts& ruts;
   const Image<std::uint8_t>& known;      ///< 0 in gaps of the view
   const Image<std::uint8_t>& deep_gaps;  ///< 255 in gaps that belong to a depression
   const Image<std::uint8_t>& unseen;     ///< 255 in other gaps that touch its border: what is not seen, or off road
@@ -305,6 +306,23 @@ double road_share(const SearchInput& input, const Candidate& candidate, const Im
   return cells == 0 ? 1 : on_road / cells;
 }
 
+/// Significance of the rut that a region lies in, times the share of its cells that do.
+double rut_significance(const BoxMask& region, std::size_t size, const Ruts& ruts) {
+  if (ruts.empty()) return 0;
+  std::vector<std::size_t> counts(ruts.significances.size() + 1, 0);
+  const CellBox& box = region.box();
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      if (region(i, j)) ++counts[ruts.labels(i, j)];
+    }
+  }
+  double most = 0;
+  for (std::size_t k = 1; k < counts.size(); ++k) {
+    most = std::max(most, ruts.significances[k - 1] * static_cast<double>(counts[k]) / static_cast<double>(size));
+  }
+  return most;
+}
+
 /// Measure what distinguishes a damage from noise and from what is not road.
 void add_evidence(const SearchInput& input, SearchImages& images, Candidate& candidate) {
   constexpr int near_cells = 3;  // closer to the rim the depth is smoothed
@@ -326,6 +344,9 @@ void add_evidence(const SearchInput& input, SearchImages& images, Candidate& can
   evidence.significance = evidence.contrast_sigmas * std::sqrt(samples);
   evidence.road_share = road_share(input, candidate, images.assigned);
   measure_border(candidate.cells, input.view, input.unseen, evidence);
+  if (candidate.kind == DamageKind::depression) {
+    evidence.rut_significance = rut_significance(candidate.cells, candidate.size, input.ruts);
+  }
 }
 
 /// Assign the cells of a candidate to its kind.
@@ -462,7 +483,8 @@ void find_kind(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& a
 }  // namespace
 
 std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road, const CommonView& view,
-                                       const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions) {
+                                       const Ruts& ruts, const Thresholds& thresholds, const ImageEdges& image_edges,
+                                       bool protrusions) {
   const Image<std::uint8_t> known = known_cells(depth_cells.valid, view);
   const ConnectedComponents gaps(known, ConnectedComponents::Foreground::zero);
   Image<std::uint8_t> deep_gaps(road.width(), road.height(), 0), unseen = deep_gaps;
@@ -474,7 +496,7 @@ std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std:
       fill_component(gap, 255, unseen);
     }
   }
-  const SearchInput input{depth_cells, road, view, known, deep_gaps, unseen, thresholds, image_edges};
+  const SearchInput input{depth_cells, road, view, ruts, known, deep_gaps, unseen, thresholds, image_edges};
   std::vector<Candidate> found;
   Image<std::uint8_t> assigned(road.width(), road.height(), 0);
   find_kind(input, DamageKind::depression, assigned, found);

@@ -6,6 +6,7 @@
 #include "damage/common_view.hpp"
 #include "damage/depth_cells.hpp"
 #include "damage/image_outline.hpp"
+#include "damage/ruts.hpp"
 #include "damage/thresholds.hpp"
 #include "roadstereo/damage.hpp"
 
@@ -35,6 +36,7 @@ struct Candidate {
 /// overlap, and end at the border of the view. Outliers in them, deeper than a damage can be, become gaps of
 /// `depth_cells` at the depth of the floor.
 std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road, const CommonView& view,
-                                       const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions);
+                                       const Ruts& ruts, const Thresholds& thresholds, const ImageEdges& image_edges,
+                                       bool protrusions);
 
 }  // namespace roadstereo

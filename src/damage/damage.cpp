@@ -13,6 +13,7 @@
 #include "damage/measurement.hpp"
 #include "damage/road_region.hpp"
 #include "damage/road_surface.hpp"
+#include "damage/ruts.hpp"
 #include "damage/smoothing_error.hpp"
 #include "damage/surface_correlation.hpp"
 #include "roadstereo/error.hpp"
@@ -51,13 +52,17 @@ std::string reason_for_pixels(const DamageInput& input) {
   return {};
 }
 
-/// Fit the road surface by alternating between it and the road region, and move the cells that the images do not
-/// support onto it before the last fit.
+/// Fit the road surface without `ruts`, which are found first, by alternating between it and the road region, and move
+/// the cells that the images do not support onto it before the last fit.
 RoadSurface find_road_surface(const DamageInput& input, const SurfaceCoordinates& coordinates, int threads,
-                              Cells& cells) {
+                              Cells& cells, Ruts& ruts) {
   RoadSurface surface = fit_road_surface(cells, coordinates, threads);
+  ruts = find_ruts(cells, coordinates, surface, threads);
   const auto refit = [&](Sampling sampling) {
-    const Image<std::uint8_t> region = find_road_region(cells, coordinates, surface, 0, threads);
+    Image<std::uint8_t> region = find_road_region(cells, coordinates, surface, ruts, 0, threads);
+    for (std::size_t k = 0; k < region.pixels(); ++k) {
+      if (ruts.contain(k)) region.row(0)[k] = 0;
+    }
     surface = refit_road_surface(cells, coordinates, region, surface, sampling, threads);
   };
   refit(Sampling::coarse);
@@ -73,7 +78,7 @@ ImageEdges make_image_edges(const DamageInput& input, const Cells& cells) {
 
 /// Find the candidates, and fill the maps of `result` regardless of them meanwhile.
 void search_and_fill(const DamageInput& input, const DamageOptions& options, const Thresholds& thresholds,
-                     DepthCells& depth_cells, int threads, Segmentation& segmentation,
+                     const Ruts& ruts, DepthCells& depth_cells, int threads, Segmentation& segmentation,
                      std::optional<FrameGeometry>& geometry, DamageMap& result) {
   constexpr int rows_per_band = 64;
   const int width = input.transformed.width(), height = input.transformed.height();
@@ -81,7 +86,7 @@ void search_and_fill(const DamageInput& input, const DamageOptions& options, con
   const int bands = (height + rows_per_band - 1) / rows_per_band;
   parallel_for(bands + 2, threads, [&](int task, int) {
     if (task == 0) {
-      segmentation.candidates = find_candidates(depth_cells, segmentation.road, segmentation.view, thresholds,
+      segmentation.candidates = find_candidates(depth_cells, segmentation.road, segmentation.view, ruts, thresholds,
                                                 make_image_edges(input, segmentation.cells), options.protrusions);
     } else if (task == 1) {
       if (FrameGeometry::is_possible(input)) geometry.emplace(input);
@@ -130,16 +135,17 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
   const CommonView view(input, cells);
   view.remove_outside(cells);
   const SurfaceCoordinates coordinates = surface_coordinates(cells, input, threads);
-  const RoadSurface surface = find_road_surface(input, coordinates, threads, cells);
+  Ruts ruts;
+  const RoadSurface surface = find_road_surface(input, coordinates, threads, cells, ruts);
   DepthCells depth_cells = make_depth_cells(cells, surface, threads);
   result.non_metric_reason = reason_for_pixels(input);
   result.metric = result.non_metric_reason.empty();
   result.noise_px = surface.noise;
   const Thresholds thresholds(input, options, cells, coordinates, depth_cells.noise, result.metric);
-  const Image<std::uint8_t> road = find_road_region(cells, coordinates, surface, thresholds.relief_m(), threads);
+  const Image<std::uint8_t> road = find_road_region(cells, coordinates, surface, ruts, thresholds.relief_m(), threads);
   Segmentation segmentation{cells, view, coordinates, surface, road, depth_cells, {}};
   std::optional<FrameGeometry> geometry;
-  search_and_fill(input, options, thresholds, depth_cells, threads, segmentation, geometry, result);
+  search_and_fill(input, options, thresholds, ruts, depth_cells, threads, segmentation, geometry, result);
   measure_damage(input, options, segmentation, geometry, threads, result);
 }
 

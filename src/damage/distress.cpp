@@ -15,6 +15,7 @@ constexpr double min_pothole_m = 0.1;     // diameter, ASTM D6433: narrower long
 constexpr double min_step_m = 0.025;      // ASTM D6433, lane/shoulder drop-off
 constexpr double min_kerb_m = 0.75;       // ASTM D6433, potholes count by number up to that: what the side cuts of one
 constexpr double max_object_m = 1.5;      // twice 0.75 m: no pothole is as long, no object on the road as wide
+constexpr double min_rut_sigmas = 7;      // half of a region in a rut of the fewest, 14
 constexpr double max_oblique_rad = std::numbers::pi / 6;  // from the direction of the road
 
 double elongation(const DamageMetrics& metrics) {
@@ -61,7 +62,8 @@ Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, d
     return object ? Distress::debris : Distress::bump;
   }
   const bool long_one = elongation(metrics) >= min_elongation;
-  const bool along = long_one && is_along_road(metrics);
+  const bool in_rut = damage.evidence.rut_significance >= min_rut_sigmas && metrics.length_m > max_object_m;
+  const bool along = (long_one || in_rut) && is_along_road(metrics);
   if (gentle) return along ? Distress::rut : Distress::depression;
   if (long_one && metrics.area_m2.value < min_pothole_m * metrics.length_m) return Distress::crack;
   return along && metrics.length_m > max_object_m ? Distress::rut : Distress::pothole;

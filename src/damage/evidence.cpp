@@ -18,15 +18,15 @@ double log_steepness(double slope) {
 /// agreement of the pictures counts little: it shows a surface, and what stands on the road or beside it has one, too.
 /// A hollow with a wall that the pictures confirm is rarely anything but damage, a gentle one may be the relief of the
 /// road. Fitted to regions of rendered roads with rain, snow and dead pixels, and to hollows put into streets
-/// (docs/method.md). A map alone, whose pictures are unknown, has none.
-double surface_log_odds(double significance, double slope) {
+/// (docs/method.md). `gentle`: share to which gentle walls count. A map alone, whose pictures are unknown, has none.
+double surface_log_odds(double significance, double slope, double gentle) {
   constexpr double per_standard_error = 4.7, even_odds = 1.85, max_of_protrusion = 0.5;
   constexpr double per_standard_error_of_hollow = 1, max_standard_errors = 2;
   if (std::isnan(significance)) return 0;
   const double above = significance - even_odds;
   if (std::isnan(slope) || above < 0) return std::min(max_of_protrusion, per_standard_error * above);
   return per_standard_error_of_hollow * std::min(above, max_standard_errors) +
-         std::min(above, 1.0) * std::min(0.0, log_steepness(slope));
+         gentle * std::min(above, 1.0) * std::min(0.0, log_steepness(slope));
 }
 
 /// Log-odds of damage where disparities that were not searched fit the pictures as well or better: matches by chance
@@ -72,6 +72,14 @@ double wall_log_odds(double border_share, double slope) {
          square * (per_square + per_fourth_power * square + per_square_and_log_slope * steeper);
 }
 
+/// Share to which gentle walls, extent and the border say nothing against damage: a rut is gentle and runs on beyond
+/// the picture.
+double rut_share(double significance) {
+  constexpr double half_share = 10;
+  const double square = significance * significance;
+  return square / (square + half_share * half_share);
+}
+
 }  // namespace
 
 double DamageEvidence::confidence() const {
@@ -83,10 +91,11 @@ double DamageEvidence::confidence() const {
   constexpr double max_significance = 100;  // more does not tell a pothole from a kerb
   const double log_odds = intercept + per_log_significance * std::log(std::clamp(significance, 1.0, max_significance)) +
                           per_road_share * road_share + per_unseen_share * unseen_share;
-  return probability_of(log_odds + wall_log_odds(border_share, likely_wall_slope) +
-                        surface_log_odds(surface_significance, likely_wall_slope) + range_log_odds(range_vote) +
-                        pixel_log_odds(pixel_significance) + specular_log_odds(specular_excess) +
-                        extent_log_odds(extent));
+  const double gentle = 1 - rut_share(rut_significance);
+  return probability_of(log_odds + surface_log_odds(surface_significance, likely_wall_slope, gentle) +
+                        gentle * (wall_log_odds(border_share, likely_wall_slope) + extent_log_odds(extent)) +
+                        range_log_odds(range_vote) + pixel_log_odds(pixel_significance) +
+                        specular_log_odds(specular_excess));
 }
 
 }  // namespace roadstereo

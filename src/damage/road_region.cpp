@@ -86,13 +86,17 @@ Image<std::uint8_t> largest_component(const Image<std::uint8_t>& mask) {
 }  // namespace
 
 Image<std::uint8_t> find_road_region(const Cells& cells, const SurfaceCoordinates& coordinates,
-                                     const RoadSurface& surface, double relief_m, int threads) {
+                                     const RoadSurface& surface, const Ruts& ruts, double relief_m, int threads) {
   constexpr int opening_radius = 2;  // cells; connections of up to twice this width are cut
   constexpr std::size_t max_speck_cells = 30;
   constexpr int block_px = 11;  // height of the blocks of `paper`
   Image<std::uint8_t> road = cells_near_surface(cells, coordinates, surface, relief_m, threads);
   fill_holes(road, max_speck_cells);
-  const Image<std::uint8_t> closed = close_bands(road, cells, surface, block_px / cells.factor);
+  Image<std::uint8_t> connected = road;
+  for (std::size_t k = 0; k < connected.pixels(); ++k) {
+    if (ruts.contain(k)) connected.row(0)[k] = 255;
+  }
+  const Image<std::uint8_t> closed = close_bands(connected, cells, surface, block_px / cells.factor);
   const Image<std::uint8_t> region =
       dilate(largest_component(erode(closed, opening_radius, threads)), opening_radius + 1, threads);
   const std::uint8_t* const inside = region.row(0);

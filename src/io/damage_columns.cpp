@@ -143,6 +143,7 @@ std::vector<DamageColumn> pixel_columns() {
           {"pixel_significance", evidence<&DamageEvidence::pixel_significance>},
           {"likely_wall_slope", evidence<&DamageEvidence::likely_wall_slope>},
           {"extent", evidence<&DamageEvidence::extent>},
+          {"rut_significance", evidence<&DamageEvidence::rut_significance>},
           {"depth_significance", evidence<&DamageEvidence::depth_significance>},
           {"cut_by_border", [](const Damage& d) -> DamageValue { return d.cut_by_border; }}};
 }

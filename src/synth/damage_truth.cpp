@@ -126,6 +126,26 @@ DamageTruth measure_crack(const HeightField& field, int id) {
   return sums.result("crack");
 }
 
+/// Interval of row y that contains a rut.
+Interval rut_interval(const HeightField::Piece& piece, double y) {
+  const Interval box{piece.box.lower.x, piece.box.upper.x};
+  const Rut& rut = piece.rut->rut();
+  const double dx = rut.to_m[0] - rut.from_m[0], dy = rut.to_m[1] - rut.from_m[1];
+  if (std::abs(dy) < std::abs(dx)) return box;
+  const double middle = rut.from_m[0] + (y - rut.from_m[1]) * dx / dy;
+  const double half_width = 0.5 * rut.width_m * std::hypot(dx, dy) / std::abs(dy);
+  return {std::max(box.lower, middle - half_width), std::min(box.upper, middle + half_width)};
+}
+
+DamageTruth measure_rut(const HeightField& field, int id) {
+  constexpr int columns = 32;  // of its width
+  const HeightField::Piece& piece = field.pieces()[static_cast<std::size_t>(id - 1)];
+  const double step = piece.rut->rut().width_m / columns;
+  GridSums sums(field, id, step);
+  for (const double y : grid_rows(piece.box, step)) sums.add_row(y, rut_interval(piece, y));
+  return sums.result("rut");
+}
+
 }  // namespace
 
 std::vector<DamageTruth> measure_damages(const HeightField& field, const Road& road, int threads) {
@@ -133,8 +153,9 @@ std::vector<DamageTruth> measure_damages(const HeightField& field, const Road& r
   std::vector<DamageTruth> truths(field.pieces().size());
   parallel_for(count, threads, [&](int i, int) {
     const auto index = static_cast<std::size_t>(i);
-    truths[index] =
-        index < road.blobs.size() ? measure_blob(field, i + 1, road.blobs[index]) : measure_crack(field, i + 1);
+    truths[index] = index < road.blobs.size()     ? measure_blob(field, i + 1, road.blobs[index])
+                    : field.pieces()[index].crack ? measure_crack(field, i + 1)
+                                                  : measure_rut(field, i + 1);
   });
   std::erase_if(truths, [&road](const DamageTruth& truth) {
     const auto index = static_cast<std::size_t>(truth.id - 1);

@@ -164,12 +164,40 @@ DamageSample CrackShape::sample(double x, double y) const {
   return {-crack_.depth_m * share, 1 - 0.8 * smooth_step(1.5 * share), true};
 }
 
+RutShape::RutShape(const Rut& rut)
+    : rut_(rut),
+      length_m_(std::hypot(rut.to_m[0] - rut.from_m[0], rut.to_m[1] - rut.from_m[1])),
+      along_x_((rut.to_m[0] - rut.from_m[0]) / length_m_),
+      along_y_((rut.to_m[1] - rut.from_m[1]) / length_m_) {}
+
+DamageSample RutShape::sample(double x, double y) const {
+  const double dx = x - rut_.from_m[0], dy = y - rut_.from_m[1];
+  const double across = (dx * along_y_ - dy * along_x_) / (rut_.width_m / 2);
+  const double along = dx * along_x_ + dy * along_y_;
+  const double from_end = std::min(along, length_m_ - along);
+  if (std::abs(across) >= 1 || from_end <= 0) return {};
+  return {-rut_.depth_m * (1 - across * across) * smooth_step(from_end / rut_.width_m), 1, true};
+}
+
+AxisAlignedBox RutShape::ground() const {
+  const double across_x = std::abs(along_y_) * rut_.width_m / 2 + box_margin_m;
+  const double across_y = std::abs(along_x_) * rut_.width_m / 2 + box_margin_m;
+  AxisAlignedBox ground;
+  ground.lower = {std::min(rut_.from_m[0], rut_.to_m[0]) - across_x, std::min(rut_.from_m[1], rut_.to_m[1]) - across_y,
+                  0};
+  ground.upper = {std::max(rut_.from_m[0], rut_.to_m[0]) + across_x, std::max(rut_.from_m[1], rut_.to_m[1]) + across_y,
+                  0};
+  return ground;
+}
+
 HeightField::HeightField(const Road& road) : camber_(road.camber), crest_(road.crest) {
   add_strips(road.kerbs);
   blobs_.reserve(road.blobs.size());
   cracks_.reserve(road.cracks.size());
+  ruts_.reserve(road.ruts.size());
   for (const Blob& blob : road.blobs) add_blob(blobs_.emplace_back(blob), blob);
   for (const Crack& crack : road.cracks) add_crack(cracks_.emplace_back(crack));
+  for (const Rut& rut : road.ruts) add_rut(ruts_.emplace_back(rut));
   for (const Piece& piece : pieces_) damage_box_.include(piece.box);
 }
 
@@ -212,6 +240,15 @@ void HeightField::add_crack(const CrackShape& shape) {
     piece.parts.push_back(box_over(segment.ground, -shape.crack().depth_m, 0));
     piece.box.include(piece.parts.back());
   }
+  pieces_.push_back(std::move(piece));
+}
+
+void HeightField::add_rut(const RutShape& shape) {
+  Piece piece;
+  piece.rut = &shape;
+  piece.box = box_over(shape.ground(), -shape.rut().depth_m, 0);
+  piece.parts = {piece.box};
+  piece.march_step = shape.rut().width_m / 4;
   pieces_.push_back(std::move(piece));
 }
 

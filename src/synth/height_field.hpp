@@ -73,6 +73,19 @@ class CrackShape {
   std::vector<Segment> segments_;
 };
 
+/// Rut: the section of a parabola along a line.
+class RutShape {
+ public:
+  explicit RutShape(const Rut& rut);
+  DamageSample sample(double x, double y) const;
+  AxisAlignedBox ground() const;  ///< z is not used
+  const Rut& rut() const { return rut_; }
+
+ private:
+  Rut rut_;
+  double length_m_, along_x_, along_y_;  ///< of the line, and its direction
+};
+
 /// Surface Z(X, Y) of a road.
 class HeightField {
  public:
@@ -80,11 +93,14 @@ class HeightField {
   struct Piece {
     const BlobShape* blob = nullptr;
     const CrackShape* crack = nullptr;
+    const RutShape* rut = nullptr;
     AxisAlignedBox box;
-    std::vector<AxisAlignedBox> parts;  ///< tighter boxes: one for a blob, one per segment of a crack
+    std::vector<AxisAlignedBox> parts;  ///< tighter boxes: one for a blob or a rut, one per segment of a crack
     double march_step = 0;
 
-    DamageSample sample(double x, double y) const { return blob ? blob->sample(x, y) : crack->sample(x, y); }
+    DamageSample sample(double x, double y) const {
+      return blob ? blob->sample(x, y) : crack ? crack->sample(x, y) : rut->sample(x, y);
+    }
   };
 
   explicit HeightField(const Road& road);
@@ -126,12 +142,14 @@ class HeightField {
   void add_strips(const std::vector<Kerb>& kerbs);
   void add_blob(const BlobShape& shape, const Blob& blob);
   void add_crack(const CrackShape& shape);
+  void add_rut(const RutShape& shape);
 
   double camber_ = 0;
   double crest_ = 0;
   std::vector<Strip> strips_;
   std::vector<BlobShape> blobs_;
   std::vector<CrackShape> cracks_;
+  std::vector<RutShape> ruts_;
   std::vector<Piece> pieces_;
   AxisAlignedBox damage_box_;
 };

@@ -60,6 +60,24 @@ void check_cracks(const std::vector<Crack>& cracks) {
   }
 }
 
+void check_ruts(const std::vector<Rut>& ruts) {
+  for (std::size_t i = 0; i < ruts.size(); ++i) {
+    const Rut& rut = ruts[i];
+    const auto name = [&](const char* field) { return member("rut", i, field); };
+    for (const double value : {rut.from_m[0], rut.from_m[1]}) {
+      require_in_range(name("from_m"), value, -max_coordinate_m, max_coordinate_m);
+    }
+    for (const double value : {rut.to_m[0], rut.to_m[1]}) {
+      require_in_range(name("to_m"), value, -max_coordinate_m, max_coordinate_m);
+    }
+    require_in_range(name("width_m"), rut.width_m, 0.05, 5);
+    require_in_range(name("depth_m"), rut.depth_m, 0.0001, 1);
+    const double length_m = std::hypot(rut.to_m[0] - rut.from_m[0], rut.to_m[1] - rut.from_m[1]);
+    if (length_m >= rut.width_m) continue;
+    fail(name("to_m"), " is ", length_m, " m from from_m; it must be at least width_m, ", rut.width_m, " m, from it");
+  }
+}
+
 void check_kerbs(const std::vector<Kerb>& kerbs) {
   for (std::size_t i = 0; i < kerbs.size(); ++i) {
     require_in_range(member("kerb", i, "x_m"), kerbs[i].x_m, -max_coordinate_m, max_coordinate_m);
@@ -95,6 +113,7 @@ void check_road(const Road& road) {
   require_in_range("texture_contrast", road.texture_contrast, 0, 4);
   check_blobs(road.blobs);
   check_cracks(road.cracks);
+  check_ruts(road.ruts);
   check_kerbs(road.kerbs);
   check_boxes(road.boxes);
   constexpr std::size_t max_damages = std::numeric_limits<std::uint16_t>::max();

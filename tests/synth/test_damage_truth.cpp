@@ -47,5 +47,21 @@ TEST(DamageTruth, CrackMatchesIntegral) {
   EXPECT_NEAR(pair.damages[0].depth_m, 0.03, 1e-3);
 }
 
+TEST(DamageTruth, RutMatchesIntegral) {
+  Scene scene = bare_scene(70, 0);
+  scene.road.ruts = {{{-0.2, -3}, {0.4, 9}, 0.6, 0.02}};
+  const SyntheticPair pair = render(scene);
+  ASSERT_EQ(pair.damages.size(), 1u);
+  const double length = std::hypot(0.6, 12);
+  // A section of 2/3 of width times depth; smoothsteps over the width at both ends take half of it each.
+  const double area = length * 0.6, volume = 2.0 / 3 * 0.6 * 0.02 * (length - 0.6);
+  EXPECT_EQ(pair.damages[0].kind, "rut");
+  EXPECT_NEAR(pair.damages[0].area_m2, area, 5e-3 * area);
+  EXPECT_NEAR(pair.damages[0].volume_m3, volume, 5e-3 * volume);
+  EXPECT_NEAR(pair.damages[0].depth_m, 0.02, 1e-4);
+  EXPECT_NEAR(pair.damages[0].x_m, 0.1, 5e-3);
+  EXPECT_NEAR(pair.damages[0].y_m, 3, 5e-3);
+}
+
 }  // namespace
 }  // namespace roadstereo::synth

@@ -142,6 +142,9 @@ void add_damage_accuracy(CLI::App& evaluate) {
       command->add_flag("--degraded", arguments->set.degraded, "Degrade the synthetic images: noise, blur, exposure");
   command->add_flag("--wide", arguments->set.wide, "Render scenes of the widest kind, as synth --scene random does")
       ->excludes(degraded);
+  command->add_flag("--ruts", arguments->set.ruts, "Render roads with ruts, degraded")
+      ->excludes(degraded)
+      ->excludes("--wide");
   add_maps_option(*command, arguments->maps);
   add_write_pairs_option(*command, arguments->pairs_folder);
   command->add_option("--json", arguments->json, "Also write the results to this file")->type_name("FILE");

@@ -51,6 +51,7 @@ nlohmann::ordered_json regions_json(const std::vector<FoundRegion>& regions) {
                     {"pixel_significance", number(evidence.pixel_significance)},
                     {"likely_wall_slope", number(evidence.likely_wall_slope)},
                     {"extent", number(evidence.extent)},
+                    {"rut_significance", number(evidence.rut_significance)},
                     {"confidence", number(region.damage.confidence)},
                     {"is_damage", region.is_damage}});
   }

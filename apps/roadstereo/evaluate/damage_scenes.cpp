@@ -8,6 +8,7 @@
 #include <map>
 
 #include "evaluate/pair_files.hpp"
+#include "evaluate/rutted_scenes.hpp"
 #include "evaluate/scene_folders.hpp"
 #include "finite_values.hpp"
 #include "progress.hpp"
@@ -124,27 +125,36 @@ bool is_resolvable(const SceneDamage& damage) {
   return damage.pixels >= min_pixels && damage.depth_px > min_std_errors * damage.std_error_px;
 }
 
+bool is_comparable(const SceneDamage& damage) {
+  return damage.found && damage.found->metrics && damage.fully_visible && damage.is_single &&
+         !damage.found->cut_by_border && damage.truth.kind != "crack";
+}
+
+/// A rut is as deep in the picture as beyond it.
+bool is_comparable_rut(const SceneDamage& damage) {
+  return damage.found && damage.found->metrics && damage.is_single && damage.truth.kind == "rut";
+}
+
 /// Quantity of a damage, measured and true.
 struct Quantity {
   const char* name;
+  bool (*is_comparable)(const SceneDamage&);
   Measurement (*measured)(const DamageMetrics&);
   double (*truth)(const synth::DamageTruth&);
 };
 
 constexpr Quantity quantities[] = {
-    {"maximum depth", [](const DamageMetrics& m) { return m.max_depth_m; },
+    {"maximum depth", is_comparable, [](const DamageMetrics& m) { return m.max_depth_m; },
      [](const synth::DamageTruth& t) { return t.depth_m; }},
-    {"mean depth", [](const DamageMetrics& m) { return m.mean_depth_m; },
+    {"mean depth", is_comparable, [](const DamageMetrics& m) { return m.mean_depth_m; },
      [](const synth::DamageTruth& t) { return t.mean_depth_m; }},
-    {"area", [](const DamageMetrics& m) { return m.area_m2; }, [](const synth::DamageTruth& t) { return t.area_m2; }},
-    {"volume", [](const DamageMetrics& m) { return m.volume_m3; },
+    {"area", is_comparable, [](const DamageMetrics& m) { return m.area_m2; },
+     [](const synth::DamageTruth& t) { return t.area_m2; }},
+    {"volume", is_comparable, [](const DamageMetrics& m) { return m.volume_m3; },
      [](const synth::DamageTruth& t) { return t.volume_m3; }},
+    {"depth of ruts", is_comparable_rut, [](const DamageMetrics& m) { return m.max_depth_m; },
+     [](const synth::DamageTruth& t) { return t.depth_m; }},
 };
-
-bool is_comparable(const SceneDamage& damage) {
-  return damage.found && damage.found->metrics && damage.fully_visible && damage.is_single &&
-         !damage.found->cut_by_border && damage.truth.kind != "crack";
-}
 
 std::vector<Cell> quantity_row(const Quantity& quantity, const SceneResults& results) {
   constexpr double min_depth_m = 0.020;
@@ -156,7 +166,7 @@ std::vector<Cell> quantity_row(const Quantity& quantity, const SceneResults& res
   double precise = 0;
   double precise_errors = 0;
   for (const SceneDamage& damage : results.damages) {
-    if (!is_comparable(damage)) continue;
+    if (!quantity.is_comparable(damage)) continue;
     const DamageMetrics& metrics = *damage.found->metrics;
     const Measurement measured = quantity.measured(metrics);
     const double truth = quantity.truth(damage.truth);
@@ -180,7 +190,7 @@ std::vector<Cell> quantity_row(const Quantity& quantity, const SceneResults& res
 void add_detection_rows(const SceneResults& results, Table& table) {
   double all = 0;
   double all_found = 0;
-  for (const char* kind : {"pothole", "bump", "crack"}) {
+  for (const char* kind : {"pothole", "bump", "crack", "rut"}) {
     double in_view = 0;
     double found = 0;
     double deep = 0;
@@ -193,6 +203,7 @@ void add_detection_rows(const SceneResults& results, Table& table) {
       ++deep;
       deep_found += damage.found ? 1 : 0;
     }
+    if (in_view == 0 && std::string(kind) == "rut") continue;
     table.rows.push_back({Cell(results.method), Cell(kind), Cell(in_view, 0), Cell(found, 0), Cell(deep, 0),
                           Cell(deep_found, 0), Cell(deep > 0 ? deep_found / deep : std::nan(""), 3)});
     if (std::string(kind) == "crack") continue;
@@ -212,7 +223,9 @@ struct LabelledScene {
 
 LabelledScene render_scene(const SceneSet& set, int index) {
   const std::uint64_t seed = set.first_seed + static_cast<std::uint64_t>(index);
-  const synth::Scene scene = set.wide ? synth::random_wide_scene(seed) : synth::random_scene(seed, set.degraded);
+  const synth::Scene scene = set.wide   ? synth::random_wide_scene(seed)
+                             : set.ruts ? rutted_scene(seed)
+                                        : synth::random_scene(seed, set.degraded);
   LabelledScene rendered{fmt::format("{:06}", seed), synth::render(scene), scene.rig.camera_height_m};
   if (const int quality = scene.degradation.jpeg_quality; quality > 0) {
     rendered.pair.left = io::with_jpeg_loss(rendered.pair.left, quality);
@@ -317,7 +330,12 @@ Table measurement_table(const std::vector<SceneResults>& results) {
                {"mean |error| %", "mean_abs_error_percent"}},
               {}};
   for (const SceneResults& of_method : results) {
-    for (const Quantity& quantity : quantities) table.rows.push_back(quantity_row(quantity, of_method));
+    for (const Quantity& quantity : quantities) {
+      const auto& damages = of_method.damages;
+      if (std::any_of(damages.begin(), damages.end(), quantity.is_comparable)) {
+        table.rows.push_back(quantity_row(quantity, of_method));
+      }
+    }
   }
   return table;
 }

@@ -41,6 +41,7 @@ struct SceneSet {
   std::uint64_t first_seed = 1000;
   bool degraded = false;  ///< noise, blur, exposure
   bool wide = false;      ///< synth::random_wide_scene
+  bool ruts = false;      ///< rutted_scene
   std::string folder;     ///< with folders of one scene each (`scene_folders`); empty: random scenes
 };
 

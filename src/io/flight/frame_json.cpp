@@ -115,6 +115,7 @@ void each_field(DamageEvidence& evidence, Visit& visit) {
   visit("pixel_significance", evidence.pixel_significance);
   visit("likely_wall_slope", evidence.likely_wall_slope);
   visit("extent", evidence.extent);
+  visit("rut_significance", evidence.rut_significance);
   visit("depth_significance", evidence.depth_significance);
 }
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "damage/road_surface.hpp"
+
+namespace roadstereo {
+
+/// Ruts: strips along the road, in one direction up to 30° from the camera's, that lie below a straightedge across it.
+struct Ruts {
+  Image<std::uint8_t> labels;         ///< number of the rut of each cell, 1 …; 0: none; empty without ruts
+  std::vector<double> significances;  ///< of each: depth below the straightedge in its standard errors
+
+  bool empty() const { return significances.empty(); }
+  bool contain(std::size_t cell) const { return !empty() && labels.row(0)[cell] != 0; }
+};
+
+/// Find ruts; none without metric coordinates. Ruts go on along the road, and a pair of wheel tracks is half of a lane:
+/// they are no outliers of a fit, so that the surface of the road must be fitted without them.
+Ruts find_ruts(const Cells& cells, const SurfaceCoordinates& coordinates, const RoadSurface& surface, int threads);
+
+}  // namespace roadstereo
