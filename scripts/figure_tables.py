@@ -272,12 +272,12 @@ def damage_kitti(result):
     return markdown(["frame", "IoU", "precision", "recall", "false regions"], table)
 
 
-@needs("damage_scenes", "damage_degraded", "damage_wide", "damage_other")
-def damage_scenes(clean, degraded, wide, other):
-    sources = (("clean", clean), ("degraded", degraded), ("wide", wide), ("another renderer", other))
+@needs("damage_scenes", "damage_degraded", "damage_wide", "damage_ruts", "damage_other")
+def damage_scenes(clean, degraded, wide, ruts, other):
+    sources = (("clean", clean), ("degraded", degraded), ("wide", wide), ("ruts", ruts), ("another renderer", other))
     table = [[name, row["kind"], number(row["in_view"], 0), number(row["deeper_than_3_std_errors"], 0),
               number(row["found_of_those"], 0), number(100 * row["recall"], 0) if row["recall"] is not None else ""]
-             for name, result in sources for row in result["detection"]]
+             for name, result in sources for row in result["detection"] if name != "ruts" or row["kind"] == "rut"]
     table += [[name, "false positives", "", "", f"{result['false_positives']:.0f} of {result['regions']:.0f}", ""]
               for name, result in sources]
     return markdown(["images", "kind", "in view", "deeper than 3 standard errors", "found of those", "recall %"], table)
@@ -310,12 +310,12 @@ def faults(result):
     return markdown(["fault", "found of 21", "invented", "graded", "within 2", "warned of 10"], table)
 
 
-@needs("damage_scenes", "damage_wide", "damage_other")
-def damage_errors(clean, wide, other):
+@needs("damage_scenes", "damage_wide", "damage_ruts", "damage_other")
+def damage_errors(clean, wide, ruts, other):
     table = [[name, row["quantity"], number(row["within_2_std_errors_percent"], 0), number(row["median_error_percent"], 0),
               number(row["mean_abs_error_percent"], 1),
               number(row["precise"], 0)]
-             for name, result in (("clean", clean), ("wide", wide), ("another renderer", other))
+             for name, result in (("clean", clean), ("wide", wide), ("ruts", ruts), ("another renderer", other))
              for row in result["measurement"]]
     return markdown(["roads", "quantity", "within 2 standard errors %", "median error %", "mean error of precise ones %",
                      "precise ones"], table)

@@ -48,6 +48,7 @@ EXPERIMENTS = {
     "damage_scenes": "evaluate damage",
     "damage_degraded": "evaluate damage --degraded --scenes 30",
     "damage_wide": "evaluate damage --wide",
+    "damage_ruts": "evaluate damage --ruts",
     "damage_other": "evaluate damage {data}/wider/synthetic",
     "damage_wider_maps": "evaluate damage {data}/wider/transformed",
     "faults": "evaluate faults",

@@ -25,7 +25,13 @@ def log_steepness(slope):
     return math.log(min(max(slope, MIN_SLOPE), 1) / EVEN_SLOPE)
 
 
-def surface_log_odds(significance, slope):
+def gentle_share(region):
+    """As in src/damage/evidence.cpp: what lies in a rut may be gentle, wide and cut by the border."""
+    half_share = 10
+    return half_share**2 / (region["rut_significance"]**2 + half_share**2)
+
+
+def surface_log_odds(significance, slope, gentle):
     """As in src/damage/evidence.cpp; it is not fitted."""
     per_standard_error, even_odds, max_of_protrusion = 4.7, 1.85, 0.5
     per_standard_error_of_hollow, max_standard_errors = 1, 2
@@ -34,7 +40,8 @@ def surface_log_odds(significance, slope):
     above = significance - even_odds
     if slope is None or above < 0:
         return min(max_of_protrusion, per_standard_error * above)
-    return per_standard_error_of_hollow * min(above, max_standard_errors) + min(above, 1) * min(0, log_steepness(slope))
+    slope_log_odds = gentle * min(above, 1) * min(0, log_steepness(slope))
+    return per_standard_error_of_hollow * min(above, max_standard_errors) + slope_log_odds
 
 
 def range_log_odds(vote):
@@ -61,7 +68,8 @@ def features(region):
     steeper = 0 if slope is None else log_steepness(slope)
     of_wall = [share**4 if slope is not None else 0, share**2 * steeper, min(0, steeper)]
     wider = math.log(max(1, region["extent"] or 0))
-    return [1, math.log(significance), region["road_share"], region["unseen_share"], share**2, *of_wall, wider]
+    shape = [gentle_share(region) * value for value in (share**2, *of_wall, wider)]
+    return [1, math.log(significance), region["road_share"], region["unseen_share"], *shape]
 
 
 def fit(x, y, offset, weight):
@@ -100,7 +108,7 @@ def main():
     sources, rows = read(sys.argv[1:])
     x = np.array([features(row) for row in rows])
     y = np.array([float(row["is_damage"]) for row in rows])
-    offset = np.array([surface_log_odds(row["surface_significance"], row["likely_wall_slope"]) +
+    offset = np.array([surface_log_odds(row["surface_significance"], row["likely_wall_slope"], gentle_share(row)) +
                        range_log_odds(row["range_vote"]) + specular_log_odds(row["specular_excess"]) +
                        pixel_log_odds(row["pixel_significance"]) for row in rows])
     program = np.array([row["confidence"] for row in rows])

@@ -15,6 +15,7 @@
 #include "report_head.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/damage_files.hpp"
+#include "roadstereo/io/image_file.hpp"
 #include "roadstereo/io/output_folder.hpp"
 #include "roadstereo/io/severity_file.hpp"
 #include "roadstereo/options.hpp"
@@ -50,7 +51,10 @@ DamageOptions make_options(const std::vector<std::string>& settings, const std::
 
 DamageMap find_in(const TransformedMap& map, const DamageArguments& arguments) {
   GreyImage grey;
-  if (map.image) to_grey(map.image->view(), 0, grey);
+  if (map.image) {
+    const FrameView image = map.image->view();
+    to_grey(image, image.sample == SampleType::u16 ? io::find_white_level(image, image) : 0, grey);
+  }
   DamageInput input;
   input.transformed = map.transformed;
   input.grey = grey;

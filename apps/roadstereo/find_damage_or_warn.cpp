@@ -21,7 +21,7 @@ bool ends_search(const Damage& damage, const DamageMap& map, const FrameResult& 
 
 void warn_of_search_end(const DamageMap& map, const FrameResult& frame, bool calibrated,
                         std::vector<std::string>& warnings) {
-  if (!frame.shift.enabled) return;
+  if (!frame.shift.enabled || frame.sigma.empty()) return;  // a given map was not searched
   std::string ids;
   for (const Damage& damage : map.damages) {
     if (damage.kind != DamageKind::depression || !ends_search(damage, map, frame)) continue;

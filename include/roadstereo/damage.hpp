@@ -26,14 +26,14 @@ enum class DamageKind {
 const char* name_of(DamageKind kind);
 
 struct DamageOptions {
-  double threshold_sigma = 5;     ///< minimum depth in standard deviations of the intact road, 1 … 100
-  double min_depth_m = 0.005;     ///< minimum depth along the road's normal, metres, 0 … 10; used when calibrated
-  double max_depth_m = 0.3;       ///< maximum depth, metres, min_depth_m … 10; deeper regions are ditches
-  double max_height_m = 0.12;     ///< maximum height, metres, min_depth_m … 10; higher regions are kerbs or vehicles
-  double min_area_m2 = 0.001;     ///< minimum area on the road's surface, m², 0 … 1e4; used when calibrated
+  double threshold_sigma = 5;  ///< minimum depth in standard deviations of the intact road, 1 … 100
+  double min_depth_m = 0.005;  ///< minimum depth along the road's normal, metres, 0 … 10; used when calibrated
+  double max_depth_m = 0.3;    ///< maximum depth, metres, min_depth_m … 10; deeper regions are ditches
+  double max_height_m = 0.12;  ///< maximum height, metres, min_depth_m … 10; higher regions are kerbs or vehicles
+  double min_area_m2 = 0.001;  ///< minimum area on the road's surface, m², 0 … 1e4, and 64 pixels; used when calibrated
   double min_area_share = 0.001;  ///< minimum area as a share of the image, 0 … 1; used without a calibration
-  double min_confidence = 0.5;  ///< of a damage, 0 … 1; regions below are candidates. 0: candidates are damages, too
-  bool protrusions = true;      ///< whether to find bumps, heave and debris too
+  double min_confidence = 0.5;    ///< of a damage, 0 … 1; regions below are candidates. 0: all regions are damages
+  bool protrusions = true;        ///< whether to find bumps, heave and debris too
   SeverityScheme severity = astm_d6433();  ///< tables of severities
 
   /// Throws Error naming the first option out of range.

@@ -65,7 +65,8 @@ struct RigBiasFrame {
 };
 
 /// Measures the disparities of the road against its plane: means of cells, weighted by their standard errors, without
-/// damage (IRLS with Tukey's biweight). Nothing where there is no road, or hardly any.
+/// damage (IRLS with Tukey's biweight). Nothing where there is no road, or hardly any, and without standard errors of
+/// the disparities. Throws Error when the maps differ in size.
 std::optional<RigBiasFrame> measure_rig_bias(const FrameResult& frame, const DamageMap& damage);
 
 /// Estimates the field that the frames of a recording have in common. Every frame has a plane of its own. The standard

@@ -132,7 +132,13 @@ std::optional<StereoCalibration> optional_calibration(const py::object& calibrat
 
 py::object calibration_object(const io::CalibrationFile& file) {
   if (file.rig) return py::cast(*file.rig);
-  return py::cast(file.rectified);
+  if (file.rectified) return py::cast(*file.rectified);
+  std::string sizes;
+  for (const io::StereoRig& rig : file.rigs) {
+    sizes += (sizes.empty() ? "" : ", ") + std::to_string(rig.width) + "×" + std::to_string(rig.height);
+  }
+  fail("the calibration (", file.format,
+       ") has a rig for each of several sizes of images: give one of them as size: ", sizes);
 }
 
 void bind_calibration(py::module_& module) {
@@ -141,13 +147,18 @@ void bind_calibration(py::module_& module) {
   bind_rectifier(module);
   module.def(
       "read_calibration",
-      [](const std::filesystem::path& path, const std::optional<std::filesystem::path>& right_path) {
-        return calibration_object(io::read_calibration(path.string(), right_path ? right_path->string() : ""));
+      [](const std::filesystem::path& path, const std::optional<std::filesystem::path>& right_path,
+         const std::optional<std::array<int, 2>>& size) {
+        io::CalibrationFile file = io::read_calibration(path.string(), right_path ? right_path->string() : "");
+        if (size) file.select_size((*size)[0], (*size)[1], path.string());
+        return calibration_object(file);
       },
-      py::arg("path"), py::arg("right_path") = py::none(),
+      py::arg("path"), py::arg("right_path") = py::none(), py::arg("size") = py::none(),
       "Read a calibration file: a Calibration, or a StereoRig if its pairs must be rectified first.\n\n"
       "The format is recognised by content: plain YAML, OpenCV stereo (YAML or XML), ROS camera_info and EuRoC\n"
       "sensor.yaml (two files, left and right), Kalibr, ZED, RealSense, DepthAI, COLMAP, KITTI, Middlebury or K.txt.\n"
+      "Files of ZED and RealSense cameras have a rig for each size of the images, (width, height) in pixels: give "
+      "`size`.\n"
       "Raises Error naming the file and the bad value.");
 }
 

@@ -76,6 +76,15 @@ class Unrectified(unittest.TestCase):
         with self.assertRaisesRegex(roadstereo.Error, "Rectifier"):
             roadstereo.Pipeline(calibration=rig)
 
+    def test_size_of_several(self):
+        seed = pathlib.Path(__file__).parents[2] / "tests/fuzz/seeds/calibration/zed"
+        rig = roadstereo.read_calibration(seed, size=(1280, 720))
+        self.assertIsInstance(rig, roadstereo.StereoRig)
+        with self.assertRaisesRegex(roadstereo.Error, "give one of them as size: .*1280×720"):
+            roadstereo.read_calibration(seed)
+        with self.assertRaisesRegex(roadstereo.Error, "640×480"):
+            roadstereo.read_calibration(seed, size=(640, 480))
+
     def test_ideal_rig_is_rectified_already(self):
         left, right = pair()
         rectifier = roadstereo.Rectifier(ideal_rig(), 320, 180)

@@ -29,8 +29,9 @@ CellBox padded_box(const Candidate& candidate, const Cells& cells) {
   return candidate.box().grown(1, cells.width(), cells.height());
 }
 
-/// Rasterise a candidate at full resolution: pixels where the interpolated indicator exceeds 0.5.
-void rasterise(const Cells& cells, const Candidate& candidate, std::uint16_t id, Image<std::uint16_t>& ids) {
+/// Rasterise a candidate at full resolution: pixels with a surface where the interpolated indicator exceeds 0.5.
+void rasterise(const Cells& cells, const Candidate& candidate, std::uint16_t id, const Image<float>& surface,
+               Image<std::uint16_t>& ids) {
   const Image<float> indicator = indicator_of(candidate.cells, padded_box(candidate, cells));
   const PixelBox box = pixel_box(candidate, cells);
   RowUpsampler rows(indicator, cells.factor, box.width());
@@ -38,8 +39,9 @@ void rasterise(const Cells& cells, const Candidate& candidate, std::uint16_t id,
   for (int v = box.v0; v <= box.v1; ++v) {
     rows.read(v - box.v0, values.data());
     std::uint16_t* const row = ids.row(v) + box.u0;
+    const float* const road = surface.row(v) + box.u0;  // NaN beside the last cells of the road
     for (std::size_t k = 0; k < values.size(); ++k) {
-      if (row[k] == 0 && values[k] > 0.5F) row[k] = id;
+      if (row[k] == 0 && values[k] > 0.5F && !std::isnan(road[k])) row[k] = id;
     }
   }
 }
@@ -115,9 +117,10 @@ Image<float> depth_without_islands(const Segmentation& segmentation, int threads
   return depth;
 }
 
-void rasterise(const Segmentation& segmentation, Image<std::uint16_t>& ids) {
+void rasterise(const Segmentation& segmentation, DamageMap& result) {
   for (std::size_t k = 0; k < segmentation.candidates.size(); ++k) {
-    rasterise(segmentation.cells, segmentation.candidates[k], static_cast<std::uint16_t>(k + 1), ids);
+    rasterise(segmentation.cells, segmentation.candidates[k], static_cast<std::uint16_t>(k + 1), result.surface,
+              result.ids);
   }
 }
 

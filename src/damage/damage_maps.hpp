@@ -18,8 +18,9 @@ void fill_road_rows(const DamageInput& input, const Segmentation& segmentation, 
 /// Depth cells in which islands, cells inside a damage no deeper than its outline, and gaps are interpolated.
 Image<float> depth_without_islands(const Segmentation& segmentation, int threads);
 
-/// Fill the ids of all candidates: the number of the candidate from 1 on. Outlines run between the centres of cells.
-void rasterise(const Segmentation& segmentation, Image<std::uint16_t>& ids);
+/// Fill the ids of all candidates, where there is a surface: the number of the candidate from 1 on. Outlines run
+/// between the centres of cells.
+void rasterise(const Segmentation& segmentation, DamageMap& result);
 
 /// Add candidate `k` to the road region. Its holes and the cells no deeper than the outline take the depths
 /// `interpolated` from their surroundings.

@@ -202,11 +202,12 @@ std::vector<std::uint16_t> separate_candidates(const DamageOptions& options, Dam
   std::vector<Damage> measured = std::move(result.damages);
   result.damages.clear();
   result.candidates.clear();
+  const std::size_t old_ids = measured.size() + 1;
+  std::erase_if(measured, [&](const Damage& damage) { return !is_within_limits(damage, options); });
   std::stable_sort(measured.begin(), measured.end(),
                    [](const Damage& one, const Damage& other) { return depth_of(one) > depth_of(other); });
-  std::vector<std::uint16_t> new_id(measured.size() + 1, 0);
+  std::vector<std::uint16_t> new_id(old_ids, 0);
   for (Damage& damage : measured) {
-    if (!is_within_limits(damage, options)) continue;
     const bool is_damage =
         options.min_confidence == 0 || (damage.confidence >= options.min_confidence && is_resolvable(damage));
     if (!is_damage) {
@@ -232,7 +233,7 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
   const auto count = static_cast<int>(segmentation.candidates.size());
   result.damages.assign(segmentation.candidates.size(), {});
   if (count > 0) {
-    rasterise(segmentation, result.ids);
+    rasterise(segmentation, result);
     const Image<float> interpolated = depth_without_islands(segmentation, threads);
     parallel_for(count, threads, [&](int index, int) {
       const auto k = static_cast<std::size_t>(index);

@@ -62,7 +62,7 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
   Image<std::uint8_t> outside;
   const bool has_border = find_black_border(frame.grey, frame.mask, outside);
   input.mask = has_border ? outside : frame.mask;
-  input.shift = frame.shift;
+  if (!frame.sigma.empty()) input.shift = frame.shift;  // a given map has neither errors nor a range searched
   input.plane = frame.geometry.plane;
   input.calibration = calibration;
   find_damage(input, options, threads, result);

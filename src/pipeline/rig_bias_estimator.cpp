@@ -4,6 +4,7 @@
 #include "core/cholesky.hpp"
 #include "core/order_statistics.hpp"
 #include "core/require_range.hpp"
+#include "damage/local_ground_plane.hpp"
 #include "road/robust_weights.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/rig_bias.hpp"
@@ -307,7 +308,8 @@ void RigBiasOptions::validate() const {
 
 std::optional<RigBiasFrame> measure_rig_bias(const FrameResult& frame, const DamageMap& damage) {
   constexpr std::size_t min_cells = 60;
-  if (!frame.roll_found || frame.transformed.empty() || damage.road.empty()) return std::nullopt;
+  if (!frame.roll_found || frame.transformed.empty() || frame.sigma.empty() || damage.road.empty()) return std::nullopt;
+  require_same_size(damage, frame.transformed);
   const BiasCells cells = CellReader(frame, damage).read();
   if (cells.list.size() < min_cells) return std::nullopt;
   RigBiasFrame measured;

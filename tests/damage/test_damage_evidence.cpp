@@ -90,6 +90,21 @@ TEST(DamageEvidence, BorderCutsWallsAndRelief) {
   EXPECT_GT(rut.confidence(), 0.9) << "depressions are gentle";
 }
 
+// A rut of 20 standard errors: a fifth of what gentle walls, the border and its extent say against damage is left.
+TEST(DamageEvidence, RutsAreGentleAndRunOn) {
+  DamageEvidence evidence{10, 60, 1.2, 1, 0.3};
+  evidence.likely_wall_slope = 0.06;
+  evidence.extent = 1.2;
+  DamageEvidence steep = evidence;
+  steep.likely_wall_slope = 0.3;
+  steep.border_share = 0;
+  steep.extent = 1;
+  const double against = log_odds(steep) - log_odds(evidence);
+  EXPECT_GT(against, 4);
+  evidence.rut_significance = 20;
+  EXPECT_NEAR(log_odds(steep) - log_odds(evidence), 0.2 * against, 1e-6);
+}
+
 TEST(DamageEvidence, DeepCompactRegionIsNeverVetoed) {
   EXPECT_GT((DamageEvidence{20, 150, 2.5, 0.4, 0}.confidence()), 0.8);
   EXPECT_LT((DamageEvidence{2, 6, 2, 1, 0}.confidence()), 0.2) << "as shallow as its surroundings are rough";

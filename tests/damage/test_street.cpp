@@ -12,17 +12,21 @@
 namespace roadstereo {
 namespace {
 
-/// A street 1.6 m below a camera that looks straight ahead; the horizon is above the picture.
+/// A street 1.6 m below a camera that looks straight ahead, from row −45 on, above the picture, unless stated
+/// otherwise.
 struct Street {
-  static constexpr int width = 1000, height = 200;
+  static constexpr int height = 200;
   static constexpr double camera_m = 1.6;
 
-  StereoCalibration calibration{700, 499.5, -45, 0.5, 0, width, height};
+  int width;
+  StereoCalibration calibration;
   Image<float> disparity{width, height};
   DisparityPlane plane{0, calibration.baseline_m / camera_m, 0};
 
   /// `lift` above the plane in metres at (x, y), to the right and ahead of the camera, metres.
-  explicit Street(const std::function<double(double x, double y)>& lift, double noise_px = 0.04) {
+  explicit Street(const std::function<double(double x, double y)>& lift, double noise_px = 0.04, int columns = 1000,
+                  double horizon_px = -45)
+      : width(columns), calibration{700, (columns - 1) / 2.0, horizon_px, 0.5, 0, columns, height} {
     plane.a0 = -plane.a1 * calibration.cy_px;
     for (int v = 0; v < height; ++v) {
       for (int u = 0; u < width; ++u) {
@@ -101,6 +105,17 @@ TEST(Street, LongHeaveIsNoObstacle) {
   ASSERT_GE(map.damages.size(), 1U);
   EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, 0.04, 0.004);
   EXPECT_GT(map.damages[0].metrics->length_m, 10);
+}
+
+/// A rut that runs to where the road ends, where a row of pixels covers 1 m of it: 33 m ahead. In cells of 2×2 pixels
+/// the surface ends within a pixel's half row.
+TEST(Street, DamageEndsWithTheRoad) {
+  const auto rut = [](double x, double y) { return y < 5 ? 0.0 : -0.08 * std::max(0.0, 1 - 16 * (x - 1) * (x - 1)); };
+  const Street street(rut, 0.01, 2000, -14.5);
+  const DamageMap map = street.find(0);
+  ASSERT_GE(map.damages.size(), 1U);
+  EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, 0.08, 0.01);
+  EXPECT_GT(map.damages[0].metrics->length_m, 20);
 }
 
 /// A function that is linear along both axes lies in the space of the grid; without a measurement heights return to 0.

@@ -52,6 +52,18 @@ TEST_F(EvaluateDamage, WideScenesAreDegradedThemselves) {
   EXPECT_GE(score["detection"].back()["found_of_those"], 2);
 }
 
+TEST_F(EvaluateDamage, RutsRunThroughThePicture) {
+  EXPECT_EQ(run("evaluate damage --ruts --wide").exit_code, 2);
+  const Outcome outcome = run("evaluate damage --ruts --scenes 2 --json score.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto score = json_file("score.json");
+  EXPECT_EQ(score["false_positives"], 0);
+  const auto& ruts = score["detection"][3];
+  EXPECT_EQ(ruts["kind"], "rut");
+  EXPECT_GE(ruts["found_of_those"], 2);
+  EXPECT_EQ(score["measurement"][0]["quantity"], "depth of ruts");
+}
+
 TEST_F(EvaluateDamage, RejectsOtherFolders) {
   const Outcome outcome = run("evaluate damage .");
   EXPECT_EQ(outcome.exit_code, 2);
