@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/order_statistics.hpp"
 #include "damage/connected_components.hpp"
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
@@ -32,6 +33,7 @@ struct SegmentationConstants {
   int likelier_levels = 3;            ///< levels at which a region that is unlikely a damage is tried again
   float likelier_level_share = 0.7F;  ///< of the floor's depth, the highest of these
   std::size_t max_hole_divisor = 4;   ///< holes up to 1/4 of the image are filled
+  float rut_floors = 1.3F;            ///< depth in depths of a rut's floor, beyond which it has a pothole: ruts vary
   float outlier_floors = 1.25F;       ///< minimum depth, in depths of the floor, of the cells around an impossible one
 
   // Surroundings.
@@ -440,6 +442,41 @@ void raise_level(const SearchInput& input, const ConnectedComponent& core, float
   }
 }
 
+/// Add the potholes in a rut, clearly deeper than its floor, and take them out of it. They are
+/// measured below the mean section of the rut, which counts as road.
+void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages& images, Candidate& rut,
+                         std::vector<Candidate>& found) {
+  constexpr double even_if_confirmed = 0.12;  // the agreement of the pictures adds up to 2 to the log-odds
+  const std::size_t before = found.size();
+  const Image<float> depth = images.depth;
+  Image<std::uint8_t> cores(depth.width(), depth.height(), 0), road = input.road;
+  for (int j = 0; j < depth.height(); ++j) {
+    for (int i = 0; i < depth.width(); ++i) {
+      const std::size_t label = input.ruts.labels(i, j);
+      if (label == 0) continue;
+      const float floor_m = constants.rut_floors * input.ruts.floors_m[label - 1];
+      const float floor = input.thresholds.pixels_below(double{floor_m}, i, j);
+      if (rut.cells(i, j) && depth(i, j) > floor + input.thresholds.min_depth(i, j)) cores(i, j) = 255;
+      images.depth(i, j) -= input.thresholds.pixels_below(double{input.ruts.depth_m(i, j)}, i, j);
+      road(i, j) = 255;
+    }
+  }
+  const SearchInput in_rut{input.depth_cells, road,         input.view,       input.ruts,       input.known,
+                           input.deep_gaps,   input.unseen, input.thresholds, input.image_edges};
+  for (const ConnectedComponent& core : ConnectedComponents(cores)) {
+    if (static_cast<float>(core.size) < constants.min_core_area_share * min_cells) continue;
+    Candidate pothole = segment(in_rut, core, rut.kind, images);
+    if (static_cast<float>(pothole.size) < min_cells || !is_measured(pothole, input.depth_cells.valid)) continue;
+    add_evidence(in_rut, images, pothole);
+    pothole.evidence.rut_significance = 0;
+    if (confidence_at_best(pothole, input.thresholds) < even_if_confirmed) continue;
+    assign(pothole, images.assigned);
+    found.push_back(std::move(pothole));
+  }
+  images.depth = depth;
+  if (found.size() > before) update_extent(input, images.assigned, rut);
+}
+
 /// Segment the region around a core and add it to `found` if it is large enough and surrounded by road.
 void add_candidate(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images,
                    std::vector<Candidate>& found) {
@@ -455,6 +492,7 @@ void add_candidate(const SearchInput& input, const ConnectedComponent& core, Dam
     raise_level(input, core, min_cells, images, candidate);
   }
   if (confidence_at_best(candidate, input.thresholds) < min_candidate_confidence) return;
+  if (candidate.evidence.rut_significance > 0) add_potholes_of_rut(input, min_cells, images, candidate, found);
   assign(candidate, images.assigned);
   found.push_back(std::move(candidate));
 }

@@ -172,8 +172,9 @@ MeanProfile fit_profile(const Image<double>& heights) {
 /// A rut across the road: columns first … end − 1 of the grid.
 struct Rut {
   int first, end;
-  double section_m2;    ///< depth times width at half of it
-  double significance;  ///< depth in its standard errors
+  double section_m2;            ///< depth times width at half of it
+  double significance;          ///< depth in its standard errors
+  std::vector<float> depths_m;  ///< of every column
 };
 
 /// Finds the ruts of a profile. A rut has shoulders on both sides, on which the straightedge rests and between which
@@ -274,13 +275,14 @@ class RutSearch {
                      max_step_share = 0.5;
     constexpr int min_shoulder_columns = 3;
     const double depth = gap(deepest);
-    Rut rut{deepest, deepest + 1, 0, depth / std_error(deepest)};
+    Rut rut{deepest, deepest + 1, 0, depth / std_error(deepest), {}};
     while (rut.first > 0 && is_below(rut.first - 1, depth)) --rut.first;
     while (rut.end < columns() && is_below(rut.end, depth)) ++rut.end;
     int wide = 0;
     for (int i = rut.first; i < rut.end; ++i) {
       visited_[static_cast<std::size_t>(i)] = true;
       wide += gap(i) > 0.5 * depth ? 1 : 0;
+      rut.depths_m.push_back(static_cast<float>(gap(i)));
     }
     const double width = bin_m * wide;
     rut.section_m2 = depth * width;
@@ -319,18 +321,24 @@ Ruts label_cells(const HeightGrid& grid, const std::vector<Rut>& found, const Su
   constexpr std::size_t max_ruts = 255;
   Ruts ruts;
   std::vector<std::uint8_t> label(static_cast<std::size_t>(grid.heights.width()), 0);
+  std::vector<float> depth_m(label.size(), 0.0F);
   for (std::size_t k = 0; k < std::min(found.size(), max_ruts); ++k) {
+    ruts.floors_m.push_back(*std::max_element(found[k].depths_m.begin(), found[k].depths_m.end()));
     ruts.significances.push_back(found[k].significance);
     std::fill(label.begin() + found[k].first, label.begin() + found[k].end, static_cast<std::uint8_t>(k + 1));
+    std::copy(found[k].depths_m.begin(), found[k].depths_m.end(), depth_m.begin() + found[k].first);
   }
   const int width = coordinates.x.width(), height = coordinates.x.height();
   ruts.labels.assign(width, height, 0);
+  ruts.depth_m.assign(width, height, 0);
   for (int j = 0; j < height; ++j) {
     for (int i = 0; i < width; ++i) {
       const float x = coordinates.x(i, j), y = coordinates.y(i, j);
       if (std::isnan(x)) continue;
       const int column = grid.column(x, y);
-      if (column >= 0 && column < grid.heights.width()) ruts.labels(i, j) = label[static_cast<std::size_t>(column)];
+      if (column < 0 || column >= grid.heights.width()) continue;
+      ruts.labels(i, j) = label[static_cast<std::size_t>(column)];
+      ruts.depth_m(i, j) = depth_m[static_cast<std::size_t>(column)];
     }
   }
   return ruts;

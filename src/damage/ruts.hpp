@@ -9,7 +9,9 @@ namespace roadstereo {
 /// Ruts: strips along the road, in one direction up to 30° from the camera's, that lie below a straightedge across it.
 struct Ruts {
   Image<std::uint8_t> labels;         ///< number of the rut of each cell, 1 …; 0: none; empty without ruts
-  std::vector<double> significances;  ///< of each: depth below the straightedge in its standard errors
+  Image<float> depth_m;               ///< of each cell below the straightedge, mean of its rut; 0 outside
+  std::vector<float> floors_m;        ///< depth below the straightedge of each
+  std::vector<double> significances;  ///< that in its standard errors
 
   bool empty() const { return significances.empty(); }
   bool contain(std::size_t cell) const { return !empty() && labels.row(0)[cell] != 0; }

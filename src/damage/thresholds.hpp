@@ -31,13 +31,12 @@ class Thresholds {
   float max_depth(int i, int j) const { return pixels_below(options_.max_depth_m, i, j); }
   /// Maximum height of a protrusion; infinity if it is not metric.
   float max_height(int i, int j) const { return -pixels_below(-options_.max_height_m, i, j); }
+  /// Change of the disparity at `depth_m` below the road, negative above it; infinite if it is not metric.
+  float pixels_below(double depth_m, int i, int j) const;
   /// Minimum area, cells.
   float min_cells(int i, int j) const;
 
  private:
-  /// Change of the disparity at `depth_m` below the road, negative above it; infinite if it is not metric.
-  float pixels_below(double depth_m, int i, int j) const;
-
   const DamageInput& input_;
   const DamageOptions& options_;
   const Cells& cells_;

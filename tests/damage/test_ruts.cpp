@@ -179,5 +179,22 @@ TEST(FindDamage, MeasuresWheelTracks) {
   EXPECT_LT(map.noise_px, 0.05);
 }
 
+/// Wheels go on where a track has a hole: both are listed, each with its own depth.
+TEST(FindDamage, SeparatesPotholeFromRut) {
+  const Lane lane([](double x, double y) {
+    return wheel_tracks(x, y) - 0.06 * std::clamp((0.22 - std::hypot(x - 0.85, y - 1.7)) / 0.06, 0.0, 1.0);
+  });
+  const DamageMap map = find_damage(lane.input());
+  ASSERT_EQ(map.damages.size(), 3U);
+  EXPECT_EQ(map.damages[0].metrics->distress, Distress::pothole);
+  EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, 0.08, 0.005);
+  EXPECT_NEAR(map.damages[0].metrics->road_centroid_m[0], 0.85, 0.05);
+  EXPECT_NEAR(map.damages[0].metrics->road_centroid_m[1], 1.7, 0.05);
+  for (std::size_t k = 1; k < 3; ++k) {
+    EXPECT_EQ(map.damages[k].metrics->distress, Distress::rut);
+    EXPECT_NEAR(map.damages[k].metrics->max_depth_m.value, 0.02, 0.003);
+  }
+}
+
 }  // namespace
 }  // namespace roadstereo
