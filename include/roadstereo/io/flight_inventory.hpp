@@ -38,7 +38,8 @@ std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool
 
 /// Tracks damages over the frames of a flight. Sightings in successive frames are one damage if their boxes overlap
 /// after the image motion is compensated. Tracking restarts where the road jumps: at a frame whose road model was
-/// estimated anew after one that had a road. Frames too far apart to overlap yield one damage per sighting.
+/// estimated anew after one that had a road. Frames too far apart to overlap yield one damage per sighting. A rut that
+/// runs through the pictures is one damage; a pothole in it is another.
 /// A damage of the road is one in at least one frame, and the two frames that are surest of it agree: the mean of their
 /// log-odds is at least that of the minimum confidence. Of many frames noise makes one that is sure. What a single
 /// frame shows is decided by that.

@@ -49,6 +49,20 @@ double overlap(const std::array<int, 4>& box, const std::array<double, 2>& move,
   return width * height / smaller;
 }
 
+bool is_rut(const Damage& damage) {
+  return damage.metrics && damage.metrics->distress == Distress::rut;
+}
+
+/// Whether one of two damages is a rut and the other a small part of its box, such as a pothole in it.
+bool is_part_of_rut(const Damage& one, const Damage& other) {
+  constexpr double max_share = 0.25;
+  const auto area = [](const Damage& of) {
+    return static_cast<double>(of.box_px[2] - of.box_px[0] + 1) * (of.box_px[3] - of.box_px[1] + 1);
+  };
+  return is_rut(one) != is_rut(other) &&
+         std::min(area(one), area(other)) < max_share * std::max(area(one), area(other));
+}
+
 /// Takes the measurement in a frame as the best one.
 void measure(const FlightFrame& frame, const Damage& damage, RoadDamage& known) {
   known.frame = frame.index;
@@ -82,7 +96,7 @@ const FlightInventory::Sighting* FlightInventory::seen_before(const Damage& dama
   const Sighting* best = nullptr;
   double max_share = min_overlap;
   for (const Sighting& sighting : recent_) {
-    if (sighting.damage.kind != damage.kind) continue;
+    if (sighting.damage.kind != damage.kind || is_part_of_rut(sighting.damage, damage)) continue;
     if (std::find(taken.begin(), taken.end(), sighting.id) != taken.end()) continue;
     const auto frames = static_cast<double>(sequence_ - sighting.sequence);
     double share = overlap(sighting.damage.box_px, {frames * motion_px_[0], frames * motion_px_[1]}, damage.box_px);
@@ -94,12 +108,13 @@ const FlightInventory::Sighting* FlightInventory::seen_before(const Damage& dama
   return best;
 }
 
-/// Stores the sightings for the next frames and updates the image motion from those seen before.
+/// Stores the sightings for the next frames and updates the image motion from those seen before. A rut, which runs
+/// through the picture, does not tell it.
 void FlightInventory::remember(const std::vector<Sighting>& sightings) {
   std::vector<double> along_u, along_v;
   for (const Sighting& now : sightings) {
     const auto before = std::find_if(recent_.begin(), recent_.end(), [&](const Sighting& s) { return s.id == now.id; });
-    if (before == recent_.end()) continue;
+    if (before == recent_.end() || is_rut(now.damage)) continue;
     const auto frames = static_cast<double>(now.sequence - before->sequence);
     along_u.push_back((now.damage.centroid_px[0] - before->damage.centroid_px[0]) / frames);
     along_v.push_back((now.damage.centroid_px[1] - before->damage.centroid_px[1]) / frames);

@@ -223,6 +223,22 @@ TEST(FlightInventory, LearnsImageMotion) {
   }
 }
 
+// A rut stays where it is in the picture while the road moves; a pothole in it moves 25 px a frame and is not the rut.
+TEST(FlightInventory, PotholeInRutIsAnotherDamage) {
+  FlightInventory inventory;
+  Damage rut = pothole(100, 180);
+  rut.metrics->distress = Distress::rut;
+  rut.box_px = {60, 0, 160, 359};
+  for (int i = 0; i < 12; ++i) {
+    const bool has_pothole = i >= 3 && i < 9;
+    const std::vector<std::int64_t> ids = inventory.add(
+        frame_of(i, has_pothole ? std::vector{pothole(100, 40 + 25 * i), rut} : std::vector{rut}));  // deepest first
+    EXPECT_EQ(ids.back(), 1) << i;
+    EXPECT_EQ(ids.front(), has_pothole ? 2 : 1) << i;
+  }
+  EXPECT_EQ(inventory.damages().size(), 2U);
+}
+
 TEST(FlightInventory, BridgesOneMissedFrameOnly) {
   FlightInventory inventory;
   inventory.add(frame_of(0, {pothole(100, 100)}));
