@@ -55,7 +55,9 @@ const DisparityPlane& road_plane(const ProcessedFrame& frame) {
 RigidTransform transform_of(const PoseArray& pose) {
   const bool square = pose.ndim() == 2 && pose.shape(0) == 4 && pose.shape(1) == 4;
   if (!square && !(pose.ndim() == 2 && pose.shape(0) == 3 && pose.shape(1) == 4)) {
-    fail("camera_to_map has another shape than (3, 4) or (4, 4)");
+    std::string shape;
+    for (py::ssize_t k = 0; k < pose.ndim(); ++k) shape += (k > 0 ? ", " : "") + std::to_string(pose.shape(k));
+    fail("camera_to_map has the shape (", shape, "); it must be (3, 4) or (4, 4)");
   }
   RigidTransform transform;
   std::copy_n(pose.data(), transform.size(), transform.begin());

@@ -86,8 +86,9 @@ void require_layout(const FrameView& frame) {
     fail("the image's rows are ", frame.stride_bytes, " bytes apart; ", frame.width, " pixels need ", row_bytes);
   }
   const auto address = reinterpret_cast<std::intptr_t>(frame.data);
-  if (address % sample_bytes != 0 || frame.stride_bytes % sample_bytes != 0) {
-    fail("the image has samples of 16 bits at an odd address, or rows an odd number of bytes apart");
+  if (address % sample_bytes != 0) fail("the image has samples of 16 bits at an odd address; it must be even");
+  if (frame.stride_bytes % sample_bytes != 0) {
+    fail("the image has samples of 16 bits and rows ", frame.stride_bytes, " bytes apart; that must be even");
   }
 }
 

@@ -110,7 +110,8 @@ void validate_table(const std::string& where, const SeverityTable& table) {
     fail(where, ": a row has ", row.size(), " severities; it must have ", columns, ", one for each diameter");
   }
   if (!(table.max_counted_m > 0) || !(table.area_of_one_m2 > 0)) {
-    fail(where, ": the counted diameter and the area of one must be greater than 0");
+    fail(where, ": the counted diameter is ", table.max_counted_m, " m and the area of one ", table.area_of_one_m2,
+         " m²; they must be greater than 0");
   }
 }
 

@@ -50,11 +50,11 @@ void MatcherOptions::validate() const {
   require_range("matcher", "aggregation_step", aggregation_step, 1, 2);
   require_range("matcher", "pixel_step", pixel_step, 1, 2);
   if (pixel_step == 2 && aggregation_radius > 0 && aggregation_step != 2) {
-    fail(
-        "matcher.pixel_step is 2, but the taps of the aggregation window are 1 pixel apart (matcher.aggregation_step)");
+    fail("matcher.pixel_step is 2 and matcher.aggregation_step ", aggregation_step,
+         "; both must be 2, or pixel_step 1");
   }
   if (pixel_step == 2 && match_both_views) {
-    fail("matcher.pixel_step is 2, but both views are to be matched (matcher.match_both_views): every pixel is needed");
+    fail("matcher.pixel_step is 2 and matcher.match_both_views true; it must be false, or pixel_step 1");
   }
   require_range("matcher", "sigma_space", sigma_space, 0.1, 1000.0);
   require_range("matcher", "sigma_colour", sigma_colour, 0.1, 100000.0);

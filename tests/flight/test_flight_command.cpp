@@ -382,6 +382,16 @@ TEST_F(FlightCommand, ListInOutputFolderIsKept) {
   EXPECT_EQ(read_text(folder_ / "frames.csv"), list);
 }
 
+// A second run removes the pictures of the first one, and whatever else lies in their folder.
+TEST_F(FlightCommand, CalibrationInFolderOfPicturesIsKept) {
+  write_list(3);
+  fs::create_directories(folder_ / "out/damages");
+  fs::copy(folder_ / "rig.yaml", folder_ / "out/damages/rig.yaml");
+  expect_complaint(run("inspect flight.txt --calibration out/damages/rig.yaml --output out --quiet"),
+                   "would be overwritten");
+  EXPECT_TRUE(fs::exists(folder_ / "out/damages/rig.yaml"));
+}
+
 TEST_F(FlightCommand, RejectsResumeOfOtherFlight) {
   write_list(3);
   EXPECT_EQ(run("inspect flight.txt --output out --quiet").exit_code, 0);

@@ -49,6 +49,20 @@ TEST(DamageList, JoinsMovingDamage) {
   EXPECT_EQ(bump.changed_in, 1) << "no view knew it better than the first";
 }
 
+TEST(DamageList, PotholeInRutIsAnotherDamage) {
+  DamageList list;
+  Damage rut = damage_at(160, 90, DamageKind::depression, 0.1);
+  rut.metrics.emplace().distress = Distress::rut;
+  rut.box_px = {100, 0, 220, 179};
+  for (int i = 0; i < 6; ++i) {  // deepest first
+    list.add(view_at(i + 1, i / 30.0, {damage_at(160, 50 + 13 * i, DamageKind::depression, 0.3), rut}));
+  }
+  EXPECT_EQ(list.found(), 2);
+  ASSERT_EQ(list.entries().size(), 2U);
+  EXPECT_FALSE(list.entries()[1].best.metrics.has_value()) << "the pothole, which came first";
+  EXPECT_EQ(list.entries()[1].views, 6);
+}
+
 TEST(DamageList, PrefersWholeOverCut) {
   DamageList list;
   Damage cut = damage_at(50, 10, DamageKind::depression, 0.01);

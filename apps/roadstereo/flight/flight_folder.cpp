@@ -75,7 +75,9 @@ fs::path FlightFolder::journal() const {
 void FlightFolder::protect(const fs::path& input) {
   std::error_code absent;
   const auto require_other = [&](const char* name) {
-    if (!fs::equivalent(path() / name, input, absent)) return;
+    const fs::path below = fs::relative(input, path() / name, absent);  // of a folder that is removed
+    const bool is_removed = !below.empty() && *below.begin() != "..";
+    if (!is_removed && !fs::equivalent(path() / name, input, absent)) return;
     fail(input.string(), ": this input would be overwritten; choose another output folder");
   };
   std::for_each(flight_files.begin(), flight_files.end(), require_other);

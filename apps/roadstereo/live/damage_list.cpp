@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadstereo/io/flight_inventory.hpp"
+
 namespace roadstereo::cli {
 namespace {
 
@@ -42,9 +44,11 @@ DamageList::Track* DamageList::nearest(const Damage& damage, const LiveView& vie
   for (std::size_t i = 0; i < taken.size(); ++i) {
     Track& track = tracks_[i];
     if (taken[i] || track.kind != damage.kind) continue;
+    const double own_radius = half_diagonal(damage), ratio = own_radius / track.radius;
+    if (track.is_rut != io::is_rut(damage) && std::max(ratio, 1 / ratio) > 2) continue;  // a pothole in a rut
     const double away = std::min(distance(expected(track, view.arrival), damage.centroid_px),
                                  distance(track.centre, damage.centroid_px));  // in case the motion has changed
-    const double radius = std::max({min_radius_px, track.radius, half_diagonal(damage)});
+    const double radius = std::max({min_radius_px, track.radius, own_radius});
     if (away <= radius && away < min_distance) {
       best = &track;
       min_distance = away;
@@ -59,9 +63,10 @@ void DamageList::follow(Track& track, const Damage& damage, const LiveView& view
     track.speed = {(damage.centroid_px[0] - track.centre[0]) / passed,
                    (damage.centroid_px[1] - track.centre[1]) / passed};
     track.moved = true;
-    common_speed_ = track.speed;
+    if (!io::is_rut(damage)) common_speed_ = track.speed;
   }
   track.seen = view.arrival;
+  track.is_rut = io::is_rut(damage);
   track.centre = damage.centroid_px;
   track.radius = half_diagonal(damage);
   const auto entry = std::find_if(entries_.begin(), entries_.end(),
@@ -77,6 +82,7 @@ void DamageList::begin(const Damage& damage, const LiveView& view) {
   Track track;
   track.id = ++found_;
   track.kind = damage.kind;
+  track.is_rut = io::is_rut(damage);
   track.seen = view.arrival;
   track.centre = damage.centroid_px;
   track.radius = half_diagonal(damage);

@@ -36,6 +36,7 @@ class DamageList {
   struct Track {
     std::int64_t id = 0;
     DamageKind kind = DamageKind::depression;
+    bool is_rut = false;  ///< it runs through the picture, at any speed of the camera
     Clock::time_point seen{};
     std::array<double, 2> centre{};  ///< pixels
     std::array<double, 2> speed{};   ///< pixels per second

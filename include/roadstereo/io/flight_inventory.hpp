@@ -30,6 +30,9 @@ struct RoadDamage {
   std::string picture;                             ///< file in the folder of the results; empty: none
 };
 
+/// Returns whether a damage is a rut, which runs through the pictures and tells nothing of their motion.
+bool is_rut(const Damage& damage);
+
 /// Returns whether `one` is more severe than `other`, or as severe and deeper.
 bool is_worse(const RoadDamage& one, const RoadDamage& other);
 

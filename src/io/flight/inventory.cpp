@@ -49,10 +49,6 @@ double overlap(const std::array<int, 4>& box, const std::array<double, 2>& move,
   return width * height / smaller;
 }
 
-bool is_rut(const Damage& damage) {
-  return damage.metrics && damage.metrics->distress == Distress::rut;
-}
-
 /// Whether one of two damages is a rut and the other a small part of its box, such as a pothole in it.
 bool is_part_of_rut(const Damage& one, const Damage& other) {
   constexpr double max_share = 0.25;
@@ -72,6 +68,10 @@ void measure(const FlightFrame& frame, const Damage& damage, RoadDamage& known) 
 }
 
 }  // namespace
+
+bool is_rut(const Damage& damage) {
+  return damage.metrics && damage.metrics->distress == Distress::rut;
+}
 
 bool is_worse(const RoadDamage& one, const RoadDamage& other) {
   const auto rank = [](const RoadDamage& damage) {
