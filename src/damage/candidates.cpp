@@ -442,8 +442,8 @@ void raise_level(const SearchInput& input, const ConnectedComponent& core, float
   }
 }
 
-/// Add the potholes in a rut, clearly deeper than its floor, and take them out of it. They are
-/// measured below the mean section of the rut, which counts as road.
+/// Add the potholes in a rut, clearly deeper than its floor, and take them out of it. They are measured below the mean
+/// section of the rut, which counts as road.
 void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages& images, Candidate& rut,
                          std::vector<Candidate>& found) {
   constexpr double even_if_confirmed = 0.12;  // the agreement of the pictures adds up to 2 to the log-odds

@@ -32,9 +32,9 @@ struct Candidate {
 };
 
 /// Find candidates: connected components deeper than the thresholds (cores), extended to their outlines, with the
-/// evidence that they are damage. Depressions come first, each kind by decreasing size of the core. Regions do not
-/// overlap, and end at the border of the view. Outliers in them, deeper than a damage can be, become gaps of
-/// `depth_cells` at the depth of the floor.
+/// evidence that they are damage. Depressions come first, each kind by decreasing size of the core, potholes in a rut
+/// before it. Regions do not overlap, and end at the border of the view. Outliers in them, deeper than a damage can be,
+/// become gaps of `depth_cells` at the depth of the floor.
 std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road, const CommonView& view,
                                        const Ruts& ruts, const Thresholds& thresholds, const ImageEdges& image_edges,
                                        bool protrusions);

@@ -271,11 +271,12 @@ class RutSearch {
   }
 
   std::optional<Rut> rut_around(int deepest) {
+    constexpr double max_significance = 1000;  // of maps without noise
     constexpr double min_sigmas = 14, min_width_m = 0.25, max_width_m = 0.85, persistent_share = 0.5,
                      max_step_share = 0.5;
     constexpr int min_shoulder_columns = 3;
     const double depth = gap(deepest);
-    Rut rut{deepest, deepest + 1, 0, depth / std_error(deepest), {}};
+    Rut rut{deepest, deepest + 1, 0, std::min(depth / std_error(deepest), max_significance), {}};
     while (rut.first > 0 && is_below(rut.first - 1, depth)) --rut.first;
     while (rut.end < columns() && is_below(rut.end, depth)) ++rut.end;
     int wide = 0;

@@ -127,6 +127,16 @@ TEST(FindRuts, WheelTracks) {
   EXPECT_EQ(found.share_inside(0, 0, 0.35), 0) << "between them";
 }
 
+TEST(FindRuts, MapWithoutNoise) {
+  const Lane lane(wheel_tracks, 0);
+  const Found found{lane};
+  ASSERT_EQ(found.ruts.significances.size(), 2U);
+  for (const double significance : found.ruts.significances) EXPECT_TRUE(std::isfinite(significance));
+  const DamageMap map = find_damage(lane.input());
+  ASSERT_EQ(map.damages.size(), 2U);
+  for (const Damage& damage : map.damages) EXPECT_GT(damage.confidence, 0.9);
+}
+
 TEST(FindRuts, ObliqueOneOnCrown) {
   const double slope = std::tan(17 * std::numbers::pi / 180);
   const Found found{Lane(
