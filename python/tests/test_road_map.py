@@ -106,7 +106,7 @@ class RoadMap(unittest.TestCase):
         for box in ([0, 0, -1, 5], [0, 0, 100000, 100000]):
             with self.assertRaisesRegex(roadstereo.Error, "a box has"):
                 road.read(box)
-        with self.assertRaisesRegex(roadstereo.Error, r"camera_to_map has another shape than \(3, 4\) or \(4, 4\)"):
+        with self.assertRaisesRegex(roadstereo.Error, r"camera_to_map has the shape \(3, 3\); it must be \(3, 4\) or \(4, 4\)"):
             road.add(self.results[0], np.eye(3))
         with self.assertRaisesRegex(roadstereo.Error, "cell_m is 0"):
             self.new_map(cell_m=0)
