@@ -277,7 +277,7 @@ def damage_scenes(clean, degraded, wide, ruts, other):
     sources = (("clean", clean), ("degraded", degraded), ("wide", wide), ("ruts", ruts), ("another renderer", other))
     table = [[name, row["kind"], number(row["in_view"], 0), number(row["deeper_than_3_std_errors"], 0),
               number(row["found_of_those"], 0), number(100 * row["recall"], 0) if row["recall"] is not None else ""]
-             for name, result in sources for row in result["detection"] if name != "ruts" or row["kind"] == "rut"]
+             for name, result in sources for row in result["detection"]]
     table += [[name, "false positives", "", "", f"{result['false_positives']:.0f} of {result['regions']:.0f}", ""]
               for name, result in sources]
     return markdown(["images", "kind", "in view", "deeper than 3 standard errors", "found of those", "recall %"], table)

@@ -130,15 +130,14 @@ std::optional<StereoCalibration> optional_calibration(const py::object& calibrat
   return calibration.cast<StereoCalibration>();
 }
 
-py::object calibration_object(const io::CalibrationFile& file) {
+py::object calibration_object(const io::CalibrationFile& file, const std::string& source) {
   if (file.rig) return py::cast(*file.rig);
   if (file.rectified) return py::cast(*file.rectified);
   std::string sizes;
   for (const io::StereoRig& rig : file.rigs) {
     sizes += (sizes.empty() ? "" : ", ") + std::to_string(rig.width) + "×" + std::to_string(rig.height);
   }
-  fail("the calibration (", file.format,
-       ") has a rig for each of several sizes of images: give one of them as size: ", sizes);
+  fail(source, ": ", file.format, " has a rig for each size of the images: give one of them as size: ", sizes);
 }
 
 void bind_calibration(py::module_& module) {
@@ -151,7 +150,7 @@ void bind_calibration(py::module_& module) {
          const std::optional<std::array<int, 2>>& size) {
         io::CalibrationFile file = io::read_calibration(path.string(), right_path ? right_path->string() : "");
         if (size) file.select_size((*size)[0], (*size)[1], path.string());
-        return calibration_object(file);
+        return calibration_object(file, path.string());
       },
       py::arg("path"), py::arg("right_path") = py::none(), py::arg("size") = py::none(),
       "Read a calibration file: a Calibration, or a StereoRig if its pairs must be rectified first.\n\n"

@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include <optional>
+#include <string>
 
 #include "roadstereo/calibration.hpp"
 #include "roadstereo/io/calibration_file.hpp"
@@ -13,7 +14,7 @@ namespace roadstereo::python {
 /// pybind11::type_error for other types.
 std::optional<StereoCalibration> optional_calibration(const pybind11::object& calibration);
 
-/// Returns a Calibration, or the StereoRig of unrectified pairs.
-pybind11::object calibration_object(const io::CalibrationFile& file);
+/// Returns a Calibration, or the StereoRig of unrectified pairs. Throws Error naming the source if it has several.
+pybind11::object calibration_object(const io::CalibrationFile& file, const std::string& source);
 
 }  // namespace roadstereo::python

@@ -59,7 +59,7 @@ class SharedSource {
   }
   py::object calibration() {
     const auto file = call_([&] { return source_->calibration(); });
-    return file ? calibration_object(*file) : py::none();
+    return file ? calibration_object(*file, description()) : py::none();
   }
   bool live() const { return source_->live(); }
 

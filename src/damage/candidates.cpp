@@ -450,6 +450,7 @@ void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages
   const std::size_t before = found.size();
   const Image<float> depth = images.depth;
   Image<std::uint8_t> cores(depth.width(), depth.height(), 0), road = input.road;
+  input.ruts.fill(255, road);
   for (int j = 0; j < depth.height(); ++j) {
     for (int i = 0; i < depth.width(); ++i) {
       const std::size_t label = input.ruts.labels(i, j);
@@ -458,7 +459,6 @@ void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages
       const float floor = input.thresholds.pixels_below(double{floor_m}, i, j);
       if (rut.cells(i, j) && depth(i, j) > floor + input.thresholds.min_depth(i, j)) cores(i, j) = 255;
       images.depth(i, j) -= input.thresholds.pixels_below(double{input.ruts.depth_m(i, j)}, i, j);
-      road(i, j) = 255;
     }
   }
   const SearchInput in_rut{input.depth_cells, road,         input.view,       input.ruts,       input.known,

@@ -60,9 +60,7 @@ RoadSurface find_road_surface(const DamageInput& input, const SurfaceCoordinates
   ruts = find_ruts(cells, coordinates, surface, threads);
   const auto refit = [&](Sampling sampling) {
     Image<std::uint8_t> region = find_road_region(cells, coordinates, surface, ruts, 0, threads);
-    for (std::size_t k = 0; k < region.pixels(); ++k) {
-      if (ruts.contain(k)) region.row(0)[k] = 0;
-    }
+    ruts.fill(0, region);
     surface = refit_road_surface(cells, coordinates, region, surface, sampling, threads);
   };
   refit(Sampling::coarse);

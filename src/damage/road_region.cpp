@@ -93,9 +93,7 @@ Image<std::uint8_t> find_road_region(const Cells& cells, const SurfaceCoordinate
   Image<std::uint8_t> road = cells_near_surface(cells, coordinates, surface, relief_m, threads);
   fill_holes(road, max_speck_cells);
   Image<std::uint8_t> connected = road;
-  for (std::size_t k = 0; k < connected.pixels(); ++k) {
-    if (ruts.contain(k)) connected.row(0)[k] = 255;
-  }
+  ruts.fill(255, connected);
   const Image<std::uint8_t> closed = close_bands(connected, cells, surface, block_px / cells.factor);
   const Image<std::uint8_t> region =
       dilate(largest_component(erode(closed, opening_radius, threads)), opening_radius + 1, threads);

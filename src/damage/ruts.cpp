@@ -347,6 +347,12 @@ Ruts label_cells(const HeightGrid& grid, const std::vector<Rut>& found, const Su
 
 }  // namespace
 
+void Ruts::fill(std::uint8_t value, Image<std::uint8_t>& mask) const {
+  for (std::size_t k = 0; k < labels.pixels(); ++k) {
+    if (labels.row(0)[k] != 0) mask.row(0)[k] = value;
+  }
+}
+
 Ruts find_ruts(const Cells& cells, const SurfaceCoordinates& coordinates, const RoadSurface& surface, int threads) {
   constexpr int max_degrees = 30, step_degrees = 5, directions = 2 * max_degrees / step_degrees + 1;
   if (!coordinates.is_metric) return {};

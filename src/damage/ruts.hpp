@@ -14,7 +14,8 @@ struct Ruts {
   std::vector<double> significances;  ///< that in its standard errors
 
   bool empty() const { return significances.empty(); }
-  bool contain(std::size_t cell) const { return !empty() && labels.row(0)[cell] != 0; }
+  /// Set the cells of all ruts.
+  void fill(std::uint8_t value, Image<std::uint8_t>& mask) const;
 };
 
 /// Find ruts; none without metric coordinates. Ruts go on along the road, and a pair of wheel tracks is half of a lane:

@@ -38,6 +38,17 @@ inline Image<float> with_noise(const Image<float>& map, double sigma_px, std::ui
   return noisy;
 }
 
+/// The transformed map of a disparity map whose road is `plane`.
+inline Image<float> transformed_by(const DisparityPlane& plane, const Image<float>& disparity) {
+  Image<float> transformed(disparity.width(), disparity.height());
+  for (int v = 0; v < disparity.height(); ++v) {
+    for (int u = 0; u < disparity.width(); ++u) {
+      transformed(u, v) = static_cast<float>(disparity(u, v) - plane.disparity(u, v) + true_road_px);
+    }
+  }
+  return transformed;
+}
+
 /// Maps of a rendered road as a matcher without a fault would deliver them, but for noise.
 struct ExactMaps {
   synth::SyntheticPair pair;
@@ -45,12 +56,7 @@ struct ExactMaps {
 
   explicit ExactMaps(const synth::Scene& scene, double noise_px = 0.02) : pair(synth::render(scene)) {
     disparity = with_noise(damage_from_truth(pair).disparity, noise_px);
-    transformed.resize(disparity.width(), disparity.height());
-    for (int v = 0; v < disparity.height(); ++v) {
-      for (int u = 0; u < disparity.width(); ++u) {
-        transformed(u, v) = static_cast<float>(disparity(u, v) - pair.plane.disparity(u, v) + true_road_px);
-      }
-    }
+    transformed = transformed_by(pair.plane, disparity);
   }
 
   void forget(int u, int v) { disparity(u, v) = transformed(u, v) = truth::nan_value; }

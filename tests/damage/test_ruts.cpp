@@ -25,7 +25,7 @@ struct Lane {
 
   StereoCalibration calibration{450, 319.5, 179.5, 0.3, 0, width, height};
   DisparityPlane plane;
-  Image<float> disparity{width, height}, transformed{width, height};
+  Image<float> disparity{width, height}, transformed;
 
   /// `lift` above the plane in metres at (x, y), to the right and ahead of the camera, metres.
   explicit Lane(const Lift& lift, double noise_px = 0.05) {
@@ -44,11 +44,7 @@ struct Lane {
       }
     }
     disparity = with_noise(disparity, noise_px);
-    for (int v = 0; v < height; ++v) {
-      for (int u = 0; u < width; ++u) {
-        transformed(u, v) = static_cast<float>(disparity(u, v) - plane.disparity(u, v) + true_road_px);
-      }
-    }
+    transformed = transformed_by(plane, disparity);
   }
 
   DamageInput input() const {
@@ -82,18 +78,14 @@ struct Found {
     ruts = find_ruts(cells, coordinates, fit_road_surface(cells, coordinates, 1), 1);
   }
 
-  /// Share of the cells nearer to the line x = middle + slope·y than `near_m`, or farther than `far_m` from it and its
-  /// mirror image, that lie in a rut.
+  /// Share of the cells nearer to the line x = middle + slope·y than `near_m` that lie in a rut.
   double share_inside(double middle, double slope, double near_m) const {
     double inside = 0, all = 0;
     for (int j = 0; j < cells.height(); ++j) {
       for (int i = 0; i < cells.width(); ++i) {
         if (std::abs(coordinates.x(i, j) - middle - slope * coordinates.y(i, j)) > near_m) continue;
         ++all;
-        inside += ruts.contain(static_cast<std::size_t>(j) * static_cast<std::size_t>(cells.width()) +
-                               static_cast<std::size_t>(i))
-                      ? 1
-                      : 0;
+        inside += ruts.labels(i, j) != 0 ? 1 : 0;
       }
     }
     return inside / all;

@@ -40,12 +40,7 @@ struct Street {
   }
 
   DamageMap find(double min_confidence = 0.5) const {
-    Image<float> transformed(width, height);
-    for (int v = 0; v < height; ++v) {
-      for (int u = 0; u < width; ++u) {
-        transformed(u, v) = static_cast<float>(disparity(u, v) - plane.disparity(u, v) + true_road_px);
-      }
-    }
+    const Image<float> transformed = transformed_by(plane, disparity);
     DamageInput input;
     input.transformed = transformed;
     input.disparity = disparity;

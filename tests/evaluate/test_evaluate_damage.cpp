@@ -58,7 +58,7 @@ TEST_F(EvaluateDamage, RutsRunThroughThePicture) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto score = json_file("score.json");
   EXPECT_EQ(score["false_positives"], 0);
-  const auto& ruts = score["detection"][3];
+  const auto& ruts = score["detection"][0];
   EXPECT_EQ(ruts["kind"], "rut");
   EXPECT_GE(ruts["found_of_those"], 2);
   EXPECT_EQ(score["measurement"][0]["quantity"], "depth of ruts");

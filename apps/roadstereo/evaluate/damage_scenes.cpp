@@ -203,7 +203,7 @@ void add_detection_rows(const SceneResults& results, Table& table) {
       ++deep;
       deep_found += damage.found ? 1 : 0;
     }
-    if (in_view == 0 && std::string(kind) == "rut") continue;
+    if (in_view == 0) continue;
     table.rows.push_back({Cell(results.method), Cell(kind), Cell(in_view, 0), Cell(found, 0), Cell(deep, 0),
                           Cell(deep_found, 0), Cell(deep > 0 ? deep_found / deep : std::nan(""), 3)});
     if (std::string(kind) == "crack") continue;

@@ -34,22 +34,21 @@ double distance(const std::array<double, 2>& a, const std::array<double, 2>& b) 
 std::array<double, 2> DamageList::expected(const Track& track, Clock::time_point time) const {
   const double passed = seconds_between(track.seen, time);
   const std::array<double, 2>& speed = track.moved ? track.speed : common_speed_;
-  return {track.centre[0] + passed * speed[0], track.centre[1] + passed * speed[1]};
+  return {track.last.centroid_px[0] + passed * speed[0], track.last.centroid_px[1] + passed * speed[1]};
 }
 
 DamageList::Track* DamageList::nearest(const Damage& damage, const LiveView& view, const std::vector<bool>& taken) {
   constexpr double min_radius_px = 12;
   Track* best = nullptr;
   double min_distance = HUGE_VAL;
+  const double own_radius = std::max(min_radius_px, half_diagonal(damage));
   for (std::size_t i = 0; i < taken.size(); ++i) {
     Track& track = tracks_[i];
-    if (taken[i] || track.kind != damage.kind) continue;
-    const double own_radius = half_diagonal(damage), ratio = own_radius / track.radius;
-    if (track.is_rut != io::is_rut(damage) && std::max(ratio, 1 / ratio) > 2) continue;  // a pothole in a rut
-    const double away = std::min(distance(expected(track, view.arrival), damage.centroid_px),
-                                 distance(track.centre, damage.centroid_px));  // in case the motion has changed
-    const double radius = std::max({min_radius_px, track.radius, own_radius});
-    if (away <= radius && away < min_distance) {
+    if (taken[i] || track.last.kind != damage.kind || io::is_part_of_rut(track.last, damage)) continue;
+    const double away =
+        std::min(distance(expected(track, view.arrival), damage.centroid_px),
+                 distance(track.last.centroid_px, damage.centroid_px));  // in case the motion has changed
+    if (away <= std::max(own_radius, half_diagonal(track.last)) && away < min_distance) {
       best = &track;
       min_distance = away;
     }
@@ -60,15 +59,13 @@ DamageList::Track* DamageList::nearest(const Damage& damage, const LiveView& vie
 void DamageList::follow(Track& track, const Damage& damage, const LiveView& view) {
   const double passed = seconds_between(track.seen, view.arrival);
   if (passed > 0) {
-    track.speed = {(damage.centroid_px[0] - track.centre[0]) / passed,
-                   (damage.centroid_px[1] - track.centre[1]) / passed};
+    track.speed = {(damage.centroid_px[0] - track.last.centroid_px[0]) / passed,
+                   (damage.centroid_px[1] - track.last.centroid_px[1]) / passed};
     track.moved = true;
     if (!io::is_rut(damage)) common_speed_ = track.speed;
   }
   track.seen = view.arrival;
-  track.is_rut = io::is_rut(damage);
-  track.centre = damage.centroid_px;
-  track.radius = half_diagonal(damage);
+  track.last = damage;
   const auto entry = std::find_if(entries_.begin(), entries_.end(),
                                   [&track](const ListedDamage& listed) { return listed.id == track.id; });
   if (entry == entries_.end()) return;
@@ -81,11 +78,8 @@ void DamageList::follow(Track& track, const Damage& damage, const LiveView& view
 void DamageList::begin(const Damage& damage, const LiveView& view) {
   Track track;
   track.id = ++found_;
-  track.kind = damage.kind;
-  track.is_rut = io::is_rut(damage);
   track.seen = view.arrival;
-  track.centre = damage.centroid_px;
-  track.radius = half_diagonal(damage);
+  track.last = damage;
   tracks_.push_back(track);
   entries_.push_front({track.id, view.clock_s, view.number, 1, damage});
   if (entries_.size() > max_entries) entries_.pop_back();

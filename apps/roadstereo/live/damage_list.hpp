@@ -35,13 +35,10 @@ class DamageList {
   /// A tracked damage.
   struct Track {
     std::int64_t id = 0;
-    DamageKind kind = DamageKind::depression;
-    bool is_rut = false;  ///< it runs through the picture, at any speed of the camera
     Clock::time_point seen{};
-    std::array<double, 2> centre{};  ///< pixels
-    std::array<double, 2> speed{};   ///< pixels per second
-    bool moved = false;              ///< `speed` is measured
-    double radius = 0;               ///< half the diagonal of its box, pixels
+    Damage last;                    ///< its last sighting
+    std::array<double, 2> speed{};  ///< pixels per second
+    bool moved = false;             ///< `speed` is measured
   };
 
   Track* nearest(const Damage& damage, const LiveView& view, const std::vector<bool>& taken);

@@ -33,6 +33,9 @@ struct RoadDamage {
 /// Returns whether a damage is a rut, which runs through the pictures and tells nothing of their motion.
 bool is_rut(const Damage& damage);
 
+/// Returns whether one of two damages is a rut and the other a small part of its box, such as a pothole in it.
+bool is_part_of_rut(const Damage& one, const Damage& other);
+
 /// Returns whether `one` is more severe than `other`, or as severe and deeper.
 bool is_worse(const RoadDamage& one, const RoadDamage& other);
 

@@ -49,16 +49,6 @@ double overlap(const std::array<int, 4>& box, const std::array<double, 2>& move,
   return width * height / smaller;
 }
 
-/// Whether one of two damages is a rut and the other a small part of its box, such as a pothole in it.
-bool is_part_of_rut(const Damage& one, const Damage& other) {
-  constexpr double max_share = 0.25;
-  const auto area = [](const Damage& of) {
-    return static_cast<double>(of.box_px[2] - of.box_px[0] + 1) * (of.box_px[3] - of.box_px[1] + 1);
-  };
-  return is_rut(one) != is_rut(other) &&
-         std::min(area(one), area(other)) < max_share * std::max(area(one), area(other));
-}
-
 /// Takes the measurement in a frame as the best one.
 void measure(const FlightFrame& frame, const Damage& damage, RoadDamage& known) {
   known.frame = frame.index;
@@ -71,6 +61,15 @@ void measure(const FlightFrame& frame, const Damage& damage, RoadDamage& known) 
 
 bool is_rut(const Damage& damage) {
   return damage.metrics && damage.metrics->distress == Distress::rut;
+}
+
+bool is_part_of_rut(const Damage& one, const Damage& other) {
+  constexpr double max_share = 0.25;
+  const auto area = [](const Damage& of) {
+    return static_cast<double>(of.box_px[2] - of.box_px[0] + 1) * (of.box_px[3] - of.box_px[1] + 1);
+  };
+  return is_rut(one) != is_rut(other) &&
+         std::min(area(one), area(other)) < max_share * std::max(area(one), area(other));
 }
 
 bool is_worse(const RoadDamage& one, const RoadDamage& other) {
