@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "core/order_statistics.hpp"
 #include "finite_values.hpp"
 
 namespace roadstereo::cli {
@@ -17,7 +18,7 @@ double vibration_px(const std::vector<double>& row_offsets_px) {
     steps.push_back(std::abs(row_offsets_px[i] - row_offsets_px[i - 1]));
   }
   // The difference of two offsets has twice the variance of one.
-  return steps.size() < min_steps ? PairHealth::unknown : 1.4826 * median(std::move(steps)) / std::sqrt(2.0);
+  return steps.size() < min_steps ? PairHealth::unknown : gaussian_mad * median(std::move(steps)) / std::sqrt(2.0);
 }
 
 std::optional<HealthFinding> vibration_finding(double vibration_px) {

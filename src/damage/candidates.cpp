@@ -252,7 +252,8 @@ Candidate segment(const SearchInput& input, const ConnectedComponent& core, Dama
     candidate.level *= factor;
     candidate.cells = flood_fill(field, core, candidate.level);
   }
-  if (!candidate.box().empty()) extend_region(input, images, candidate);
+  const bool is_basin = !candidate.box().empty() && !overlaps_other(candidate, images.assigned);
+  if (is_basin) extend_region(input, images, candidate);
   return candidate;
 }
 

@@ -90,6 +90,27 @@ void grow_between(const DepthField& field, float min_depth, float max_depth, int
   }
 }
 
+/// Cells of a box whose depth a gap may have smeared: within a support window of it, or its own radius if it is
+/// smaller, as of a single wrong match.
+BoxMask near_gaps(const Image<std::uint8_t>& valid, const CellBox& box, int window_radius) {
+  Image<std::uint8_t> in_box(box.columns(), box.rows());
+  for (int j = 0; j < box.rows(); ++j) {
+    std::copy_n(valid.row(box.first_row + j) + box.first_column, box.columns(), in_box.row(j));
+  }
+  BoxMask near(box);
+  for (const ConnectedComponent& gap : ConnectedComponents(in_box, ConnectedComponents::Foreground::zero)) {
+    const double radius = std::sqrt(static_cast<double>(gap.size) / std::numbers::pi);
+    const int reach = std::min(window_radius, static_cast<int>(std::lround(3 * radius)));
+    for (const CellRun& run : gap.runs) {
+      const int first = std::max(0, run.first - reach), last = std::min(box.columns() - 1, run.last + reach);
+      for (int j = std::max(0, run.row - reach); j <= std::min(box.rows() - 1, run.row + reach); ++j) {
+        std::fill(near.cells().row(j) + first, near.cells().row(j) + last + 1, std::uint8_t{255});
+      }
+    }
+  }
+  return near;
+}
+
 }  // namespace
 
 RobustNormal depths_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii) {
@@ -187,11 +208,7 @@ void grow_over_gaps(const DepthField& field, const Image<std::uint8_t>& valid, f
   const RobustNormal around = depths_around(field, region, near_windows * window_radius, band_radii);
   const float min_depth = std::max(min_level, static_cast<float>(around.median + min_sigmas * around.sigma));
   const CellBox wide = region.box().grown(max_windows * window_radius, columns, rows);
-  BoxMask gaps(wide);
-  for (int j = wide.first_row; j <= wide.last_row; ++j) {
-    for (int i = wide.first_column; i <= wide.last_column; ++i) gaps.set(i, j, valid(i, j) == 0);
-  }
-  const BoxMask near_gap = dilate(gaps, window_radius, wide);
+  const BoxMask near_gap = near_gaps(valid, wide, window_radius);
   std::vector<CellIndex> front = contour_cells(region, columns, rows);
   region = region.cropped(wide);
   while (!front.empty()) {

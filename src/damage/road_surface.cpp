@@ -22,8 +22,6 @@ constexpr std::size_t quadratic_term_count = 6;
 using Coefficients = Vector<quadratic_term_count>;
 using Values = std::vector<double>;
 
-constexpr double tukey_sigmas = 4.7;  // 95 % efficiency on normal residuals
-
 /// Sampled cells, structure of arrays. `residual` is the value minus the current fit.
 struct Samples {
   Values x, y, scale, value, residual;
@@ -201,7 +199,7 @@ template <std::size_t count>
 Coefficients fit_irls(Samples& samples, int iterations, double& sigma) {
   Coefficients solution{};
   for (int i = 0; i < iterations; ++i) {
-    solution = solve<count>(accumulate<count>(samples, tukey_sigmas * sigma));
+    solution = solve<count>(accumulate<count>(samples, tukey * sigma));
     for (std::size_t k = 0; k < samples.size(); ++k) {
       samples.residual[k] = samples.value[k] - quadratic(solution, samples.x[k], samples.y[k], samples.scale[k]);
     }
@@ -218,7 +216,7 @@ RoadUndulation fit_undulation(Samples& samples, int iterations, double& sigma) {
   const Values deviation = samples.residual;
   Values weight(samples.size());
   for (int i = 0; i < iterations; ++i) {
-    const double inverse_max = 1 / (tukey_sigmas * sigma), inverse_variance = 1 / (sigma * sigma);
+    const double inverse_max = 1 / (tukey * sigma), inverse_variance = 1 / (sigma * sigma);
     for (std::size_t k = 0; k < samples.size(); ++k) {
       weight[k] = inverse_variance * tukey_weight(samples.residual[k] * inverse_max);
     }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -26,6 +27,20 @@ inline const Damage* find(const DamageMap& map, const synth::SyntheticPair& pair
   }
   EXPECT_NE(best, nullptr) << "label " << label << " was not found";
   return best;
+}
+
+/// Mean column and row of the pixels of a label.
+inline std::array<double, 2> label_centroid(const synth::SyntheticPair& pair, int label) {
+  double u_sum = 0, v_sum = 0, n = 0;
+  for (int v = 0; v < pair.labels.height(); ++v) {
+    for (int u = 0; u < pair.labels.width(); ++u) {
+      if (pair.labels(u, v) != label) continue;
+      u_sum += u;
+      v_sum += v;
+      ++n;
+    }
+  }
+  return {u_sum / n, v_sum / n};
 }
 
 inline void expect_same(const DamageMap& one, const DamageMap& other) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/order_statistics.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
@@ -116,7 +117,6 @@ double tukey_weight(double distance, double scale) {
 RigidMotion point_to_plane_step(const Points& cloud, const ScanModel& scan, const RigidMotion& motion,
                                 double min_scale) {
   const Correspondences pairs = find_correspondences(cloud, scan.voxels, motion);
-  constexpr double gaussian_mad = 1.4826;
   const double scale = std::max(gaussian_mad * pairs.sorted[pairs.sorted.size() / 2], min_scale);
   const Eigen::Vector3d pivot = motion(principal_axes(cloud).centre);
   Matrix6 normal_matrix = Matrix6::Zero();
