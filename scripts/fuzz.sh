@@ -36,7 +36,7 @@ for name in "${readers[@]}"; do
                src/io/source/sqlite_log.cpp src/io/source/rosbag2_folder.cpp src/io/source/no_ros1_log.cpp
                src/io/source/bag_message.cpp src/io/source/bag_topics.cpp src/io/yaml_text.cpp src/io/file_bytes.cpp
                src/io/calibration_text.cpp src/io/frame_mat.cpp src/core/frame.cpp)
-      libraries=($(pkg-config --cflags --libs opencv4 yaml-cpp sqlite3 libzstd liblz4 zlib)) ;;
+      libraries=($(pkg-config --cflags --libs opencv4 yaml-cpp sqlite3 libzstd liblz4 libtiff-4 zlib)) ;;
     track)
       sources=(src/io/geo/track_csv.cpp src/io/geo/track_nmea.cpp src/io/geo/track_srt.cpp src/io/geo/track_values.cpp
                src/io/geo/utc_time.cpp src/io/calibration_text.cpp)
@@ -44,7 +44,7 @@ for name in "${readers[@]}"; do
     image)
       sources=(src/io/image_file.cpp src/io/{jpeg,png,tiff}_check.cpp src/io/netpbm.cpp src/io/file_bytes.cpp src/io/frame_mat.cpp
                src/core/frame.cpp)
-      libraries=($(pkg-config --cflags --libs opencv4 zlib)) ;;
+      libraries=($(pkg-config --cflags --libs opencv4 libtiff-4 zlib)) ;;
     trajectory) sources=(src/io/trajectory_file.cpp src/io/quaternion.cpp) libraries=() ;;
     *) echo "usage: $0 [request|journal|calibration|bag|track|image|trajectory|all] [SECONDS]" >&2; exit 2 ;;
   esac

@@ -8,7 +8,7 @@ set -euo pipefail
 geographiclib=libgeographiclib-dev
 [ "$(. /etc/os-release; echo "$ID ${VERSION_ID:-}")" != "ubuntu 22.04" ] || geographiclib=libgeographic-dev  # its name there
 packages=(build-essential cmake ninja-build pkg-config
-          libopencv-dev libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev zlib1g-dev
+          libopencv-dev libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev libtiff-dev zlib1g-dev
           libfreetype-dev
           libeigen3-dev libnanoflann-dev
           libgdal-dev libpugixml-dev "$geographiclib"

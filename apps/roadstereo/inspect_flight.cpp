@@ -183,6 +183,7 @@ void inspect_flight(FlightSettings settings) {
     map_text = add_map(settings, plan, folder, results.summary().static_mask, trajectory->crs(), *stop, run);
   stop.reset();  // the next Ctrl-C ends the program
   if (journal.last() && journal.last()->white_level > 0) run.options.white_level = journal.last()->white_level;
+  if (trajectory) run.crs = trajectory->crs();
   run.source = source.source().description();
   run.calibration_format = source.calibration_format();
   run.calibration = source.calibration();

@@ -166,8 +166,8 @@ void add_result_files(const std::vector<std::string>& words, Inspection& inspect
     fail("--write has \"", word, "\"; of a pair it can have: ", fmt::format("{}", fmt::join(result_words(), ", ")));
   }
   for (const ResultGroup& group : result_groups()) {
-    if (!words.empty() && std::find(words.begin(), words.end(), group.word) == words.end()) continue;
-    group.add(inspection, folder);
+    if (words.empty() || std::find(words.begin(), words.end(), group.word) != words.end())
+      group.add(inspection, folder);
     for (const auto& [name, what] : group.files) {
       if (folder.has(name)) {
         inspection.files_written.emplace_back(name, what);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,6 +69,18 @@ class Frames {
   std::optional<synth::FlightPath> path_;
 };
 
+/// The frames of an earlier, longer sequence would belong to none.
+void remove_later_frames(int frames, io::OutputFolder& folder) {
+  const int first = frames > 1 ? frames : 0;
+  for (int frame = first; frame < max_frames; ++frame) {
+    const std::vector<std::string> names = synthetic_pair_files({frame, max_frames});
+    if (!std::filesystem::exists(folder.path() / names.front())) break;
+    for (const std::string& name : names) folder.remove(name);
+  }
+  if (frames > 1) return;
+  for (const char* const name : {"times.txt", "trajectory_kitti.txt"}) folder.remove(name);
+}
+
 void make_frames(const SynthArguments& arguments) {
   if (arguments.output.empty()) fail("synth needs --output DIR (see roadstereo synth --help)");
   if (arguments.frames < 1 || arguments.frames > max_frames) {
@@ -94,6 +107,7 @@ void make_frames(const SynthArguments& arguments) {
   }
   if (arguments.frames > 1) folder.add("trajectory_kitti.txt", true_trajectory(poses));
   progress.end();
+  remove_later_frames(arguments.frames, folder);
   folder.commit();
   if (!arguments.quiet) fmt::print("{}", made_text(arguments, first, folder));
 }

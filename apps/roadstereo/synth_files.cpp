@@ -29,19 +29,30 @@ std::string FrameNumber::path(const std::string& name, const std::string& extens
   return fmt::format("{}/{:06}{}", name, frame, extension);
 }
 
+std::vector<std::string> synthetic_pair_files(const FrameNumber& number) {
+  return {number.path("left", ".png"),
+          number.path("right", ".png"),
+          number.path("truth_disparity", ".tiff"),
+          number.path("truth_visible", ".png"),
+          number.path("truth_labels", ".png"),
+          number.path("truth_road", ".png"),
+          number.path("truth", ".json")};
+}
+
 void add_synthetic_pair(const synth::Scene& scene, const synth::SyntheticPair& pair, const FrameNumber& number,
                         io::OutputFolder& folder) {
   const int quality = scene.degradation.jpeg_quality;
   const auto recorded = [quality](const Frame& image) {
     return quality > 0 ? io::with_jpeg_loss(image, quality) : image;
   };
-  folder.add(number.path("left", ".png"), io::encode_png(recorded(pair.left).view()));
-  folder.add(number.path("right", ".png"), io::encode_png(recorded(pair.right).view()));
-  folder.add(number.path("truth_disparity", ".tiff"), io::encode_float_tiff(to_float(pair.disparity)));
-  folder.add(number.path("truth_visible", ".png"), io::encode_png(grey_view(pair.visible)));
-  folder.add(number.path("truth_labels", ".png"), io::encode_label_png(pair.labels));
-  folder.add(number.path("truth_road", ".png"), io::encode_png(grey_view(pair.road)));
-  folder.add(number.path("truth", ".json"), truth_json(scene, pair));
+  const std::vector<std::string> names = synthetic_pair_files(number);
+  folder.add(names[0], io::encode_png(recorded(pair.left).view()));
+  folder.add(names[1], io::encode_png(recorded(pair.right).view()));
+  folder.add(names[2], io::encode_float_tiff(to_float(pair.disparity)));
+  folder.add(names[3], io::encode_png(grey_view(pair.visible)));
+  folder.add(names[4], io::encode_label_png(pair.labels));
+  folder.add(names[5], io::encode_png(grey_view(pair.road)));
+  folder.add(names[6], truth_json(scene, pair));
 }
 
 std::string plain_yaml(const StereoCalibration& calibration) {

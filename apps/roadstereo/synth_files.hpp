@@ -18,6 +18,9 @@ struct FrameNumber {
   std::string path(const std::string& name, const std::string& extension) const;
 };
 
+/// Names of the files of one pair, that of the left image first.
+std::vector<std::string> synthetic_pair_files(const FrameNumber& number);
+
 /// Stages the images and the ground truth of one pair.
 void add_synthetic_pair(const synth::Scene& scene, const synth::SyntheticPair& pair, const FrameNumber& number,
                         io::OutputFolder& folder);

@@ -33,14 +33,15 @@ struct RowSample {
   double du = 0, dv = 0;  ///< pixels; dv to a fraction of one
 };
 
-/// Matches the points that `measure_row_alignment` takes the median of: at most 135, spread over the image.
+/// Matches the points that `measure_row_alignment` takes the median of: at most 135, spread over the image, none of
+/// them where the left image is masked (`mask` not 0; empty: nowhere).
 std::vector<RowSample> sample_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                            int threads = 0);
+                                            int threads = 0, ImageView<const std::uint8_t> mask = {});
 
 /// Measures the vertical offset of a rectified pair by affine Lucas-Kanade alignment of image blocks, up to about 2 %
 /// of the image height.
 RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                   int threads = 0);
+                                   int threads = 0, ImageView<const std::uint8_t> mask = {});
 
 }  // namespace roadstereo
 #pragma GCC visibility pop

@@ -27,10 +27,10 @@ struct GroundPlaneError {
 };
 
 /// Errors of the plane of a road from which its surface deviates by `deviation_px`, a standard deviation of disparities
-/// over the image: a plane at another part of the road is off by that, and tilted by it over the standard deviation of
-/// the rows and columns.
-GroundPlaneError ground_plane_error(const DisparityPlane& model, const StereoCalibration& calibration,
-                                    double deviation_px);
+/// over the image of width×height pixels: a plane at another part of the road is off by that, and tilted by it over the
+/// standard deviation of the rows and columns.
+GroundPlaneError ground_plane_error(const DisparityPlane& model, const StereoCalibration& calibration, int width,
+                                    int height, double deviation_px);
 
 /// Road coordinates, metres: origin at the foot of the left camera, x to the camera's right, y forward (up in the
 /// image), z up out of the road. All three are unit vectors of the camera frame.

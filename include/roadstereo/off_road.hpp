@@ -31,9 +31,11 @@ struct OffRoadOptions {
 /// the road and the lower border enclose, such as the dark wall of a pothole.
 ///
 /// `correlation`: of each cell, ⌈W/4⌉×⌈H/4⌉, −1 … 1, as lucas_kanade writes it. `disparity` and `sigma` (W×H, pixels,
-/// NaN invalid) become NaN in rejected cells. Throws Error when the sizes do not fit.
+/// NaN invalid) become NaN in rejected cells. Pixels that `mask` (W×H, not 0 masked, or empty) hides say nothing of
+/// those around them. Throws Error when the sizes do not fit.
 void reject_off_road(ImageView<const float> correlation, const DisparityPriorView& scene, const PerspectiveShift& shift,
-                     const OffRoadOptions& options, int threads, Image<float>& disparity, Image<float>& sigma);
+                     ImageView<const std::uint8_t> mask, const OffRoadOptions& options, int threads,
+                     Image<float>& disparity, Image<float>& sigma);
 
 }  // namespace roadstereo
 #pragma GCC visibility pop

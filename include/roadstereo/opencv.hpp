@@ -86,7 +86,12 @@ class StereoMatcher final : public cv::StereoMatcher {
   /// `Pipeline::process`.
   void compute(cv::InputArray left, cv::InputArray right, cv::OutputArray disparity) override {
     const cv::Mat left_image = left.getMat(), right_image = right.getMat();
-    pipeline_.process(frame_view(left_image), frame_view(right_image), result_);
+    try {
+      pipeline_.process(frame_view(left_image), frame_view(right_image), result_);
+    } catch (...) {
+      result_ = {};  // not that of an earlier pair
+      throw;
+    }
     disparity.create(left_image.size(), CV_16SC1);
     cv::Mat fixed = disparity.getMat();
     for (int v = 0; v < fixed.rows; ++v) {

@@ -24,7 +24,8 @@ inline constexpr double farthest_baselines = 250;
 /// Triangulates a disparity map: camera frame (x right, y down, z forward), metres, row by row. Skips pixels without a
 /// disparity, with d + doffs ≤ 0, and farther away than `farthest_baselines` baselines.
 PointCloud cloud_from_disparity(ImageView<const float> disparity, const StereoCalibration& calibration);
-/// The same with the colours of the left image. `white_level` as in to_grey. Throws Error if the sizes differ.
+/// The same with the colours of the left image. `white_level` as in to_grey. Throws Error if the sizes differ or the
+/// image has no data.
 PointCloud cloud_from_disparity(ImageView<const float> disparity, const FrameView& left, double white_level,
                                 const StereoCalibration& calibration);
 

@@ -136,9 +136,10 @@ class RoadMap {
   std::unique_ptr<State> state_;
 };
 
-/// Returns a cell size for a camera over a road, metres: the geometric mean of the ground sampling distances in the
-/// nearest quarter of the road in view, rounded down to 1, 2 or 5 times a power of ten; one that a map can have.
-double suggested_cell_m(const DisparityPlane& road, const StereoCalibration& calibration);
+/// Returns a cell size for a camera over a road and images of width×height pixels, metres: the geometric mean of the
+/// ground sampling distances in the nearest quarter of the road in view, rounded down to 1, 2 or 5 times a power of
+/// ten; one that a map can have.
+double suggested_cell_m(const DisparityPlane& road, const StereoCalibration& calibration, int width, int height);
 
 /// Returns the transformation from a camera to axes on its road: origin at the foot of the camera, x to its right, y
 /// ahead, z up (`road_axes`).

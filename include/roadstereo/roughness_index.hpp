@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 #pragma GCC visibility push(default)
@@ -17,6 +18,9 @@ struct GoldenCarStep {
 };
 /// Returns the step of a spacing, metres: matrix exponential of dt = spacing / (80 km/h).
 GoldenCarStep golden_car_step(double spacing_m);
+
+/// Returns the smallest number of heights at a spacing, metres, that has an index.
+std::size_t min_roughness_samples(double spacing_m);
 
 /// Returns the index of a profile, m/km: slopes over 250 mm drive the car, which starts with the mean slope of the
 /// first 11 m. `heights` in metres at equal spacing, at least 11 m long. Throws Error for shorter profiles, for a

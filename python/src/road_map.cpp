@@ -32,12 +32,9 @@ namespace {
 namespace py = pybind11;
 using PoseArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-StereoCalibration map_calibration(const ProcessedFrame& frame) {
+const StereoCalibration& map_calibration(const ProcessedFrame& frame) {
   if (!frame.calibration) fail("the result has no calibration; a map needs one");
-  StereoCalibration calibration = *frame.calibration;
-  if (calibration.width == 0) calibration.width = frame.result.disparity.width();
-  if (calibration.height == 0) calibration.height = frame.result.disparity.height();
-  return calibration;
+  return *frame.calibration;
 }
 
 /// A new folder for tiles, where none is named.
@@ -205,7 +202,10 @@ void bind_road_map(py::module_& module) {
       "its right, y ahead, z up. Raises Error for a result without a road or a calibration.");
   module.def(
       "suggested_cell_m",
-      [](const ProcessedFrame& frame) { return suggested_cell_m(road_plane(frame), map_calibration(frame)); },
+      [](const ProcessedFrame& frame) {
+        const Image<float>& map = frame.result.disparity;
+        return suggested_cell_m(road_plane(frame), map_calibration(frame), map.width(), map.height());
+      },
       py::arg("result"), "Return a side of cells for a map of such frames, metres.");
 }
 

@@ -24,10 +24,8 @@ namespace {
 
 /// The arena that this thread last used; making one for every call would allocate.
 tbb::task_arena& arena_of(int threads) {
-  // More threads than cores gain nothing, and TBB complains about them on stderr.
-  const int concurrency = std::min(threads, tbb::info::default_concurrency());
   thread_local std::optional<tbb::task_arena> arena;
-  if (!arena || arena->max_concurrency() != concurrency) arena.emplace(concurrency);
+  if (!arena || arena->max_concurrency() != threads) arena.emplace(threads);
   return *arena;
 }
 
@@ -36,10 +34,15 @@ tbb::task_arena& arena_of(int threads) {
 
 int resolve_threads(int threads) {
   if (threads < 0 || threads > 1024) fail("threads is ", threads, "; it must be between 0 (all cores) and 1024");
-  if (threads > 0) return threads;
-  // Reads a file of the system: once.
+    // Reads a file of the system: once.
+#ifdef ROADSTEREO_WITH_TBB
+  // More threads than cores gain nothing, cost memory each, and TBB complains about them on stderr.
+  static const int cores = tbb::info::default_concurrency();
+  return threads > 0 ? std::min(threads, cores) : cores;
+#else
   static const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return cores;
+  return threads > 0 ? threads : cores;
+#endif
 }
 
 void parallel_for(int count, int threads, FunctionRef<void(int, int)> body) {

@@ -44,6 +44,7 @@ PointCloud cloud_from_disparity(ImageView<const float> disparity, const FrameVie
     fail("the disparity map has ", disparity.width(), "×", disparity.height(), " pixels and the left image ",
          left.width, "×", left.height, "; they must have the same size");
   }
+  if (left.data == nullptr) fail("the image has no data");
   const ColourReader colours(left, white_level);
   PointCloud cloud;
   for_each_point(disparity, calibration, [&](int u, int v, const std::array<float, 3>& point) {

@@ -21,7 +21,7 @@ void require_image_size(int width, int height);
 
 /// A mask may be empty.
 inline void require_mask_size(const ImageSize& mask, const ImageSize& pair) {
-  if (mask.width == 0 || mask == pair) return;
+  if (mask.width == 0 || mask.height == 0 || mask == pair) return;
   fail("the mask has ", mask.width, "×", mask.height, " pixels; it must have ", pair.width, "×", pair.height,
        " like the pair");
 }

@@ -47,11 +47,10 @@ struct ColumnSums {
   }
   /// Add the valid pixels of an image row.
   void add(const float* values, const float* sigma, int width) {
-    constexpr float max_finite = std::numeric_limits<float>::max();
     float* const sums = sum.data();
     int* const counts = count.data();
     for (int u = 0; u < width; ++u) {
-      const int finite = std::abs(values[u]) <= max_finite ? 1 : 0;
+      const int finite = std::abs(values[u]) <= max_map_value ? 1 : 0;
       const int uncertain = sigma[u] > max_sigma_px ? 1 : 0;
       const int valid = finite & ~uncertain;
       counts[u] += valid;

@@ -7,6 +7,9 @@
 
 namespace roadstereo {
 
+/// Larger values of a map, of either sign, are none, such as −3.4e38 for no data: sums of their squares would overflow.
+inline constexpr float max_map_value = 1e15F;
+
 /// The transformed map downsampled to square cells of `factor`×`factor` pixels: each cell is the mean of its valid
 /// pixels. Segmentation works on cells.
 struct Cells {

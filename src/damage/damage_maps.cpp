@@ -73,7 +73,6 @@ void fill_road_rows(const DamageInput& input, const Segmentation& segmentation, 
                     DamageMap& result) {
   const int width = input.transformed.width();
   const int factor = segmentation.cells.factor;
-  constexpr float max_finite = std::numeric_limits<float>::max();
   RowUpsampler surfaces(segmentation.surface.value, factor, width);
   for (int v = first; v < last; ++v) {
     std::fill_n(result.ids.row(v), width, std::uint16_t{0});
@@ -88,7 +87,7 @@ void fill_road_rows(const DamageInput& input, const Segmentation& segmentation, 
     surfaces.read(v, surface);
     for (int u = 0; u < width; ++u) {
       const float below = surface[u] - measured[u];
-      depth[u] = std::abs(measured[u]) <= max_finite ? below : nan;
+      depth[u] = std::abs(measured[u]) <= max_map_value ? below : nan;
     }
     std::fill_n(depth, std::min(width, segmentation.view.first_column(v / factor) * factor), nan);
   }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "core/binned_selection.hpp"
 #include "core/parallel.hpp"
 #include "damage/connected_components.hpp"
 #include "damage/morphology.hpp"
@@ -73,14 +75,83 @@ Image<std::uint8_t> close_bands(const Image<std::uint8_t>& mask, const Cells& ce
   return result;
 }
 
-/// Largest connected component of a mask.
-Image<std::uint8_t> largest_component(const Image<std::uint8_t>& mask) {
-  const ConnectedComponents components(mask);
-  Image<std::uint8_t> result(mask.width(), mask.height(), 0);
-  const auto largest = std::max_element(components.begin(), components.end(),
-                                        [](const auto& one, const auto& other) { return one.size < other.size; });
-  if (largest != components.end()) fill_component(*largest, 255, result);
-  return result;
+/// The component with the most cells; null if there is none.
+const ConnectedComponent* largest(const ConnectedComponents& components) {
+  const auto most = std::max_element(components.begin(), components.end(),
+                                     [](const auto& one, const auto& other) { return one.size < other.size; });
+  return most == components.end() ? nullptr : &*most;
+}
+
+/// Whether the second largest part of a road may be as much a road as the largest.
+bool is_divided(const ConnectedComponents& parts) {
+  constexpr std::size_t min_share = 20;  // 1/20 of the largest
+  const ConnectedComponent* const most = largest(parts);
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const auto& part) { return &part != most && min_share * part.size > most->size; });
+}
+
+/// Heights of the cells about the surface, metres.
+Image<float> heights_above(const Cells& cells, const SurfaceCoordinates& coordinates, const RoadSurface& surface,
+                           int threads) {
+  constexpr int rows_per_band = 64;
+  Image<float> heights(cells.width(), cells.height());
+  parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int j = first; j < last; ++j) {
+      const float *value = cells.value.row(j), *road = surface.value.row(j), *scale = coordinates.scale.row(j);
+      float* const height = heights.row(j);
+      for (int i = 0; i < cells.width(); ++i) height[i] = (value[i] - road[i]) / scale[i];
+    }
+  });
+  return heights;
+}
+
+/// Median difference of a part's heights in pixels of ℓ' over `reach` cells along the rows: that of noise on a road, of
+/// blades and stones beside it.
+float roughness(const ConnectedComponent& part, const Cells& cells, const RoadSurface& surface, int reach) {
+  std::vector<float> differences;
+  for (const CellRun& run : part.runs) {
+    const float *value = cells.value.row(run.row), *road = surface.value.row(run.row);
+    for (int i = run.first; i + reach <= run.last; i += reach) {
+      const float difference = (value[i + reach] - road[i + reach]) - (value[i] - road[i]);
+      if (std::isfinite(difference)) differences.push_back(std::abs(difference));
+    }
+  }
+  return differences.empty() ? std::numeric_limits<float>::infinity() : binned_median(differences);
+}
+
+/// Clear the parts that are much rougher than the largest one.
+void remove_rough_parts(const ConnectedComponents& parts, const Cells& cells, const RoadSurface& surface, int reach,
+                        Image<std::uint8_t>& mask) {
+  constexpr float max_ratio = 2;
+  const ConnectedComponent* const most = largest(parts);
+  const float smooth = roughness(*most, cells, surface, reach);
+  for (const ConnectedComponent& part : parts) {
+    if (&part != most && roughness(part, cells, surface, reach) > max_ratio * smooth) fill_component(part, 0, mask);
+  }
+}
+
+/// Set the cells of humps, worn strips and hollows across the road: no higher or deeper than these are, and without a
+/// step of a kerb over `reach` cells to either side, which is one that is both steep and high. NaN is none.
+void add_humps(const Image<float>& heights, const SurfaceCoordinates& coordinates, int reach, int threads,
+               Image<std::uint8_t>& mask) {
+  constexpr int rows_per_band = 64;
+  constexpr float max_height_m = 0.15F, max_slope = 0.25F, kerb_m = 0.025F;
+  const auto is_gentle = [&](int i, int j, int x, int y) {
+    const float rise = std::abs(heights(x, y) - heights(i, j));
+    if (rise < kerb_m) return true;
+    const float way = std::hypot(coordinates.x(x, y) - coordinates.x(i, j), coordinates.y(x, y) - coordinates.y(i, j));
+    return rise <= max_slope * way;
+  };
+  parallel_rows(mask.height(), rows_per_band, threads, [&](int first, int last, int) {
+    for (int j = first; j < last; ++j) {
+      const int above = std::max(0, j - reach), below = std::min(mask.height() - 1, j + reach);
+      for (int i = 0; i < mask.width(); ++i) {
+        if (mask(i, j) != 0 || !(std::abs(heights(i, j)) <= max_height_m)) continue;
+        const int left = std::max(0, i - reach), right = std::min(mask.width() - 1, i + reach);
+        if (is_gentle(left, j, right, j) && is_gentle(i, above, i, below)) mask(i, j) = 255;
+      }
+    }
+  });
 }
 
 }  // namespace
@@ -94,9 +165,19 @@ Image<std::uint8_t> find_road_region(const Cells& cells, const SurfaceCoordinate
   fill_holes(road, max_speck_cells);
   Image<std::uint8_t> connected = road;
   ruts.fill(255, connected);
-  const Image<std::uint8_t> closed = close_bands(connected, cells, surface, block_px / cells.factor);
-  const Image<std::uint8_t> region =
-      dilate(largest_component(erode(closed, opening_radius, threads)), opening_radius + 1, threads);
+  Image<std::uint8_t> closed = close_bands(connected, cells, surface, block_px / cells.factor);
+  ConnectedComponents parts(erode(closed, opening_radius, threads));
+  if (coordinates.is_metric && is_divided(parts)) {
+    constexpr int step_px = 4;  // a step is smoothed over the support window
+    const int reach = std::max(1, step_px / cells.factor);
+    add_humps(heights_above(cells, coordinates, surface, threads), coordinates, reach, threads, closed);
+    Image<std::uint8_t> joined = erode(closed, opening_radius, threads);
+    remove_rough_parts(parts, cells, surface, 2 * reach, joined);
+    parts = ConnectedComponents(joined);
+  }
+  Image<std::uint8_t> core(cells.width(), cells.height(), 0);
+  if (const ConnectedComponent* const most = largest(parts)) fill_component(*most, 255, core);
+  const Image<std::uint8_t> region = dilate(core, opening_radius + 1, threads);
   const std::uint8_t* const inside = region.row(0);
   std::uint8_t* const row = road.row(0);
   const std::size_t count = road.pixels();

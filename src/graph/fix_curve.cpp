@@ -10,10 +10,8 @@ FixCurve::FixCurve(std::vector<PositionFix> fixes, double max_gap_s) : fixes_(st
     fail("fix ", i, " is at ", fixes_[i].time_s, " s, the one before it at ", fixes_[i - 1].time_s,
          " s; times must increase");
   }
-  for (const PositionFix& fix : fixes_) {
-    const auto& [x, y, z] = fix.position_m;
-    positions_.emplace_back(x, y, std::isnan(z) ? 0 : z);
-  }
+  for (const PositionFix& fix : fixes_) positions_.emplace_back(fix.position_m.data());
+  fill_altitudes();
   const std::size_t count = positions_.size();
   const auto slope = [&](std::size_t a, std::size_t b) -> Eigen::Vector3d {
     return (positions_[b] - positions_[a]) / (fixes_[b].time_s - fixes_[a].time_s);
@@ -26,6 +24,23 @@ FixCurve::FixCurve(std::vector<PositionFix> fixes, double max_gap_s) : fixes_(st
     }
     const double before = fixes_[i].time_s - fixes_[a].time_s, after = fixes_[b].time_s - fixes_[i].time_s;
     tangents_.emplace_back((after * slope(a, i) + before * slope(i, b)) / (before + after));
+  }
+}
+
+/// Those that are unknown are on a line through the known ones before and after, level beyond the first and the last.
+void FixCurve::fill_altitudes() {
+  std::optional<std::size_t> last;
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
+    if (std::isnan(positions_[i].z())) continue;
+    const double from_s = fixes_[last.value_or(0)].time_s, to_s = fixes_[i].time_s;
+    for (std::size_t k = last ? *last + 1 : 0; k < i; ++k) {
+      const double share = last ? (fixes_[k].time_s - from_s) / (to_s - from_s) : 1;
+      positions_[k].z() = std::lerp(last ? positions_[*last].z() : positions_[i].z(), positions_[i].z(), share);
+    }
+    last = i;
+  }
+  for (std::size_t k = last ? *last + 1 : 0; k < positions_.size(); ++k) {
+    positions_[k].z() = last ? positions_[*last].z() : 0;
   }
 }
 

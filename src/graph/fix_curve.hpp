@@ -13,7 +13,7 @@
 namespace roadstereo {
 
 /// Positions between fixes: cubic Hermite spline through them whose tangents are those of the parabola through three
-/// neighbours. Altitudes that are unknown are 0.
+/// neighbours. Altitudes that are unknown are those between the known ones, 0 if none is known.
 class FixCurve {
  public:
   FixCurve(std::vector<PositionFix> fixes, double max_gap_s);
@@ -41,6 +41,8 @@ class FixCurve {
   }
 
  private:
+  void fill_altitudes();
+
   std::vector<PositionFix> fixes_;
   std::vector<Eigen::Vector3d> positions_, tangents_;
   double max_gap_s_;

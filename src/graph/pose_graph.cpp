@@ -166,7 +166,7 @@ class Optimiser {
       problem.add_fix(i, {*curve_, time_s, *segment, {1 / noise_m_, 1 / noise_m_, 1 / vertical}}, count);
       error_sd = error_sd.cwiseMin(Eigen::Vector3d(fix.horizontal_sd_m, fix.horizontal_sd_m, fix.vertical_sd_m));
     }
-    problem.add_track_prior(error_sd, options_.lever_arm_sd_m, options_.time_offset_sd_s);
+    problem.add_track_prior(error_sd, options_.lever_arm_sd_m, options_.time_offset_sd_s, options_.max_time_offset_s);
   }
 
   /// What is left of a link when the graph's motion is undone.

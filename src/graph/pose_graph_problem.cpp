@@ -1,5 +1,6 @@
 #include "graph/pose_graph_problem.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "roadstereo/error.hpp"
@@ -68,12 +69,17 @@ void PoseGraphProblem::add_level(std::size_t frame, const Eigen::Vector3d& up, d
                             nullptr, poses_[frame].rotation.coeffs().data());
 }
 
-void PoseGraphProblem::add_track_prior(const Eigen::Vector3d& fix_error_sd, double lever_arm_sd,
-                                       double time_offset_sd) {
+void PoseGraphProblem::add_track_prior(const Eigen::Vector3d& fix_error_sd, double lever_arm_sd, double time_offset_sd,
+                                       double max_time_offset_s) {
+  constexpr double least_s = 1e-6;
+  time_offset_sd = std::min(time_offset_sd, std::max(max_time_offset_s, least_s));
   const Eigen::Vector3d lever = Eigen::Vector3d::Constant(1 / lever_arm_sd);
   problem_.AddResidualBlock(prior<3>(fix_error_sd.cwiseInverse()), nullptr, track_.fix_error.data());
   problem_.AddResidualBlock(prior<3>(lever), nullptr, track_.lever_arm.data());
   problem_.AddResidualBlock(prior<1>(Eigen::Matrix<double, 1, 1>(1 / time_offset_sd)), nullptr, &track_.time_offset_s);
+  if (max_time_offset_s == 0) return;
+  problem_.SetParameterLowerBound(&track_.time_offset_s, 0, -max_time_offset_s);
+  problem_.SetParameterUpperBound(&track_.time_offset_s, 0, max_time_offset_s);
 }
 
 void PoseGraphProblem::hold(std::size_t frame) {

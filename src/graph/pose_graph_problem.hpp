@@ -30,8 +30,9 @@ class PoseGraphProblem {
   /// `count`: frames that share one error.
   void add_fix(std::size_t frame, const FixResidual& residual, double count);
   void add_level(std::size_t frame, const Eigen::Vector3d& up, double weight);
-  /// Expected size of what is estimated besides poses.
-  void add_track_prior(const Eigen::Vector3d& fix_error_sd, double lever_arm_sd, double time_offset_sd);
+  /// Expected size of what is estimated besides poses, and the largest offset of the clocks.
+  void add_track_prior(const Eigen::Vector3d& fix_error_sd, double lever_arm_sd, double time_offset_sd,
+                       double max_time_offset_s);
   void hold(std::size_t frame);
 
   void solve();

@@ -114,7 +114,7 @@ class Aligner {
     constexpr double coarse_s = 0.5, fine_s = 0.02;
     const double limit = options_.max_time_offset_s;
     const double near = search(0, limit, coarse_s, mirrored);
-    return search(near, std::min(coarse_s, limit), fine_s, mirrored);
+    return std::clamp(search(near, std::min(coarse_s, limit), fine_s, mirrored), -limit, limit);
   }
 
   /// The cost is −2 log of the likelihood for fixes of unknown noise, and of the expected time offset.
@@ -251,7 +251,7 @@ double recorded_s(std::span<const double> times_s, double max_gap_s) {
   for (const double time_s : times_s) {
     if (std::isnan(time_s)) continue;
     const double step_s = time_s - last_s;
-    if (step_s > 0 && step_s <= max_gap_s) sum_s += step_s;
+    if (step_s > 0) sum_s += std::min(step_s, max_gap_s);
     last_s = time_s;
   }
   return sum_s;

@@ -26,7 +26,8 @@ struct TrackAlignment {
   bool contradicts = false;                      ///< they do not fit
 };
 
-/// Time that frames cover: the sum of the steps between them that are no longer than `max_gap_s`. NaN are left out.
+/// Time that frames cover: the sum of the steps between them, of `max_gap_s` at most each: a longer one is a pause. NaN
+/// are left out.
 double recorded_s(std::span<const double> times_s, double max_gap_s);
 
 /// Fits the pieces of a trajectory to fixes: for every time offset the turn about the vertical and the shift of each

@@ -32,7 +32,12 @@ ImageHeader check_png(const std::string& path, Bytes bytes, std::vector<std::uin
 /// Checks all segments up to the end-of-image marker. Throws Error naming `path`.
 ImageHeader check_jpeg(const std::string& path, Bytes bytes);
 
-/// Checks that the strips or tiles of the first image are inside the file. Throws Error naming `path`.
+/// Checks that the strips or tiles of the first image are inside the file, and that it is stored upright. Throws Error
+/// naming `path`.
 ImageHeader check_tiff(const std::string& path, Bytes bytes);
+
+/// Checks that the compressed strips or tiles of the first image can be decoded: OpenCV leaves those black that cannot.
+/// Throws Error naming `path`. The size must have been checked.
+void check_tiff_decodes(const std::string& path, Bytes bytes);
 
 }  // namespace roadstereo::io

@@ -56,6 +56,7 @@ cv::Mat decode_checked(const std::string& path, const std::vector<std::uint8_t>&
     header = check_tiff(path, bytes);
   }
   check_size(path, header.width, header.height, smallest_side, max_side);
+  if (is_tiff(bytes)) check_tiff_decodes(path, bytes);
   return decode(path, essential.empty() ? bytes : essential);
 }
 

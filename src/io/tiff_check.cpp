@@ -12,6 +12,7 @@ enum Tag : std::uint16_t {
   image_height = 257,
   bits_per_sample = 258,
   strip_offsets = 273,
+  orientation = 274,
   samples_per_pixel = 277,
   strip_byte_counts = 279,
   tile_offsets = 324,
@@ -108,6 +109,11 @@ ImageHeader check_tiff(const std::string& path, Bytes bytes) {
   header.bits = static_cast<int>(directory.value(bits_per_sample, 1));
   header.channels = static_cast<int>(directory.value(samples_per_pixel, 1));
   header.is_float = directory.value(sample_format, 1) == 3;
+  constexpr std::size_t upright = 1;
+  if (const std::size_t stored = directory.value(orientation, upright); stored != upright) {
+    fail(path, ": the TIFF file has the orientation ", stored,
+         "; it must be 1, rows from the top and columns from the left");
+  }
   check_data(path, directory);
   return header;
 }

@@ -243,11 +243,11 @@ void close_gaps(std::vector<double>& heights, std::size_t max_gap) {
 /// Adds the sections of a run of heights without gaps, in equal parts of about the section's length.
 void add_sections(std::span<const double> heights, double sigma_m, double start_m, double spacing_m, double offset_m,
                   double section_m, std::vector<RoughnessSection>& sections) {
-  constexpr double min_length_m = 11.5, max_floor_share = 0.3;
+  constexpr double max_floor_share = 0.3;
   const double length = static_cast<double>(heights.size()) * spacing_m;
   const auto parts = static_cast<std::size_t>(std::max(1.0, std::floor(length / section_m)));
   const std::size_t count = heights.size() / parts;
-  if (static_cast<double>(count) * spacing_m < min_length_m) return;
+  if (count < min_roughness_samples(spacing_m)) return;
   for (std::size_t part = 0; part < parts; ++part) {
     RoughnessSection section;
     section.offset_m = offset_m;

@@ -251,16 +251,16 @@ std::size_t RoadMap::tiles() const {
   return state_->store.keys().size();
 }
 
-double suggested_cell_m(const DisparityPlane& road, const StereoCalibration& calibration) {
+double suggested_cell_m(const DisparityPlane& road, const StereoCalibration& calibration, int width, int height) {
   constexpr int step = 8;
-  const double height = ground_plane(road, calibration).height_m;
+  const double camera_height_m = ground_plane(road, calibration).height_m;
   std::vector<double> sizes;
-  for (int v = 0; v < calibration.height; v += step) {
-    for (int u = 0; u < calibration.width; u += step) {
+  for (int v = 0; v < height; v += step) {
+    for (int u = 0; u < width; u += step) {
       const double disparity = road.disparity(u, v) + calibration.disparity_offset_px;
       if (!(disparity > 0)) continue;
       const double z = calibration.focal_px * calibration.baseline_m / disparity;
-      sizes.push_back(std::sqrt(z * z * z / height) / calibration.focal_px);  // √(Z/f · Z²/(f·h))
+      sizes.push_back(std::sqrt(z * z * z / camera_height_m) / calibration.focal_px);  // √(Z/f · Z²/(f·h))
     }
   }
   if (sizes.empty()) fail("the road of the first frame is not in view");

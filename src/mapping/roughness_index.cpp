@@ -77,6 +77,11 @@ std::size_t smoothing_steps(double spacing_m) {
   return static_cast<std::size_t>(std::max(1L, std::lround(smoothing_m / spacing_m)));
 }
 
+/// Heights of the way over which the first slope is averaged.
+std::size_t start_samples(double spacing_m) {
+  return static_cast<std::size_t>(std::lround(start_m / spacing_m));
+}
+
 }  // namespace
 
 GoldenCarStep golden_car_step(double spacing_m) {
@@ -98,11 +103,14 @@ GoldenCarStep golden_car_step(double spacing_m) {
   return step;
 }
 
+std::size_t min_roughness_samples(double spacing_m) {
+  return start_samples(spacing_m) + smoothing_steps(spacing_m) + 1;
+}
+
 double roughness_index(std::span<const double> heights_m, double spacing_m) {
   require_range("profile", "spacing_m", spacing_m, 0.01, 0.5);
-  const std::size_t k = smoothing_steps(spacing_m);
-  const auto start = static_cast<std::size_t>(std::lround(start_m / spacing_m));
-  if (heights_m.size() <= start + k) {
+  const std::size_t k = smoothing_steps(spacing_m), start = start_samples(spacing_m);
+  if (heights_m.size() < min_roughness_samples(spacing_m)) {
     fail("the profile is ", static_cast<double>(heights_m.size()) * spacing_m, " m long; its index needs more than ",
          start_m, " m");
   }

@@ -230,7 +230,8 @@ class Linearisation {
  private:
   /// `offset_shape` (direct_alignment.hpp) of the points.
   HWY_INLINE Double shape_of_offset(Double u, Double disparity) const {
-    const Double x = hn::Div(hn::Sub(hn::Sub(u, disparity), all(calibration_.cx_px)), focal_);
+    const Double right_cx = all(calibration_.cx_px + calibration_.disparity_offset_px);
+    const Double x = hn::Div(hn::Sub(hn::Sub(u, disparity), right_cx), focal_);
     return hn::MulAdd(x, x, all(1));
   }
 

@@ -29,9 +29,10 @@ struct Alignment {
   double shutter_sd = 0;
 };
 
-/// Scale of the disparity offset at column u: a right camera that is yawed by θ shifts disparities by f·θ·(1 + x²).
+/// Scale of the disparity offset at column u: a right camera that is yawed by θ shifts disparities by f·θ·(1 + x²), x
+/// in the right camera, whose principal point is at cx + doffs.
 inline double offset_shape(const StereoCalibration& calibration, double u, double disparity_px) {
-  const double x = (u - disparity_px - calibration.cx_px) / calibration.focal_px;
+  const double x = (u - disparity_px - calibration.cx_px - calibration.disparity_offset_px) / calibration.focal_px;
   return 1 + x * x;
 }
 

@@ -92,7 +92,8 @@ class FrameStages {
                                        const PerspectiveShift& shift, ImageView<const std::uint8_t> mask) = 0;
   /// reject_off_road; the step before must have run.
   virtual ImageView<const float> reject_off_road(ImageView<const float> disparity, const DisparityPriorView& scene,
-                                                 const PerspectiveShift& shift, const OffRoadOptions& options) = 0;
+                                                 const PerspectiveShift& shift, const OffRoadOptions& options,
+                                                 ImageView<const std::uint8_t> mask) = 0;
   /// Subtracts the bias of the rig, if any: returns the disparity map ℓ.
   virtual ImageView<const float> subtract_bias(ImageView<const float> disparity,
                                                const std::optional<RigBias>& bias) = 0;

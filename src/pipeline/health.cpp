@@ -54,7 +54,7 @@ double beyond_quadratic(const std::vector<RowSample>& samples, const DamageMap& 
 void measure_rectification(const FrameResult& frame, const DamageMap& damage,
                            const std::optional<StereoCalibration>& calibration, int threads, PairHealth& health) {
   constexpr double share = 0.9;
-  const std::vector<RowSample> samples = sample_row_alignment(frame.grey, frame.right, threads);
+  const std::vector<RowSample> samples = sample_row_alignment(frame.grey, frame.right, threads, frame.mask);
   const auto fit = fit_rectification_error(samples, frame.grey.width(), frame.grey.height(), calibration);
   if (!fit) return;
   const auto& [offset, scale, turn, right, both] = fit->value;

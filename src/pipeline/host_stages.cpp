@@ -142,8 +142,9 @@ class HostStages final : public FrameStages {
 
   /// In place.
   ImageView<const float> reject_off_road(ImageView<const float>, const DisparityPriorView& scene,
-                                         const PerspectiveShift& shift, const OffRoadOptions& options) override {
-    roadstereo::reject_off_road(correlation_, scene, shift, options, threads_, disparity_, sigma_);
+                                         const PerspectiveShift& shift, const OffRoadOptions& options,
+                                         ImageView<const std::uint8_t> mask) override {
+    roadstereo::reject_off_road(correlation_, scene, shift, mask, options, threads_, disparity_, sigma_);
     return disparity_;
   }
 

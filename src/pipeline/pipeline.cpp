@@ -216,7 +216,7 @@ bool Pipeline::State::rows_are_due() const {
 void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
   constexpr double max_offset_px = 0.5;
   constexpr double max_spread_px = 1.0;
-  result.rows = measure_row_alignment(grey.left, grey.right, threads);
+  result.rows = measure_row_alignment(grey.left, grey.right, threads, mask);
   carried.frames_since_rows = 0;
   if (!result.rows.known()) {
     if (of == Rows::of_new_road) {
@@ -353,7 +353,7 @@ ImageView<const float> Pipeline::State::reject_off_road(ImageView<const float> d
                                                         const DisparityPriorView& scene) {
   const StageTimer timer(result.ms.refinement);
   if (scene.disparity.empty()) return disparity;
-  return stages->reject_off_road(disparity, scene, result.shift, options.off_road);
+  return stages->reject_off_road(disparity, scene, result.shift, options.off_road, mask);
 }
 
 ImageView<const float> Pipeline::State::subtract_bias(ImageView<const float> disparity) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -12,7 +13,7 @@ class SyntheticTexture {
  public:
   SyntheticTexture(int width, int height, double white_level, bool right)
       : width_(width), height_(height), samples_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
-    const double white = white_level > 0 ? white_level : 65535;
+    const double white = white_level > 0 ? std::max(white_level, 1.0) : 65535;
     auto sample = samples_.begin();
     for (int v = 0; v < height; ++v) {
       const int shift = right ? (width + width * v / height) / 32 : 0;

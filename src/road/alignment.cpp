@@ -11,6 +11,7 @@
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
 #include "road/block_alignment.hpp"
+#include "road/masked_blocks.hpp"
 #include "road/plane_fit.hpp"
 #include "road/row_offset_fit.hpp"
 #include "road/strip_correlation.hpp"
@@ -30,6 +31,7 @@ struct Pyramid {
   ImageView<const std::int16_t> left, right;
   int factor;
   GreyImage small_left, small_right;
+  MaskedBlocks masked;  ///< of the small left image
 };
 
 /// The surroundings of a pixel under a 3×3 binomial filter: interpolating them does not smooth them much further, so
@@ -89,15 +91,17 @@ bool inside(ImageView<const std::int16_t> image, int u, int v) {
   return u >= half_block && v >= half_block && u + half_block < image.width() && v + half_block < image.height();
 }
 
-/// The place of a cell whose rows differ most: only there a vertical offset can be seen.
-std::optional<Place> best_place(ImageView<const std::int16_t> image, int u0, int v0, int u1, int v1) {
+/// The place of a cell whose rows differ most, with no masked pixel around it: only there a vertical offset can be
+/// seen.
+std::optional<Place> best_place(ImageView<const std::int16_t> image, const MaskedBlocks& masked, int u0, int v0, int u1,
+                                int v1) {
   Place best;
   int strongest = 0;
   for (int v = std::max(v0, half_block + 1); v < std::min(v1, image.height() - half_block - 1); v += 2) {
     for (int u = std::max(u0, half_block + 1); u < std::min(u1, image.width() - half_block - 1); u += 2) {
       const int down = std::abs(image(u, v + 1) - image(u, v - 1));
       const int across = std::abs(image(u + 1, v) - image(u - 1, v));
-      if (std::min(down, across) > strongest) {
+      if (std::min(down, across) > strongest && !masked.contains(u, v, half_block, half_block)) {
         strongest = std::min(down, across);
         best = {u, v};
       }
@@ -159,7 +163,7 @@ std::vector<RowSample> measure_cells(const Pyramid& pair, int cell_v) {
   std::vector<RowSample> samples;
   Strip strip{};
   for (int cell_u = 0; cell_u < cells_across; ++cell_u) {
-    const auto place = best_place(pair.small_left, cell_u * pair.small_left.width() / cells_across,
+    const auto place = best_place(pair.small_left, pair.masked, cell_u * pair.small_left.width() / cells_across,
                                   cell_v * pair.small_left.height() / cells_down,
                                   (cell_u + 1) * pair.small_left.width() / cells_across,
                                   (cell_v + 1) * pair.small_left.height() / cells_down);
@@ -191,9 +195,9 @@ int alignment_factor(int width) {
 }  // namespace
 
 std::vector<RowSample> sample_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                            int threads) {
+                                            int threads, ImageView<const std::uint8_t> mask) {
   const int factor = alignment_factor(left.width());
-  const Pyramid pair{left, right, factor, downsample(left, factor), downsample(right, factor)};
+  const Pyramid pair{left, right, factor, downsample(left, factor), downsample(right, factor), {mask, factor}};
   std::vector<std::vector<RowSample>> by_row(cells_down);
   parallel_for(cells_down, threads,
                [&](int cell_v, int) { by_row[static_cast<std::size_t>(cell_v)] = measure_cells(pair, cell_v); });
@@ -202,9 +206,9 @@ std::vector<RowSample> sample_row_alignment(ImageView<const std::int16_t> left, 
   return samples;
 }
 
-RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                                   int threads) {
-  const std::vector<RowSample> samples = sample_row_alignment(left, right, threads);
+RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int threads,
+                                   ImageView<const std::uint8_t> mask) {
+  const std::vector<RowSample> samples = sample_row_alignment(left, right, threads, mask);
   std::vector<double> offsets;
   offsets.reserve(samples.size());
   for (const RowSample& sample : samples) offsets.push_back(sample.dv);

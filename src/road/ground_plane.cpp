@@ -22,12 +22,12 @@ std::array<double, 3> RoadAxes::to_road(const std::array<double, 3>& point_m) co
   return {dot(x), dot(y), dot(z)};
 }
 
-GroundPlaneError ground_plane_error(const DisparityPlane& model, const StereoCalibration& calibration,
-                                    double deviation_px) {
-  const double row_sigma = calibration.height / std::sqrt(12.0), column_sigma = calibration.width / std::sqrt(12.0);
+GroundPlaneError ground_plane_error(const DisparityPlane& model, const StereoCalibration& calibration, int width,
+                                    int height, double deviation_px) {
+  const double row_sigma = height / std::sqrt(12.0), column_sigma = width / std::sqrt(12.0);
   const double by_row = deviation_px / row_sigma, by_column = deviation_px / column_sigma;
   const GroundPlane plane = ground_plane(model, calibration);
-  const double middle_v = 0.5 * (calibration.height - 1), middle_u = 0.5 * (calibration.width - 1);
+  const double middle_v = 0.5 * (height - 1), middle_u = 0.5 * (width - 1);
   GroundPlaneError error;
   for (const DisparityPlane& change :
        {DisparityPlane{deviation_px, 0, 0}, DisparityPlane{-by_row * middle_v, by_row, 0},

@@ -34,7 +34,9 @@ inline double downsampled_correlation(double correlation, int factor) {
 inline MatcherOptions adapt_support(MatcherOptions options, double correlation) {
   if (!options.adapt_support || correlation <= 0) return options;
   options.block_radius = adapt_radius(options.block_radius, correlation);
-  options.prior_weight = std::min(support_scale(correlation) * options.prior_weight, 10.0);
+  constexpr double most = 10;  // unless more is asked for
+  options.prior_weight =
+      std::max(options.prior_weight, std::min(support_scale(correlation) * options.prior_weight, most));
   return options;
 }
 

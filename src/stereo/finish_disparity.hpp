@@ -18,12 +18,13 @@ struct FinishSettings {
 
 /// Returns the disparity of a winner (−1: none), NaN where it is invalid; adds to `variance` where the check fails. The
 /// shift of the perspective transformation depends on the target pixel alone, so that it cancels in the check.
-/// `target_winner` is the winner of the target pixel that it meets, `offset` its sub-pixel offset, NaN without two
-/// neighbours.
+/// `target_winner` is the winner of the target pixel that it meets (−1: none, which fails the check), `offset` its
+/// sub-pixel offset, NaN without two neighbours.
 ROADSTEREO_HD inline float finish_disparity(int winner, int target_winner, float offset, const FinishSettings& settings,
                                             float& variance) {
   if (winner < 0) return NAN;
-  if (settings.left_right_check && fabsf(static_cast<float>(winner - target_winner)) > settings.lr_max_diff_px) {
+  const float difference = fabsf(static_cast<float>(winner - target_winner));
+  if (settings.left_right_check && (target_winner < 0 || difference > settings.lr_max_diff_px)) {
     if (settings.occlusion_variance == 0) return NAN;
     variance += settings.occlusion_variance;
   }

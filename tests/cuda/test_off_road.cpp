@@ -17,7 +17,7 @@ class CudaOffRoad : public test::OnDevice {};
 /// Returns the number of pixels that are rejected.
 int expect_as_on_host(const test::StreetMaps& maps) {
   test::StreetMaps expected = maps;
-  reject_off_road(maps.correlation, maps.scene.view(), maps.shift, {1.0}, 1, expected.disparity, expected.sigma);
+  reject_off_road(maps.correlation, maps.scene.view(), maps.shift, {}, {1.0}, 1, expected.disparity, expected.sigma);
   const test::DevicePlane<float> scene(maps.scene.disparity), correlation(maps.correlation), disparity(maps.disparity),
       sigma(maps.sigma);
   cuda::OffRoad off_road;

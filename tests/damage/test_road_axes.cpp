@@ -89,11 +89,11 @@ TEST(RoadAxes, PointsOfDisparityModelLieOnRoad) {
 /// Straight down from 2 m, f = 600 px, b = 0.1 m: d = 30 px. A tenth of a pixel is 2 m / 300; over the standard
 /// deviation of the rows it tilts by 0.1/138.6 px a row, 600/30 times that in radians, and so do the columns.
 TEST(GroundPlane, ErrorOfDeviatingSurface) {
-  const StereoCalibration rig{600, 319.5, 239.5, 0.1, 0, 640, 480};
-  const GroundPlaneError error = ground_plane_error({30, 0, 0}, rig, 0.1);
+  const StereoCalibration rig{600, 319.5, 239.5, 0.1};  // as of files without a size
+  const GroundPlaneError error = ground_plane_error({30, 0, 0}, rig, 640, 480, 0.1);
   EXPECT_NEAR(error.height_m, 2.0 / 300, 0.01 * 2 / 300);
   EXPECT_NEAR(error.pitch_rad, std::hypot(0.1 * std::sqrt(12.0) / 480 * 20, 0.1 * std::sqrt(12.0) / 640 * 20), 1e-4);
-  EXPECT_EQ(ground_plane_error({30, 0, 0}, rig, 0).height_m, 0);
+  EXPECT_EQ(ground_plane_error({30, 0, 0}, rig, 640, 480, 0).height_m, 0);
 }
 
 }  // namespace

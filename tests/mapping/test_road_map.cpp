@@ -283,7 +283,9 @@ TEST_F(RoadMapTest, SuggestsCellsThatMapsCanHave) {
   const TestFrame view(looking_down(0, 0, 2), {}, 0, 1);
   StereoCalibration fine = view.frame.calibration;
   fine.focal_px *= 1000;
-  EXPECT_DOUBLE_EQ(suggested_cell_m({view.frame.road.a0 * 1000, 0, 0}, fine), 0.0005);
+  fine.width = fine.height = 0;  // as of files without a size
+  const Image<float>& map = view.frame.disparity;
+  EXPECT_DOUBLE_EQ(suggested_cell_m({view.frame.road.a0 * 1000, 0, 0}, fine, map.width(), map.height()), 0.0005);
 }
 
 TEST_F(RoadMapTest, RejectsWrongSizesAndPoses) {

@@ -16,7 +16,8 @@ namespace {
 using Cells = test::StreetMaps::Cells;
 
 test::StreetMaps reject(test::StreetMaps maps, double max_sigma_px = 1, int threads = 1) {
-  reject_off_road(maps.correlation, maps.scene.view(), maps.shift, {max_sigma_px}, threads, maps.disparity, maps.sigma);
+  reject_off_road(maps.correlation, maps.scene.view(), maps.shift, {}, {max_sigma_px}, threads, maps.disparity,
+                  maps.sigma);
   return maps;
 }
 

@@ -15,12 +15,14 @@ namespace {
 
 /// The road's deviation from its plane is what its noise does not explain. It is the difference of two variances that
 /// are estimated themselves, from some hundred independent samples: not known to be less than a tenth.
-void record_plane_error(const std::optional<StereoCalibration>& calibration, io::FlightFrame& frame) {
+void record_plane_error(const std::optional<StereoCalibration>& calibration, const Image<float>& disparity,
+                        io::FlightFrame& frame) {
   if (!calibration || !std::isfinite(frame.height_m)) return;
   constexpr double least_share = 0.1;
   const double noise_px = std::isfinite(frame.noise_px) ? frame.noise_px : 0, all_px = frame.sigma_d_px;
   const double deviation_px = std::sqrt(std::max(all_px * all_px - noise_px * noise_px, least_share * all_px * all_px));
-  const GroundPlaneError error = ground_plane_error(frame.road, *calibration, deviation_px);
+  const GroundPlaneError error =
+      ground_plane_error(frame.road, *calibration, disparity.width(), disparity.height(), deviation_px);
   frame.height_stderr_m = error.height_m;
   frame.pitch_stderr_rad = error.pitch_rad;
 }
@@ -32,7 +34,7 @@ void record_damage(const std::optional<StereoCalibration>& calibration, const Da
     job.frame.noise_px = job.damage.noise_px;
   }
   job.frame.rig_bias = measure_rig_bias(job.result, job.damage);
-  record_plane_error(calibration, job.frame);
+  record_plane_error(calibration, job.result.disparity, job.frame);
   job.frame.damages = job.damage.damages;
   job.frame.candidates = job.damage.candidates;
 }

@@ -47,7 +47,7 @@ double median_or_unknown(std::vector<double> values) {
 
 void FlightHealth::add(const io::FlightFrame& frame) {
   ++frames_;
-  if (std::isfinite(frame.time_s)) times_s_.push_back(frame.time_s);
+  times_s_.push_back(frame.time_s);
   if (frame.status != io::FrameStatus::good) {
     ++without_result_;
     return;
@@ -71,14 +71,26 @@ double FlightHealth::vibration_px() const {
 }
 
 double FlightHealth::missing_pairs() const {
-  std::vector<double> periods;
-  for (std::size_t i = 1; i < times_s_.size(); ++i) periods.push_back(times_s_[i] - times_s_[i - 1]);
+  std::vector<double> steps, untimed;  // between frames with a time, and how many without one lie there
+  double last_s = std::numeric_limits<double>::quiet_NaN(), without_time = 0;
+  for (const double time_s : times_s_) {
+    if (!std::isfinite(time_s) || time_s <= last_s) {  // or a time that cannot be
+      ++without_time;
+      continue;
+    }
+    if (std::isfinite(last_s)) {
+      steps.push_back(time_s - last_s);
+      untimed.push_back(without_time);
+    }
+    last_s = time_s;
+    without_time = 0;
+  }
   constexpr double max_missing_periods = 10;  // a longer gap is a pause of the recording
   double missing = 0;
-  const double period = median_or_unknown(periods);
-  for (const double gap : periods) {
-    const bool is_gap = period > 0 && gap > 1.5 * period && gap <= max_missing_periods * period;
-    if (is_gap) missing += std::round(gap / period) - 1;
+  const double period = median_or_unknown(steps);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const bool is_gap = period > 0 && steps[i] > 1.5 * period && steps[i] <= max_missing_periods * period;
+    if (is_gap) missing += std::max(0.0, std::round(steps[i] / period) - 1 - untimed[i]);
   }
   return missing;
 }

@@ -34,7 +34,7 @@ class FlightHealth {
   std::int64_t frames_ = 0, without_result_ = 0;
   std::vector<PairHealth> of_frames_;
   std::vector<HealthFinding> of_trajectory_;
-  std::vector<double> times_s_;
+  std::vector<double> times_s_;  // not finite: unknown
   std::map<std::string, std::int64_t> frames_with_;
 };
 

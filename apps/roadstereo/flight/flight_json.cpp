@@ -142,6 +142,7 @@ std::string flight_json(const FlightSettings& settings, const FlightRun& run, co
   document["damage_ms"] = range_json(summary.damage_ms);
   document["health"] = flight_health_json(summary.health);
   document["rig_bias"] = rig_bias_json(summary.rig_bias);
+  document["crs"] = run.crs.empty() ? Json(nullptr) : Json(run.crs);
   document["run"] = run_json(run);
   return json_text(document);
 }

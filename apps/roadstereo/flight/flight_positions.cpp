@@ -82,8 +82,9 @@ double FlightPositions::station_at(const io::GeoPosition& position) {
 void FlightPositions::locate(io::RoadDamage& damage) const {
   const auto frame = std::lower_bound(frames_.begin(), frames_.end(), damage.frame,
                                       [](const io::GeoFrame& one, std::int64_t index) { return one.index < index; });
-  if (frame == frames_.end() || frame->index != damage.frame || !frame->position) return;
+  if (frame == frames_.end() || frame->index != damage.frame) return;
   damage.time_s = frame->time_s;
+  if (!frame->position) return;
   damage.station_m = frame->station_m;
   damage.position = position_of(damage.best, frame->position, frame->height_m);
   if (!damage.best.metrics) return;

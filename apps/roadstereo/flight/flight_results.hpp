@@ -29,6 +29,7 @@ struct FlightRun {
   double seconds = 0;            ///< of this run
   double frames_per_second = 0;  ///< of this run, from the first frame to the last
   std::int64_t resumed_at = 0;   ///< number of frames done by earlier runs
+  std::string crs;               ///< of the poses of the trajectory; empty: those of cameras
   std::optional<io::ReportedMap> map;
   std::string no_map_reason;  ///< why --map made none
 };

@@ -88,8 +88,9 @@ void DamageList::begin(const Damage& damage, const LiveView& view) {
 void DamageList::add(const LiveView& view) {
   // Maximum time between two sightings of a damage: that of three views, at least.
   constexpr double min_memory_s = 1, min_memory_views = 3;
-  const double memory_s = std::max(min_memory_s, min_memory_views * interval_s_);
-  if (last_view_) interval_s_ = seconds_between(*last_view_, view.arrival);
+  const double since_last_s = last_view_ ? seconds_between(*last_view_, view.arrival) : 0;
+  const double memory_s = std::max(min_memory_s, min_memory_views * (interval_s_ > 0 ? interval_s_ : since_last_s));
+  interval_s_ = since_last_s;
   last_view_ = view.arrival;
   tracks_.erase(
       std::remove_if(tracks_.begin(), tracks_.end(),

@@ -84,6 +84,7 @@ void live(const LiveCommandArguments& arguments, const NamedOpener& opener) {
   session.start();
   watch(arguments, session, start, *signals);
   signals.reset();
+  const std::string last_message = session.board().status().message;
   session.end();
   server.reset();
   LiveSummary summary{session.description(), seconds_between(start, Clock::now()), session.board().status(),
@@ -91,6 +92,10 @@ void live(const LiveCommandArguments& arguments, const NamedOpener& opener) {
   fmt::print("{}", arguments.json ? summary_json(summary) : summary_text(summary));
   const std::string& stopped = summary.status.recording.message;
   if (!stopped.empty()) fail<SystemError>(arguments.record, ": ", stopped);
+  const LiveCounts& counts = summary.status.counts;
+  if (counts.rejected > 0 && counts.rejected == counts.taken) {
+    fail("none of the ", counts.taken, " pairs could be matched: ", last_message);
+  }
 }
 
 constexpr const char* footer =
@@ -125,7 +130,9 @@ void add_options(CLI::App& command, LiveCommandArguments& arguments) {
       ->required()
       ->expected(1, 2);
   add_calibration_option(command, arguments.calibration);
-  command.add_option("--record", arguments.record, "New folder for the raw pairs")->type_name("DIR");
+  command.add_option("--record", arguments.record, "New folder for the raw pairs")
+      ->type_name("DIR")
+      ->check([](const std::string& name) { return name.empty() ? "the name of the folder is empty" : ""; });
   command.add_option("--serve", arguments.serve, "Serve a web page at this port")->type_name("[HOST:]PORT");
   command.add_option("--dds", arguments.dds_domain, "Publish the results to the ROS 2 nodes of this domain, by DDS")
       ->type_name("DOMAIN")

@@ -41,6 +41,20 @@ LiveSession::LiveSession(const LiveOptions& options, SourceOpener opener) : boar
 }
 
 void LiveSession::start() {
+  try {
+    start_threads();
+  } catch (...) {  // the system may refuse a thread: what the others wait for ends
+    captured_.close();
+    if (!matching_.joinable()) processing_->match();
+    if (!finishing_.joinable()) processing_->finish();
+    for (std::thread* const thread : {&matching_, &finishing_, &following_}) {
+      if (thread->joinable()) thread->join();
+    }
+    throw;
+  }
+}
+
+void LiveSession::start_threads() {
   const auto set_finished = [this] { finished_ = true; };
   following_ = std::thread([=, this] {
     lower_priority();

@@ -35,7 +35,7 @@ class LiveSession {
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
 
-  /// Starts the threads.
+  /// Starts the threads. Throws std::system_error if the system refuses one.
   void start();
 
   LiveBoard& board() { return board_; }
@@ -51,6 +51,7 @@ class LiveSession {
  private:
   void start_recorder(const LiveOptions& options, const io::FrameSource& source);
 
+  void start_threads();
   void join();
 
   LiveBoard board_;

@@ -211,7 +211,7 @@ class MapBuilder {
       const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
       if (!result.roll_found || !result.road.has_road()) return add_reason("there is no road: " + result.road.reason);
       const DisparityPlane& road = result.geometry.plane;
-      if (days_.empty()) set_axes(road, pose, calibration);
+      if (days_.empty()) set_axes(result, pose, calibration);
       const RigidTransform camera_to_map = compose(state_.world_to_map, pose.camera_to_world);
       pipeline.find_damage(damage_);
       MappedFrame mapped{state_.pass,
@@ -269,8 +269,10 @@ class MapBuilder {
 
   /// Sets cells and axes: those of the road under the first camera, or with --crs those of the trajectory, with an
   /// origin at a whole number of metres.
-  void set_axes(const DisparityPlane& road, const FramePose& pose, const StereoCalibration& calibration) {
-    state_.cell_m = plan_.cell_m > 0 ? plan_.cell_m : suggested_cell_m(road, calibration);
+  void set_axes(const FrameResult& first, const FramePose& pose, const StereoCalibration& calibration) {
+    const DisparityPlane& road = first.geometry.plane;
+    const int width = first.disparity.width(), height = first.disparity.height();
+    state_.cell_m = plan_.cell_m > 0 ? plan_.cell_m : suggested_cell_m(road, calibration, width, height);
     map_options_ = map_options(state_.cell_m);
     if (plan_.crs.empty()) {
       state_.world_to_map = compose(camera_to_road(road, calibration), inverse(pose.camera_to_world));

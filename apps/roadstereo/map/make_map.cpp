@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "flight/flight_folder.hpp"
 #include "io/geo/map_crs.hpp"
 #include "map/build_map.hpp"
 #include "map/map_files.hpp"
@@ -36,12 +37,15 @@ BuiltMap built_map(const MapPlan& plan, const std::filesystem::path& tiles, cons
   std::error_code ignored;
   std::filesystem::remove_all(tiles, ignored);
   fail("none of the ", built.frames, " frames with a pose has a road",
-       built.reasons.empty() ? std::string() : ": " + built.reasons.front());
+       fmt::format("{}{}", built.reasons.empty() ? "" : ": ", fmt::join(built.reasons, "; ")));
 }
 
 }  // namespace
 
 MapSummary make_map(const MapPlan& plan, const StopSignals& stop) {
+  if (is_flight_folder(plan.output) || is_pair_folder(plan.output)) {
+    fail(plan.output.string(), ": this folder has the results of inspect; choose another one for a map");
+  }
   io::OutputFolder folder(plan.output);  // fails early
   if (!plan.crs.empty()) static_cast<void>(io::map_wkt({.crs = plan.crs}));
   for (const MapPass& pass : plan.passes) {

@@ -16,6 +16,7 @@ struct MapPass {
   io::SourceOptions source_options;
   std::vector<std::string> calibration;  ///< empty: that of the source
   std::string trajectory;                ///< file of the poses
+  std::string crs;                       ///< of the poses of a run; empty: none, or unknown
   PipelineOptions options;
   bool find_white_level = true;  ///< determines it from the first valid pair of a 16-bit source
   Image<std::uint8_t> mask;      ///< not 0 left out; empty: none

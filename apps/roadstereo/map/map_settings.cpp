@@ -20,6 +20,12 @@ void reject_run_options(const MapSettings& settings) {
   if (settings.processing.preset != ProcessingSettings().preset) reject("--preset");
 }
 
+/// The poses of a run are in its own system, whatever --crs says.
+void require_own_crs(const std::string& folder, const MapPass& run, const std::string& crs) {
+  if (run.crs.empty() || crs.empty() || run.crs == crs) return;
+  fail(folder, ": the poses of this run are in ", run.crs, "; --crs is ", crs);
+}
+
 std::vector<MapPass> runs_of(const MapSettings& settings) {
   reject_run_options(settings);
   const std::vector<std::string>& trajectory = settings.trajectory;
@@ -36,7 +42,11 @@ std::vector<MapPass> runs_of(const MapSettings& settings) {
   std::vector<MapPass> passes;
   for (const std::string& folder : settings.source) {
     passes.push_back(read_run(folder));
-    if (!trajectory.empty()) passes.back().trajectory = trajectory[passes.size() - 1];
+    if (trajectory.empty()) {
+      require_own_crs(folder, passes.back(), settings.crs);
+    } else {
+      passes.back().trajectory = trajectory[passes.size() - 1];
+    }
     passes.back().options.threads = settings.processing.threads;
     passes.back().options.damage.severity = options.damage.severity;
     if (options.rig_bias) passes.back().options.rig_bias = options.rig_bias;

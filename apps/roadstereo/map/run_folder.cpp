@@ -51,6 +51,7 @@ MapPass pass_of(const fs::path& folder, const Json& summary) {
   source.max_time_difference_ms = inputs.at("max_time_difference_ms").get<double>();
   source.rate_hz = inputs.at("rate_hz").get<double>();
   pass.source_options = make_source_options(source);
+  if (const Json& crs = summary.at("crs"); !crs.is_null()) pass.crs = crs.get<std::string>();
   pass.time_offset_s = inputs.at("track_offset_s").get<double>();
   const std::string mask = inputs.at("mask").get<std::string>();
   if (!mask.empty()) pass.mask = read_mask(input_path(folder, mask), 255);

@@ -17,12 +17,13 @@ namespace {
 constexpr double width = 720, min_height = 220, max_height = 620, margin = 46;  // of the drawing
 constexpr double label_width = 26, label_height = 18;
 
-/// Equirectangular projection around the middle of the positions.
+/// Equirectangular projection around the middle of the positions. Longitudes are those within half a turn of the first.
 class Projection {
  public:
-  explicit Projection(const std::vector<std::array<double, 2>>& points_deg) {
+  explicit Projection(const std::vector<std::array<double, 2>>& points_deg) : first_lon_deg_(points_deg.front()[0]) {
     std::array<double, 2> low = points_deg.front(), high = low;
-    for (const auto& point : points_deg) {
+    for (const auto& [lon_deg, lat_deg] : points_deg) {
+      const std::array<double, 2> point{near_first(lon_deg), lat_deg};
       for (std::size_t k = 0; k < 2; ++k) {
         low[k] = std::min(low[k], point[k]);
         high[k] = std::max(high[k], point[k]);
@@ -38,13 +39,19 @@ class Projection {
   }
 
   std::array<double, 2> at(double lon_deg, double lat_deg) const {
-    return {0.5 * width + (lon_deg - middle_[0]) * metres_[0] * scale_,
+    return {0.5 * width + (near_first(lon_deg) - middle_[0]) * metres_[0] * scale_,
             0.5 * height_ - (lat_deg - middle_[1]) * metres_[1] * scale_};
   }
   double height() const { return height_; }
   double pixels_per_metre() const { return scale_; }
 
  private:
+  double near_first(double lon_deg) const {
+    constexpr double turn_deg = 360;
+    return first_lon_deg_ + std::remainder(lon_deg - first_lon_deg_, turn_deg);
+  }
+
+  double first_lon_deg_;
   std::array<double, 2> metres_{}, middle_{};
   double scale_ = 1, height_ = min_height;
 };

@@ -37,18 +37,19 @@ std::array<double, 36> turned(const std::array<double, 36>& covariance, const cv
 std::optional<RosPose> RoadOdometry::add(const FramePose& pose, const std::optional<DisparityPlane>& road) {
   const cv::Matx33d to_world = rotation_of(pose.camera_to_world);
   const cv::Vec3d position = translation_of(pose.camera_to_world);
-  if (piece_ != pose.piece) {
+  auto known = world_to_odom_.find(pose.piece);
+  if (known == world_to_odom_.end()) {
     if (!road) return std::nullopt;
     const RoadAxes axes = road_axes(ground_plane(*road, calibration_));
     const cv::Matx33d to_road(axes.x[0], axes.x[1], axes.x[2], axes.y[0], axes.y[1], axes.y[2], axes.z[0], axes.z[1],
                               axes.z[2]);
     const cv::Matx33d turn = to_road * to_world.t();
     const cv::Vec3d foot(axes.origin_m.data());
-    world_to_odom_ = joined(turn, -(turn * position) - to_road * foot);
-    piece_ = pose.piece;
+    known = world_to_odom_.emplace(pose.piece, joined(turn, -(turn * position) - to_road * foot)).first;
   }
-  const cv::Matx33d turn = rotation_of(world_to_odom_) * to_world;
-  const cv::Vec3d moved = rotation_of(world_to_odom_) * position + translation_of(world_to_odom_);
+  const std::array<double, 12>& world_to_odom = known->second;
+  const cv::Matx33d turn = rotation_of(world_to_odom) * to_world;
+  const cv::Vec3d moved = rotation_of(world_to_odom) * position + translation_of(world_to_odom);
   return RosPose{joined(turn, moved), turned(pose.covariance, turn)};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 
 #include "io/ros/flight_messages.hpp"
@@ -22,8 +23,7 @@ class RoadOdometry {
 
  private:
   StereoCalibration calibration_;
-  std::optional<int> piece_;
-  std::array<double, 12> world_to_odom_{};  // 3×4, row-major
+  std::map<int, std::array<double, 12>> world_to_odom_;  // 3×4, row-major, of each piece
 };
 
 }  // namespace roadstereo::io

@@ -178,7 +178,8 @@ class DeviceStages final : public FrameStages {
   }
 
   ImageView<const float> reject_off_road(ImageView<const float>, const DisparityPriorView& scene,
-                                         const PerspectiveShift& shift, const OffRoadOptions& options) override {
+                                         const PerspectiveShift& shift, const OffRoadOptions& options,
+                                         ImageView<const std::uint8_t>) override {
     off_road_.run({scene.disparity, scene.factor, shift}, correlation_, static_cast<float>(options.max_sigma_px),
                   maps_.disparity(), maps_.sigma(), stream());
     return maps_.disparity();

@@ -7,6 +7,7 @@
 
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
+#include "core/require_size.hpp"
 #include "core/scratch.hpp"
 #include "road/off_road/confirmation.hpp"
 #include "roadstereo/error.hpp"
@@ -30,12 +31,17 @@ struct CellMap {
   const T* row(int j) const { return values.data() + std::ptrdiff_t{j} * columns; }
 };
 
-void sum_log_sigmas(ImageView<const float> sigma, int threads, CellMap<LogSigmas>& cells) {
+/// Leaves out masked pixels.
+void sum_log_sigmas(ImageView<const float> sigma, ImageView<const std::uint8_t> mask, int threads,
+                    CellMap<LogSigmas>& cells) {
   parallel_rows(cells.rows, cell_rows_per_band, threads, [&](int first, int last, int) {
     for (int v = first * alignment_cell; v < std::min(last * alignment_cell, sigma.height()); ++v) {
       const float* const errors = sigma.row(v);
+      const std::uint8_t* const masked = mask.empty() ? nullptr : mask.row(v);
       LogSigmas* const of_cell = cells.row(v / alignment_cell);
-      for (int u = 0; u < sigma.width(); ++u) of_cell[u / alignment_cell].add({log_sigma(errors[u]), 1});
+      for (int u = 0; u < sigma.width(); ++u) {
+        if (masked == nullptr || masked[u] == 0) of_cell[u / alignment_cell].add({log_sigma(errors[u]), 1});
+      }
     }
   });
 }
@@ -54,9 +60,10 @@ void sum_around(const CellMap<LogSigmas>& cells, int j, LogSigmas* of_columns, L
 }
 
 void assess_cells(const CoarseScene& scene, ImageView<const float> correlation, ImageView<const float> disparity,
-                  ImageView<const float> sigma, float log2_max_sigma, int threads, CellMap<CellState>& states) {
+                  ImageView<const float> sigma, ImageView<const std::uint8_t> mask, float log2_max_sigma, int threads,
+                  CellMap<CellState>& states) {
   CellMap<LogSigmas> cells(states.columns, states.rows);
-  sum_log_sigmas(sigma, threads, cells);
+  sum_log_sigmas(sigma, mask, threads, cells);
   const auto columns = static_cast<std::size_t>(states.columns);
   auto memory = scratch_vector<LogSigmas>(2 * columns * static_cast<std::size_t>(resolve_threads(threads)));
   parallel_rows(states.rows, cell_rows_per_band, threads, [&](int first, int last, int worker) {
@@ -145,12 +152,14 @@ void OffRoadOptions::validate() const {
 }
 
 void reject_off_road(ImageView<const float> correlation, const DisparityPriorView& scene, const PerspectiveShift& shift,
-                     const OffRoadOptions& options, int threads, Image<float>& disparity, Image<float>& sigma) {
+                     ImageView<const std::uint8_t> mask, const OffRoadOptions& options, int threads,
+                     Image<float>& disparity, Image<float>& sigma) {
   options.validate();
   require_sizes(correlation, scene, disparity, sigma);
+  require_mask_size({mask.width(), mask.height()}, {disparity.width(), disparity.height()});
   if (options.max_sigma_px == 0) return;
   CellMap<CellState> states(correlation.width(), correlation.height());
-  assess_cells({scene.disparity, scene.factor, shift}, correlation, disparity, sigma,
+  assess_cells({scene.disparity, scene.factor, shift}, correlation, disparity, sigma, mask,
                std::log2(static_cast<float>(options.max_sigma_px)), threads, states);
   mark_outside(states);
   reject_cells(states, threads, disparity, sigma);

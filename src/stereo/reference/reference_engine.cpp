@@ -195,7 +195,8 @@ Image<std::int16_t> take_winners(const Scene& scene, const CostVolume& energy, I
 /// so it cancels here and the check on residual disparities is the check on the original ones.
 bool consistent(const MatchMaps& maps, int x, int y, const MatcherOptions& options) {
   const int d = maps.winner(x, y);
-  return std::abs(d - maps.target_winner(x * options.pixel_step - d, y)) <= options.lr_max_diff_px;
+  const int met = maps.target_winner(x * options.pixel_step - d, y);
+  return met >= 0 && std::abs(d - met) <= options.lr_max_diff_px;
 }
 
 /// A sub-pixel disparity and its variance.
