@@ -33,7 +33,7 @@ constexpr const char* footer =
     "  roadstereo inspect road/left.png road/right.png --calibration road/calibration.yaml --output out\n"
     "\n"
     "Exit codes: 0 success; 2 wrong usage or invalid input; 1 other errors, e.g. a full disk;\n"
-    "130 inspection interrupted by Ctrl-C.";
+    "130 inspect or map interrupted by Ctrl-C.";
 
 /// Prints an error message in one line. Control characters, e.g. of file names, do not reach the terminal.
 int report_error(std::string message, int exit_code) {

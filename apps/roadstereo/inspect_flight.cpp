@@ -49,8 +49,11 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   text += fmt::format("  frames    {} ({} rejected, {} failed), road re-estimated in {}\n", summary.frames,
                       summary.rejected, summary.failed, summary.road_estimated);
   if (summary.static_mask.share > 0) text += "  mask      " + static_mask_text(summary.static_mask) + "\n";
-  text += fmt::format("  damage    {} damages in {} sightings, {} candidates\n", summary.damages, summary.sightings,
-                      summary.candidates);
+  const auto counted = [](std::int64_t count, const char* name) {
+    return fmt::format("{} {}{}", count, name, count == 1 ? "" : "s");
+  };
+  text += fmt::format("  damage    {} in {}, {}\n", counted(summary.damages, "damage"),
+                      counted(summary.sightings, "sighting"), counted(summary.candidates, "candidate"));
   if (const std::string none = summary.no_road_text(); !none.empty()) text += "            " + none + "\n";
   for (const HealthFinding& finding : summary.health.findings()) {
     text += fmt::format("  health    {}: {}\n", finding.id, finding.text);

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <span>
+#include <utility>
 
-#include "core/order_statistics.hpp"
+#include "core/binned_selection.hpp"
 #include "damage/connected_components.hpp"
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
@@ -42,6 +45,9 @@ struct SegmentationConstants {
   float max_hollow_sigmas = 10;  ///< maximum depth of a hollow around a pothole, which counts as road
 };
 constexpr SegmentationConstants constants{};
+
+/// Confidence from which a region is rather a damage than none.
+constexpr double even_confidence = 0.5;
 
 /// Label of a cell higher than a damage can be; damage keeps clear of it.
 constexpr std::uint8_t obstacle_label = 3;
@@ -326,11 +332,10 @@ double rut_significance(const BoxMask& region, std::size_t size, const Ruts& rut
   return most;
 }
 
-/// Measure what distinguishes a damage from noise and from what is not road.
-void add_evidence(const SearchInput& input, SearchImages& images, Candidate& candidate) {
-  constexpr int near_cells = 3;  // closer to the rim the depth is smoothed
-  constexpr double band_radii = 1;
+/// Depths of the cells of a candidate.
+std::vector<float> depths_inside(const SearchImages& images, const Candidate& candidate) {
   std::vector<float> inside;
+  inside.reserve(candidate.size);
   const CellBox& box = candidate.box();
   for (int j = box.first_row; j <= box.last_row; ++j) {
     const std::uint8_t* const is_inside = candidate.cells.cells().row(j - box.first_row);
@@ -338,6 +343,14 @@ void add_evidence(const SearchInput& input, SearchImages& images, Candidate& can
       if (is_inside[i - box.first_column] != 0) inside.push_back(images.depth(i, j));
     }
   }
+  return inside;
+}
+
+/// Measure what distinguishes a damage from noise and from what is not road.
+void add_evidence(const SearchInput& input, SearchImages& images, Candidate& candidate) {
+  constexpr int near_cells = 3;  // closer to the rim the depth is smoothed
+  constexpr double band_radii = 1;
+  std::vector<float> inside = depths_inside(images, candidate);
   const RobustNormal damage = robust_normal(inside);
   const RobustNormal around = depths_around(images.field(), candidate.cells, near_cells, band_radii);
   const double window = input.image_edges.window_radius;
@@ -419,6 +432,82 @@ double confidence_at_best(const Candidate& candidate, const Thresholds& threshol
   return steepest.confidence();
 }
 
+/// The region of a hollow at another level, with its evidence; size 0 if it is none.
+Candidate region_at(const SearchInput& input, const ConnectedComponent& core, float level, float min_cells,
+                    const Candidate& lower, SearchImages& images) {
+  Candidate raised;
+  raised.kind = lower.kind;
+  raised.evidence.steepness = lower.evidence.steepness;
+  raised.level = level;
+  raised.cells = flood_fill(images.field(), core, level);
+  if (raised.box().empty() || overlaps_other(raised, images.assigned)) return {};
+  extend_region(input, images, raised);
+  if (static_cast<float>(raised.size) < min_cells || !is_measured(raised, input.depth_cells.valid)) return {};
+  add_evidence(input, images, raised);
+  return raised;
+}
+
+/// Depth that a support window of the cells exceeds: the floor of the deepest hole in a region.
+float deepest_floor(std::vector<float> depths, int window_radius) {
+  const auto window = static_cast<std::size_t>(std::numbers::pi * window_radius * window_radius);
+  const auto rank = depths.begin() + static_cast<std::ptrdiff_t>(std::min(window, depths.size() - 1));
+  std::nth_element(depths.begin(), rank, depths.end(), std::greater<>());
+  return *rank;
+}
+
+/// Whether most of a region is shallow beside a floor in it. Half of a cone is deeper than 0.29 of its depth.
+bool is_mostly_terrace(std::span<const float> depths, float floor) {
+  constexpr float min_median = 0.2F;  // of the floor's depth
+  return binned_median(depths) < min_median * floor;
+}
+
+/// Runs of the connected part of a candidate deeper than a level that has the most cells deeper than another.
+std::vector<CellRun> part_of_hole(const SearchImages& images, const Candidate& candidate, float level, float floor) {
+  const CellBox& box = candidate.box();
+  Image<std::uint8_t> deep(box.columns(), box.rows());
+  for (int j = 0; j < box.rows(); ++j) {
+    const float* const depth = images.depth.row(box.first_row + j) + box.first_column;
+    const std::uint8_t* const inside = candidate.cells.cells().row(j);
+    for (int i = 0; i < box.columns(); ++i) deep(i, j) = depth[i] > level ? inside[i] : std::uint8_t{0};
+  }
+  std::vector<CellRun> hole;
+  std::ptrdiff_t most = 0;
+  for (const ConnectedComponent& part : ConnectedComponents(deep)) {
+    std::vector<CellRun> runs;
+    std::ptrdiff_t cells = 0;
+    for (const CellRun& run : part.runs) {
+      runs.push_back({box.first_row + run.row, box.first_column + run.first, box.first_column + run.last});
+      const float* const depth = images.depth.row(runs.back().row);
+      cells += std::count_if(depth + runs.back().first, depth + runs.back().last + 1,
+                             [floor](float value) { return value > floor; });
+    }
+    if (cells <= most) continue;
+    most = cells;
+    hole = std::move(runs);
+  }
+  return hole;
+}
+
+/// A hole beside a step of the road, as at the edge of an overlay, from the level that leaves out the lower side of the
+/// step, where the outline has run out into that.
+void leave_terrace(const SearchInput& input, float min_cells, SearchImages& images, Candidate& candidate) {
+  constexpr int levels = 6;
+  const std::vector<float> depths = depths_inside(images, candidate);
+  const float floor = deepest_floor(depths, input.image_edges.window_radius), first = candidate.level;
+  const float last = constants.likelier_level_share * floor;
+  if (candidate.evidence.rut_significance > 0 || last <= first || !is_mostly_terrace(depths, floor)) return;
+  for (int k = 1; k <= levels; ++k) {
+    const float level = first * std::pow(last / first, static_cast<float>(k) / static_cast<float>(levels));
+    const std::vector<CellRun> hole = part_of_hole(images, candidate, level, last);
+    ConnectedComponent seeds;
+    seeds.runs = hole;
+    Candidate raised = region_at(input, seeds, level, min_cells, candidate, images);
+    if (raised.size == 0 || is_mostly_terrace(depths_inside(images, raised), floor)) continue;
+    if (confidence_at_best(raised, input.thresholds) >= even_confidence) candidate = std::move(raised);
+    return;
+  }
+}
+
 /// The hollow around a core at a higher level, if it is likelier a damage there. Where the relief of the road is as
 /// steep as the wall, the outline runs out of the hole into a shallow one, and the contrast is lost.
 void raise_level(const SearchInput& input, const ConnectedComponent& core, float min_cells, SearchImages& images,
@@ -427,15 +516,9 @@ void raise_level(const SearchInput& input, const ConnectedComponent& core, float
   const float last = constants.likelier_level_share * floor_depth(images.field(), core);
   double confidence = confidence_at_best(candidate, input.thresholds);
   for (int k = 1; k <= constants.likelier_levels && last > first; ++k) {
-    Candidate raised;
-    raised.kind = candidate.kind;
-    raised.evidence.steepness = candidate.evidence.steepness;
-    raised.level = first + (last - first) * static_cast<float>(k) / static_cast<float>(constants.likelier_levels);
-    raised.cells = flood_fill(images.field(), core, raised.level);
-    if (raised.box().empty() || overlaps_other(raised, images.assigned)) continue;
-    extend_region(input, images, raised);
-    if (static_cast<float>(raised.size) < min_cells || !is_measured(raised, input.depth_cells.valid)) continue;
-    add_evidence(input, images, raised);
+    const float level = first + (last - first) * static_cast<float>(k) / static_cast<float>(constants.likelier_levels);
+    Candidate raised = region_at(input, core, level, min_cells, candidate, images);
+    if (raised.size == 0) continue;
     const double likelier = confidence_at_best(raised, input.thresholds);
     if (likelier <= confidence) continue;
     confidence = likelier;
@@ -481,7 +564,6 @@ void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages
 /// Segment the region around a core and add it to `found` if it is large enough and surrounded by road.
 void add_candidate(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images,
                    std::vector<Candidate>& found) {
-  constexpr double even = 0.5;
   const float min_cells = input.thresholds.min_cells(core.runs.front().first, core.runs.front().row);
   if (static_cast<float>(core.size) < constants.min_core_area_share * min_cells) return;
   Candidate candidate = segment(input, core, kind, images);
@@ -489,9 +571,10 @@ void add_candidate(const SearchInput& input, const ConnectedComponent& core, Dam
   if (!is_measured(candidate, input.depth_cells.valid)) return;
   add_evidence(input, images, candidate);
   const bool is_hollow = kind == DamageKind::depression && input.thresholds.metric();
-  if (is_hollow && confidence_at_best(candidate, input.thresholds) < even) {
+  if (is_hollow && confidence_at_best(candidate, input.thresholds) < even_confidence) {
     raise_level(input, core, min_cells, images, candidate);
   }
+  if (is_hollow) leave_terrace(input, min_cells, images, candidate);
   if (confidence_at_best(candidate, input.thresholds) < min_candidate_confidence) return;
   if (candidate.evidence.rut_significance > 0) add_potholes_of_rut(input, min_cells, images, candidate, found);
   assign(candidate, images.assigned);

@@ -130,25 +130,30 @@ void remove_rough_parts(const ConnectedComponents& parts, const Cells& cells, co
   }
 }
 
-/// Set the cells of humps, worn strips and hollows across the road: no higher or deeper than these are, and without a
-/// step of a kerb over `reach` cells to either side, which is one that is both steep and high. NaN is none.
+/// Set the cells of humps, worn strips and hollows across the road: no higher or deeper than these are, level across the
+/// road, unlike what lies beside it, and along it without a step over `reach` rows to either side, which is one that is
+/// both steep and as high as a kerb. NaN is none.
 void add_humps(const Image<float>& heights, const SurfaceCoordinates& coordinates, int reach, int threads,
                Image<std::uint8_t>& mask) {
   constexpr int rows_per_band = 64;
   constexpr float max_height_m = 0.15F, max_slope = 0.25F, kerb_m = 0.025F;
-  const auto is_gentle = [&](int i, int j, int x, int y) {
-    const float rise = std::abs(heights(x, y) - heights(i, j));
-    if (rise < kerb_m) return true;
-    const float way = std::hypot(coordinates.x(x, y) - coordinates.x(i, j), coordinates.y(x, y) - coordinates.y(i, j));
-    return rise <= max_slope * way;
+  constexpr float half_width_m = 0.15F, max_cross_slope = 0.1F;
+  const auto rise = [&](int i, int j, int x, int y) { return std::abs(heights(x, y) - heights(i, j)); };
+  const auto way = [&](int i, int j, int x, int y) {
+    return std::hypot(coordinates.x(x, y) - coordinates.x(i, j), coordinates.y(x, y) - coordinates.y(i, j));
   };
   parallel_rows(mask.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int j = first; j < last; ++j) {
       const int above = std::max(0, j - reach), below = std::min(mask.height() - 1, j + reach);
       for (int i = 0; i < mask.width(); ++i) {
         if (mask(i, j) != 0 || !(std::abs(heights(i, j)) <= max_height_m)) continue;
-        const int left = std::max(0, i - reach), right = std::min(mask.width() - 1, i + reach);
-        if (is_gentle(left, j, right, j) && is_gentle(i, above, i, below)) mask(i, j) = 255;
+        const float cell_m = way(i, j, i > 0 ? i - 1 : i + 1, j);
+        if (!(cell_m > 0)) continue;
+        const int across = std::clamp(static_cast<int>(half_width_m / cell_m), reach, mask.width());
+        const int left = std::max(0, i - across), right = std::min(mask.width() - 1, i + across);
+        if (!(rise(left, j, right, j) <= max_cross_slope * way(left, j, right, j))) continue;
+        const float along = rise(i, above, i, below);
+        if (along < kerb_m || along <= max_slope * way(i, above, i, below)) mask(i, j) = 255;
       }
     }
   });

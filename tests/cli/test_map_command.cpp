@@ -107,6 +107,12 @@ TEST_F(MapCommand, RunIsMappedWithItsOwnOptions) {
   expect_complaint(run("map run --preset paper --output map"), "--preset is for recordings");
   expect_complaint(run("map run run --output map"), "those of their first cameras");
   expect_complaint(run("map run flight --output map"), "not both");
+  expect_complaint(run("map run --output run"), "this folder has the results of inspect");
+  std::string summary = read_text(folder_ / "run/summary.json");
+  const std::string no_crs = "\"crs\": null";
+  summary.replace(summary.find(no_crs), no_crs.size(), "\"crs\": \"EPSG:32660\"");
+  write("run/summary.json", summary);
+  expect_complaint(run("map run --crs EPSG:32632 --output map"), "run: the poses of this run are in EPSG:32660");
   std::filesystem::remove(folder_ / "run/trajectory_kitti.txt");
   expect_complaint(run("map run --output map"), "no trajectory");
   std::filesystem::remove(folder_ / "run/summary.json");

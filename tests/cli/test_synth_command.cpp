@@ -38,6 +38,17 @@ TEST_F(SynthCommand, NumbersFrames) {
   EXPECT_NE(read_text(folder_ / "flight/left/000000.png"), read_text(folder_ / "flight/left/000001.png"));
 }
 
+TEST_F(SynthCommand, ShorterSequenceReplacesLonger) {
+  ASSERT_EQ(run("synth --scene uav --size 64x48 --frames 4 --output road --quiet").exit_code, 0);
+  ASSERT_EQ(run("synth --scene uav --size 64x48 --frames 2 --output road --quiet").exit_code, 0);
+  for (const char* folder : {"left", "right", "truth", "truth_labels", "truth_disparity"}) {
+    EXPECT_EQ(names_in(folder_ / "road" / folder).size(), 2U) << folder;
+  }
+  ASSERT_EQ(run("synth --scene uav --size 64x48 --output road --quiet").exit_code, 0);
+  EXPECT_TRUE(names_in(folder_ / "road/left").empty());
+  EXPECT_FALSE(fs::exists(folder_ / "road/times.txt"));
+}
+
 TEST_F(SynthCommand, FollowsFlightPath) {
   const Outcome outcome = run(
       "synth --scene flat --frames 3 --size 64x36 --flight roll=8,period=4,climb=0,jump=2,jump_roll=-3,jump_pitch=0 "

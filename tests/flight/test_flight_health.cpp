@@ -76,6 +76,18 @@ TEST_F(FlightHealthCommand, PauseIsNoLoss) {
   EXPECT_NE(findings_of("flight").find("lost-pairs"), std::string::npos);
 }
 
+/// A pair that is there but without a result is lost once, whether it has a time or not, and so is one whose time
+/// cannot be right.
+TEST_F(FlightHealthCommand, PairWithoutTimeIsLostOnce) {
+  const Outcome made = run("synth --scene uav --size 320x180 --frames 12 --output flight --quiet");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  std::string times;
+  for (int i = 0; i < 12; ++i) times += std::to_string((i == 5 ? 3 : i) / 30.0) + "\n";
+  write("flight/times.txt", times);
+  EXPECT_EQ(findings_of("flight").find("lost-pairs"), std::string::npos);
+  EXPECT_EQ(health_["lost_share"], 0);
+}
+
 TEST_F(FlightHealthCommand, TellsWrongOffsetOfDisparities) {
   ASSERT_EQ(run("synth --scene uav --size 320x180 --frames 24 --quiet --output flight --flight step=0.5").exit_code, 0);
   EXPECT_EQ(findings_of("flight --trajectory"), "");

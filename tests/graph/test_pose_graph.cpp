@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "graph/fix_curve.hpp"
+#include "graph/track_alignment.hpp"
 #include "odometry/link_estimator.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pose_graph.hpp"
@@ -236,6 +238,35 @@ TEST(PoseGraphTrack, AltitudesMayBeMissing) {
   EXPECT_NEAR(pose[3], Survey::at(30).translation[0], 0.06);
   EXPECT_NEAR(pose[10], -1, 1e-3);  // looks down, as the road says
   EXPECT_GT(result.trajectory.frames[300].covariance[14], 1);
+}
+
+// One fix without an altitude among others is between its neighbours, and bends nothing.
+TEST(PoseGraphTrack, OneMissingAltitudeIsBetweenItsNeighbours) {
+  constexpr double level_m = 30;
+  std::vector<PositionFix> fixes;
+  for (int i = 0; i < 8; ++i) fixes.push_back({1.0 * i, {2.0 * i, 0, i == 4 ? NAN : level_m}, 0.02, 0.04});
+  const FixCurve curve(fixes, 5);
+  for (double time_s = 0; time_s <= 7; time_s += 0.1) {
+    EXPECT_NEAR(curve.at(*curve.segment(time_s), time_s).z(), level_m, 1e-9) << time_s;
+  }
+}
+
+// Steps longer than a gap between fixes are pauses, but no recording without time.
+TEST(PoseGraphTrack, SlowRecordingLastsAsLongAsItsGaps) {
+  EXPECT_DOUBLE_EQ(recorded_s(std::array<double, 4>{0, 4, NAN, 8}, 5), 8);
+  EXPECT_DOUBLE_EQ(recorded_s(std::array<double, 3>{0, 6, 12}, 5), 10);
+}
+
+TEST(PoseGraphTrack, ClockStaysWithinItsLimit) {
+  Survey survey;
+  survey.clock_s = 0.8;
+  PoseGraphOptions options;
+  for (const double limit_s : {0.0, 0.3}) {
+    options.max_time_offset_s = limit_s;
+    const PoseGraphResult result = optimise_poses(survey.input(), options);
+    if (!result.track) continue;
+    EXPECT_LE(std::abs(result.track->time_offset_s.value), limit_s + 1e-5);
+  }
 }
 
 TEST(PoseGraphTrack, MirroredTrackIsRefused) {

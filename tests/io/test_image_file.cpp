@@ -155,6 +155,25 @@ TEST_F(ImageFile, ReadsHandMadeTiff) {
   EXPECT_EQ(std::string(frame.bytes.begin(), frame.bytes.end()), data);
 }
 
+/// OpenCV leaves strips black that it cannot decode.
+TEST_F(ImageFile, DamagedStripsOfTiffAreErrors) {
+  cv::Mat mat(64, 200, CV_8UC3);
+  cv::randu(mat, 0, 256);
+  for (const int compression : {5, 32946}) {  // LZW, Deflate
+    std::vector<std::uint8_t> bytes;
+    cv::imencode(".tiff", mat, bytes, {cv::IMWRITE_TIFF_COMPRESSION, compression});
+    expect_same(read_frame(write("whole.tiff", bytes)), mat);
+    std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), 60, std::uint8_t{0xff});
+    expect_frame_refused(write("damaged.tiff", bytes), "cannot be decoded");
+  }
+}
+
+TEST_F(ImageFile, TurnedTiffIsRefused) {
+  std::string file = small_tiff(32, 32, 8, 1, std::string(32 * 32, 'x'));
+  file.replace(file.find(tiff_entry(277, 3, 1)), 12, tiff_entry(274, 3, 3));
+  expect_frame_refused(write("turned.tif", file), "orientation 3");
+}
+
 TEST_F(ImageFile, IgnoresOrientationOfJpeg) {
   cv::Mat mat(40, 64, CV_8UC3, cv::Scalar(40, 90, 200));
   std::vector<std::uint8_t> bytes;

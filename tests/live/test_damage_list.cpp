@@ -49,6 +49,12 @@ TEST(DamageList, JoinsMovingDamage) {
   EXPECT_EQ(bump.changed_in, 1) << "no view knew it better than the first";
 }
 
+TEST(DamageList, SlowViewsShowOneDamage) {
+  DamageList list;
+  for (int i = 0; i < 4; ++i) list.add(view_at(i + 1, 1.5 * i, {damage_at(100, 90, DamageKind::depression, 0.3)}));
+  EXPECT_EQ(list.found(), 1);
+}
+
 TEST(DamageList, PotholeInRutIsAnotherDamage) {
   DamageList list;
   Damage rut = damage_at(160, 90, DamageKind::depression, 0.1);

@@ -284,7 +284,7 @@ TEST_F(RoadMapTest, SuggestsCellsThatMapsCanHave) {
   StereoCalibration fine = view.frame.calibration;
   fine.focal_px *= 1000;
   fine.width = fine.height = 0;  // as of files without a size
-  const Image<float>& map = view.frame.disparity;
+  const ImageView<const float> map = view.frame.disparity;
   EXPECT_DOUBLE_EQ(suggested_cell_m({view.frame.road.a0 * 1000, 0, 0}, fine, map.width(), map.height()), 0.0005);
 }
 

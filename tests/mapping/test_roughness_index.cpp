@@ -81,6 +81,14 @@ TEST(RoughnessNoiseFloor, IsMeanIndexOfWhiteNoise) {
   }
 }
 
+TEST(RoughnessIndex, NeedsAsManyHeightsAsItSays) {
+  for (const double spacing : {0.05, 0.25, 0.4, 0.48, 0.5}) {
+    const std::size_t least = min_roughness_samples(spacing);
+    EXPECT_GE(roughness_index(std::vector<double>(least, 0.0), spacing), 0) << spacing;
+    EXPECT_THROW(roughness_index(std::vector<double>(least - 1, 0.0), spacing), Error) << spacing;
+  }
+}
+
 TEST(RoughnessIndex, RejectsShortProfilesAndGaps) {
   std::vector<double> heights(100, 0.0);
   EXPECT_THROW(roughness_index(heights, 0.05), Error);

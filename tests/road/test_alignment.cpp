@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "roadstereo/alignment.hpp"
@@ -35,6 +36,24 @@ TEST(MeasureRows, StreetOffsetIsWithinTwentiethOfPixel) {
   const RowAlignment rows = measure("street", 0.5);
   ASSERT_TRUE(rows.known());
   EXPECT_NEAR(rows.median_px, 0.5, 0.05);
+}
+
+// The lower half is 3 rows off, as a reflection in a bonnet may be.
+TEST(MeasureRows, MaskedPartTakesNoPart) {
+  synth::Scene scene = synth::named_scene("uav");
+  scene.supersampling = 1;
+  const synth::SyntheticPair pair = synth::render(scene);
+  GreyImage left, right;
+  to_grey(pair.left.view(), 0, left);
+  to_grey(pair.right.view(), 0, right);
+  Image<std::uint8_t> mask(left.width(), left.height(), 0);
+  for (int v = left.height() / 3; v < left.height(); ++v) {
+    std::fill_n(mask.row(v), mask.width(), std::uint8_t{255});
+    if (v + 3 < left.height()) std::copy_n(right.row(v + 3), right.width(), right.row(v));
+  }
+  EXPECT_NEAR(measure_row_alignment(left, right).median_px, -3, 0.1);
+  EXPECT_NEAR(measure_row_alignment(left, right, 1, mask).median_px, 0, 0.1);
+  for (const RowSample& sample : sample_row_alignment(left, right, 1, mask)) EXPECT_LT(sample.v, left.height() / 3);
 }
 
 TEST(MeasureRows, NoTextureGivesNoOffset) {

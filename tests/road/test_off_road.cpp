@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -44,6 +45,26 @@ TEST(RejectOffRoad, LimitOfSigmaFollowsCorrelation) {
       }
     }
   }
+}
+
+/// Pixels that a mask hides have no disparity, and say nothing of their surroundings.
+TEST(RejectOffRoad, MaskedPixelsDoNotCount) {
+  test::StreetMaps street(80, 64, 4);
+  street.forget_scene();
+  street.paint_sigma(street.all(), 0.3F, 0.5F);  // the limit is 0.58 px
+  Image<std::uint8_t> mask(80, 64, 0);
+  for (int v = 32; v < 64; ++v) {
+    std::fill_n(mask.row(v), 80, std::uint8_t{255});
+    std::fill_n(street.disparity.row(v), 80, NAN);
+    std::fill_n(street.sigma.row(v), 80, NAN);
+  }
+  const Cells seen{0, 0, 20, 8};
+  EXPECT_FALSE(all_are(reject(street), seen, false)) << "without a mask they do";
+  reject_off_road(street.correlation, street.scene.view(), street.shift, mask, {1}, 1, street.disparity, street.sigma);
+  EXPECT_TRUE(all_are(street, seen, false));
+  EXPECT_THROW(reject_off_road(street.correlation, street.scene.view(), street.shift, Image<std::uint8_t>(80, 63, 0),
+                               {1}, 1, street.disparity, street.sigma),
+               Error);
 }
 
 /// At the edge of a step the geometric mean is that of both sides.

@@ -49,7 +49,7 @@ const BagTopic* find_topic(const std::vector<BagTopic>& topics, const std::strin
   std::string list;
   for (const BagTopic& topic : images) list += (list.empty() ? "" : ", ") + topic.name;
   fail(source, ": ", reason,
-       "; select two of its image topics with --topics LEFT RIGHT: ", list.empty() ? "none" : list);
+       "; select two of its image topics with --topics LEFT,RIGHT: ", list.empty() ? "none" : list);
 }
 
 /// Keeps one topic per camera, preferring raw images.
