@@ -59,14 +59,14 @@ void add_run(const DamageInput& input, const DamageMap& maps, double offset, int
   sums.v += static_cast<std::int64_t>(v) * count;
   const float *const transformed = input.transformed.row(v), *const depth = maps.depth.row(v);
   for (int u = first; u <= last; ++u) {
-    if (!std::isfinite(transformed[u])) continue;
+    if (!(std::abs(transformed[u]) <= max_map_value)) continue;
     ++sums.measured;
     sums.depth += sign_of(damage.kind) * depth[u];
   }
   if (input.sigma.empty() || v % 2 != 0) return;
   for (int u = first + first % 2; u <= last; u += 2) {
     const double variance = noise_variance(input, u, v);
-    if (!std::isfinite(transformed[u]) || !(variance > 0) || !std::isfinite(variance)) continue;
+    if (!(std::abs(transformed[u]) <= max_map_value) || !(variance > 0) || !std::isfinite(variance)) continue;
     const double off_road = sign_of(damage.kind) * (double{depth[u]} + offset);
     sums.significances.push_back(static_cast<float>(off_road / std::sqrt(variance)));
   }

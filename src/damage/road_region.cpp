@@ -130,9 +130,9 @@ void remove_rough_parts(const ConnectedComponents& parts, const Cells& cells, co
   }
 }
 
-/// Set the cells of humps, worn strips and hollows across the road: no higher or deeper than these are, level across the
-/// road, unlike what lies beside it, and along it without a step over `reach` rows to either side, which is one that is
-/// both steep and as high as a kerb. NaN is none.
+/// Set the cells of humps, worn strips and hollows across the road: no higher or deeper than these are, level across
+/// the road, unlike what lies beside it, and along it without a step over `reach` rows to either side, which is one
+/// that is both steep and as high as a kerb. NaN is none.
 void add_humps(const Image<float>& heights, const SurfaceCoordinates& coordinates, int reach, int threads,
                Image<std::uint8_t>& mask) {
   constexpr int rows_per_band = 64;

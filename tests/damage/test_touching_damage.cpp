@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 
 #include "roadstereo/damage.hpp"
 #include "tests/damage/damage_checks.hpp"
@@ -155,6 +156,39 @@ TEST(FindDamage, TerraceOfPotholeIsNoSecondDamage) {
     const DamageMap map = find_damage(input);
     ASSERT_EQ(map.damages.size(), 1U) << terrace_px;
   }
+}
+
+/// The road on one side of a step 12 mm lower than on the other, with a pothole 80 mm deep near the step: seen straight
+/// down from 4 m, d = 50 px, 12.5 px per metre of depth. The lower side is no part of the pothole.
+TEST(FindDamage, StepOfRoadDoesNotWidenPothole) {
+  constexpr int width = 960, height = 600;
+  constexpr double pixel_m = 0.004, radius_m = 0.2;
+  Image<float> transformed(width, height);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const double from_middle_m = pixel_m * std::hypot(u - 400, v - 300), step_m = u < 460 ? 0.012 : 0;
+      const double hole_m = 0.08 * std::clamp((radius_m - from_middle_m) / 0.06 + 0.5, 0.0, 1.0);
+      transformed(u, v) = static_cast<float>(30 - 12.5 * (step_m + hole_m));
+    }
+  }
+  smear(transformed, 6);
+  transformed = with_noise(transformed, 0.03);
+  Image<float> disparity = transformed;
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) disparity(u, v) += 20;
+  }
+  DamageInput input;
+  input.transformed = transformed;
+  input.disparity = disparity;
+  input.plane = DisparityPlane{50, 0, 0};
+  input.calibration = StereoCalibration{1000, 479.5, 299.5, 0.2};
+  const DamageMap map = find_damage(input);
+  const auto hollow = std::find_if(map.damages.begin(), map.damages.end(),
+                                   [](const Damage& one) { return one.kind == DamageKind::depression; });
+  ASSERT_NE(hollow, map.damages.end());
+  const double foot_m = radius_m + 0.03 + 6 * pixel_m,
+               area_m2 = std::numbers::pi * foot_m * foot_m;  // of its smoothed wall
+  EXPECT_NEAR(hollow->metrics->area_m2.value, area_m2, 0.15 * area_m2);
 }
 
 }  // namespace

@@ -332,8 +332,8 @@ TEST(BagTopics, AmbiguousNamesAreRejected) {
         find({"/a", "/b"});
       },
       "x.bag: no left and right camera can be recognised by the topic names; "
-      "select two of its image topics with --topics LEFT RIGHT: /a, /b");
-  expect_message([&] { find({}); }, "LEFT RIGHT: none");
+      "select two of its image topics with --topics LEFT,RIGHT: /a, /b");
+  expect_message([&] { find({}); }, "LEFT,RIGHT: none");
   expect_message([&] { find({"/l/left", "/l/right", "/m/left", "/m/right"}); }, "more than one pair");
   expect_message([&] { find({"/a", "/b"}, {"/a", "/imu"}); }, "/imu is not an image topic of the bag");
   EXPECT_EQ(find({"/a", "/b"}, {"/b", "/a"}).first.name, "/b");
