@@ -57,8 +57,11 @@ RigBias read_rig_bias(const std::string& path) {
   RigBias bias;
   try {
     bias = bias_of(Json::parse(stream));
+  } catch (const Json::parse_error&) {
+    fail(path, ": this is no rig bias of inspect: it is no JSON, or damaged");
   } catch (const Json::exception& error) {
-    fail(path, ": this is no rig bias of inspect: ", error.what());
+    const std::string text = error.what();  // "[json.exception.NAME.NUMBER] key 'height' not found"
+    fail(path, ": this is no rig bias of inspect: ", text.substr(text.find("] ") + 2));
   }
   try {
     bias.validate();

@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <array>
 
 #include "roadstereo/error.hpp"
@@ -19,7 +20,8 @@ struct Entry {
     try {
       return node.as<Value>();
     } catch (const YAML::Exception&) {
-      fail(where, ": ", key, " has a wrong value");
+      if (!node) fail(where, ": ", key, " is missing");
+      fail(where, ": ", key, " has the wrong value ", YAML::Dump(node));
     }
   }
 };
@@ -56,7 +58,18 @@ DistressUnit unit_of(const Entry& entry) {
   fail(entry.where, ": unit is \"", name, "\"; it must be count, m2 or m");
 }
 
+void require_known_keys(const Entry& entry) {
+  constexpr std::array known{"unit", "depth_mm", "diameter_mm", "severity", "max_counted_mm", "area_of_one_m2"};
+  for (const auto& item : entry.map) {
+    const auto key = item.first.as<std::string>();
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    fail(entry.where, ": \"", key,
+         "\" is no key; use unit, depth_mm, diameter_mm, severity, max_counted_mm, area_of_one_m2");
+  }
+}
+
 SeverityTable table_of(Distress distress, const Entry& entry) {
+  require_known_keys(entry);
   SeverityTable table;
   table.distress = distress;
   table.unit = unit_of(entry);
@@ -83,6 +96,8 @@ SeverityScheme read_severity_scheme(const std::string& name) {
   YAML::Node root;
   try {
     root = YAML::LoadFile(name);
+  } catch (const YAML::BadFile&) {
+    fail(name, ": this file of severities cannot be read");
   } catch (const YAML::Exception& error) {
     fail(name, ": this is no file of severities: ", error.what());
   }

@@ -75,7 +75,9 @@ void add_pictures(const PairHealth& h, Findings& findings) {
   constexpr double max_blur_px = 3;  // the radius of a block
   constexpr double max_blur_ratio = 1.5;
   const double blur = std::fmax(h.blur_left_px, h.blur_right_px);  // of the other view if one is unknown
-  const double ratio = std::max(h.blur_left_px / h.blur_right_px, h.blur_right_px / h.blur_left_px);
+  constexpr double sharp_px = 0.5;  // what pixels and their interpolation blur; less says nothing of a lens
+  const double left_px = std::max(h.blur_left_px, sharp_px), right_px = std::max(h.blur_right_px, sharp_px);
+  const double ratio = std::max(left_px / right_px, right_px / left_px);
   findings.add_above("blur", blur, max_blur_px, "px", false, "the pictures are blurred by ",
                      rounded(h.blur_left_px, 0.1), " px (left) and ", rounded(h.blur_right_px, 0.1),
                      " px (right; limit ", max_blur_px, " px); focus, or expose for a shorter time");

@@ -25,6 +25,15 @@ std::string input_path(const fs::path& folder, const std::string& name) {
   return fs::exists(path, absent) ? path.string() : name;
 }
 
+/// An input that is a file, whose path is relative to the folder.
+std::string input_file(const fs::path& folder, const std::string& name) {
+  std::error_code absent;
+  const fs::path path = (folder / name).lexically_normal();
+  if (fs::exists(path, absent)) return path.string();
+  fail(folder.string(), ": the run was made with ", path.string(),
+       ", which does not exist; a run is mapped where it was made, beside its recording");
+}
+
 std::vector<std::string> input_paths(const fs::path& folder, const Json& names) {
   std::vector<std::string> paths;
   for (const Json& name : names) paths.push_back(input_path(folder, name.get<std::string>()));
@@ -44,7 +53,9 @@ MapPass pass_of(const fs::path& folder, const Json& summary) {
   const Json& inputs = summary.at("inputs");
   MapPass pass;
   pass.source = input_paths(folder, inputs.at("source"));
-  pass.calibration = input_paths(folder, inputs.at("calibration"));
+  for (const Json& name : inputs.at("calibration")) {
+    pass.calibration.push_back(input_file(folder, name.get<std::string>()));
+  }
   SourceSettings source;
   source.layout = inputs.at("layout").get<std::string>();
   source.topics = inputs.at("topics").get<std::vector<std::string>>();
@@ -54,10 +65,10 @@ MapPass pass_of(const fs::path& folder, const Json& summary) {
   if (const Json& crs = summary.at("crs"); !crs.is_null()) pass.crs = crs.get<std::string>();
   pass.time_offset_s = inputs.at("track_offset_s").get<double>();
   const std::string mask = inputs.at("mask").get<std::string>();
-  if (!mask.empty()) pass.mask = read_mask(input_path(folder, mask), 255);
+  if (!mask.empty()) pass.mask = read_mask(input_file(folder, mask), 255);
   pass.options = options_of(summary.at("options"));
   const std::string bias = inputs.at("rig_bias").get<std::string>();
-  if (!bias.empty()) pass.options.rig_bias = io::read_rig_bias(input_path(folder, bias));
+  if (!bias.empty()) pass.options.rig_bias = io::read_rig_bias(input_file(folder, bias));
   pass.find_white_level = pass.options.white_level == 0;
   return pass;
 }
@@ -74,9 +85,9 @@ MapPass read_run(const fs::path& folder) {
     if (!summary.at("run").at("complete").get<bool>()) {
       fail(folder.string(), ": this run is not finished; continue it with inspect --resume");
     }
-    pass = pass_of(folder, summary);
-  } catch (const Json::exception& error) {
-    fail(file.string(), ": this is not the summary of a run of this version: ", error.what());
+    pass = pass_of(fs::canonical(folder), summary);
+  } catch (const Json::exception&) {
+    fail(file.string(), ": this is not the summary of a run of this version, or it is damaged");
   }
   pass.trajectory = (folder / trajectory_file_names().front()).string();
   std::error_code absent;
