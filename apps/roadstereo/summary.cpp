@@ -100,19 +100,20 @@ std::string damage_text(const DamageMap& map) {
   const auto depressions = std::count_if(map.damages.begin(), map.damages.end(),
                                          [](const Damage& one) { return one.kind == DamageKind::depression; });
   const auto protrusions = static_cast<std::ptrdiff_t>(map.damages.size()) - depressions;
-  const Damage& deepest = map.damages.front();
+  const Damage& first = map.damages.front();  // the depth or height of no other is larger
+  const char* const most = first.kind == DamageKind::depression ? "deepest" : "highest";
   std::string text = fmt::format("{} depression{}, {} protrusion{}; ", depressions, depressions == 1 ? "" : "s",
                                  protrusions, protrusions == 1 ? "" : "s");
-  if (deepest.metrics) {
+  if (first.metrics) {
     constexpr double mm = 1000;
-    const DamageMetrics& metrics = *deepest.metrics;
+    const DamageMetrics& metrics = *first.metrics;
     return text +
-           fmt::format("deepest {:.1f} ± {:.1f} mm, {:.0f} ± {:.0f} cm²", mm * metrics.max_depth_m.value,
+           fmt::format("{} {:.1f} ± {:.1f} mm, {:.0f} ± {:.0f} cm²", most, mm * metrics.max_depth_m.value,
                        mm * metrics.max_depth_m.std_error, 1e4 * metrics.area_m2.value,
                        1e4 * metrics.area_m2.std_error) +
            candidates;
   }
-  return text + fmt::format("deepest {:.2f} ± {:.2f} px", deepest.max_depth_px.value, deepest.max_depth_px.std_error) +
+  return text + fmt::format("{} {:.2f} ± {:.2f} px", most, first.max_depth_px.value, first.max_depth_px.std_error) +
          candidates;
 }
 

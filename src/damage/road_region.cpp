@@ -138,6 +138,7 @@ void add_humps(const Image<float>& heights, const SurfaceCoordinates& coordinate
   constexpr int rows_per_band = 64;
   constexpr float max_height_m = 0.15F, max_slope = 0.25F, kerb_m = 0.025F;
   constexpr float half_width_m = 0.15F, max_cross_slope = 0.1F;
+  if (mask.width() < 2) return;
   const auto rise = [&](int i, int j, int x, int y) { return std::abs(heights(x, y) - heights(i, j)); };
   const auto way = [&](int i, int j, int x, int y) {
     return std::hypot(coordinates.x(x, y) - coordinates.x(i, j), coordinates.y(x, y) - coordinates.y(i, j));
@@ -149,7 +150,8 @@ void add_humps(const Image<float>& heights, const SurfaceCoordinates& coordinate
         if (mask(i, j) != 0 || !(std::abs(heights(i, j)) <= max_height_m)) continue;
         const float cell_m = way(i, j, i > 0 ? i - 1 : i + 1, j);
         if (!(cell_m > 0)) continue;
-        const int across = std::clamp(static_cast<int>(half_width_m / cell_m), reach, mask.width());
+        const auto widest = static_cast<float>(mask.width());
+        const int across = std::max(reach, static_cast<int>(std::min(half_width_m / cell_m, widest)));
         const int left = std::max(0, i - across), right = std::min(mask.width() - 1, i + across);
         if (!(rise(left, j, right, j) <= max_cross_slope * way(left, j, right, j))) continue;
         const float along = rise(i, above, i, below);

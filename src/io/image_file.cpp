@@ -130,6 +130,17 @@ Image<float> disparity_from_png(const std::string& path, const std::vector<std::
   return map;
 }
 
+/// What many programs write for no data, such as −3.4e38, and infinity become NaN.
+Image<float> without_no_data(Image<float> map) {
+  constexpr float largest = 1e15F;  // of a map in any unit
+  for (int v = 0; v < map.height(); ++v) {
+    std::replace_if(
+        map.row(v), map.row(v) + map.width(), [](float value) { return !(std::abs(value) <= largest); },
+        std::numeric_limits<float>::quiet_NaN());
+  }
+  return map;
+}
+
 std::uint16_t kitti_value(float disparity) {
   constexpr float max_px = 255.99F;
   if (!std::isfinite(disparity)) return 0;
@@ -170,8 +181,8 @@ double find_white_level(const FrameView& left, const FrameView& right) {
 
 Image<float> read_disparity(const std::string& path) {
   const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
-  if (is_pfm(bytes)) return read_pfm(path, bytes);
-  if (is_tiff(bytes)) return disparity_from_tiff(path, bytes);
+  if (is_pfm(bytes)) return without_no_data(read_pfm(path, bytes));
+  if (is_tiff(bytes)) return without_no_data(disparity_from_tiff(path, bytes));
   if (is_png(bytes)) return disparity_from_png(path, bytes);
   fail(path, ": this is not a disparity map; it must be a float TIFF, a PFM or a 16-bit PNG");
 }

@@ -18,8 +18,8 @@ Frame read_frame(const std::string& path);
 /// 2^12−1, 2^14−1, 2^16−1 that no sample of either frame exceeds. 255 for 8-bit frames.
 double find_white_level(const FrameView& left, const FrameView& right);
 
-/// Reads a disparity map: float TIFF or PFM (NaN, and infinity in PFM, invalid), or 16-bit PNG (value / 256,
-/// 0 invalid).
+/// Reads a disparity map: float TIFF or PFM (NaN, infinity and values beyond ±1e15, such as −3.4e38, invalid), or
+/// 16-bit PNG (value / 256, 0 invalid).
 Image<float> read_disparity(const std::string& path);
 
 /// Encodes a float map as 32-bit TIFF, NaN kept.
