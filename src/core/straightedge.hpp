@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace roadstereo {
 
 /// Gaps below a straightedge: the largest distance of each height of a profile from the upper hull of any window of the
@@ -10,3 +11,4 @@ namespace roadstereo {
 std::vector<double> straightedge_gaps(std::span<const double> heights_m, double spacing_m, double straightedge_m);
 
 }  // namespace roadstereo
+#pragma GCC visibility pop
