@@ -69,16 +69,17 @@ class Frames {
   std::optional<synth::FlightPath> path_;
 };
 
-/// The frames of an earlier, longer sequence would belong to none.
+/// The frames of an earlier, longer sequence would belong to none. Frames without a truth are of a recording: they
+/// stay.
 void remove_later_frames(int frames, io::OutputFolder& folder) {
   const int first = frames > 1 ? frames : 0;
   for (int frame = first; frame < max_frames; ++frame) {
     const std::vector<std::string> names = synthetic_pair_files({frame, max_frames});
-    if (!std::filesystem::exists(folder.path() / names.front())) break;
+    if (!std::filesystem::exists(folder.path() / names.back())) return;
     for (const std::string& name : names) folder.remove(name);
+    if (frame > 0) continue;
+    for (const char* const name : {"times.txt", "trajectory_kitti.txt"}) folder.remove(name);
   }
-  if (frames > 1) return;
-  for (const char* const name : {"times.txt", "trajectory_kitti.txt"}) folder.remove(name);
 }
 
 void make_frames(const SynthArguments& arguments) {

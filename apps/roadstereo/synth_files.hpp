@@ -18,7 +18,7 @@ struct FrameNumber {
   std::string path(const std::string& name, const std::string& extension) const;
 };
 
-/// Names of the files of one pair, that of the left image first.
+/// Names of the files of one pair, that of the truth last.
 std::vector<std::string> synthetic_pair_files(const FrameNumber& number);
 
 /// Stages the images and the ground truth of one pair.

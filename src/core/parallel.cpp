@@ -34,13 +34,12 @@ tbb::task_arena& arena_of(int threads) {
 
 int resolve_threads(int threads) {
   if (threads < 0 || threads > 1024) fail("threads is ", threads, "; it must be between 0 (all cores) and 1024");
-    // Reads a file of the system: once.
 #ifdef ROADSTEREO_WITH_TBB
   // More threads than cores gain nothing, cost memory each, and TBB complains about them on stderr.
-  static const int cores = tbb::info::default_concurrency();
+  static const int cores = tbb::info::default_concurrency();  // reads files of the system: once
   return threads > 0 ? std::min(threads, cores) : cores;
 #else
-  static const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  static const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));  // likewise
   return threads > 0 ? threads : cores;
 #endif
 }

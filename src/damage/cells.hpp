@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "core/map_value.hpp"
 #include "roadstereo/damage.hpp"
 
 namespace roadstereo {
-
-/// Larger values of a map, of either sign, are none, such as −3.4e38 for no data: sums of their squares would overflow.
-inline constexpr float max_map_value = 1e15F;
 
 /// The transformed map downsampled to square cells of `factor`×`factor` pixels: each cell is the mean of its valid
 /// pixels. Segmentation works on cells.

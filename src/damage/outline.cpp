@@ -90,17 +90,18 @@ void grow_between(const DepthField& field, float min_depth, float max_depth, int
   }
 }
 
-/// Cells of a box whose depth a gap may have smeared: within a support window of it, or its own radius if it is
-/// smaller, as of a single wrong match.
+/// Cells of a box whose depth a gap may have smeared: within a support window of it, or three of its own radii if that
+/// is less, as of a speck of failed matches.
 BoxMask near_gaps(const Image<std::uint8_t>& valid, const CellBox& box, int window_radius) {
   Image<std::uint8_t> in_box(box.columns(), box.rows());
   for (int j = 0; j < box.rows(); ++j) {
     std::copy_n(valid.row(box.first_row + j) + box.first_column, box.columns(), in_box.row(j));
   }
+  constexpr double smeared_radii = 3;
   BoxMask near(box);
   for (const ConnectedComponent& gap : ConnectedComponents(in_box, ConnectedComponents::Foreground::zero)) {
     const double radius = std::sqrt(static_cast<double>(gap.size) / std::numbers::pi);
-    const int reach = std::min(window_radius, static_cast<int>(std::lround(3 * radius)));
+    const int reach = std::min(window_radius, static_cast<int>(std::lround(smeared_radii * radius)));
     for (const CellRun& run : gap.runs) {
       const int first = std::max(0, run.first - reach), last = std::min(box.columns() - 1, run.last + reach);
       for (int j = std::max(0, run.row - reach); j <= std::min(box.rows() - 1, run.row + reach); ++j) {

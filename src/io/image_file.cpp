@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/map_value.hpp"
 #include "io/encoded_frame.hpp"
 #include "io/file_bytes.hpp"
 #include "io/frame_mat.hpp"
@@ -132,10 +133,9 @@ Image<float> disparity_from_png(const std::string& path, const std::vector<std::
 
 /// What many programs write for no data, such as −3.4e38, and infinity become NaN.
 Image<float> without_no_data(Image<float> map) {
-  constexpr float largest = 1e15F;  // of a map in any unit
   for (int v = 0; v < map.height(); ++v) {
     std::replace_if(
-        map.row(v), map.row(v) + map.width(), [](float value) { return !(std::abs(value) <= largest); },
+        map.row(v), map.row(v) + map.width(), [](float value) { return !(std::abs(value) <= max_map_value); },
         std::numeric_limits<float>::quiet_NaN());
   }
   return map;

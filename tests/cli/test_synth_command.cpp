@@ -47,6 +47,12 @@ TEST_F(SynthCommand, ShorterSequenceReplacesLonger) {
   ASSERT_EQ(run("synth --scene uav --size 64x48 --output road --quiet").exit_code, 0);
   EXPECT_TRUE(names_in(folder_ / "road/left").empty());
   EXPECT_FALSE(fs::exists(folder_ / "road/times.txt"));
+  // A recording is not its own.
+  ASSERT_EQ(run("synth --scene uav --size 64x48 --frames 2 --output drive --quiet").exit_code, 0);
+  fs::remove_all(folder_ / "drive/truth");
+  ASSERT_EQ(run("synth --scene uav --size 64x48 --output drive --quiet").exit_code, 0);
+  EXPECT_EQ(names_in(folder_ / "drive/left").size(), 2U);
+  EXPECT_TRUE(fs::exists(folder_ / "drive/times.txt"));
 }
 
 TEST_F(SynthCommand, FollowsFlightPath) {

@@ -1,7 +1,9 @@
 #include "flight/flight_health.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "finite_values.hpp"

@@ -202,8 +202,11 @@ void add_map_tables(const BuiltMap& built, const MapResults& results, io::Output
   folder.add("transverse.csv", transverse_csv(built, results.lanes));
   folder.add("longitudinal.csv", longitudinal_csv(built, results.lanes));
   folder.add("roughness.csv", roughness_csv(results.lanes));
-  if (built.days.size() > 1) folder.add("changes.csv", changes_csv(built, results.changes));
-  if (built.days.size() <= 1) folder.remove("changes.csv");
+  if (built.days.size() > 1) {
+    folder.add("changes.csv", changes_csv(built, results.changes));
+  } else {
+    folder.remove("changes.csv");
+  }
 }
 
 std::string map_json(const MapPlan& plan, const BuiltMap& built, const MapResults& results) {
