@@ -56,6 +56,14 @@ RigidTransform transform_of(const PoseArray& pose) {
     for (py::ssize_t k = 0; k < pose.ndim(); ++k) shape += (k > 0 ? ", " : "") + std::to_string(pose.shape(k));
     fail("camera_to_map has the shape (", shape, "); it must be (3, 4) or (4, 4)");
   }
+  if (square) {
+    constexpr std::array<double, 4> last{0, 0, 0, 1};
+    const double* const row = pose.data() + RigidTransform{}.size();
+    if (!std::equal(last.begin(), last.end(), row)) {
+      fail("the last row of camera_to_map is ", row[0], ", ", row[1], ", ", row[2], ", ", row[3],
+           "; it must be 0, 0, 0, 1");
+    }
+  }
   RigidTransform transform;
   std::copy_n(pose.data(), transform.size(), transform.begin());
   return transform;

@@ -71,26 +71,24 @@ class Pairs(unittest.TestCase):
             pipeline.process(*pair())
 
     def test_one_pipeline_in_several_threads(self):
-        pipeline = roadstereo.Pipeline("fast", calibration())
-        expected = {pipeline.process(*frames).disparity.tobytes() for frames in (noise_pair(), pair(), pair())}
-        found, errors = [], []
+        # Without the perspective transformation nothing is carried over: results do not depend on the order.
+        pipeline = roadstereo.Pipeline("fast", options={"perspective.enabled": False, "narrow_search": False})
+        pairs = [noise_pair(), pair(), tuple(frame[:150] for frame in pair())]
+        expected = [pipeline.process(*frames).disparity.tobytes() for frames in pairs]
+        self.assertEqual(len(set(expected)), 3)
+        found = [[] for _ in pairs]
 
-        def work(frames):
-            try:
-                for _ in range(8):
-                    found.append(pipeline.process(*frames).road.status)
-                    pipeline.options, pipeline.engine_name
-            except roadstereo.Error as error:
-                errors.append(error)
+        def work(k):
+            for _ in range(8):
+                found[k].append(pipeline.process(*pairs[k]).disparity.tobytes() == expected[k])
+                pipeline.options, pipeline.engine_name
 
-        threads = [threading.Thread(target=work, args=[frames]) for frames in (pair(), noise_pair(), pair())]
+        threads = [threading.Thread(target=work, args=[k]) for k in range(len(pairs))]
         for thread in threads:
             thread.start()
         for thread in threads:
             thread.join()
-        self.assertEqual(errors, [])
-        self.assertEqual(sum(status != "none" for status in found), 16)
-        self.assertEqual(len(expected), 3)
+        self.assertEqual(found, [[True] * 8] * len(pairs))
 
     def test_interpreter_runs_meanwhile(self):
         frames = [np.kron(frame, np.ones((4, 4), np.uint8)) for frame in pair()]

@@ -106,6 +106,8 @@ class RoadMap(unittest.TestCase):
         for box in ([0, 0, -1, 5], [0, 0, 100000, 100000]):
             with self.assertRaisesRegex(roadstereo.Error, "a box has"):
                 road.read(box)
+        with self.assertRaisesRegex(roadstereo.Error, "the last row of camera_to_map is 1, 2, 3, 1; it must be 0, 0, 0, 1"):
+            road.add(self.results[0], np.array([*np.eye(4)[:3], [1, 2, 3, 1]]))
         with self.assertRaisesRegex(roadstereo.Error, r"camera_to_map has the shape \(3, 3\); it must be \(3, 4\) or \(4, 4\)"):
             road.add(self.results[0], np.eye(3))
         with self.assertRaisesRegex(roadstereo.Error, "cell_m is 0"):

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <cstring>
 
+#include "core/grey_weights.hpp"
+
 namespace roadstereo {
 
-ColourReader::ColourReader(const FrameView& image, double white_level) : image_(image) {
-  const float white = image.sample == SampleType::u8 ? 255.0F : 65535.0F;
-  scale_ = 255.0F / (white_level > 0 ? static_cast<float>(white_level) : white);
-}
+ColourReader::ColourReader(const FrameView& image, double white_level)
+    : image_(image), scale_(255.0F / static_cast<float>(white_sample(image.sample, white_level))) {}
 
 std::array<float, 3> ColourReader::pixel(int u, int v) const {
   const int channels = channel_count(image_.order);

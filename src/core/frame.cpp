@@ -145,15 +145,19 @@ void require_image_size(int width, int height) {
        max_side, "×", max_side);
 }
 
+double white_sample(SampleType type, double white_level) {
+  const double largest = type == SampleType::u16 ? 65535 : 255;
+  if (!(white_level >= 0 && white_level <= largest)) {
+    fail("white_level is ", white_level, "; it must be between 0 (the sample type's largest) and ", largest);
+  }
+  return white_level > 0 ? white_level : largest;
+}
+
 GreyWeights grey_weights(const FrameView& frame, double white_level) {
   if (frame.data == nullptr) fail("the image has no data");
   require_image_size(frame.width, frame.height);
   require_layout(frame);
-  const double largest = frame.sample == SampleType::u16 ? 65535 : 255;
-  if (!(white_level >= 0 && white_level <= largest)) {
-    fail("white_level is ", white_level, "; it must be between 0 (the sample type's largest) and ", largest);
-  }
-  const double scale = grey_max / (white_level > 0 ? white_level : largest);
+  const double scale = grey_max / white_sample(frame.sample, white_level);
   const Shares shares = shares_of(frame.order);
   return {static_cast<float>(shares.first * scale), static_cast<float>(shares.second * scale),
           static_cast<float>(shares.third * scale), static_cast<float>(grey_max)};

@@ -46,6 +46,11 @@ void rasterise(const Cells& cells, const Candidate& candidate, std::uint16_t id,
   }
 }
 
+/// Depth of the measured value below the surface, pixels of ℓ'; NaN in a hole.
+float measured_depth(float surface, float measured) {
+  return std::abs(measured) <= max_map_value ? surface - measured : nan;
+}
+
 /// Upsample a row of cells by replication.
 void replicate_row(const std::uint8_t* cells, int factor, int width, std::uint8_t* pixels) {
   for (int i = 0, u = 0; u < width; ++i) {
@@ -85,10 +90,7 @@ void fill_road_rows(const DamageInput& input, const Segmentation& segmentation, 
     float* const surface = result.surface.row(v);
     float* const depth = result.depth.row(v);
     surfaces.read(v, surface);
-    for (int u = 0; u < width; ++u) {
-      const float below = surface[u] - measured[u];
-      depth[u] = std::abs(measured[u]) <= max_map_value ? below : nan;
-    }
+    for (int u = 0; u < width; ++u) depth[u] = measured_depth(surface[u], measured[u]);
     std::fill_n(depth, std::min(width, segmentation.view.first_column(v / factor) * factor), nan);
   }
 }
@@ -140,6 +142,14 @@ void fill_damage(const Segmentation& segmentation, std::size_t k, const Image<fl
       if (std::isnan(depth) || is_gap || sign * inside > candidate.level) depth = inside;
     }
   }
+}
+
+void empty_pixel(const DamageInput& input, const Segmentation& segmentation, int u, int v, DamageMap& result) {
+  const int factor = segmentation.cells.factor;
+  result.ids(u, v) = 0;
+  result.road(u, v) = segmentation.road(u / factor, v / factor);
+  const bool seen = u >= segmentation.view.first_column(v / factor) * factor;
+  result.depth(u, v) = seen ? measured_depth(result.surface(u, v), input.transformed(u, v)) : nan;
 }
 
 }  // namespace roadstereo

@@ -260,7 +260,9 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
     for (int v = std::max(first, all.v0); v <= std::min(last - 1, all.v1); ++v) {
       std::uint16_t* const ids = result.ids.row(v);
       for (int u = all.u0; u <= all.u1; ++u) {
-        if (ids[u] != 0) ids[u] = new_id[ids[u]];
+        if (ids[u] == 0) continue;
+        ids[u] = new_id[ids[u]];
+        if (ids[u] == 0) empty_pixel(input, segmentation, u, v, result);
       }
     }
     for (int v = first; result.metric && v < last; ++v) {

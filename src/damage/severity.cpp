@@ -64,6 +64,7 @@ const char* name_of(DistressUnit unit) {
 
 namespace {
 
+constexpr std::array<Severity, 4> graded{Severity::minor, Severity::low, Severity::medium, Severity::high};
 /// Probabilities of the intervals between ascending limits, for a normal distribution; the first is below all limits.
 std::vector<double> interval_probabilities(const Measurement& measured, const std::vector<double>& limits) {
   std::vector<double> probabilities;
@@ -106,8 +107,13 @@ void validate_table(const std::string& where, const SeverityTable& table) {
   }
   const std::size_t columns = std::max<std::size_t>(1, table.diameters_m.size());
   for (const std::vector<Severity>& row : table.classes) {
-    if (row.size() == columns) continue;
-    fail(where, ": a row has ", row.size(), " severities; it must have ", columns, ", one for each diameter");
+    if (row.size() != columns) {
+      fail(where, ": a row has ", row.size(), " severities; it must have ", columns, ", one for each diameter");
+    }
+    for (const Severity severity : row) {
+      if (std::find(graded.begin(), graded.end(), severity) != graded.end()) continue;
+      fail(where, ": '", name_of(severity), "' is no class of a table; the classes are minor, low, medium and high");
+    }
   }
   if (!(table.max_counted_m > 0) || !(table.area_of_one_m2 > 0)) {
     fail(where, ": the counted diameter is ", table.max_counted_m, " m and the area of one ", table.area_of_one_m2,
@@ -190,7 +196,6 @@ SeverityProbabilities severity_probabilities(const SeverityTable& table, const M
 namespace {
 
 constexpr double majority = 0.5;
-constexpr std::array<Severity, 4> graded{Severity::minor, Severity::low, Severity::medium, Severity::high};
 
 std::array<double, 4> in_order(const SeverityProbabilities& probabilities) {
   return {probabilities.minor, probabilities.low, probabilities.medium, probabilities.high};

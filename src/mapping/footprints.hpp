@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "roadstereo/map_damage.hpp"
@@ -11,6 +12,9 @@ namespace roadstereo {
 inline bool cell_less(const std::array<std::int32_t, 2>& a, const std::array<std::int32_t, 2>& b) {
   return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
 }
+
+/// Adds the cells of `footprint_m` whose centres lie in a convex quadrilateral, metres, its corners in order.
+void add_cells_inside(const std::array<std::array<double, 2>, 4>& corners, MapCells& cells);
 
 /// Smallest overlap of two findings of one damage, as `overlap_share`.
 inline constexpr double min_overlap_share = 0.2;

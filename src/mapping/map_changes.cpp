@@ -12,34 +12,14 @@ namespace {
 
 constexpr double min_std_errors = 2;
 
-/// Cells of two maps around a footprint.
+/// Cells of two maps around a footprint, read strip by strip: a rut is long.
 class PlacePair {
  public:
-  PlacePair(const MapCells& footprint, const RoadMap& before, const RoadMap& after)
-      : cell_before_m_(before.options().cell_m), cell_after_m_(after.options().cell_m) {
-    const int band = static_cast<int>(std::lround(0.1 / footprint_m));
-    int column0 = footprint.front()[0], column1 = column0;
-    const int row0 = footprint.front()[1] - band, row1 = footprint.back()[1] + band;
-    for (const auto& [column, row] : footprint) {
-      column0 = std::min(column0, column);
-      column1 = std::max(column1, column);
-    }
-    column0 -= band;
-    column1 += band;
-    before_ = before.read(box_of(column0, row0, column1, row1, cell_before_m_));
-    after_ = after.read(box_of(column0, row0, column1, row1, cell_after_m_));
-    // 2 in the footprint, 1 in the band around it
-    Image<std::uint8_t> part(column1 - column0 + 1, row1 - row0 + 1, 0);
-    for (const auto& [column, row] : footprint) {
-      for (int y = row - row0 - band; y <= row - row0 + band; ++y) {
-        std::fill_n(part.row(y) + column - column0 - band, 2 * band + 1, std::uint8_t{1});
-      }
-    }
-    for (const auto& [column, row] : footprint) part(column - column0, row - row0) = 2;
-    for (int y = 0; y < part.height(); ++y) {
-      for (int x = 0; x < part.width(); ++x) {
-        if (part(x, y) > 0) add(column0 + x, row0 + y, part(x, y) == 2);
-      }
+  PlacePair(const MapCells& footprint, const RoadMap& before, const RoadMap& after) : before_(before), after_(after) {
+    constexpr int strip_rows = 128;
+    const int first_row = footprint.front()[1] - band, last_row = footprint.back()[1] + band;
+    for (int row = first_row; row <= last_row; row += strip_rows) {
+      add_strip(footprint, row, std::min(row + strip_rows - 1, last_row));
     }
     share_ = static_cast<double>(inside_.size()) / static_cast<double>(footprint.size());
   }
@@ -56,31 +36,66 @@ class PlacePair {
   }
 
  private:
-  static MapBox box_of(int column0, int row0, int column1, int row1, double cell_m) {
-    const auto cell = [&](int index) { return static_cast<int>(std::floor(index * footprint_m / cell_m)); };
-    return {cell(column0), cell(row0), cell(column1 + 1) - cell(column0) + 1, cell(row1 + 1) - cell(row0) + 1};
-  }
+  static constexpr int band = 5;  ///< around the footprint, 0.1 m
 
   struct Seen {
     double height, variance;
   };
-  static std::optional<Seen> look(const MapRaster& raster, double cell_m, int column, int row) {
-    const auto cell = [&](int index) { return static_cast<int>(std::floor((index + 0.5) * footprint_m / cell_m)); };
-    const int u = cell(column) - raster.box.i0, v = raster.box.j0 + raster.box.rows - 1 - cell(row);
-    if (raster.views(u, v) == 0) return std::nullopt;
-    const double sigma = raster.sigma(u, v);
-    return Seen{raster.height(u, v), sigma * sigma};
+
+  /// Cells of one map.
+  struct Place {
+    double cell_m;
+    MapRaster raster;
+
+    Place(const RoadMap& map, int column0, int row0, int column1, int row1) : cell_m(map.options().cell_m) {
+      const auto cell = [&](int index) { return static_cast<int>(std::floor(index * footprint_m / cell_m)); };
+      raster =
+          map.read({cell(column0), cell(row0), cell(column1 + 1) - cell(column0) + 1, cell(row1 + 1) - cell(row0) + 1});
+    }
+
+    std::optional<Seen> look(int column, int row) const {
+      const auto cell = [&](int index) { return static_cast<int>(std::floor((index + 0.5) * footprint_m / cell_m)); };
+      const int u = cell(column) - raster.box.i0, v = raster.box.j0 + raster.box.rows - 1 - cell(row);
+      if (raster.views(u, v) == 0) return std::nullopt;
+      const double sigma = raster.sigma(u, v);
+      return Seen{raster.height(u, v), sigma * sigma};
+    }
+  };
+
+  /// Add the cells of the rows `row0` … `row1`.
+  void add_strip(const MapCells& footprint, int row0, int row1) {
+    const auto from = [&](int row) {
+      return std::partition_point(footprint.begin(), footprint.end(), [row](const auto& c) { return c[1] < row; });
+    };
+    const auto first = from(row0 - band), last = from(row1 + band + 1);
+    if (first == last) return;
+    const auto [left, right] =
+        std::minmax_element(first, last, [](const auto& a, const auto& b) { return a[0] < b[0]; });
+    const int column0 = (*left)[0] - band, column1 = (*right)[0] + band;
+    // 2 in the footprint, 1 in the band around it
+    Image<std::uint8_t> part(column1 - column0 + 1, row1 - row0 + 1, 0);
+    for (auto cell = first; cell != last; ++cell) {
+      const auto [column, row] = *cell;
+      for (int y = std::max(row - band, row0); y <= std::min(row + band, row1); ++y) {
+        std::fill_n(part.row(y - row0) + column - column0 - band, 2 * band + 1, std::uint8_t{1});
+      }
+    }
+    for (auto cell = from(row0); cell != from(row1 + 1); ++cell) part((*cell)[0] - column0, (*cell)[1] - row0) = 2;
+    const Place before(before_, column0, row0, column1, row1), after(after_, column0, row0, column1, row1);
+    for (int y = 0; y < part.height(); ++y) {
+      for (int x = 0; x < part.width(); ++x) {
+        if (part(x, y) > 0) add(before.look(column0 + x, row0 + y), after.look(column0 + x, row0 + y), part(x, y) == 2);
+      }
+    }
   }
 
-  void add(int column, int row, bool inside) {
-    const auto before = look(before_, cell_before_m_, column, row), after = look(after_, cell_after_m_, column, row);
+  void add(const std::optional<Seen>& before, const std::optional<Seen>& after, bool inside) {
     if (!before || !after) return;
     (inside ? inside_ : around_).push_back(after->height - before->height);
     if (inside) variances_ += before->variance + after->variance;
   }
 
-  double cell_before_m_, cell_after_m_;
-  MapRaster before_, after_;
+  const RoadMap &before_, &after_;
   std::vector<double> inside_, around_;  ///< later minus earlier heights
   double variances_ = 0, share_ = 0;
 };

@@ -18,14 +18,30 @@ constexpr double median_sigma_px = 0.1;  ///< of the map, seen by the virtual ri
 constexpr double road_px = 64;           ///< disparity of the window's plane
 constexpr double delta_t_px = 10;        ///< transformed disparity of the window's plane
 
-void make_unique(MapCells& cells) {
+/// Cells of the footprint of a damage: those of its pixels' centres, and all between them where a pixel covers several.
+/// `place(u, v)` is the position in the map of a point of the image; it keeps lines straight.
+template <class Place>
+MapCells footprint_of(const Damage& damage, const DamageMap& found, const Place& place) {
+  MapCells cells;
+  for (int v = damage.box_px[1]; v <= damage.box_px[3]; ++v) {
+    int run = 0;  // pixels of the damage up to u
+    for (int u = damage.box_px[0]; u <= damage.box_px[2] + 1; ++u) {
+      if (u <= damage.box_px[2] && found.ids(u, v) == damage.id) {
+        const std::array<double, 2> at = place(u, v);
+        cells.push_back({static_cast<std::int32_t>(std::floor(at[0] / footprint_m)),
+                         static_cast<std::int32_t>(std::floor(at[1] / footprint_m))});
+        ++run;
+      } else if (run > 0) {
+        const double left = u - run - 0.5, right = u - 0.5;
+        add_cells_inside({place(left, v - 0.5), place(right, v - 0.5), place(right, v + 0.5), place(left, v + 0.5)},
+                         cells);
+        run = 0;
+      }
+    }
+  }
   std::sort(cells.begin(), cells.end(), cell_less);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-}
-
-std::array<std::int32_t, 2> footprint_cell(double x, double y) {
-  return {static_cast<std::int32_t>(std::floor(x / footprint_m)),
-          static_cast<std::int32_t>(std::floor(y / footprint_m))};
+  return cells;
 }
 
 /// A part of the map as a rig that looks straight down sees it.
@@ -42,9 +58,9 @@ double median_sigma(const Image<float>& sigma) {
   return values.empty() ? 0 : static_cast<double>(upper_median(values));
 }
 
-/// Virtual rig: cell = Z/f, and `scale` pixels of disparity per metre of height, f·b/Z².
+/// Virtual rig: cell = Z/f, and about `scale` pixels of disparity per metre of height, f·b/Z².
 StereoCalibration virtual_rig(int side, double cell_m, double scale) {
-  constexpr double most_m = 9, min_baseline_m = 0.01, max_focal_widths = 40, min_focal_widths = 0.5;
+  constexpr double most_m = 9, min_baseline_m = 0.01, max_focal_widths = 40, min_focal_widths = 0.1;
   const double max_baseline_m = std::min(most_m, 0.9 * side * cell_m);  // the disparity offset stays below the width
   StereoCalibration rig;
   rig.width = rig.height = side;
@@ -78,7 +94,7 @@ bool make_view(const RoadMap& map, const MapBox& box, WindowView& view) {
   } catch (const Error&) {  // all cells lie on one line
     return false;
   }
-  const double z = rig.focal_px * map.options().cell_m;
+  const double z = rig.focal_px * map.options().cell_m, px_per_m = rig.focal_px * rig.baseline_m / (z * z);
   view.transformed.resize(box.columns, box.rows);
   view.disparity.resize(box.columns, box.rows);
   view.sigma.resize(box.columns, box.rows);
@@ -88,7 +104,7 @@ bool make_view(const RoadMap& map, const MapBox& box, WindowView& view) {
       const double disparity = rig.focal_px * rig.baseline_m / (z - height) - rig.disparity_offset_px;
       view.disparity(u, v) = static_cast<float>(disparity);
       view.transformed(u, v) = static_cast<float>(disparity - road_px + delta_t_px);
-      view.sigma(u, v) = static_cast<float>(raster.sigma(u, v) * scale);
+      view.sigma(u, v) = static_cast<float>(raster.sigma(u, v) * px_per_m);
     }
   }
   view.input.transformed = view.transformed;
@@ -106,29 +122,13 @@ MapDamage map_damage(const Damage& damage, const DamageMap& found, const MapBox&
   const auto y = [&](double v) { return (box.j0 + box.rows - v - 0.5) * cell_m; };
   result.at_m = {x(damage.centroid_px[0]), y(damage.centroid_px[1])};
   result.length_angle_rad = damage.metrics->angle_rad;
-  for (int v = damage.box_px[1]; v <= damage.box_px[3]; ++v) {
-    for (int u = damage.box_px[0]; u <= damage.box_px[2]; ++u) {
-      if (found.ids(u, v) == damage.id) result.footprint.push_back(footprint_cell(x(u), y(v)));
-    }
-  }
-  make_unique(result.footprint);
+  result.footprint = footprint_of(damage, found, [&](double u, double v) { return std::array<double, 2>{x(u), y(v)}; });
   return result;
 }
 
 /// Whether two damages of one kind share a footprint cell.
 bool overlap(const MapDamage& one, const MapDamage& other) {
-  if (one.damage.kind != other.damage.kind) return false;
-  auto a = one.footprint.begin(), b = other.footprint.begin();
-  while (a != one.footprint.end() && b != other.footprint.end()) {
-    if (cell_less(*a, *b)) {
-      ++a;
-    } else if (cell_less(*b, *a)) {
-      ++b;
-    } else {
-      return true;
-    }
-  }
-  return false;
+  return one.damage.kind == other.damage.kind && overlap_share(one.footprint, other.footprint) > 0;
 }
 
 /// Takes of two findings in overlapping windows the one that is not cut, or else the larger.
@@ -168,11 +168,12 @@ std::vector<MapBox> windows_of(const RoadMap& map, int side) {
 }  // namespace
 
 std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& options) {
-  constexpr int min_side = 1024;
-  constexpr double min_side_m = 4;
+  constexpr int usual_side = 1024, min_side = 256;
+  constexpr double min_side_m = 4, max_side_m = 10;
   options.validate();
   const double cell_m = map.options().cell_m;
-  const int side = std::max(min_side, static_cast<int>(std::ceil(min_side_m / cell_m / 2)) * 2);
+  const auto cells = [cell_m](double length_m) { return static_cast<int>(std::ceil(length_m / cell_m / 2)) * 2; };
+  const int side = std::max({cells(min_side_m), min_side, std::min(usual_side, cells(max_side_m))});
   std::vector<MapDamage> findings;
   WindowView view;
   DamageMap found;
@@ -203,14 +204,10 @@ std::vector<MapDamage> locate_damage(const DamageMap& found, const DisparityPlan
     const std::array<double, 3> centroid = transform_point(camera_to_map, damage.metrics->centroid_m);
     result.at_m = {centroid[0], centroid[1]};
     result.length_angle_rad = damage.metrics->angle_rad + std::atan2(axis[1], axis[0]);
-    for (int v = damage.box_px[1]; v <= damage.box_px[3]; ++v) {
-      for (int u = damage.box_px[0]; u <= damage.box_px[2]; ++u) {
-        if (found.ids(u, v) != damage.id) continue;
-        const auto at = transform_point(camera_to_map, calibration.point_m(u, v, road.disparity(u, v)));
-        result.footprint.push_back(footprint_cell(at[0], at[1]));
-      }
-    }
-    make_unique(result.footprint);
+    result.footprint = footprint_of(damage, found, [&](double u, double v) {
+      const auto at = transform_point(camera_to_map, calibration.point_m(u, v, road.disparity(u, v)));
+      return std::array<double, 2>{at[0], at[1]};
+    });
     located.push_back(std::move(result));
   }
   return located;

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
@@ -43,9 +46,12 @@ void require_rigid(const RigidTransform& t) {
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t b = 0; b <= a; ++b) error = std::max(error, std::abs(dot(a, b) - (a == b ? 1 : 0)));
   }
-  if (error <= tolerance && std::isfinite(t[3] + t[7] + t[11])) return;
-  fail("camera_to_map is no rigid motion in finite metres: its rotation is off by ", error, "; at most ", tolerance,
-       " are allowed");
+  if (!(error <= tolerance)) {
+    fail("camera_to_map is no rigid motion: its rotation is off by ", error, "; at most ", tolerance, " are allowed");
+  }
+  for (const std::size_t k : {3, 7, 11}) {
+    if (!std::isfinite(t[k])) fail("camera_to_map has the translation ", t[k], " m; it must be finite");
+  }
 }
 
 void require_frame(const MapFrame& frame) {
@@ -102,6 +108,7 @@ struct RoadMap::State {
   RoadMapOptions options;
   TileStore store;
   ViewErrorSums sums;
+  std::vector<std::optional<CellMeasurement>> seen;  ///< by the frame that is added, of a tile
 };
 
 RoadMap::RoadMap(const std::filesystem::path& folder, const RoadMapOptions& options) {
@@ -132,29 +139,40 @@ std::size_t RoadMap::add(const MapFrame& frame) {
   const auto sigmas = static_cast<float>(options.gate_sigmas);
   const auto cell_m = static_cast<float>(options.cell_m);
   std::size_t cells = 0;
+  state_->seen.resize(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   std::vector<std::size_t> row_cells(static_cast<std::size_t>(side));
   std::vector<ViewErrorSums> row_sums(static_cast<std::size_t>(side));
   for (int row = range.row0; row <= range.row1; ++row) {
     for (int column = range.column0; column <= range.column1; ++column) {
-      TileStore::Cells& tile = state_->store.write({column, row});
       const int i0 = std::max(box.i0, column * side), i1 = std::min(box.i0 + box.columns, (column + 1) * side);
       const int j0 = std::max(box.j0, row * side), j1 = std::min(box.j0 + box.rows, (row + 1) * side);
+      const auto line = [&](int j) {  // index of column 0 of the map in row j of the tile
+        return static_cast<std::ptrdiff_t>(j - row * side) * side - static_cast<std::ptrdiff_t>(column) * side;
+      };
       std::fill(row_cells.begin(), row_cells.end(), 0);
-      std::fill(row_sums.begin(), row_sums.end(), ViewErrorSums{});
       parallel_rows(j1 - j0, rows_per_band, options.threads, [&](int first, int last, int) {
         for (int j = j0 + first; j < j0 + last; ++j) {
-          const std::ptrdiff_t line =
-              static_cast<std::ptrdiff_t>(j - row * side) * side - static_cast<std::ptrdiff_t>(column) * side;
           for (int i = i0; i < i1; ++i) {
-            const auto seen = projection.measure((i + 0.5) * options.cell_m, (j + 0.5) * options.cell_m);
-            if (!seen) continue;
-            const auto row_of_tile = static_cast<std::size_t>(j - row * side);
-            tile[static_cast<std::size_t>(line + i)].add(*seen, sigmas, cell_m, row_sums[row_of_tile]);
-            ++row_cells[row_of_tile];
+            auto& seen = state_->seen[static_cast<std::size_t>(line(j) + i)];
+            seen = projection.measure((i + 0.5) * options.cell_m, (j + 0.5) * options.cell_m);
+            if (seen) ++row_cells[static_cast<std::size_t>(j - row * side)];
           }
         }
       });
-      for (const std::size_t count : row_cells) cells += count;
+      const std::size_t count = std::accumulate(row_cells.begin(), row_cells.end(), std::size_t{0});
+      if (count == 0) continue;  // a corner of the box that the frame does not show
+      cells += count;
+      TileStore::Cells& tile = state_->store.write({column, row});
+      std::fill(row_sums.begin(), row_sums.end(), ViewErrorSums{});
+      parallel_rows(j1 - j0, rows_per_band, options.threads, [&](int first, int last, int) {
+        for (int j = j0 + first; j < j0 + last; ++j) {
+          for (int i = i0; i < i1; ++i) {
+            const auto index = static_cast<std::size_t>(line(j) + i);
+            const auto& seen = state_->seen[index];
+            if (seen) tile[index].add(*seen, sigmas, cell_m, row_sums[static_cast<std::size_t>(j - row * side)]);
+          }
+        }
+      });
       for (const ViewErrorSums& sums : row_sums) state_->sums.add(sums);
     }
   }

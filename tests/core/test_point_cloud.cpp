@@ -53,6 +53,9 @@ TEST(CloudFromDisparity, ColoursAreOptionalAndOfEightBits) {
   const std::vector<std::uint16_t> samples{4095, 803};
   const FrameView left = FrameView::grey16(samples.data(), 2, 1);
   const PointCloud cloud = cloud_from_disparity(disparity, left, 4095, example_calibration());
+  for (const double white : {-5.0, std::nan(""), 65536.0}) {
+    EXPECT_THROW(cloud_from_disparity(disparity, left, white, example_calibration()), Error) << white;
+  }
   EXPECT_EQ(cloud.points, cloud_from_disparity(disparity, example_calibration()).points);
   EXPECT_EQ(cloud.colours[0], (std::array<std::uint8_t, 3>{255, 255, 255}));
   EXPECT_EQ(cloud.colours[1], (std::array<std::uint8_t, 3>{50, 50, 50}));  // 803·255 / 4095 = 50.004

@@ -453,7 +453,20 @@ TEST(FindDamage, AppliesDepthAndAreaLimits) {
   EXPECT_EQ(shallow.damages[0].kind, DamageKind::protrusion);
   options = {};
   options.min_area_m2 = 1;
-  EXPECT_TRUE(find_damage(damaged().metric(), options).damages.empty());
+  const DamageMap none = find_damage(damaged().metric(), options);
+  EXPECT_TRUE(none.damages.empty());
+  // What is no damage is no intact road either: as before it was measured.
+  const DamageMap all = find_damage(damaged().metric());
+  std::size_t inside = 0, as_road = 0;
+  for (int v = 0; v < all.ids.height(); ++v) {
+    for (int u = 0; u < all.ids.width(); ++u) {
+      if (all.ids(u, v) == 0) continue;
+      ++inside;
+      as_road += none.road(u, v) != 0 ? 1U : 0U;
+      EXPECT_EQ(none.ids(u, v), 0);
+    }
+  }
+  EXPECT_LT(as_road, inside / 5);  // the rim
   options = {};
   options.min_area_share = 0.5;
   EXPECT_TRUE(find_damage(damaged().pixels(), options).damages.empty());

@@ -104,5 +104,15 @@ TEST_F(MapChanges, PlacesThatOneDayDoesNotMeasureAreLeftOut) {
   EXPECT_FALSE(measures(elsewhere, small_[0].best.footprint));
 }
 
+// The box around a rut that runs diagonally for 400 m has 1.6e9 cells of 1 cm.
+TEST_F(MapChanges, LongDamageIsReadInParts) {
+  RoadDamageRecord rut = record(0.05, 0.008, 0.126);
+  EXPECT_TRUE(measures(deep_, rut.best.footprint));
+  MapCells& cells = rut.best.footprint;
+  for (int k = 100; k < 20'000; ++k) cells.push_back({k, k});
+  EXPECT_FALSE(measures(deep_, cells));
+  EXPECT_TRUE(compare_damage(none_, flat_, std::vector{rut}, deep_).empty());
+}
+
 }  // namespace
 }  // namespace roadstereo

@@ -321,6 +321,41 @@ TEST_F(RoadMapTest, DamageThatNoFrameResolvesIsFoundInMap) {
   EXPECT_NEAR(static_cast<double>(found[0].footprint.size()) * footprint_m * footprint_m, area.value, 0.03);
 }
 
+// The map's heights are as precise with coarse cells, and so is what is found in them.
+TEST_F(RoadMapTest, DamageIsAsSignificantInCoarseCells) {
+  const Step step{0.1, 0.05, 0.3, 0.04};
+  std::vector<double> significances;
+  for (const double cell_m : {0.01, 0.02, 0.04}) {
+    RoadMapOptions coarse = options();
+    coarse.cell_m = cell_m;
+    RoadMap map(folder_ / std::to_string(cell_m), coarse);
+    for (int i = 0; i < 12; ++i) {
+      map.add(TestFrame(looking_down(0.02 * i - 0.1, 0.003 * i, 2), step, 0.05, static_cast<unsigned>(i + 1)).frame);
+    }
+    const std::vector<MapDamage> found = find_map_damage(map, {});
+    ASSERT_EQ(found.size(), 1U) << cell_m;
+    significances.push_back(found[0].damage.evidence.depth_significance);
+  }
+  EXPECT_NEAR(significances[1] / significances[0], 1, 0.25);
+  EXPECT_NEAR(significances[2] / significances[0], 1, 0.25);
+}
+
+// A frame that is turned by 45° shows half of the box around it.
+TEST_F(RoadMapTest, TilesHaveMeasuredCells) {
+  RoadMapOptions small = options();
+  small.tile_cells = 16;
+  RoadMap map(folder_, small);
+  const double c = std::sqrt(0.5);
+  map.add(TestFrame({c, c, 0, 0, c, -c, 0, 0, 0, 0, -1, 2}, {}, 0, 1).frame);
+  const std::vector<MapBox> tiles = map.tile_boxes();
+  EXPECT_GT(tiles.size(), 100U);
+  for (const MapBox& tile : tiles) {
+    const MapRaster raster = map.read(tile);
+    EXPECT_TRUE(std::any_of(raster.views.row(0), raster.views.row(0) + raster.views.pixels(),
+                            [](auto views) { return views > 0; }));
+  }
+}
+
 // Damage a long way apart, in cells finer than a pixel; what lies between costs nothing.
 TEST_F(RoadMapTest, FindsDamageInFineCellsFarApart) {
   const Step step{0.1, 0.05, 0.25, 0.05};

@@ -84,7 +84,7 @@ TEST(RoughnessNoiseFloor, IsMeanIndexOfWhiteNoise) {
 TEST(RoughnessIndex, NeedsAsManyHeightsAsItSays) {
   for (const double spacing : {0.05, 0.25, 0.4, 0.48, 0.5}) {
     const std::size_t least = min_roughness_samples(spacing);
-    EXPECT_GE(roughness_index(std::vector<double>(least, 0.0), spacing), 0) << spacing;
+    EXPECT_EQ(roughness_index(std::vector<double>(least, 0.0), spacing), 0) << spacing;
     EXPECT_THROW(roughness_index(std::vector<double>(least - 1, 0.0), spacing), Error) << spacing;
   }
 }

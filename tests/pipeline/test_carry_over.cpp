@@ -122,12 +122,12 @@ INSTANTIATE_TEST_SUITE_P(Kinds, CarryOverJump,
 
 class CarryOverMove : public testing::TestWithParam<Jump> {};
 
-TEST_P(CarryOverMove, IsTrackedAsWellAsFoundAnew) {
+TEST_P(CarryOverMove, IsTracked) {
   synth::Scene scene = small_road();
   const synth::SyntheticPair before = synth::render(scene);
   GetParam().change(scene);
   const synth::SyntheticPair after = synth::render(scene);
-  Pipeline carried, fresh;
+  Pipeline carried;
   carried.process(before.left.view(), before.right.view());
   const FrameResult& result = carried.process(after.left.view(), after.right.view());
   EXPECT_EQ(result.road.status, RoadStatus::tracked);

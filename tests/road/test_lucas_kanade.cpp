@@ -180,6 +180,27 @@ TEST(LucasKanade, ChangesByNoMoreThanLimit) {
   EXPECT_NEAR(aligned(80, 30), 6.55, 1e-5);
 }
 
+TEST(LucasKanade, RadiusZeroSwitchesStepOff) {
+  const test::TexturedPair pair = test::textured_pair(width, height, [](double, double) { return 6.9; });
+  LucasKanadeOptions options;
+  options.radius = 0;
+  Image<float> disparity(width, height, 6.5F);
+  disparity(3, 4) = 6.25F;
+  EXPECT_EQ(align(pair, disparity, options), disparity);
+}
+
+TEST(LucasKanade, RejectsMaskOfOtherSize) {
+  const test::TexturedPair pair = test::textured_pair(width, height, [](double, double) { return 6.3; });
+  const Image<std::uint8_t> mask(width, height - 1, 0);
+  const Image<float> disparity(width, height, 6.3F);
+  Image<float> aligned;
+  for (const int radius : {0, 2}) {
+    EXPECT_THROW(lucas_kanade({pair.reference, pair.target, nullptr, no_shift(), mask}, disparity, {.radius = radius},
+                              1, aligned),
+                 Error);
+  }
+}
+
 double prefiltered_level(const GreyImage& image, int x, int y) {
   constexpr std::array<double, 5> weights{1, 2, 3, 2, 1};
   double sum = 0;

@@ -9,6 +9,7 @@
 
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
+#include "core/require_size.hpp"
 #include "core/scratch.hpp"
 #include "road/lucas_kanade/alignment_maps.hpp"
 #include "road/lucas_kanade/sample_rows.hpp"
@@ -186,6 +187,16 @@ void add_shifts(CellShifts& shifts, float scale, int v, const float* disparity, 
   }
 }
 
+void require_sizes(const TransformedPair& pair, ImageView<const float> disparity) {
+  const ImageSize size{disparity.width(), disparity.height()};
+  for (const ImageView<const std::int16_t>& image : {pair.reference, pair.target}) {
+    if (ImageSize{image.width(), image.height()} == size) continue;
+    fail("the disparity map has ", size.width, "×", size.height, " pixels and an image ", image.width(), "×",
+         image.height(), "; they must be equal");
+  }
+  require_mask_size({pair.mask.width(), pair.mask.height()}, size);
+}
+
 }  // namespace
 
 void LucasKanadeOptions::validate() const {
@@ -196,6 +207,13 @@ void LucasKanadeOptions::validate() const {
 
 void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity, const LucasKanadeOptions& options,
                   int threads, Image<float>& aligned) {
+  if (options.radius == 0) {
+    options.validate();
+    require_sizes(pair, disparity);
+    aligned.resize(disparity.width(), disparity.height());
+    for (int v = 0; v < disparity.height(); ++v) std::copy_n(disparity.row(v), disparity.width(), aligned.row(v));
+    return;
+  }
   Image<float> correlation;
   lucas_kanade(pair, disparity, options, threads, aligned, correlation);
 }
@@ -203,12 +221,8 @@ void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity,
 void lucas_kanade(const TransformedPair& pair, ImageView<const float> disparity, const LucasKanadeOptions& options,
                   int threads, Image<float>& aligned, Image<float>& correlation) {
   options.validate();
+  require_sizes(pair, disparity);
   const int width = disparity.width(), height = disparity.height();
-  for (const ImageView<const std::int16_t>& image : {pair.reference, pair.target}) {
-    if (image.width() == width && image.height() == height) continue;
-    fail("the disparity map has ", width, "×", height, " pixels and an image ", image.width(), "×", image.height(),
-         "; they must be equal");
-  }
   constexpr int rows_per_band = 8;  // of cells
   const auto workers = static_cast<std::size_t>(resolve_threads(threads));
   const std::size_t row_numbers = WorkerRows::count * WorkerRows::pitch(width);
