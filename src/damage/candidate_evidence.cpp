@@ -1,0 +1,125 @@
+#include "damage/candidate_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "damage/contours.hpp"
+#include "damage/morphology.hpp"
+#include "damage/neighbours.hpp"
+
+namespace roadstereo {
+namespace {
+
+/// Shares of the contour of a region, with its cells at the border of the view, on that border and on that of what is
+/// seen: the rim of a damage is not known there.
+void measure_border(const BoxMask& region, const CommonView& view, const Image<std::uint8_t>& unseen,
+                    DamageEvidence& evidence) {
+  const int columns = unseen.width(), rows = unseen.height();
+  const CellBox& box = region.box();
+  double contour = 0, on_border = 0, on_gap = 0;
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      if (!region(i, j)) continue;
+      const bool at_border = view.is_on_border(i, j);
+      bool at_gap = false;
+      for_each_neighbour(i, j, columns, rows, [&](int x, int y) { at_gap |= unseen(x, y) != 0 && !region(x, y); });
+      if (!at_border && !at_gap && !is_on_contour(region, i, j, columns, rows)) continue;
+      ++contour;
+      on_border += at_border ? 1 : 0;
+      on_gap += at_gap && !at_border ? 1 : 0;
+    }
+  }
+  if (contour == 0) return;
+  evidence.border_share = on_border / contour;
+  evidence.unseen_share = on_gap / contour;
+}
+
+/// Share of the band around a candidate that is road, the relief of a rough one included, or a hollow no deeper than
+/// the outline. Cells of other damages and outside the view do not count; 1 if no cell is left.
+double road_share(const SearchInput& input, const Candidate& candidate, const Image<std::uint8_t>& assigned) {
+  constexpr double margin_radii = 0.5;  // width of the band, radii √(area / π) of the region
+  constexpr int min_margin_cells = 3;
+  constexpr float max_hollow_sigmas = 10;  // depth of a hollow around a pothole that counts as road
+  const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
+  const int margin = std::max(min_margin_cells, static_cast<int>(margin_radii * radius));
+  const CellBox around = candidate.box().grown(margin, input.road.width(), input.road.height());
+  const BoxMask dilated = dilate(candidate.cells, margin, around);
+  const float sign = sign_of(candidate.kind);
+  const float max_hollow =
+      candidate.kind == DamageKind::depression
+          ? std::min(candidate.level, max_hollow_sigmas * static_cast<float>(input.depth_cells.noise))
+          : 0.0F;
+  double cells = 0;
+  double on_road = 0;
+  for (int j = around.first_row; j <= around.last_row; ++j) {
+    for (int i = around.first_column; i <= around.last_column; ++i) {
+      const bool other_damage = assigned(i, j) != 0 && assigned(i, j) != obstacle_label;
+      if (!dilated(i, j) || candidate.cells(i, j) || other_damage || !input.view.contains(i, j)) continue;
+      ++cells;
+      if (input.depth_cells.valid(i, j) == 0) continue;
+      const float depth = sign * input.depth_cells.depth(i, j);
+      const bool is_relief = std::abs(depth) < input.thresholds.relief(i, j);
+      on_road += input.road(i, j) != 0 || is_relief || (depth > 0 && depth <= max_hollow) ? 1 : 0;
+    }
+  }
+  return cells == 0 ? 1 : on_road / cells;
+}
+
+/// Significance of the rut that a region lies in, times the share of its cells that do.
+double rut_significance(const BoxMask& region, std::size_t size, const Ruts& ruts) {
+  if (ruts.empty()) return 0;
+  std::vector<std::size_t> counts(ruts.significances.size() + 1, 0);
+  const CellBox& box = region.box();
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      if (region(i, j)) ++counts[ruts.labels(i, j)];
+    }
+  }
+  double most = 0;
+  for (std::size_t k = 1; k < counts.size(); ++k) {
+    most = std::max(most, ruts.significances[k - 1] * static_cast<double>(counts[k]) / static_cast<double>(size));
+  }
+  return most;
+}
+
+}  // namespace
+
+std::vector<float> depths_inside(const SearchImages& images, const Candidate& candidate) {
+  std::vector<float> inside;
+  inside.reserve(candidate.size);
+  const CellBox& box = candidate.box();
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    const std::uint8_t* const is_inside = candidate.cells.cells().row(j - box.first_row);
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      if (is_inside[i - box.first_column] != 0) inside.push_back(images.depth(i, j));
+    }
+  }
+  return inside;
+}
+
+void add_evidence(const SearchInput& input, SearchImages& images, Candidate& candidate) {
+  constexpr int near_cells = 3;  // closer to the rim the depth is smoothed
+  constexpr double band_radii = 1;
+  std::vector<float> inside = depths_inside(images, candidate);
+  const RobustNormal damage = robust_normal(inside);
+  const RobustNormal around = depths_around(images.field(), candidate.cells, near_cells, band_radii);
+  const double window = input.image_edges.window_radius;
+  const double samples = std::max(1.0, static_cast<double>(candidate.size) / (std::numbers::pi * window * window));
+  DamageEvidence& evidence = candidate.evidence;
+  evidence.contrast_sigmas = (damage.median - around.median) / std::max(around.sigma, input.depth_cells.noise);
+  evidence.significance = evidence.contrast_sigmas * std::sqrt(samples);
+  evidence.road_share = road_share(input, candidate, images.assigned);
+  measure_border(candidate.cells, input.view, input.gaps.unseen, evidence);
+  if (candidate.kind == DamageKind::depression) {
+    evidence.rut_significance = rut_significance(candidate.cells, candidate.size, input.ruts);
+  }
+}
+
+double confidence_at_best(const Candidate& candidate, const Thresholds& thresholds) {
+  DamageEvidence steepest = candidate.evidence;
+  if (candidate.kind == DamageKind::depression && thresholds.walls_measured()) steepest.likely_wall_slope = 1;
+  return steepest.confidence();
+}
+
+}  // namespace roadstereo

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "damage/candidate_search.hpp"
+
+namespace roadstereo {
+
+/// Depths of the cells of a candidate.
+std::vector<float> depths_inside(const SearchImages& images, const Candidate& candidate);
+
+/// Measure what distinguishes a damage from noise and from what is not road.
+void add_evidence(const SearchInput& input, SearchImages& images, Candidate& candidate);
+
+/// Confidence of a region before its wall is measured, and the agreement of the pictures, which makes no damage of one
+/// that none could be: that of a steep wall.
+double confidence_at_best(const Candidate& candidate, const Thresholds& thresholds);
+
+}  // namespace roadstereo

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "damage/candidate_search.hpp"
+#include "damage/connected_components.hpp"
+
+namespace roadstereo {
+
+/// A hole beside a step of the road, as at the edge of an overlay, from the level that leaves out the lower side of the
+/// step, where the outline has run out into that.
+void leave_terrace(const SearchInput& input, float min_cells, SearchImages& images, Candidate& candidate);
+
+/// The hollow around a core at a higher level, if it is likelier a damage there. Where the relief of the road is as
+/// steep as the wall, the outline runs out of the hole into a shallow one, and the contrast is lost.
+void raise_level(const SearchInput& input, const ConnectedComponent& core, float min_cells, SearchImages& images,
+                 Candidate& candidate);
+
+}  // namespace roadstereo
