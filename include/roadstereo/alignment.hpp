@@ -24,7 +24,10 @@ struct RowAlignment {
   double fit_sigma_px = 0;  ///< the same around `fit`, pixels
   RowOffset fit;            ///< robust fit; without slopes where none is significant, 0 where the offset is not
 
-  bool known() const { return points >= 20; }
+  static constexpr int min_points = 20;
+  static constexpr double max_fit_sigma_px = 1;  ///< beyond it they contradict each other, as on repeating texture
+  /// Whether the points tell the offset.
+  bool known() const { return points >= min_points && fit_sigma_px <= max_fit_sigma_px; }
 };
 
 /// A matched point: (u, v) in the left image, (u + du, v + dv) in the right one.

@@ -28,7 +28,7 @@ const char* name_of(DamageKind kind);
 struct DamageOptions {
   double threshold_sigma = 5;  ///< minimum depth in standard deviations of the intact road, 1 … 100
   double min_depth_m = 0.005;  ///< minimum depth along the road's normal, metres, 0 … 10; used when calibrated
-  double max_depth_m = 0.3;    ///< maximum depth, metres, min_depth_m … 10; deeper regions are ditches
+  double max_depth_m = 1;      ///< maximum depth, metres, min_depth_m … 10; deeper regions are ditches
   double max_height_m = 0.12;  ///< maximum height, metres, min_depth_m … 10; higher regions are kerbs or vehicles
   double min_area_m2 = 0.001;  ///< minimum area on the road's surface, m², 0 … 1e4, and 64 pixels; used when calibrated
   double min_area_share = 0.001;  ///< minimum area as a share of the image, 0 … 1; used without a calibration

@@ -43,8 +43,8 @@ inline FrameView frame_view(const cv::Mat& image) {
           order};
 }
 
-/// Returns a matrix header over a map: CV_32FC1, CV_16SC1 or CV_8UC1 by the type of its values. The map must outlive
-/// it. Values of a const map must not be written.
+/// Returns a matrix header over a map: CV_32FC1, CV_16SC1, CV_16UC1 or CV_8UC1 by the type of its values. The map must
+/// outlive it. Values of a const map must not be written.
 template <class T>
 cv::Mat mat_view(ImageView<T> map) {
   using Value = std::remove_const_t<T>;

@@ -112,7 +112,8 @@ struct PipelineState {
 /// thread-safe; distinct instances are independent.
 class Pipeline {
  public:
-  /// Throws Error when an option is out of range or the engine does not exist.
+  /// Throws Error when an option is out of range, the engine does not exist, or a height or pitch is expected without
+  /// a calibration.
   explicit Pipeline(const PipelineOptions& options = preset("default"),
                     const std::optional<StereoCalibration>& calibration = std::nullopt);
   ~Pipeline();
@@ -121,7 +122,8 @@ class Pipeline {
 
   /// Processes one rectified pair. The result belongs to the pipeline and is valid until the next call.
   /// Throws Error for an invalid pair: sizes differ or are outside 32×32 … 8192×8192, an image has one colour, both
-  /// images are the same, left and right seem to be swapped, or the calibration or the mask belongs to another size.
+  /// images are the same, left and right seem to be swapped, or the calibration, the mask or the rig bias belongs to
+  /// another size or rig.
   const FrameResult& process(const FrameView& left, const FrameView& right);
 
   /// The same, but swaps the result with `result` and reuses its memory: with two or more results in turn, one frame

@@ -21,7 +21,8 @@ struct CameraPose {
   void validate() const;
 };
 
-/// Systematic error of the parabola, which averaging does not remove, pixels (docs/accuracy.md).
+/// Systematic error of sub-pixel disparities, which averaging does not remove, pixels: that of the parabola of `paper`;
+/// `default` and `fast` have less (docs/accuracy.md).
 inline constexpr double sub_pixel_bias_px = 0.03;
 
 /// Return the smallest resolvable change of disparity, pixels: `threshold_sigma` standard errors, of `noise_px` and

@@ -90,7 +90,8 @@ struct SavedMap {
 ///
 /// The height of a cell in a frame is found by fixed-point iteration: the point of the surface on the line of sight
 /// through the cell's centre, until the line meets the surface in the cell. Cells that the camera does not see do not
-/// converge and get no height. The result does not depend on the number of threads.
+/// converge and get no height. The result does not depend on the number of threads. Not thread-safe, not even for
+/// reading, which loads tiles; distinct maps are independent.
 class RoadMap {
  public:
   /// Keeps its tiles in `folder`, which it creates, and removes them at the end. Tiles that an earlier map has left

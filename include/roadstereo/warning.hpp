@@ -11,6 +11,7 @@ namespace roadstereo {
 ///   no-road          no road was found: neither roll nor metric values nor damage
 ///   weak-road        there is little evidence for the road that was found
 ///   road-anew        the last frame's road did not fit: it was searched anew
+///   tilted-road      the plane through the disparities is no road's: neither roll nor metric values nor damage
 ///   unexpected-pose  height or pitch are not what was expected
 ///   rows-disagree    the rows of the pair are shifted: it is not rectified
 ///   rows-unknown     too few points tell whether they are

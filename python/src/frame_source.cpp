@@ -91,9 +91,9 @@ py::object frame_of(const PairArrays& pair) {
 constexpr const char* open_doc =
     R"(Open a recording or a camera, an iterator of SourcePair.
 
-source is a folder (left/ right/ and others), a list of pairs, a video with both views, a ROS 1 bag, a V4L2 camera
-(/dev/video0) or a GStreamer pipeline; or source and right are two folders or two videos. layout is "auto", "side-by-side" or "top-bottom"; topics are the left
-and right image topic of a bag; rate_hz, pairs per second, replaces the times of the source. Raises Error if it is none
+source is a folder (left/ right/ and others), a list of pairs, a video with both views, a bag of ROS 1 or ROS 2
+(.bag, .db3, .mcap), a V4L2 camera (/dev/video0) or a GStreamer pipeline; or source and right are two folders or two
+videos. layout is "auto", "side-by-side" or "top-bottom"; topics are the left and right image topic of a bag; rate_hz, pairs per second, replaces the times of the source. Raises Error if it is none
 of these or cannot be opened.)";
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/format_message.hpp"
 #include "core/parallel.hpp"
@@ -12,6 +13,7 @@
 #include "pipeline/host_stages.hpp"
 #include "road/black_border.hpp"
 #include "road/rig_prior.hpp"
+#include "road/road_assessment.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
@@ -167,12 +169,14 @@ GreyPair Pipeline::State::align_on_host(const GreyPair& pair) {
 /// Road model Δu, eq. (4): the last frame's when it still fits, else from the images.
 void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const StageTimer timer(result.ms.road_model);
+  const RigPrior expected(options.road_model, calibration);
   result.rows = {};
   if (carried.road) {
     if (rows_are_due()) measure_rows(stages->on_host(pair), Rows::of_tracked_road);
     result.road = stages->verify_road_model(undo_misalignment(pair), *carried.road);
     if (!result.road.has_road()) track_in_noise(align_on_host(stages->on_host(pair)));
-    if (result.road.has_road()) return;
+    if (result.road.has_road() && expected.disagreement(result.road.model).empty()) return;
+    if (result.road.has_road()) result.road.reason = "the last frame's road has another pose than expected";
     result.warnings.push_back(format_message("road-anew: the road model was estimated anew: ", result.road.reason));
   }
   const GreyPair on_host = stages->on_host(pair);
@@ -191,7 +195,7 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
                                              options.road_model.weak_evidence));
   }
   if (result.road.has_road()) {
-    const std::string disagreement = RigPrior(options.road_model, calibration).disagreement(result.road.model);
+    const std::string disagreement = expected.disagreement(result.road.model);
     if (!disagreement.empty()) result.warnings.push_back("unexpected-pose: " + disagreement);
   }
 }
@@ -218,27 +222,28 @@ void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
   constexpr double max_spread_px = 1.0;
   result.rows = measure_row_alignment(grey.left, grey.right, threads, mask);
   carried.frames_since_rows = 0;
-  if (!result.rows.known()) {
+  const RowAlignment& rows = result.rows;
+  if (!rows.known()) {
     if (of == Rows::of_new_road) {
-      result.warnings.push_back(format_message("rows-unknown: whether the rows of the pair agree is unknown: ",
-                                               result.rows.points, " points are too few to tell"));
+      result.warnings.push_back(
+          "rows-unknown: whether the rows of the pair agree is unknown: " +
+          (rows.points < RowAlignment::min_points
+               ? format_message(rows.points, " points are too few to tell")
+               : format_message("the offsets of ", rows.points, " points scatter by ", rows.fit_sigma_px, " px")));
     }
     return;
   }
-  if (result.rows.fit_sigma_px <= max_spread_px) {
-    Misalignment measured = misalignment_of(result.rows.fit, width, height, calibration);
-    const double largest = measured.largest_px(width, height);
-    if (!options.correct_rows || largest < min_correction_px || largest > Misalignment::max_px) measured = {};
-    if (of == Rows::of_new_road || !carried.rows_known ||
-        differ(measured, result.rows, carried.misalignment, width, height)) {
-      carried.misalignment = measured;
-    }
-    carried.rows_known = true;
+  Misalignment measured = misalignment_of(rows.fit, width, height, calibration);
+  const double largest = measured.largest_px(width, height);
+  if (!options.correct_rows || largest < min_correction_px || largest > Misalignment::max_px) measured = {};
+  if (of == Rows::of_new_road || !carried.rows_known || differ(measured, rows, carried.misalignment, width, height)) {
+    carried.misalignment = measured;
   }
-  if (std::abs(result.rows.median_px) > max_offset_px || result.rows.sigma_px > max_spread_px) {
+  carried.rows_known = true;
+  if (std::abs(rows.median_px) > max_offset_px || rows.sigma_px > max_spread_px) {
     result.warnings.push_back(format_message("rows-disagree: the rows of the pair do not agree: vertical offset ",
-                                             result.rows.median_px, " px (median of ", result.rows.points,
-                                             " points, spread ", result.rows.sigma_px, " px); rectify the pair"));
+                                             rows.median_px, " px (median of ", rows.points, " points, spread ",
+                                             rows.sigma_px, " px); rectify the pair"));
   }
 }
 
@@ -267,15 +272,17 @@ CoarseSearchOptions Pipeline::State::coarse_options(int factor, int block_radius
   return coarse;
 }
 
+/// Disparity ranges of the tiles, and the prior of the matcher.
 MatchInput Pipeline::State::search_coarsely(const MatchInput& pair) {
   const StageTimer timer(result.ms.coarse);
-  return stages->search_coarsely(
-      pair, result.shift,
-      coarse_options(coarse_factor(options.coarse_search, width), options.coarse_search.block_radius));
+  return stages->search_coarsely(pair, result.shift,
+                                 coarse_options(coarse_factor(options.coarse_search, width, pair.disparities),
+                                                options.coarse_search.block_radius));
 }
 
-/// Section 3.2. Masked pixels have no disparity. Without a road model the prior rests on its rows alone, and its
-/// truncation is smaller.
+/// Costs, eq. (8), bilateral aggregation, eq. (11), winner-take-all, left-right check, eq. (12), and sub-pixel
+/// disparity, eq. (13): section 3.2. Masked pixels have no disparity. Without a road model the prior rests on its rows
+/// alone, and its truncation is smaller.
 ResidualMaps Pipeline::State::match(const MatchInput& input) {
   constexpr double truncation_without_road_px = 2;
   const StageTimer timer(result.ms.match);
@@ -340,11 +347,11 @@ DisparityPriorView Pipeline::State::search_scene(const MatchInput& pair) {
   constexpr int max_factor = 8, block_radius = 1;
   if (!can_see_off_road()) return {};
   const StageTimer timer(result.ms.coarse);
-  CoarseSearchOptions coarse =
-      coarse_options(std::min(max_factor, 2 * coarse_factor(options.coarse_search, width)), block_radius);
-  coarse.road_prior_height_m = 0;
   MatchInput whole = pair;
   whole.disparities = scene_disparities(result.shift, width, height);
+  const int factor = 2 * coarse_factor(options.coarse_search, width, whole.disparities);
+  CoarseSearchOptions coarse = coarse_options(std::min(max_factor, factor), block_radius);
+  coarse.road_prior_height_m = 0;
   return stages->search_scene(whole, result.shift, coarse);
 }
 
@@ -361,7 +368,7 @@ ImageView<const float> Pipeline::State::subtract_bias(ImageView<const float> dis
   return stages->subtract_bias(disparity, options.rig_bias);
 }
 
-/// Roll angle and projection model, section 3.3.
+/// Roll angle ψ of the least E_t, eq. (23), and projection model, section 3.3.
 void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
   // Of a pair without a road nothing is told but its disparities.
   constexpr double min_valid_share = 0.01, never = 2;
@@ -373,6 +380,16 @@ void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
   result.valid_share = fit.valid_share;
   result.roll_found = fit.geometry.has_value();
   result.geometry = fit.geometry.value_or(RollEstimate{});
+  // Where hardly any road is in view the fit may have left it.
+  if (result.roll_found && has_road &&
+      !TiltLimit(width, height, calibration, options.road_model.max_road_tilt_deg).can_be_road(result.geometry.plane)) {
+    result.roll_found = false;
+    result.geometry = {};
+    result.road.status = RoadStatus::none;
+    result.road.reason = "the plane through the disparities is tilted like a wall";
+    result.warnings.push_back("tilted-road: " + result.road.reason);
+    return;
+  }
   if (has_road && !result.roll_found) {
     result.warnings.push_back(
         format_message("few-disparities: only ", 100 * result.valid_share, " % of the pixels have a disparity"));
@@ -424,9 +441,12 @@ void Pipeline::State::end_frame() {
   carried.width = width;
   carried.height = height;
   if (options.check_rows) ++carried.frames_since_rows;
-  carried.road.reset();
+  const std::optional<TrackedRoad> last = std::exchange(carried.road, std::nullopt);
   if (result.road.has_road()) {
-    carried.road = TrackedRoad{result.road.model, result.road.inlier_share, result.road.correlation};
+    // The largest share since the road was found: one that is lost bit by bit is lost, too.
+    const double last_share = result.road.status == RoadStatus::tracked ? last->inlier_share : 0;
+    carried.road =
+        TrackedRoad{result.road.model, std::max(result.road.inlier_share, last_share), result.road.correlation};
   }
   carried.roll_rad = result.roll_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   result.mde_per_s = static_cast<double>(width) * height * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;

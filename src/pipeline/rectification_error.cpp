@@ -113,7 +113,9 @@ std::optional<RectificationError> fit_rectification_error(const std::vector<RowS
           sample.dv / fit.focal_px - predict(fit.value, ViewPoint(fit, sample.u, sample.v, -sample.du).row_terms());
     }
   }
-  return fit;
+  // Points that contradict each other tell nothing.
+  const double sigma_px = fit.focal_px * gaussian_mad * upper_median_magnitude(residuals);
+  return sigma_px <= RowAlignment::max_fit_sigma_px ? std::optional(fit) : std::nullopt;
 }
 
 }  // namespace roadstereo

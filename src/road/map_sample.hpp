@@ -10,8 +10,9 @@ namespace roadstereo {
 /// Points that the robust solver and the standard error look at: enough for both, few enough to cost nothing.
 inline constexpr int sample_limit = 6000;
 
-/// Residuals of neighbours are not independent: the standard error takes cells of the map as one observation each.
-inline constexpr int cells_per_side = 24;
+/// Residuals of neighbours are not independent: the standard error takes cells of the map as one observation each,
+/// larger than the reach of the refinement (24 pixels) either side.
+inline constexpr int cells_per_side = 8;
 
 /// A regular grid of pixels of a map, row by row.
 struct MapSample {

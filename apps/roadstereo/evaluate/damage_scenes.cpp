@@ -15,12 +15,12 @@
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/pipeline.hpp"
+#include "roadstereo/resolution_limits.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
 constexpr double min_share = 1.0 / 3;
-constexpr double sub_pixel_bias_px = 0.03;  // docs/accuracy.md
 constexpr std::size_t min_pixels = 64;
 
 /// Pixels of one damage of the ground truth.

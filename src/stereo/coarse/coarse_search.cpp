@@ -77,7 +77,7 @@ bool CoarseSearch::find_prior(const MatchInput& input, const PerspectiveShift& s
   ranges_found_ = false;
   for (Image<float>* map : {&prior_.low, &prior_.high}) map->resize(0, 0);
   if (!coarse_search_pays(width, height)) return false;
-  prior_.factor = coarse_factor(options_, width);
+  prior_.factor = coarse_factor(options_, width, input.disparities);
   downsample_pair(input, prior_.factor);
   const int disparities = coarse_disparities(input.disparities, prior_.factor);
   const MatchInput coarse{reference_, target_, first_column_.data(), disparities};

@@ -18,18 +18,21 @@ inline bool coarse_search_pays(int width, int height) {
   return std::min(width, height) >= min_side;
 }
 
-/// Returns the downsampling factor.
-inline int coarse_factor(const CoarseSearchOptions& options, int width) {
-  constexpr int max_columns = 800;
-  if (options.factor != 0) return options.factor;
-  int factor = 2;
-  while (factor < 8 && width / factor > max_columns) factor *= 2;
-  return factor;
-}
-
 /// Returns the disparities searched in the downsampled pair.
 inline int coarse_disparities(int disparities, int factor) {
   return std::max(2, (disparities - 1) / factor + 1);
+}
+
+/// Returns the downsampling factor. The first and the last disparity have no fraction: with few of them that would be
+/// the road's.
+inline int coarse_factor(const CoarseSearchOptions& options, int width, int disparities) {
+  constexpr int max_columns = 800, min_disparities = 7;
+  if (options.factor != 0) return options.factor;
+  int factor = 2;
+  while (factor < 8 && width / factor > max_columns && coarse_disparities(disparities, 2 * factor) >= min_disparities) {
+    factor *= 2;
+  }
+  return factor;
 }
 
 /// Returns the disparities of all that a W×H picture shows, up to that of what stands on the nearest road in it; at

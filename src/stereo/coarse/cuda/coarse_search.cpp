@@ -46,7 +46,7 @@ bool CudaCoarseSearch::find_prior(const MatchInput& input, const PerspectiveShif
   width_ = height_ = 0;
   const int width = input.reference.width(), height = input.reference.height();
   if (!coarse_search_pays(width, height)) return false;
-  factor_ = coarse_factor(options_, width);
+  factor_ = coarse_factor(options_, width, input.disparities);
   width_ = width / factor_;
   height_ = height / factor_;
   const CoarseVolume shape = reserve(input);
