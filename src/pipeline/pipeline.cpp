@@ -184,8 +184,9 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const GreyPair grey = align_on_host(on_host);
   const bool has_border = find_black_border(grey.left, mask, outside);
   const ImageView<const std::uint8_t> left_out = has_border ? outside : mask;
+  const auto last = carried.road ? std::optional(carried.road->model) : std::nullopt;
   result.road =
-      roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, left_out);
+      roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, left_out, last);
   if (!result.road.has_road()) {
     result.warnings.push_back(format_message("no-road: no road was found (", result.road.reason,
                                              "): matched without perspective transformation over the full range"));

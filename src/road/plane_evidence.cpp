@@ -192,7 +192,8 @@ double PlaneEvidence::share_in_front(const DisparityPlane& full_size) const {
 }
 
 ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
-                                             const RigPrior& prior, int max_planes, int threads) {
+                                             FunctionRef<double(const DisparityPlane&)> prior, int max_planes,
+                                             int threads) {
   auto planes = scratch_vector<PlaneHypothesis>();
   if (evidence.rows() < 2 || evidence.columns() < 2 || evidence.disparities() < 4) return planes;
   const double half_width = 0.5 * (evidence.column(evidence.columns() - 1) - evidence.column(0));
@@ -206,7 +207,7 @@ ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, cons
                            sheared.data() + static_cast<std::size_t>(worker) * ShearedRows::size(evidence));
     search_lines(evidence, rows, slope, limit, candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
   });
-  const auto weight = [&](const DisparityPlane& plane) { return limit.level_weight(plane) * prior.weight(plane); };
+  const auto weight = [&](const DisparityPlane& plane) { return limit.level_weight(plane) * prior(plane); };
   for (Candidate& candidate : candidates) {
     if (candidate.score > 0) candidate.weight = weight(candidate.points.plane(evidence));
   }

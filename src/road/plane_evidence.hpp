@@ -1,8 +1,8 @@
 #pragma once
 
+#include "core/function_ref.hpp"
 #include "core/scratch.hpp"
 #include "road/coarse_match.hpp"
-#include "road/rig_prior.hpp"
 #include "road/road_assessment.hpp"
 
 namespace roadstereo {
@@ -48,6 +48,7 @@ class PlaneEvidence {
 /// undecided, the sum over all of them still decides. Best first, at most `max_planes`, and none of them nearly equal.
 /// `limit` rejects walls; the weights of the tilt and of `prior` count in that order, not in the evidence.
 ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
-                                             const RigPrior& prior, int max_planes, int threads);
+                                             FunctionRef<double(const DisparityPlane&)> prior, int max_planes,
+                                             int threads);
 
 }  // namespace roadstereo

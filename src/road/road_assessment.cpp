@@ -35,7 +35,7 @@ double max_move(const DisparityPlane& now, const DisparityPlane& before, int wid
 }
 
 /// A road that has moved farther than this from one frame to the next has jumped: then nothing says that the search
-/// around the last frame's plane has seen all of it.
+/// around the last frame's plane, up to `range_px` away, has seen all of it.
 double max_step_px(int range_px, int width) {
   constexpr double share_of_range = 0.7;
   return share_of_range * range_px * fine_factor(width);
@@ -64,6 +64,12 @@ bool TiltLimit::can_be_road(const DisparityPlane& plane) const {
 double TiltLimit::level_weight(const DisparityPlane& plane) const {
   const double tilt = plane.a2 / (normal_length(plane) * max_sine_ * level_tilt);
   return std::exp(-0.5 * tilt * tilt);
+}
+
+double weight_near(const DisparityPlane& plane, const DisparityPlane& last, int width, int height) {
+  constexpr double least = 0.1;
+  const double steps = max_move(plane, last, width, height) / max_step_px(first_search_again.range_px, width);
+  return std::max(least, 1 / (1 + steps * steps));
 }
 
 std::string assess_plane_fit(const PlaneFitStatistics& fit, const TiltLimit& limit, RoadModelEstimate& estimate) {

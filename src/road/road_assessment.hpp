@@ -25,6 +25,10 @@ class TiltLimit {
   double focal_, cx_, cy_, offset_, max_sine_;
 };
 
+/// Weight of a plane, 0.1 … 1: roads are near the last frame's, ½ where tracking loses them. One with ten times the
+/// evidence is taken wherever it is, as after a cut.
+double weight_near(const DisparityPlane& plane, const DisparityPlane& last, int width, int height);
+
 /// What a search around a plane and a robust fit found.
 struct PlaneFitStatistics {
   DisparityPlane plane;

@@ -272,8 +272,8 @@ void RoadModelOptions::validate() const {
 
 RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                       const std::optional<StereoCalibration>& calibration,
-                                      const RoadModelOptions& options, int threads,
-                                      ImageView<const std::uint8_t> mask) {
+                                      const RoadModelOptions& options, int threads, ImageView<const std::uint8_t> mask,
+                                      const std::optional<DisparityPlane>& last) {
   require_one_size({left.width(), left.height()}, {right.width(), right.height()});
   require_mask_size({mask.width(), mask.height()}, {left.width(), left.height()});
   options.validate();
@@ -298,8 +298,11 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   // The plane with the most evidence; the next where that is no road after all.
   constexpr int max_planes = 3;
   const PlaneEvidence evidence(coarse);
-  const ScratchVector<PlaneHypothesis> planes =
-      search_planes(evidence, limit, RigPrior(options, calibration), max_planes, threads);
+  const RigPrior rig(options, calibration);
+  const auto prior = [&](const DisparityPlane& plane) {
+    return rig.weight(plane) * (last ? weight_near(plane, *last, left.width(), left.height()) : 1);
+  };
+  const ScratchVector<PlaneHypothesis> planes = search_planes(evidence, limit, prior, max_planes, threads);
   if (planes.empty()) {
     estimate.reason = few_match ? too_few(estimate.matches) : "no plane has more evidence for it than against it";
     return estimate;

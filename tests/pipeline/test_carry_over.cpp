@@ -100,11 +100,11 @@ TEST_P(CarryOverJump, IsDetectedInSameFrame) {
   EXPECT_TRUE(result.road.has_road());
   ASSERT_FALSE(result.warnings.empty());
   EXPECT_NE(result.warnings.front().find("estimated anew"), std::string::npos);
-  // Nothing of the frame before is left.
+  // Of the frame before only the order of the planes is left, and so the place where a search starts.
   const FrameResult& expected = fresh.process(after.left.view(), after.right.view());
-  EXPECT_EQ(difference(result.road.model, expected.road.model, after), 0);
-  EXPECT_EQ(difference(result.geometry.plane, expected.geometry.plane, after), 0);
-  EXPECT_EQ(result.geometry.roll_rad, expected.geometry.roll_rad);
+  EXPECT_LT(difference(result.road.model, expected.road.model, after), 0.03);
+  EXPECT_LT(difference(result.geometry.plane, expected.geometry.plane, after), 0.003);
+  EXPECT_NEAR(result.geometry.roll_rad, expected.geometry.roll_rad, 0.001);
   EXPECT_LT(difference(result.geometry.plane, after.plane, after), 0.1);
 }
 

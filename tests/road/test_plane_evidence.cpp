@@ -218,17 +218,36 @@ TEST(RigPrior, OrdersPlanesOfLikeEvidence) {
   const PlaneEvidence evidence(match_coarsely(pair.reference, pair.target, factor, 140, 0));
   const TiltLimit limit(width, height, rig, 30);
   RoadModelOptions options;
-  const auto planes = search_planes(evidence, limit, RigPrior(options, rig), max_planes, 0);
+  const auto search = [&] {
+    const RigPrior prior(options, rig);
+    return search_planes(
+        evidence, limit, [&](const DisparityPlane& plane) { return prior.weight(plane); }, max_planes, 0);
+  };
+  const auto planes = search();
   ASSERT_GE(planes.size(), 2U);
   const GroundPlane second = ground_plane(planes[1].plane, rig);
   options.height_m = second.height_m;
   options.pitch_deg = second.pitch_rad * 180 / std::acos(-1.0);
-  const auto weighed = search_planes(evidence, limit, RigPrior(options, rig), max_planes, 0);
+  const auto weighed = search();
   // The local search may start elsewhere.
   const auto second_plane = [&](double u, double v) { return planes[1].plane.disparity(u, v); };
   EXPECT_LT(max_difference(weighed.front().plane, second_plane, 0, width - 1, 0, height - 1), 1.0);
   EXPECT_GT(max_difference(planes[0].plane, second_plane, 0, width - 1, 0, height - 1), 5.0);
   EXPECT_NEAR(weighed.front().evidence, planes[1].evidence, 0.01);
+}
+
+TEST(WeightNear, HalvesWhereTrackingLosesTheRoad) {
+  constexpr int width = 640, height = 360;
+  constexpr double lost_px = 0.7 * 4;      // of the search around the last plane
+  const DisparityPlane last{-10, 0.1, 0};  // 25.9 px at the lower border, no road above row 100
+  const auto weight = [&](const DisparityPlane& plane) { return weight_near(plane, last, width, height); };
+  EXPECT_EQ(weight(last), 1);
+  EXPECT_NEAR(weight({-10 + lost_px, 0.1, 0}), 0.5, 1e-9);
+  EXPECT_NEAR(weight({-10 - lost_px / 2, 0.1, 0}), 0.8, 1e-9);
+  EXPECT_NEAR(weight({-10, 0.1, lost_px / (width - 1)}), 0.5, 1e-9);
+  EXPECT_EQ(weight({40, 0.1, 0}), 0.1);
+  // Hinged about the lower border, as on a wall: the upper one comes before the horizon.
+  EXPECT_NEAR(weight({-10 + 35.9, 0.1 - 35.9 / (height - 1), 0}), 0.1, 1e-9);
 }
 
 /// Texture of 3 grey levels under noise of 6.
