@@ -442,6 +442,19 @@ TEST(FindDamage, OmitsBumpsUnlessRequested) {
   EXPECT_EQ(map.damages[0].kind, DamageKind::depression);
 }
 
+// A road that has caved in is the worst of its damage.
+TEST(FindDamage, HoleOfHalfMetreIsFound) {
+  constexpr double depth_m = 0.5;
+  synth::Scene scene = damaged_scene();
+  scene.rig.camera_height_m = 4;
+  scene.rig.pitch_deg = 80;
+  scene.road.blobs = {{0.1, 0.7, 0.4, depth_m, 0.1, 0.3, 3}};
+  const ExactMaps maps(scene);
+  const DamageMap map = find_damage(maps.metric());
+  ASSERT_EQ(map.damages.size(), 1U);
+  EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, depth_m, 0.03);
+}
+
 TEST(FindDamage, AppliesDepthAndAreaLimits) {
   DamageOptions options;
   options.min_depth_m = 0.05;  // the bump is 4 cm high

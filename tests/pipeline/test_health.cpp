@@ -66,6 +66,12 @@ TEST(RectificationError, FindsNothingInNoise) {
   for (std::size_t term = 1; term < RectificationError::terms; ++term) EXPECT_FALSE(none.is_significant(term)) << term;
   EXPECT_EQ(none.disparity_error_px(0, 0, 20), 0);
   EXPECT_FALSE(fit_rectification_error(std::vector<RowSample>(19), 640, 360, std::nullopt).has_value());
+  // Where texture repeats, blocks are found some rows off: they contradict each other.
+  std::vector<RowSample> repeated;
+  for (int k = 0; k < 100; ++k) repeated.push_back({k * 6.0, (k * 37) % 360 * 1.0, -20, 8.0 * (k % 5 - 2)});
+  EXPECT_FALSE(fit_rectification_error(repeated, 640, 360, std::nullopt).has_value());
+  for (RowSample& sample : repeated) sample.dv /= 80;
+  EXPECT_TRUE(fit_rectification_error(repeated, 640, 360, std::nullopt).has_value());
 }
 
 /// The exact maps of the damaged scene as a frame.

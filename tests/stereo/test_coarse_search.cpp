@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -77,6 +78,24 @@ TEST_P(SlowCoarseSearchScene, RangesHoldTrueDisparities) {
 INSTANTIATE_TEST_SUITE_P(Scenes, SlowCoarseSearchScene,
                          testing::Values("uav", "street", "close", "low_texture", "noise"),
                          [](const auto& test) { return std::string(test.param); });
+
+TEST(CoarseFactor, LeavesEnoughColumnsAndDisparities) {
+  CoarseSearchOptions options;
+  for (const auto& [width, disparities, factor] : std::vector<std::array<int, 3>>{{640, 13, 2},
+                                                                                  {1600, 64, 2},
+                                                                                  {2079, 64, 4},
+                                                                                  {8192, 256, 8},
+                                                                                  // Seen from above a road is few
+                                                                                  // disparities thick.
+                                                                                  {1920, 12, 2},
+                                                                                  {3840, 24, 2},
+                                                                                  {3840, 25, 4},
+                                                                                  {8192, 48, 4}}) {
+    EXPECT_EQ(coarse_factor(options, width, disparities), factor) << width << ", " << disparities;
+  }
+  options.factor = 8;
+  EXPECT_EQ(coarse_factor(options, 640, 13), 8);
+}
 
 TEST(CoarseSearch, UnrelatedImagesGiveWideRanges) {
   const auto one = test::textured_pair(
