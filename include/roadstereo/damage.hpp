@@ -150,6 +150,8 @@ struct Damage {
   double confidence = 0;                ///< that this is damage, 0 … 1: `DamageEvidence::confidence`
   DamageEvidence evidence;
   bool cut_by_border = false;  ///< touches the border of what both cameras see, or what is masked: it may be larger
+  bool ends_search = false;  ///< its floor lies where the searched disparities end: it may be deeper, and the standard
+                             ///< errors of depth and volume are at least as large as those
   std::optional<DamageMetrics> metrics;  ///< absent without a calibration
 };
 

@@ -105,6 +105,8 @@ void bind_one_damage(py::module_& module) {
       .field("evidence", &Damage::evidence, "What the confidence rests on.")
       .field("cut_by_border", &Damage::cut_by_border,
              "Whether it touches the border of what both cameras see, or a mask.")
+      .field("ends_search", &Damage::ends_search,
+             "Whether its floor lies where the searched disparities end: it may be deeper.")
       .field("metrics", &Damage::metrics, "Metric properties; None without a calibration.");
 }
 

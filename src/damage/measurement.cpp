@@ -120,6 +120,21 @@ double find_deepest(const DamageInput& input, const Segmentation& segmentation, 
   return deepest_noise;
 }
 
+/// Whether the floor of a depression lies where the searched disparities end.
+bool ends_search(const DamageInput& input, const DamageMap& maps, const Damage& damage) {
+  constexpr float margin_px = 1;
+  constexpr std::size_t noteworthy = 20;  // one in so many pixels
+  if (damage.kind != DamageKind::depression || !input.shift || !input.shift->enabled) return false;
+  std::size_t at_end = 0;
+  for (int v = damage.box_px[1]; v <= damage.box_px[3]; ++v) {
+    for (int u = damage.box_px[0]; u <= damage.box_px[2]; ++u) {
+      const bool inside = maps.ids(u, v) == damage.id;
+      at_end += inside && input.disparity(u, v) < static_cast<float>(input.shift->at(u, v)) + margin_px ? 1U : 0U;
+    }
+  }
+  return noteworthy * at_end > damage.pixels;
+}
+
 /// Measure candidate `k` in pixels.
 Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentation, std::size_t k,
                          const SurfaceOffset& offset, const DamageMap& maps) {
@@ -152,6 +167,8 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   const double bias = maps.metric ? sub_pixel_bias_px : 0;
   max_depth.std_error = std::hypot(max_depth.std_error, offset.std_error, bias);
   damage.evidence.depth_significance = max_depth.value / std::hypot(noise, offset.std_error, bias);
+  damage.ends_search = ends_search(input, maps, damage);
+  if (damage.ends_search) max_depth.std_error = std::max(max_depth.std_error, max_depth.value);
   return damage;
 }
 

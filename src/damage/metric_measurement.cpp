@@ -157,6 +157,10 @@ void set_standard_errors(const MetricSums& sums, const SurfaceOffset& offset, do
   const double mean_m = std::hypot(surface_px, mean_factor * sigma_px) * sums.metres_per_pixel / sums.area;
   metrics.mean_depth_m.std_error = std::hypot(mean_m, smoothing.mean_depth(metrics.mean_depth_m.value));
   metrics.volume_m3.std_error = std::hypot(sums.area * mean_m, smoothing.volume(metrics.volume_m3.value));
+  if (!damage.ends_search) return;
+  for (Measurement* depth : {&metrics.max_depth_m, &metrics.mean_depth_m, &metrics.volume_m3}) {
+    depth->std_error = std::max(depth->std_error, depth->value);
+  }
 }
 
 }  // namespace

@@ -117,7 +117,7 @@ struct Pipeline::State {
   ImageView<const float> interpolate(const RefinedMaps& maps);
   void leave_out_mask(ImageView<float> map, int pixel_step) const;
   ImageView<const float> align(const MatchInput& input, ImageView<const float> disparity);
-  bool can_see_off_road() const;
+  bool searches_road_alone() const;
   DisparityPriorView search_scene(const MatchInput& pair);
   ImageView<const float> reject_off_road(ImageView<const float> disparity, const DisparityPriorView& scene);
   ImageView<const float> subtract_bias(ImageView<const float> disparity);
@@ -332,21 +332,17 @@ ImageView<const float> Pipeline::State::align(const MatchInput& input, ImageView
   return stages->align(input, disparity, result.shift, mask);
 }
 
-/// Whether only disparities near the road are searched in a picture that shows other things, too. Where the road's
-/// horizon is not in it, a camera looks down on the road, which may be all there is: what is not confirmed is noise.
-bool Pipeline::State::can_see_off_road() const {
-  const DisparityPlane& road = result.shift.road;
-  const double at_infinity = -result.shift.disparity_offset_px;
-  const bool horizon_in_picture = std::min(road.disparity(0, 0), road.disparity(width - 1, 0)) < at_infinity;
-  return result.shift.enabled && options.perspective.scope == Scope::road && horizon_in_picture &&
-         options.off_road.max_sigma_px > 0 && options.lucas_kanade.radius > 0;
+/// Whether only disparities near the road are searched: those of other things are wrong then.
+bool Pipeline::State::searches_road_alone() const {
+  return result.shift.enabled && options.perspective.scope == Scope::road && options.off_road.max_sigma_px > 0 &&
+         options.lucas_kanade.radius > 0;
 }
 
 /// Disparities of all that the picture shows. Without the road as prior, in blocks as small as can be: the search is to
 /// tell what is not the road.
 DisparityPriorView Pipeline::State::search_scene(const MatchInput& pair) {
   constexpr int max_factor = 8, block_radius = 1;
-  if (!can_see_off_road()) return {};
+  if (!searches_road_alone()) return {};
   const StageTimer timer(result.ms.coarse);
   MatchInput whole = pair;
   whole.disparities = scene_disparities(result.shift, width, height);
@@ -356,12 +352,19 @@ DisparityPriorView Pipeline::State::search_scene(const MatchInput& pair) {
   return stages->search_scene(whole, result.shift, coarse);
 }
 
-/// What is given off the road is right, or absent.
+/// What is given off the road is right, or absent. Where the road's horizon is not in the picture, a camera looks down
+/// on the road, which may be all there is: what is not confirmed is noise, and only what the scene contradicts goes.
 ImageView<const float> Pipeline::State::reject_off_road(ImageView<const float> disparity,
                                                         const DisparityPriorView& scene) {
+  constexpr double any_sigma_px = 10;
   const StageTimer timer(result.ms.refinement);
   if (scene.disparity.empty()) return disparity;
-  return stages->reject_off_road(disparity, scene, result.shift, options.off_road, mask);
+  const DisparityPlane& road = result.shift.road;
+  const double at_infinity = -result.shift.disparity_offset_px;
+  const bool horizon_in_picture = std::min(road.disparity(0, 0), road.disparity(width - 1, 0)) < at_infinity;
+  OffRoadOptions off_road = options.off_road;
+  if (!horizon_in_picture) off_road.max_sigma_px = any_sigma_px;
+  return stages->reject_off_road(disparity, scene, result.shift, off_road, mask);
 }
 
 ImageView<const float> Pipeline::State::subtract_bias(ImageView<const float> disparity) {

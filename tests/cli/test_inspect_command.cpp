@@ -37,6 +37,8 @@ TEST_F(InspectCommand, TellsWhereSearchEndsAtFloor) {
   };
   EXPECT_FALSE(tells(pair));
   EXPECT_TRUE(tells(pair + " --set perspective.delta_p_px=1"));
+  const nlohmann::json deepest = json_file("out/damages.json")["damages"][0];
+  EXPECT_GE(deepest["max_depth_m_stderr"], deepest["max_depth_m"]);
 }
 
 TEST_F(InspectCommand, WritesEveryFile) {
