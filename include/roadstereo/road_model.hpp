@@ -71,7 +71,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
 /// The last frame's road, where tracking starts.
 struct TrackedRoad {
   DisparityPlane model;
-  double inlier_share = 0;  ///< largest RoadModelEstimate::inlier_share since it was found, 0 … 1
+  double inlier_share = 0;  ///< RoadModelEstimate::inlier_share, 0 … 1
   double correlation = 0;   ///< RoadModelEstimate::correlation; stays where this pair tells none
 };
 

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "core/format_message.hpp"
 #include "core/parallel.hpp"
@@ -445,12 +444,9 @@ void Pipeline::State::end_frame() {
   carried.width = width;
   carried.height = height;
   if (options.check_rows) ++carried.frames_since_rows;
-  const std::optional<TrackedRoad> last = std::exchange(carried.road, std::nullopt);
+  carried.road.reset();
   if (result.road.has_road()) {
-    // The largest share since the road was found: one that is lost bit by bit is lost, too.
-    const double last_share = result.road.status == RoadStatus::tracked ? last->inlier_share : 0;
-    carried.road =
-        TrackedRoad{result.road.model, std::max(result.road.inlier_share, last_share), result.road.correlation};
+    carried.road = TrackedRoad{result.road.model, result.road.inlier_share, result.road.correlation};
   }
   carried.roll_rad = result.roll_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   result.mde_per_s = static_cast<double>(width) * height * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;

@@ -12,7 +12,7 @@ namespace {
 
 /// Standard deviation of the sine of a rig's tilt, as a share of that of the limit.
 constexpr double level_tilt = 0.33;
-/// A tracked road must explain this much of the most that it explained since it was found.
+/// A tracked road must explain this much of what it explained in the last frame.
 constexpr double min_share_of_last = 0.6;
 constexpr double min_share = 0.1;  ///< in any case
 
@@ -21,14 +21,14 @@ double inlier_share(const PlaneFitStatistics& evidence) {
   return evidence.tried > 0 ? static_cast<double>(evidence.inliers) / evidence.tried : 0;
 }
 
-/// How far a plane has moved since the last frame: the largest change of its disparity in a corner of the image. Beyond
-/// the horizon it has none.
+/// How far a plane has moved since the last frame: the largest change of its disparity in a corner of the image that
+/// sees the road both times.
 double max_move(const DisparityPlane& now, const DisparityPlane& before, int width, int height) {
   double largest = 0;
   for (const double v : {0.0, height - 1.0}) {
     for (const double u : {0.0, width - 1.0}) {
-      const double d = std::max(0.0, now.disparity(u, v)), last = std::max(0.0, before.disparity(u, v));
-      largest = std::max(largest, std::abs(d - last));
+      const double d = now.disparity(u, v), last = before.disparity(u, v);
+      if (d > 0 && last > 0) largest = std::max(largest, std::abs(d - last));
     }
   }
   return largest;

@@ -147,21 +147,6 @@ INSTANTIATE_TEST_SUITE_P(Kinds, CarryOverMove,
                                          Jump{"Turn", [](synth::Scene& s) { s.rig.roll_deg += 10; }}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// What a tracked road explains is held against the most since it was found: shares that fall from frame to frame do
-/// not become the measure.
-TEST(CarryOver, LargestShareOfTrackedRoadIsKept) {
-  synth::Scene scene = small_road();
-  const synth::SyntheticPair clear = synth::render(scene);
-  scene.degradation.snowflakes = 300;
-  const synth::SyntheticPair snow = synth::render(scene);
-  Pipeline pipeline;
-  const double share = pipeline.process(clear.left.view(), clear.right.view()).road.inlier_share;
-  const FrameResult& result = pipeline.process(snow.left.view(), snow.right.view());
-  ASSERT_EQ(result.road.status, RoadStatus::tracked);
-  ASSERT_LT(result.road.inlier_share, 0.99 * share);
-  EXPECT_EQ(pipeline.carried().road->inlier_share, share);
-}
-
 TEST(CarryOver, UnexpectedPoseIsToldOfEveryFrame) {
   const synth::SyntheticPair pair = synth::render(small_road());
   PipelineOptions options = preset("default");

@@ -246,8 +246,6 @@ TEST(WeightNear, HalvesWhereTrackingLosesTheRoad) {
   EXPECT_NEAR(weight({-10 - lost_px / 2, 0.1, 0}), 0.8, 1e-9);
   EXPECT_NEAR(weight({-10, 0.1, lost_px / (width - 1)}), 0.5, 1e-9);
   EXPECT_EQ(weight({40, 0.1, 0}), 0.1);
-  // Hinged about the lower border, as on a wall: the upper one comes before the horizon.
-  EXPECT_NEAR(weight({-10 + 35.9, 0.1 - 35.9 / (height - 1), 0}), 0.1, 1e-9);
 }
 
 /// Texture of 3 grey levels under noise of 6.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "road/road_assessment.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/road_model.hpp"
 #include "roadstereo/synth.hpp"
@@ -167,35 +166,6 @@ TEST(DisparityPlane, RejectsSwappedImages) {
 TEST(DisparityPlane, AcceptsSmallestImages) {
   const auto pair = test::textured_pair(32, 32, [](double, double) { return 4; });
   EXPECT_NO_THROW(estimate_road_model(pair.reference, pair.target, std::nullopt, RoadModelOptions{}));
-}
-
-/// A search around the last plane that found this one, which explains that share of the textured places.
-RoadModelEstimate track(const TrackedRoad& last, const DisparityPlane& plane, double inlier_share) {
-  PlaneFitStatistics found;
-  found.plane = plane;
-  found.scale_px = 0.2;
-  found.points = found.tried = 1000;
-  found.inliers = static_cast<int>(1000 * inlier_share);
-  found.correlation = 0.9;
-  found.found = true;
-  found.rows_covered = 0.5;
-  return assess_tracked_road(found, found, last, 4, 640, 360, std::nullopt, RoadModelOptions{});
-}
-
-TEST(TrackedRoad, MayNotTipOverTheLowerBorder) {
-  const TrackedRoad last{{-10, 0.1, 0}, 0.8, 0.9};  // horizon in row 100
-  EXPECT_EQ(track(last, {-9, 0.1, 0}, 0.8).status, RoadStatus::tracked);
-  EXPECT_EQ(track(last, {-13, 0.1084, 0}, 0.8).status, RoadStatus::tracked);  // 3 px, all of it above the horizon
-  // The lower border stays at 25.9 px, the upper one comes from behind the horizon to 8 px.
-  const RoadModelEstimate tipped = track(last, {8, 17.9 / 359, 0}, 0.8);
-  EXPECT_EQ(tipped.status, RoadStatus::none);
-  EXPECT_NE(tipped.reason.find("has moved by 8 px"), std::string::npos) << tipped.reason;
-}
-
-TEST(TrackedRoad, MustExplainMostOfWhatItDid) {
-  const TrackedRoad last{{-10, 0.1, 0}, 0.8, 0.9};
-  EXPECT_EQ(track(last, last.model, 0.49).status, RoadStatus::tracked);
-  EXPECT_EQ(track(last, last.model, 0.47).status, RoadStatus::none);
 }
 
 TEST(RoadModelOptions, RejectsValuesOutOfRange) {
