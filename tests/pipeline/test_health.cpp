@@ -68,6 +68,7 @@ TEST(RectificationError, FindsNothingInNoise) {
   EXPECT_FALSE(fit_rectification_error(std::vector<RowSample>(19), 640, 360, std::nullopt).has_value());
   // Where texture repeats, blocks are found some rows off: they contradict each other.
   std::vector<RowSample> repeated;
+  repeated.reserve(100);
   for (int k = 0; k < 100; ++k) repeated.push_back({k * 6.0, (k * 37) % 360 * 1.0, -20, 8.0 * (k % 5 - 2)});
   EXPECT_FALSE(fit_rectification_error(repeated, 640, 360, std::nullopt).has_value());
   for (RowSample& sample : repeated) sample.dv /= 80;
