@@ -16,7 +16,7 @@ constexpr double right_angle = std::numbers::pi / 2;
 constexpr double to_degrees = 180 / std::numbers::pi;
 
 /// Area of the support window of a disparity, pixels: the ellipse of the aggregation widened by the block.
-double window_pixels(const MatcherOptions& matcher) {
+double pixels_of_window(const MatcherOptions& matcher) {
   const double radius = matcher.aggregation_radius;
   const double columns = 2 * (radius + matcher.block_radius) + 1;
   const double rows = 2 * (matcher.aggregation_aspect * radius + matcher.block_radius) + 1;
@@ -86,7 +86,7 @@ RowResolution ResolutionLimits::at_row(double v) const {
   row.gsd_across_m = z / f;
   row.gsd_along_m = z * z / (pose_.height_m * f);
   row.swath_m = std::clamp(calibration_.width - row.disparity_px, 0.0, double(calibration_.width)) * row.gsd_across_m;
-  const double window_m2 = window_pixels(options_.matcher) * row.gsd_across_m * row.gsd_along_m;
+  const double window_m2 = pixels_of_window(options_.matcher) * row.gsd_across_m * row.gsd_along_m;
   row.resolvable_area_m2 = std::max(options_.min_area_m2, window_m2);
   const double windows = std::max(1.0, options_.rut_width_m * options_.rut_length_m / window_m2);
   row.resolvable_rut_m =
