@@ -6,7 +6,7 @@
 
 namespace roadstereo {
 
-/// Label of a cell higher than a damage can be; damage keeps clear of it.
+/// Label of a cell deeper or higher than a damage can be; damage keeps clear of it.
 inline constexpr std::uint8_t obstacle_label = 3;
 
 /// Label of a cell that belongs to a damage; 0: none.

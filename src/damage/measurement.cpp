@@ -124,7 +124,8 @@ double find_deepest(const DamageInput& input, const Segmentation& segmentation, 
 bool ends_search(const DamageInput& input, const DamageMap& maps, const Damage& damage) {
   constexpr float margin_px = 1;
   constexpr std::size_t noteworthy = 20;  // one in so many pixels
-  if (damage.kind != DamageKind::depression || !input.shift || !input.shift->enabled) return false;
+  const bool searched = input.shift && input.shift->enabled && !input.disparity.empty();
+  if (damage.kind != DamageKind::depression || !searched) return false;
   std::size_t at_end = 0;
   for (int v = damage.box_px[1]; v <= damage.box_px[3]; ++v) {
     for (int u = damage.box_px[0]; u <= damage.box_px[2]; ++u) {

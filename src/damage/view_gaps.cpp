@@ -11,8 +11,7 @@ namespace {
 // (docs/method.md, Damage).
 constexpr float gap_depth_share = 0.5F;  ///< of the minimum depth of a core, from which a neighbour of the gap is deep
 constexpr double min_deep_gap_share = 0.35;  ///< of the neighbours of an enclosed gap that must be deep
-constexpr double min_deep_cut_share =
-    0.6;  ///< of those of a gap that the border of the image cuts, not only that of the view
+constexpr double min_deep_cut_share = 0.6;   ///< of those of a gap that the border of the image, not the view, cuts
 constexpr std::size_t max_cut_divisor = 20;  ///< a gap that either cuts is up to 1/20 of the image
 
 /// Mask of the gaps in the view, 0 where there is no measurement.

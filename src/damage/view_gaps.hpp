@@ -13,6 +13,7 @@ struct ViewGaps {
   Image<std::uint8_t> unseen;  ///< 255 in other gaps that touch its border: what is not seen, or off road
 };
 
+/// Find the gaps, and which of them belong to a depression or lie at the border.
 ViewGaps classify_gaps(const DepthCells& cells, const CommonView& view, const Thresholds& thresholds);
 
 }  // namespace roadstereo

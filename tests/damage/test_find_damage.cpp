@@ -455,6 +455,16 @@ TEST(FindDamage, HoleOfHalfMetreIsFound) {
   EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, depth_m, 0.03);
 }
 
+// Without disparities nothing says where the search for them ends.
+TEST(FindDamage, RangeSearchedNeedsDisparities) {
+  DamageInput input = damaged().pixels();
+  input.disparity = {};
+  input.shift = PerspectiveShift{.road = damaged().pair.plane, .delta_p = 1, .disparities = 8};
+  const DamageMap map = find_damage(input);
+  ASSERT_FALSE(map.damages.empty());
+  for (const Damage& damage : map.damages) EXPECT_FALSE(damage.ends_search);
+}
+
 TEST(FindDamage, AppliesDepthAndAreaLimits) {
   DamageOptions options;
   options.min_depth_m = 0.05;  // the bump is 4 cm high
