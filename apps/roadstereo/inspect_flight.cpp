@@ -60,6 +60,7 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   }
   if (summary.located)
     text += fmt::format("  track     {} of {} frames have a position\n", *summary.located, summary.frames);
+  if (!summary.track_outliers.empty()) text += fmt::format("            {}\n", summary.track_outliers);
   if (!summary.no_position_reason.empty()) text += fmt::format("            {}\n", summary.no_position_reason);
   if (summary.rig_bias.order > 0) {
     text += fmt::format("  rig bias  {:.3f} ± {:.3f} px over the road, or its shape: rig_bias.json\n",

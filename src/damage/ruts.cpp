@@ -184,7 +184,7 @@ class RutSearch {
   explicit RutSearch(const HeightGrid& grid)
       : heights_(grid.heights),
         profile_(fit_profile(grid.heights)),
-        gaps_(straightedge_gaps(profile_.heights, bin_m, straightedge_m)),
+        gaps_(straightedge_gaps(profile_.heights, bin_m, rut_straightedge_m)),
         visited_(gaps_.size(), false) {}
 
   std::vector<Rut> find() {
@@ -197,7 +197,7 @@ class RutSearch {
   }
 
  private:
-  static constexpr double straightedge_m = 2;  // spans a wheel track and its shoulders
+  static constexpr double rut_straightedge_m = 2;  // spans a wheel track and its shoulders
   static constexpr double min_depth_m = 0.005, max_depth_m = 0.08;
 
   int columns() const { return heights_.width(); }

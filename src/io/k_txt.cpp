@@ -15,6 +15,7 @@ CalibrationFile read_k_txt(const CalibrationText& file) {
   if (values[3] != 0 || values[6] != 0 || values[7] != 0 || values[8] != 1) {
     fail(file.path, ": K is not a camera matrix; it must be upper triangular and end with 1");
   }
+  if (values[1] != 0) fail(file.path, ": K[1] is ", values[1], "; the pixels of a rectified pair are not skewed: 0");
   StereoCalibration calibration;
   calibration.focal_px = values[0];
   calibration.cx_px = values[2];

@@ -170,7 +170,8 @@ bool OutputFolder::is_protected(const std::string& name) const {
                      [&](const fs::path& input) { return fs::equivalent(folder_ / name, input, absent); });
 }
 
-void OutputFolder::add(const std::string& name, std::span<const std::uint8_t> bytes) {
+/// Checks the name of a file to be staged and makes its folder.
+fs::path OutputFolder::staged_path(const std::string& name) {
   check_name(name);
   if (is_protected(name)) {
     fail((folder_ / name).string(), ": this input would be overwritten; choose another output folder");
@@ -180,13 +181,27 @@ void OutputFolder::add(const std::string& name, std::span<const std::uint8_t> by
   std::error_code error;
   fs::create_directories(staged.parent_path(), error);
   if (error) fail_write(folder_ / name, error.value());
+  return staged;
+}
+
+void OutputFolder::add(const std::string& name, std::span<const std::uint8_t> bytes) {
+  const fs::path staged = staged_path(name);
   try {
     write_file(staged, folder_ / name, bytes);
   } catch (const Error&) {
-    fs::remove(staged, error);
+    std::error_code ignored;
+    fs::remove(staged, ignored);
     throw;
   }
-  if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
+  if (!has(name)) names_.push_back(name);
+}
+
+void OutputFolder::add_file(const std::string& name, const fs::path& from) {
+  const fs::path staged = staged_path(name);
+  std::error_code error;
+  fs::rename(from, staged, error);
+  if (error) fail_write(folder_ / name, error.value());
+  if (!has(name)) names_.push_back(name);
 }
 
 void OutputFolder::add(const std::string& name, const std::string& text) {

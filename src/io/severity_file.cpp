@@ -1,10 +1,10 @@
 #include "roadstereo/io/severity_file.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <array>
 
+#include "io/file_bytes.hpp"
+#include "io/yaml_text.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
@@ -93,15 +93,9 @@ SeverityTable table_of(Distress distress, const Entry& entry) {
 
 SeverityScheme read_severity_scheme(const std::string& name) {
   if (name == "d6433") return astm_d6433();
-  YAML::Node root;
-  try {
-    root = YAML::LoadFile(name);
-  } catch (const YAML::BadFile&) {
-    fail(name, ": this file of severities cannot be read");
-  } catch (const YAML::Exception& error) {
-    fail(name, ": this is no file of severities: ", error.what());
-  }
-  if (!root.IsMap()) fail(name, ": this is no file of severities; it must have one map per distress");
+  constexpr std::size_t max_bytes = 1U << 20U;
+  const std::vector<std::uint8_t> bytes = read_file(name, max_bytes);
+  const YAML::Node root = load_yaml({name, {bytes.begin(), bytes.end()}});
   SeverityScheme scheme{name, {}};
   for (const auto& item : root) {
     const auto key = item.first.as<std::string>();

@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/eventhandler.h>
 
+#include <set>
 #include <sstream>
 
 #include "roadstereo/error.hpp"
@@ -9,36 +10,55 @@
 namespace roadstereo::io {
 namespace {
 
-/// Limits the nesting of a file, by which the parser's recursion would grow.
-class DepthLimit final : public YAML::EventHandler {
+/// Refuses what yaml-cpp reads without a word: a key given twice, of which it takes the first, and nesting by which the
+/// parser's recursion would grow.
+class Structure final : public YAML::EventHandler {
  public:
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override { begin_item(); }
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override { begin_item(); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string& value) override {
+    if (begin_item() && !open_.back().keys.insert(value).second) {
+      throw YAML::ParserException(mark, value + " is given twice");
+    }
+  }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
-    enter(mark);
+    open(mark, false);
   }
-  void OnSequenceEnd() override { --depth_; }
+  void OnSequenceEnd() override { open_.pop_back(); }
   void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
-    enter(mark);
+    open(mark, true);
   }
-  void OnMapEnd() override { --depth_; }
+  void OnMapEnd() override { open_.pop_back(); }
 
  private:
-  void enter(const YAML::Mark& mark) {
-    constexpr int max_depth = 16;
-    if (++depth_ > max_depth) throw YAML::ParserException(mark, "lists and maps nested too deeply");
+  struct Container {
+    bool is_map = false;
+    bool at_key = false;  ///< the last item was one
+    std::set<std::string> keys;
+  };
+
+  /// Whether the item is a key.
+  bool begin_item() {
+    if (open_.empty() || !open_.back().is_map) return false;
+    return open_.back().at_key = !open_.back().at_key;
   }
 
-  int depth_ = 0;
+  void open(const YAML::Mark& mark, bool is_map) {
+    constexpr std::size_t max_depth = 16;
+    begin_item();
+    open_.push_back({is_map, false, {}});
+    if (open_.size() > max_depth) throw YAML::ParserException(mark, "lists and maps nested too deeply");
+  }
+
+  std::vector<Container> open_;
 };
 
-void check_depth(const std::string& text) {
+void check_structure(const std::string& text) {
   std::istringstream stream(text);
-  DepthLimit limit;
-  YAML::Parser(stream).HandleNextDocument(limit);
+  Structure structure;
+  YAML::Parser(stream).HandleNextDocument(structure);
 }
 
 }  // namespace
@@ -46,7 +66,7 @@ void check_depth(const std::string& text) {
 YAML::Node load_yaml(const CalibrationText& file) {
   YAML::Node root;
   try {
-    check_depth(file.text);
+    check_structure(file.text);
     root = YAML::Load(file.text);
   } catch (const YAML::Exception& error) {
     fail(file.path, ": line ", error.mark.line + 1, ": invalid YAML: ", error.msg);

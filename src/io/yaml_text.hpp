@@ -8,7 +8,7 @@
 
 namespace roadstereo::io {
 
-/// Parses a YAML file whose top level is a map. Throws Error naming the file and the line.
+/// Parses a YAML file whose top level is a map. Throws Error naming the file and the line, also of a key given twice.
 YAML::Node load_yaml(const CalibrationText& file);
 
 /// Returns the number under `key`. Throws Error if it is missing or not finite.

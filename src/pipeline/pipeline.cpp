@@ -471,11 +471,13 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 const FrameResult& Pipeline::process(const FrameView& left, const FrameView& right) {
   State& s = *state_;
   const ScratchScope scratch(s.memory);
+  const PipelineState before = s.carried;
   s.begin_frame(left, right);
   try {
     s.run_stages(left, right);
   } catch (...) {
     s.stages->abandon();
+    s.carried = before;
     throw;
   }
   s.end_frame();

@@ -1,4 +1,5 @@
 #include <cstddef>
+#include <deque>
 #include <mutex>
 #include <utility>
 
@@ -25,8 +26,8 @@ struct Registry {
 };
 
 /// Those that need no device, best first.
-std::vector<EngineInfo> make_host_engines() {
-  std::vector<EngineInfo> engines{
+std::deque<EngineInfo> make_host_engines() {
+  std::deque<EngineInfo> engines{
       {"cpu", "threads and SIMD (" + cpu_engine_target() + "), sliding sums, no cost volume", false, make_cpu_engine},
       {"reference", "the paper's equations in double precision: slow, the oracle", true, make_reference_engine}};
 #if defined(ROADSTEREO_CUDA_EMULATED)
@@ -35,9 +36,9 @@ std::vector<EngineInfo> make_host_engines() {
   return engines;
 }
 
-/// With those of register_engine.
-std::vector<EngineInfo>& host_engines() {
-  static std::vector<EngineInfo> of_this_machine = make_host_engines();
+/// With those of register_engine, which leave references to the others valid.
+std::deque<EngineInfo>& host_engines() {
+  static std::deque<EngineInfo> of_this_machine = make_host_engines();
   return of_this_machine;
 }
 

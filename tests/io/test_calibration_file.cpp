@@ -50,6 +50,7 @@ TEST_F(ReadCalibration, RejectsBadPlainYaml) {
   expect_refused(replaced(plain, "2079", "20.5"), "width is 20.5");
   expect_refused(replaced(plain, "baseline_m", "baseline"), "baseline_m is missing");
   expect_refused(plain + "\tx: [\n", "invalid YAML");
+  expect_refused(plain + "baseline_m: 0.2\n", "baseline_m is given twice");
 }
 
 TEST_F(ReadCalibration, RejectsOtherFiles) {
@@ -134,6 +135,7 @@ TEST_F(ReadCalibration, ReadsKTxt) {
   EXPECT_DOUBLE_EQ(rectified("700 0 320\n0 700 240\n0 0 1\n0.12").baseline_m, 0.12);
   expect_refused("700 0 320\n0 700 240\n0 0 1\n63", "the baseline is 63;");
   expect_refused("700 0 320\n0 700 240\n0 0 1\n", "has 9 values");
+  expect_refused("700 2 320\n0 700 240\n0 0 1\n0.12", "K[1] is 2;");
   expect_refused("700 0 320\n0 700 x\n0 0 1\n0.1", "K[5] is \"x\"");
   expect_refused("700 0 320\n0 700 nan\n0 0 1\n0.1", "K[5] is nan");
 }

@@ -255,6 +255,18 @@ synth::SyntheticPair degraded_road(double noise_grey, double row_offset_px) {
   return synth::render(scene);
 }
 
+/// The rows of a swapped pair are measured before it is known to be one.
+TEST(CarryOver, RefusedFrameLeavesTheState) {
+  const synth::SyntheticPair pair = synth::render(small_road());
+  Pipeline pipeline(preset("default"), pair.calibration);
+  for (int frame = 0; frame < 3; ++frame) pipeline.process(pair.left.view(), pair.right.view());
+  const PipelineState before = pipeline.carried();
+  EXPECT_THROW(pipeline.process(pair.right.view(), pair.left.view()), Error);
+  EXPECT_EQ(pipeline.carried().frames_since_rows, before.frames_since_rows);
+  EXPECT_EQ(pipeline.carried().rows_known, before.rows_known);
+  EXPECT_EQ(pipeline.carried().road.has_value(), before.road.has_value());
+}
+
 // Supports are chosen by the noise: it may come in the middle of a recording, and go.
 TEST(CarryOver, NoiseIsThatOfTheFrame) {
   const synth::SyntheticPair clean = degraded_road(0, 0), noisy = degraded_road(20, 0);

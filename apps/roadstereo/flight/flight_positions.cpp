@@ -106,6 +106,13 @@ std::string FlightPositions::no_position_reason() const {
       last, track_.points().front().time_s, track_.points().back().time_s);
 }
 
+std::string FlightPositions::outliers_text() const {
+  const std::vector<io::TrackPoint>& outliers = track_.outliers();
+  if (outliers.empty()) return {};
+  return fmt::format("{} of the {} fixes of the track left out: no vehicle comes there in time (the first at {:.3f} s)",
+                     outliers.size(), outliers.size() + track_.points().size(), outliers.front().time_s);
+}
+
 std::vector<StagedFile> FlightPositions::files(std::span<const io::RoadDamage> damages, bool with_candidates) const {
   std::vector<io::GeoSighting> sightings = sightings_;
   std::erase_if(sightings, [&](const io::GeoSighting& sighting) {

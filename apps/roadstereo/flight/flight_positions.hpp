@@ -28,6 +28,9 @@ class FlightPositions {
   /// Returns the reason if no frame has a position, with the times of frames and track, else "".
   std::string no_position_reason() const;
 
+  /// Returns how many fixes of the track were left out as outliers, and the first one's time; "" if none was.
+  std::string outliers_text() const;
+
   /// Sets position, outline and station of a damage from its best frame, if that has a position.
   void locate(io::RoadDamage& damage) const;
 

@@ -69,6 +69,7 @@ std::vector<std::string> notices_of(const FlightRun& run, const FlightSummary& s
   if (!run.complete) notices.emplace_back("The flight was interrupted; continue it with inspect --resume.");
   if (!summary.no_position_reason.empty())
     notices.push_back("No frame has a position: " + summary.no_position_reason + ".");
+  if (!summary.track_outliers.empty()) notices.push_back("Track: " + summary.track_outliers + ".");
   if (!run.no_map_reason.empty()) notices.push_back("There is no map: " + run.no_map_reason + ".");
   if (summary.static_mask.share > 0) {
     notices.push_back(static_mask_text(summary.static_mask) + " (" + static_mask_file + ").");
@@ -206,6 +207,7 @@ std::string FlightResults::write(const FlightSettings& settings, const FlightRun
   if (positions_) {
     summary_.located = static_cast<std::int64_t>(positions_->located());
     summary_.no_position_reason = positions_->no_position_reason();
+    summary_.track_outliers = positions_->outliers_text();
   }
   summary_.rig_bias = rig_bias_.estimate(run.calibration);
   std::string json = flight_json(settings, run, summary_, worst);

@@ -23,6 +23,7 @@ struct FlightSummary {
   std::int64_t inspected = 0;           ///< frames with a road after matching
   std::optional<std::int64_t> located;  ///< frames with a position; absent without a track
   std::string no_position_reason;       ///< reason if no frame has a position
+  std::string track_outliers;           ///< which fixes of the track were left out
   std::int64_t damages = 0;             ///< road damages (FlightInventory)
   std::int64_t candidates = 0;          ///< of the road
   std::int64_t sightings = 0;           ///< damages of all frames

@@ -66,10 +66,10 @@ MapSummary make_map(const MapPlan& plan, const StopSignals& stop) {
   add_map_tables(built, results, folder);
   folder.add("map.jpg", summary.picture);
   folder.add("map.json", summary.json);
-  folder.commit();
   for (const auto& raster : std::filesystem::directory_iterator(drafts)) {
-    std::filesystem::rename(raster.path(), folder.path() / raster.path().filename());
+    folder.add_file(raster.path().filename().string(), raster.path());
   }
+  folder.commit();
   std::error_code ignored;
   std::filesystem::remove_all(tiles, ignored);
   for (RoadDamageRecord& damage : results.damages) damage.best.footprint.clear();

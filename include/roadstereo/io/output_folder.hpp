@@ -28,6 +28,9 @@ class OutputFolder {
   void add(const std::string& name, std::span<const std::uint8_t> bytes);
   void add(const std::string& name, const std::string& text);
 
+  /// Stages a file that is too large for memory, by moving it here from the same file system. Throws as `add` does.
+  void add_file(const std::string& name, const std::filesystem::path& from);
+
   /// Returns whether a file of that name is staged.
   bool has(const std::string& name) const;
 
@@ -42,6 +45,7 @@ class OutputFolder {
 
  private:
   bool is_protected(const std::string& name) const;
+  std::filesystem::path staged_path(const std::string& name);
   void stage();
   void unstage() noexcept;
   void remove_unfinished() noexcept;

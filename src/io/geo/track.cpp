@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "io/geo/track_outliers.hpp"
 #include "io/geo/travel_heading.hpp"
 #include "io/geo/utc_time.hpp"
 #include "roadstereo/error.hpp"
@@ -80,6 +81,7 @@ Track::Track(std::vector<TrackPoint> points, const TrackOptions& options)
   points_.erase(std::unique(points_.begin(), points_.end(), same_time), points_.end());
   if (points_.size() < 2)
     fail("the track has ", points_.size(), " point(s); it must have at least two at different times");
+  outliers_ = take_outliers(points_, options_);
   fill_headings(points_, options_);
 }
 
@@ -91,7 +93,7 @@ std::optional<GeoPosition> position_at(const Track& track, double time_s) {
                                       [](const TrackPoint& point, double time) { return point.time_s < time; });
   if (after->time_s == time_s) return position_of(*after, options.mount_yaw_deg);
   const auto before = std::prev(after);
-  if (after->time_s - before->time_s > options.max_gap_s) return std::nullopt;
+  if (after->time_s - before->time_s > options.max_gap_s || !is_reachable(*before, *after)) return std::nullopt;
   return position_of(point_between(*before, *after, time_s), options.mount_yaw_deg);
 }
 

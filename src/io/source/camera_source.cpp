@@ -72,7 +72,7 @@ class CameraSource final : public FrameSource {
     SourcePair pair = numbered_pair(index_++, 0);
     pair.time_s = system_time(1e-3 * capture_.get(cv::CAP_PROP_POS_MSEC));
     cv::Mat picture;
-    if (!capture_.retrieve(picture) || picture.cols != width_ || picture.rows != height_) {
+    if (!retrieve(picture) || picture.cols != width_ || picture.rows != height_) {
       pair.error = "the image of the camera cannot be decoded";
     } else {
       split_views(device_, picture, layout_, pair);
@@ -97,6 +97,14 @@ class CameraSource final : public FrameSource {
  private:
   void grab() {
     if (!capture_.grab()) fail(device_, ": the camera does not deliver images any more; was it unplugged?");
+  }
+
+  bool retrieve(cv::Mat& picture) {
+    try {
+      return capture_.retrieve(picture);
+    } catch (const cv::Exception&) {  // a damaged JPEG
+      return false;
+    }
   }
 
   std::string device_;

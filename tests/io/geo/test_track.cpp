@@ -62,11 +62,12 @@ TEST(TrackPosition, IsInterpolatedInTime) {
   EXPECT_NEAR(turn_deg(0, position.heading_deg), 0, 1e-9);
 }
 
+/// Midpoint of a great circle: tan of its latitude is tan 45° over the cosine of half the difference of longitude.
 TEST(TrackPosition, FollowsGeodesic) {
   const TrackOptions options{.max_gap_s = 3600};
-  const GeoPosition middle = position_at(Track({{noon, 45, 0}, {noon + 1000, 45, 90}}, options), noon + 500).value();
-  EXPECT_NEAR(middle.lon_deg, 45, 1e-9);
-  EXPECT_NEAR(middle.lat_deg, 54.7356, 0.15);  // of a sphere: atan √2; the parallel would give 45
+  const GeoPosition middle = position_at(Track({{noon, 45, 0}, {noon + 3600, 45, 4}}, options), noon + 1800).value();
+  EXPECT_NEAR(middle.lon_deg, 2, 1e-9);
+  EXPECT_NEAR(middle.lat_deg, 45.01746, 2e-4);  // of a sphere; the parallel would give 45
 }
 
 TEST(TrackPosition, CrossesAntimeridian) {
@@ -84,6 +85,37 @@ TEST(TrackPosition, IsUnknownOutsideTrackAndInGaps) {
   }
   for (const double time_s : {0.0, 2.5, 5.0, 10.5, 11.0, 12.0})
     EXPECT_TRUE(position_at(track, noon + time_s)) << time_s;
+}
+
+/// At 1 Hz, 10 m/s to the east.
+std::vector<TrackPoint> eastward(int points) {
+  std::vector<TrackPoint> track;
+  for (int i = 0; i < points; ++i) track.push_back(point_at(i, 10.0 * i, 0));
+  return track;
+}
+
+TEST(TrackOutliers, AreLeftOut) {
+  for (const std::vector<int>& wrong : {std::vector{3}, {0}, {9}, {4, 5}, {2, 7}}) {
+    std::vector<TrackPoint> points = eastward(10);
+    for (const int i : wrong) points[static_cast<std::size_t>(i)].lat_deg += 0.05;  // 5.6 km
+    const Track track(points);
+    ASSERT_EQ(track.outliers().size(), wrong.size());
+    for (std::size_t k = 0; k < wrong.size(); ++k) EXPECT_EQ(track.outliers()[k].time_s, noon + wrong[k]);
+    for (const double time_s : {1.5, 3.0, 4.5, 6.5}) {
+      const TrackPoint expected = point_at(time_s, 10 * time_s, 0);
+      EXPECT_NEAR(position_at(track, noon + time_s).value().lat_deg, expected.lat_deg, 1e-7);
+      EXPECT_NEAR(position_at(track, noon + time_s).value().lon_deg, expected.lon_deg, 1e-7);
+    }
+  }
+}
+
+TEST(TrackOutliers, NoneWhereTrackGoesOnElsewhere) {
+  std::vector<TrackPoint> points = eastward(10);
+  for (std::size_t i = 5; i < points.size(); ++i) points[i].lat_deg += 1;
+  const Track track(points);
+  EXPECT_TRUE(track.outliers().empty());
+  EXPECT_FALSE(position_at(track, noon + 4.5));
+  EXPECT_NEAR(position_at(track, noon + 5.5).value().lat_deg, 51, 1e-6);
 }
 
 TEST(TrackPosition, AltitudeNeedsBothNeighbours) {

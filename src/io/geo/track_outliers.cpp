@@ -1,0 +1,47 @@
+#include "io/geo/track_outliers.hpp"
+
+#include <GeographicLib/Geodesic.hpp>
+#include <algorithm>
+#include <utility>
+
+namespace roadstereo::io {
+namespace {
+
+/// Whether the track comes back to `from` within the largest gap, at a fix after `index`.
+bool comes_back(const TrackPoint& from, const std::vector<TrackPoint>& points, std::size_t index,
+                const TrackOptions& options) {
+  for (std::size_t i = index + 1; i < points.size() && points[i].time_s - from.time_s <= options.max_gap_s; ++i) {
+    if (is_reachable(from, points[i])) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_reachable(const TrackPoint& from, const TrackPoint& to) {
+  constexpr double max_speed_mps = 100, max_error_m = 10;
+  double way_m = 0;
+  GeographicLib::Geodesic::WGS84().Inverse(from.lat_deg, from.lon_deg, to.lat_deg, to.lon_deg, way_m);
+  return way_m <= max_speed_mps * (to.time_s - from.time_s) + max_error_m;
+}
+
+std::vector<TrackPoint> take_outliers(std::vector<TrackPoint>& points, const TrackOptions& options) {
+  std::vector<TrackPoint> kept, outliers;
+  kept.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool has_next = i + 1 < points.size();
+    if (kept.empty() || is_reachable(kept.back(), points[i])) {
+      kept.push_back(points[i]);
+    } else if (comes_back(kept.back(), points, i, options) || (!has_next && kept.size() > 1)) {
+      outliers.push_back(points[i]);
+    } else if (kept.size() == 1 && has_next && is_reachable(points[i], points[i + 1])) {
+      outliers.push_back(std::exchange(kept.back(), points[i]));
+    } else {
+      kept.push_back(points[i]);
+    }
+  }
+  points = std::move(kept);
+  return outliers;
+}
+
+}  // namespace roadstereo::io
