@@ -8,9 +8,9 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// Grey levels of one view of a recording in square cells, 160 across: mean and variance of each over the frames that
-/// count. A frame counts when enough of the picture has changed since the last one that did: what never moves because
-/// the vehicle stands still tells nothing.
+/// Grey levels of one view of a recording in square cells, at least 160 across: mean and variance of each over the
+/// frames that count. A frame counts when enough of the picture has changed since the last one that did: what never
+/// moves because the vehicle stands still tells nothing.
 class CellLevels {
  public:
   /// `moving_share`: of the cells that must have changed by more than two grey levels of 255, 0 … 1.

@@ -33,8 +33,8 @@ struct PairHealth {
   double row_error_px = unknown;      ///< vertical offset not undone, 90th percentile of the points
   double distortion_right = unknown;  ///< k of 1 + k r² left in the right view alone
   double distortion_both = unknown;   ///< k of 1 + k r² left in both views
-  double bowl_px = unknown;  ///< largest disparity error at the road's points by that distortion, less the quadratic
-                             ///< that the road's surface takes up
+  double bowl_px = unknown;  ///< largest disparity error on the road that the distortion causes and a quadratic road
+                             ///< surface cannot absorb
 
   // The road's residual.
   double noise_px = unknown;  ///< standard deviation of the intact road

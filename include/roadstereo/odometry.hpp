@@ -51,7 +51,8 @@ struct FrameLink {
   double measured_offset_px = 0;                    ///< what this link alone tells of the offset
   double measured_offset_sd_px = 0;                 ///< its standard error, 0: nothing
   // What this link alone tells of the rig, with a free offset and shutter.
-  double rig_offset_px = 0;     ///< disparity offset at the principal point, pixels; any shape along the rows
+  double rig_offset_px = 0;     ///< disparity offset at the principal point, pixels, with its growth towards the sides
+                                ///< estimated, too
   double rig_offset_sd_px = 0;  ///< its standard error, 0: nothing
   double shutter = 0;     ///< time from the first row of a picture to the last, by that between both frames; 0: global
   double shutter_sd = 0;  ///< its standard error, 0: nothing
@@ -69,7 +70,8 @@ struct OdometryFrame {
 /// Estimates the motion of a rig from frame to frame: direct alignment of grey levels and disparities. Every frame is
 /// aligned with a reference, an earlier frame that is kept as long as enough of its view is seen. Where the prediction
 /// from the last motion fails, the road planes of both frames are resampled to a metric grid and registered by phase
-/// correlation. A frame that cannot be linked starts a new piece. Not thread-safe.
+/// correlation. A frame that cannot be linked starts a new piece. Images of less than 80 pixels on a side
+/// are too small to be linked. Not thread-safe.
 class Odometry {
  public:
   explicit Odometry(const StereoCalibration& calibration, const OdometryOptions& options = {});
@@ -77,8 +79,8 @@ class Odometry {
   Odometry(Odometry&&) noexcept;
   Odometry& operator=(Odometry&&) noexcept;
 
-  /// Adds a frame, with an index above that of the last one. Returns its pose. Throws Error when the sizes differ or
-  /// the index does not grow.
+  /// Adds a frame, with an index above that of the last one. Returns its pose. Throws Error when the sizes differ,
+  /// the calibration is not of that size, or the index does not grow.
   const FramePose& add(int frame, const OdometryFrame& maps);
   const FramePose& add(int frame, const FrameResult& result);
 

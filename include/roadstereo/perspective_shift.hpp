@@ -15,7 +15,8 @@ struct Misalignment {
 
   double rows_px = 0;    ///< offset of the rows at the principal point, pixels
   double turn_rad = 0;   ///< clockwise; it moves rows and columns
-  double row_scale = 0;  ///< relative; a wrong lens or tilt, which move columns each in its own way, and are left there
+  double row_scale = 0;  ///< height of the target's view over the reference's minus 1. Only its effect on the rows is
+                         ///< undone: a wrong focal length and a wrong tilt move the columns differently
   double cx_px = 0;      ///< principal point
   double cy_px = 0;
 

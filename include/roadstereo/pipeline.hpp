@@ -42,8 +42,8 @@ struct PipelineOptions {
   MatcherOptions matcher;
   RefinementOptions refinement;
   LucasKanadeOptions lucas_kanade;
-  OffRoadOptions off_road;  ///< scope road; needs the Lucas–Kanade step. With the horizon outside the picture every σ
-                            ///< is small enough
+  OffRoadOptions off_road;  ///< only with scope road and the Lucas–Kanade step. With the horizon outside the picture
+                            ///< σ is not tested: only what the scene contradicts is rejected
   RollOptions roll;
   DamageOptions damage;             ///< of `Pipeline::find_damage`
   std::optional<RigBias> rig_bias;  ///< what every disparity of the left image is too large by; subtracted

@@ -29,13 +29,16 @@ struct LoopLink {
   double after_m = 0;                ///< ... with loops
 };
 
-/// Position of a GNSS antenna in axes of the Earth: x east, y north, z up. Errors are one for all fixes, with the
-/// standard errors given here, and noise about it, whose size the fit to the trajectory tells.
+/// Position of a GNSS antenna in axes of the Earth: x east, y north, z up. All fixes share one unknown error with these
+/// standard errors; on top each has noise, whose size is estimated from the fit to the trajectory.
 struct PositionFix {
   double time_s = 0;
   std::array<double, 3> position_m{};  ///< z NaN: unknown
-  double horizontal_sd_m = 2.5;        ///< standard error of x and of y
-  double vertical_sd_m = 5;            ///< standard error of z
+  double horizontal_sd_m = 2.5;        ///< standard error of x and of y, > 0
+  double vertical_sd_m = 5;            ///< standard error of z, > 0
+
+  /// Throws Error naming the first value out of range.
+  void validate() const;
 };
 
 struct PoseGraphInput {

@@ -15,8 +15,8 @@ struct FrameResult;
 
 /// Disparity error of a rig over the left image, which residual distortion and rectification leave: a polynomial in
 /// x = (u − (W − 1)/2) / (W/2) and y = (v − (H − 1)/2) / (W/2). Its terms, degree by degree: 1, x, y, x², xy, y², x³,
-/// x²y, xy², y³, x⁴, x³y, x²y², xy³, y⁴. The first three, which the plane of the road absorbs, are those with which the
-/// field leaves that plane where it is.
+/// x²y, xy², y³, x⁴, x³y, x²y², xy³, y⁴. The first three cannot be told from the plane of the road; they are chosen so
+/// that subtracting the field does not move that plane.
 struct RigBias {
   static constexpr int max_order = 4;
   static constexpr std::size_t terms = 15;
@@ -69,10 +69,10 @@ struct RigBiasFrame {
 /// the disparities. Throws Error when the maps differ in size.
 std::optional<RigBiasFrame> measure_rig_bias(const FrameResult& frame, const DamageMap& damage);
 
-/// Estimates the field that the frames of a recording have in common. Every frame has a plane of its own. The standard
-/// errors are those of the scatter between batches of successive frames, as long as make them largest (blocking, after
-/// Flyvbjerg and Petersen): neighbouring pixels and frames do not count twice. What the road itself has in common in
-/// all frames, such as its crown along one lane, is part of the field, and not of its errors.
+/// Estimates the field that the frames of a recording have in common. Every frame has a plane of its own. Standard
+/// errors by blocking (Flyvbjerg and Petersen): the scatter of batches of successive frames, for the length of batch
+/// that gives the largest, so that neighbouring pixels and frames do not count twice. What the road itself has in
+/// common in all frames, such as its crown along one lane, is part of the field, and not of its errors.
 class RigBiasEstimator {
  public:
   /// Throws Error when an option is out of range.

@@ -12,8 +12,8 @@ std::vector<float> depths_inside(const SearchImages& images, const Candidate& ca
 /// Measure what distinguishes a damage from noise and from what is not road.
 void add_evidence(const SearchInput& input, SearchImages& images, Candidate& candidate);
 
-/// Confidence of a region before its wall is measured, and the agreement of the pictures, which makes no damage of one
-/// that none could be: that of a steep wall.
+/// Upper bound of the confidence: as if the wall were steep and the pictures agreed. Tells whether measuring these is
+/// worth it.
 double confidence_at_best(const Candidate& candidate, const Thresholds& thresholds);
 
 }  // namespace roadstereo

@@ -5,8 +5,8 @@
 
 namespace roadstereo {
 
-/// A hole beside a step of the road, as at the edge of an overlay, from the level that leaves out the lower side of the
-/// step, where the outline has run out into that.
+/// Where the outline of a hole has leaked over a step of the road, as at the edge of an overlay, raises the level until
+/// the lower side of the step is left out.
 void leave_terrace(const SearchInput& input, float min_cells, SearchImages& images, Candidate& candidate);
 
 /// The hollow around a core at a higher level, if it is likelier a damage there. Where the relief of the road is as

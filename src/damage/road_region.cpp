@@ -37,9 +37,8 @@ Image<std::uint8_t> cells_near_surface(const Cells& cells, const SurfaceCoordina
   return near;
 }
 
-/// Of the cells of a row, how many rows lie between each and the last cell above that is set: all of them within a
-/// pixel of the surface, `limit` rows at most, else `limit`. `closed`: that number where a gap ends in this row, else
-/// 0. Returns whether any does.
+/// For each column, the rows since the last set cell above, as long as all between lie within a pixel of the surface;
+/// `limit` otherwise. `closed`: that number where a gap ends in this row, else 0. Returns whether any does.
 bool update_gaps(const std::uint8_t* mask, const float* value, const float* road, int width, std::uint8_t limit,
                  std::uint8_t* gaps, std::uint8_t* closed) {
   constexpr float max_band_error = 1;  // pixels

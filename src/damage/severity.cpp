@@ -111,8 +111,8 @@ void validate_table(const std::string& where, const SeverityTable& table) {
       fail(where, ": a row has ", row.size(), " severities; it must have ", columns, ", one for each diameter");
     }
     for (const Severity severity : row) {
-      if (std::find(graded.begin(), graded.end(), severity) != graded.end()) continue;
-      fail(where, ": '", name_of(severity), "' is no class of a table; the classes are minor, low, medium and high");
+      if (std::find(graded.begin() + 1, graded.end(), severity) != graded.end()) continue;
+      fail(where, ": '", name_of(severity), "' is no class of a table; the classes are low, medium and high");
     }
   }
   if (!(table.max_counted_m > 0) || !(table.area_of_one_m2 > 0)) {

@@ -5,6 +5,7 @@
 namespace roadstereo {
 
 FixCurve::FixCurve(std::vector<PositionFix> fixes, double max_gap_s) : fixes_(std::move(fixes)), max_gap_s_(max_gap_s) {
+  for (const PositionFix& fix : fixes_) fix.validate();
   for (std::size_t i = 1; i < fixes_.size(); ++i) {
     if (fixes_[i].time_s > fixes_[i - 1].time_s) continue;
     fail("fix ", i, " is at ", fixes_[i].time_s, " s, the one before it at ", fixes_[i - 1].time_s,

@@ -15,6 +15,25 @@ namespace {
 
 constexpr float disparity_steps = 64, sigma_steps = 128;
 
+/// Whether a file has the name of a keyframe: its frame's index.
+bool is_keyframe(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Removes the keyframes of an earlier run. Throws Error if the folder holds anything else, which is somebody's.
+void remove_keyframes(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> keyframes;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (!is_keyframe(entry.path())) {
+      fail("folder ", folder.string(), " holds ", entry.path().filename().string(),
+           "; the folder of a loop search must be new, or hold nothing but its keyframes");
+    }
+    keyframes.push_back(entry.path());
+  }
+  for (const std::filesystem::path& keyframe : keyframes) std::filesystem::remove(keyframe);
+}
+
 /// Means of 2 × 2 pixels, in pixels of the smaller map; NaN unless all four are valid.
 Image<float> halved(ImageView<const float> map) {
   Image<float> smaller(map.width() / 2, map.height() / 2);
@@ -51,8 +70,8 @@ std::vector<T> quantised(const Image<float>& map, float steps) {
   constexpr auto most = static_cast<float>(std::numeric_limits<T>::max());
   std::vector<T> values(map.pixels());
   std::transform(map.row(0), map.row(0) + map.pixels(), values.begin(), [steps](float value) {
-    const float scaled = std::round(steps * value);
-    return scaled >= 1 && scaled <= most ? static_cast<T>(scaled) : T{0};  // NaN compares false
+    const float scaled = std::max(std::round(steps * value), 1.0F);      // the surest are not lost
+    return value > 0 && scaled <= most ? static_cast<T>(scaled) : T{0};  // NaN compares false
   });
   return values;
 }
@@ -69,10 +88,12 @@ Image<float> restored(const std::vector<T>& values, int width, int height, float
 }  // namespace
 
 KeyframeStore::KeyframeStore(std::filesystem::path folder) : folder_(std::move(folder)) {
-  std::error_code error;
-  std::filesystem::remove_all(folder_, error);
-  std::filesystem::create_directories(folder_, error);
-  if (error) fail<SystemError>("cannot write to folder ", folder_.string(), ": ", error.message());
+  try {
+    std::filesystem::create_directories(folder_);
+    remove_keyframes(folder_);
+  } catch (const std::filesystem::filesystem_error& error) {
+    fail<SystemError>("cannot write to folder ", folder_.string(), ": ", error.code().message());
+  }
 }
 
 KeyframeStore::~KeyframeStore() {

@@ -5,14 +5,20 @@
 #include <utility>
 
 #include "odometry/link_estimator.hpp"
+#include "roadstereo/error.hpp"
 
 namespace roadstereo {
-namespace {
 
 const FramePose& pose_of(const Trajectory& trajectory, int frame) {
-  return *std::lower_bound(trajectory.frames.begin(), trajectory.frames.end(), frame,
-                           [](const FramePose& pose, int index) { return pose.frame < index; });
+  const auto pose = std::lower_bound(trajectory.frames.begin(), trajectory.frames.end(), frame,
+                                     [](const FramePose& one, int index) { return one.frame < index; });
+  if (pose == trajectory.frames.end() || pose->frame != frame) {
+    fail("loop search: frame ", frame, " is not in the trajectory of ", trajectory.frames.size(), " frames");
+  }
+  return *pose;
 }
+
+namespace {
 
 /// Variance of the position of a point of the camera, from the covariance of its pose.
 double point_variance(const std::array<double, 36>& covariance, const Vector<3>& point) {

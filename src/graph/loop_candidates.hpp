@@ -8,6 +8,9 @@
 
 namespace roadstereo {
 
+/// Pose of a frame. Throws Error naming it if the trajectory lacks it.
+const FramePose& pose_of(const Trajectory& trajectory, int frame);
+
 /// What a keyframe shows of the road.
 struct KeyframeView {
   int frame = 0;

@@ -37,11 +37,7 @@ struct Loaded {
 };
 
 RigidMotion motion_between(const Trajectory& trajectory, int from, int to) {
-  const auto pose = [&](int frame) {
-    return motion_of(std::lower_bound(trajectory.frames.begin(), trajectory.frames.end(), frame,
-                                      [](const FramePose& one, int index) { return one.frame < index; })
-                         ->camera_to_world);
-  };
+  const auto pose = [&](int frame) { return motion_of(pose_of(trajectory, frame).camera_to_world); };
   return orthonormal(inverse(pose(to)) * pose(from));
 }
 
@@ -73,6 +69,7 @@ struct LoopSearch::State {
   std::optional<LoopLink> compare(const LinkEstimator& estimator, std::size_t from, std::size_t to,
                                   const Trajectory& best);
 
+  int width_ = 0, height_ = 0;
   std::list<Loaded> recent_;  ///< the most recently used first
 };
 
@@ -80,8 +77,15 @@ void LoopSearch::State::add(int frame, const OdometryFrame& maps, double offset_
   if (!views.empty() && frame <= views.back().frame) {
     fail("loop search: frame ", frame, " comes after frame ", views.back().frame, "; indices must grow");
   }
-  if (!maps.has_road) return;
   const int width = maps.grey.width(), height = maps.grey.height();
+  if (views.empty()) {
+    full.validate(width, height, "loop search");
+    width_ = width;
+    height_ = height;
+  } else if (width != width_ || height != height_) {
+    fail("loop search: frame ", frame, " has ", width, "×", height, " pixels, those before it ", width_, "×", height_);
+  }
+  if (!maps.has_road) return;
   const double u = 0.5 * (width - 1), v = 0.5 * (height - 1), disparity = maps.road.disparity(u, v);
   if (!(disparity + full.disparity_offset_px > 0)) return;
   const std::array<double, 3> centre = full.point_m(u, v, disparity);

@@ -61,7 +61,7 @@ DistressUnit unit_of(const Entry& entry) {
 void require_known_keys(const Entry& entry) {
   constexpr std::array known{"unit", "depth_mm", "diameter_mm", "severity", "max_counted_mm", "area_of_one_m2"};
   for (const auto& item : entry.map) {
-    const auto key = item.first.as<std::string>();
+    const auto key = entry.as<std::string>(item.first, "a key");
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     fail(entry.where, ": \"", key,
          "\" is no key; use unit, depth_mm, diameter_mm, severity, max_counted_mm, area_of_one_m2");
@@ -98,9 +98,10 @@ SeverityScheme read_severity_scheme(const std::string& name) {
   const YAML::Node root = load_yaml({name, {bytes.begin(), bytes.end()}});
   SeverityScheme scheme{name, {}};
   for (const auto& item : root) {
-    const auto key = item.first.as<std::string>();
+    const Entry file{name, root};
+    const auto key = file.as<std::string>(item.first, "a key");
     if (key == "name") {
-      scheme.name = item.second.as<std::string>();
+      scheme.name = file.as<std::string>(item.second, "name");
       continue;
     }
     const Distress distress = distress_of(name, key);

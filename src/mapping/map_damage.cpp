@@ -60,7 +60,7 @@ double median_sigma(const Image<float>& sigma) {
 
 /// Virtual rig: cell = Z/f, and about `scale` pixels of disparity per metre of height, f·b/Z².
 StereoCalibration virtual_rig(int side, double cell_m, double scale) {
-  constexpr double most_m = 9, min_baseline_m = 0.01, max_focal_widths = 40, min_focal_widths = 0.1;
+  constexpr double most_m = 9, min_baseline_m = 0.01, max_focal_widths = 40, min_focal_widths = 0.2;
   const double max_baseline_m = std::min(most_m, 0.9 * side * cell_m);  // the disparity offset stays below the width
   StereoCalibration rig;
   rig.width = rig.height = side;
@@ -83,6 +83,7 @@ bool make_view(const RoadMap& map, const MapBox& box, WindowView& view) {
   if (valid * min_share < raster.height.pixels()) return false;
   const double scale = median_sigma_px / median_sigma(raster.sigma);
   const StereoCalibration rig = virtual_rig(box.columns, map.options().cell_m, scale);
+  rig.validate(box.columns, box.rows, "the rig that sees the map");
   Image<float> scaled(box.columns, box.rows);
   std::transform(heights, heights + raster.height.pixels(), scaled.row(0),
                  [&](float height) { return static_cast<float>(height * scale); });

@@ -12,8 +12,8 @@
 
 namespace roadstereo {
 
-/// Six of the motion, gain and offset of the grey levels, offset of the disparities, by how much that offset grows
-/// towards the sides more than its shape says, shutter.
+/// Six of the motion, gain and offset of the grey levels, disparity offset at the principal point, its additional
+/// growth towards the sides, shutter time.
 inline constexpr std::size_t unknowns = 11;
 inline constexpr std::size_t gain_index = 6, brightness_index = 7, offset_index = 8, growth_index = 9,
                              shutter_index = 10;

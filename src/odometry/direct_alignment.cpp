@@ -78,7 +78,8 @@ class Aligner {
     auto disparities = scratch_vector<double>();
     disparities.reserve(reference.levels.back().size());
     for (const ReferencePoint& point : reference.levels.back()) disparities.push_back(point.disparity);
-    const double typical_disparity = disparities.empty() ? 1 : upper_median(disparities);
+    const double typical_disparity =
+        disparities.empty() ? 1 : upper_median(disparities) + calibration.disparity_offset_px;
     typical_depth_m_ = calibration.focal_px * calibration.baseline_m / typical_disparity;
   }
 

@@ -71,16 +71,19 @@ bool frame_road(const DisparityPlane& plane, const StereoCalibration& calibratio
   constexpr double max_stretch = 4;
   road.plane = ground_plane(plane, calibration);
   road.axes = road_axes(road.plane);
-  const double at_bottom = plane.disparity(calibration.cx_px, height - 1);
+  const auto inverse_depth = [&](double u, double v) {  // f·b/Z, pixels
+    return plane.disparity(u, v) + calibration.disparity_offset_px;
+  };
+  const double at_bottom = inverse_depth(calibration.cx_px, height - 1);
   if (!(at_bottom > 0)) return false;
   int top = height - 1;
-  while (top > 0 && plane.disparity(calibration.cx_px, top - 1) * max_stretch > at_bottom) --top;
+  while (top > 0 && inverse_depth(calibration.cx_px, top - 1) * max_stretch > at_bottom) --top;
   if (height - top < height / 8) return false;
   const double left = 0.1 * width, right = 0.9 * width;
   double x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY;
   for (const double u : {left, right}) {
     for (const int v : {top, height - 1}) {
-      if (!(plane.disparity(u, v) > 0)) continue;
+      if (!(inverse_depth(u, v) > 0)) continue;
       const auto [x, y] = meet_road(plane, calibration, road.axes, u, v);
       if (v == height - 1) x0 = std::min(x0, x), x1 = std::max(x1, x);
       y0 = std::min(y0, y);

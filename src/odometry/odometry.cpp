@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory_resource>
 #include <optional>
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "core/require_range.hpp"
 #include "core/scratch.hpp"
 #include "odometry/image_pyramid.hpp"
 #include "odometry/link_estimator.hpp"
@@ -25,15 +27,12 @@ struct Reference {
 }  // namespace
 
 void OdometryOptions::validate() const {
-  const auto require_share = [](const char* name, double value) {
-    if (!(value >= 0 && value <= 1)) fail(name, " is ", value, "; it must be between 0 and 1");
-  };
-  require_share("min_correlation", min_correlation);
-  require_share("weak_correlation", weak_correlation);
-  require_share("min_overlap", min_overlap);
-  require_share("reference_overlap", reference_overlap);
+  require_range("odometry", "min_correlation", min_correlation, 0.0, 1.0);
+  require_range("odometry", "weak_correlation", weak_correlation, min_correlation, 1.0);
+  require_range("odometry", "min_overlap", min_overlap, 0.0, 1.0);
+  require_range("odometry", "reference_overlap", reference_overlap, 0.0, 1.0);
+  require_range("odometry", "kept_frames", kept_frames, 0, std::numeric_limits<int>::max());
   resolve_threads(threads);
-  if (kept_frames < 0) fail("kept_frames is ", kept_frames, "; it must be at least 0 (all)");
 }
 
 const char* name_of(LinkStatus status) {
@@ -82,7 +81,7 @@ void Odometry::State::require_valid(int frame, const OdometryFrame& maps) const 
   const int width = maps.grey.width(), height = maps.grey.height();
   const auto same = [&](const auto& map) { return map.width() == width && map.height() == height; };
   if (!same(maps.disparity) || !same(maps.sigma)) fail("odometry: the maps of frame ", frame, " differ in size");
-  if (trajectory.frames.empty()) return;
+  if (trajectory.frames.empty()) return estimator.calibration().validate(width, height, "odometry");
   if (frame <= trajectory.frames.back().frame) {
     fail("odometry: frame ", frame, " comes after frame ", trajectory.frames.back().frame, "; indices must grow");
   }
@@ -154,7 +153,7 @@ const FramePose& Odometry::State::add(int frame, const OdometryFrame& maps) {
   width_ = maps.grey.width();
   height_ = maps.grey.height();
   pyramid_.build(maps.grey);
-  const FrameMaps own{pyramid_, maps.disparity, maps.sigma};
+  const FrameMaps own{pyramid_, maps.disparity, maps.sigma, estimator.calibration().disparity_offset_px};
   std::optional<Alignment> alignment;
   bool is_lost = false;
   if (reference_) {

@@ -51,6 +51,7 @@ class Selector {
   void strongest(int v0, int v1, int side, int margin, std::vector<Pixel>& best) {
     best.assign(static_cast<std::size_t>((grey_.width() + side - 1) / side), {});
     strength_.resize(static_cast<std::size_t>(grey_.width()));
+    const auto least = static_cast<float>(-frame_.disparity_offset_px);
     for (int v = v0; v < v1; ++v) {
       find_strength(v);
       const int full_v = full_pixel(v, level_, frame_.disparity.height());
@@ -61,7 +62,7 @@ class Selector {
         for (int u = std::max(first, margin); u < last; ++u) {
           const float strength = strength_[static_cast<std::size_t>(u)];
           if (strength <= pixel.strength) continue;
-          if (!(frame_.disparity(full_pixel(u, level_, frame_.disparity.width()), full_v) > 0)) continue;
+          if (!(frame_.disparity(full_pixel(u, level_, frame_.disparity.width()), full_v) > least)) continue;
           pixel = {u, v, strength};
         }
       }

@@ -46,6 +46,7 @@ struct FrameMaps {
   const ImagePyramid& pyramid;
   ImageView<const float> disparity;  ///< pixels, NaN invalid
   ImageView<const float> sigma;      ///< standard error, pixels
+  double disparity_offset_px = 0;    ///< of the calibration: no depth where disparity + offset is 0 or less
 };
 
 /// Selects the pixel with the largest gradient of every cell of a grid that has a disparity, per level of the pyramid,

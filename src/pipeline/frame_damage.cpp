@@ -1,4 +1,5 @@
-#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "road/black_border.hpp"
@@ -8,18 +9,18 @@
 namespace roadstereo {
 namespace {
 
-/// Removes the ids of masked pixels, and damages that have half of their pixels or fewer left: what a damage has in a
+/// Removes masked pixels from damages, and damages that have half of their pixels or fewer left: what a damage has in a
 /// mask was interpolated. The others are numbered anew, in their order.
-void remove_masked(const Image<std::uint8_t>& mask, DamageMap& map) {
-  if (mask.empty() || map.damages.empty()) return;
+void remove_masked(const FrameResult& frame, DamageMap& map) {
+  if (frame.mask.empty() || map.damages.empty()) return;
   std::vector<std::size_t> seen(map.damages.size() + 1);
-  for (int v = 0; v < mask.height(); ++v) {
-    for (int u = 0; u < mask.width(); ++u) {
-      if (mask(u, v) != 0) map.ids(u, v) = 0;
-      ++seen[map.ids(u, v)];
+  for (int v = 0; v < map.ids.height(); ++v) {
+    for (int u = 0; u < map.ids.width(); ++u) {
+      if (frame.mask(u, v) == 0) ++seen[map.ids(u, v)];
     }
   }
-  std::vector<std::uint16_t> new_ids(map.damages.size() + 1, 0);
+  const std::size_t before = map.damages.size();
+  std::vector<std::uint16_t> new_ids(before + 1, 0);
   std::erase_if(map.damages,
                 [&](const Damage& damage) { return 2 * seen[static_cast<std::size_t>(damage.id)] <= damage.pixels; });
   for (std::size_t k = 0; k < map.damages.size(); ++k) {
@@ -27,9 +28,17 @@ void remove_masked(const Image<std::uint8_t>& mask, DamageMap& map) {
     new_ids[static_cast<std::size_t>(id)] = static_cast<std::uint16_t>(k + 1);
     id = static_cast<int>(k + 1);
   }
+  for (Damage& candidate : map.candidates) candidate.id -= static_cast<int>(before - map.damages.size());
   for (int v = 0; v < map.ids.height(); ++v) {
-    std::uint16_t* const row = map.ids.row(v);
-    std::transform(row, row + map.ids.width(), row, [&](std::uint16_t id) { return new_ids[id]; });
+    for (int u = 0; u < map.ids.width(); ++u) {
+      std::uint16_t& id = map.ids(u, v);
+      if (id == 0) continue;
+      const bool is_masked = frame.mask(u, v) != 0;
+      id = is_masked ? 0 : new_ids[id];
+      if (id != 0) continue;
+      if (is_masked) map.road(u, v) = 0;
+      if (std::isnan(frame.transformed(u, v))) map.depth(u, v) = std::numeric_limits<float>::quiet_NaN();
+    }
   }
 }
 
@@ -66,7 +75,7 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
   input.plane = frame.geometry.plane;
   input.calibration = calibration;
   find_damage(input, options, threads, result);
-  remove_masked(frame.mask, result);
+  remove_masked(frame, result);
 }
 
 }  // namespace roadstereo

@@ -220,7 +220,8 @@ bool Pipeline::State::rows_are_due() const {
 void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
   constexpr double max_offset_px = 0.5;
   constexpr double max_spread_px = 1.0;
-  result.rows = measure_row_alignment(grey.left, grey.right, threads, mask);
+  const bool is_measured = result.rows.points > 0;  // before the frame lost its tracked road
+  if (!is_measured) result.rows = measure_row_alignment(grey.left, grey.right, threads, mask);
   carried.frames_since_rows = 0;
   const RowAlignment& rows = result.rows;
   if (!rows.known()) {
@@ -240,7 +241,7 @@ void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
     carried.misalignment = measured;
   }
   carried.rows_known = true;
-  if (std::abs(rows.median_px) > max_offset_px || rows.sigma_px > max_spread_px) {
+  if (!is_measured && (std::abs(rows.median_px) > max_offset_px || rows.sigma_px > max_spread_px)) {
     result.warnings.push_back(format_message("rows-disagree: the rows of the pair do not agree: vertical offset ",
                                              rows.median_px, " px (median of ", rows.points, " points, spread ",
                                              rows.sigma_px, " px); rectify the pair"));

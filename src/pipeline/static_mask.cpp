@@ -82,6 +82,7 @@ bool StaticMask::add(ImageView<const std::int16_t> left, ImageView<const std::in
   left_.add(left);
   right_.add(right);
   const int frames = std::min(left_.frames(), right_.frames());
+  if (frames == 1) has_half_ = false;  // another size begins anew
   // In noise a vehicle that stands seems to move a little: the first half alone must move, too.
   const bool is_half = !has_half_ && frames >= options_.frames / 2;
   if (!is_half && frames < options_.frames) return false;

@@ -122,6 +122,9 @@ void PerspectiveOptions::validate() const {
   require_range("perspective", "max_bump_height_m", max_bump_height_m, Above{0.0}, 2.0);
   require_range("perspective", "disparities", disparities, 0, max_disparities);
   require_range("perspective", "delta_p_px", delta_p_px, -unlimited, double{max_disparities});
+  if (disparities > 0 && delta_p_px >= disparities) {
+    fail("perspective.delta_p_px is ", delta_p_px, "; it must be less than perspective.disparities, ", disparities);
+  }
 }
 
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,

@@ -137,6 +137,8 @@ TEST_F(DamageCommand, SeverityFileReplacesTables) {
   fails("pothole: {unit: feet}\n", "feet");
   fails("pothole: {unit: m2, depth_mm: [40, 30], severity: [low, high]}\n", "ascend");
   fails("pothole: {unit: m2, depth_mm: [40], severity: [severe]}\n", "severe");
+  fails("pothole: {unit: m2, depth_mm: [40], severity: [low]}\npothole: {unit: m2}\n", "pothole is given twice");
+  fails("name: [a, b]\n", "name has the wrong value");
   fails("pothole: {unit: m2, depth_mm: [deep], severity: [low]}\n", "depth_mm has the wrong value [deep]");
   fails("pothole: {depth_mm: [40], severity: [low]}\n", "unit is missing");
   fails("pothole: {unit: m2, depth_mm: [40], severity: [low], aera_of_one_m2: 1}\n", "aera_of_one_m2");

@@ -26,12 +26,13 @@ namespace {
 
 constexpr int width = 192, height = 112;
 
-synth::SyntheticPair frame_of(const std::string& name, int frame = 0, int downsample = 1) {
+synth::SyntheticPair frame_of(const std::string& name, int frame = 0, int downsample = 1, double noise_grey = 0) {
   synth::Scene scene = synth::named_scene(name);
   scene.supersampling = 1;
   scene.rig.focal_px *= static_cast<double>(width) / downsample / scene.rig.width;
   scene.rig.width = width / downsample;
   scene.rig.height = height / downsample;
+  scene.degradation.noise_grey = noise_grey;
   return synth::render(synth::flight_frame(scene, {}, frame), 2);
 }
 
@@ -291,6 +292,20 @@ TEST_F(CudaPipeline, FollowingFrameWaitsTwice) {
     EXPECT_LE(kernels_ms, ms.prepare + ms.road_model + ms.perspective + ms.coarse + ms.match + ms.refinement + ms.roll +
                               ms.transform);
   }
+}
+
+/// In noise the weight of the prior follows that of each frame: no reason to wait for what is being matched.
+TEST_F(CudaPipeline, FollowingFrameInNoiseWaitsTwice) {
+  synth::SyntheticPair pair = frame_of("uav", 0, 1, 8);
+  Pipeline pipeline(options_of("default", "cuda"), pair.calibration);
+  pipeline.set_device_options({.timing = DeviceTiming::kernels});
+  pipeline.process(pair.left.view(), pair.right.view());
+  pair = frame_of("uav", 1, 1, 8);
+  const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+  EXPECT_EQ(result.road.status, RoadStatus::tracked);
+  EXPECT_LT(result.road.correlation, 0.8);
+  EXPECT_EQ(pipeline.device_profile().waits, 2);
+  EXPECT_LE(pipeline.device_profile().launches, 37);
 }
 
 TEST_F(CudaPipeline, TwoInTwoThreadsAreIndependent) {

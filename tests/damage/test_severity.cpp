@@ -105,7 +105,7 @@ TEST(SeverityScheme, RejectsBadTables) {
   EXPECT_THROW(scheme.validate(), Error) << "two depths, one row";
   scheme.tables[0].classes = {{Severity::low}, {Severity::high}};
   EXPECT_NO_THROW(scheme.validate());
-  for (const Severity none : {Severity::unknown, Severity::unresolvable, Severity::uncertain}) {
+  for (const Severity none : {Severity::minor, Severity::unknown, Severity::unresolvable, Severity::uncertain}) {
     SeverityScheme other = scheme;
     other.tables[0].classes[1] = {none};
     EXPECT_THROW(other.validate(), Error) << name_of(none);

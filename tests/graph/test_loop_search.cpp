@@ -85,5 +85,20 @@ TEST(LoopSearch, PlaceThatIsNeverLeftHasNoLoop) {
   EXPECT_EQ(search.compared(), 0U);
 }
 
+TEST(LoopSearch, RefusesWhatIsNotItsOwn) {
+  const KnownFrame frame = known_frame(scene_at(0, 0, 0));
+  const StereoCalibration calibration = scene_at(0, 0, 0).rig.calibration();
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "roadstereo_not_loops";
+  std::filesystem::create_directories(folder / "notes");
+  EXPECT_THROW(LoopSearch(calibration, folder), Error);
+  EXPECT_TRUE(std::filesystem::exists(folder / "notes"));
+  std::filesystem::remove(folder / "notes");
+  LoopSearch search(calibration, folder);
+  search.add(0, frame.maps());
+  EXPECT_THROW(search.add(1, known_frame(test::smaller_scene("uav", 3)).maps()), Error);
+  search.add(1, frame.maps());
+  EXPECT_THROW(search.find({}, {}), Error);
+}
+
 }  // namespace
 }  // namespace roadstereo

@@ -340,6 +340,21 @@ TEST_F(RoadMapTest, DamageIsAsSignificantInCoarseCells) {
   EXPECT_NEAR(significances[2] / significances[0], 1, 0.25);
 }
 
+// Many frames make the errors small: the rig that sees the map must stay one that a calibration allows.
+TEST_F(RoadMapTest, DamageIsFoundInManyFrames) {
+  RoadMapOptions coarse = options();
+  coarse.cell_m = 0.02;
+  RoadMap map(folder_, coarse);
+  for (int i = 0; i < 40; ++i) {
+    map.add(TestFrame(looking_down(0.005 * i - 0.1, 0.001 * i, 2), {0.1, 0.05, 0.3, 0.06}, 0.05,
+                      static_cast<unsigned>(i + 1))
+                .frame);
+    if (i == 0 || i == 9 || i == 39) {
+      EXPECT_EQ(find_map_damage(map, {}).size(), 1U) << i;
+    }
+  }
+}
+
 // A frame that is turned by 45° shows half of the box around it.
 TEST_F(RoadMapTest, TilesHaveMeasuredCells) {
   RoadMapOptions small = options();

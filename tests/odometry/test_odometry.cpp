@@ -65,6 +65,25 @@ TEST(Odometry, FollowsFlight) {
   }
 }
 
+/// The same cameras and disparities, counted from another zero.
+TEST(Odometry, DisparityOffsetChangesNoPose) {
+  constexpr double offset_px = 40;
+  const StereoCalibration calibration = test::smaller_scene("uav", 2).rig.calibration();
+  StereoCalibration shifted = calibration;
+  shifted.disparity_offset_px = offset_px;
+  Odometry odometry(calibration), from_other_zero(shifted);
+  for (std::size_t i = 0; i < 4; ++i) {
+    KnownFrame frame = flight()[i];
+    const Twist usual = twist_of(motion_of(odometry.add(static_cast<int>(i), frame.maps()).camera_to_world));
+    std::transform(frame.disparity.row(0), frame.disparity.row(0) + frame.disparity.pixels(), frame.disparity.row(0),
+                   [](float d) { return d - static_cast<float>(offset_px); });
+    frame.plane.a0 -= offset_px;
+    const Twist other = twist_of(motion_of(from_other_zero.add(static_cast<int>(i), frame.maps()).camera_to_world));
+    for (std::size_t k = 0; k < usual.size(); ++k) EXPECT_NEAR(other[k], usual[k], 1e-5) << i << " " << k;
+  }
+  EXPECT_EQ(from_other_zero.links().size(), 3U);
+}
+
 TEST(Odometry, StandsStill) {
   Odometry odometry(test::smaller_scene("uav", 2).rig.calibration());
   for (int i = 0; i < 3; ++i) {

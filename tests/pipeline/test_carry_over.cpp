@@ -294,6 +294,21 @@ TEST(CarryOverRows, StayWhereFrameDoesNotTellThem) {
   EXPECT_NEAR(result.shift.misalignment.rows_px, 1.5, 0.1);
 }
 
+TEST(CarryOverRows, AreToldOnceOfFrameThatLosesItsRoad) {
+  const synth::SyntheticPair pair = degraded_road(0, 1.5);
+  Pipeline pipeline;
+  pipeline.process(pair.left.view(), pair.right.view());
+  PipelineState lost = pipeline.carried();
+  lost.road->model.a0 += 20;
+  lost.frames_since_rows = 1000;
+  pipeline.restore(lost);
+  const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+  ASSERT_EQ(result.road.status, RoadStatus::found);
+  EXPECT_EQ(std::count_if(result.warnings.begin(), result.warnings.end(),
+                          [](const std::string& text) { return warning_code(text) == "rows-disagree"; }),
+            1);
+}
+
 TEST(CarryOverRows, AreMeasuredOnTrackedRoadUntilKnown) {
   const synth::SyntheticPair pair = degraded_road(0, 1.5);
   Pipeline pipeline;

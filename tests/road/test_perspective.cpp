@@ -275,6 +275,12 @@ TEST(PerspectiveOptions, RejectsValuesOutOfRange) {
   options = {};
   options.max_bump_height_m = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(options.validate(), Error);
+  options = {};
+  options.disparities = 8;
+  options.delta_p_px = 8;
+  EXPECT_THROW(options.validate(), Error) << "the road is not searched";
+  options.delta_p_px = 7;
+  EXPECT_NO_THROW(options.validate());
 }
 
 }  // namespace

@@ -64,6 +64,8 @@ void match_frame(Pipeline& pipeline, const std::optional<StereoCalibration>& cal
       pipeline.process(job.pair.left.view(), job.pair.right.view(), job.result);
       record(job.result, calibration, job.frame);
       job.frame.health.spots = watch.add(job.result.grey, job.result.right);
+    } catch (const SystemError&) {
+      throw;
     } catch (const Error& error) {
       job.frame.status = io::FrameStatus::failed;
       job.frame.reason = error.what();

@@ -161,16 +161,18 @@ __device__ void fit_bend(const SampledMap& sampled, const float* residuals, Meas
   __syncthreads();
 }
 
-/// Adds up the scores of a cell before they are squared; a thread for each cell, its points in the host's order.
+/// Adds up the scores of a cell before they are squared; some lanes for each cell, which share its columns.
 __device__ void sum_scores(const SampledMap& sampled, const float* residuals, MeasuringState& state) {
   SolvedMoments& solved = state.solved;
   double own[4] = {};
-  for (int cell = thread(); cell < cells_per_side * cells_per_side; cell += threads()) {
+  constexpr int lanes = 8, cells = cells_per_side * cells_per_side;
+  static_assert(cells % (warp_lanes / lanes) == 0, "warps stay whole");
+  for (int cell = thread() / lanes; cell < cells; cell += threads() / lanes) {
     const CellRange rows(sampled.sample, sampled.sample.rows, cell / cells_per_side, sampled.height);
     const CellRange columns(sampled.sample, sampled.sample.columns, cell % cells_per_side, sampled.width);
     float along_u = 0, along_v = 0, along_bend = 0;
     for (int row = rows.first; row < rows.end; ++row) {
-      for (int column = columns.first; column < columns.end; ++column) {
+      for (int column = columns.first + thread() % lanes; column < columns.end; column += lanes) {
         const int i = row * sampled.sample.columns + column;
         if (!(sampled.weights[i] > 0)) continue;
         const float weight = sampled.weights[i], du = sampled.u[i] - solved.mean_u, dv = sampled.v[i] - solved.mean_v;
@@ -181,6 +183,12 @@ __device__ void sum_scores(const SampledMap& sampled, const float* residuals, Me
         along_bend += weight * (residuals[i] - solved.bend * rest) * rest;
       }
     }
+    for (int mask = lanes / 2; mask > 0; mask /= 2) {
+      along_u += __shfl_xor_sync(whole_warp, along_u, mask);
+      along_v += __shfl_xor_sync(whole_warp, along_v, mask);
+      along_bend += __shfl_xor_sync(whole_warp, along_bend, mask);
+    }
+    if (thread() % lanes != 0) continue;
     own[0] += static_cast<double>(along_u) * along_u;
     own[1] += static_cast<double>(along_u) * along_v;
     own[2] += static_cast<double>(along_v) * along_v;

@@ -9,12 +9,20 @@
 #include "stereo/window.hpp"
 
 namespace roadstereo::cuda {
+namespace {
+
+/// Whether both have the same taps with the same weights by distance.
+bool same_window(const MatcherOptions& a, const MatcherOptions& b) {
+  return a.aggregation_radius == b.aggregation_radius && a.aggregation_aspect == b.aggregation_aspect &&
+         a.aggregation_step == b.aggregation_step && a.aggregation_shape == b.aggregation_shape &&
+         a.sigma_space == b.sigma_space;
+}
+
+}  // namespace
 
 /// The window's taps with their weights by distance, on both sides of the bus.
-void DeviceMatcher::use(const MatcherOptions& options, StreamView stream) {
-  if (options_ == options) return;
-  options_.reset();  // until all is made: memory may run out
-  stream.wait();     // what still reads the taps of before
+void DeviceMatcher::make_taps(const MatcherOptions& options, StreamView stream) {
+  stream.wait();  // what still reads the taps of before
   const std::vector<Tap> taps = trimmed_taps(options);
   taps_.reserve(taps.size());
   taps_on_device_.reserve(taps.size());
@@ -27,18 +35,26 @@ void DeviceMatcher::use(const MatcherOptions& options, StreamView stream) {
     settings_.window_half_width = std::max(settings_.window_half_width, taps[i].du);
     settings_.window_half_height = std::max(settings_.window_half_height, taps[i].dv);
   }
+  settings_.taps = taps_on_device_.data();
+  settings_.tap_count = static_cast<int>(taps.size());
+  stream.upload(taps_on_device_.data(), taps_.data(), taps.size() * sizeof(WindowTap));
+}
+
+/// Block and prior follow the noise of every pair (adapt_support): that needs no wait.
+void DeviceMatcher::use(const MatcherOptions& options, StreamView stream) {
+  if (options_ == options) return;
+  const bool same_taps = options_ && same_window(*options_, options);
+  options_.reset();  // until all is made: memory may run out
+  if (!same_taps) make_taps(options, stream);
   const double sigma_colour = options.sigma_colour * grey_scale, noise = options.ncc_noise_sigma * grey_scale;
   settings_.pixel_step = options.pixel_step;
   settings_.block_radius = options.block_radius;
   settings_.noise_variance = static_cast<float>(noise * noise);
-  settings_.taps = taps_on_device_.data();
-  settings_.tap_count = static_cast<int>(taps.size());
   settings_.log2_colour = static_cast<float>(-std::numbers::log2e / (sigma_colour * sigma_colour));
   settings_.effective_samples = static_cast<float>(effective_samples(options));
   settings_.peak_floor = static_cast<float>(peak_floor(options));
   settings_.prior_weight = static_cast<float>(options.prior_weight);
   settings_.prior_truncation_px = static_cast<float>(options.prior_truncation_px);
-  stream.upload(taps_on_device_.data(), taps_.data(), taps.size() * sizeof(WindowTap));
   options_ = options;
 }
 

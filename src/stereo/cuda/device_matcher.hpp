@@ -31,6 +31,7 @@ class DeviceMatcher {
   void settle() const noexcept { target_branch_.settle(); }
 
  private:
+  void make_taps(const MatcherOptions& options, StreamView stream);
   void use(const MatcherOptions& options, StreamView stream);
   void reserve(int width, int height, int columns, int rows);
   ViewToMatch view_of(const MatchInput& input, bool mirrored) const;

@@ -17,6 +17,7 @@ class OffRoad {
  private:
   DeviceArray<LogSigmas> sigmas_;  ///< of each cell
   DeviceArray<CellState> states_;  ///< of each cell
+  DeviceArray<int> doubtful_{1};   ///< whether any cell is unconfirmed or contradicted
 };
 
 }  // namespace roadstereo::cuda

@@ -285,6 +285,8 @@ void block_costs(const CoarsePair& pair, float noise_variance, const RoadPrior& 
   };
   if (prior.block_radius == 3) {
     run(block_costs_of_segments<7, usual_columns>, usual_columns);
+  } else if (prior.block_radius == 1) {  // of the search of a scene
+    run(block_costs_of_segments<3, usual_columns>, usual_columns);
   } else if (shared_bytes(warps * usual_columns, prior.block_radius, costs.disparities) <= max_shared_bytes) {
     run(block_costs_of_segments<0, usual_columns>, usual_columns);
   } else {
