@@ -47,7 +47,7 @@ struct Frame {
     every_pixel.pixel_step = 1;
     make_engine("cpu", 0)->match(input(), every_pixel, maps);
     restore_disparity(maps.disparity, shift, 1, 0, disparity);
-    geometry = estimate_roll(disparity, std::nullopt, road.model, 0, {});
+    geometry = estimate_roll(disparity, {}, road.model, 0, {});
     transform_disparity(disparity, geometry, 0, {}, 0, transformed);
   }
   MatchInput input() const { return {left, target, first_column.data(), shift.disparities}; }
@@ -127,7 +127,7 @@ void register_all() {
   });
   add_stage("transform_target", [](Frame& f) { transform_target(f.right, f.shift, 0, f.target, f.first_column); });
   add_stage("restore_disparity", [](Frame& f) { restore_disparity(f.maps.disparity, f.shift, 1, 0, f.disparity); });
-  add_stage("roll", [](Frame& f) { estimate_roll(f.disparity, std::nullopt, f.road.model, 0, {}); });
+  add_stage("roll", [](Frame& f) { estimate_roll(f.disparity, {}, f.road.model, 0, {}); });
   add_stage("transform_disparity",
             [](Frame& f) { transform_disparity(f.disparity, f.geometry, 0, {}, 0, f.transformed); });
   for (auto* after : {add("stage/damage", damage), add("stage/health", health)}) {

@@ -44,7 +44,7 @@ void estimate_geometry(const Inspection& inspection, FrameResult& result) {
   const auto prior = has_right ? std::optional(result.road.model) : std::nullopt;
   try {
     result.geometry =
-        estimate_roll(result.disparity, std::nullopt, prior, 0, inspection.options.roll, inspection.options.threads);
+        estimate_roll(result.disparity, {}, prior, 0, inspection.options.roll, inspection.options.threads);
   } catch (const Error& error) {
     result.road = {};
     result.road.reason = error.what();

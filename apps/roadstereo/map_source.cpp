@@ -87,7 +87,7 @@ void scale_to_pixels(const MapFiles& files, TransformedMap& map) {
 
 DisparityPlane fit_road(const Image<float>& disparity, const std::string& file) {
   try {
-    return estimate_roll(disparity, std::nullopt, std::nullopt, 0, {}).plane;
+    return estimate_roll(disparity, {}, std::nullopt, 0, {}).plane;
   } catch (const Error& error) {
     fail(file, ": ", error.what());
   }

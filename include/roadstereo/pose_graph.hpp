@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "roadstereo/measurement.hpp"
 #include "roadstereo/odometry.hpp"
 #include "roadstereo/trajectory.hpp"
 
@@ -63,18 +64,12 @@ struct PoseGraphOptions {
   void validate() const;
 };
 
-/// A value and its standard error.
-struct Estimate {
-  double value = 0;
-  double sd = std::numeric_limits<double>::infinity();
-};
-
 /// How fixes and trajectory fit.
 struct TrackFit {
-  Estimate time_offset_s;               ///< to be added to the times of the frames
-  std::array<Estimate, 3> lever_arm_m;  ///< antenna in camera axes
-  double rms_m = 0;                     ///< of the distances that remain, horizontally
-  std::size_t frames = 0;               ///< with a position
+  Measurement time_offset_s;               ///< to be added to the times of the frames
+  std::array<Measurement, 3> lever_arm_m;  ///< antenna in camera axes
+  double rms_m = 0;                        ///< of the distances that remain, horizontally
+  std::size_t frames = 0;                  ///< with a position
 };
 
 struct PoseGraphResult {

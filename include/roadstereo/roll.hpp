@@ -43,10 +43,10 @@ struct RollEstimate {
   double residual_px = 0;  ///< standard deviation of the disparities around the model, pixels (robust: of inliers)
 };
 
-/// Minimises eq. (23) over the valid disparities, with a `region` (W×H) only over those where it is not 0.
+/// Minimises eq. (23) over the valid disparities, only over those where `region` (W×H, or empty: all) is not 0.
 /// `initial_roll_rad`, the last frame's ψ, starts the descent; `prior`, the road model from before matching, starts the
 /// robust solver. Throws Error when fewer than 16 disparities are valid or all lie on one line of the image.
-RollEstimate estimate_roll(ImageView<const float> disparity, const std::optional<ImageView<const std::uint8_t>>& region,
+RollEstimate estimate_roll(ImageView<const float> disparity, ImageView<const std::uint8_t> region,
                            const std::optional<DisparityPlane>& prior, double initial_roll_rad,
                            const RollOptions& options, int threads = 0);
 

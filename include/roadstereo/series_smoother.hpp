@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "roadstereo/severity.hpp"
+#include "roadstereo/measurement.hpp"
 
 #pragma GCC visibility push(default)
 namespace roadstereo {

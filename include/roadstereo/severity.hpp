@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "roadstereo/measurement.hpp"
+
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
@@ -36,18 +38,6 @@ const char* name_of(Severity severity);
 enum class DistressUnit { count, square_metre, metre };
 /// Return "count", "m2" or "m".
 const char* name_of(DistressUnit unit);
-
-/// Number of its standard errors that a depth must have to be resolvable.
-inline constexpr double min_resolved_sigmas = 3;
-
-/// A measured value with its standard error.
-struct Measurement {
-  double value = 0;
-  double std_error = 0;
-
-  /// Whether the value is at least three standard errors.
-  bool is_resolved() const { return value >= min_resolved_sigmas * std_error; }
-};
 
 /// Probability of each class of severity, 0 … 1; they sum to 1.
 struct SeverityProbabilities {

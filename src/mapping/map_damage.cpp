@@ -89,7 +89,7 @@ bool make_view(const RoadMap& map, const MapBox& box, WindowView& view) {
                  [&](float height) { return static_cast<float>(height * scale); });
   DisparityPlane plane;
   try {
-    plane = estimate_roll(scaled, std::nullopt, std::nullopt, 0, {}, map.options().threads).plane;
+    plane = estimate_roll(scaled, {}, std::nullopt, 0, {}, map.options().threads).plane;
   } catch (const SystemError&) {
     throw;
   } catch (const Error&) {  // all cells lie on one line

@@ -92,10 +92,4 @@ inline RigidMotion orthonormal(const RigidMotion& motion) {
   return rigid_motion(twist_of(motion));
 }
 
-/// Angle of the rotation, radians.
-inline double rotation_angle(const RigidMotion& motion) {
-  const Twist twist = twist_of(motion);
-  return std::hypot(twist[3], twist[4], twist[5]);
-}
-
 }  // namespace roadstereo

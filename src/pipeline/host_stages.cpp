@@ -159,7 +159,7 @@ class HostStages final : public FrameStages {
                         double initial_roll_rad, double min_share, const PerspectiveShift&) override {
     RollFit fit{valid_share(disparity), std::nullopt};
     if (fit.valid_share < min_share) return fit;
-    fit.geometry = roadstereo::estimate_roll(disparity, std::nullopt, prior, initial_roll_rad, options_.roll, threads_);
+    fit.geometry = roadstereo::estimate_roll(disparity, {}, prior, initial_roll_rad, options_.roll, threads_);
     return fit;
   }
 

@@ -16,14 +16,14 @@
 namespace roadstereo {
 namespace {
 
-using Region = std::optional<ImageView<const std::uint8_t>>;
+using Region = ImageView<const std::uint8_t>;
 
-bool usable(ImageView<const float> disparity, const Region& region, int u, int v) {
-  return !std::isnan(disparity(u, v)) && (!region || (*region)(u, v) != 0);
+bool usable(ImageView<const float> disparity, Region region, int u, int v) {
+  return !std::isnan(disparity(u, v)) && (region.empty() || region(u, v) != 0);
 }
 
 /// The sums over all usable pixels; added up row by row, so that they do not depend on the number of threads.
-PlaneSums sum_map(ImageView<const float> disparity, const Region& region, int threads) {
+PlaneSums sum_map(ImageView<const float> disparity, Region region, int threads) {
   const PlaneSums origin((disparity.width() - 1) / 2.0, (disparity.height() - 1) / 2.0);
   auto rows = scratch_vector<PlaneSums>(static_cast<std::size_t>(disparity.height()), origin);
   parallel_rows(disparity.height(), 16, threads, [&](int first, int last, int) {
@@ -46,7 +46,7 @@ PlaneSums sum_points(std::span<const DisparityPoint> points) {
 }
 
 /// Valid disparities on a regular grid.
-ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, const Region& region) {
+ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, Region region) {
   const MapSample sample = map_sample(disparity.width(), disparity.height());
   auto points = scratch_vector<DisparityPoint>();
   points.reserve(static_cast<std::size_t>(sample.count()));
@@ -180,12 +180,11 @@ void RollOptions::validate() const {
   require_range("roll", "min_gradient_px", min_gradient_px, 0.0, unlimited);
 }
 
-RollEstimate estimate_roll(ImageView<const float> disparity, const Region& region,
-                           const std::optional<DisparityPlane>& prior, double initial_roll_rad,
-                           const RollOptions& options, int threads) {
+RollEstimate estimate_roll(ImageView<const float> disparity, Region region, const std::optional<DisparityPlane>& prior,
+                           double initial_roll_rad, const RollOptions& options, int threads) {
   options.validate();
-  if (region && (region->width() != disparity.width() || region->height() != disparity.height())) {
-    fail("the region has ", region->width(), "×", region->height(), " pixels and the disparity map ", disparity.width(),
+  if (!region.empty() && (region.width() != disparity.width() || region.height() != disparity.height())) {
+    fail("the region has ", region.width(), "×", region.height(), " pixels and the disparity map ", disparity.width(),
          "×", disparity.height(), "; they must be equal");
   }
   const ScratchVector<DisparityPoint> points = sample_map(disparity, region);

@@ -41,9 +41,8 @@ Image<std::uint8_t> left_half(int width, int height) {
 
 using Mask = std::optional<Image<std::uint8_t>>;
 
-std::optional<ImageView<const std::uint8_t>> view_of(const Mask& mask) {
-  if (!mask) return std::nullopt;
-  return mask->view();
+ImageView<const std::uint8_t> view_of(const Mask& mask) {
+  return mask ? ImageView<const std::uint8_t>(mask->view()) : ImageView<const std::uint8_t>();
 }
 
 class CudaRoadFit : public test::OnDevice {
@@ -157,7 +156,7 @@ TEST_F(CudaRoadFit, RejectsLineLikeHost) {
       RollOptions options;
       options.solver = solver;
       const std::string device = said([&] { on_device(map, {}, DisparityPlane{5, 0, 0}, options); });
-      EXPECT_EQ(device, said([&] { estimate_roll(map, std::nullopt, DisparityPlane{5, 0, 0}, 0, options, 1); }));
+      EXPECT_EQ(device, said([&] { estimate_roll(map, {}, DisparityPlane{5, 0, 0}, 0, options, 1); }));
       EXPECT_NE(device, "nothing");
     }
   }

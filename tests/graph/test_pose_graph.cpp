@@ -198,14 +198,14 @@ TEST(PoseGraphTrack, LeverArmAndTimeOffsetAreFound) {
   ASSERT_TRUE(result.track) << result.track_unused;
   const TrackFit& fit = *result.track;
   EXPECT_EQ(fit.frames, 600U);
-  EXPECT_NEAR(fit.time_offset_s.value, 10.3, 4 * fit.time_offset_s.sd);
-  EXPECT_LT(fit.time_offset_s.sd, 0.05);
+  EXPECT_NEAR(fit.time_offset_s.value, 10.3, 4 * fit.time_offset_s.std_error);
+  EXPECT_LT(fit.time_offset_s.std_error, 0.05);
   for (const std::size_t axis : {0U, 1U}) {
-    EXPECT_NEAR(fit.lever_arm_m[axis].value, survey.lever_arm_m[axis], 4 * fit.lever_arm_m[axis].sd) << axis;
-    EXPECT_LT(fit.lever_arm_m[axis].sd, 0.05);
+    EXPECT_NEAR(fit.lever_arm_m[axis].value, survey.lever_arm_m[axis], 4 * fit.lever_arm_m[axis].std_error) << axis;
+    EXPECT_LT(fit.lever_arm_m[axis].std_error, 0.05);
   }
   // Along the vertical nothing tells the antenna from the height of the flight.
-  EXPECT_GT(fit.lever_arm_m[2].sd, 0.9);
+  EXPECT_GT(fit.lever_arm_m[2].std_error, 0.9);
   for (int i = 0; i < Survey::frames; i += 50) {
     const auto& pose = result.trajectory.frames[static_cast<std::size_t>(i)].camera_to_world;
     const RigidMotion truth = Survey::at(0.1 * i);

@@ -13,7 +13,7 @@ namespace roadstereo {
 namespace {
 
 constexpr TextureUncertaintyOptions options{
-    .block_radius = 3, .noise = 2.0, .row_error = 0.4, .half_weight_sigma = 0.25};
+    .block_radius = 3, .noise = 2.0, .row_offset_sigma_px = 0.4, .half_weight_sigma_px = 0.25};
 constexpr int width = 60, height = 40;
 constexpr int block_pixels = 49;
 
@@ -36,8 +36,9 @@ std::vector<float> texture_uncertainty(const GreyImage& image, int v) {
 /// s² / (s² + half_at²) for a block with the sums Σ gu² and Σ gu gv.
 double closed_form(double squares, double products) {
   const double tilt = products / squares;
-  const double s2 = options.noise * options.noise / squares + options.row_error * options.row_error * tilt * tilt;
-  return s2 / (s2 + options.half_weight_sigma * options.half_weight_sigma);
+  const double s2 =
+      options.noise * options.noise / squares + options.row_offset_sigma_px * options.row_offset_sigma_px * tilt * tilt;
+  return s2 / (s2 + options.half_weight_sigma_px * options.half_weight_sigma_px);
 }
 
 TEST(TextureUncertainty, FlatImageHasNone) {
@@ -70,8 +71,8 @@ TEST(TextureUncertainty, SlantedEdgeAmplifiesRowError) {
   // Grey levels change ten times as fast down as across: an offset of the rows looks like ten of disparity.
   const GreyImage slanted = paint([](int u, int v) { return 0.5 * u + 5.0 * v; });
   const auto uncertainty = texture_uncertainty(slanted, 20);
-  const double error = 10 * options.row_error;
-  const double of_rows = error * error / (error * error + options.half_weight_sigma * options.half_weight_sigma);
+  const double error = 10 * options.row_offset_sigma_px;
+  const double of_rows = error * error / (error * error + options.half_weight_sigma_px * options.half_weight_sigma_px);
   EXPECT_NEAR(uncertainty[30], closed_form(block_pixels * 0.25, block_pixels * 2.5), 1e-5);
   EXPECT_NEAR(uncertainty[30], of_rows, 0.001);
 }

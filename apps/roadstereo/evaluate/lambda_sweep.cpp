@@ -17,7 +17,7 @@ namespace {
 constexpr int max_iterations = 10000;
 
 RollEstimate fit(const Image<float>& map, const RollOptions& options, int threads) {
-  return estimate_roll(map, std::nullopt, std::nullopt, 0, options, threads);
+  return estimate_roll(map, {}, std::nullopt, 0, options, threads);
 }
 
 double closed_form_roll(const Image<float>& map, int threads) {

@@ -72,7 +72,7 @@ Frame draw_roll(const MethodSettings& methods) {
     const Image<float> map = exact_map(pair);
     RollOptions options;
     options.solver = RollSolver::gradient_descent;
-    const RollEstimate estimate = estimate_roll(map, std::nullopt, std::nullopt, 0, options, methods.threads);
+    const RollEstimate estimate = estimate_roll(map, {}, std::nullopt, 0, options, methods.threads);
     constexpr double degrees = 180 / std::numbers::pi;
     rows.push_back({{fmt::format("roll {:.3f}°", pair.roll_rad * degrees),
                      io::tint_magenta(pair.left.view(), 0, Image<std::uint8_t>(map.width(), map.height(), 0))},
@@ -100,7 +100,7 @@ Frame draw_transformed_kitti(const std::string& folder, const MethodSettings& me
     RollOptions options;
     options.solver = RollSolver::gradient_descent;
     FrameResult result;
-    const RollEstimate estimate = estimate_roll(frame.truth, std::nullopt, std::nullopt, 0, options, methods.threads);
+    const RollEstimate estimate = estimate_roll(frame.truth, {}, std::nullopt, 0, options, methods.threads);
     Image<float> transformed;
     result.delta_t = transform_disparity(frame.truth, estimate, 0, options, methods.threads, transformed);
     result.transformed = thicken(transformed, lidar_radius_px);

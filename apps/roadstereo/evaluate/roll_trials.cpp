@@ -52,7 +52,7 @@ class Trials {
     for (std::size_t i = 0; i < errors_.size(); ++i) {
       RollOptions options;
       options.solver = roll_solvers()[i].solver;
-      const RollEstimate estimate = estimate_roll(map, std::nullopt, std::nullopt, 0, options, threads_);
+      const RollEstimate estimate = estimate_roll(map, {}, std::nullopt, 0, options, threads_);
       errors_[i].roll_deg.push_back(roll_deg);
       errors_[i].error_rad.push_back(estimate.roll_rad - roll_rad);
     }
@@ -128,7 +128,7 @@ std::vector<RollErrors> run_pairs(const std::string& preset_name, double road_ca
       RollOptions descent_options = pipeline_options.roll;
       descent_options.solver = RollSolver::gradient_descent;
       const RollEstimate estimate =
-          estimate_roll(result.disparity, std::nullopt, std::nullopt, 0, descent_options, options.methods.threads);
+          estimate_roll(result.disparity, {}, std::nullopt, 0, descent_options, options.methods.threads);
       descent.roll_deg.push_back(angle);
       descent.error_rad.push_back(estimate.roll_rad - pair.roll_rad);
     }

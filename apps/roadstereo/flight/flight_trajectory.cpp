@@ -105,8 +105,8 @@ std::string track_text(const PoseGraphResult& graph) {
   if (!graph.track) return graph.track_unused.empty() ? std::string() : "; track not used: " + graph.track_unused;
   const TrackFit& fit = *graph.track;
   std::string text = fmt::format("; track RMS {:.3f} m, times of the frames {:+.3f} ± {:.3f} s, antenna at", fit.rms_m,
-                                 fit.time_offset_s.value, fit.time_offset_s.sd);
-  for (const Estimate& axis : fit.lever_arm_m) text += fmt::format(" {:+.2f} ± {:.2f}", axis.value, axis.sd);
+                                 fit.time_offset_s.value, fit.time_offset_s.std_error);
+  for (const Measurement& axis : fit.lever_arm_m) text += fmt::format(" {:+.2f} ± {:.2f}", axis.value, axis.std_error);
   return text + " m";
 }
 

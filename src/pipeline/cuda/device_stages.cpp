@@ -350,7 +350,7 @@ RollFit DeviceStages::estimate_roll(ImageView<const float> disparity, const std:
 RollEstimate DeviceStages::fit_on_host(ImageView<const float> disparity) {
   copy_to_host(disparity, disparity_on_host_);
   wait();
-  return roadstereo::estimate_roll(disparity_on_host_, std::nullopt, std::nullopt, 0, options_.roll, options_.threads);
+  return roadstereo::estimate_roll(disparity_on_host_, {}, std::nullopt, 0, options_.roll, options_.threads);
 }
 
 TransformedRoad DeviceStages::transform_disparity(ImageView<const float> disparity, const RollEstimate& geometry,

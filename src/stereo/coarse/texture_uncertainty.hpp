@@ -10,26 +10,26 @@
 namespace roadstereo {
 
 struct TextureUncertaintyOptions {
-  int block_radius = 3;
-  double noise = 1.0;              ///< standard deviation of a pixel, grey levels
-  double row_error = 0.3;          ///< standard deviation of the rows' offset, pixels
-  double half_weight_sigma = 0.3;  ///< standard error of the disparity at uncertainty ½, pixels
+  int block_radius;
+  double noise;                 ///< standard deviation of a pixel, grey levels
+  double row_offset_sigma_px;   ///< standard error of the vertical misalignment that is left
+  double half_weight_sigma_px;  ///< standard error of the disparity at uncertainty ½
 };
 
-/// Options of the coarse search.
+/// Those of the coarse search.
 inline TextureUncertaintyOptions texture_uncertainty_options(const CoarseSearchOptions& options) {
   return {.block_radius = options.block_radius,
           .noise = options.ncc_noise_sigma,
-          .row_error = options.row_offset_sigma_px,
-          .half_weight_sigma = options.half_weight_sigma_px};
+          .row_offset_sigma_px = options.row_offset_sigma_px,
+          .half_weight_sigma_px = options.half_weight_sigma_px};
 }
 
 /// Converts the options to parameters of the formula.
 inline UncertaintyParams uncertainty_params(const TextureUncertaintyOptions& options) {
   constexpr double gradient_unit = 2.0 * grey_scale / (1 << CoarseGradient::shift);
   return {static_cast<float>(options.noise * options.noise * gradient_unit * gradient_unit),
-          static_cast<float>(options.row_error * options.row_error),
-          static_cast<float>(options.half_weight_sigma * options.half_weight_sigma)};
+          static_cast<float>(options.row_offset_sigma_px * options.row_offset_sigma_px),
+          static_cast<float>(options.half_weight_sigma_px * options.half_weight_sigma_px)};
 }
 
 /// Texture uncertainty of the blocks of an image, from the structure tensor, in [0, 1]: 0 well constrained, 1
