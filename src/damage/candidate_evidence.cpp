@@ -35,13 +35,17 @@ void measure_border(const BoxMask& region, const CommonView& view, const Image<s
   evidence.unseen_share = on_gap / contour;
 }
 
-/// Share of the band around a candidate that is road, the relief of a rough one included, or a hollow no deeper than
-/// the outline. Cells of other damages and outside the view do not count; 1 if no cell is left.
-double road_share(const SearchInput& input, const Candidate& candidate, const Image<std::uint8_t>& assigned) {
+/// Share of the band around a candidate of that depth that is road, the relief of a rough one included, or a hollow no
+/// deeper than the outline. Without metres relief is what is small beside the depth. Cells of other damages and outside
+/// the view do not count; 1 if no cell is left.
+double road_share(const SearchInput& input, const Candidate& candidate, float depth_inside,
+                  const Image<std::uint8_t>& assigned) {
   constexpr double margin_radii = 0.5;  // width of the band, radii √(area / π) of the region
   constexpr int min_margin_cells = 3;
   constexpr float max_hollow_sigmas = 10;  // depth of a hollow around a pothole that counts as road
   const double radius = std::sqrt(static_cast<double>(candidate.size) / std::numbers::pi);
+  constexpr float relief_share = 0.1F;  // 5 mm beside a pothole of 50 mm
+  const float min_relief = input.thresholds.metric() ? 0 : relief_share * depth_inside;
   const int margin = std::max(min_margin_cells, static_cast<int>(margin_radii * radius));
   const CellBox around = candidate.box().grown(margin, input.road.width(), input.road.height());
   const BoxMask dilated = dilate(candidate.cells, margin, around);
@@ -59,7 +63,7 @@ double road_share(const SearchInput& input, const Candidate& candidate, const Im
       ++cells;
       if (input.depth_cells.valid(i, j) == 0) continue;
       const float depth = sign * input.depth_cells.depth(i, j);
-      const bool is_relief = std::abs(depth) < input.thresholds.relief(i, j);
+      const bool is_relief = std::abs(depth) < std::max(min_relief, input.thresholds.relief(i, j));
       on_road += input.road(i, j) != 0 || is_relief || (depth > 0 && depth <= max_hollow) ? 1 : 0;
     }
   }
@@ -109,7 +113,7 @@ void add_evidence(const SearchInput& input, SearchImages& images, Candidate& can
   DamageEvidence& evidence = candidate.evidence;
   evidence.contrast_sigmas = (damage.median - around.median) / std::max(around.sigma, input.depth_cells.noise);
   evidence.significance = evidence.contrast_sigmas * std::sqrt(samples);
-  evidence.road_share = road_share(input, candidate, images.assigned);
+  evidence.road_share = road_share(input, candidate, static_cast<float>(damage.median), images.assigned);
   measure_border(candidate.cells, input.view, input.gaps.unseen, evidence);
   if (candidate.kind == DamageKind::depression) {
     evidence.rut_significance = rut_significance(candidate.cells, candidate.size, input.ruts);

@@ -116,7 +116,7 @@ void add_candidate(const SearchInput& input, const ConnectedComponent& core, Dam
   if (is_hollow && confidence_at_best(candidate, input.thresholds) < even_confidence) {
     raise_level(input, core, min_cells, images, candidate);
   }
-  if (is_hollow) leave_terrace(input, min_cells, images, candidate);
+  if (input.thresholds.metric()) leave_terrace(input, min_cells, images, candidate);
   if (confidence_at_best(candidate, input.thresholds) < min_candidate_confidence) return;
   if (candidate.evidence.rut_significance > 0) add_potholes_of_rut(input, min_cells, images, candidate, found);
   assign(candidate, images.assigned);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -27,7 +28,7 @@ float deepest_floor(std::vector<float> depths, int window_radius) {
 
 /// Whether most of a region is shallow beside a floor in it. Half of a cone is deeper than 0.29 of its depth.
 bool is_mostly_terrace(std::span<const float> depths, float floor) {
-  constexpr float min_median = 0.2F;  // of the floor's depth
+  constexpr float min_median = 0.25F;  // of the floor's depth
   return binned_median(depths) < min_median * floor;
 }
 
@@ -66,6 +67,8 @@ void leave_terrace(const SearchInput& input, float min_cells, SearchImages& imag
   const float floor = deepest_floor(depths, input.image_edges.window_radius), first = candidate.level;
   const float last = likelier_level_share * floor;
   if (candidate.evidence.rut_significance > 0 || last <= first || !is_mostly_terrace(depths, floor)) return;
+  std::optional<Candidate> best;
+  double confidence = 0;
   for (int k = 1; k <= levels; ++k) {
     const float level = first * std::pow(last / first, static_cast<float>(k) / static_cast<float>(levels));
     const std::vector<CellRun> hole = part_of_hole(images, candidate, level, last);
@@ -73,9 +76,14 @@ void leave_terrace(const SearchInput& input, float min_cells, SearchImages& imag
     seeds.runs = hole;
     Candidate raised = region_at(input, seeds, level, min_cells, candidate, images);
     if (raised.size == 0 || is_mostly_terrace(depths_inside(images, raised), floor)) continue;
-    if (confidence_at_best(raised, input.thresholds) >= even_confidence) candidate = std::move(raised);
-    return;
+    const double likelier = confidence_at_best(raised, input.thresholds);
+    if (likelier <= confidence) continue;
+    confidence = likelier;
+    best = std::move(raised);
+    if (confidence >= even_confidence) break;
   }
+  const bool stands_alone = confidence >= even_confidence || candidate.kind == DamageKind::protrusion;
+  if (best && stands_alone) candidate = std::move(*best);
 }
 
 void raise_level(const SearchInput& input, const ConnectedComponent& core, float min_cells, SearchImages& images,

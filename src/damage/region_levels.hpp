@@ -6,7 +6,8 @@
 namespace roadstereo {
 
 /// Where the outline of a hole has leaked over a step of the road, as at the edge of an overlay, raises the level until
-/// the lower side of the step is left out.
+/// the lower side of the step is left out, if the hole is likely damage without it. A stone or a twig is cut out of the
+/// gentle relief of the road in any case.
 void leave_terrace(const SearchInput& input, float min_cells, SearchImages& images, Candidate& candidate);
 
 /// The hollow around a core at a higher level, if it is likelier a damage there. Where the relief of the road is as

@@ -1,10 +1,12 @@
 // What only a recording tells of its rig: `health` of summary.json.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
 
+#include "flight/flight_health.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "tests/cli/command_test.hpp"
 
@@ -26,6 +28,24 @@ class FlightHealthCommand : public CommandTest {
 
   nlohmann::json health_;
 };
+
+/// Of 51 frames one, or every second, shows enough road to tell a bent field of disparities.
+TEST(FlightHealth, OneFrameSaysNothingOfRecording) {
+  for (const int every : {100, 2}) {
+    cli::FlightHealth health;
+    for (int i = 0; i < 51; ++i) {
+      io::FlightFrame frame;
+      frame.time_s = 0.1 * i;
+      frame.health.noise_px = 0.05;
+      frame.health.threshold_sigma = 5;
+      if (i % every == 0) frame.health.bowl_px = 0.7;
+      health.add(frame);
+    }
+    const std::vector<HealthFinding> findings = health.findings();
+    EXPECT_EQ(std::any_of(findings.begin(), findings.end(), [](const auto& one) { return one.id == "distortion"; }),
+              every == 2);
+  }
+}
 
 /// Darkens six discs of the picture as dirt on the lens does.
 std::vector<std::uint8_t> with_specks(const std::filesystem::path& file) {

@@ -45,6 +45,14 @@ double median_or_unknown(std::vector<double> values) {
   return values.empty() ? PairHealth::unknown : median(std::move(values));
 }
 
+/// Median of what the frames tell; unknown where hardly any of them does.
+double typical_of(const std::vector<PairHealth>& frames, double PairHealth::*number) {
+  constexpr double min_share = 0.1;
+  std::vector<double> known = known_of(frames, number);
+  if (static_cast<double>(known.size()) < min_share * static_cast<double>(frames.size())) return PairHealth::unknown;
+  return median_or_unknown(std::move(known));
+}
+
 }  // namespace
 
 void FlightHealth::add(const io::FlightFrame& frame) {
@@ -60,7 +68,7 @@ void FlightHealth::add(const io::FlightFrame& frame) {
 
 PairHealth FlightHealth::typical() const {
   PairHealth health;
-  for (double PairHealth::*const number : numbers) health.*number = median_or_unknown(known_of(of_frames_, number));
+  for (double PairHealth::*const number : numbers) health.*number = typical_of(of_frames_, number);
   for (const PairHealth& one : of_frames_) {
     if (!std::isnan(one.spots.left.dirt)) health.spots.left = one.spots.left;
     if (!std::isnan(one.spots.right.dirt)) health.spots.right = one.spots.right;

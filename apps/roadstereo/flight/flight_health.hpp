@@ -17,7 +17,7 @@ class FlightHealth {
   /// Adds what the trajectory tells.
   void add(const HealthFinding& finding) { of_trajectory_.push_back(finding); }
 
-  /// Median of every number over the frames that have it, and the spots that were found last.
+  /// Median of every number over the frames that have it, at least a tenth of them, and the spots that were found last.
   PairHealth typical() const;
   /// Standard deviation of the rows' offset from frame to frame, pixels; NaN unknown.
   double vibration_px() const;
