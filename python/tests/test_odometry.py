@@ -52,7 +52,7 @@ class Odometry(unittest.TestCase):
         other = roadstereo.Pipeline("fast").process(*(frame[:160] for frame in pair()))
         with self.assertRaises(roadstereo.Error):
             odometry.add(6, other)
-        with self.assertRaisesRegex(roadstereo.Error, "^min_overlap is 2; it must be between 0 and 1$"):
+        with self.assertRaisesRegex(roadstereo.Error, "^odometry.min_overlap is 2; it must be between 0 and 1$"):
             self.odometry(min_overlap=2)
         with self.assertRaisesRegex(roadstereo.Error, "calibration: the baseline is -1; it must be between"):
             roadstereo.Odometry(roadstereo.Calibration(300, 160, 90, -1)).add(0, self.results[0])
