@@ -177,7 +177,7 @@ fs::path OutputFolder::staged_path(const std::string& name) {
     fail((folder_ / name).string(), ": this input would be overwritten; choose another output folder");
   }
   if (staging_.empty()) stage();
-  const fs::path staged = staging_ / "new" / name;
+  fs::path staged = staging_ / "new" / name;
   std::error_code error;
   fs::create_directories(staged.parent_path(), error);
   if (error) fail_write(folder_ / name, error.value());

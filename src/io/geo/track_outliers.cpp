@@ -29,16 +29,18 @@ std::vector<TrackPoint> take_outliers(std::vector<TrackPoint>& points, const Tra
   std::vector<TrackPoint> kept, outliers;
   kept.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool has_next = i + 1 < points.size();
-    if (kept.empty() || is_reachable(kept.back(), points[i])) {
-      kept.push_back(points[i]);
-    } else if (comes_back(kept.back(), points, i, options) || (!has_next && kept.size() > 1)) {
-      outliers.push_back(points[i]);
-    } else if (kept.size() == 1 && has_next && is_reachable(points[i], points[i + 1])) {
-      outliers.push_back(std::exchange(kept.back(), points[i]));
-    } else {
-      kept.push_back(points[i]);
+    if (!kept.empty() && !is_reachable(kept.back(), points[i])) {
+      const bool has_next = i + 1 < points.size();
+      if (comes_back(kept.back(), points, i, options) || (!has_next && kept.size() > 1)) {
+        outliers.push_back(points[i]);
+        continue;
+      }
+      if (kept.size() == 1 && has_next && is_reachable(points[i], points[i + 1])) {
+        outliers.push_back(kept.back());
+        kept.clear();
+      }
     }
+    kept.push_back(points[i]);
   }
   points = std::move(kept);
   return outliers;
