@@ -70,8 +70,8 @@ struct OdometryFrame {
 /// Estimates the motion of a rig from frame to frame: direct alignment of grey levels and disparities. Every frame is
 /// aligned with a reference, an earlier frame that is kept as long as enough of its view is seen. Where the prediction
 /// from the last motion fails, the road planes of both frames are resampled to a metric grid and registered by phase
-/// correlation. A frame that cannot be linked starts a new piece. Images of less than 80 pixels on a side
-/// are too small to be linked. Not thread-safe.
+/// correlation. A frame that cannot be linked starts a new piece. Images of less than 80 pixels on a side are
+/// too small to be linked. Not thread-safe.
 class Odometry {
  public:
   explicit Odometry(const StereoCalibration& calibration, const OdometryOptions& options = {});

@@ -24,9 +24,8 @@ struct OffRoadOptions {
 /// disparities of the pair with that `shift`, pixels, NaN unknown. A cell is
 /// - unconfirmed when the geometric mean of σ around it (36×36 pixels) exceeds max_sigma_px · 3^(ρ − 1), ρ the
 ///   correlation; above the horizon only where it does not agree with `scene`;
-/// - on the road when its mean residual is within s/3 of the road's, and within s/2 of that of a pixel of `scene`
-/// nearby:
-///   two columns and one row away at most, one column if the cell is unconfirmed;
+/// - on the road when its mean residual is within s/3 of the road's, and within s/2 of a pixel of `scene` nearby: two
+///   columns and one row away at most, one column if the cell is unconfirmed;
 /// - contradicted when `scene` is known there and none of its pixels nearby agrees within s/2 (of a cell at another
 ///   height than the road's, that at its own place).
 /// Contradicted and unconfirmed cells and the neighbours of contradicted ones are rejected, but for those that cells on
