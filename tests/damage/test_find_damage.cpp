@@ -414,6 +414,25 @@ TEST(FindDamage, HighBlockIsNoDamageLowBlockIsBump) {
   EXPECT_NEAR(static_cast<double>(low.damages[0].pixels), 220 * 160, 0.1 * 220 * 160);
 }
 
+/// A stone of 25 mm at the edge of a heave of 6 mm: no debris as large as the heave.
+TEST(FindDamage, StoneOnReliefIsNoLargerThanItself) {
+  ExactMaps maps(intact_scene(), 0.1);
+  const double height_m = ground_plane(maps.pair.plane, maps.pair.calibration).height_m;
+  const auto lift = [&](int u, int v, double lift_m) {
+    const double change = maps.pair.plane.disparity(u, v) * (height_m / (height_m - lift_m) - 1);
+    maps.disparity(u, v) += static_cast<float>(change);
+    maps.transformed(u, v) += static_cast<float>(change);
+  };
+  for (int v = 100; v < 260; ++v) {
+    for (int u = 180; u < 460; ++u) {
+      const bool is_stone = u >= 400 && u < 436 && v >= 150 && v < 172;
+      const double from_middle = std::hypot((u - 310) / 120.0, (v - 180) / 60.0);
+      lift(u, v, is_stone ? 0.025 : from_middle < 1 ? 0.006 : 0);
+    }
+  }
+  for (const Damage& damage : find_damage(maps.metric()).damages) EXPECT_LT(damage.pixels, 4U * 36 * 22);
+}
+
 /// Wrong matches, as snow or dirt make them, do not cost the damage that they lie in.
 TEST(FindDamage, ImpossibleDepthInsideDamageIsOutlier) {
   ExactMaps maps = damaged();
