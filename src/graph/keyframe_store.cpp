@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/downsample.hpp"
+#include "core/own_files.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -18,20 +19,7 @@ constexpr float disparity_steps = 64, sigma_steps = 128;
 /// Whether a file has the name of a keyframe: its frame's index.
 bool is_keyframe(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
-/// Removes the keyframes of an earlier run. Throws Error if the folder holds anything else, which is somebody's.
-void remove_keyframes(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> keyframes;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (!is_keyframe(entry.path())) {
-      fail("folder ", folder.string(), " holds ", entry.path().filename().string(),
-           "; the folder of a loop search must be new, or hold nothing but its keyframes");
-    }
-    keyframes.push_back(entry.path());
-  }
-  for (const std::filesystem::path& keyframe : keyframes) std::filesystem::remove(keyframe);
+  return std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
 /// Means of 2 × 2 pixels, in pixels of the smaller map; NaN unless all four are valid.
@@ -90,7 +78,9 @@ Image<float> restored(const std::vector<T>& values, int width, int height, float
 KeyframeStore::KeyframeStore(std::filesystem::path folder) : folder_(std::move(folder)) {
   try {
     std::filesystem::create_directories(folder_);
-    remove_keyframes(folder_);
+    for (const std::filesystem::path& earlier : own_files(folder_, "loop search", "keyframes", is_keyframe)) {
+      std::filesystem::remove(earlier);
+    }
   } catch (const std::filesystem::filesystem_error& error) {
     fail<SystemError>("cannot write to folder ", folder_.string(), ": ", error.code().message());
   }

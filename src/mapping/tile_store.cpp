@@ -9,6 +9,7 @@
 #include <system_error>
 #include <type_traits>
 
+#include "core/own_files.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -21,19 +22,6 @@ namespace {
 bool is_tile(const std::filesystem::path& file) {
   static const std::regex name("-?[0-9]+_-?[0-9]+\\.[0-9]+");
   return std::regex_match(file.filename().string(), name);
-}
-
-/// The tiles in a folder. Throws Error if it holds anything else, which is somebody's.
-std::vector<std::filesystem::path> only_tiles(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> tiles;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (!is_tile(entry.path())) {
-      fail("folder ", folder.string(), " holds ", entry.path().filename().string(),
-           "; the folder of a map must be new, or hold nothing but its tiles");
-    }
-    tiles.push_back(entry.path());
-  }
-  return tiles;
 }
 
 }  // namespace
@@ -55,7 +43,7 @@ TileStore::TileStore(const std::filesystem::path& folder, int tile_cells, int ma
     if (error) fail(file(key, generation).string(), ": this tile is missing");
     if (found != bytes) fail(file(key, generation).string(), ": this tile has ", found, " bytes, but needs ", bytes);
   }
-  for (std::filesystem::path& tile : only_tiles(folder_)) {
+  for (std::filesystem::path& tile : own_files(folder_, "map", "tiles", is_tile)) {
     if (needed.find(tile) == needed.end()) superseded_.push_back(std::move(tile));
   }
   commit();
