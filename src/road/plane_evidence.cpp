@@ -176,19 +176,20 @@ PlaneEvidence::PlaneEvidence(const CoarseMatches& coarse)
 
 double PlaneEvidence::of_plane(const DisparityPlane& full_size) const {
   const DisparityPlane plane = downsample_plane(full_size, factor_);
-  return sum_along_plane(
-             {values_.data(), rows_, columns_, disparities_}, static_cast<float>(plane.disparity(column(0), row(0))),
-             static_cast<float>(plane.a1 * evidence_rows), static_cast<float>(plane.a2 * evidence_columns)) /
-         pixels_;
+  const double sum = sum_along_plane(
+      {values_.data(), rows_, columns_, disparities_}, static_cast<float>(plane.disparity(column(0), row(0))),
+      static_cast<float>(plane.a1 * evidence_rows), static_cast<float>(plane.a2 * evidence_columns));
+  return sum / (pixels_ * std::max(share_in_front(plane), least_share));
 }
 
-double PlaneEvidence::share_in_front(const DisparityPlane& full_size) const {
-  const DisparityPlane plane = downsample_plane(full_size, factor_);
-  int in_front = 0;
+double PlaneEvidence::share_in_front(const DisparityPlane& plane) const {
+  double rows_in_front = 0;
   for (int r = 0; r < rows_; ++r) {
-    for (int c = 0; c < columns_; ++c) in_front += plane.disparity(column(c), row(r)) > 0 ? 1 : 0;
+    const double left = plane.disparity(column(0), row(r)), right = plane.disparity(column(columns_ - 1), row(r));
+    const double nearest = std::max(left, right), farthest = std::min(left, right);
+    if (nearest > 0) rows_in_front += farthest >= 0 ? 1 : nearest / (nearest - farthest);
   }
-  return static_cast<double>(in_front) / (rows_ * columns_);
+  return rows_in_front / rows_;
 }
 
 ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
@@ -221,8 +222,7 @@ ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, cons
     candidate.weight = weight(plane);
   });
   for (const Candidate& candidate : choose(best, static_cast<std::size_t>(max_planes), slope_step)) {
-    const DisparityPlane plane = candidate.points.plane(evidence);
-    planes.push_back({plane, candidate.score / std::max(evidence.share_in_front(plane), least_share)});
+    planes.push_back({candidate.points.plane(evidence), candidate.score});
   }
   return planes;
 }

@@ -28,12 +28,13 @@ class PlaneEvidence {
   double middle_column() const { return 0.5 * (column(0) + column(columns_ - 1)); }
   const float* values(int r, int c) const { return values_.data() + at(r, c); }
 
-  /// Mean evidence for a plane per pixel, about −1 … 2. The plane is in full-size pixels.
+  /// Mean evidence for a plane per pixel that it would be seen in, about −1 … 2: a plane that reaches higher up crosses
+  /// more of the houses and cars, which say something to any plane. The plane is in full-size pixels.
   double of_plane(const DisparityPlane& plane) const;
-  /// Share of the picture where a plane lies in front of the camera.
-  double share_in_front(const DisparityPlane& plane) const;
 
  private:
+  /// Share of the picture where a plane of the downsampled image lies in front of the camera.
+  double share_in_front(const DisparityPlane& plane) const;
   std::size_t at(int r, int c) const {
     return static_cast<std::size_t>(r * columns_ + c) * static_cast<std::size_t>(disparities_);
   }
