@@ -18,7 +18,6 @@ constexpr float beyond_margin = 1.5f;       ///< pixels of the downsampled image
 constexpr float full_weight_share = 0.15f;  ///< of the largest disparity, from where a cell counts in full: the far
                                             ///< road is a small patch that any surface there supports
 constexpr double base_row_weight = 0.2;     ///< of the uppermost row; the lowest has this and 1
-constexpr double max_slope = 0.3;           ///< disparity per column
 constexpr double slope_step = 2.0;          ///< pixels of disparity at the left and right border
 constexpr double least_share = 0.5;         ///< of the picture that a plane's evidence is divided by: what is seen in
                                             ///< a few rows only is no road
@@ -75,9 +74,9 @@ class ShearedRows {
   VDisparity image_;
 };
 
-/// The best lines of one slope, one for each disparity of the lowest row.
+/// The best lines of one slope that can be a road's, one for each disparity of the lowest row, and the best other one.
 void search_lines(const PlaneEvidence& grid, const ShearedRows& sheared, double slope, const TiltLimit& limit,
-                  Candidate* best) {
+                  Candidate* roads, Candidate& wall) {
   const double span = slope * (grid.column(grid.columns() - 1) - grid.middle_column());
   const int last_row = grid.rows() - 1;
   std::array<double, top_steps + 1> tops;
@@ -90,9 +89,10 @@ void search_lines(const PlaneEvidence& grid, const ShearedRows& sheared, double 
     for (std::size_t t = 0; t < tops.size(); ++t) steps[t] = static_cast<float>((bottom - tops[t]) / last_row);
     sum_along_lines(sheared.image(), static_cast<float>(bottom), steps.data(), top_steps + 1, row_step, sums.data());
     for (std::size_t t = 0; t < tops.size(); ++t) {
-      if (static_cast<double>(sums[t]) <= best[b].score) continue;
+      if (static_cast<double>(sums[t]) <= std::min(roads[b].score, wall.score)) continue;
       const ThreePoints points{{bottom - span, bottom + span, tops[t]}};
-      if (limit.can_be_road(points.plane(grid))) best[b] = {points, sums[t], 1};
+      Candidate& best = limit.can_be_road(points.plane(grid)) ? roads[b] : wall;
+      if (static_cast<double>(sums[t]) > best.score) best = {points, sums[t], 1};
     }
   }
 }
@@ -146,7 +146,7 @@ ScratchVector<Candidate> choose(ScratchVector<Candidate>& candidates, std::size_
 
 }  // namespace
 
-PlaneEvidence::PlaneEvidence(const CoarseMatches& coarse)
+PlaneEvidence::PlaneEvidence(const CoarseMatches& coarse, Rows order)
     : rows_(coarse.evidence.rows()),
       columns_(coarse.evidence.columns()),
       disparities_(coarse.evidence.disparities()),
@@ -161,10 +161,13 @@ PlaneEvidence::PlaneEvidence(const CoarseMatches& coarse)
   for (int r = 0; r < rows_; ++r) {
     const double lower = row(r) / coarse.height;
     const auto weight = static_cast<float>(base_row_weight + lower * lower);
+    const int seen = order == Rows::as_seen ? r : rows_ - 1 - r;
     for (int c = 0; c < columns_; ++c) {
-      const float *support = coarse.evidence.support(r, c), *beyond = coarse.evidence.beyond(r, c);
+      const float *support = coarse.evidence.support(seen, c), *beyond = coarse.evidence.beyond(seen, c);
       float* value = values_.data() + at(r, c);
-      const auto supported = [&](int d) { return std::min(1.0f, static_cast<float>(d) * full_weight) * support[d]; };
+      const auto supported = [&](int d) {
+        return std::min(1.0f, static_cast<float>(d) * full_weight) * std::max(0.0f, support[d]);
+      };
       for (int d = 0; d < std::min(margin, disparities_); ++d) value[d] = weight * supported(d);
       for (int d = margin; d < disparities_; ++d) {
         const float below = (1 - share) * beyond[d - margin] + share * beyond[d - margin + 1];
@@ -192,21 +195,23 @@ double PlaneEvidence::share_in_front(const DisparityPlane& plane) const {
   return rows_in_front / rows_;
 }
 
-ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
-                                             FunctionRef<double(const DisparityPlane&)> prior, int max_planes,
-                                             int threads) {
-  auto planes = scratch_vector<PlaneHypothesis>();
-  if (evidence.rows() < 2 || evidence.columns() < 2 || evidence.disparities() < 4) return planes;
+PlaneSearchResult search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
+                                FunctionRef<double(const DisparityPlane&)> prior, double max_slope, int max_planes,
+                                int threads) {
+  PlaneSearchResult result;
+  if (evidence.rows() < 2 || evidence.columns() < 2 || evidence.disparities() < 4) return result;
   const double half_width = 0.5 * (evidence.column(evidence.columns() - 1) - evidence.column(0));
   const int slopes = static_cast<int>(max_slope * half_width / slope_step);
   auto candidates = scratch_vector<Candidate>(static_cast<std::size_t>(2 * slopes + 1) * bottom_steps);
+  auto walls = scratch_vector<Candidate>(static_cast<std::size_t>(2 * slopes + 1));
   auto sheared =
       scratch_vector<float>(static_cast<std::size_t>(resolve_threads(threads)) * ShearedRows::size(evidence));
   parallel_for(2 * slopes + 1, threads, [&](int i, int worker) {
     const double slope = (i - slopes) * slope_step / half_width;
     const ShearedRows rows(evidence, slope,
                            sheared.data() + static_cast<std::size_t>(worker) * ShearedRows::size(evidence));
-    search_lines(evidence, rows, slope, limit, candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps);
+    search_lines(evidence, rows, slope, limit, candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps,
+                 walls[static_cast<std::size_t>(i)]);
   });
   const auto weight = [&](const DisparityPlane& plane) { return limit.level_weight(plane) * prior(plane); };
   for (Candidate& candidate : candidates) {
@@ -222,9 +227,23 @@ ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, cons
     candidate.weight = weight(plane);
   });
   for (const Candidate& candidate : choose(best, static_cast<std::size_t>(max_planes), slope_step)) {
-    planes.push_back({candidate.points.plane(evidence), candidate.score});
+    result.roads.push_back({candidate.points.plane(evidence), candidate.score});
   }
-  return planes;
+  for (const Candidate& wall : choose(walls, 1, slope_step)) {
+    result.wall_evidence = evidence.of_plane(wall.points.plane(evidence));
+  }
+  return result;
+}
+
+double ceiling_evidence(const CoarseMatches& coarse, const TiltLimit& limit, int threads) {
+  const PlaneEvidence evidence(coarse, PlaneEvidence::Rows::upside_down);
+  const auto any = [](const DisparityPlane&) { return 1.0; };
+  constexpr double level = 0;
+  constexpr int max_planes = 1;
+  for (const PlaneHypothesis& ceiling : search_planes(evidence, limit, any, level, max_planes, threads).roads) {
+    if (!limit.can_be_road(evidence.upside_down(ceiling.plane))) return ceiling.evidence;
+  }
+  return 0;
 }
 
 }  // namespace roadstereo

@@ -14,10 +14,12 @@ struct PlaneHypothesis {
 };
 
 /// What the cells of a downsampled pair say to planes. A plane gains where the pixels support its disparity and loses
-/// where they lie beyond it, for nothing but damage lies below a road; lower rows count more.
+/// where they lie beyond it, for nothing but damage lies below a road; what stands in front of it says nothing. Lower
+/// rows count more.
 class PlaneEvidence {
  public:
-  explicit PlaneEvidence(const CoarseMatches& coarse);
+  enum class Rows { as_seen, upside_down };
+  explicit PlaneEvidence(const CoarseMatches& coarse, Rows order = Rows::as_seen);
 
   int rows() const { return rows_; }
   int columns() const { return columns_; }
@@ -31,6 +33,11 @@ class PlaneEvidence {
   /// Mean evidence for a plane per pixel that it would be seen in, about −1 … 2: a plane that reaches higher up crosses
   /// more of the houses and cars, which say something to any plane. The plane is in full-size pixels.
   double of_plane(const DisparityPlane& plane) const;
+  /// The plane as the rows show it in the opposite order.
+  DisparityPlane upside_down(const DisparityPlane& plane) const {
+    const double rows_sum = factor_ * (row(0) + row(rows_ - 1) + 1) - 1;
+    return {plane.a0 + plane.a1 * rows_sum, -plane.a1, plane.a2};
+  }
 
  private:
   /// Share of the picture where a plane of the downsampled image lies in front of the camera.
@@ -44,12 +51,23 @@ class PlaneEvidence {
   ScratchVector<float> values_;
 };
 
+/// What a search found.
+struct PlaneSearchResult {
+  ScratchVector<PlaneHypothesis> roads = scratch_vector<PlaneHypothesis>();  ///< best first, none of them nearly equal
+  double wall_evidence = 0;  ///< the most evidence for a plane that cannot be a road
+};
+
 /// Search planes by total evidence: a Hough transform over slope along the columns and a line in v-disparity space,
 /// then a local search. Nothing has to be matched pixel by pixel: where noise or defocus leave a single block
-/// undecided, the sum over all of them still decides. Best first, at most `max_planes`, and none of them nearly equal.
-/// `limit` rejects walls; the weights of the tilt and of `prior` count in that order, not in the evidence.
-ScratchVector<PlaneHypothesis> search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
-                                             FunctionRef<double(const DisparityPlane&)> prior, int max_planes,
-                                             int threads);
+/// undecided, the sum over all of them still decides. At most `max_planes` roads. `limit` tells them from walls; the
+/// weights of the tilt and of `prior` count in their order, not in the evidence. Slopes along the columns are searched
+/// up to `max_slope`, disparities per column.
+PlaneSearchResult search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
+                                FunctionRef<double(const DisparityPlane&)> prior, double max_slope, int max_planes,
+                                int threads);
+inline constexpr double road_max_slope = 0.3;
+
+/// The most evidence for a plane above the camera, which no road can be; 0 where there is none.
+double ceiling_evidence(const CoarseMatches& coarse, const TiltLimit& limit, int threads);
 
 }  // namespace roadstereo

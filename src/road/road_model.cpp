@@ -211,6 +211,19 @@ RoadModelEstimate assess_planes(FinePairs& pairs, std::span<const PlaneHypothesi
   return estimate;
 }
 
+/// A wall or a ceiling crosses any plane somewhere and so gives it evidence, but has several times as much itself.
+/// House fronts beside a road have up to three times as much as the road has; what is above one has less.
+void refuse_walls(double wall, double ceiling, RoadModelEstimate& estimate) {
+  constexpr double wall_ratio = 4, ceiling_ratio = 2;
+  if (ceiling > ceiling_ratio * estimate.evidence) {
+    estimate.reason = format_message("the pair looks upside down: the evidence for a plane above the camera is ",
+                                     ceiling, " per pixel, for a road ", estimate.evidence);
+  } else if (wall > wall_ratio * estimate.evidence) {
+    estimate.reason = format_message("the evidence for a wall is ", wall, " per pixel, for a road ", estimate.evidence);
+  }
+  if (!estimate.reason.empty()) estimate.status = RoadStatus::none;
+}
+
 /// Searches around the last frame's plane.
 RoadModelEstimate track_road(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                              const TrackedRoad& previous, PlaneMatcher match, const FineSearch& first,
@@ -302,14 +315,15 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const auto prior = [&](const DisparityPlane& plane) {
     return rig.weight(plane) * (last ? weight_near(plane, *last, left.width(), left.height()) : 1);
   };
-  const ScratchVector<PlaneHypothesis> planes = search_planes(evidence, limit, prior, max_planes, threads);
-  if (planes.empty()) {
+  const PlaneSearchResult planes = search_planes(evidence, limit, prior, road_max_slope, max_planes, threads);
+  if (planes.roads.empty()) {
     estimate.reason = few_match ? too_few(estimate.matches) : "no plane has more evidence for it than against it";
     return estimate;
   }
   FinePairs pairs(left, right, mask, factor);
-  RoadModelEstimate found = assess_planes(pairs, planes, evidence, limit, options, threads, estimate);
+  RoadModelEstimate found = assess_planes(pairs, planes.roads, evidence, limit, options, threads, estimate);
   if (few_match && !found.has_road()) found.reason = too_few(estimate.matches);
+  if (found.has_road()) refuse_walls(planes.wall_evidence, ceiling_evidence(coarse, limit, threads), found);
   measure_range(matches, found);
   return found;
 }

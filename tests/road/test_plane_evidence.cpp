@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -142,6 +143,24 @@ TEST(PlaneEvidence, FindsRoadBetweenObstacles) {
   EXPECT_LT(max_difference(found.model, road, 130, 290, 120, height - 1), 1.0);
 }
 
+// What stands in front of a road says nothing about it. Where it counts against the road, a plane through the obstacles
+// has more evidence than the tenth of the picture that the road is.
+TEST(PlaneEvidence, ObstaclesDoNotSpeakAgainstRoad) {
+  constexpr int width = 400, height = 240, left = 155, right = 225;
+  const auto road = [](double u, double v) { return 0.2 * (v - 90) + 0.004 * (u - 200); };
+  const auto parked = [](double u, double) { return u < 60 ? 30.0 : u < 130 ? 25.0 : u < 280 ? 22.0 : 31.0; };
+  const auto lane_between_fronts = [](double u, double) { return 34 - 0.08 * std::abs(u - 190); };
+  for (const std::function<double(double, double)>& obstacles :
+       {std::function<double(double, double)>(parked), std::function<double(double, double)>(lane_between_fronts)}) {
+    const auto pair = test::textured_pair(width, height, [&](double u, double v) {
+      return u > left && u < right && v > 112 ? road(u, v) : std::max(obstacles(u, v), road(u, v) + 1);
+    });
+    const RoadModelEstimate found = estimate_road_model(pair.reference, pair.target, std::nullopt, RoadModelOptions{});
+    ASSERT_NE(found.status, RoadStatus::none) << found.reason;
+    EXPECT_LT(max_difference(found.model, road, left, right, 125, height - 1), 1.5);
+  }
+}
+
 TEST(PlaneEvidence, MaskedPixelsTakeNoPart) {
   constexpr int width = 400, height = 240, bonnet = 180;
   const auto road = [](double u, double v) { return 4 + 0.1 * v - 0.004 * u; };
@@ -221,7 +240,9 @@ TEST(RigPrior, OrdersPlanesOfLikeEvidence) {
   const auto search = [&] {
     const RigPrior prior(options, rig);
     return search_planes(
-        evidence, limit, [&](const DisparityPlane& plane) { return prior.weight(plane); }, max_planes, 0);
+               evidence, limit, [&](const DisparityPlane& plane) { return prior.weight(plane); }, road_max_slope,
+               max_planes, 0)
+        .roads;
   };
   const auto planes = search();
   ASSERT_GE(planes.size(), 2U);
@@ -336,6 +357,26 @@ TEST(PlaneEvidence, UpsideDownIsNoRoad) {
   const auto pair = test::textured_pair(width, height, ceiling);
   EXPECT_EQ(estimate_road_model(pair.reference, pair.target, std::nullopt, RoadModelOptions{}).status,
             RoadStatus::none);
+}
+
+// The road above, and below it a front that leans back as a road does.
+TEST(PlaneEvidence, CeilingWithMoreEvidenceIsToldUpsideDown) {
+  constexpr int width = 400, height = 240;
+  const auto upside_down = test::textured_pair(
+      width, height, [](double, double v) { return v < 130 ? 0.25 * (150 - v) : 5 + 0.06 * (v - 130); });
+  const RoadModelEstimate none =
+      estimate_road_model(upside_down.reference, upside_down.target, std::nullopt, RoadModelOptions{});
+  EXPECT_EQ(none.status, RoadStatus::none);
+  EXPECT_NE(none.reason.find("upside down"), std::string::npos) << none.reason;
+  // A tunnel: its ceiling is as large as its road.
+  const auto road = [](double, double v) { return 0.25 * (v - 120); };
+  const auto tunnel = test::textured_pair(width, height, [&road](double u, double v) {
+    return std::max({road(u, v), 0.25 * (120 - v), 3.0});
+  });
+  const RoadModelEstimate found =
+      estimate_road_model(tunnel.reference, tunnel.target, std::nullopt, RoadModelOptions{});
+  ASSERT_NE(found.status, RoadStatus::none) << found.reason;
+  EXPECT_LT(max_difference(found.model, road, 0, width - 1, 150, height - 1), 1.0);
 }
 
 TEST(TrackedRoad, IsFoundAgainWhereItIsThirdOfPicture) {
