@@ -186,9 +186,15 @@ RoadModelEstimate assess_plane(FinePairs& pairs, const PlaneHypothesis& hypothes
   for (int i = 0; i < FinePairs::count; ++i) {
     const FinePair& pair = pairs[i];
     PlaneFitStatistics fit = find_around(pair, hypothesis.plane, options.with_roll, threads);
+    if (fit.found && weigh(fit.plane) < min_kept_evidence * weigh(hypothesis.plane)) {
+      // The wide search has tipped over, onto a kerb or parked cars.
+      const PlaneFitStatistics close =
+          refine_road(pair, hypothesis.plane, match_along_plane, close_search, options.with_roll, threads).evidence;
+      if (close.found && weigh(close.plane) > weigh(fit.plane)) fit = close;
+    }
     if (fit.found) {
       const DisparityPlane even = fit_evenly(pair, fit.plane, limit, options.with_roll, threads);
-      if (weigh(even) >= min_even_evidence * weigh(fit.plane)) fit.plane = even;
+      if (weigh(even) >= min_kept_evidence * weigh(fit.plane)) fit.plane = even;
     }
     RoadModelEstimate assessed = matched;
     assess_found_road(fit, hypothesis.evidence, limit, options, assessed);
