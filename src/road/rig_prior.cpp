@@ -24,12 +24,11 @@ RigPrior::RigPrior(const RoadModelOptions& options, const std::optional<StereoCa
     : calibration_(calibration) {
   if (options.height_m > 0) height_m_ = options.height_m;
   if (options.pitch_deg > unknown_pitch_deg) pitch_deg_ = options.pitch_deg;
-  if ((height_m_ || pitch_deg_) && !calibration_)
-    fail("the expected height and pitch of the camera need a calibration");
+  if (*this && !calibration_) fail("the expected height and pitch of the camera need a calibration");
 }
 
 double RigPrior::weight(const DisparityPlane& plane) const {
-  if (!height_m_ && !pitch_deg_) return 1;
+  if (!*this) return 1;
   const GroundPlane ground = ground_plane(plane, *calibration_);
   const double height = height_m_ ? (ground.height_m / *height_m_ - 1) / height_tolerance : 0;
   const double pitch = pitch_deg_ ? (degrees(ground.pitch_rad) - *pitch_deg_) / pitch_tolerance_deg : 0;
@@ -37,7 +36,7 @@ double RigPrior::weight(const DisparityPlane& plane) const {
 }
 
 std::string RigPrior::disagreement(const DisparityPlane& plane) const {
-  if (!height_m_ && !pitch_deg_) return {};
+  if (!*this) return {};
   const GroundPlane ground = ground_plane(plane, *calibration_);
   if (height_m_ && std::abs(ground.height_m / *height_m_ - 1) > height_tolerance) {
     return format_message("the camera is ", ground.height_m, " m above the road that was found; expected were ",

@@ -13,6 +13,9 @@ class RigPrior {
   /// Throws Error if something is expected without a calibration.
   RigPrior(const RoadModelOptions& options, const std::optional<StereoCalibration>& calibration);
 
+  /// Whether anything is expected.
+  explicit operator bool() const { return height_m_ || pitch_deg_; }
+
   /// Weight of a plane, above 0 … 1: 1 where it is as expected, ½ where height or pitch is off by its tolerance.
   double weight(const DisparityPlane& plane) const;
 

@@ -218,7 +218,7 @@ RoadModelEstimate assess_planes(FinePairs& pairs, std::span<const PlaneHypothesi
 }
 
 /// A wall or a ceiling crosses any plane somewhere and so gives it evidence, but has several times as much itself.
-/// House fronts beside a road have up to three times as much as the road has; what is above one has less.
+/// House fronts beside a road have up to three times as much as the road has; what is above a road has less.
 void refuse_walls(double wall, double ceiling, RoadModelEstimate& estimate) {
   constexpr double wall_ratio = 4, ceiling_ratio = 2;
   if (ceiling > ceiling_ratio * estimate.evidence) {
@@ -329,7 +329,10 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   FinePairs pairs(left, right, mask, factor);
   RoadModelEstimate found = assess_planes(pairs, planes.roads, evidence, limit, options, threads, estimate);
   if (few_match && !found.has_road()) found.reason = too_few(estimate.matches);
-  if (found.has_road()) refuse_walls(planes.wall_evidence, ceiling_evidence(coarse, limit, threads), found);
+  const bool expected = (rig || last) && prior(found.model) >= 0.5;
+  if (found.has_road() && !expected) {
+    refuse_walls(planes.wall_evidence, ceiling_evidence(coarse, limit, threads), found);
+  }
   measure_range(matches, found);
   return found;
 }
