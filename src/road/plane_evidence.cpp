@@ -201,13 +201,13 @@ PlaneSearchResult search_planes(const PlaneEvidence& evidence, const TiltLimit& 
   PlaneSearchResult result;
   if (evidence.rows() < 2 || evidence.columns() < 2 || evidence.disparities() < 4) return result;
   const double half_width = 0.5 * (evidence.column(evidence.columns() - 1) - evidence.column(0));
-  const int slopes = static_cast<int>(max_slope * half_width / slope_step);
-  auto candidates = scratch_vector<Candidate>(static_cast<std::size_t>(2 * slopes + 1) * bottom_steps);
-  auto walls = scratch_vector<Candidate>(static_cast<std::size_t>(2 * slopes + 1));
+  const int half_slopes = static_cast<int>(max_slope * half_width / slope_step), slopes = 2 * half_slopes + 1;
+  auto candidates = scratch_vector<Candidate>(static_cast<std::size_t>(slopes) * bottom_steps);
+  auto walls = scratch_vector<Candidate>(static_cast<std::size_t>(slopes));
   auto sheared =
       scratch_vector<float>(static_cast<std::size_t>(resolve_threads(threads)) * ShearedRows::size(evidence));
-  parallel_for(2 * slopes + 1, threads, [&](int i, int worker) {
-    const double slope = (i - slopes) * slope_step / half_width;
+  parallel_for(slopes, threads, [&](int i, int worker) {
+    const double slope = (i - half_slopes) * slope_step / half_width;
     const ShearedRows rows(evidence, slope,
                            sheared.data() + static_cast<std::size_t>(worker) * ShearedRows::size(evidence));
     search_lines(evidence, rows, slope, limit, candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps,
