@@ -190,9 +190,12 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
     result.warnings.push_back(format_message("no-road: no road was found (", result.road.reason,
                                              "): matched without perspective transformation over the full range"));
   } else if (result.road.status == RoadStatus::weak) {
-    result.warnings.push_back(format_message("weak-road: the road is weak: the evidence for it is ",
-                                             result.road.evidence, " per pixel, less than ",
-                                             options.road_model.weak_evidence));
+    std::string reason = result.road.reason;
+    if (reason.empty()) {
+      reason = format_message("the evidence for it is ", result.road.evidence, " per pixel, less than ",
+                              options.road_model.weak_evidence);
+    }
+    result.warnings.push_back("weak-road: the road is weak: " + reason);
   }
   if (result.road.has_road()) {
     const std::string disagreement = expected.disagreement(result.road.model);

@@ -186,15 +186,9 @@ RoadModelEstimate assess_plane(FinePairs& pairs, const PlaneHypothesis& hypothes
   for (int i = 0; i < FinePairs::count; ++i) {
     const FinePair& pair = pairs[i];
     PlaneFitStatistics fit = find_around(pair, hypothesis.plane, options.with_roll, threads);
-    if (fit.found && weigh(fit.plane) < min_kept_evidence * weigh(hypothesis.plane)) {
-      // The wide search has tipped over, onto a kerb or parked cars.
-      const PlaneFitStatistics close =
-          refine_road(pair, hypothesis.plane, match_along_plane, close_search, options.with_roll, threads).evidence;
-      if (close.found && weigh(close.plane) > weigh(fit.plane)) fit = close;
-    }
     if (fit.found) {
       const DisparityPlane even = fit_evenly(pair, fit.plane, limit, options.with_roll, threads);
-      if (weigh(even) >= min_kept_evidence * weigh(fit.plane)) fit.plane = even;
+      if (weigh(even) >= min_even_evidence * weigh(fit.plane)) fit.plane = even;
     }
     RoadModelEstimate assessed = matched;
     assess_found_road(fit, hypothesis.evidence, limit, options, assessed);
@@ -217,17 +211,18 @@ RoadModelEstimate assess_planes(FinePairs& pairs, std::span<const PlaneHypothesi
   return estimate;
 }
 
-/// A wall or a ceiling crosses any plane somewhere and so gives it evidence, but has several times as much itself.
-/// House fronts beside a road have up to three times as much as the road has; what is above a road has less.
-void refuse_walls(double wall, double ceiling, RoadModelEstimate& estimate) {
+/// A wall or a ceiling crosses any plane somewhere and so gives it evidence, but has several times as much itself: a
+/// road that was found is weak then, and a weak one is none. House fronts beside a road have up to three times as much
+/// as the road has; what is above a road seldom has more, a low ceiling apart.
+void doubt_road(double wall, double ceiling, RoadModelEstimate& road) {
   constexpr double wall_ratio = 4, ceiling_ratio = 2;
-  if (ceiling > ceiling_ratio * estimate.evidence) {
-    estimate.reason = format_message("the pair looks upside down: the evidence for a plane above the camera is ",
-                                     ceiling, " per pixel, for a road ", estimate.evidence);
-  } else if (wall > wall_ratio * estimate.evidence) {
-    estimate.reason = format_message("the evidence for a wall is ", wall, " per pixel, for a road ", estimate.evidence);
+  if (ceiling > ceiling_ratio * road.evidence) {
+    road.reason = format_message("the pair looks upside down: the evidence for a plane above the camera is ", ceiling,
+                                 " per pixel, for a road ", road.evidence);
+  } else if (wall > wall_ratio * road.evidence) {
+    road.reason = format_message("the evidence for a wall is ", wall, " per pixel, for a road ", road.evidence);
   }
-  if (!estimate.reason.empty()) estimate.status = RoadStatus::none;
+  if (!road.reason.empty()) road.status = road.status == RoadStatus::weak ? RoadStatus::none : RoadStatus::weak;
 }
 
 /// Searches around the last frame's plane.
@@ -331,7 +326,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   if (few_match && !found.has_road()) found.reason = too_few(estimate.matches);
   const bool expected = (rig || last) && prior(found.model) >= 0.5;
   if (found.has_road() && !expected) {
-    refuse_walls(planes.wall_evidence, ceiling_evidence(coarse, limit, threads), found);
+    doubt_road(planes.wall_evidence, ceiling_evidence(coarse, limit, threads), found);
   }
   measure_range(matches, found);
   return found;

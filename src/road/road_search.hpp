@@ -44,8 +44,8 @@ inline constexpr FineSearch first_search_again{4, 700};  ///< around the last fr
 inline constexpr int even_spacing_px = 5, even_range_px = 7;
 inline constexpr double even_tolerance = 0.5;
 inline constexpr std::size_t min_even_points = 40;
-/// A search keeps at least this share of the evidence of the plane it started from, or it has left the road.
-inline constexpr double min_kept_evidence = 0.75;
+/// Its plane is taken unless it has less than this share of the evidence of the plane it started from.
+inline constexpr double min_even_evidence = 0.75;
 
 /// Of the robust fit after a search. The window is in pixels of the shrunk image: a kerb must not pull the plane, a
 /// road that is not flat must stay in.
