@@ -65,7 +65,7 @@ struct PlaneSearchResult {
 PlaneSearchResult search_planes(const PlaneEvidence& evidence, const TiltLimit& limit,
                                 FunctionRef<double(const DisparityPlane&)> prior, double max_slope, int max_planes,
                                 int threads);
-inline constexpr double road_max_slope = 0.3;
+inline constexpr double road_max_slope = 0.3;  ///< disparities per column
 
 /// The most evidence for a plane above the camera, which no road can be; 0 where there is none.
 double ceiling_evidence(const CoarseMatches& coarse, const TiltLimit& limit, int threads);
