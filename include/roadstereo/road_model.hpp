@@ -31,7 +31,8 @@ struct RoadModelOptions {
 /// What is known of the road of a pair.
 enum class RoadStatus {
   none,    ///< there is no road in the pair, or nothing shows it: no roll, nothing metric, no damage
-  weak,    ///< a road with little evidence: it fills little of the picture, or the picture is poor
+  weak,    ///< a road with little evidence: it fills little of the picture, the picture is poor, or a wall or a plane
+           ///< above the camera has far more
   found,   ///< found in this pair alone
   tracked  ///< the last frame's road, found again in this pair
 };
@@ -41,7 +42,7 @@ const char* name_of(RoadStatus status);
 struct RoadModelEstimate {
   DisparityPlane model;
   RoadStatus status = RoadStatus::none;
-  std::string reason;           ///< why there is no road; empty when there is one
+  std::string reason;           ///< why there is no road, or what speaks against it; else empty
   double evidence = 0;          ///< for the plane, per pixel of the part of the picture where it would be seen, at
                                 ///< least half of it; about 0 … 2; 0 when tracked
   double inlier_share = 0;      ///< share of the textured samples below the horizon that the plane explains, 0 … 1
