@@ -1,6 +1,7 @@
 #pragma once
 
 #include "road/refinement/mean_settings.hpp"
+#include "road/refinement/slope.hpp"
 
 namespace roadstereo {
 
@@ -9,6 +10,7 @@ struct RefinementPass {
   int radius = 0;  ///< distance of the window's outermost neighbours from its centre, pixels: a multiple of `step`
   int step = 1;    ///< pixels
   MeanSettings mean;
+  SlopeSettings slope;
   bool is_last = true;  ///< writes standard errors and leaves out what is no measurement; else variances
 };
 

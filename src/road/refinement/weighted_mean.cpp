@@ -10,18 +10,21 @@ HWY_BEFORE_NAMESPACE();
 namespace roadstereo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void weighted_mean(const MeasuredRow& centre, std::span<const WindowLine> window, const MeanSettings& settings,
-                   int width, float* mean, float* precision) {
+void weighted_mean(const MeasuredRow& centre, const SlopeRow& slopes, std::span<const WindowLine> window,
+                   const MeanSettings& settings, int width, float* mean, float* precision) {
   const hn::CappedTag<float, 16> d;
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const auto reach2 = hn::Set(d, settings.reach2);
   for (int u = 0; u < width; u += static_cast<int>(hn::Lanes(d))) {
     const auto value = hn::LoadU(d, centre.value + u);
     const auto variance = hn::LoadU(d, centre.variance + u);
-    auto weights = zero, away = zero, squares = zero, expected = zero;
+    const auto across = hn::LoadU(d, slopes.across + u), down = hn::LoadU(d, slopes.down + u);
+    auto weights = zero, away = zero, squares = zero, expected_squares = zero;
     for (const WindowLine& line : window) {
+      const auto expected_in_row = hn::MulAdd(down, hn::Set(d, static_cast<float>(line.below)), value);
       for (int k = line.first; k <= -line.first; k += line.step) {
-        const auto difference = hn::Sub(hn::LoadU(d, line.row.value + u + k), value);
+        const auto expected_there = hn::MulAdd(across, hn::Set(d, static_cast<float>(k)), expected_in_row);
+        const auto difference = hn::Sub(hn::LoadU(d, line.row.value + u + k), expected_there);
         const auto joint = hn::Mul(reach2, hn::Add(hn::LoadU(d, line.row.variance + u + k), variance));
         const auto agreement = hn::Max(zero, hn::Sub(one, hn::Div(hn::Mul(difference, difference), joint)));
         const auto share = hn::Mul(agreement, agreement);
@@ -31,14 +34,14 @@ void weighted_mean(const MeasuredRow& centre, std::span<const WindowLine> window
         weights = hn::Add(weights, weight);
         away = hn::Add(away, weighted);
         squares = hn::MulAdd(weighted, difference, squares);
-        expected = hn::Add(expected, hn::IfThenElseZero(hn::Gt(other_precision, zero), share));
+        expected_squares = hn::Add(expected_squares, hn::IfThenElseZero(hn::Gt(other_precision, zero), share));
       }
     }
     const auto some = hn::Gt(weights, zero);
     const auto shift = hn::IfThenElseZero(some, hn::Div(away, weights));
     hn::StoreU(hn::Add(value, shift), d, mean + u);
     // Scatter of the neighbours beyond their variances, of a surface that is not level there, adds to the variance.
-    const auto scatter = hn::IfThenElseZero(some, hn::Div(hn::Sub(squares, expected), weights));
+    const auto scatter = hn::IfThenElseZero(some, hn::Div(hn::Sub(squares, expected_squares), weights));
     const auto excess = hn::Max(zero, hn::NegMulAdd(shift, shift, scatter));
     const auto averaged = hn::Max(hn::LoadU(d, centre.precision + u), hn::Mul(weights, hn::Set(d, settings.share)));
     hn::StoreU(hn::Div(averaged, hn::MulAdd(averaged, excess, one)), d, precision + u);
@@ -53,9 +56,9 @@ namespace roadstereo {
 
 HWY_EXPORT(weighted_mean);
 
-void weighted_mean(const MeasuredRow& centre, std::span<const WindowLine> window, const MeanSettings& settings,
-                   int width, float* mean, float* precision) {
-  HWY_DYNAMIC_DISPATCH(weighted_mean)(centre, window, settings, width, mean, precision);
+void weighted_mean(const MeasuredRow& centre, const SlopeRow& slopes, std::span<const WindowLine> window,
+                   const MeanSettings& settings, int width, float* mean, float* precision) {
+  HWY_DYNAMIC_DISPATCH(weighted_mean)(centre, slopes, window, settings, width, mean, precision);
 }
 
 }  // namespace roadstereo
