@@ -59,16 +59,18 @@ void expect_as_on_host(int width, int height, const PerspectiveShift& shift, con
   const test::DevicePlane<float> disparity(full), variance(maps.variance);
   const test::DevicePlane<float> device_refined(width, height), device_sigma(width, height);
   const test::DevicePlane<float> between_disparity(width, height), between_variance(width, height);
+  const test::DevicePlane<float> across(width, height), down(width, height);
+  const cuda::SlopeMaps slopes{across.plane(), down.plane()};
   if (pass_count(options) == 1) {
     cuda::refine_disparities(disparity.view(), variance.view(), shift.road,
-                             cuda::refinement_settings(options, 0, support), device_refined.plane(),
+                             cuda::refinement_settings(options, 0, support), slopes, device_refined.plane(),
                              device_sigma.plane(), nullptr);
   } else {
     cuda::refine_disparities(disparity.view(), variance.view(), shift.road,
-                             cuda::refinement_settings(options, 0, support), between_disparity.plane(),
+                             cuda::refinement_settings(options, 0, support), slopes, between_disparity.plane(),
                              between_variance.plane(), nullptr);
     cuda::refine_disparities(between_disparity.view(), between_variance.view(), shift.road,
-                             cuda::refinement_settings(options, 1, support), device_refined.plane(),
+                             cuda::refinement_settings(options, 1, support), slopes, device_refined.plane(),
                              device_sigma.plane(), nullptr);
   }
   expect_equal(device_refined.on_host(), refined);

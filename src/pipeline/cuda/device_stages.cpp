@@ -143,6 +143,7 @@ class DeviceStages final : public FrameStages {
     };
     const ImageView<float> last = step == 1 ? maps_.disparity() : between(2);
     const ImageView<float> last_error = step == 1 ? maps_.sigma() : between(3);
+    const cuda::SlopeMaps slopes{between(step == 1 ? 2 : 4), between(step == 1 ? 3 : 5)};
     const RefinementOptions options = of_matched_pixels(options_.refinement, step);
     const double samples = of_matched_pixels(maps.samples, step);
     DisparityMaps from = maps;
@@ -152,7 +153,7 @@ class DeviceStages final : public FrameStages {
       const ImageView<float> refined = to_result ? last : between(0);
       const ImageView<float> error = to_result ? last_error : between(1);
       cuda::refine_disparities(from.disparity, from.variance, of_matched_pixels(road, step),
-                               refinement_settings(options, k, samples), refined, error, stream());
+                               refinement_settings(options, k, samples), slopes, refined, error, stream());
       from.disparity = refined;
       from.variance = error;
     }
@@ -249,7 +250,7 @@ class DeviceStages final : public FrameStages {
     target_.reserve(pixels);
     first_column_.reserve(static_cast<std::size_t>(height));
     const auto matched = [](int side) { return static_cast<std::size_t>(side + 1) / 2; };  // of every second pixel
-    between_.reserve(std::max(2 * pixels, 4 * matched(width) * matched(height)));
+    between_.reserve(options_.matcher.pixel_step == 1 ? 4 * pixels : 6 * matched(width) * matched(height));
   }
 
   /// Waits for the device. Throws Error where the grey levels cannot be those of a pair.
@@ -291,7 +292,7 @@ class DeviceStages final : public FrameStages {
   FrameMaps maps_;
   DeviceArray<std::int16_t> right_, target_;
   DeviceArray<int> first_column_;
-  /// Disparities and variances between two passes of the refinement; of every second pixel after the last, too.
+  /// Disparities and variances between two passes of the refinement, of every second pixel after the last, too; slopes.
   DeviceArray<float> between_;
   GreyImage left_on_host_, right_on_host_;
   Image<float> disparity_on_host_;

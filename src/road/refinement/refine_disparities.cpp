@@ -118,11 +118,11 @@ class BandSlopes {
   }
 
   /// Writes behind the boxes: the slopes of one row at a time.
-  SlopeRow row(const BandRows& rows, int v) {
+  SlopeRow row(const float* heights, int v) {
     const std::ptrdiff_t boxes = rows_per_band + 2 * std::ptrdiff_t{settings_.step};
     float *const across = numbers_ + 2 * pitch_ * boxes, *const down = across + pitch_;
-    row_slopes(rows.row(v).value, {box_row(v), box_row(v - settings_.step), box_row(v + settings_.step)}, settings_,
-               width_, across, down);
+    row_slopes(heights, {box_row(v), box_row(v - settings_.step), box_row(v + settings_.step)}, settings_, width_,
+               across, down);
     return {across, down};
   }
 
@@ -168,17 +168,21 @@ void run_pass(const Maps& maps, const RefinementPass& pass, int threads, Image<f
   error.resize(width, height);
   const std::size_t of_rows = BandRows::numbers(width, reach(pass)), of_slopes = BandSlopes::numbers(pass.slope, width);
   const auto row_numbers = static_cast<std::size_t>(width + lanes);
-  const std::size_t numbers = of_rows + of_slopes + 2 * row_numbers;
+  const std::size_t numbers = of_rows + of_slopes + 3 * row_numbers;
   auto scratch = scratch_vector<float>(numbers * static_cast<std::size_t>(resolve_threads(threads)));
   parallel_rows(height, rows_per_band, threads, [&](int first, int last, int worker) {
     float* const own = scratch.data() + numbers * static_cast<std::size_t>(worker);
     float *const mean = own + of_rows + of_slopes, *const precision = mean + row_numbers;
+    float* const level = precision + row_numbers;
+    std::fill_n(level, row_numbers, 0.0F);
     BandRows rows(maps, reach(pass));
     rows.fill(first, last, own);
     BandSlopes slopes(pass.slope, width);
-    slopes.fill(rows, first, last, own + of_rows);
+    const bool has_neighbours = pass.radius > 0;
+    if (has_neighbours) slopes.fill(rows, first, last, own + of_rows);
     for (int v = first; v < last; ++v) {
-      refine_row(maps, rows, slopes.row(rows, v), pass, v, mean, precision, refined.row(v), error.row(v));
+      const SlopeRow slope = has_neighbours ? slopes.row(rows.row(v).value, v) : SlopeRow{level, level};
+      refine_row(maps, rows, slope, pass, v, mean, precision, refined.row(v), error.row(v));
     }
   });
 }

@@ -30,8 +30,8 @@ struct NearBoxes {
   BoxRow here, above, below;
 };
 
-/// Slopes at the columns of [0, width), pixels of disparity a pixel (slope.hpp), shrunk by their share. Reads and writes
-/// whole vectors: up to 16 elements behind `width`.
+/// Slopes at the columns of [0, width), pixels of disparity a pixel (slope.hpp), shrunk by their share. Reads and
+/// writes whole vectors: up to 16 elements behind `width`.
 void row_slopes(const float* heights, const NearBoxes& boxes, const SlopeSettings& settings, int width, float* across,
                 float* down);
 

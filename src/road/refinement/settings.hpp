@@ -44,7 +44,8 @@ inline RefinementPass refinement_pass(const RefinementOptions& options, int inde
   return {options.radius / options.step * step, step,
           MeanSettings{static_cast<float>(options.truncation_sigmas * options.truncation_sigmas),
                        static_cast<float>(std::min(1.0, step * step / samples))},
-          SlopeSettings{options.step, static_cast<float>(std::max(1.0, samples))}, index + 1 == pass_count(options)};
+          SlopeSettings{std::min(options.step, max_slope_step), static_cast<float>(std::max(1.0, samples))},
+          index + 1 == pass_count(options)};
 }
 
 inline VarianceBounds variance_bounds(const RefinementOptions& options) {

@@ -11,6 +11,9 @@ struct SlopeSettings {
   float samples = 1;  ///< pixels that one disparity rests on: as many of a box tell what one does
 };
 
+/// Largest step: such boxes fit into the shared memory of a GPU.
+constexpr int max_slope_step = 8;
+
 /// Mean of the heights in a box, weighted by their precisions, and the sum of these, 0 where none is known.
 struct BoxMean {
   float height;

@@ -26,10 +26,10 @@ struct WindowLine {
   int step;
 };
 
-/// mean[u], precision[u] for u in [0, width): the mean of what the window's neighbours q of u say of it, their value less
-/// what the slopes at u let expect, weighted by their precision and by (1 − Δ² / (reach² (variance(q) + variance(u))))²,
-/// Δ its difference from value(u), 0 beyond reach; and its precision, less for neighbours that scatter by more than
-/// their variances. Reads and writes whole vectors: up to 16 elements behind `width`.
+/// mean[u], precision[u] for u in [0, width): the mean of what the window's neighbours q of u say of it, their value
+/// less what the slopes at u let expect, weighted by their precision and by (1 − Δ² / (reach² (variance(q) +
+/// variance(u))))², Δ its difference from value(u), 0 beyond reach; and its precision, less for neighbours that scatter
+/// by more than their variances. Reads and writes whole vectors: up to 16 elements behind `width`.
 void weighted_mean(const MeasuredRow& centre, const SlopeRow& slopes, std::span<const WindowLine> window,
                    const MeanSettings& settings, int width, float* mean, float* precision);
 

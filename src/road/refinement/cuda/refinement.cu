@@ -1,12 +1,14 @@
-// Floor: 16 bytes a pixel, and of each of its 25 neighbours (radius 10, step 5) 12 bytes of shared memory and 18
-// operations: 3.7 MB and 104 million operations for 640×360, for each of two passes. A tile of 32×16 pixels reads its
-// border of 8 too, of 16 in the second pass: three and eight times its pixels.
+// Floor: 24 bytes a pixel, and of each of its 25 neighbours (radius 12, step 6) 12 bytes of shared memory and 22
+// operations: 1.4 MB and 32 million operations for every second pixel of 640×360, for each of two passes. A tile of
+// 32×16 pixels reads its border of 8 too, of 16 in the second pass: three and eight times its pixels.
 
 #include <cmath>
 
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
+#include "road/refinement/cuda/measured_maps.hpp"
 #include "road/refinement/cuda/refinement.hpp"
+#include "road/refinement/cuda/slopes.hpp"
 #include "road/refinement/smoothing_error.hpp"
 
 namespace roadstereo::cuda {
@@ -14,31 +16,6 @@ namespace {
 
 constexpr int tile_columns = 32, thread_rows = 8;
 constexpr int rows_at_once = 4;  // of a thread, when a tile is read
-
-struct Maps {
-  ImageView<const float> disparity, variance;
-  DisparityPlane road;
-
-  /// The road in row v. Double precision is slow on small GPUs: once a row suffices.
-  __device__ RowLine road_line(int v) const { return row_line(road, v, 0); }
-};
-
-/// What the maps hold of a pixel.
-struct MapPixel {
-  float disparity, variance;
-};
-
-/// Reads a pixel of the map, outside the nearest one: loads without a condition are issued together.
-__device__ MapPixel read_pixel(const Maps& maps, int u, int v) {
-  const int column = min(max(u, 0), maps.disparity.width() - 1), row = min(max(v, 0), maps.disparity.height() - 1);
-  return {__ldg(&maps.disparity(column, row)), __ldg(&maps.variance(column, row))};
-}
-
-__device__ MeasuredHeight measured_at(const Maps& maps, const MapPixel& pixel, const RowLine& road,
-                                      const VarianceBounds& bounds, int u, int v) {
-  if (u < 0 || u >= maps.disparity.width() || v < 0 || v >= maps.disparity.height()) return not_measured();
-  return measured(pixel.disparity, pixel.variance, road.at(static_cast<float>(u)), bounds);
-}
 
 /// The pixels of a tile and a border around it in shared memory: the road's line of each row, three planes of numbers.
 struct Tile {
@@ -53,7 +30,7 @@ struct Tile {
     const float* at = numbers + (v - top) * columns + (u - left);
     return {at[0], at[size()], at[2 * size()]};
   }
-  __device__ void fill(const Maps& maps, const VarianceBounds& bounds) const {
+  __device__ void fill(const MeasuredMaps& maps, const VarianceBounds& bounds) const {
     const int thread = static_cast<int>(threadIdx.y) * tile_columns + static_cast<int>(threadIdx.x);
     for (int y = thread; y < rows; y += tile_columns * thread_rows) lines[y] = maps.road_line(top + y);
     __syncthreads();
@@ -67,7 +44,7 @@ struct Tile {
 
  private:
   /// Pixels of a column, from row `first` on.
-  __device__ void fill_rows(const Maps& maps, const VarianceBounds& bounds, int x, int first) const {
+  __device__ void fill_rows(const MeasuredMaps& maps, const VarianceBounds& bounds, int x, int first) const {
     MapPixel pixels[rows_at_once];
     ROADSTEREO_UNROLL
     for (int k = 0; k < rows_at_once; ++k) pixels[k] = read_pixel(maps, left + x, top + first + k * thread_rows);
@@ -86,7 +63,7 @@ struct Tile {
 
 /// Where a window is too wide for shared memory.
 struct Untiled {
-  const Maps& maps;
+  const MeasuredMaps& maps;
   const VarianceBounds& bounds;
 
   __device__ RowLine road(int v) const { return maps.road_line(v); }
@@ -105,15 +82,18 @@ __device__ float quotient(float a, float b) {
 }
 
 template <class Pixels>
-__device__ RefinedPixel refine_pixel(const Maps& maps, const Pixels& pixels, const RefinementSettings& settings, int u,
-                                     int v) {
+__device__ RefinedPixel refine_pixel(const MeasuredMaps& maps, const SlopeMaps& slopes, const Pixels& pixels,
+                                     const RefinementSettings& settings, int u, int v) {
   const float disparity = __ldg(&maps.disparity(u, v));  // loaded while the window is summed
+  const bool alone = settings.pass.radius == 0;
+  const float across = alone ? 0 : __ldg(&slopes.across(u, v)), down = alone ? 0 : __ldg(&slopes.down(u, v));
   const MeasuredHeight centre = pixels(u, v);
-  float weights = 0, away = 0, squares = 0, expected = 0;
+  float weights = 0, away = 0, squares = 0, expected_squares = 0;
   for (int dv = -settings.pass.radius; dv <= settings.pass.radius; dv += settings.pass.step) {
     for (int du = -settings.pass.radius; du <= settings.pass.radius; du += settings.pass.step) {
       const MeasuredHeight other = pixels(u + du, v + dv);
-      const float difference = other.value - centre.value;
+      const float expected_there = centre.value + down * static_cast<float>(dv) + across * static_cast<float>(du);
+      const float difference = other.value - expected_there;
       const float joint = settings.pass.mean.reach2 * (other.variance + centre.variance);
       const float agreement = fmaxf(0.0F, 1 - quotient(difference * difference, joint));
       const float share = agreement * agreement;
@@ -122,12 +102,12 @@ __device__ RefinedPixel refine_pixel(const Maps& maps, const Pixels& pixels, con
       weights += weight;
       away += weighted;
       squares += weighted * difference;
-      expected += other.precision > 0 ? share : 0;
+      expected_squares += other.precision > 0 ? share : 0;
     }
   }
   const float shift = weights > 0 ? away / weights : 0;
   const float mean = centre.value + shift;
-  const float scatter = weights > 0 ? (squares - expected) / weights : 0;
+  const float scatter = weights > 0 ? (squares - expected_squares) / weights : 0;
   const float excess = fmaxf(0.0F, scatter - shift * shift);
   const float averaged = fmaxf(centre.precision, weights * settings.pass.mean.share);
   const float precision = averaged / (averaged * excess + 1);
@@ -136,7 +116,8 @@ __device__ RefinedPixel refine_pixel(const Maps& maps, const Pixels& pixels, con
 }
 
 template <int rows_each>
-__global__ void refine_tiles(Maps maps, RefinementSettings settings, ImageView<float> refined, ImageView<float> error) {
+__global__ void refine_tiles(MeasuredMaps maps, SlopeMaps slopes, RefinementSettings settings, ImageView<float> refined,
+                             ImageView<float> error) {
   begin_kernel();
   const int left = static_cast<int>(blockIdx.x) * tile_columns;
   const int top = static_cast<int>(blockIdx.y) * thread_rows * rows_each;
@@ -150,19 +131,19 @@ __global__ void refine_tiles(Maps maps, RefinementSettings settings, ImageView<f
   for (int k = 0; k < rows_each; ++k) {
     const int v = top + k * thread_rows + static_cast<int>(threadIdx.y);
     if (u >= refined.width() || v >= refined.height()) continue;
-    const RefinedPixel pixel = refine_pixel(maps, tile, settings, u, v);
+    const RefinedPixel pixel = refine_pixel(maps, slopes, tile, settings, u, v);
     refined(u, v) = pixel.disparity;
     error(u, v) = pixel.error;
   }
 }
 
-__global__ void refine_untiled(Maps maps, RefinementSettings settings, ImageView<float> refined,
-                               ImageView<float> error) {
+__global__ void refine_untiled(MeasuredMaps maps, SlopeMaps slopes, RefinementSettings settings,
+                               ImageView<float> refined, ImageView<float> error) {
   begin_kernel();
   const int u = static_cast<int>(blockIdx.x * tile_columns + threadIdx.x);
   const int v = static_cast<int>(blockIdx.y * thread_rows + threadIdx.y);
   if (u >= refined.width() || v >= refined.height()) return;
-  const RefinedPixel pixel = refine_pixel(maps, Untiled{maps, settings.bounds}, settings, u, v);
+  const RefinedPixel pixel = refine_pixel(maps, slopes, Untiled{maps, settings.bounds}, settings, u, v);
   refined(u, v) = pixel.disparity;
   error(u, v) = pixel.error;
 }
@@ -186,11 +167,12 @@ std::size_t tile_bytes(int rows, int border) {
 }  // namespace
 
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
-                        const RefinementSettings& settings, ImageView<float> refined, ImageView<float> error,
-                        StreamView stream) {
+                        const RefinementSettings& settings, const SlopeMaps& slopes, ImageView<float> refined,
+                        ImageView<float> error, StreamView stream) {
   constexpr unsigned few_blocks = 256;  // about two a multiprocessor: then a thread's way through its pixels counts
-  const Maps maps{disparity, variance, road};
+  const MeasuredMaps maps{disparity, variance, road};
   const dim3 block(tile_columns, thread_rows);
+  if (settings.pass.radius > 0) find_slopes(maps, settings.pass.slope, settings.bounds, slopes, stream);
   const auto grid = [&](int rows) {
     return dim3(blocks_for(refined.width(), tile_columns), blocks_for(refined.height(), rows));
   };
@@ -199,9 +181,10 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
   const std::size_t bytes = tile_bytes(rows_each * thread_rows, settings.pass.radius);
   if (bytes <= max_shared_bytes) {
     launch("refine_tiles", rows_each == 1 ? refine_tiles<1> : refine_tiles<2>,
-           {grid(rows_each * thread_rows), block, bytes}, stream, maps, settings, refined, error);
+           {grid(rows_each * thread_rows), block, bytes}, stream, maps, slopes, settings, refined, error);
   } else {
-    launch("refine_untiled", refine_untiled, {grid(thread_rows), block}, stream, maps, settings, refined, error);
+    launch("refine_untiled", refine_untiled, {grid(thread_rows), block}, stream, maps, slopes, settings, refined,
+           error);
   }
   if (settings.pass.is_last && settings.smoothing_px > 0) {
     launch("add_smoothing_error", add_smoothing_error, {grid(thread_rows), block}, stream,

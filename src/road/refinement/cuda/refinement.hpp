@@ -16,10 +16,15 @@ struct RefinementSettings {
   int smoothing_px = 0;      ///< RefinementOptions::smoothing_px
 };
 
-/// Enqueues one pass of refine_disparities (roadstereo/refinement.hpp) on the device. `error`: standard errors of the
-/// last pass, else variances.
+/// Slopes of the heights above the road, pixels of disparity a pixel, along the rows and down the columns.
+struct SlopeMaps {
+  ImageView<float> across, down;
+};
+
+/// Enqueues one pass of refine_disparities (roadstereo/refinement.hpp) on the device. Writes its `slopes`. `error`:
+/// standard errors of the last pass, else variances.
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, const DisparityPlane& road,
-                        const RefinementSettings& settings, ImageView<float> refined, ImageView<float> error,
-                        StreamView stream);
+                        const RefinementSettings& settings, const SlopeMaps& slopes, ImageView<float> refined,
+                        ImageView<float> error, StreamView stream);
 
 }  // namespace roadstereo::cuda
