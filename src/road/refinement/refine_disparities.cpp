@@ -178,10 +178,9 @@ void run_pass(const Maps& maps, const RefinementPass& pass, int threads, Image<f
     BandRows rows(maps, reach(pass));
     rows.fill(first, last, own);
     BandSlopes slopes(pass.slope, width);
-    const bool has_neighbours = pass.radius > 0;
-    if (has_neighbours) slopes.fill(rows, first, last, own + of_rows);
+    if (pass.on_slope) slopes.fill(rows, first, last, own + of_rows);
     for (int v = first; v < last; ++v) {
-      const SlopeRow slope = has_neighbours ? slopes.row(rows.row(v).value, v) : SlopeRow{level, level};
+      const SlopeRow slope = pass.on_slope ? slopes.row(rows.row(v).value, v) : SlopeRow{level, level};
       refine_row(maps, rows, slope, pass, v, mean, precision, refined.row(v), error.row(v));
     }
   });

@@ -11,7 +11,8 @@ struct RefinementPass {
   int step = 1;    ///< pixels
   MeanSettings mean;
   SlopeSettings slope;
-  bool is_last = true;  ///< writes standard errors and leaves out what is no measurement; else variances
+  bool on_slope = false;  ///< neighbours are expected on the slope of the surface
+  bool is_last = true;    ///< writes standard errors and leaves out what is no measurement; else variances
 };
 
 }  // namespace roadstereo

@@ -41,10 +41,12 @@ inline RefinementPass refinement_pass(const RefinementOptions& options, int inde
   double samples = effective_samples;
   for (int k = 0; k < index; ++k) samples += std::pow(neighbours * (options.step << k), 2);
   const int step = options.step << index;
-  return {options.radius / options.step * step, step,
+  return {options.radius / options.step * step,
+          step,
           MeanSettings{static_cast<float>(options.truncation_sigmas * options.truncation_sigmas),
                        static_cast<float>(std::min(1.0, step * step / samples))},
           SlopeSettings{std::min(options.step, max_slope_step), static_cast<float>(std::max(1.0, samples))},
+          index == 0 && options.radius >= options.step,
           index + 1 == pass_count(options)};
 }
 

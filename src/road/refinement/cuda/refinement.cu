@@ -85,8 +85,8 @@ template <class Pixels>
 __device__ RefinedPixel refine_pixel(const MeasuredMaps& maps, const SlopeMaps& slopes, const Pixels& pixels,
                                      const RefinementSettings& settings, int u, int v) {
   const float disparity = __ldg(&maps.disparity(u, v));  // loaded while the window is summed
-  const bool alone = settings.pass.radius == 0;
-  const float across = alone ? 0 : __ldg(&slopes.across(u, v)), down = alone ? 0 : __ldg(&slopes.down(u, v));
+  const bool on_slope = settings.pass.on_slope;
+  const float across = on_slope ? __ldg(&slopes.across(u, v)) : 0, down = on_slope ? __ldg(&slopes.down(u, v)) : 0;
   const MeasuredHeight centre = pixels(u, v);
   float weights = 0, away = 0, squares = 0, expected_squares = 0;
   for (int dv = -settings.pass.radius; dv <= settings.pass.radius; dv += settings.pass.step) {
@@ -172,7 +172,7 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
   constexpr unsigned few_blocks = 256;  // about two a multiprocessor: then a thread's way through its pixels counts
   const MeasuredMaps maps{disparity, variance, road};
   const dim3 block(tile_columns, thread_rows);
-  if (settings.pass.radius > 0) find_slopes(maps, settings.pass.slope, settings.bounds, slopes, stream);
+  if (settings.pass.on_slope) find_slopes(maps, settings.pass.slope, settings.bounds, slopes, stream);
   const auto grid = [&](int rows) {
     return dim3(blocks_for(refined.width(), tile_columns), blocks_for(refined.height(), rows));
   };
