@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <cstddef>
+#include <utility>
 
 #include "road/refinement/row_slopes.hpp"
 #include "road/refinement/slope.hpp"
@@ -40,55 +41,53 @@ TEST(Slopes, NoiseAloneIsShrunkByAHalf) {
   EXPECT_EQ(slope_share({0, 0}, {0, 0}), 0);
 }
 
-/// Rows of heights with gaps, with room of 40 on both sides, of every box width: sums, means and slopes of vectors
+/// Rows of heights with gaps, with room on both sides, and boxes of three sizes: sums, means and slopes of vectors
 /// against sums in double precision and `limited_slope`.
 TEST(Slopes, RowsAreThoseOfPixels) {
-  constexpr int width = 61, room = 40, pitch = width + 2 * room;
+  constexpr int width = 61, room = 40, columns = width + 2 * room;
   for (const int step : {1, 3, 8}) {
     const SlopeSettings settings{step, 10};
     const int rows = 4 * step - 1, middle = 2 * step - 1;
-    std::vector<float> heights(rows * pitch), precision(heights.size());
+    Image<float> heights(columns, rows, 0.0F), precision(columns, rows, 0.0F);
     for (int y = 0; y < rows; ++y) {
       for (int u = 0; u < width; ++u) {
         const bool gap = test::lattice(u, y, 1) < 0.3;
-        heights[y * pitch + room + u] = static_cast<float>(test::smooth_noise(u, y, 7, 2));
-        precision[y * pitch + room + u] = gap ? 0.0F : static_cast<float>(1 + 9 * test::lattice(u, y, 3));
+        heights(room + u, y) = static_cast<float>(test::smooth_noise(u, y, 7, 2));
+        precision(room + u, y) = gap ? 0.0F : static_cast<float>(1 + 9 * test::lattice(u, y, 3));
       }
     }
     const auto box = [&](int u, int v) {
       double sum = 0, weights = 0;
       for (int y = v - step + 1; y < v + step; ++y) {
-        for (int x = u - step + 1; x < u + step; ++x) {
-          const double weight = precision[y * pitch + room + x];
-          sum += weight * heights[y * pitch + room + x];
-          weights += weight;
+        for (int x = room + u - step + 1; x < room + u + step; ++x) {
+          sum += double{precision(x, y)} * heights(x, y);
+          weights += precision(x, y);
         }
       }
       return box_mean(static_cast<float>(sum), static_cast<float>(weights));
     };
-    std::vector<float> sums(2 * heights.size()), boxes(6 * pitch), slopes(2 * pitch);
-    const auto row_of = [&](std::vector<float>& numbers, int y) {
-      return BoxRow{numbers.data() + 2 * y * pitch + room, numbers.data() + (2 * y + 1) * pitch + room};
+    Image<float> sums(columns, 2 * rows, 0.0F), boxes(columns, 6, 0.0F), slopes(columns, 2, 0.0F);
+    const auto row_of = [](Image<float>& numbers, int y) {
+      return BoxRow{numbers.row(2 * y) + room, numbers.row(2 * y + 1) + room};
     };
     for (int y = 0; y < rows; ++y) {
-      const float* const at = heights.data() + y * pitch + room;
-      sum_columns({at, precision.data() + y * pitch + room}, step - 1, -step, width + step, row_of(sums, y));
+      sum_columns({heights.row(y) + room, precision.row(y) + room}, step - 1, -step, width + step, row_of(sums, y));
     }
+    const std::ptrdiff_t pitch = sums.row(2) - sums.row(0);
     for (int k = 0; k < 3; ++k) {
-      mean_of_rows(row_of(sums, k * step), 2 * pitch, 2 * step - 1, -step, width + step, row_of(boxes, k));
+      mean_of_rows(row_of(sums, k * step), pitch, 2 * step - 1, -step, width + step, row_of(boxes, k));
     }
-    float *const across = slopes.data(), *const down = across + pitch;
-    row_slopes(heights.data() + middle * pitch + room, {row_of(boxes, 1), row_of(boxes, 0), row_of(boxes, 2)}, settings,
-               width, across, down);
+    row_slopes(heights.row(middle) + room, {row_of(boxes, 1), row_of(boxes, 0), row_of(boxes, 2)}, settings, width,
+               slopes.row(0), slopes.row(1));
     int sloped = 0;
     for (int u = 0; u < width; ++u) {
-      const float height = heights[middle * pitch + room + u];
-      const Slope of_row = limited_slope(height, box(u - step, middle), box(u + step, middle), settings);
-      const Slope of_column = limited_slope(height, box(u, middle - step), box(u, middle + step), settings);
-      const float share = slope_share(of_row, of_column);
-      ASSERT_NEAR(across[u], share * of_row.value, 1e-4) << step << ", " << u;
-      ASSERT_NEAR(down[u], share * of_column.value, 1e-4) << step << ", " << u;
-      sloped += across[u] != 0 || down[u] != 0;
+      const float height = heights(room + u, middle);
+      const Slope across = limited_slope(height, box(u - step, middle), box(u + step, middle), settings);
+      const Slope down = limited_slope(height, box(u, middle - step), box(u, middle + step), settings);
+      const float share = slope_share(across, down);
+      ASSERT_NEAR(slopes(u, 0), share * across.value, 1e-4) << step << ", " << u;
+      ASSERT_NEAR(slopes(u, 1), share * down.value, 1e-4) << step << ", " << u;
+      sloped += slopes(u, 0) != 0 || slopes(u, 1) != 0;
     }
     EXPECT_GT(sloped, width / 5);
   }
