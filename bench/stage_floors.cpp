@@ -56,19 +56,22 @@ Work coarse_search(const PipelineOptions& options, int width, double pixels, int
   return {.bytes = 4 * pixels + 32 * coarse + (4 + 12 + 24) * costs, .operations = costs * (62 + 5 + 14)};
 }
 
-/// refinement.cu of the matched pixels, interpolation.cu and lucas_kanade.cu.
+/// slopes.cu and refinement.cu of the matched pixels, interpolation.cu and lucas_kanade.cu.
 Work refinement(const PipelineOptions& options, double pixels) {
   const double refined = pixels / (options.matcher.pixel_step * options.matcher.pixel_step);
   const double between = options.matcher.pixel_step > 1 ? 1 : 0;
   const double neighbours = 2.0 * (options.refinement.radius / options.refinement.step) + 1;
   const double window = pass_count(options.refinement) * neighbours * neighbours;
   const double smoothing = options.refinement.smoothing_px > 0 ? 1 : 0;
+  const double sloped = options.refinement.radius >= options.refinement.step ? 1 : 0;
+  const double box = 2.0 * options.refinement.step / options.matcher.pixel_step - 1;  // side of what tells a slope
   const double aligned = options.lucas_kanade.radius > 0 ? 1 : 0;
   const double cells = (2.0 * options.lucas_kanade.radius + 1) * (2.0 * options.lucas_kanade.radius + 1) / 16;
-  return {.bytes =
-              (16 * pass_count(options.refinement) + 12 * smoothing) * refined + (10 * between + 17 * aligned) * pixels,
-          .operations = (14 * window + 7 * smoothing) * refined + (100 + 10 * cells) * aligned * pixels,
-          .shared_bytes = 12 * window * refined};
+  return {.bytes = (16 * pass_count(options.refinement) + 24 * sloped + 12 * smoothing) * refined +
+                   (10 * between + 17 * aligned) * pixels,
+          .operations = (16 * window + (10 * box + 40) * sloped + 7 * smoothing) * refined +
+                        (100 + 10 * cells) * aligned * pixels,
+          .shared_bytes = (12 * window + 48 * box * sloped) * refined};
 }
 
 }  // namespace
