@@ -63,8 +63,8 @@ Work refinement(const PipelineOptions& options, double pixels) {
   const double neighbours = 2.0 * (options.refinement.radius / options.refinement.step) + 1;
   const double window = pass_count(options.refinement) * neighbours * neighbours;
   const double smoothing = options.refinement.smoothing_px > 0 ? 1 : 0;
-  const double sloped = options.refinement.radius >= options.refinement.step ? 1 : 0;
-  const double box = 2.0 * options.refinement.step / options.matcher.pixel_step - 1;  // side of what tells a slope
+  const RefinementPass first = refinement_pass(of_matched_pixels(options.refinement, options.matcher.pixel_step), 0, 1);
+  const double sloped = first.on_slope ? 1 : 0, box = 2.0 * first.slope.step - 1;
   const double aligned = options.lucas_kanade.radius > 0 ? 1 : 0;
   const double cells = (2.0 * options.lucas_kanade.radius + 1) * (2.0 * options.lucas_kanade.radius + 1) / 16;
   return {.bytes = (16 * pass_count(options.refinement) + 24 * sloped + 12 * smoothing) * refined +

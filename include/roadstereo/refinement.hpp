@@ -7,9 +7,9 @@
 namespace roadstereo {
 
 /// Options of the refinement: a mean over the neighbours, weighted by their variances and by their agreement with the
-/// pixel. Heights above the road model are averaged, so that the road is flat, each less what the slope of the surface
-/// at the pixel lets expect, where it is more than noise; differences beyond the joint errors are kept. Each further
-/// pass averages the last one's result over twice its window (à-trous filter, guided by the variance).
+/// pixel. Heights above the road model are averaged, so that the road is flat, in the first pass less what the slope of
+/// the surface at the pixel lets expect, where it is more than noise; differences beyond the joint errors are kept.
+/// Each further pass averages the last one's result over twice its window (à-trous filter, guided by the variance).
 struct RefinementOptions {
   int passes = 2;                       ///< 1 … 3
   int radius = 12;                      ///< of the first window, pixels, 0 … 32; 0 switches the refinement off
