@@ -7,6 +7,7 @@
 #include "damage/candidate_search.hpp"
 #include "damage/connected_components.hpp"
 #include "damage/impossible_depths.hpp"
+#include "damage/inside_rim.hpp"
 #include "damage/region_levels.hpp"
 #include "damage/region_segmentation.hpp"
 
@@ -96,6 +97,7 @@ void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages
     add_evidence(in_rut, images, pothole);
     pothole.evidence.rut_significance = 0;
     if (confidence_at_best(pothole, input.thresholds) < even_if_confirmed) continue;
+    pothole.inside = inside_rim(in_rut, images, pothole);
     assign(pothole, images.assigned);
     found.push_back(std::move(pothole));
   }
@@ -119,6 +121,7 @@ void add_candidate(const SearchInput& input, const ConnectedComponent& core, Dam
   if (input.thresholds.metric()) leave_terrace(input, min_cells, images, candidate);
   if (confidence_at_best(candidate, input.thresholds) < min_candidate_confidence) return;
   if (candidate.evidence.rut_significance > 0) add_potholes_of_rut(input, min_cells, images, candidate, found);
+  candidate.inside = inside_rim(input, images, candidate);
   assign(candidate, images.assigned);
   found.push_back(std::move(candidate));
 }

@@ -24,6 +24,7 @@ inline constexpr double min_candidate_confidence = 0.05;
 struct Candidate {
   DamageKind kind = DamageKind::depression;
   BoxMask cells;         ///< stored in its bounding box
+  BoxMask inside;        ///< those inside its rim, `inside_rim`; empty: all
   std::size_t size = 0;  ///< cells
   float level = 0;       ///< depth at the outline, pixels of ℓ'
   DamageEvidence evidence;

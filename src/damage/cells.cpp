@@ -120,6 +120,7 @@ Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigm
   cells.factor = factor;
   cells.image_width = transformed.width();
   cells.image_height = height;
+  cells.smoothing_px = smoothing_px;
   cells.value.resize((transformed.width() + factor - 1) / factor, (height + factor - 1) / factor);
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     ColumnSums columns(cells.width() * factor);

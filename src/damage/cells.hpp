@@ -14,7 +14,8 @@ struct Cells {
   int factor = 1;       ///< side of a cell, pixels
   int image_width = 0;  ///< pixels
   int image_height = 0;
-  Image<float> value;  ///< ℓ', pixels; NaN where fewer than half of the pixels are valid
+  int smoothing_px = 0;  ///< standard deviation of all averaging in the map, pixels
+  Image<float> value;    ///< ℓ', pixels; NaN where fewer than half of the pixels are valid
 
   int width() const { return value.width(); }
   int height() const { return value.height(); }

@@ -6,17 +6,6 @@
 namespace roadstereo {
 namespace {
 
-/// Magnitude of the gradient by central differences; one-sided at the border.
-float slope_at(const Image<float>& depth, int i, int j) {
-  const int left = std::max(0, i - 1);
-  const int right = std::min(depth.width() - 1, i + 1);
-  const int above = std::max(0, j - 1);
-  const int below = std::min(depth.height() - 1, j + 1);
-  const float along = (depth(right, j) - depth(left, j)) / static_cast<float>(std::max(1, right - left));
-  const float down = (depth(i, below) - depth(i, above)) / static_cast<float>(std::max(1, below - above));
-  return std::hypot(along, down);
-}
-
 /// Sums over the cells of a contour and of its region.
 struct ContourSums {
   double slopes = 0;
@@ -94,6 +83,16 @@ std::vector<CellIndex> contour_cells(const BoxMask& region, int columns, int row
     }
   }
   return cells;
+}
+
+float slope_at(const Image<float>& depth, int i, int j) {
+  const int left = std::max(0, i - 1);
+  const int right = std::min(depth.width() - 1, i + 1);
+  const int above = std::max(0, j - 1);
+  const int below = std::min(depth.height() - 1, j + 1);
+  const float along = (depth(right, j) - depth(left, j)) / static_cast<float>(std::max(1, right - left));
+  const float down = (depth(i, below) - depth(i, above)) / static_cast<float>(std::max(1, below - above));
+  return std::hypot(along, down);
 }
 
 ContourStatistics measure_contour(const DepthField& field, const BoxMask& region) {

@@ -8,6 +8,9 @@
 
 namespace roadstereo {
 
+/// Magnitude of the gradient at a cell by central differences; one-sided at the border.
+float slope_at(const Image<float>& depth, int i, int j);
+
 /// Contour of a region: the cells of the region that have a 4-neighbour outside it.
 struct ContourStatistics {
   double slope = 0;  ///< mean magnitude of the depth gradient on the contour, pixels of ℓ' per cell

@@ -29,20 +29,17 @@ CellBox padded_box(const Candidate& candidate, const Cells& cells) {
   return candidate.box().grown(1, cells.width(), cells.height());
 }
 
-/// Rasterise a candidate at full resolution: pixels with a surface where the interpolated indicator exceeds 0.5.
-void rasterise(const Cells& cells, const Candidate& candidate, std::uint16_t id, const Image<float>& surface,
-               Image<std::uint16_t>& ids) {
-  const Image<float> indicator = indicator_of(candidate.cells, padded_box(candidate, cells));
+/// Rasterise cells of a candidate at full resolution: `visit(u, v, inside)` for every pixel of its box, inside where
+/// the interpolated indicator exceeds 0.5.
+template <class Visit>
+void rasterise(const Cells& cells, const Candidate& candidate, const BoxMask& region, const Visit& visit) {
+  const Image<float> indicator = indicator_of(region, padded_box(candidate, cells));
   const PixelBox box = pixel_box(candidate, cells);
   RowUpsampler rows(indicator, cells.factor, box.width());
   std::vector<float> values(static_cast<std::size_t>(box.width()));
   for (int v = box.v0; v <= box.v1; ++v) {
     rows.read(v - box.v0, values.data());
-    std::uint16_t* const row = ids.row(v) + box.u0;
-    const float* const road = surface.row(v) + box.u0;  // NaN beside the last cells of the road
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      if (row[k] == 0 && values[k] > 0.5F && !std::isnan(road[k])) row[k] = id;
-    }
+    for (int u = box.u0; u <= box.u1; ++u) visit(u, v, values[static_cast<std::size_t>(u - box.u0)] > 0.5F);
   }
 }
 
@@ -120,9 +117,20 @@ Image<float> depth_without_islands(const Segmentation& segmentation, int threads
 
 void rasterise(const Segmentation& segmentation, DamageMap& result) {
   for (std::size_t k = 0; k < segmentation.candidates.size(); ++k) {
-    rasterise(segmentation.cells, segmentation.candidates[k], static_cast<std::uint16_t>(k + 1), result.surface,
-              result.ids);
+    const Candidate& candidate = segmentation.candidates[k];
+    rasterise(segmentation.cells, candidate, candidate.cells, [&](int u, int v, bool inside) {
+      std::uint16_t& id = result.ids(u, v);
+      // There is no surface beside the last cells of the road.
+      if (inside && id == 0 && !std::isnan(result.surface(u, v))) id = static_cast<std::uint16_t>(k + 1);
+    });
   }
+}
+
+void leave_rim(const DamageInput& input, const Segmentation& segmentation, std::size_t k, DamageMap& result) {
+  const Candidate& candidate = segmentation.candidates[k];
+  rasterise(segmentation.cells, candidate, candidate.inside, [&](int u, int v, bool inside) {
+    if (!inside && result.ids(u, v) == k + 1) empty_pixel(input, segmentation, u, v, result);
+  });
 }
 
 void fill_damage(const Segmentation& segmentation, std::size_t k, const Image<float>& interpolated, DamageMap& result) {

@@ -1,6 +1,7 @@
 #include "damage/depth_cells.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -142,6 +143,13 @@ void fill_rows(const Cells& cells, const RoadSurface& surface, int first, int la
   }
 }
 
+/// Standard deviation of the Gaussian that walls are spread by, cells: by the binomial mean, and by matching, of whose
+/// averaging a third is left at a wall, since refinement stops there (docs/accuracy.md).
+double wall_smoothing(const Cells& cells) {
+  constexpr double of_binomial_mean = 1, share_at_walls = 1.0 / 3;
+  return std::hypot(of_binomial_mean, share_at_walls * cells.smoothing_px / cells.factor);
+}
+
 }  // namespace
 
 void fill_gaps(Image<float>& values, const Image<std::uint8_t>& valid, int threads) {
@@ -173,6 +181,7 @@ void fill_gaps(Image<float>& values, const Image<std::uint8_t>& valid, int threa
 DepthCells make_depth_cells(const Cells& cells, const RoadSurface& surface, int threads) {
   DepthCells result;
   result.noise = surface.noise;
+  result.smoothing = wall_smoothing(cells);
   result.depth.resize(cells.width(), cells.height());
   result.valid.resize(cells.width(), cells.height());
   parallel_rows(cells.height(), cell_rows_per_band, threads,

@@ -10,6 +10,7 @@ struct DepthCells {
   Image<float> depth;  ///< pixels of ℓ', 5×5 binomial mean of the valid cells; interpolated where none is valid
   Image<std::uint8_t> valid;  ///< 255 where the cell was measured
   double noise = 0;           ///< robust standard deviation of a cell of the intact road, pixels
+  double smoothing = 0;       ///< standard deviation of the Gaussian that walls are spread by, cells
 };
 
 DepthCells make_depth_cells(const Cells& cells, const RoadSurface& surface, int threads);

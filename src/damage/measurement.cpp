@@ -10,6 +10,7 @@
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
 #include "damage/damage_maps.hpp"
+#include "damage/distress.hpp"
 #include "damage/metric_measurement.hpp"
 #include "damage/pixel_runs.hpp"
 #include "damage/searched_range.hpp"
@@ -37,39 +38,55 @@ double noise_variance(const DamageInput& input, int u, int v) {
   return sigma * sigma - smoothing * smoothing;
 }
 
-/// Sums over the pixels of one damage. Depths are in pixels of ℓ'.
-struct PixelSums {
-  Damage damage;
-  std::int64_t u = 0, v = 0;
+/// Set what is counted over the pixels of a damage in `box`: its own box, their number and centroid, the share that is
+/// measured, and the mean depth of these below the surface raised by `offset`, pixels of ℓ'.
+void count_pixels(const DamageInput& input, const DamageMap& maps, double offset, const PixelBox& box, Damage& damage) {
+  damage.pixels = 0;
+  std::int64_t sum_u = 0, sum_v = 0;
   double depth = 0;
   std::size_t measured = 0;
-  std::vector<float> significances;  ///< depths in their standard errors, of every second pixel of every second row
-};
+  for_each_run(maps.ids, damage.id, box, [&](int v, int first, int last) {
+    if (damage.pixels == 0) damage.box_px = {first, v, last, v};
+    damage.box_px = {std::min(damage.box_px[0], first), std::min(damage.box_px[1], v), std::max(damage.box_px[2], last),
+                     std::max(damage.box_px[3], v)};
+    const int count = last - first + 1;
+    damage.pixels += static_cast<std::size_t>(count);
+    sum_u += static_cast<std::int64_t>(first + last) * count / 2;
+    sum_v += static_cast<std::int64_t>(v) * count;
+    const float *const transformed = input.transformed.row(v), *const depths = maps.depth.row(v);
+    for (int u = first; u <= last; ++u) {
+      if (!(std::abs(transformed[u]) <= max_map_value)) continue;
+      ++measured;
+      depth += sign_of(damage.kind) * depths[u];
+    }
+  });
+  if (damage.pixels == 0) return;
+  const auto pixels = static_cast<double>(damage.pixels);
+  damage.centroid_px = {static_cast<double>(sum_u) / pixels, static_cast<double>(sum_v) / pixels};
+  damage.measured_share = static_cast<double>(measured) / pixels;
+  const double mean = measured > 0 ? depth / static_cast<double>(measured) : 0;
+  damage.mean_depth_px = std::max(0.0, mean + sign_of(damage.kind) * offset);
+}
 
-/// Add the pixels `first` … `last` of row v.
-void add_run(const DamageInput& input, const DamageMap& maps, double offset, int v, int first, int last,
-             PixelSums& sums) {
-  Damage& damage = sums.damage;
-  if (damage.pixels == 0) damage.box_px = {first, v, last, v};
-  damage.box_px = {std::min(damage.box_px[0], first), std::min(damage.box_px[1], v), std::max(damage.box_px[2], last),
-                   std::max(damage.box_px[3], v)};
-  const int count = last - first + 1;
-  damage.pixels += static_cast<std::size_t>(count);
-  sums.u += static_cast<std::int64_t>(first + last) * count / 2;
-  sums.v += static_cast<std::int64_t>(v) * count;
-  const float *const transformed = input.transformed.row(v), *const depth = maps.depth.row(v);
-  for (int u = first; u <= last; ++u) {
-    if (!(std::abs(transformed[u]) <= max_map_value)) continue;
-    ++sums.measured;
-    sums.depth += sign_of(damage.kind) * depth[u];
-  }
-  if (input.sigma.empty() || v % 2 != 0) return;
-  for (int u = first + first % 2; u <= last; u += 2) {
-    const double variance = noise_variance(input, u, v);
-    if (!(std::abs(transformed[u]) <= max_map_value) || !(variance > 0) || !std::isfinite(variance)) continue;
-    const double off_road = sign_of(damage.kind) * (double{depth[u]} + offset);
-    sums.significances.push_back(static_cast<float>(off_road / std::sqrt(variance)));
-  }
+/// Upper quartile of the depths in their standard errors, of every second pixel of every second row; NaN without any.
+double pixel_significance(const DamageInput& input, const DamageMap& maps, double offset, const Damage& damage) {
+  constexpr double quartile = 0.75;
+  if (input.sigma.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::vector<float> significances;
+  const auto& [u0, v0, u1, v1] = damage.box_px;
+  for_each_run(maps.ids, damage.id, {u0, v0, u1, v1}, [&](int v, int first, int last) {
+    if (v % 2 != 0) return;
+    for (int u = first + first % 2; u <= last; u += 2) {
+      const double variance = noise_variance(input, u, v);
+      if (!(std::abs(input.transformed(u, v)) <= max_map_value) || !(variance > 0) || !std::isfinite(variance)) {
+        continue;
+      }
+      const double off_road = sign_of(damage.kind) * (double{maps.depth(u, v)} + offset);
+      significances.push_back(static_cast<float>(off_road / std::sqrt(variance)));
+    }
+  });
+  if (significances.empty()) return std::numeric_limits<double>::quiet_NaN();
+  return double{lower_quantile(significances, quartile)};
 }
 
 /// Root mean square of the standard errors of the pixels of a cell without their errors of smoothing; `noise` where
@@ -140,8 +157,7 @@ bool ends_search(const DamageInput& input, const DamageMap& maps, const Damage& 
 Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentation, std::size_t k,
                          const SurfaceOffset& offset, const DamageMap& maps) {
   const Candidate& candidate = segmentation.candidates[k];
-  PixelSums sums;
-  Damage& damage = sums.damage;
+  Damage damage;
   damage.id = static_cast<int>(k + 1);
   damage.kind = candidate.kind;
   damage.evidence = candidate.evidence;
@@ -149,20 +165,9 @@ Damage measure_in_pixels(const DamageInput& input, const Segmentation& segmentat
   damage.cut_by_border = candidate.evidence.border_share > 0 || candidate.evidence.unseen_share >= min_unseen_share;
   const PixelBox box = pixel_box(candidate, segmentation.cells);
   damage.evidence.surface_significance = surface_significance(input, maps, damage.id, box, offset.value);
-  for_each_run(maps.ids, damage.id, box,
-               [&](int v, int first, int last) { add_run(input, maps, offset.value, v, first, last, sums); });
-  constexpr double quartile = 0.75;
-  if (!sums.significances.empty()) {
-    damage.evidence.pixel_significance = double{lower_quantile(sums.significances, quartile)};
-  }
-  if (damage.pixels > 0) {
-    const auto pixels = static_cast<double>(damage.pixels);
-    damage.centroid_px = {static_cast<double>(sums.u) / pixels, static_cast<double>(sums.v) / pixels};
-    damage.measured_share = static_cast<double>(sums.measured) / pixels;
-    damage.mean_depth_px = sums.measured > 0 ? sums.depth / static_cast<double>(sums.measured) : 0;
-  }
+  count_pixels(input, maps, offset.value, box, damage);
+  damage.evidence.pixel_significance = pixel_significance(input, maps, offset.value, damage);
   const double noise = find_deepest(input, segmentation, candidate, damage);
-  damage.mean_depth_px = std::max(0.0, damage.mean_depth_px + sign_of(damage.kind) * offset.value);
   Measurement& max_depth = damage.max_depth_px;
   max_depth.value = std::max(max_depth.value + sign_of(damage.kind) * offset.value, damage.mean_depth_px);
   const double bias = maps.metric ? sub_pixel_bias_px : 0;
@@ -182,6 +187,35 @@ bool is_at_side(const Candidate& candidate, const CommonView& view) {
     }
   }
   return false;
+}
+
+/// Measure candidate `k`: the evidence over all that is deep, its shape inside its rim, which `result` keeps.
+Damage measure_candidate(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
+                         const std::optional<FrameGeometry>& geometry, std::size_t k, DamageMap& result) {
+  const Candidate& candidate = segmentation.candidates[k];
+  const SurfaceOffset offset = estimate_surface_offset(segmentation, candidate);
+  Damage damage = measure_in_pixels(input, segmentation, k, offset, result);
+  if (geometry && damage.pixels > 0) {
+    DamageMetrics metrics =
+        compute_metrics(input, options, *geometry, offset, is_at_side(candidate, segmentation.view), result, damage);
+    if (result.metric) damage.metrics = std::move(metrics);
+  }
+  damage.confidence = damage.evidence.confidence();
+  if (damage.confidence >= min_candidate_confidence) {
+    const PixelBox box = pixel_box(candidate, segmentation.cells);
+    damage.evidence.range_vote = range_vote(input, result, damage.id, box);
+    damage.evidence.specular_excess = specular_excess(input, result, damage.id, box);
+    damage.confidence = damage.evidence.confidence();
+  }
+  if (!damage.metrics) return damage;
+  if (!candidate.inside.box().empty()) {
+    leave_rim(input, segmentation, k, result);
+    count_pixels(input, result, offset.value, pixel_box(candidate, segmentation.cells), damage);
+    if (damage.pixels > 0) keep_inside_rim(input, *geometry, offset, result, damage, *damage.metrics);
+  }
+  const bool resolvable = damage.evidence.is_depth_resolved() || damage.metrics->mean_depth_m.is_resolved();
+  grade(options.severity, resolvable, *damage.metrics);
+  return damage;
 }
 
 /// Box around all damages; empty without pixels.
@@ -256,20 +290,7 @@ void measure_damage(const DamageInput& input, const DamageOptions& options, cons
     parallel_for(count, threads, [&](int index, int) {
       const auto k = static_cast<std::size_t>(index);
       fill_damage(segmentation, k, interpolated, result);
-      const SurfaceOffset offset = estimate_surface_offset(segmentation, segmentation.candidates[k]);
-      Damage& damage = result.damages[k] = measure_in_pixels(input, segmentation, k, offset, result);
-      if (geometry && damage.pixels > 0) {
-        DamageMetrics metrics =
-            compute_metrics(input, options, *geometry, offset,
-                            is_at_side(segmentation.candidates[k], segmentation.view), result, damage);
-        if (result.metric) damage.metrics = std::move(metrics);
-      }
-      damage.confidence = damage.evidence.confidence();
-      if (damage.confidence < min_candidate_confidence) return;
-      const PixelBox box = pixel_box(segmentation.candidates[k], segmentation.cells);
-      damage.evidence.range_vote = range_vote(input, result, damage.id, box);
-      damage.evidence.specular_excess = specular_excess(input, result, damage.id, box);
-      damage.confidence = damage.evidence.confidence();
+      result.damages[k] = measure_candidate(input, options, segmentation, geometry, k, result);
     });
   }
   const PixelBox all = box_around(result.damages);

@@ -134,6 +134,22 @@ std::vector<std::array<double, 2>> outline_on_road(const FrameGeometry& geometry
   return outline;
 }
 
+/// Set area, centroid, outline and what follows from them.
+void set_shape(const FrameGeometry& geometry, const MetricSums& sums, const DamageMap& maps, const Damage& damage,
+               DamageMetrics& metrics) {
+  metrics.area_m2.value = sums.area;
+  metrics.diameter_m = 2 * std::sqrt(sums.area / std::numbers::pi);
+  const OrientedBox box = oriented_box(sums.rim);
+  metrics.length_m = box.length;
+  metrics.width_m = box.width;
+  metrics.angle_rad = box.angle_rad;
+  for (std::size_t k = 0; k < 3; ++k) metrics.centroid_m[k] = sums.centroid[k] / sums.area;
+  const Point on_road = geometry.axes().to_road(metrics.centroid_m);
+  metrics.road_centroid_m = {on_road[0], on_road[1]};
+  metrics.distance_m = std::hypot(metrics.centroid_m[0], metrics.centroid_m[1], metrics.centroid_m[2]);
+  metrics.outline_m = outline_on_road(geometry, maps, damage);
+}
+
 /// Set the standard errors. They combine the errors of the disparity, of the undamaged surface, of the smoothing by the
 /// support window of matching, and of the outline. The constants of the last two were measured on synthetic roads
 /// (docs/accuracy.md): a hollow of the size of the window loses part of its depth, and the outline is accurate to a
@@ -205,26 +221,15 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   const double metres_per_pixel = sums.metres_per_pixel / sums.area;
   const double sigma_px =
       sums.sigma_pixels > 0 ? std::sqrt(sums.variance / static_cast<double>(sums.sigma_pixels)) : noise_px;
-  metrics.area_m2.value = sums.area;
+  set_shape(geometry, sums, maps, damage, metrics);
   metrics.volume_m3.value = std::abs(sums.volume);
   metrics.mean_depth_m.value = metrics.volume_m3.value / sums.area;
   metrics.max_depth_m.value = std::max(max_depth_m, metrics.mean_depth_m.value);
   set_standard_errors(sums, offset, noise_px, sigma_px,
                       geometry.metres_per_pixel(deepest, road_disparity - signed_depth), damage, metrics);
-
-  const OrientedBox box = oriented_box(sums.rim);
-  metrics.length_m = box.length;
-  metrics.width_m = box.width;
-  metrics.angle_rad = box.angle_rad;
-  metrics.diameter_m = 2 * std::sqrt(sums.area / std::numbers::pi);
-  for (std::size_t k = 0; k < 3; ++k) metrics.centroid_m[k] = sums.centroid[k] / sums.area;
-  const Point on_road = geometry.axes().to_road(metrics.centroid_m);
-  metrics.road_centroid_m = {on_road[0], on_road[1]};
-  metrics.distance_m = std::hypot(metrics.centroid_m[0], metrics.centroid_m[1], metrics.centroid_m[2]);
   metrics.resolvable_depth_m =
       resolvable_change_px(std::hypot(noise_px, offset.std_error), options.threshold_sigma) * metres_per_pixel;
   metrics.wall_slope = wall_slope(sums, metrics);
-  metrics.outline_m = outline_on_road(geometry, maps, damage);
   const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
   const double possible_slope = possible_wall_slope(metrics, SmoothingError::window_radius_px * pixel_m);
   if (damage.kind == DamageKind::depression && std::isfinite(sums.area)) {  // else it extends beyond the road
@@ -232,9 +237,21 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   }
   if (input.calibration) damage.evidence.extent = metrics.diameter_m / (0.5 * straightedge_m);
   metrics.distress = classify_distress(damage, metrics, possible_slope, at_side);
-  const bool resolvable = damage.evidence.is_depth_resolved() || metrics.mean_depth_m.is_resolved();
-  grade(options.severity, resolvable, metrics);
   return metrics;
+}
+
+void keep_inside_rim(const DamageInput& input, const FrameGeometry& geometry, const SurfaceOffset& offset,
+                     const DamageMap& maps, const Damage& damage, DamageMetrics& metrics) {
+  const DamageMetrics spread = metrics;
+  const MetricSums sums = sum_pixels(input, geometry, maps, damage, offset.value, spread.max_depth_m.value);
+  set_shape(geometry, sums, maps, damage, metrics);
+  // A wall as gentle as it is measured is possible as well.
+  const double area_error = 0.5 * (spread.area_m2.value - sums.area), ratio = spread.area_m2.value / sums.area;
+  metrics.area_m2.std_error = std::hypot(spread.area_m2.std_error, area_error);
+  Measurement& mean = metrics.mean_depth_m;
+  mean.value = metrics.volume_m3.value / sums.area;
+  mean.std_error = std::hypot(ratio * spread.mean_depth_m.std_error, mean.value * area_error / sums.area);
+  metrics.max_depth_m.value = std::max(metrics.max_depth_m.value, mean.value);
 }
 
 }  // namespace roadstereo

@@ -19,4 +19,9 @@ SurfaceOffset estimate_surface_offset(const Segmentation& segmentation, const Ca
 DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
                               const SurfaceOffset& offset, bool at_side, const DamageMap& maps, Damage& damage);
 
+/// Reduce area and outline of a damage to the pixels that `maps` has left inside its rim. The volume remains that of
+/// all: averaging moves it beyond the rim, but keeps it.
+void keep_inside_rim(const DamageInput& input, const FrameGeometry& geometry, const SurfaceOffset& offset,
+                     const DamageMap& maps, const Damage& damage, DamageMetrics& metrics);
+
 }  // namespace roadstereo

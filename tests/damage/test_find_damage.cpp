@@ -74,6 +74,53 @@ TEST(FindDamage, GentleWallIsWithinStandardError) {
   }
 }
 
+/// Mean of what a map knows over a Gaussian window.
+Image<float> gaussian_mean(const Image<float>& map, double sigma_px) {
+  const int radius = static_cast<int>(std::ceil(3 * sigma_px)), width = map.width(), height = map.height();
+  const auto along = [&](const Image<float>& from, int step_u, int step_v) {
+    Image<float> mean(width, height);
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        double sum = 0, weights = 0;
+        for (int k = -radius; k <= radius; ++k) {
+          const int x = u + k * step_u, y = v + k * step_v;
+          if (x < 0 || y < 0 || x >= width || y >= height || std::isnan(from(x, y))) continue;
+          const double weight = std::exp(-0.5 * k * k / (sigma_px * sigma_px));
+          sum += weight * double{from(x, y)};
+          weights += weight;
+        }
+        mean(u, v) = static_cast<float>(sum / weights);
+      }
+    }
+    return mean;
+  };
+  return along(along(map, 1, 0), 0, 1);
+}
+
+/// Matching averages over its window: a vertical wall becomes a slope, half of it outside the rim.
+TEST(FindDamage, AverageMovesNoRim) {
+  constexpr double window_sigma_px = 2;
+  synth::Scene scene = damaged_scene();
+  scene.rig.pitch_deg = 90;  // no wall hides another
+  synth::Blob bump = scene.road.blobs[1];
+  bump.x_m = bump.y_m = bump.irregularity = 0;
+  bump.radius_m = 0.09;  // 36 pixels
+  bump.wall_share = 0.02;
+  scene.road.blobs = {bump};
+  ExactMaps maps(scene);
+  maps.transformed = gaussian_mean(maps.transformed, window_sigma_px);
+  maps.disparity = gaussian_mean(maps.disparity, window_sigma_px);
+  DamageInput input = maps.metric();
+  input.smoothing_px = 6;  // a third of it is left at walls
+  const DamageMap map = find_damage(input);
+  ASSERT_EQ(map.damages.size(), 1U);
+  const DamageMetrics& metrics = *map.damages[0].metrics;
+  const double area = std::numbers::pi * bump.radius_m * bump.radius_m;
+  expect_figure("area", metrics.area_m2, area, 0.12);  // 0.22 where all that is deep counts
+  expect_figure("volume", metrics.volume_m3, -area * bump.depth_m, 0.05);
+  expect_figure("mean depth", metrics.mean_depth_m, -bump.depth_m, 0.08);
+}
+
 /// Cut by nothing, an outline's box has the extents that the true points have.
 TEST(FindDamage, RoadBoxHasTrueExtents) {
   const DamageMap map = find_damage(damaged().metric());
