@@ -61,7 +61,7 @@ struct DamageInput {
 struct DamageMetrics {
   Measurement area_m2;       ///< on the road's surface
   Measurement max_depth_m;   ///< maximum depth, or height of a protrusion
-  Measurement mean_depth_m;  ///< mean over the region, interpolated holes included
+  Measurement mean_depth_m;  ///< volume over area, interpolated holes included
   Measurement volume_m3;
   double length_m = 0;    ///< longer side of the minimum-area rectangle on the road
   double width_m = 0;     ///< shorter side of that rectangle

@@ -126,7 +126,7 @@ void rasterise(const Segmentation& segmentation, DamageMap& result) {
   }
 }
 
-void leave_rim(const DamageInput& input, const Segmentation& segmentation, std::size_t k, DamageMap& result) {
+void empty_beyond_rim(const DamageInput& input, const Segmentation& segmentation, std::size_t k, DamageMap& result) {
   const Candidate& candidate = segmentation.candidates[k];
   rasterise(segmentation.cells, candidate, candidate.inside, [&](int u, int v, bool inside) {
     if (!inside && result.ids(u, v) == k + 1) empty_pixel(input, segmentation, u, v, result);

@@ -26,8 +26,8 @@ void rasterise(const Segmentation& segmentation, DamageMap& result);
 /// `interpolated` from their surroundings.
 void fill_damage(const Segmentation& segmentation, std::size_t k, const Image<float>& interpolated, DamageMap& result);
 
-/// Empty the pixels of candidate `k` that are not inside its rim.
-void leave_rim(const DamageInput& input, const Segmentation& segmentation, std::size_t k, DamageMap& result);
+/// Empty the pixels of candidate `k` beyond its rim.
+void empty_beyond_rim(const DamageInput& input, const Segmentation& segmentation, std::size_t k, DamageMap& result);
 
 /// Give a pixel of a candidate that is no damage what `fill_road_rows` filled in.
 void empty_pixel(const DamageInput& input, const Segmentation& segmentation, int u, int v, DamageMap& result);

@@ -35,7 +35,7 @@ float slope_near(const Image<float>& depth, const CellIndex& cell) {
 }
 
 /// Remove cells shallower than the rim from the border of a region inwards. Returns whether there were any.
-bool leave_rim(const Image<float>& depth, float floor, double smoothing, BoxMask& region) {
+bool peel_to_rim(const Image<float>& depth, float floor, double smoothing, BoxMask& region) {
   constexpr double max_sigmas = 2.5;  // so far beyond the rim nothing of a wall is left
   const int steps = static_cast<int>(std::ceil(max_sigmas * smoothing));
   bool any = false;
@@ -59,17 +59,19 @@ bool leave_rim(const Image<float>& depth, float floor, double smoothing, BoxMask
   return any;
 }
 
-/// Set the cells of `region` that are in `within`, whose box it has. Returns how many there are.
-std::size_t intersect(const BoxMask& within, BoxMask& region) {
+/// Reduce a region to the largest connected part of it that is in `within`. Returns whether there is one.
+bool keep_largest_part(const BoxMask& within, BoxMask& region) {
   region = region.cropped(within.box());
   std::uint8_t* const cells = region.cells().row(0);
   const std::uint8_t* const other = within.cells().row(0);
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < region.cells().pixels(); ++k) {
-    cells[k] &= other[k];
-    count += cells[k] != 0 ? 1U : 0U;
+  for (std::size_t k = 0; k < region.cells().pixels(); ++k) cells[k] &= other[k];
+  const ConnectedComponents parts(region.cells());
+  const auto largest = std::max_element(parts.begin(), parts.end(),
+                                        [](const auto& one, const auto& two) { return one.size < two.size; });
+  for (auto part = parts.begin(); part != parts.end(); ++part) {
+    if (part != largest) fill_component(*part, 0, region.cells());
   }
-  return count;
+  return parts.size() > 0;
 }
 
 }  // namespace
@@ -78,12 +80,12 @@ BoxMask inside_rim(const SearchInput& input, const SearchImages& images, const C
   if (!input.thresholds.metric() || candidate.evidence.rut_significance > 0) return {};
   BoxMask inside = candidate.cells;
   const float floor = floor_of(depths_inside(images, candidate));
-  if (!leave_rim(images.depth, floor, input.depth_cells.smoothing, inside)) return {};
+  if (!peel_to_rim(images.depth, floor, input.depth_cells.smoothing, inside)) return {};
   if (candidate.kind == DamageKind::depression && !input.image_edges.grey.empty()) {
     refine_outline_by_image(input.image_edges, input.gaps.unseen, BoxMask(candidate.box()), inside);
   }
   fill_holes(inside.cells(), inside.cells().pixels());
-  return intersect(candidate.cells, inside) > 0 ? inside : BoxMask();
+  return keep_largest_part(candidate.cells, inside) ? inside : BoxMask();
 }
 
 }  // namespace roadstereo

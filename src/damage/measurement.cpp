@@ -209,7 +209,7 @@ Damage measure_candidate(const DamageInput& input, const DamageOptions& options,
   }
   if (!damage.metrics) return damage;
   if (!candidate.inside.box().empty()) {
-    leave_rim(input, segmentation, k, result);
+    empty_beyond_rim(input, segmentation, k, result);
     count_pixels(input, result, offset.value, pixel_box(candidate, segmentation.cells), damage);
     if (damage.pixels > 0) keep_inside_rim(input, *geometry, offset, result, damage, *damage.metrics);
   }
