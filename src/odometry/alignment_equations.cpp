@@ -26,6 +26,9 @@ HWY_INLINE Double all(double value) {
   return hn::Set(Doubles(), value);
 }
 
+// Structures of vectors are only ever initialised whole: GCC compiles implicit constructors without the attributes of
+// the instruction set, and refuses to for NEON.
+
 /// Vectors of as many points as there are lanes.
 struct Vectors {
   Double x, y, z;
@@ -123,17 +126,16 @@ HWY_INLINE Surface sample_surface(ImageView<const float> disparity, ImageView<co
   const auto between = [](Double share, Double first, Double second) {
     return hn::Add(hn::Mul(hn::Sub(all(1), share), first), hn::Mul(share, second));
   };
-  Surface surface;
-  surface.disparity = between(fv, between(fu, a, b), between(fu, c, e));
+  const Double value = between(fv, between(fu, a, b), between(fu, c, e));
   const Double jump = hn::Sub(hn::Max(hn::Max(a, b), hn::Max(c, e)), hn::Min(hn::Min(a, b), hn::Min(c, e)));
   const auto nearest = [&](Double share, auto whole) {
     return hn::Add(whole, hn::DemoteTo(di, hn::IfThenElseZero(hn::Gt(share, all(0.5)), all(1))));
   };
   const auto nearest_at = hn::Add(hn::Mul(nearest(fv, y), pitch(sigma)), nearest(fu, x));
-  surface.sigma = hn::PromoteTo(d, hn::GatherIndex(df, sigma.row(0), nearest_at));
-  surface.valid = hn::And(hn::And(inside, hn::Eq(surface.disparity, surface.disparity)),  // not NaN
-                          hn::And(hn::Lt(jump, all(max_jump_px)), hn::Gt(surface.sigma, all(0))));
-  return surface;
+  const Double error = hn::PromoteTo(d, hn::GatherIndex(df, sigma.row(0), nearest_at));
+  const auto valid = hn::And(hn::And(inside, hn::Eq(value, value)),  // not NaN
+                             hn::And(hn::Lt(jump, all(max_jump_px)), hn::Gt(error, all(0))));
+  return {value, error, valid};
 }
 
 /// Some lanes of a block of equations, as many as a vector has.
@@ -183,6 +185,20 @@ struct MovedPoints {
   hn::Mask<Doubles> in_front;
 };
 
+// Velocity of points at the end of a motion that was a constant one, per duration of the motion: shift + turn × q.
+
+HWY_INLINE Vector<3> turn_of(const RigidMotion& motion) {
+  const Twist twist = twist_of(motion);
+  return {twist[3], twist[4], twist[5]};
+}
+
+HWY_INLINE Vector<3> shift_of(const RigidMotion& motion) {
+  const Vector<3> bend = roadstereo::cross(turn_of(motion), motion.translation);
+  Vector<3> shift = motion.translation;
+  for (std::size_t i = 0; i < 3; ++i) shift[i] -= bend[i] / 2;
+  return shift;
+}
+
 class Linearisation {
  public:
   Linearisation(const FrameMaps& current, const StereoCalibration& calibration, int level, const AlignmentState& state)
@@ -192,15 +208,9 @@ class Linearisation {
         grey_(current.pyramid.level(level)),
         scale_(1.0 / (1 << level)),
         focal_(all(calibration.focal_px)),
-        depth_scale_(all(calibration.focal_px * calibration.baseline_m)) {
-    // Velocity of points at the end of a motion that was a constant one, per duration of the motion: shift + turn × q.
-    const Twist twist = twist_of(state.motion);
-    const Vector<3> turn{twist[3], twist[4], twist[5]}, bend = roadstereo::cross(turn, state.motion.translation);
-    Vector<3> shift = state.motion.translation;
-    for (std::size_t i = 0; i < 3; ++i) shift[i] -= bend[i] / 2;
-    turn_ = all(turn);
-    shift_ = all(shift);
-  }
+        depth_scale_(all(calibration.focal_px * calibration.baseline_m)),
+        turn_(all(turn_of(state.motion))),
+        shift_(all(shift_of(state.motion))) {}
 
   /// The equations of the points from `first` on, as many as a vector has. Adds the area of each that is seen to its
   /// lane.
@@ -243,33 +253,36 @@ class Linearisation {
 
   HWY_INLINE MovedPoints move() const {
     constexpr double min_depth_m = 0.05;
-    MovedPoints moved;
     const Double u = batch_.u.load(), v = batch_.v.load(), measured = batch_.disparity.load();
-    moved.shape = shape_of_offset(u, measured);
-    moved.disparity = hn::Add(measured, offset(moved.shape));
-    auto valid = hn::Gt(moved.disparity, all(0));
-    moved.z = hn::Div(depth_scale_, moved.disparity);
-    const Double per_focal = hn::Div(moved.z, focal_);
+    const Double shape = shape_of_offset(u, measured), disparity = hn::Add(measured, offset(shape));
+    auto valid = hn::Gt(disparity, all(0));
+    const Double z = hn::Div(depth_scale_, disparity), per_focal = hn::Div(z, focal_);
     const Vectors p{hn::Mul(hn::Sub(u, all(calibration_.cx_px)), per_focal),
-                    hn::Mul(hn::Sub(v, all(calibration_.cy_px)), per_focal), moved.z};
+                    hn::Mul(hn::Sub(v, all(calibration_.cy_px)), per_focal), z};
     const Vectors turned = rotated(state_.motion, p), start = plus(turned, all(state_.motion.translation));
-    moved.by_disparity = times(hn::Div(all(-1), moved.disparity), turned);
+    const Vectors by_disparity = times(hn::Div(all(-1), disparity), turned);
     // The shutter: each point moves on until its row of the current frame is exposed.
-    moved.q = start;
+    Vectors q = start, by_shutter = shift_;
     const int passes = state_.shutter != 0 ? 3 : 1;  // the row depends on the time, little
     const Double rows = all(current_.disparity.height() - 1);
     for (int i = 0; i < passes; ++i) {
-      valid = hn::And(valid, hn::Gt(moved.q.z, all(min_depth_m)));
-      const Double row = hn::Add(hn::Div(hn::Mul(focal_, moved.q.y), moved.q.z), all(calibration_.cy_px));
-      const Vectors speed = plus(shift_, cross(turn_, moved.q));
-      moved.by_shutter = times(hn::Div(hn::Sub(row, v), rows), speed);
-      moved.q = plus(start, times(all(state_.shutter), moved.by_shutter));
+      valid = hn::And(valid, hn::Gt(q.z, all(min_depth_m)));
+      const Double row = hn::Add(hn::Div(hn::Mul(focal_, q.y), q.z), all(calibration_.cy_px));
+      const Vectors speed = plus(shift_, cross(turn_, q));
+      by_shutter = times(hn::Div(hn::Sub(row, v), rows), speed);
+      q = plus(start, times(all(state_.shutter), by_shutter));
     }
-    moved.in_front = hn::And(valid, hn::Gt(moved.q.z, all(min_depth_m)));
-    moved.pixels_per_m = hn::Div(focal_, moved.q.z);
-    moved.u = hn::MulAdd(moved.pixels_per_m, moved.q.x, all(calibration_.cx_px));
-    moved.v = hn::MulAdd(moved.pixels_per_m, moved.q.y, all(calibration_.cy_px));
-    return moved;
+    const Double pixels_per_m = hn::Div(focal_, q.z);
+    return {q,
+            hn::MulAdd(pixels_per_m, q.x, all(calibration_.cx_px)),
+            hn::MulAdd(pixels_per_m, q.y, all(calibration_.cy_px)),
+            pixels_per_m,
+            z,
+            disparity,
+            shape,
+            by_disparity,
+            by_shutter,
+            hn::And(valid, hn::Gt(q.z, all(min_depth_m)))};
   }
 
   HWY_INLINE void compare_grey_levels(const MovedPoints& moved, BlockLanes equation) const {
