@@ -45,7 +45,7 @@ struct DamageInput {
   ImageView<const float> transformed;  ///< ℓ', pixels; NaN invalid. Depressions lie below the road, protrusions above
   ImageView<const float> disparity;    ///< ℓ, pixels; required for metric results, with `plane` for slopes of walls
   ImageView<const float> sigma;  ///< standard error of ℓ, pixels; when absent, noise is estimated from `transformed`
-  int smoothing_px = 0;          ///< RefinementOptions::smoothing_px of `sigma`, 0 … 32; 0: `sigma` is noise alone
+  int smoothing_px = 0;          ///< RefinementOptions::smoothing_px of the maps, 0 … 32; tells how far walls spread
   ImageView<const std::int16_t> grey;  ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
   /// Right image. With `plane` it tells where the view of both cameras ends, with `grey` and `disparity` what one
   /// camera alone sees from damage.
