@@ -4,10 +4,16 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace roadstereo {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/downsample.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
+//
+#include <hwy/highway.h>
 
-/// Mean of factor × factor pixels; a factor known to the compiler makes it several times as fast.
+HWY_BEFORE_NAMESPACE();
+namespace roadstereo::HWY_NAMESPACE {
+
+/// Mean of factor × factor pixels; with a factor known to the compiler the loops are vectorised.
 template <int known_factor>
 void downsample_row(ImageView<const std::int16_t> image, int factor, int y, std::int16_t* small, int width) {
   const int n = known_factor > 0 ? known_factor : factor;
@@ -20,8 +26,6 @@ void downsample_row(ImageView<const std::int16_t> image, int factor, int y, std:
     small[x] = static_cast<std::int16_t>(sum / (n * n));
   }
 }
-
-}  // namespace
 
 void downsample(ImageView<const std::int16_t> image, int factor, ImageView<std::int16_t> small) {
   for (int y = 0; y < small.height(); ++y) {
@@ -44,6 +48,18 @@ void downsample(ImageView<const std::int16_t> image, int factor, ImageView<std::
   }
 }
 
+}  // namespace roadstereo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace roadstereo {
+
+HWY_EXPORT(downsample);
+
+void downsample(ImageView<const std::int16_t> image, int factor, ImageView<std::int16_t> small) {
+  HWY_DYNAMIC_DISPATCH(downsample)(image, factor, small);
+}
+
 GreyImage downsample(ImageView<const std::int16_t> image, int factor) {
   GreyImage small(image.width() / factor, image.height() / factor);
   downsample(image, factor, small.view());
@@ -51,3 +67,4 @@ GreyImage downsample(ImageView<const std::int16_t> image, int factor) {
 }
 
 }  // namespace roadstereo
+#endif  // HWY_ONCE

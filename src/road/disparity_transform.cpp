@@ -8,6 +8,7 @@
 #include "core/parallel.hpp"
 #include "core/scratch.hpp"
 #include "road/plane_fit.hpp"
+#include "road/row_spread.hpp"
 #include "road/transformed.hpp"
 #include "roadstereo/roll.hpp"
 
@@ -15,10 +16,6 @@ namespace roadstereo {
 namespace {
 
 constexpr int rows_per_band = 64;
-// Chains of minima and of sums along a row, one a column in turn, so that compilers use vectors; the sums of two
-// spreads fit into registers.
-constexpr std::size_t minima = 8, sums = 4;
-
 void subtract_road(ImageView<const float> disparity, const DisparityPlane& plane, int v, float* out) {
   const float* in = disparity.row(v);
   const RowLine road = row_line(plane, v, 0);
@@ -37,39 +34,15 @@ void for_each_column(int width, Visit&& visit) {
 
 /// The smallest value of a row; infinite where there is none.
 float lowest_of_row(const float* row, int width) {
-  std::array<float, minima> lowest{};
+  constexpr int chains = 8;  // one a column in turn, so that compilers use vectors
+  std::array<float, chains> lowest{};
   lowest.fill(std::numeric_limits<float>::infinity());
-  for_each_column<minima>(width, [&](int u, std::size_t k) { lowest[k] = row[u] < lowest[k] ? row[u] : lowest[k]; });
-  return *std::min_element(lowest.begin(), lowest.end());
-}
-
-/// Sums of the residuals of a row.
-struct RowSpread {
-  Spread all{}, road{};  ///< of the road: those whose magnitude is at most a limit
-};
-
-RowSpread spread_of_row(const float* row, int width, double delta_t, double limit) {
-  struct Chains {
-    std::array<double, sums> n{}, sum{}, squares{};
-
-    void add(std::size_t k, bool counts, double residual) {
-      const double counted = counts ? residual : 0;
-      n[k] += counts ? 1 : 0;
-      sum[k] += counted;
-      squares[k] += counted * counted;
-    }
-  } all, road;
-  for_each_column<sums>(width, [&](int u, std::size_t k) {
-    const double residual = row[u] - delta_t, magnitude = std::abs(residual);
-    all.add(k, magnitude <= std::numeric_limits<double>::infinity(), residual);  // false for NaN
-    road.add(k, magnitude <= limit, residual);
-  });
-  RowSpread spread;
-  for (std::size_t k = 0; k < sums; ++k) {
-    spread.all.add(Spread{all.n[k], all.sum[k], all.squares[k]});
-    spread.road.add(Spread{road.n[k], road.sum[k], road.squares[k]});
+  int u = 0;
+  for (; u + chains <= width; u += chains) {
+    for (std::size_t k = 0; k < lowest.size(); ++k) lowest[k] = std::min(lowest[k], row[u + static_cast<int>(k)]);
   }
-  return spread;
+  for (; u < width; ++u) lowest[0] = std::min(lowest[0], row[u]);
+  return *std::min_element(lowest.begin(), lowest.end());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "core/require_range.hpp"
 #include "core/scratch.hpp"
 #include "road/cubic.hpp"
+#include "road/cubic_row.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/ground_plane.hpp"
 
@@ -86,17 +87,8 @@ void copy_with_border(ImageView<const std::int16_t> image, int v, const Misalign
   std::fill_n(out + width, border, out[width - 1]);
 }
 
-/// out[x] = row(x − shift) for x in [first, end), where shift = whole − f(x), 0 ≤ f < 1, changes linearly with x.
-void sample_cubic(const float* row, int whole, float f_at_first, float f_step, int first, int end, std::int16_t* out) {
-  const float* source = row + border - whole;
-  for (int x = first; x < end; ++x) {
-    const float* p = source + x;
-    const float f = f_at_first + static_cast<float>(x - first) * f_step;
-    out[x] = grey_between(p[-1], p[0], p[1], p[2], f, static_cast<float>(grey_max));
-  }
-}
-
-/// One row of the transformed target from column `first` on, in runs of columns whose shift has one whole part.
+/// One row of the transformed target from column `first` on, out[x] = row(x − shift), in runs of columns whose shift
+/// has one whole part.
 void transform_row(const float* row, const PerspectiveShift& shift, int v, int first, int width, std::int16_t* out) {
   for (int begin = first; begin < width;) {
     const bool is_shifted = shift.at(begin, v) > 0;
@@ -110,7 +102,8 @@ void transform_row(const float* row, const PerspectiveShift& shift, int v, int f
       while (end + reach <= width && inside(end + reach - 1)) end += reach;
     }
     const double step = end - begin > 1 ? (source_shift(shift, end - 1, v) - at_begin) / (end - 1 - begin) : 0;
-    sample_cubic(row, whole, static_cast<float>(whole - at_begin), static_cast<float>(-step), begin, end, out);
+    sample_cubic(row + border - whole, static_cast<float>(whole - at_begin), static_cast<float>(-step), begin, end,
+                 out);
     begin = end;
   }
 }

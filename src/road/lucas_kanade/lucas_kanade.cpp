@@ -1,11 +1,9 @@
 #include "roadstereo/lucas_kanade.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <numeric>
-#include <type_traits>
 
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
@@ -14,6 +12,7 @@
 #include "road/lucas_kanade/alignment_maps.hpp"
 #include "road/lucas_kanade/sample_rows.hpp"
 #include "road/lucas_kanade/settings.hpp"
+#include "road/lucas_kanade/window_sums.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/error.hpp"
 
@@ -87,27 +86,6 @@ class WorkerRows {
   std::size_t pitch_;
 };
 
-/// Sums of successive numbers, kept in registers while they grow.
-template <int size>
-struct Group {
-  std::array<double, size> sums{};
-
-  template <class T>
-  void add(const T* numbers) {
-    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += double{numbers[k]};
-  }
-  void write(double* to) const { std::copy(sums.begin(), sums.end(), to); }
-};
-
-/// Calls `visit(i, size)` for the groups of begin … end − 1: whole ones, then single numbers.
-template <class Visit>
-void in_groups(int begin, int end, Visit&& visit) {
-  constexpr int size = 8;
-  int i = begin;
-  for (; i + size <= end; i += size) visit(i, std::integral_constant<int, size>());
-  for (; i < end; ++i) visit(i, std::integral_constant<int, 1>());
-}
-
 /// Sums of the windows of a row of cells.
 class WindowSums {
  public:
@@ -120,26 +98,10 @@ class WindowSums {
   void add_up(const CellSums& cells, int j, int radius) {
     const auto count = static_cast<int>(CellSums::row_numbers(columns_));
     const int first = std::max(0, j - radius), last = std::min(cells.rows - 1, j + radius);
-    in_groups(0, count, [&](int i, auto group) {
-      Group<decltype(group)::value> sum{};
-      for (int y = first; y <= last; ++y) sum.add(cells.row(y) + i);
-      sum.write(of_rows_ + i);
-    });
+    sum_rows(cells.row(first), count, last - first + 1, count, of_rows_);
     for (int k = 0; k < static_cast<int>(alignment_sum_count); ++k) {
-      const double* const from = of_rows_ + std::ptrdiff_t{k} * columns_;
-      double* const to = sums_ + std::ptrdiff_t{k} * columns_;
-      const int inside = std::min(radius, columns_), end = std::max(inside, columns_ - radius);
-      const auto sum_border = [&](int i) {
-        const int begin = std::max(0, i - radius);
-        to[i] = std::accumulate(from + begin, from + std::min(columns_, i + radius + 1), 0.0);
-      };
-      for (int i = 0; i < inside; ++i) sum_border(i);
-      in_groups(inside, end, [&](int i, auto group) {
-        Group<decltype(group)::value> sum{};
-        for (int x = -radius; x <= radius; ++x) sum.add(from + i + x);
-        sum.write(to + i);
-      });
-      for (int i = end; i < columns_; ++i) sum_border(i);
+      const std::ptrdiff_t at = std::ptrdiff_t{k} * columns_;
+      sum_columns(of_rows_ + at, columns_, radius, sums_ + at);
     }
   }
 

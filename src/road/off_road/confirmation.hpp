@@ -24,6 +24,10 @@ struct LogSigmas {
     sum += other.sum;
     count += other.count;
   }
+  ROADSTEREO_HD void subtract(const LogSigmas& other) {
+    sum -= other.sum;
+    count -= other.count;
+  }
 };
 
 /// log2 σ in 1/256: the bits of a float are its logarithm within 0.09, and whole numbers give one sum in any order. A
@@ -51,21 +55,23 @@ struct CoarseScene {
   PerspectiveShift shift;
 };
 
-/// Mean residual disparity of a cell; NaN where no pixel has one. `lines`: the shifts of its rows.
-ROADSTEREO_HD inline float cell_residual(ImageView<const float> disparity, const RowLine* lines, int i, int j) {
+/// Sum of the residual disparities of pixels that have one, and their number.
+struct ResidualSum {
   float sum = 0;
   int count = 0;
-  for (int v = j * alignment_cell; v < (j + 1) * alignment_cell && v < disparity.height(); ++v) {
-    const RowLine line = lines[v - j * alignment_cell];
-    for (int u = i * alignment_cell; u < (i + 1) * alignment_cell && u < disparity.width(); ++u) {
-      const float d = disparity(u, v);
-      if (d != d) continue;
-      sum += without_shift(d, line, u);
-      ++count;
-    }
+
+  /// A pixel in column u of a row whose shifts are `line`.
+  ROADSTEREO_HD void add(float disparity, const RowLine& line, int u) {
+    const bool known = disparity == disparity;
+    sum += known ? without_shift(disparity, line, u) : 0.0F;
+    count += known ? 1 : 0;
   }
-  return sum / static_cast<float>(count);
-}
+  ROADSTEREO_HD void add(const ResidualSum& other) {
+    sum += other.sum;
+    count += other.count;
+  }
+  ROADSTEREO_HD float mean() const { return sum / static_cast<float>(count); }  ///< NaN of none
+};
 
 /// States of a cell.
 enum CellState : std::uint8_t {

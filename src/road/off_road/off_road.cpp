@@ -9,6 +9,7 @@
 #include "core/require_range.hpp"
 #include "core/require_size.hpp"
 #include "core/scratch.hpp"
+#include "road/off_road/column_sums.hpp"
 #include "road/off_road/confirmation.hpp"
 #include "roadstereo/error.hpp"
 
@@ -31,54 +32,100 @@ struct CellMap {
   const T* row(int j) const { return values.data() + std::ptrdiff_t{j} * columns; }
 };
 
-/// Leaves out masked pixels.
-void sum_log_sigmas(ImageView<const float> sigma, ImageView<const std::uint8_t> mask, int threads,
-                    CellMap<LogSigmas>& cells) {
-  parallel_rows(cells.rows, cell_rows_per_band, threads, [&](int first, int last, int) {
-    for (int v = first * alignment_cell; v < std::min(last * alignment_cell, sigma.height()); ++v) {
-      const float* const errors = sigma.row(v);
-      const std::uint8_t* const masked = mask.empty() ? nullptr : mask.row(v);
-      LogSigmas* const of_cell = cells.row(v / alignment_cell);
-      for (int u = 0; u < sigma.width(); ++u) {
-        if (masked == nullptr || masked[u] == 0) of_cell[u / alignment_cell].add({log_sigma(errors[u]), 1});
+/// Sums of cells, and of the columns of pixels of a row of them for each worker.
+class CellSums {
+ public:
+  CellSums(int columns, int rows, int width, int threads)
+      : sigmas(columns, rows),
+        residuals(columns, rows),
+        width_(static_cast<std::size_t>(width)),
+        numbers_(scratch_vector<std::int32_t>(3 * width_ * static_cast<std::size_t>(resolve_threads(threads)))),
+        sums_(scratch_vector<float>(width_ * static_cast<std::size_t>(resolve_threads(threads)))) {}
+
+  /// Of row j of cells: of standard errors that are not masked, and of disparities.
+  void fill(ImageView<const float> disparity, ImageView<const float> sigma, ImageView<const std::uint8_t> mask,
+            const PerspectiveShift& shift, int j, int worker) {
+    const auto at = static_cast<std::size_t>(worker);
+    std::int32_t* const numbers = numbers_.data() + 3 * width_ * at;
+    const ColumnSums of_columns{numbers, numbers + width_, sums_.data() + width_ * at, numbers + 2 * width_};
+    std::fill_n(numbers, 3 * width_, 0);
+    std::fill_n(of_columns.residuals, width_, 0.0F);
+    for (int v = j * alignment_cell; v < std::min((j + 1) * alignment_cell, disparity.height()); ++v) {
+      add_row({sigma.row(v), mask.empty() ? nullptr : mask.row(v), disparity.row(v), shift_line(shift, v),
+               disparity.width()},
+              of_columns);
+    }
+    for (int i = 0; i < sigmas.columns; ++i) {
+      LogSigmas& of_cell = sigmas.row(j)[i] = {};
+      ResidualSum& residual = residuals.row(j)[i] = {};
+      for (int u = i * alignment_cell; u < std::min((i + 1) * alignment_cell, disparity.width()); ++u) {
+        of_cell.add({of_columns.log_sigmas[u], of_columns.sigmas[u]});
+        residual.add({of_columns.residuals[u], of_columns.known[u]});
       }
     }
-  });
-}
+  }
 
-/// Sums of the cells up to confirmation_radius columns away; of all rows around row j.
-void sum_around(const CellMap<LogSigmas>& cells, int j, LogSigmas* of_columns, LogSigmas* sums) {
-  std::fill_n(of_columns, cells.columns, LogSigmas{});
-  for (int y = std::max(0, j - confirmation_radius); y <= std::min(cells.rows - 1, j + confirmation_radius); ++y) {
-    for (int i = 0; i < cells.columns; ++i) of_columns[i].add(cells.row(y)[i]);
+  CellMap<LogSigmas> sigmas;
+  CellMap<ResidualSum> residuals;
+
+ private:
+  std::size_t width_;
+  ScratchVector<std::int32_t> numbers_;
+  ScratchVector<float> sums_;
+};
+
+/// Running sums of the cells up to confirmation_radius columns away; of all rows around row j.
+class SumsAround {
+ public:
+  /// `of_columns`: scratch memory, one a column of cells. Row `first` comes first.
+  SumsAround(const CellMap<LogSigmas>& cells, int first, LogSigmas* of_columns)
+      : cells_(cells), of_columns_(of_columns) {
+    std::fill_n(of_columns_, cells_.columns, LogSigmas{});
+    for (int y = first - confirmation_radius; y < first + confirmation_radius; ++y) {
+      add_row(y, &LogSigmas::add);
+    }
   }
-  for (int i = 0; i < cells.columns; ++i) {
-    sums[i] = {};
-    const int end = std::min(cells.columns, i + confirmation_radius + 1);
-    for (int x = std::max(0, i - confirmation_radius); x < end; ++x) sums[i].add(of_columns[x]);
+
+  /// Calls `visit(i, sums)` for the cells of row j, that after the last one.
+  template <class Visit>
+  void next_row(int j, const Visit& visit) {
+    add_row(j + confirmation_radius, &LogSigmas::add);
+    LogSigmas sums;
+    for (int i = 0; i < std::min(confirmation_radius, cells_.columns); ++i) sums.add(of_columns_[i]);
+    for (int i = 0; i < cells_.columns; ++i) {
+      if (i + confirmation_radius < cells_.columns) sums.add(of_columns_[i + confirmation_radius]);
+      visit(i, sums);
+      if (i >= confirmation_radius) sums.subtract(of_columns_[i - confirmation_radius]);
+    }
+    add_row(j - confirmation_radius, &LogSigmas::subtract);
   }
-}
+
+ private:
+  void add_row(int y, void (LogSigmas::*change)(const LogSigmas&)) {
+    if (y < 0 || y >= cells_.rows) return;
+    for (int i = 0; i < cells_.columns; ++i) (of_columns_[i].*change)(cells_.row(y)[i]);
+  }
+
+  const CellMap<LogSigmas>& cells_;
+  LogSigmas* of_columns_;
+};
 
 void assess_cells(const CoarseScene& scene, ImageView<const float> correlation, ImageView<const float> disparity,
                   ImageView<const float> sigma, ImageView<const std::uint8_t> mask, float log2_max_sigma, int threads,
                   CellMap<CellState>& states) {
-  CellMap<LogSigmas> cells(states.columns, states.rows);
-  sum_log_sigmas(sigma, mask, threads, cells);
-  const auto columns = static_cast<std::size_t>(states.columns);
-  auto memory = scratch_vector<LogSigmas>(2 * columns * static_cast<std::size_t>(resolve_threads(threads)));
+  CellSums sums(states.columns, states.rows, disparity.width(), threads);
   parallel_rows(states.rows, cell_rows_per_band, threads, [&](int first, int last, int worker) {
-    LogSigmas* const of_columns = memory.data() + 2 * columns * static_cast<std::size_t>(worker);
-    LogSigmas* const sums = of_columns + columns;
+    for (int j = first; j < last; ++j) sums.fill(disparity, sigma, mask, scene.shift, j, worker);
+  });
+  const auto columns = static_cast<std::size_t>(states.columns);
+  auto memory = scratch_vector<LogSigmas>(columns * static_cast<std::size_t>(resolve_threads(threads)));
+  parallel_rows(states.rows, cell_rows_per_band, threads, [&](int first, int last, int worker) {
+    SumsAround around(sums.sigmas, first, memory.data() + columns * static_cast<std::size_t>(worker));
     for (int j = first; j < last; ++j) {
-      sum_around(cells, j, of_columns, sums);
-      std::array<RowLine, alignment_cell> lines;
-      for (int y = 0; y < alignment_cell; ++y) {
-        lines[static_cast<std::size_t>(y)] = shift_line(scene.shift, j * alignment_cell + y);
-      }
-      for (int i = 0; i < states.columns; ++i) {
-        const bool confirmed = is_confirmed(sums[i], correlation(i, j), log2_max_sigma);
-        states.row(j)[i] = assess_cell(scene, cell_residual(disparity, lines.data(), i, j), confirmed, i, j);
-      }
+      around.next_row(j, [&](int i, const LogSigmas& of_surroundings) {
+        const bool confirmed = is_confirmed(of_surroundings, correlation(i, j), log2_max_sigma);
+        states.row(j)[i] = assess_cell(scene, sums.residuals.row(j)[i].mean(), confirmed, i, j);
+      });
     }
   });
 }

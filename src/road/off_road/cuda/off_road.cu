@@ -56,7 +56,15 @@ __global__ void assess_cells(CoarseScene scene, ImageView<const LogSigmas> cells
   }
   const bool confirmed = is_confirmed(sums, __ldg(&correlation(i, j)), log2_max_sigma);
   const RowLine* const of_cell = lines + static_cast<int>(threadIdx.y) * alignment_cell;
-  const CellState state = assess_cell(scene, cell_residual(disparity, of_cell, i, j), confirmed, i, j);
+  ResidualSum residuals;
+  for (int u = i * alignment_cell; u < min((i + 1) * alignment_cell, disparity.width()); ++u) {
+    ResidualSum of_column;
+    for (int y = 0; y < min(alignment_cell, disparity.height() - j * alignment_cell); ++y) {
+      of_column.add(disparity(u, j * alignment_cell + y), of_cell[y], u);
+    }
+    residuals.add(of_column);
+  }
+  const CellState state = assess_cell(scene, residuals.mean(), confirmed, i, j);
   states(i, j) = state;
   if (state >= unconfirmed) *doubtful = 1;  // all write the same
 }
