@@ -92,7 +92,7 @@ float slope_at(const Image<float>& depth, int i, int j) {
   const int below = std::min(depth.height() - 1, j + 1);
   const float along = (depth(right, j) - depth(left, j)) / static_cast<float>(std::max(1, right - left));
   const float down = (depth(i, below) - depth(i, above)) / static_cast<float>(std::max(1, below - above));
-  return std::hypot(along, down);
+  return std::sqrt(along * along + down * down);
 }
 
 ContourStatistics measure_contour(const DepthField& field, const BoxMask& region) {

@@ -20,8 +20,8 @@ class RectifiedRightImage {
 
   /// Row in which row v is found at column x.
   int row(double x, int v) const {
-    const long row = std::lround(v + misalignment_.rows_at(x, v));
-    return static_cast<int>(std::clamp(row, 0L, image_.height() - 1L));
+    const double row = std::clamp(v + misalignment_.rows_at(x, v), 0.0, image_.height() - 1.0);
+    return static_cast<int>(row + 0.5);  // NOLINT(bugprone-incorrect-roundings): not negative, and lround is a call
   }
   /// Grey level at column x of row v, which is found in `row`; NaN outside.
   float operator()(double x, int v, int row) const {

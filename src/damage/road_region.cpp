@@ -140,7 +140,8 @@ void add_humps(const Image<float>& heights, const SurfaceCoordinates& coordinate
   if (mask.width() < 2) return;
   const auto rise = [&](int i, int j, int x, int y) { return std::abs(heights(x, y) - heights(i, j)); };
   const auto way = [&](int i, int j, int x, int y) {
-    return std::hypot(coordinates.x(x, y) - coordinates.x(i, j), coordinates.y(x, y) - coordinates.y(i, j));
+    const float dx = coordinates.x(x, y) - coordinates.x(i, j), dy = coordinates.y(x, y) - coordinates.y(i, j);
+    return std::sqrt(dx * dx + dy * dy);
   };
   parallel_rows(mask.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int j = first; j < last; ++j) {

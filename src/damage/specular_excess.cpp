@@ -20,7 +20,8 @@ struct Brightness {
   std::vector<double> left, right;
 };
 
-/// Means of windows of 11×11 pixels, clipped to the image, along the measured disparities.
+/// Means of every second pixel of every second row of windows of 11×11 pixels, clipped to the image, along the measured
+/// disparities.
 class WindowMeans {
  public:
   explicit WindowMeans(const DamageInput& input)
@@ -28,14 +29,14 @@ class WindowMeans {
 
   /// Add those around (u, v), unless less than half of the window is known.
   void add(int u, int v, Brightness& to) const {
-    constexpr int radius = 5;
-    const int u0 = std::max(u - radius, 0), u1 = std::min(u + radius, input_.grey.width() - 1);
-    const int v0 = std::max(v - radius, 0), v1 = std::min(v + radius, input_.grey.height() - 1);
+    constexpr int radius = 5, step = 2;
+    const int u1 = std::min(u + radius, input_.grey.width() - 1), v1 = std::min(v + radius, input_.grey.height() - 1);
     double left = 0, right = 0;
-    int count = 0;
-    for (int y = v0; y <= v1; ++y) {
+    int pixels = 0, count = 0;
+    for (int y = std::max(v - radius, 0); y <= v1; y += step) {
       const float* const disparity = input_.disparity.row(y);
-      for (int x = u0; x <= u1; ++x) {
+      for (int x = std::max(u - radius, 0); x <= u1; x += step) {
+        ++pixels;
         const double at = x - double{disparity[x]};
         if (!std::isfinite(at)) continue;
         const float grey = right_(at, y, right_.row(at, y));
@@ -45,7 +46,7 @@ class WindowMeans {
         ++count;
       }
     }
-    if (2 * count < (u1 - u0 + 1) * (v1 - v0 + 1)) return;
+    if (2 * count < pixels) return;
     to.left.push_back(left / count);
     to.right.push_back(right / count);
   }
