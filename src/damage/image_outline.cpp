@@ -1,6 +1,7 @@
 #include "damage/image_outline.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -20,17 +21,57 @@ struct BoxMap {
   float operator()(int i, int j) const { return values(i - box.first_column, j - box.first_row); }
 };
 
-/// Distribution of the cells of `included` that are not in `excluded` (may be null), all of one box. Robust, since one
-/// wall of a dark hole may be sunlit.
-RobustNormal tone_of(const BoxMap& grey, const BoxMask& included, const BoxMask* excluded) {
+/// Distribution of the cells of a mask of the same box. Robust, since one wall of a dark hole may be sunlit.
+RobustNormal tone_of(const BoxMap& grey, const BoxMask& mask) {
   std::vector<float> values;
   const float* const grey_levels = grey.values.row(0);
-  const std::uint8_t* const is_included = included.cells().row(0);
-  const std::uint8_t* const is_excluded = excluded == nullptr ? nullptr : excluded->cells().row(0);
+  const std::uint8_t* const is_set = mask.cells().row(0);
   for (std::size_t k = 0; k < grey.values.pixels(); ++k) {
-    if (is_included[k] != 0 && (is_excluded == nullptr || is_excluded[k] == 0)) values.push_back(grey_levels[k]);
+    if (is_set[k] != 0) values.push_back(grey_levels[k]);
   }
   return robust_normal(values);
+}
+
+/// Octants around the middle of a box, of the box's proportions.
+class Octants {
+ public:
+  static constexpr std::size_t count = 8;
+
+  explicit Octants(const CellBox& box)
+      : middle_i_(box.first_column + box.last_column),
+        middle_j_(box.first_row + box.last_row),
+        columns_(box.columns()),
+        rows_(box.rows()) {}
+
+  std::size_t of(int i, int j) const {
+    const int x = (2 * i - middle_i_) * rows_, y = (2 * j - middle_j_) * columns_;
+    return (x > 0 ? 1U : 0U) + (y > 0 ? 2U : 0U) + (std::abs(x) > std::abs(y) ? 4U : 0U);
+  }
+
+ private:
+  int middle_i_, middle_j_, columns_, rows_;
+};
+
+/// The road around a region: all of it, and that in each octant, since shadows, paint and patches end there.
+struct RoadTones {
+  RobustNormal all;
+  std::array<RobustNormal, Octants::count> in_octant;
+};
+
+RoadTones road_tones(const BoxMap& grey, const BoxMask& road, const Octants& octants) {
+  std::vector<float> all;
+  std::array<std::vector<float>, Octants::count> in_octant;
+  const CellBox& box = grey.box;
+  for (int j = box.first_row; j <= box.last_row; ++j) {
+    for (int i = box.first_column; i <= box.last_column; ++i) {
+      if (!road(i, j)) continue;
+      all.push_back(grey(i, j));
+      in_octant[octants.of(i, j)].push_back(grey(i, j));
+    }
+  }
+  RoadTones tones{robust_normal(all), {}};
+  for (std::size_t k = 0; k < Octants::count; ++k) tones.in_octant[k] = robust_normal(in_octant[k]);
+  return tones;
 }
 
 /// Mean grey levels of a row of cells from `first` on, 1/16 grey level.
@@ -100,21 +141,25 @@ void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uin
   BoxMask far = dilate(region, 3 * radius, around), core = erode(region, 2, around);
   for (int j = around.first_row; j <= around.last_row; ++j) {
     for (int i = around.first_column; i <= around.last_column; ++i) {
-      if (unseen(i, j) == 0) continue;
-      far.set(i, j, false);
-      core.set(i, j, false);
+      if (near(i, j) || unseen(i, j) != 0) far.set(i, j, false);
+      if (unseen(i, j) != 0) core.set(i, j, false);
     }
   }
-  const RobustNormal inside = tone_of(grey, core, nullptr);
-  const RobustNormal outside = tone_of(grey, far, &near);
-  if (inside.samples < min_samples || outside.samples < min_samples || inside.median == outside.median) return;
-  const bool is_dark = inside.median < outside.median;
-  const auto is_inside = [&](double level) {
-    if ((level < outside.median) != is_dark) return false;
-    // A darker part of a dark hole is at least as good as its median.
-    const bool beyond_median = (level < inside.median) == is_dark;
-    return log_ratio(level, inside, outside) >= min_log_ratio ||
-           (beyond_median && log_ratio(inside.median, inside, outside) >= min_log_ratio);
+  const Octants octants(region.box());
+  const RobustNormal inside = tone_of(grey, core);
+  const RoadTones road = road_tones(grey, far, octants);
+  if (inside.samples < min_samples || road.all.samples < min_samples || inside.median == road.all.median) return;
+  // What differs even more from the road than the median inside does is at least as good as that.
+  const auto ratio = [&](double level, const RobustNormal& outside) {
+    const double of_level = log_ratio(level, inside, outside);
+    const bool beyond_median = (level < inside.median) == (inside.median < outside.median);
+    return beyond_median ? std::max(of_level, log_ratio(inside.median, inside, outside)) : of_level;
+  };
+  const bool is_dark = inside.median < road.all.median;
+  const auto is_inside = [&](double level, int i, int j) {
+    const RobustNormal& here = road.in_octant[octants.of(i, j)];
+    return (level < road.all.median) == is_dark && ratio(level, road.all) >= min_log_ratio &&
+           (here.samples < min_samples || ratio(level, here) > 0);
   };
   std::vector<CellIndex> front = contour_cells(region, columns, rows);
   region = region.cropped(around);
@@ -122,7 +167,8 @@ void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uin
     const CellIndex cell = front.back();
     front.pop_back();
     for_each_neighbour(cell.column, cell.row, columns, rows, [&](int i, int j) {
-      if (region(i, j) || !near(i, j) || unseen(i, j) != 0 || other_hollows(i, j) || !is_inside(grey(i, j))) return;
+      if (region(i, j) || !near(i, j) || unseen(i, j) != 0 || other_hollows(i, j) || !is_inside(grey(i, j), i, j))
+        return;
       region.set(i, j);
       front.push_back({i, j});
     });

@@ -18,8 +18,10 @@ struct ImageEdges {
 /// the disparity of the road over the rim of a steep wall, and occluded parts of the wall have no disparity; the image
 /// shows both. Cells within `window_radius` of the region join it if they are connected to it and the likelihood
 /// of their grey level inside, or of the median there if they differ even more from the road, is at least 4.5 times
-/// that on the road. What is on the other side of the road's tone does not, nor does what is `unseen` (not 0), of the
-/// size of the image of cells: under a mask the picture shows no road. Nor do `other_hollows`, which may be as dark.
+/// that on the road, and that of their level is larger than on the road in their octant: a shadow, a patch or a stain
+/// that ends at the damage is no part of it. What is on the other side of the road's tone does not, nor does what is
+/// `unseen` (not 0), of the size of the image of cells: under a mask the picture shows no road. Nor do `other_hollows`,
+/// which may be as dark.
 void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uint8_t>& unseen,
                              const BoxMask& other_hollows, BoxMask& region);
 

@@ -19,6 +19,7 @@ constexpr std::array<int, 8> pattern{1, -1, 1, 0, -1, 1, -1, 0};  // of stripes 
 /// `roughness` times the road's, and right of it a strip `strip` standard deviations of the road above that median.
 struct Tones {
   double difference = 0, strip = 0, roughness = 1;
+  bool shadow_beside = false;  ///< the road right of the square has its median
 };
 
 Image<std::int16_t> square_on_road(const Tones& tones) {
@@ -28,7 +29,7 @@ Image<std::int16_t> square_on_road(const Tones& tones) {
     for (int u = 0; u < side; ++u) {
       const bool in_rows = v >= first && v <= last;
       const double noise = deviation * pattern[static_cast<std::size_t>(u / 8 % 8)];
-      double level = road_level + noise;
+      double level = (tones.shadow_beside && u > last ? square_level : road_level) + noise;
       if (in_rows && u >= first && u <= last) level = square_level + tones.roughness * noise;
       if (in_rows && u > last && u <= last + strip_columns) level = square_level + tones.strip * sigma;
       grey(u, v) = static_cast<std::int16_t>(std::lround(level));
@@ -91,6 +92,18 @@ TEST(ImageOutline, DoesNotCrossAnotherHollow) {
   for (int j = 0; j < side; ++j) other_hollows.set(last + 2, j);
   EXPECT_EQ(joined(square_on_road({4})), 1);
   EXPECT_EQ(joined(square_on_road({4}), Image<std::uint8_t>(side, side, 0), other_hollows), 0);
+}
+
+// The strip is as dark as the square, and so is all the road on that side.
+TEST(ImageOutline, ShadowThatEndsAtTheHoleStays) {
+  EXPECT_EQ(joined(square_on_road({4})), 1);
+  EXPECT_EQ(joined(square_on_road({4, 0, 1, true})), 0);
+}
+
+// In that shadow the strip is darker by 4 standard deviations, 4/3 of those inside: the log of the ratio is
+// ½ (16 − 16/9) − ln 3 = 6.
+TEST(ImageOutline, DarkWallInShadowJoins) {
+  EXPECT_EQ(joined(square_on_road({4, -4, 3, true})), 1);
 }
 
 TEST(ImageOutline, EqualTonesChangeNothing) {
