@@ -51,8 +51,9 @@ void CoarseSearch::downsample_pair(const MatchInput& input, int factor) {
   for (GreyImage* small : {&reference_, &target_}) {
     small->resize(input.reference.width() / factor, input.reference.height() / factor);
   }
-  downsample(input.reference, factor, reference_.view());
-  downsample(input.target, factor, target_.view());
+  parallel_for(2, threads_, [&](int side, int) {
+    downsample(side == 0 ? input.reference : input.target, factor, (side == 0 ? reference_ : target_).view());
+  });
   first_column_.assign(static_cast<std::size_t>(reference_.height()), 0);
   if (input.first_column == nullptr) return;
   for (std::size_t v = 0; v < first_column_.size(); ++v) {
@@ -134,7 +135,8 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
                               Worker& worker) {
   const cpu::MatchView view(coarse, cpu::MatchView::reference, block_first_column_);
   worker.costs.start(view, first, 0, view.width(), {0, coarse.disparities});
-  worker.texture.start(coarse.reference, first, texture_uncertainty_options(options_));
+  const bool road_is_prior = options_.road_prior_height_m > 0;
+  if (road_is_prior) worker.texture.start(coarse.reference, first, texture_uncertainty_options(options_));
   const ScanlinePenalties penalties{static_cast<float>(options_.step_penalty),
                                     static_cast<float>(options_.jump_penalty)};
   for (int v = first; v < last; v += 2) {
@@ -150,28 +152,28 @@ void CoarseSearch::match_rows(const MatchInput& coarse, int first, int last, con
                   {road.centre.data(), road.weight.data(), road.truncation.data()},
                   worker.scratch.row(at),
                   along_rows_.row(v + k)};
-      weigh_road(rows[at].costs, v + k, shift, worker.texture.next(), road);
+      weigh_road(rows[at].costs, v + k, shift, road_is_prior ? worker.texture.next().data() : nullptr, road);
     }
     optimise_scanlines(rows.data(), count, penalties, uncorrelated_cost);
   }
 }
 
-/// The road as prior of row v where texture is weak.
+/// The road as prior of row v where texture is weak; without `texture_uncertainty` it has no weight.
 void CoarseSearch::weigh_road(const ScanlineCosts& row, int v, const PerspectiveShift& shift,
-                              const std::vector<float>& texture_uncertainty, RoadOfRow& road) const {
+                              const float* texture_uncertainty, RoadOfRow& road) const {
   const HeightPrior heights(options_.road_prior_height_m, options_.road_prior_truncation, shift, prior_.factor);
   const CoarseRoad plane(shift, v, prior_.factor);
-  const float* const uncertainty = texture_uncertainty.data();
   float *const centre = road.centre.data(), *const weight = road.weight.data(),
                *const truncation = road.truncation.data();
   for (int u = 0; u < row.columns; ++u) {
     const float disparity = plane.disparity(u);
     centre[u] = plane.shifted(disparity);
-    const DistanceCost cost = heights.at(disparity, uncertainty[u]);
+    const DistanceCost cost =
+        texture_uncertainty == nullptr ? DistanceCost{} : heights.at(disparity, texture_uncertainty[u]);
     weight[u] = cost.weight;
     truncation[u] = cost.truncation;
   }
-  apply_road_plausibility(row, centre, uncertainty, weight);
+  if (texture_uncertainty != nullptr) apply_road_plausibility(row, centre, texture_uncertainty, weight);
 }
 
 /// The prior from what the rows found, each on its own.

@@ -50,8 +50,8 @@ class CoarseSearch {
   };
   void downsample_pair(const MatchInput& input, int factor);
   void match_rows(const MatchInput& coarse, int first, int last, const PerspectiveShift& shift, Worker& worker);
-  void weigh_road(const ScanlineCosts& row, int v, const PerspectiveShift& shift,
-                  const std::vector<float>& texture_uncertainty, RoadOfRow& road) const;
+  void weigh_road(const ScanlineCosts& row, int v, const PerspectiveShift& shift, const float* texture_uncertainty,
+                  RoadOfRow& road) const;
   void correct_rows(int first, int last, Worker& worker);
   void find_intervals(const PerspectiveShift& shift);
   int band_rows() const;

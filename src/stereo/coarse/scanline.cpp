@@ -29,7 +29,7 @@ HWY_INLINE void complete_costs(const ScanlineCosts& row, const ScanlinePrior& pr
   for (int u = 0; u < row.columns; ++u) {
     float* cost = row.costs + u * row.pitch;
     for (int d = std::max(0, u - row.first_seen + 1); d < row.disparities; ++d) cost[d] = uncorrelated_cost;
-    if (!std::isnan(prior.centre[u])) {
+    if (!std::isnan(prior.centre[u]) && prior.weight[u] > 0) {
       const Float centre = hn::Set(df, prior.centre[u]), weight = hn::Set(df, prior.weight[u]);
       const Float truncation = hn::Set(df, prior.truncation[u]);
       for (int d = 0; d < row.disparities; d += lanes) {
