@@ -189,9 +189,9 @@ bool is_at_side(const Candidate& candidate, const CommonView& view) {
   return false;
 }
 
-/// Measure candidate `k`: the evidence over all that is deep, its shape inside its rim, which `result` keeps.
+/// Measure candidate `k` over all that is deep.
 Damage measure_candidate(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
-                         const std::optional<FrameGeometry>& geometry, std::size_t k, DamageMap& result) {
+                         const std::optional<FrameGeometry>& geometry, std::size_t k, const DamageMap& result) {
   const Candidate& candidate = segmentation.candidates[k];
   const SurfaceOffset offset = estimate_surface_offset(segmentation, candidate);
   Damage damage = measure_in_pixels(input, segmentation, k, offset, result);
@@ -207,15 +207,45 @@ Damage measure_candidate(const DamageInput& input, const DamageOptions& options,
     damage.evidence.specular_excess = specular_excess(input, result, damage.id, box);
     damage.confidence = damage.evidence.confidence();
   }
-  if (!damage.metrics) return damage;
-  if (!candidate.inside.box().empty()) {
-    empty_beyond_rim(input, segmentation, k, result);
+  return damage;
+}
+
+bool ends_at_rim(const Candidate& candidate, const Damage& damage) {
+  return damage.metrics && !candidate.inside.box().empty();
+}
+
+/// Measure the shape of candidate `k` inside its rim, which is all that `result` keeps of it, and grade it.
+void finish_metrics(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
+                    const FrameGeometry& geometry, std::size_t k, const DamageMap& result, Damage& damage) {
+  const Candidate& candidate = segmentation.candidates[k];
+  if (ends_at_rim(candidate, damage)) {
+    const SurfaceOffset offset = estimate_surface_offset(segmentation, candidate);
     count_pixels(input, result, offset.value, pixel_box(candidate, segmentation.cells), damage);
-    if (damage.pixels > 0) keep_inside_rim(input, *geometry, offset, result, damage, *damage.metrics);
+    if (damage.pixels > 0) keep_inside_rim(input, geometry, offset, result, damage, *damage.metrics);
   }
   const bool resolvable = damage.evidence.is_depth_resolved() || damage.metrics->mean_depth_m.is_resolved();
   grade(options.severity, resolvable, *damage.metrics);
-  return damage;
+}
+
+/// Measure all candidates. What lies beyond the rim of one is road to the others: none ends at its rim before all are
+/// measured, so that results do not depend on the order of threads.
+void measure_candidates(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
+                        const std::optional<FrameGeometry>& geometry, int threads, DamageMap& result) {
+  const auto count = static_cast<int>(segmentation.candidates.size());
+  const Image<float> interpolated = depth_without_islands(segmentation, threads);
+  parallel_for(count, threads, [&](int index, int) {
+    const auto k = static_cast<std::size_t>(index);
+    fill_damage(segmentation, k, interpolated, result);
+    result.damages[k] = measure_candidate(input, options, segmentation, geometry, k, result);
+  });
+  for (std::size_t k = 0; k < result.damages.size(); ++k) {
+    if (ends_at_rim(segmentation.candidates[k], result.damages[k])) empty_beyond_rim(input, segmentation, k, result);
+  }
+  parallel_for(count, threads, [&](int index, int) {
+    const auto k = static_cast<std::size_t>(index);
+    Damage& damage = result.damages[k];
+    if (damage.metrics) finish_metrics(input, options, segmentation, *geometry, k, result, damage);
+  });
 }
 
 /// Box around all damages; empty without pixels.
@@ -282,16 +312,10 @@ std::vector<std::uint16_t> separate_candidates(const DamageOptions& options, Dam
 void measure_damage(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
                     const std::optional<FrameGeometry>& geometry, int threads, DamageMap& result) {
   constexpr int rows_per_band = 32;
-  const auto count = static_cast<int>(segmentation.candidates.size());
   result.damages.assign(segmentation.candidates.size(), {});
-  if (count > 0) {
+  if (!segmentation.candidates.empty()) {
     rasterise(segmentation, result);
-    const Image<float> interpolated = depth_without_islands(segmentation, threads);
-    parallel_for(count, threads, [&](int index, int) {
-      const auto k = static_cast<std::size_t>(index);
-      fill_damage(segmentation, k, interpolated, result);
-      result.damages[k] = measure_candidate(input, options, segmentation, geometry, k, result);
-    });
+    measure_candidates(input, options, segmentation, geometry, threads, result);
   }
   const PixelBox all = box_around(result.damages);
   const std::vector<std::uint16_t> new_id = separate_candidates(options, result);
