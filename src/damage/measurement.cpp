@@ -191,9 +191,9 @@ bool is_at_side(const Candidate& candidate, const CommonView& view) {
 
 /// Measure candidate `k` over all that is deep.
 Damage measure_candidate(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
-                         const std::optional<FrameGeometry>& geometry, std::size_t k, const DamageMap& result) {
+                         const std::optional<FrameGeometry>& geometry, std::size_t k, const SurfaceOffset& offset,
+                         const DamageMap& result) {
   const Candidate& candidate = segmentation.candidates[k];
-  const SurfaceOffset offset = estimate_surface_offset(segmentation, candidate);
   Damage damage = measure_in_pixels(input, segmentation, k, offset, result);
   if (geometry && damage.pixels > 0) {
     DamageMetrics metrics =
@@ -216,10 +216,10 @@ bool ends_at_rim(const Candidate& candidate, const Damage& damage) {
 
 /// Measure the shape of candidate `k` inside its rim, which is all that `result` keeps of it, and grade it.
 void finish_metrics(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
-                    const FrameGeometry& geometry, std::size_t k, const DamageMap& result, Damage& damage) {
+                    const FrameGeometry& geometry, std::size_t k, const SurfaceOffset& offset, const DamageMap& result,
+                    Damage& damage) {
   const Candidate& candidate = segmentation.candidates[k];
   if (ends_at_rim(candidate, damage)) {
-    const SurfaceOffset offset = estimate_surface_offset(segmentation, candidate);
     count_pixels(input, result, offset.value, pixel_box(candidate, segmentation.cells), damage);
     if (damage.pixels > 0) keep_inside_rim(input, geometry, offset, result, damage, *damage.metrics);
   }
@@ -233,10 +233,12 @@ void measure_candidates(const DamageInput& input, const DamageOptions& options, 
                         const std::optional<FrameGeometry>& geometry, int threads, DamageMap& result) {
   const auto count = static_cast<int>(segmentation.candidates.size());
   const Image<float> interpolated = depth_without_islands(segmentation, threads);
+  std::vector<SurfaceOffset> offsets(segmentation.candidates.size());
   parallel_for(count, threads, [&](int index, int) {
     const auto k = static_cast<std::size_t>(index);
     fill_damage(segmentation, k, interpolated, result);
-    result.damages[k] = measure_candidate(input, options, segmentation, geometry, k, result);
+    offsets[k] = estimate_surface_offset(segmentation, segmentation.candidates[k]);
+    result.damages[k] = measure_candidate(input, options, segmentation, geometry, k, offsets[k], result);
   });
   for (std::size_t k = 0; k < result.damages.size(); ++k) {
     if (ends_at_rim(segmentation.candidates[k], result.damages[k])) empty_beyond_rim(input, segmentation, k, result);
@@ -244,7 +246,7 @@ void measure_candidates(const DamageInput& input, const DamageOptions& options, 
   parallel_for(count, threads, [&](int index, int) {
     const auto k = static_cast<std::size_t>(index);
     Damage& damage = result.damages[k];
-    if (damage.metrics) finish_metrics(input, options, segmentation, *geometry, k, result, damage);
+    if (damage.metrics) finish_metrics(input, options, segmentation, *geometry, k, offsets[k], result, damage);
   });
 }
 
