@@ -42,7 +42,7 @@ for name in "${readers[@]}"; do
                src/io/geo/utc_time.cpp src/io/calibration_text.cpp)
       libraries=() ;;
     image)
-      sources=(src/io/image_file.cpp src/io/{jpeg,png,tiff}_check.cpp src/io/netpbm.cpp src/io/file_bytes.cpp src/io/frame_mat.cpp
+      sources=(src/io/image_file.cpp src/io/{jpeg,png,tiff}_check.cpp src/io/tiff_decoding.cpp src/io/netpbm.cpp src/io/file_bytes.cpp src/io/frame_mat.cpp
                src/core/frame.cpp)
       libraries=($(pkg-config --cflags --libs opencv4 libtiff-4 zlib)) ;;
     trajectory) sources=(src/io/trajectory_file.cpp src/io/quaternion.cpp) libraries=() ;;

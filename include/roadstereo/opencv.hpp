@@ -125,7 +125,8 @@ class StereoMatcher final : public cv::StereoMatcher {
     num_disparities_ = numDisparities;
   }
 
-  /// The side of the correlation block, pixels: 2·block_radius + 1. A new value ends the tracking of the road.
+  /// The width of the correlation block, pixels: 2·block_radius + 1; block_aspect gives its height. A new value ends
+  /// the tracking of the road.
   int getBlockSize() const override { return 2 * pipeline_.options().matcher.block_radius + 1; }
   void setBlockSize(int blockSize) override {
     if (blockSize % 2 == 0) fail("blockSize is ", blockSize, "; it must be odd");

@@ -6,6 +6,7 @@
 
 #include "core/require_range.hpp"
 #include "roadstereo/error.hpp"
+#include "stereo/window.hpp"
 
 namespace roadstereo {
 namespace {
@@ -19,7 +20,7 @@ constexpr double to_degrees = 180 / std::numbers::pi;
 double pixels_of_window(const MatcherOptions& matcher) {
   const double radius = matcher.aggregation_radius;
   const double columns = 2 * (radius + matcher.block_radius) + 1;
-  const double rows = 2 * (matcher.aggregation_aspect * radius + matcher.block_radius) + 1;
+  const double rows = 2 * (matcher.aggregation_aspect * radius + block_row_radius(matcher)) + 1;
   return std::numbers::pi / 4 * columns * rows;
 }
 

@@ -102,6 +102,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("matcher.pixel_step", o.matcher.pixel_step,
         "distance between the pixels that are matched, 1 or 2; those between are interpolated");
   visit("matcher.block_radius", o.matcher.block_radius, "radius of the correlation block, pixels");
+  visit("matcher.block_aspect", o.matcher.block_aspect, "height of the correlation block over its width");
   visit("matcher.aggregation_radius", o.matcher.aggregation_radius, "radius of the bilateral window, pixels; 0 is off");
   visit("matcher.aggregation_aspect", o.matcher.aggregation_aspect, "height of the bilateral window over its width");
   visit("matcher.aggregation_step", o.matcher.aggregation_step, "distance between the window's taps, pixels");

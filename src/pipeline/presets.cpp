@@ -17,6 +17,7 @@ PipelineOptions paper_preset() {
   options.matcher.adapt_support = false;
   options.matcher.pixel_step = 1;
   options.matcher.block_radius = 5;  // 120-connected system
+  options.matcher.block_aspect = 1;
   options.matcher.aggregation_radius = 5;
   options.matcher.aggregation_aspect = 1;
   options.matcher.aggregation_step = 1;
@@ -46,7 +47,8 @@ PipelineOptions fast_preset() {
   options.matcher.adapt_support = false;            // its block is large already
   options.matcher.reject_range_boundary = true;
   options.matcher.occlusion_sigma_px = 0;
-  options.matcher.block_radius = 5;
+  options.matcher.block_radius = 8;
+  options.matcher.block_aspect = 0.4;
   options.matcher.aggregation_radius = 0;
   options.lucas_kanade.radius = 0;
   options.off_road.max_sigma_px = 0;

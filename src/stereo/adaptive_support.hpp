@@ -17,7 +17,7 @@ inline double support_scale(double correlation) {
 
 /// Radius of a block of `radius` for a pair whose blocks on the road correlate with `correlation`; 0 is unknown.
 inline int adapt_radius(int radius, double correlation) {
-  constexpr int max_radius = 7;
+  constexpr int max_radius = 10;  // of MatcherOptions and CoarseSearchOptions
   if (correlation <= 0) return radius;
   const int adapted = static_cast<int>(std::lround(support_scale(correlation) * radius));
   return std::max(radius, std::min(adapted, max_radius));

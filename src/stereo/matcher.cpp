@@ -45,6 +45,7 @@ void validate(const DisparityPriorView& prior) {
 
 void MatcherOptions::validate() const {
   require_range("matcher", "block_radius", block_radius, 1, 10);
+  require_range("matcher", "block_aspect", block_aspect, 0.1, 1.0);
   require_range("matcher", "aggregation_radius", aggregation_radius, 0, 10);
   require_range("matcher", "aggregation_aspect", aggregation_aspect, 0.1, 1.0);
   require_range("matcher", "aggregation_step", aggregation_step, 1, 2);
@@ -95,16 +96,19 @@ double peak_floor(const MatcherOptions& options) {
 }
 
 double effective_samples(const MatcherOptions& options) {
-  const double side = 2 * options.block_radius + 1;
-  double weights = 0, squares = 0;
+  const double width = 2 * options.block_radius + 1, height = 2 * block_row_radius(options) + 1;
+  double weights = 0, squares_u = 0, squares_v = 0;
   for (const Tap& tap : window_taps(options)) {
     const double distance2 = tap.du * tap.du + tap.dv * tap.dv;
     const double weight = std::exp(-distance2 / (options.sigma_space * options.sigma_space));  // ω0
     weights += weight;
-    squares += weight * distance2 / 2;
+    squares_u += weight * tap.du * tap.du;
+    squares_v += weight * tap.dv * tap.dv;
   }
-  const double variance = (side * side - 1) / 12 + squares / weights;
-  return std::max(side * side, 4 * std::numbers::pi * variance);
+  const auto spread = [&](double side, double squares) {
+    return std::sqrt((side * side - 1) / 12 + squares / weights);
+  };
+  return std::max(width * height, 4 * std::numbers::pi * spread(width, squares_u) * spread(height, squares_v));
 }
 
 FinishSettings finish_settings(const MatcherOptions& options) {
@@ -115,13 +119,13 @@ FinishSettings finish_settings(const MatcherOptions& options) {
           .reject_range_boundary = options.reject_range_boundary};
 }
 
-void block_first_columns(const MatchInput& input, int block_radius, std::vector<int>& first) {
+void block_first_columns(const MatchInput& input, int row_radius, std::vector<int>& first) {
   const int height = input.reference.height();
   first.assign(static_cast<std::size_t>(height), 0);
   if (input.first_column == nullptr) return;
   for (int v = 0; v < height; ++v) {
-    const int* begin = input.first_column + std::max(0, v - block_radius);
-    const int* end = input.first_column + std::min(height - 1, v + block_radius) + 1;
+    const int* begin = input.first_column + std::max(0, v - row_radius);
+    const int* end = input.first_column + std::min(height - 1, v + row_radius) + 1;
     first[static_cast<std::size_t>(v)] = *std::max_element(begin, end);
   }
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "roadstereo/matcher.hpp"
@@ -14,12 +16,17 @@ struct Tap {
   int dv;
 };
 
-/// Returns the taps of the window N⁺, row by row.
+/// Rows of the block N⁺ above and below its centre.
+inline int block_row_radius(const MatcherOptions& options) {
+  return std::max(1, static_cast<int>(std::lround(options.block_radius * options.block_aspect)));
+}
+
+/// Returns the taps of the aggregation window, row by row.
 std::vector<Tap> window_taps(const MatcherOptions& options);
 
 /// Returns the number of independent pixels behind an aggregated cost. Block and window (without the colour weights)
-/// together spread it like a Gaussian of the variance s² = s²_block + s²_window per axis, and a Gaussian mean has the
-/// noise of 4π s² pixels.
+/// together spread it like a Gaussian of the variances s² = s²_block + s²_window along rows and columns, and a Gaussian
+/// mean has the noise of 4π s_u s_v pixels.
 ///
 /// The variance of a disparity follows from its aggregated costs E. A block of n pixels with signal variance S and
 /// noise variance N per view has E = N / (S + N) at the right disparity, and its curvature along d is K = Σ(∂i/∂u)² /
@@ -31,9 +38,9 @@ double effective_samples(const MatcherOptions& options);
 /// Returns what a Gaussian peak adds to the correlations before their logarithm, see `fit_peak`; 0: a parabola.
 double peak_floor(const MatcherOptions& options);
 
-/// Writes for every row v the first target column that is valid in all rows of the block around v: blocks are
-/// rectangles, so that the common view of a block begins there.
-void block_first_columns(const MatchInput& input, int block_radius, std::vector<int>& first);
+/// Writes for every row v the first target column that is valid in all rows of the block around v, from v − row_radius
+/// on: blocks are rectangles, so that the common view of a block begins there.
+void block_first_columns(const MatchInput& input, int row_radius, std::vector<int>& first);
 
 /// Pixels that are matched, of `pixels` along a side.
 inline int matched_pixels(int pixels, const MatcherOptions& options) {

@@ -21,6 +21,7 @@ std::string refusal(const std::string& key, const std::string& value) {
 TEST(Presets, PaperHasConstantsOfPaper) {
   const PipelineOptions paper = preset("paper");
   EXPECT_EQ(paper.matcher.block_radius, 5);  // 120-connected
+  EXPECT_EQ(paper.matcher.block_aspect, 1);
   EXPECT_EQ(paper.matcher.aggregation_radius, 5);
   EXPECT_EQ(paper.matcher.aggregation_shape, WindowShape::square);
   EXPECT_EQ(paper.matcher.sigma_space, 1.5);

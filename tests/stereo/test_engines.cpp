@@ -11,6 +11,7 @@
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/matcher.hpp"
+#include "roadstereo/pipeline.hpp"
 #include "tests/stereo/textured_pair.hpp"
 
 namespace roadstereo {
@@ -30,6 +31,8 @@ struct Case {
 MatcherOptions paper_options() {
   MatcherOptions options;
   options.pixel_step = 1;
+  options.block_radius = 5;
+  options.block_aspect = 1;
   options.aggregation_radius = 5;
   options.aggregation_step = 1;
   options.aggregation_shape = WindowShape::square;
@@ -46,6 +49,7 @@ MatcherOptions plain_ncc() {
   MatcherOptions options;
   options.aggregation_radius = 0;
   options.block_radius = 2;
+  options.block_aspect = 1;
   return options;
 }
 
@@ -59,8 +63,13 @@ std::vector<Case> cases() {
   all.push_back({"plain_ncc", 97, 61, 33, plain_ncc(), false});
   MatcherOptions large_block;
   large_block.block_radius = 10;
+  large_block.block_aspect = 1;
   large_block.aggregation_radius = 10;
   all.push_back({"large_windows", 90, 64, 20, large_block, true});
+  all.push_back({"fast", 141, 61, 33, preset("fast").matcher, false});
+  MatcherOptions noisy;  // as adapt_support makes it
+  noisy.block_radius = 6;
+  all.push_back({"noisy", 141, 61, 33, noisy, true});
   MatcherOptions two_views;
   two_views.pixel_step = 1;
   two_views.match_both_views = true;

@@ -16,9 +16,9 @@ namespace roadstereo {
 namespace {
 
 /// c(p, d) of eq. (8) from its definition as one minus Pearson's correlation, over whole blocks only.
-double pearson_cost(const GreyImage& ref, const GreyImage& tar, int u, int v, int d, int radius) {
+double pearson_cost(const GreyImage& ref, const GreyImage& tar, int u, int v, int d, int radius, int row_radius) {
   double n = 0, mean_r = 0, mean_t = 0;
-  for (int y = -radius; y <= radius; ++y) {
+  for (int y = -row_radius; y <= row_radius; ++y) {
     for (int x = -radius; x <= radius; ++x) {
       n += 1;
       mean_r += ref(u + x, v + y);
@@ -28,7 +28,7 @@ double pearson_cost(const GreyImage& ref, const GreyImage& tar, int u, int v, in
   mean_r /= n;
   mean_t /= n;
   double rt = 0, rr = 0, tt = 0;
-  for (int y = -radius; y <= radius; ++y) {
+  for (int y = -row_radius; y <= row_radius; ++y) {
     for (int x = -radius; x <= radius; ++x) {
       const double r = ref(u + x, v + y) - mean_r, t = tar(u + x - d, v + y) - mean_t;
       rt += r * t;
@@ -48,25 +48,33 @@ TEST(ReferenceEngine, WinnerAndParabolaFollowCosts) {
   options.ncc_noise_sigma = 0;
   options.peak_fit = PeakFit::parabola;
   options.left_right_check = false;
-  MatchMaps maps;
-  make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 12}, options, maps);
-  for (int v = 5; v < 35; v += 3) {
-    for (int u = 20; u < 55; u += 3) {
-      double cost[12];
-      int best = 0;
-      for (int d = 0; d < 12; ++d) {
-        cost[d] = pearson_cost(pair.reference, pair.target, u, v, d, 3);
-        if (cost[d] < cost[best]) best = d;
+  struct Block {
+    double aspect;
+    int row_radius;
+    double samples;  ///< 4π s_u s_v, s² = (side² − 1) / 12, but at least its pixels
+  };
+  for (const Block& block :
+       {Block{1, 3, 16 * std::numbers::pi}, Block{0.6, 2, 4 * std::numbers::pi * std::sqrt(8)}, Block{0.4, 1, 21}}) {
+    options.block_aspect = block.aspect;
+    MatchMaps maps;
+    make_engine("reference", 1)->match({pair.reference, pair.target, nullptr, 12}, options, maps);
+    for (int v = 5; v < 35; v += 3) {
+      for (int u = 20; u < 55; u += 3) {
+        double cost[12];
+        int best = 0;
+        for (int d = 0; d < 12; ++d) {
+          cost[d] = pearson_cost(pair.reference, pair.target, u, v, d, 3, block.row_radius);
+          if (cost[d] < cost[best]) best = d;
+        }
+        ASSERT_EQ(maps.winner(u, v), best);
+        if (best == 0 || best == 11) continue;
+        const double offset =
+            (cost[best - 1] - cost[best + 1]) / (2 * cost[best - 1] + 2 * cost[best + 1] - 4 * cost[best]);  // eq. (13)
+        ASSERT_NEAR(maps.disparity(u, v), best + offset, 1e-5);
+        const double curvature = cost[best - 1] + cost[best + 1] - 2 * cost[best];
+        const double variance = 2 * cost[best] / (block.samples * curvature);  // 2 E / (n K)
+        ASSERT_NEAR(maps.variance(u, v), variance, 1e-5 * variance + 1e-9);
       }
-      ASSERT_EQ(maps.winner(u, v), best);
-      if (best == 0 || best == 11) continue;
-      const double offset =
-          (cost[best - 1] - cost[best + 1]) / (2 * cost[best - 1] + 2 * cost[best + 1] - 4 * cost[best]);  // eq. (13)
-      ASSERT_NEAR(maps.disparity(u, v), best + offset, 1e-5);
-      // 2 E / (n K) with n = 4π s², s² = (7² − 1) / 12 of a block of 7×7.
-      const double curvature = cost[best - 1] + cost[best + 1] - 2 * cost[best];
-      const double variance = 2 * cost[best] / (16 * std::numbers::pi * curvature);
-      ASSERT_NEAR(maps.variance(u, v), variance, 1e-5 * variance + 1e-9);
     }
   }
 }
@@ -76,6 +84,7 @@ TEST(ReferenceEngine, AggregationIsBilateralMeanOfCosts) {
   MatcherOptions options;
   options.pixel_step = 1;
   options.block_radius = 2;
+  options.block_aspect = 1;
   options.aggregation_step = 1;
   options.aggregation_radius = 1;
   options.aggregation_aspect = 1;
@@ -100,7 +109,7 @@ TEST(ReferenceEngine, AggregationIsBilateralMeanOfCosts) {
           const double distance2 = n[0] * n[0] + n[1] * n[1];
           // eqs. (31) and (32)
           const double omega = std::exp(-distance2 / (1.5 * 1.5)) * std::exp(-difference * difference / (5.5 * 5.5));
-          sum += omega * pearson_cost(pair.reference, pair.target, u + n[0], v + n[1], d, 2);
+          sum += omega * pearson_cost(pair.reference, pair.target, u + n[0], v + n[1], d, 2, 2);
           weights += omega;
         }
         energy[d] = sum / weights;

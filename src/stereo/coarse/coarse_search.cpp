@@ -88,6 +88,7 @@ bool CoarseSearch::find_prior(const MatchInput& input, const PerspectiveShift& s
   MatcherOptions block;
   block.pixel_step = 1;
   block.block_radius = options_.block_radius;
+  block.block_aspect = 1;
   block.ncc_noise_sigma = options_.ncc_noise_sigma;
   for (Worker& worker : workers_) {
     worker.costs.prepare(reference_.width(), coarse.disparities, block);

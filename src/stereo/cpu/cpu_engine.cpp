@@ -39,7 +39,7 @@ void cut_evenly(const MatchView& view, int columns, int disparities, const Match
                 std::vector<Job>& jobs) {
   const int across = (view.width() + columns - 1) / columns;
   // A tile begins by filling its rings, so it should be high.
-  const int halo = 2 * (options.block_radius + options.aggregation_radius);
+  const int halo = 2 * (block_row_radius(options) + options.aggregation_radius);
   const int wanted = (4 * threads + 2 * across - 1) / (2 * across);
   const int at_least = std::max(2 * halo, (view.height() + wanted - 1) / wanted);
   const int rows = at_least + at_least % options.pixel_step;  // a tile begins at a matched row
@@ -89,7 +89,7 @@ class CpuEngine final : public StereoEngine {
     maps.disparity.resize(columns, rows);
     maps.variance.resize(columns, rows);
     offset_.resize(columns, rows);
-    block_first_columns(input, options.block_radius, first_columns_);
+    block_first_columns(input, block_row_radius(options), first_columns_);
     const MatchView reference(input, MatchView::reference, first_columns_);
     const MatchView target(input, MatchView::target, first_columns_);
     const int whole_columns = std::min(ViewMatcher::tile_columns(input.disparities, options), width);

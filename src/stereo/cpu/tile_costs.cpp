@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "stereo/window.hpp"
+
 namespace roadstereo::cpu {
 namespace {
 
@@ -27,8 +29,9 @@ enum Numbers { block_residue, block_deviation, number_rows };
 void TileCosts::prepare(int columns, int disparities, const MatcherOptions& options) {
   const std::ptrdiff_t pitch = padded_disparities(disparities);
   radius_ = options.block_radius;
+  row_radius_ = block_row_radius(options);
   pixel_step_ = options.pixel_step;
-  ring_ = 2 * radius_ + 2;
+  ring_ = 2 * row_radius_ + 2;
   const double noise = options.ncc_noise_sigma * grey_scale;
   noise_variance_ = static_cast<float>(noise * noise);
   const std::ptrdiff_t own_columns = std::ptrdiff_t{columns} * pixel_step_ + std::ptrdiff_t{2} * radius_;
@@ -61,7 +64,7 @@ void TileCosts::start(const MatchView& view, int v, int first, int columns, cons
   columns_ = (columns - 1) * pixel_step_ + 1 + 2 * radius_;
   other_first_ = view.width() - first_ - columns_ + range.first;
   other_columns_ = columns_ + static_cast<int>(pitch_) + radius_;
-  oldest_ = entered_ = std::max(0, v - radius_);
+  oldest_ = entered_ = std::max(0, v - row_radius_);
   for (const View side : {own, other}) views_[side].integers.clear();
   products_.clear();
 }
@@ -102,8 +105,8 @@ void TileCosts::sum_running(int v) {
 
 void TileCosts::compute(int v, float* costs) {
   const int height = view_->height();
-  const int first_row = std::max(0, v - radius_);
-  const int last_row = std::min(height - 1, v + radius_);
+  const int first_row = std::max(0, v - row_radius_);
+  const int last_row = std::min(height - 1, v + row_radius_);
   while (entered_ <= last_row || oldest_ < first_row) {
     slide(entered_ <= last_row ? entered_++ : none, oldest_ < first_row ? oldest_++ : none);
   }

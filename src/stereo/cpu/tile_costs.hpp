@@ -49,7 +49,7 @@ class TileCosts {
   const MatchView* view_ = nullptr;
   DisparityRange range_;
   std::ptrdiff_t pitch_ = 0;
-  int radius_ = 0;
+  int radius_ = 0, row_radius_ = 0;  ///< of the block, along rows and columns
   int pixel_step_ = 1;
   int ring_ = 1;
   float noise_variance_ = 0;

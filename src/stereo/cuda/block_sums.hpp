@@ -25,6 +25,6 @@ struct BlockSums {
 /// Fills `sums` for the two images of a pair. `first_column` is that of every row of the target, null where every row
 /// sees all.
 void sum_blocks(const ImageView<const std::int16_t> (&images)[2], const int* first_column, int block_radius,
-                float noise_variance, const BlockSums& sums, StreamView stream);
+                int row_radius, float noise_variance, const BlockSums& sums, StreamView stream);
 
 }  // namespace roadstereo::cuda

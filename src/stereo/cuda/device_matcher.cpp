@@ -49,6 +49,7 @@ void DeviceMatcher::use(const MatcherOptions& options, StreamView stream) {
   const double sigma_colour = options.sigma_colour * grey_scale, noise = options.ncc_noise_sigma * grey_scale;
   settings_.pixel_step = options.pixel_step;
   settings_.block_radius = options.block_radius;
+  settings_.block_row_radius = block_row_radius(options);
   settings_.noise_variance = static_cast<float>(noise * noise);
   settings_.log2_colour = static_cast<float>(-std::numbers::log2e / (sigma_colour * sigma_colour));
   settings_.effective_samples = static_cast<float>(effective_samples(options));
@@ -114,7 +115,8 @@ const DeviceMatchMaps& DeviceMatcher::match(const MatchInput& input, const Match
 
   const ImageView<const std::int16_t> images[2]{input.reference, input.target};
   const ImageView offset(offset_.data(), columns, rows);
-  sum_blocks(images, input.first_column, options.block_radius, settings_.noise_variance, sums_, stream);
+  sum_blocks(images, input.first_column, settings_.block_radius, settings_.block_row_radius, settings_.noise_variance,
+             sums_, stream);
   const auto match_one = [&](std::size_t view, const ViewWinners& winners, const StreamView& in) {
     drawn_before_[view] +=
         match_view(view_of(input, view == 1), settings_, taps_.data(), plan, energies_.data() + view * energies,

@@ -16,20 +16,20 @@
 // smallest energy, so that the energies of a tile are kept in a slice of global memory that is written and read by the
 // same thread and stays in L2.
 //
-// Floor per matched pixel and disparity, T taps, blocks of (2r+1)², every p-th pixel matched, halo s = (32 + 2R/p)(8 +
+// Floor per matched pixel and disparity, T taps, blocks 2r+1 wide, every p-th pixel matched, halo s = (32 + 2R/p)(8 +
 // 2R'/p)/256 times the tile:
 //   products 4p²s operations, block sums (2r+1)s, costs 8s, aggregation T, choice 6;
 //   shared memory (4 (2r+2+p) + 5p²)s + 4T bytes; global memory 8 bytes of energies, in L2.
-// Default (r 2, R 8, R' 4, T 25, p 2, s 1.9): 86 operations, 198 bytes of shared memory. 640×360, D 32: 0.16 G
-// operations and 0.36 GB, for which an H200 (132 multiprocessors, 2.0 GHz, 128 lanes and 128 bytes a cycle each) needs
-// 5 and 11 µs, less by as much as the search ranges leave out. What it takes is five times that: the tiles are few more
+// Default (r 4, R 8, R' 4, T 25, p 2, s 1.9): 93 operations, 228 bytes of shared memory. 640×360, D 32: 0.17 G
+// operations and 0.42 GB, for which an H200 (132 multiprocessors, 2.0 GHz, 128 lanes and 128 bytes a cycle each) needs
+// 5 and 12 µs, less by as much as the search ranges leave out. What it takes is five times that: the tiles are few more
 // than multiprocessors, and a warp waits for its own results.
 
 namespace roadstereo::cuda {
 namespace {
 
-/// `known_radius`: of the blocks, whose pixels are staged and whose costs lie apart then, or 0.
-template <int max_taps, int known_radius>
+/// Radii of the blocks, whose pixels are staged and whose costs lie apart then, or 0.
+template <int max_taps, int known_radius, int known_row_radius>
 __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings, const TapTable<max_taps>& taps,
                            const Tile& tile, bool staged, float* energies_of_block, const ViewWinners& winners) {
   constexpr bool apart = known_radius > 0;
@@ -40,8 +40,8 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
     rows[row] = cost_row(view, settings, tile, row);
   }
   auto* latest = reinterpret_cast<int*>(rows + tile.halo.rows);
-  StagedPixels pixels(tile.halo, settings.block_radius, latest + 1);
-  if (staged) pixels.load_own(view, tile, settings.block_radius);
+  StagedPixels pixels(tile.halo, settings.block_row_radius, latest + 1);
+  if (staged) pixels.load_own(view, settings, tile);
   const int latest_first = latest_first_column(view, tile, latest);
   const int x = static_cast<int>(threadIdx.x) % tile_columns, y = static_cast<int>(threadIdx.x) / tile_columns;
   const int i = tile.first_i + x * tile.halo.step, v = tile.first_v + y * tile.halo.step;
@@ -51,7 +51,7 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
   const int grey = wanted ? __ldg(view.own.row(v) + image_column(view, i)) : 0;
   if (max_taps > 0 && wanted) {
     if (staged) {
-      const int row = y * tile.halo.step + settings.window_half_height + settings.block_radius;
+      const int row = y * tile.halo.step + settings.window_half_height + settings.block_row_radius;
       const int column = x * tile.halo.step + settings.window_half_width + settings.block_radius;
       const short* pixel = pixels.own(row, column);  // outside of the image of any grey level: there is no cost
       const int staged_grey = *pixel;
@@ -73,12 +73,12 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
   for (int d = tile.range.first; d < tile.range.end; d += chunk) {
     if (staged) {
       if ((d - tile.range.first) % StagedPixels::disparities == 0) {
-        pixels.load_other(view, tile, settings.block_radius, d);
+        pixels.load_other(view, settings, tile, d);
         __syncthreads();
       }
-      sum_staged_products<known_radius>(tile, pixels, settings.block_radius, d, products);
+      sum_staged_products<known_row_radius>(tile, pixels, settings.block_row_radius, d, products);
     } else {
-      sum_products(view, tile, settings.block_radius, d, products);
+      sum_products(view, settings, tile, d, products);
     }
     __syncthreads();
     make_costs<known_radius, apart>(view, settings, tile, rows, d, products, costs);
@@ -105,7 +105,7 @@ constexpr int resident_blocks(int taps) {
   return taps <= taps_of_default ? 3 : 2;
 }
 
-template <int max_taps, int known_radius>
+template <int max_taps, int known_radius, int known_row_radius>
 __global__ void __launch_bounds__(threads, resident_blocks(max_taps))
     match_tiles(ViewToMatch view, ViewSettings settings, Halo halo, TapTable<max_taps> taps, bool staged,
                 float* energies, std::size_t energies_per_block, TileTickets tickets, ViewWinners winners) {
@@ -119,18 +119,25 @@ __global__ void __launch_bounds__(threads, resident_blocks(max_taps))
       *next = blocks < tiles ? blocks + static_cast<int>(atomicAdd(tickets.drawn, 1U) - tickets.already) : tiles;
     }
     const Tile tile = locate_tile(view, settings, halo, index);
-    match_tile<max_taps, known_radius>(view, settings, taps, tile, known_radius > 0 || staged,
-                                       energies + blockIdx.x * energies_per_block, winners);
+    match_tile<max_taps, known_radius, known_row_radius>(view, settings, taps, tile, known_radius > 0 || staged,
+                                                         energies + blockIdx.x * energies_per_block, winners);
     __syncthreads();
     index = *next;
     __syncthreads();  // before the next ticket is written
   }
 }
 
-/// Of the presets. The kernel for any number of taps is for any blocks, too.
-constexpr int usual_radius(int tap_count) {
-  if (tap_count > taps_of_paper) return 0;
-  return tap_count > 1 && tap_count <= taps_of_default ? 2 : 5;
+/// Radii of a block, along rows and columns.
+struct BlockRadii {
+  int columns, rows;
+};
+
+/// Of the presets `fast`, `default` and `paper`. The kernel for any number of taps is for any blocks, too.
+constexpr BlockRadii usual_block(int tap_count) {
+  if (tap_count == 1) return {8, 3};
+  if (tap_count <= taps_of_default) return {4, 1};
+  if (tap_count <= taps_of_paper) return {5, 5};
+  return {0, 0};
 }
 
 template <int max_taps>
@@ -154,9 +161,10 @@ void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const W
            settings, halo, taps, plan.staged, energies, plan.energies_per_block, tickets, winners);
   };
   if (plan.costs_apart) {
-    run(match_tiles<max_taps, usual_radius(max_taps > 0 ? max_taps : taps_of_paper + 1)>);
+    constexpr BlockRadii block = usual_block(max_taps > 0 ? max_taps : taps_of_paper + 1);
+    run(match_tiles<max_taps, block.columns, block.rows>);
   } else {
-    run(match_tiles<max_taps, 0>);
+    run(match_tiles<max_taps, 0, 0>);
   }
 }
 
@@ -177,11 +185,12 @@ ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height,
   const Halo halo = halo_of(settings, false);
   plan.shared_bytes = sizeof(int4) * static_cast<std::size_t>(1 + halo.rows * halo.product_columns + 1) +
                       sizeof(CostRow) * static_cast<std::size_t>(halo.rows);
-  const std::size_t staged_bytes = plan.shared_bytes + StagedPixels::bytes(halo, settings.block_radius);
+  const std::size_t staged_bytes = plan.shared_bytes + StagedPixels::bytes(halo, settings.block_row_radius);
   const std::size_t apart_bytes = staged_bytes + sizeof(int4) * static_cast<std::size_t>(halo.rows * halo.columns);
   plan.staged = staged_bytes <= max_shared_bytes;
-  const int usual = usual_radius(settings.tap_count);
-  plan.costs_apart = usual > 0 && settings.block_radius == usual && apart_bytes <= max_shared_bytes;
+  const BlockRadii usual = usual_block(settings.tap_count);
+  plan.costs_apart = usual.columns > 0 && settings.block_radius == usual.columns &&
+                     settings.block_row_radius == usual.rows && apart_bytes <= max_shared_bytes;
   if (plan.staged) plan.shared_bytes = plan.costs_apart ? apart_bytes : staged_bytes;
   return plan;
 }

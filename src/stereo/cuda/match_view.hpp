@@ -35,8 +35,8 @@ struct ViewToMatch {
 };
 
 struct ViewSettings {
-  int pixel_step;  ///< distance between the pixels that are matched, along rows and columns
-  int block_radius;
+  int pixel_step;                      ///< distance between the pixels that are matched, along rows and columns
+  int block_radius, block_row_radius;  ///< along rows and columns
   float noise_variance;
   const WindowTap* taps;  ///< in device memory
   int tap_count;

@@ -49,7 +49,7 @@ struct Scene {
 
   Scene(const MatchInput& match_input, const MatcherOptions& match_options)
       : input(match_input), options(match_options) {
-    block_first_columns(input, options.block_radius, first_column);
+    block_first_columns(input, block_row_radius(options), first_column);
   }
 
   int width() const { return input.reference.width(); }
@@ -66,9 +66,9 @@ struct Scene {
 /// c(p, d) of eq. (8): one minus the normalised cross-correlation of the blocks around p and p − [d, 0], over the part
 /// N⁺ of the block that both views see.
 double matching_cost(const Scene& scene, int u, int v, int d) {
-  const int radius = scene.options.block_radius;
+  const int radius = scene.options.block_radius, row_radius = block_row_radius(scene.options);
   double n = 0, sum_ref = 0, sum_tar = 0, sum_ref_ref = 0, sum_tar_tar = 0, sum_ref_tar = 0;
-  for (int qv = v - radius; qv <= v + radius; ++qv) {
+  for (int qv = v - row_radius; qv <= v + row_radius; ++qv) {
     for (int qu = u - radius; qu <= u + radius; ++qu) {
       if (!scene.in_reference(qu, qv) || !scene.in_target(qu - d, qv, v)) continue;
       const double i_ref = scene.input.reference(qu, qv);

@@ -66,7 +66,7 @@ __global__ void assess_cells(CoarseScene scene, ImageView<const LogSigmas> cells
   }
   const CellState state = assess_cell(scene, residuals.mean(), confirmed, i, j);
   states(i, j) = state;
-  if (state >= unconfirmed) *doubtful = 1;  // all write the same
+  if (state >= unconfirmed) atomicOr(doubtful, 1);
 }
 
 /// Cells that the flood fill can reach.

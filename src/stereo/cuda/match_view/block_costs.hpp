@@ -106,10 +106,11 @@ __device__ float4 four_costs(const ViewToMatch& view, const CostRow& row, const 
 
 /// What the costs of row y of the halo need to know of it; a row outside the image sees nothing.
 __device__ inline CostRow cost_row(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile, int y) {
-  const int v = tile.halo_v + y * tile.halo.step, height = view.own.height(), radius = settings.block_radius;
+  const int v = tile.halo_v + y * tile.halo.step, height = view.own.height();
+  const int radius = settings.block_radius, row_radius = settings.block_row_radius;
   CostRow row{v, radius, 0, 0, 0, -1, nullptr, nullptr};
   if (v < 0 || v >= height) return row;
-  row.pixel_rows = min(v + radius, height - 1) - max(v - radius, 0) + 1;
+  row.pixel_rows = min(v + row_radius, height - 1) - max(v - row_radius, 0) + 1;
   row.inverse_whole = 1.0F / static_cast<float>(row.pixel_rows * (2 * radius + 1));
   row.own_blocks = view.own_blocks.row(v);
   row.other_blocks = view.other_blocks.row(v);

@@ -71,11 +71,11 @@ struct StagedRow {
 };
 
 /// products[y][c]: sums over the rows of the blocks around row y of the halo, at pixel c across it and the disparities
-/// d … d + 3, of staged pixels. A radius that the compiler knows, or 0.
-template <int known_radius>
-__device__ void sum_staged_products(const Tile& tile, const StagedPixels& pixels, int block_radius, int d,
+/// d … d + 3, of staged pixels. Rows that the compiler knows, or 0.
+template <int known_row_radius>
+__device__ void sum_staged_products(const Tile& tile, const StagedPixels& pixels, int block_row_radius, int d,
                                     int4* products) {
-  const int radius = known_radius > 0 ? known_radius : block_radius;
+  const int radius = known_row_radius > 0 ? known_row_radius : block_row_radius;
   const Strip strip = strip_of_thread(tile);
   if (strip.first >= strip.end) return;
   const int first_row = strip.first * tile.halo.step;
@@ -98,9 +98,11 @@ __device__ void sum_staged_products(const Tile& tile, const StagedPixels& pixels
 }
 
 /// The same of blocks that are too large to be staged, from the images: pixels outside count as mid-grey.
-__device__ inline void sum_products(const ViewToMatch& view, const Tile& tile, int radius, int d, int4* products) {
+__device__ inline void sum_products(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile, int d,
+                                    int4* products) {
+  const int radius = settings.block_row_radius;
   const Strip strip = strip_of_thread(tile);
-  const ColumnProducts column_products(view, tile.halo_i - radius + strip.column, d);
+  const ColumnProducts column_products(view, tile.halo_i - settings.block_radius + strip.column, d);
   int4 sums = make_int4(0, 0, 0, 0);
   const int first_v = tile.halo_v + strip.first * tile.halo.step;
   for (int v = first_v - radius; v < first_v + radius; ++v) column_products.add(v, 1, sums);

@@ -18,25 +18,28 @@ class StagedPixels {
   static constexpr int disparities = 32;  ///< a multiple of the chunk
 
   /// `memory` has room for bytes() of them.
-  __device__ StagedPixels(const Halo& halo, int radius, void* memory)
-      : rows_(rows_of(halo, radius)),
+  __device__ StagedPixels(const Halo& halo, int row_radius, void* memory)
+      : rows_(rows_of(halo, row_radius)),
         own_columns_(halo.product_columns),
         other_columns_(halo.product_columns + disparities - 1),
         own_(static_cast<short*>(memory)),
         other_(own_ + rows_ * own_columns_) {}
 
-  ROADSTEREO_HD static std::size_t bytes(const Halo& halo, int radius) {
+  ROADSTEREO_HD static std::size_t bytes(const Halo& halo, int row_radius) {
     const int columns = 2 * halo.product_columns + disparities - 1;
-    return sizeof(short) * static_cast<std::size_t>(rows_of(halo, radius) * columns);
+    return sizeof(short) * static_cast<std::size_t>(rows_of(halo, row_radius) * columns);
   }
 
-  __device__ void load_own(const ViewToMatch& view, const Tile& tile, int radius) {
-    load(view, view.own, own_, own_columns_, tile.halo_i - radius, tile.halo_v - radius);
+  __device__ void load_own(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile) {
+    load(view, view.own, own_, own_columns_, tile.halo_i - settings.block_radius,
+         tile.halo_v - settings.block_row_radius);
   }
-  __device__ void load_other(const ViewToMatch& view, const Tile& tile, int radius, int first_disparity) {
+  __device__ void load_other(const ViewToMatch& view, const ViewSettings& settings, const Tile& tile,
+                             int first_disparity) {
     first_disparity_ = first_disparity;
-    load(view, view.other, other_, other_columns_, tile.halo_i - radius - first_disparity - (disparities - 1),
-         tile.halo_v - radius);
+    load(view, view.other, other_, other_columns_,
+         tile.halo_i - settings.block_radius - first_disparity - (disparities - 1),
+         tile.halo_v - settings.block_row_radius);
   }
 
   __device__ int own_columns() const { return own_columns_; }
@@ -48,8 +51,8 @@ class StagedPixels {
   }
 
  private:
-  ROADSTEREO_HD static int rows_of(const Halo& halo, int radius) {
-    return (halo.rows - 1) * halo.step + 1 + 2 * radius;
+  ROADSTEREO_HD static int rows_of(const Halo& halo, int row_radius) {
+    return (halo.rows - 1) * halo.step + 1 + 2 * row_radius;
   }
 
   /// A warp to a row, whose pixels are on their way together: memory takes long.
