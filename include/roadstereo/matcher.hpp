@@ -22,18 +22,20 @@ enum class WindowShape { square, disc };
 
 /// Options of section 3.2: matching cost, aggregation, winner-take-all, left–right check, sub-pixel disparity.
 struct MatcherOptions {
-  bool adapt_support = true;  ///< larger blocks and more weight of the prior where the pair is noisy
+  /// Larger blocks and more weight of the prior where the pair is noisy, and blocks as low as the road is
+  /// foreshortened.
+  bool adapt_support = true;
   /// Distance between the pixels that are matched, along rows and columns, 1 or 2: neighbours share most of their
   /// window. Those between are interpolated. 2 needs an `aggregation_step` of 2 (or no aggregation) and one matched
   /// view.
   int pixel_step = 2;
   int block_radius = 4;  ///< r: N⁺ is 2r + 1 pixels wide, 1 … 10; the paper's 120-connected system is 5
-  /// Height of N⁺ over its width, 0.1 … 1: it has 2 · round(r · block_aspect) + 1 rows, 3 at least. A road is
-  /// foreshortened along the columns, and its damage with it.
-  double block_aspect = 0.28;
-  int aggregation_radius = 8;       ///< radius of the bilateral window, pixels, 0 … 10; 0 switches aggregation off
-  double aggregation_aspect = 0.5;  ///< height of the window over its width, 0.1 … 1, as block_aspect
-  int aggregation_step = 2;         ///< distance between its taps, pixels, 1 or 2: neighbours share most of their block
+  /// Height of N⁺ over its width, 0.1 … 1: it has 2 · round(r · block_aspect) + 1 rows, 3 at least.
+  double block_aspect = 0.5;
+  int aggregation_radius = 8;  ///< radius of the bilateral window, pixels, 0 … 10; 0 switches aggregation off
+  /// Height of the window over its width, 0.1 … 1: a road is foreshortened along the columns, and its damage with it.
+  double aggregation_aspect = 0.5;
+  int aggregation_step = 2;  ///< distance between its taps, pixels, 1 or 2: neighbours share most of their block
   WindowShape aggregation_shape = WindowShape::disc;  ///< `disc` keeps the taps within the ellipse
   double sigma_space = 6.0;                           ///< σ0 of eq. (31), pixels, 0.1 … 1000
   double sigma_colour = 20.0;                         ///< σ1 of eq. (32), 8-bit grey levels, 0.1 … 100000

@@ -98,7 +98,8 @@ void visit_options(Options& o, Visitor visit) {
   visit("coarse_search.half_weight_sigma_px", o.coarse_search.half_weight_sigma_px,
         "standard error at which the road has half its weight, coarse pixels");
 
-  visit("matcher.adapt_support", o.matcher.adapt_support, "larger blocks and a stronger prior where the pair is noisy");
+  visit("matcher.adapt_support", o.matcher.adapt_support,
+        "lower blocks where the road is foreshortened, larger ones and a stronger prior where the pair is noisy");
   visit("matcher.pixel_step", o.matcher.pixel_step,
         "distance between the pixels that are matched, 1 or 2; those between are interpolated");
   visit("matcher.block_radius", o.matcher.block_radius, "radius of the correlation block, pixels");

@@ -110,6 +110,7 @@ struct Pipeline::State {
   MatchInput transform_perspective(const GreyPair& pair);
   CoarseSearchOptions coarse_options(int factor, int block_radius) const;
   MatchInput search_coarsely(const MatchInput& pair);
+  double road_foreshortening() const;
   ResidualMaps match(const MatchInput& input);
   DisparityMaps restore_disparity(const ResidualMaps& residual);
   RefinedMaps refine(const DisparityMaps& maps);
@@ -284,13 +285,21 @@ MatchInput Pipeline::State::search_coarsely(const MatchInput& pair) {
                                                 options.coarse_search.block_radius));
 }
 
+/// Without a calibration the focal length is taken for the width of the image.
+double Pipeline::State::road_foreshortening() const {
+  if (!result.shift.enabled) return 1;
+  const double focal_px = calibration ? calibration->focal_px : width,
+               cy_px = calibration ? calibration->cy_px : height / 2.0;
+  return foreshortening(result.road.model, focal_px, cy_px, width, height);
+}
+
 /// Costs, eq. (8), bilateral aggregation, eq. (11), winner-take-all, left-right check, eq. (12), and sub-pixel
 /// disparity, eq. (13): section 3.2. Masked pixels have no disparity. Without a road model the prior rests on its rows
 /// alone, and its truncation is smaller.
 ResidualMaps Pipeline::State::match(const MatchInput& input) {
   constexpr double truncation_without_road_px = 2;
   const StageTimer timer(result.ms.match);
-  MatcherOptions matcher = adapt_support(options.matcher, result.road.correlation);
+  MatcherOptions matcher = adapt_support(options.matcher, {result.road.correlation, road_foreshortening()});
   if (!result.shift.enabled) {
     matcher.prior_truncation_px = std::min(matcher.prior_truncation_px, truncation_without_road_px);
   }

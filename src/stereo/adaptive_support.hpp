@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadstereo/disparity_plane.hpp"
 #include "roadstereo/matcher.hpp"
 
 namespace roadstereo {
@@ -29,14 +30,34 @@ inline double downsampled_correlation(double correlation, int factor) {
   return signal / (signal + 1 - correlation);
 }
 
-/// The options for a pair whose blocks on the road correlate with `correlation` (RoadModelEstimate::correlation; 0 is
-/// unknown and leaves them): a larger block, and as much more weight of the prior as the costs are less certain.
-inline MatcherOptions adapt_support(MatcherOptions options, double correlation) {
-  if (!options.adapt_support || correlation <= 0) return options;
-  options.block_radius = adapt_radius(options.block_radius, correlation);
+/// Length of road that a row covers over the width that a column does, at the centre of the lower half of the image: 1
+/// seen from above, Z / h far ahead of a camera at height h. Of d = a0 + a1 v the depth Z = f B / d changes by −Z a1 /
+/// d a row. 1 where the plane is behind the camera there.
+inline double foreshortening(const DisparityPlane& road, double focal_px, double cy_px, int width, int height) {
+  const double v = 0.75 * height, disparity = road.disparity(width / 2.0, v);
+  if (!(disparity > 0)) return 1;
+  const double slope = road.a1 / disparity;
+  return std::max(1.0, std::hypot(focal_px * slope, 1 - (v - cy_px) * slope));
+}
+
+/// What the support of a pair follows.
+struct PairSupport {
+  double correlation = 0;     ///< of blocks on the road (RoadModelEstimate::correlation); 0 is unknown
+  double foreshortening = 1;  ///< of the road
+};
+
+/// The options for a pair: blocks as low as the road is foreshortened, down to three rows of nine columns; in noise a
+/// larger block, and as much more weight of the prior as the costs are less certain.
+inline MatcherOptions adapt_support(MatcherOptions options, const PairSupport& pair) {
+  if (!options.adapt_support) return options;
+  constexpr double min_aspect = 0.28;  // unless less is asked for
+  options.block_aspect =
+      std::min(options.block_aspect, std::max(min_aspect, options.block_aspect / pair.foreshortening));
+  if (pair.correlation <= 0) return options;
+  options.block_radius = adapt_radius(options.block_radius, pair.correlation);
   constexpr double most = 10;  // unless more is asked for
   options.prior_weight =
-      std::max(options.prior_weight, std::min(support_scale(correlation) * options.prior_weight, most));
+      std::max(options.prior_weight, std::min(support_scale(pair.correlation) * options.prior_weight, most));
   return options;
 }
 

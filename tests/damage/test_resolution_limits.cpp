@@ -41,22 +41,22 @@ TEST(ResolutionLimits, NadirMatchesClosedForm) {
     EXPECT_NEAR(row.gsd_across_m, 2.0 / 500, 1e-12);
     EXPECT_NEAR(row.gsd_along_m, 2.0 / 500, 1e-12);
     EXPECT_NEAR(row.swath_m, 610 * 2.0 / 500, 1e-9);
-    EXPECT_NEAR(row.resolvable_area_m2, std::numbers::pi / 4 * 25 * 11 * 0.004 * 0.004, 1e-12);
+    EXPECT_NEAR(row.resolvable_area_m2, std::numbers::pi / 4 * 25 * 13 * 0.004 * 0.004, 1e-12);
     EXPECT_NEAR(row.ahead_m, (179.5 - row.row_px) * 0.004, 1e-9);
   }
   EXPECT_NEAR(limits.depth_m(100, 1e-4), 4 / 60.0 * 1e-4, 1e-9);
   EXPECT_TRUE(std::isinf(limits.depth_m(100, 30)));
 }
 
-/// A rut of 0.6 m × 3 m covers 1.8 m² / (π/4·25·11·(4 mm)²) = 520.9 windows: noise of 0.6/√520.9 = 0.02629 px, with the
-/// bias 0.03989 px, five of which are 0.1994 px.
+/// A rut of 0.6 m × 3 m covers 1.8 m² / (π/4·25·13·(4 mm)²) = 440.7 windows: noise of 0.6/√440.7 = 0.02858 px, with the
+/// bias 0.04143 px, five of which are 0.2072 px.
 TEST(ResolutionLimits, RutAveragesNoiseButNotBias) {
   ResolutionOptions options;
   options.noise_px = 0.6;
   options.rut_width_m = 0.6;
   options.rut_length_m = 3;
   const RowResolution row = ResolutionLimits(example_rig(), {2.0, 90 * degree}, options).at_row(100);
-  EXPECT_NEAR(row.resolvable_rut_m, 2 * 0.1994 / (30 - 0.1994), 1e-5);
+  EXPECT_NEAR(row.resolvable_rut_m, 2 * 0.2072 / (30 - 0.2072), 1e-5);
   EXPECT_NEAR(row.resolvable_depth_m, 2 * 3.003748 / (30 - 3.003748), 1e-5);
 }
 

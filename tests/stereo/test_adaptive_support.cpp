@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "roadstereo/pipeline.hpp"
 #include "stereo/adaptive_support.hpp"
@@ -23,12 +25,45 @@ TEST(AdaptiveSupport, GrowsBlockAndPriorOfNoisyPairs) {
   MatcherOptions options;
   options.block_radius = 2;
   options.prior_weight = 0.08;
-  const MatcherOptions noisy = adapt_support(options, 0.5);
+  const MatcherOptions noisy = adapt_support(options, {.correlation = 0.5});
   EXPECT_EQ(noisy.block_radius, 3);  // 2 · √3 = 3.46
   EXPECT_NEAR(noisy.prior_weight, 0.08 * std::sqrt(3.0), 1e-12);
   EXPECT_EQ(noisy.block_aspect, options.block_aspect);
   options.block_radius = 5;
-  EXPECT_EQ(adapt_support(options, 0.3).block_radius, 10);  // at most
+  EXPECT_EQ(adapt_support(options, {.correlation = 0.3}).block_radius, 10);  // at most
+}
+
+/// A camera looks `pitch` below the horizon at a road 2 m beneath it: what a row and a column of the picture cover is
+/// taken from where the rays of neighbouring pixels meet the road.
+TEST(AdaptiveSupport, ForeshorteningIsThatOfRays) {
+  constexpr double focal = 700, cx = 320, cy = 180, baseline = 0.2, camera_height = 2, v = 270, u = 320;
+  for (const double pitch : {0.1, 0.35, 0.8, 1.3, std::numbers::pi / 2}) {
+    const double s = std::sin(pitch), c = std::cos(pitch);
+    // Road: y c + z s = height, in the camera's axes.
+    const auto on_road = [&](double column, double row) {
+      const double x = (column - cx) / focal, y = (row - cy) / focal, z = camera_height / (y * c + s);
+      return std::array{x * z, y * z, z};
+    };
+    const auto distance = [](const auto& a, const auto& b) {
+      return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    };
+    const double row = distance(on_road(u, v + 0.01), on_road(u, v - 0.01));
+    const double column = distance(on_road(u + 0.01, v), on_road(u - 0.01, v));
+    // d = f B / z = B (f s + (v − cy) c) / height
+    const DisparityPlane road{baseline * (focal * s - cy * c) / camera_height, baseline * c / camera_height, 0};
+    EXPECT_NEAR(foreshortening(road, focal, cy, 640, 360), row / column, 1e-4) << pitch;
+  }
+  EXPECT_EQ(foreshortening({-50, 0.1, 0}, focal, cy, 640, 360), 1);  // behind the camera
+}
+
+TEST(AdaptiveSupport, BlocksAreAsLowAsRoadIsForeshortened) {
+  MatcherOptions options;
+  options.block_aspect = 0.5;
+  EXPECT_EQ(adapt_support(options, {0, 1.25}).block_aspect, 0.4);
+  EXPECT_EQ(adapt_support(options, {0, 100}).block_aspect, 0.28);  // at least
+  options.block_aspect = 0.2;
+  EXPECT_EQ(adapt_support(options, {0, 100}).block_aspect, 0.2);
+  EXPECT_EQ(adapt_support(options, {0, 2}).block_radius, options.block_radius);
 }
 
 TEST(AdaptiveSupport, RadiusOfCoarseBlocks) {
@@ -46,11 +81,11 @@ TEST(AdaptiveSupport, DownsamplingAveragesNoise) {
 
 TEST(AdaptiveSupport, LeavesOptionsWithoutNoiseOrKnowledge) {
   const MatcherOptions options;
-  EXPECT_EQ(adapt_support(options, 0).block_radius, options.block_radius);
-  EXPECT_EQ(adapt_support(options, 0.95).prior_weight, options.prior_weight);
+  EXPECT_EQ(adapt_support(options, {}).block_radius, options.block_radius);
+  EXPECT_EQ(adapt_support(options, {.correlation = 0.95}).prior_weight, options.prior_weight);
   for (const char* name : {"paper", "fast"}) {
     const MatcherOptions fixed = preset(name).matcher;
-    EXPECT_EQ(adapt_support(fixed, 0.3).block_radius, fixed.block_radius) << name;
+    EXPECT_EQ(adapt_support(fixed, {0.3, 4}), fixed) << name;
   }
 }
 

@@ -67,6 +67,9 @@ std::vector<Case> cases() {
   large_block.aggregation_radius = 10;
   all.push_back({"large_windows", 90, 64, 20, large_block, true});
   all.push_back({"fast", 141, 61, 33, preset("fast").matcher, false});
+  MatcherOptions low;  // where a road is foreshortened
+  low.block_aspect = 0.25;
+  all.push_back({"low_blocks", 141, 61, 33, low, true, false, 2, -1.5});
   MatcherOptions noisy;  // as adapt_support makes it
   noisy.block_radius = 6;
   all.push_back({"noisy", 141, 61, 33, noisy, true});

@@ -28,8 +28,8 @@
 namespace roadstereo::cuda {
 namespace {
 
-/// Radii of the blocks, whose pixels are staged and whose costs lie apart then, or 0.
-template <int max_taps, int known_radius, int known_row_radius>
+/// `known_radius`: of the blocks, whose pixels are staged and whose costs lie apart then, or 0.
+template <int max_taps, int known_radius>
 __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings, const TapTable<max_taps>& taps,
                            const Tile& tile, bool staged, float* energies_of_block, const ViewWinners& winners) {
   constexpr bool apart = known_radius > 0;
@@ -76,7 +76,7 @@ __device__ void match_tile(const ViewToMatch& view, const ViewSettings& settings
         pixels.load_other(view, settings, tile, d);
         __syncthreads();
       }
-      sum_staged_products<known_row_radius>(tile, pixels, settings.block_row_radius, d, products);
+      sum_staged_products(tile, pixels, settings.block_row_radius, d, products);
     } else {
       sum_products(view, settings, tile, d, products);
     }
@@ -105,7 +105,7 @@ constexpr int resident_blocks(int taps) {
   return taps <= taps_of_default ? 3 : 2;
 }
 
-template <int max_taps, int known_radius, int known_row_radius>
+template <int max_taps, int known_radius>
 __global__ void __launch_bounds__(threads, resident_blocks(max_taps))
     match_tiles(ViewToMatch view, ViewSettings settings, Halo halo, TapTable<max_taps> taps, bool staged,
                 float* energies, std::size_t energies_per_block, TileTickets tickets, ViewWinners winners) {
@@ -119,25 +119,19 @@ __global__ void __launch_bounds__(threads, resident_blocks(max_taps))
       *next = blocks < tiles ? blocks + static_cast<int>(atomicAdd(tickets.drawn, 1U) - tickets.already) : tiles;
     }
     const Tile tile = locate_tile(view, settings, halo, index);
-    match_tile<max_taps, known_radius, known_row_radius>(view, settings, taps, tile, known_radius > 0 || staged,
-                                                         energies + blockIdx.x * energies_per_block, winners);
+    match_tile<max_taps, known_radius>(view, settings, taps, tile, known_radius > 0 || staged,
+                                       energies + blockIdx.x * energies_per_block, winners);
     __syncthreads();
     index = *next;
     __syncthreads();  // before the next ticket is written
   }
 }
 
-/// Radii of a block, along rows and columns.
-struct BlockRadii {
-  int columns, rows;
-};
-
 /// Of the presets `fast`, `default` and `paper`. The kernel for any number of taps is for any blocks, too.
-constexpr BlockRadii usual_block(int tap_count) {
-  if (tap_count == 1) return {8, 3};
-  if (tap_count <= taps_of_default) return {4, 1};
-  if (tap_count <= taps_of_paper) return {5, 5};
-  return {0, 0};
+constexpr int usual_radius(int tap_count) {
+  if (tap_count > taps_of_paper) return 0;
+  if (tap_count > taps_of_default) return 5;
+  return tap_count > 1 ? 4 : 8;
 }
 
 template <int max_taps>
@@ -161,10 +155,9 @@ void launch_tiles(const ViewToMatch& view, const ViewSettings& settings, const W
            settings, halo, taps, plan.staged, energies, plan.energies_per_block, tickets, winners);
   };
   if (plan.costs_apart) {
-    constexpr BlockRadii block = usual_block(max_taps > 0 ? max_taps : taps_of_paper + 1);
-    run(match_tiles<max_taps, block.columns, block.rows>);
+    run(match_tiles<max_taps, usual_radius(max_taps > 0 ? max_taps : taps_of_paper + 1)>);
   } else {
-    run(match_tiles<max_taps, 0, 0>);
+    run(match_tiles<max_taps, 0>);
   }
 }
 
@@ -188,9 +181,8 @@ ViewLaunch plan_view_launch(const ViewSettings& settings, int width, int height,
   const std::size_t staged_bytes = plan.shared_bytes + StagedPixels::bytes(halo, settings.block_row_radius);
   const std::size_t apart_bytes = staged_bytes + sizeof(int4) * static_cast<std::size_t>(halo.rows * halo.columns);
   plan.staged = staged_bytes <= max_shared_bytes;
-  const BlockRadii usual = usual_block(settings.tap_count);
-  plan.costs_apart = usual.columns > 0 && settings.block_radius == usual.columns &&
-                     settings.block_row_radius == usual.rows && apart_bytes <= max_shared_bytes;
+  const int usual = usual_radius(settings.tap_count);
+  plan.costs_apart = usual > 0 && settings.block_radius == usual && apart_bytes <= max_shared_bytes;
   if (plan.staged) plan.shared_bytes = plan.costs_apart ? apart_bytes : staged_bytes;
   return plan;
 }

@@ -71,11 +71,9 @@ struct StagedRow {
 };
 
 /// products[y][c]: sums over the rows of the blocks around row y of the halo, at pixel c across it and the disparities
-/// d … d + 3, of staged pixels. Rows that the compiler knows, or 0.
-template <int known_row_radius>
-__device__ void sum_staged_products(const Tile& tile, const StagedPixels& pixels, int block_row_radius, int d,
-                                    int4* products) {
-  const int radius = known_row_radius > 0 ? known_row_radius : block_row_radius;
+/// d … d + 3, of staged pixels.
+__device__ inline void sum_staged_products(const Tile& tile, const StagedPixels& pixels, int row_radius, int d,
+                                           int4* products) {
   const Strip strip = strip_of_thread(tile);
   if (strip.first >= strip.end) return;
   const int first_row = strip.first * tile.halo.step;
@@ -83,8 +81,7 @@ __device__ void sum_staged_products(const Tile& tile, const StagedPixels& pixels
                      pixels.own_columns(), pixels.other_columns()};
   StagedRow leaving = entering;
   int4 sums = make_int4(0, 0, 0, 0);
-  ROADSTEREO_UNROLL
-  for (int k = 0; k < 2 * radius; ++k) entering.add_and_advance<1>(sums);
+  for (int k = 0; k < 2 * row_radius; ++k) entering.add_and_advance<1>(sums);
   for (int y = strip.first; y < strip.end; ++y) {
     entering.add_and_advance<1>(sums);
     products[y * tile.halo.product_columns + strip.column] = sums;
