@@ -5,6 +5,7 @@
 
 #include "roadstereo/disparity_plane.hpp"
 #include "roadstereo/matcher.hpp"
+#include "stereo/window.hpp"
 
 namespace roadstereo {
 
@@ -50,11 +51,13 @@ struct PairSupport {
 /// larger block, and as much more weight of the prior as the costs are less certain.
 inline MatcherOptions adapt_support(MatcherOptions options, const PairSupport& pair) {
   if (!options.adapt_support) return options;
-  constexpr double min_aspect = 0.28;  // unless less is asked for
+  constexpr double min_aspect = 0.22;  // unless less is asked for
   options.block_aspect =
       std::min(options.block_aspect, std::max(min_aspect, options.block_aspect / pair.foreshortening));
-  if (pair.correlation <= 0) return options;
   options.block_radius = adapt_radius(options.block_radius, pair.correlation);
+  // Of whole rows: a camera that sways does not change the options from frame to frame.
+  options.block_aspect = static_cast<double>(block_row_radius(options)) / options.block_radius;
+  if (pair.correlation <= 0) return options;
   constexpr double most = 10;  // unless more is asked for
   options.prior_weight =
       std::max(options.prior_weight, std::min(support_scale(pair.correlation) * options.prior_weight, most));

@@ -26,9 +26,9 @@ TEST(AdaptiveSupport, GrowsBlockAndPriorOfNoisyPairs) {
   options.block_radius = 2;
   options.prior_weight = 0.08;
   const MatcherOptions noisy = adapt_support(options, {.correlation = 0.5});
-  EXPECT_EQ(noisy.block_radius, 3);  // 2 · √3 = 3.46
+  EXPECT_EQ(noisy.block_radius, 3);                 // 2 · √3 = 3.46
+  EXPECT_DOUBLE_EQ(noisy.block_aspect, 2.0 / 3.0);  // 3 · 0.5 = 1.5 rows
   EXPECT_NEAR(noisy.prior_weight, 0.08 * std::sqrt(3.0), 1e-12);
-  EXPECT_EQ(noisy.block_aspect, options.block_aspect);
   options.block_radius = 5;
   EXPECT_EQ(adapt_support(options, {.correlation = 0.3}).block_radius, 10);  // at most
 }
@@ -57,13 +57,19 @@ TEST(AdaptiveSupport, ForeshorteningIsThatOfRays) {
 }
 
 TEST(AdaptiveSupport, BlocksAreAsLowAsRoadIsForeshortened) {
-  MatcherOptions options;
-  options.block_aspect = 0.5;
-  EXPECT_EQ(adapt_support(options, {0, 1.25}).block_aspect, 0.4);
-  EXPECT_EQ(adapt_support(options, {0, 100}).block_aspect, 0.28);  // at least
-  options.block_aspect = 0.2;
-  EXPECT_EQ(adapt_support(options, {0, 100}).block_aspect, 0.2);
-  EXPECT_EQ(adapt_support(options, {0, 2}).block_radius, options.block_radius);
+  const auto aspect = [](double own, double of_road) {
+    MatcherOptions options;
+    options.block_radius = 10;
+    options.block_aspect = own;
+    const MatcherOptions adapted = adapt_support(options, {0, of_road});
+    EXPECT_EQ(adapted.block_radius, 10);
+    return adapted.block_aspect;
+  };
+  EXPECT_DOUBLE_EQ(aspect(0.5, 1), 0.5);
+  EXPECT_DOUBLE_EQ(aspect(0.5, 1.25), 0.4);
+  EXPECT_DOUBLE_EQ(aspect(0.5, 1.22), 0.4);  // 4.1 rows
+  EXPECT_DOUBLE_EQ(aspect(0.5, 100), 0.2);   // 2.2 rows at least
+  EXPECT_DOUBLE_EQ(aspect(0.1, 100), 0.1);   // unless less is asked for
 }
 
 TEST(AdaptiveSupport, RadiusOfCoarseBlocks) {
