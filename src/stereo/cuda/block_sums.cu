@@ -11,7 +11,7 @@ namespace {
 
 constexpr int tile_columns = 32;
 constexpr int tile_rows = 8;
-constexpr int rows_at_once = 6;  // three of them make a block of `default`, eleven one of `paper`
+constexpr int rows_at_once = 6;  // three to five of them make a block of `default`, eleven one of `paper`
 
 /// Sums of a column over the rows of the block around row v; pixels outside the image count as mid-grey. Reads depend
 /// on nothing, so that several are on their way together.
