@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/block_row_radius.hpp"
 #include "core/require_range.hpp"
 #include "roadstereo/error.hpp"
-#include "stereo/window.hpp"
 
 namespace roadstereo {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/block_row_radius.hpp"
 #include "roadstereo/disparity_plane.hpp"
 #include "roadstereo/matcher.hpp"
-#include "stereo/window.hpp"
 
 namespace roadstereo {
 

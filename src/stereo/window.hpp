@@ -1,9 +1,8 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
+#include "core/block_row_radius.hpp"
 #include "roadstereo/matcher.hpp"
 #include "stereo/finish_disparity.hpp"
 #include "stereo/sub_pixel.hpp"
@@ -15,11 +14,6 @@ struct Tap {
   int du;
   int dv;
 };
-
-/// Rows of the block N⁺ above and below its centre.
-inline int block_row_radius(const MatcherOptions& options) {
-  return std::max(1, static_cast<int>(std::lround(options.block_radius * options.block_aspect)));
-}
 
 /// Returns the taps of the aggregation window, row by row.
 std::vector<Tap> window_taps(const MatcherOptions& options);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "stereo/window.hpp"
+#include "core/block_row_radius.hpp"
 
 namespace roadstereo::cpu {
 namespace {
