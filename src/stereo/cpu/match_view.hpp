@@ -12,7 +12,7 @@ namespace roadstereo::cpu {
 //
 //   tile with its halo, in a view                     ring of cost rows (host), window of 2·rows + 1 rows
 //   +---------------------------------------+
-//   | r = block_radius: read for the blocks |         v − rows  | oldest: overwritten by row v + rows + 1
+//   | r, r' of a block: read for the blocks |         v − rows  | oldest: overwritten by row v + rows + 1
 //   |   +-------------------------------+   |            …      |
 //   |   | R = taps: costs are computed  |   |            v      | row whose pixels are aggregated
 //   |   |   +-----------------------+   |   |            …      |
