@@ -16,4 +16,9 @@ BoxMask BoxMask::cropped(const CellBox& box) const {
   return part;
 }
 
+std::size_t cell_count(const BoxMask& mask) {
+  const std::uint8_t* const cells = mask.cells().row(0);
+  return static_cast<std::size_t>(std::count_if(cells, cells + mask.cells().pixels(), [](auto c) { return c != 0; }));
+}
+
 }  // namespace roadstereo

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "damage/cell_box.hpp"
@@ -37,5 +38,8 @@ class BoxMask {
   CellBox box_;
   Image<std::uint8_t> cells_;
 };
+
+/// Number of cells that are set.
+std::size_t cell_count(const BoxMask& mask);
 
 }  // namespace roadstereo

@@ -11,35 +11,29 @@
 namespace roadstereo {
 namespace {
 
-/// Shares of the contour of a region, with its cells at the border of the view, on that border and on that of what is
-/// seen: the rim of a damage is not known there.
+/// Shares of the rim of a region in the view that lie on the border of the view and on that of what is seen: the rim of
+/// a damage is not known there.
 void measure_border(const BoxMask& region, const CommonView& view, const Image<std::uint8_t>& unseen,
                     DamageEvidence& evidence) {
-  const int columns = unseen.width(), rows = unseen.height();
-  const CellBox& box = region.box();
-  double contour = 0, on_border = 0, on_gap = 0;
-  for (int j = box.first_row; j <= box.last_row; ++j) {
-    for (int i = box.first_column; i <= box.last_column; ++i) {
-      if (!region(i, j)) continue;
-      const bool at_border = view.is_on_border(i, j);
-      bool at_gap = false;
-      for_each_neighbour(i, j, columns, rows, [&](int x, int y) { at_gap |= unseen(x, y) != 0 && !region(x, y); });
-      if (!at_border && !at_gap && !is_on_contour(region, i, j, columns, rows)) continue;
-      ++contour;
-      on_border += at_border ? 1 : 0;
-      on_gap += at_gap && !at_border ? 1 : 0;
-    }
+  double rim = 0, on_border = 0, on_gap = 0;
+  for (const auto [i, j] : rim_cells(region)) {
+    const bool at_border = view.is_on_border(i, j);
+    bool at_gap = false;
+    for_each_neighbour(i, j, unseen.width(), unseen.height(),
+                       [&](int x, int y) { at_gap |= unseen(x, y) != 0 && !region(x, y); });
+    ++rim;
+    on_border += at_border ? 1 : 0;
+    on_gap += at_gap && !at_border ? 1 : 0;
   }
-  if (contour == 0) return;
-  evidence.border_share = on_border / contour;
-  evidence.unseen_share = on_gap / contour;
+  if (rim == 0) return;
+  evidence.border_share = on_border / rim;
+  evidence.unseen_share = on_gap / rim;
 }
 
 /// Share of the band around a candidate of that depth that is road, the relief of a rough one included, or a hollow no
 /// deeper than the outline. Without metres relief is what is small beside the depth. Cells of other damages and outside
 /// the view do not count; 1 if no cell is left.
-double road_share(const SearchInput& input, const Candidate& candidate, float depth_inside,
-                  const Image<std::uint8_t>& assigned) {
+double road_share(const SearchInput& input, const Candidate& candidate, float depth_inside, SearchImages& images) {
   constexpr double margin_radii = 0.5;  // width of the band, radii √(area / π) of the region
   constexpr int min_margin_cells = 3;
   constexpr float max_hollow_sigmas = 10;  // depth of a hollow around a pothole that counts as road
@@ -49,6 +43,7 @@ double road_share(const SearchInput& input, const Candidate& candidate, float de
   const int margin = std::max(min_margin_cells, static_cast<int>(margin_radii * radius));
   const CellBox around = candidate.box().grown(margin, input.road.width(), input.road.height());
   const BoxMask dilated = dilate(candidate.cells, margin, around);
+  const Image<std::uint8_t>& assigned = images.labels(around);
   const float sign = sign_of(candidate.kind);
   const float max_hollow =
       candidate.kind == DamageKind::depression
@@ -56,15 +51,24 @@ double road_share(const SearchInput& input, const Candidate& candidate, float de
           : 0.0F;
   double cells = 0;
   double on_road = 0;
+  const BoxMask inside = candidate.cells.cropped(around);
   for (int j = around.first_row; j <= around.last_row; ++j) {
-    for (int i = around.first_column; i <= around.last_column; ++i) {
-      const bool other_damage = assigned(i, j) != 0 && assigned(i, j) != obstacle_label;
-      if (!dilated(i, j) || candidate.cells(i, j) || other_damage || !input.view.contains(i, j)) continue;
+    const std::uint8_t* const in_band = dilated.cells().row(j - around.first_row);
+    const std::uint8_t* const is_inside = inside.cells().row(j - around.first_row);
+    const std::uint8_t *const labels = assigned.row(j), *const valid = input.depth_cells.valid.row(j);
+    const std::uint8_t* const road = input.road.row(j);
+    const float* const depths = input.depth_cells.depth.row(j);
+    for (int k = 0; k < around.columns(); ++k) {
+      if ((in_band[k] & ~is_inside[k]) == 0) continue;
+      const int i = around.first_column + k;
+      const bool other_damage = labels[i] != 0 && labels[i] != obstacle_label;
+      if (other_damage || !input.view.contains(i, j)) continue;
       ++cells;
-      if (input.depth_cells.valid(i, j) == 0) continue;
-      const float depth = sign * input.depth_cells.depth(i, j);
-      const bool is_relief = std::abs(depth) < std::max(min_relief, input.thresholds.relief(i, j));
-      on_road += input.road(i, j) != 0 || is_relief || (depth > 0 && depth <= max_hollow) ? 1 : 0;
+      if (valid[i] == 0) continue;
+      const float depth = sign * depths[i];
+      const bool is_road = road[i] != 0 || (depth > 0 && depth <= max_hollow) ||
+                           std::abs(depth) < std::max(min_relief, input.thresholds.relief(i, j));
+      on_road += is_road ? 1 : 0;
     }
   }
   return cells == 0 ? 1 : on_road / cells;
@@ -113,7 +117,7 @@ void add_evidence(const SearchInput& input, SearchImages& images, Candidate& can
   DamageEvidence& evidence = candidate.evidence;
   evidence.contrast_sigmas = (damage.median - around.median) / std::max(around.sigma, input.depth_cells.noise);
   evidence.significance = evidence.contrast_sigmas * std::sqrt(samples);
-  evidence.road_share = road_share(input, candidate, static_cast<float>(damage.median), images.assigned);
+  evidence.road_share = road_share(input, candidate, static_cast<float>(damage.median), images);
   measure_border(candidate.cells, input.view, input.gaps.unseen, evidence);
   if (candidate.kind == DamageKind::depression) {
     evidence.rut_significance = rut_significance(candidate.cells, candidate.size, input.ruts);

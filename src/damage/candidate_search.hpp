@@ -30,13 +30,17 @@ struct SearchInput {
 
 /// Images of the search for one kind of damage, of one size.
 struct SearchImages {
-  Image<float> depth;             ///< positive inside this kind of damage
-  Image<std::uint8_t> allowed;    ///< 255 where a cell may belong to a damage
-  Image<std::uint8_t> visited;    ///< scratch of flood fills
-  Image<std::uint8_t>& assigned;  ///< `label_of` the damage that the cell belongs to, `obstacle_label`, or 0; shared by
-                                  ///< both kinds
+  Image<float>& depth;                  ///< positive inside this kind of damage
+  const Image<std::uint8_t>& allowed;   ///< 255 where a cell may belong to a damage
+  Image<std::uint8_t>& visited;         ///< scratch of flood fills
+  const Image<std::uint8_t>& assigned;  ///< `label_of` the damage that the cell belongs to, `obstacle_label`, or 0
+  CellBox labels_read;                  ///< box around the cells whose `assigned` was read
 
   DepthField field() { return {depth, allowed, visited}; }
+  const Image<std::uint8_t>& labels(const CellBox& box) {
+    labels_read.add(box);
+    return assigned;
+  }
 };
 
 }  // namespace roadstereo

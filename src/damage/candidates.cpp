@@ -1,8 +1,11 @@
 #include "damage/candidates.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <span>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "damage/candidate_evidence.hpp"
 #include "damage/candidate_search.hpp"
 #include "damage/connected_components.hpp"
@@ -16,39 +19,43 @@ namespace {
 
 constexpr float min_core_area_share = 0.1F;  ///< of the minimum area of a damage, for its core
 
-SearchImages make_search_images(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& assigned) {
-  const DepthCells& cells = input.depth_cells;
-  const int width = cells.depth.width(), height = cells.depth.height();
-  SearchImages images{Image<float>(width, height), Image<std::uint8_t>(width, height),
-                      Image<std::uint8_t>(width, height, 0), assigned};
+/// Depths, positive inside a kind of damage.
+Image<float> depths_of(const Image<float>& depth, DamageKind kind) {
+  Image<float> signed_depth(depth.width(), depth.height());
   const float sign = sign_of(kind);
-  const float* const depth = cells.depth.row(0);
-  float* const signed_depth = images.depth.row(0);
-  for (std::size_t k = 0; k < images.depth.pixels(); ++k) signed_depth[k] = sign * depth[k];
-  std::copy_n(cells.valid.row(0), cells.valid.pixels(), images.allowed.row(0));
-  std::uint8_t* const allowed = images.allowed.row(0);
+  const float* const from = depth.row(0);
+  float* const to = signed_depth.row(0);
+  for (std::size_t k = 0; k < depth.pixels(); ++k) to[k] = sign * from[k];
+  return signed_depth;
+}
+
+/// Mask of the cells that may belong to a kind of damage.
+Image<std::uint8_t> allowed_cells(const SearchInput& input, DamageKind kind, const Image<std::uint8_t>& assigned) {
+  Image<std::uint8_t> mask = input.depth_cells.valid;
+  std::uint8_t* const allowed = mask.row(0);
   if (kind == DamageKind::protrusion) {
     // A depression is no part of a bump beside it, nor of what surrounds that.
     const std::uint8_t depression = label_of(DamageKind::depression);
     const std::uint8_t* const labels = assigned.row(0);
-    for (std::size_t k = 0; k < images.allowed.pixels(); ++k) allowed[k] &= labels[k] == depression ? 0 : 255;
-    return images;
+    for (std::size_t k = 0; k < mask.pixels(); ++k) allowed[k] &= labels[k] == depression ? 0 : 255;
+    return mask;
   }
   const std::uint8_t* const deep_gaps = input.gaps.deep.row(0);
-  for (std::size_t k = 0; k < images.allowed.pixels(); ++k) allowed[k] |= deep_gaps[k];
-  return images;
+  for (std::size_t k = 0; k < mask.pixels(); ++k) allowed[k] |= deep_gaps[k];
+  return mask;
 }
 
 /// Mask of the allowed cells deeper than the threshold.
-Image<std::uint8_t> core_cells(const SearchImages& images, const Thresholds& thresholds) {
-  const int width = images.depth.width();
-  Image<std::uint8_t> cores(width, images.depth.height());
+Image<std::uint8_t> core_cells(const Image<float>& depth, const Image<std::uint8_t>& allowed_cells,
+                               const Thresholds& thresholds) {
+  const int width = depth.width();
+  Image<std::uint8_t> cores(width, depth.height());
   std::vector<float> min_depths(static_cast<std::size_t>(width));
-  for (int j = 0; j < images.depth.height(); ++j) {
+  for (int j = 0; j < depth.height(); ++j) {
     thresholds.min_depths(j, min_depths.data());
-    const float* const depths = images.depth.row(j);
+    const float* const depths = depth.row(j);
     const float* const limits = min_depths.data();
-    const std::uint8_t* const allowed = images.allowed.row(j);
+    const std::uint8_t* const allowed = allowed_cells.row(j);
     std::uint8_t* const row = cores.row(j);
     for (int i = 0; i < width; ++i) {
       const std::uint8_t deep = depths[i] > limits[i] ? 255 : 0;
@@ -70,8 +77,8 @@ void assign(const Candidate& candidate, Image<std::uint8_t>& assigned) {
 
 /// Add the potholes in a rut, clearly deeper than its floor, and take them out of it. They are measured below the mean
 /// section of the rut, which counts as road.
-void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages& images, Candidate& rut,
-                         std::vector<Candidate>& found) {
+void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages& images, Image<std::uint8_t>& assigned,
+                         Candidate& rut, std::vector<Candidate>& found) {
   constexpr float rut_floors = 1.3F;  // depth in depths of the rut's floor, beyond which it has a pothole: ruts vary
   constexpr double even_if_confirmed = 0.12;  // the agreement of the pictures adds up to 2 to the log-odds
   const std::size_t before = found.size();
@@ -98,62 +105,148 @@ void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages
     pothole.evidence.rut_significance = 0;
     if (confidence_at_best(pothole, input.thresholds) < even_if_confirmed) continue;
     pothole.inside = inside_rim(in_rut, images, pothole);
-    assign(pothole, images.assigned);
+    assign(pothole, assigned);
     found.push_back(std::move(pothole));
   }
   images.depth = depth;
-  if (found.size() > before) update_extent(input, images.assigned, rut);
+  if (found.size() > before) update_extent(input, assigned, rut);
 }
 
-/// Segment the region around a core and add it to `found` if it is large enough and surrounded by road.
-void add_candidate(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images,
-                   std::vector<Candidate>& found) {
-  const float min_cells = input.thresholds.min_cells(core.runs.front().first, core.runs.front().row);
-  if (static_cast<float>(core.size) < min_core_area_share * min_cells) return;
+float min_cells_at(const ConnectedComponent& core, const Thresholds& thresholds) {
+  return thresholds.min_cells(core.runs.front().first, core.runs.front().row);
+}
+
+/// The candidate around a core, if the region is large enough and likely enough to be damage.
+std::optional<Candidate> candidate_around(const SearchInput& input, const ConnectedComponent& core, DamageKind kind,
+                                          SearchImages& images) {
+  const float min_cells = min_cells_at(core, input.thresholds);
+  if (static_cast<float>(core.size) < min_core_area_share * min_cells) return {};
   Candidate candidate = segment(input, core, kind, images);
-  if (candidate.size == 0 || static_cast<float>(candidate.size) < min_cells) return;
-  if (!is_measured(candidate, input.depth_cells.valid)) return;
+  if (candidate.size == 0 || static_cast<float>(candidate.size) < min_cells) return {};
+  if (!is_measured(candidate, input.depth_cells.valid)) return {};
   add_evidence(input, images, candidate);
   const bool is_hollow = kind == DamageKind::depression && input.thresholds.metric();
   if (is_hollow && confidence_at_best(candidate, input.thresholds) < even_confidence) {
     raise_level(input, core, min_cells, images, candidate);
   }
   if (input.thresholds.metric()) leave_terrace(input, min_cells, images, candidate);
-  if (confidence_at_best(candidate, input.thresholds) < min_candidate_confidence) return;
-  if (candidate.evidence.rut_significance > 0) add_potholes_of_rut(input, min_cells, images, candidate, found);
+  if (confidence_at_best(candidate, input.thresholds) < min_candidate_confidence) return {};
   candidate.inside = inside_rim(input, images, candidate);
-  assign(candidate, images.assigned);
-  found.push_back(std::move(candidate));
+  return candidate;
 }
 
-/// Add the candidates of one kind, from the largest core to the smallest.
-void find_kind(const SearchInput& input, DamageKind kind, Image<std::uint8_t>& assigned,
-               std::vector<Candidate>& found) {
-  SearchImages images = make_search_images(input, kind, assigned);
-  const ConnectedComponents components(core_cells(images, input.thresholds));
-  std::vector<ConnectedComponent> cores(components.begin(), components.end());
-  std::stable_sort(cores.begin(), cores.end(),
-                   [](const auto& one, const auto& other) { return one.size > other.size; });
-  std::erase_if(cores, [&](const ConnectedComponent& core) { return is_obstacle(input, core, kind, images); });
-  for (const ConnectedComponent& core : cores) {
-    const CellRun& first = core.runs.front();
-    if (assigned(first.first, first.row) != 0) continue;
-    remove_outliers(input, core, kind, images);
-    add_candidate(input, core, kind, images, found);
+/// Search for one kind of damage, from the largest core to the smallest. Threads examine the next few cores together,
+/// each as if the others were no damage. Where one is, those that have read its labels are examined again, so that the
+/// result is that of one after the other.
+class KindSearch {
+ public:
+  KindSearch(const SearchInput& input, DamageKind kind, int threads, Image<std::uint8_t>& assigned)
+      : input_(input),
+        kind_(kind),
+        threads_(threads),
+        assigned_(assigned),
+        depth_(depths_of(input.depth_cells.depth, kind)),
+        allowed_(allowed_cells(input, kind, assigned)),
+        visited_(static_cast<std::size_t>(resolve_threads(threads))) {}
+
+  void add_candidates(std::vector<Candidate>& found) {
+    constexpr std::size_t max_at_once = 16, growth = 4;
+    const ConnectedComponents components(core_cells(depth_, allowed_, input_.thresholds));
+    std::vector<ConnectedComponent> cores(components.begin(), components.end());
+    std::stable_sort(cores.begin(), cores.end(),
+                     [](const auto& one, const auto& other) { return one.size > other.size; });
+    std::erase_if(cores, [&](const auto& core) { return is_obstacle(input_, core, kind_, depth_, assigned_); });
+    std::size_t at_once = 1;
+    for (std::span<const ConnectedComponent> left = cores; !left.empty();) {
+      SearchImages images = images_of(0);
+      if (!is_assigned(left.front())) remove_outliers(input_, left.front(), kind_, images);
+      const auto next = left.first(count_without_outliers(left, at_once));
+      const std::size_t before = found.size(), done = accept(next, examine(next), found);
+      at_once = found.size() > before ? 1 : std::min(growth * at_once, max_at_once);
+      left = left.subspan(done);
+    }
   }
-}
+
+ private:
+  struct Examined {
+    std::optional<Candidate> candidate;
+    CellBox labels_read;
+  };
+
+  SearchImages images_of(int worker) {
+    Image<std::uint8_t>& visited = visited_[static_cast<std::size_t>(worker)];
+    if (visited.empty()) visited.assign(depth_.width(), depth_.height(), 0);
+    return {depth_, allowed_, visited, assigned_, {}};
+  }
+
+  bool is_assigned(const ConnectedComponent& core) const {
+    return assigned_(core.runs.front().first, core.runs.front().row) != 0;
+  }
+
+  /// Number of the first cores, up to `most`, of which those after the first one have no outliers.
+  std::size_t count_without_outliers(std::span<const ConnectedComponent> cores, std::size_t most) const {
+    std::size_t count = 1;
+    while (count < std::min(most, cores.size()) && !has_outliers(input_, cores[count], kind_, depth_)) ++count;
+    return count;
+  }
+
+  std::vector<Examined> examine(std::span<const ConnectedComponent> cores) {
+    std::vector<Examined> examined(cores.size());
+    parallel_for(static_cast<int>(cores.size()), threads_, [&](int index, int worker) {
+      const auto k = static_cast<std::size_t>(index);
+      if (is_assigned(cores[k])) return;
+      SearchImages images = images_of(worker);
+      examined[k].candidate = candidate_around(input_, cores[k], kind_, images);
+      examined[k].labels_read = images.labels_read;
+    });
+    return examined;
+  }
+
+  /// Adds the candidates of the first cores, up to one that has read labels which have changed since. Returns the
+  /// number of these cores.
+  std::size_t accept(std::span<const ConnectedComponent> cores, std::vector<Examined> examined,
+                     std::vector<Candidate>& found) {
+    CellBox changed;
+    for (std::size_t k = 0; k < cores.size(); ++k) {
+      if (is_assigned(cores[k])) continue;
+      if (changed.overlaps(examined[k].labels_read)) return k;
+      if (!examined[k].candidate) continue;
+      const std::size_t before = found.size();
+      add(cores[k], std::move(*examined[k].candidate), found);
+      for (std::size_t n = before; n < found.size(); ++n) changed.add(found[n].box());
+    }
+    return cores.size();
+  }
+
+  void add(const ConnectedComponent& core, Candidate candidate, std::vector<Candidate>& found) {
+    if (candidate.evidence.rut_significance > 0) {
+      SearchImages images = images_of(0);
+      add_potholes_of_rut(input_, min_cells_at(core, input_.thresholds), images, assigned_, candidate, found);
+    }
+    assign(candidate, assigned_);
+    found.push_back(std::move(candidate));
+  }
+
+  const SearchInput& input_;
+  DamageKind kind_;
+  int threads_;
+  Image<std::uint8_t>& assigned_;  ///< shared by both kinds
+  Image<float> depth_;
+  Image<std::uint8_t> allowed_;
+  std::vector<Image<std::uint8_t>> visited_;  ///< of each worker
+};
 
 }  // namespace
 
 std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road, const CommonView& view,
                                        const Ruts& ruts, const Thresholds& thresholds, const ImageEdges& image_edges,
-                                       bool protrusions) {
+                                       bool protrusions, int threads) {
   const ViewGaps gaps = classify_gaps(depth_cells, view, thresholds);
   const SearchInput input{depth_cells, road, view, ruts, gaps, thresholds, image_edges};
   std::vector<Candidate> found;
   Image<std::uint8_t> assigned(road.width(), road.height(), 0);
-  find_kind(input, DamageKind::depression, assigned, found);
-  if (protrusions) find_kind(input, DamageKind::protrusion, assigned, found);
+  KindSearch(input, DamageKind::depression, threads, assigned).add_candidates(found);
+  if (protrusions) KindSearch(input, DamageKind::protrusion, threads, assigned).add_candidates(found);
   return found;
 }
 

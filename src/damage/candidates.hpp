@@ -38,6 +38,6 @@ struct Candidate {
 /// become gaps of `depth_cells` at the depth of the floor.
 std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road, const CommonView& view,
                                        const Ruts& ruts, const Thresholds& thresholds, const ImageEdges& image_edges,
-                                       bool protrusions);
+                                       bool protrusions, int threads);
 
 }  // namespace roadstereo

@@ -28,6 +28,15 @@ struct CellBox {
     last_column = std::max(last_column, last);
     last_row = std::max(last_row, row);
   }
+  void add(const CellBox& box) {
+    if (box.empty()) return;
+    add_run(box.first_row, box.first_column, box.last_column);
+    add_run(box.last_row, box.first_column, box.last_column);
+  }
+  bool overlaps(const CellBox& box) const {
+    return std::max(first_column, box.first_column) <= std::min(last_column, box.last_column) &&
+           std::max(first_row, box.first_row) <= std::min(last_row, box.last_row);
+  }
   /// Box with a margin of that many cells, clipped to width×height cells.
   CellBox grown(int margin, int width, int height) const {
     return {std::max(0, first_column - margin), std::max(0, first_row - margin),

@@ -6,17 +6,6 @@
 namespace roadstereo {
 namespace {
 
-/// First cell from `i` on that is not 0; `width` if there is none.
-int next_nonzero(const std::uint8_t* row, int i, int width) {
-  std::uint64_t eight = 0;
-  for (; i + 8 <= width; i += 8) {
-    std::memcpy(&eight, row + i, sizeof eight);
-    if (eight != 0) break;
-  }
-  while (i < width && row[i] == 0) ++i;
-  return i;
-}
-
 /// First cell from `i` on that is 0; `width` if there is none.
 int next_zero(const std::uint8_t* row, int i, int width) {
   const void* found = i < width ? std::memchr(row + i, 0, static_cast<std::size_t>(width - i)) : nullptr;
@@ -79,6 +68,16 @@ class RunForest {
 };
 
 }  // namespace
+
+int next_nonzero(const std::uint8_t* row, int i, int width) {
+  std::uint64_t eight = 0;
+  for (; i + 8 <= width; i += 8) {
+    std::memcpy(&eight, row + i, sizeof eight);
+    if (eight != 0) break;
+  }
+  while (i < width && row[i] == 0) ++i;
+  return i;
+}
 
 ConnectedComponents::ConnectedComponents(const Image<std::uint8_t>& mask, Foreground foreground) {
   const RunForest forest(mask, foreground);

@@ -40,6 +40,9 @@ class ConnectedComponents {
   std::vector<ConnectedComponent> components_;
 };
 
+/// First cell of a row from `i` on that is not 0; `width` if there is none.
+int next_nonzero(const std::uint8_t* row, int i, int width);
+
 /// Call `visit(column, row)` for the 4-neighbours of the runs of a component that lie in an image of columns×rows
 /// cells: all that surround it, and cells of its own.
 template <class Visit>

@@ -67,22 +67,59 @@ class ComponentBranch {
   std::array<std::vector<CellIndex>, contour_level_count> front_;  ///< by level: cells with unvisited neighbours
 };
 
+/// Mask of a region with a margin of one cell, which is outside the region.
+class PaddedMask {
+ public:
+  explicit PaddedMask(const BoxMask& region) : box_(region.box()), cells_(box_.columns() + 2, box_.rows() + 2, 0) {
+    for (int j = 0; j < box_.rows(); ++j) std::copy_n(region.cells().row(j), box_.columns(), cells_.row(j + 1) + 1);
+  }
+  /// What lies beside an image of columns×rows cells becomes part of the region.
+  void fill_beside(int columns, int rows) {
+    const int last = box_.columns() + 1, bottom = box_.rows() + 1;
+    for (int j = 0; j <= bottom; ++j) {
+      if (box_.first_column == 0) cells_(0, j) = 255;
+      if (box_.last_column + 1 == columns) cells_(last, j) = 255;
+    }
+    if (box_.first_row == 0) std::fill_n(cells_.row(0), last + 1, std::uint8_t{255});
+    if (box_.last_row + 1 == rows) std::fill_n(cells_.row(bottom), last + 1, std::uint8_t{255});
+  }
+  /// Cells of the region with a 4-neighbour outside it, row by row.
+  std::vector<CellIndex> rim() const {
+    const int columns = box_.columns();
+    std::vector<std::uint8_t> on_rim(static_cast<std::size_t>(columns));
+    std::vector<CellIndex> cells;
+    for (int j = 0; j < box_.rows(); ++j) {
+      const std::uint8_t *const above = cells_.row(j) + 1, *const below = cells_.row(j + 2) + 1;
+      find_rim(above, cells_.row(j + 1) + 1, below, columns, on_rim.data());
+      for (int i = next_nonzero(on_rim.data(), 0, columns); i < columns;
+           i = next_nonzero(on_rim.data(), i + 1, columns)) {
+        cells.push_back({box_.first_column + i, box_.first_row + j});
+      }
+    }
+    return cells;
+  }
+
+ private:
+  /// A function of its own, whose result no row can alias: it becomes vectors.
+  static void find_rim(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below, int count,
+                       std::uint8_t* on_rim) {
+    for (int i = 0; i < count; ++i) on_rim[i] = here[i] & ~(above[i] & below[i] & here[i - 1] & here[i + 1]);
+  }
+
+  CellBox box_;
+  Image<std::uint8_t> cells_;
+};
+
 }  // namespace
 
-bool is_on_contour(const BoxMask& region, int i, int j, int columns, int rows) {
-  return (i > 0 && !region(i - 1, j)) || (i + 1 < columns && !region(i + 1, j)) || (j > 0 && !region(i, j - 1)) ||
-         (j + 1 < rows && !region(i, j + 1));
+std::vector<CellIndex> rim_cells(const BoxMask& region) {
+  return PaddedMask(region).rim();
 }
 
 std::vector<CellIndex> contour_cells(const BoxMask& region, int columns, int rows) {
-  std::vector<CellIndex> cells;
-  const CellBox& box = region.box();
-  for (int j = box.first_row; j <= box.last_row; ++j) {
-    for (int i = box.first_column; i <= box.last_column; ++i) {
-      if (region(i, j) && is_on_contour(region, i, j, columns, rows)) cells.push_back({i, j});
-    }
-  }
-  return cells;
+  PaddedMask mask(region);
+  mask.fill_beside(columns, rows);
+  return mask.rim();
 }
 
 float slope_at(const Image<float>& depth, int i, int j) {
@@ -97,15 +134,10 @@ float slope_at(const Image<float>& depth, int i, int j) {
 
 ContourStatistics measure_contour(const DepthField& field, const BoxMask& region) {
   ContourSums sums;
-  const CellBox& box = region.box();
-  for (int j = box.first_row; j <= box.last_row; ++j) {
-    for (int i = box.first_column; i <= box.last_column; ++i) {
-      if (!region(i, j)) continue;
-      ++sums.area;
-      if (!is_on_contour(region, i, j, field.depth.width(), field.depth.height())) continue;
-      sums.slopes += slope_at(field.depth, i, j);
-      ++sums.cells;
-    }
+  sums.area = static_cast<double>(cell_count(region));
+  for (const CellIndex cell : contour_cells(region, field.depth.width(), field.depth.height())) {
+    sums.slopes += slope_at(field.depth, cell.column, cell.row);
+    ++sums.cells;
   }
   return sums.statistics();
 }

@@ -27,10 +27,10 @@ std::array<ContourStatistics, contour_level_count> measure_contours(
     const DepthField& field, const ConnectedComponent& seeds, const std::array<float, contour_level_count>& levels,
     const CellBox& within);
 
-/// Whether cell (i, j) of the region is on its contour. The border of the image is no contour.
-bool is_on_contour(const BoxMask& region, int i, int j, int columns, int rows);
+/// Cells of a region with a 4-neighbour outside it or beside the image, row by row.
+std::vector<CellIndex> rim_cells(const BoxMask& region);
 
-/// All cells of the contour, row by row.
+/// Cells of the contour of a region in an image of columns×rows cells, row by row. The border of the image is none.
 std::vector<CellIndex> contour_cells(const BoxMask& region, int columns, int rows);
 
 }  // namespace roadstereo

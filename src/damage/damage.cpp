@@ -74,7 +74,8 @@ ImageEdges make_image_edges(const DamageInput& input, const Cells& cells) {
   return {input.grey, cells.factor, (window_radius_px + cells.factor - 1) / cells.factor};
 }
 
-/// Find the candidates, and fill the maps of `result` regardless of them meanwhile.
+/// Find the candidates, and fill the maps of `result` regardless of them meanwhile. Threads that have no rows left help
+/// with the candidates.
 void search_and_fill(const DamageInput& input, const DamageOptions& options, const Thresholds& thresholds,
                      const Ruts& ruts, DepthCells& depth_cells, int threads, Segmentation& segmentation,
                      std::optional<FrameGeometry>& geometry, DamageMap& result) {
@@ -84,8 +85,9 @@ void search_and_fill(const DamageInput& input, const DamageOptions& options, con
   const int bands = (height + rows_per_band - 1) / rows_per_band;
   parallel_for(bands + 2, threads, [&](int task, int) {
     if (task == 0) {
-      segmentation.candidates = find_candidates(depth_cells, segmentation.road, segmentation.view, ruts, thresholds,
-                                                make_image_edges(input, segmentation.cells), options.protrusions);
+      segmentation.candidates =
+          find_candidates(depth_cells, segmentation.road, segmentation.view, ruts, thresholds,
+                          make_image_edges(input, segmentation.cells), options.protrusions, threads);
     } else if (task == 1) {
       if (FrameGeometry::is_possible(input)) geometry.emplace(input);
     } else {

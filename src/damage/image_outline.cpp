@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "damage/connected_components.hpp"
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
@@ -63,11 +64,13 @@ RoadTones road_tones(const BoxMap& grey, const BoxMask& road, const Octants& oct
   std::vector<float> all;
   std::array<std::vector<float>, Octants::count> in_octant;
   const CellBox& box = grey.box;
-  for (int j = box.first_row; j <= box.last_row; ++j) {
-    for (int i = box.first_column; i <= box.last_column; ++i) {
-      if (!road(i, j)) continue;
-      all.push_back(grey(i, j));
-      in_octant[octants.of(i, j)].push_back(grey(i, j));
+  for (int j = 0; j < box.rows(); ++j) {
+    const std::uint8_t* const is_road = road.cells().row(j);
+    const float* const grey_levels = grey.values.row(j);
+    for (int i = next_nonzero(is_road, 0, box.columns()); i < box.columns();
+         i = next_nonzero(is_road, i + 1, box.columns())) {
+      all.push_back(grey_levels[i]);
+      in_octant[octants.of(box.first_column + i, box.first_row + j)].push_back(grey_levels[i]);
     }
   }
   RoadTones tones{robust_normal(all), {}};
@@ -139,11 +142,15 @@ void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uin
   const CellBox around = region.box().grown(3 * radius, columns, rows);
   const BoxMap grey = smooth_grey_cells(image_edges, around, columns, rows);
   const BoxMask near = dilate(region, radius, around);
-  BoxMask far = dilate(region, 3 * radius, around), core = erode(region, 2, around);
-  for (int j = around.first_row; j <= around.last_row; ++j) {
-    for (int i = around.first_column; i <= around.last_column; ++i) {
-      if (near(i, j) || unseen(i, j) != 0) far.set(i, j, false);
-      if (unseen(i, j) != 0) core.set(i, j, false);
+  BoxMask far = dilate(near, 2 * radius, around), core = erode(region, 2, around);
+  for (int j = 0; j < around.rows(); ++j) {
+    const std::uint8_t* const is_unseen = unseen.row(around.first_row + j) + around.first_column;
+    const std::uint8_t* const is_near = near.cells().row(j);
+    std::uint8_t *const in_far = far.cells().row(j), *const in_core = core.cells().row(j);
+    for (int i = 0; i < around.columns(); ++i) {
+      const std::uint8_t is_seen = is_unseen[i] == 0 ? 255 : 0;
+      in_far[i] &= is_seen & ~is_near[i];
+      in_core[i] &= is_seen;
     }
   }
   const Octants octants(region.box());

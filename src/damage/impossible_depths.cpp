@@ -17,34 +17,42 @@ float max_depth(int i, int j, DamageKind kind, const Thresholds& thresholds) {
 /// Call `visit` for the cells of a core that are deeper, or higher, than a damage can be.
 template <class Visit>
 void for_each_impossible(const SearchInput& input, const ConnectedComponent& core, DamageKind kind,
-                         const SearchImages& images, Visit&& visit) {
+                         const Image<float>& depth, Visit&& visit) {
   for (const CellRun& run : core.runs) {
     for (int i = run.first; i <= run.last; ++i) {
-      if (images.depth(i, run.row) > max_depth(i, run.row, kind, input.thresholds)) visit(i, run.row);
+      if (depth(i, run.row) > max_depth(i, run.row, kind, input.thresholds)) visit(i, run.row);
     }
   }
 }
 
 }  // namespace
 
-bool is_obstacle(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images) {
+bool is_obstacle(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, const Image<float>& depth,
+                 Image<std::uint8_t>& assigned) {
   if (!input.thresholds.metric()) return false;
   std::vector<float> shares;  // of the depth that a damage can have at the cell
   shares.reserve(core.size);
   for (const CellRun& run : core.runs) {
     for (int i = run.first; i <= run.last; ++i) {
-      shares.push_back(images.depth(i, run.row) / max_depth(i, run.row, kind, input.thresholds));
+      shares.push_back(depth(i, run.row) / max_depth(i, run.row, kind, input.thresholds));
     }
   }
   const bool is_deep = std::any_of(shares.begin(), shares.end(), [](float share) { return share > 1; });
   if (!is_deep || floor_of(std::move(shares)) <= 1) return false;
-  for_each_impossible(input, core, kind, images, [&](int i, int j) { images.assigned(i, j) = obstacle_label; });
+  for_each_impossible(input, core, kind, depth, [&](int i, int j) { assigned(i, j) = obstacle_label; });
   return true;
+}
+
+bool has_outliers(const SearchInput& input, const ConnectedComponent& core, DamageKind kind,
+                  const Image<float>& depth) {
+  bool any = false;
+  for_each_impossible(input, core, kind, depth, [&](int, int) { any = true; });
+  return any;
 }
 
 void remove_outliers(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images) {
   std::vector<CellRun> impossible;
-  for_each_impossible(input, core, kind, images, [&](int i, int j) { impossible.push_back({j, i, i}); });
+  for_each_impossible(input, core, kind, images.depth, [&](int i, int j) { impossible.push_back({j, i, i}); });
   if (impossible.empty()) return;
   ConnectedComponent seeds;
   seeds.runs = impossible;

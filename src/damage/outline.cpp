@@ -19,12 +19,6 @@ double steepness_of(const ContourStatistics& contour, float floor) {
   return contour.slope * std::sqrt(contour.area / std::numbers::pi) / floor;
 }
 
-/// Number of cells of a region.
-std::size_t cell_count(const BoxMask& region) {
-  const std::uint8_t* const cells = region.cells().row(0);
-  return static_cast<std::size_t>(std::count_if(cells, cells + region.cells().pixels(), [](auto c) { return c != 0; }));
-}
-
 /// Box in which contours around the seeds are measured.
 CellBox search_box(const DepthField& field, const ConnectedComponent& seeds) {
   const int size = std::max(seeds.box.columns(), seeds.box.rows());

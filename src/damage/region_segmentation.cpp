@@ -18,8 +18,9 @@ constexpr float max_level_share = 0.9F;      ///< of the floor's depth, the high
 constexpr std::size_t max_hole_divisor = 4;  ///< holes up to 1/4 of the image are filled
 
 /// Whether a region has cells of an obstacle or of another damage of the same kind.
-bool overlaps_other(const Candidate& candidate, const Image<std::uint8_t>& assigned) {
+bool overlaps_other(const Candidate& candidate, SearchImages& images) {
   const CellBox& box = candidate.box();
+  const Image<std::uint8_t>& assigned = images.labels(box);
   for (int j = box.first_row; j <= box.last_row; ++j) {
     const std::uint8_t* const cells = candidate.cells.cells().row(j - box.first_row);
     const std::uint8_t* const labels = assigned.row(j) + box.first_column;
@@ -35,11 +36,15 @@ bool overlaps_other(const Candidate& candidate, const Image<std::uint8_t>& assig
 /// other hollows, beyond a saddle.
 BoxMask hollows_beside(const Candidate& candidate, int window_radius, const SearchImages& images) {
   const CellBox around = candidate.box().grown(window_radius, images.depth.width(), images.depth.height());
-  BoxMask hollows(around);
-  for (int j = around.first_row; j <= around.last_row; ++j) {
-    for (int i = around.first_column; i <= around.last_column; ++i) {
-      const bool is_deep = images.allowed(i, j) != 0 && images.depth(i, j) > candidate.level;
-      hollows.set(i, j, is_deep && !candidate.cells(i, j));
+  BoxMask hollows = candidate.cells.cropped(around);
+  const float level = candidate.level;
+  for (int j = 0; j < around.rows(); ++j) {
+    const float* const depth = images.depth.row(around.first_row + j) + around.first_column;
+    const std::uint8_t* const allowed = images.allowed.row(around.first_row + j) + around.first_column;
+    std::uint8_t* const cells = hollows.cells().row(j);
+    for (int i = 0; i < around.columns(); ++i) {
+      const std::uint8_t is_deep = depth[i] > level ? 255 : 0;
+      cells[i] = is_deep & allowed[i] & ~cells[i];
     }
   }
   return hollows;
@@ -57,12 +62,12 @@ void extend_region(const SearchInput& input, SearchImages& images, Candidate& ca
     grow_over_gaps(images.field(), input.gaps.known, min_depth, input.image_edges.window_radius, candidate.cells);
   }
   fill_holes(candidate.cells.cells(), max_hole);
-  update_extent(input, images.assigned, candidate);
+  update_extent(input, images.labels(candidate.box()), candidate);
   if (candidate.size == 0 || candidate.kind == DamageKind::protrusion || input.image_edges.grey.empty()) return;
   const BoxMask other_hollows = hollows_beside(candidate, input.image_edges.window_radius, images);
   refine_outline_by_image(input.image_edges, input.gaps.unseen, other_hollows, candidate.cells);
   fill_holes(candidate.cells.cells(), max_hole);
-  update_extent(input, images.assigned, candidate);
+  update_extent(input, images.labels(candidate.box()), candidate);
 }
 
 }  // namespace
@@ -81,11 +86,11 @@ Candidate segment(const SearchInput& input, const ConnectedComponent& core, Dama
   const int raises = max_level_attempts - 1;
   const float factor = std::pow(max_level / candidate.level, 1.0F / static_cast<float>(raises));
   candidate.cells = flood_fill(field, core, candidate.level);
-  for (int i = 0; i < raises && overlaps_other(candidate, images.assigned); ++i) {
+  for (int i = 0; i < raises && overlaps_other(candidate, images); ++i) {
     candidate.level *= factor;
     candidate.cells = flood_fill(field, core, candidate.level);
   }
-  const bool is_basin = !candidate.box().empty() && !overlaps_other(candidate, images.assigned);
+  const bool is_basin = !candidate.box().empty() && !overlaps_other(candidate, images);
   if (is_basin) extend_region(input, images, candidate);
   return candidate;
 }
@@ -97,7 +102,7 @@ Candidate region_at(const SearchInput& input, const ConnectedComponent& core, fl
   raised.evidence.steepness = lower.evidence.steepness;
   raised.level = level;
   raised.cells = flood_fill(images.field(), core, level);
-  if (raised.box().empty() || overlaps_other(raised, images.assigned)) return {};
+  if (raised.box().empty() || overlaps_other(raised, images)) return {};
   extend_region(input, images, raised);
   if (static_cast<float>(raised.size) < min_cells || !is_measured(raised, input.depth_cells.valid)) return {};
   add_evidence(input, images, raised);
