@@ -156,6 +156,7 @@ class KindSearch {
     std::stable_sort(cores.begin(), cores.end(),
                      [](const auto& one, const auto& other) { return one.size > other.size; });
     std::erase_if(cores, [&](const auto& core) { return is_obstacle(input_, core, kind_, depth_, assigned_); });
+    // Few until one is no damage: others may be parts of the same.
     std::size_t at_once = 1;
     for (std::span<const ConnectedComponent> left = cores; !left.empty();) {
       SearchImages images = images_of(0);
