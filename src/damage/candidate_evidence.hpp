@@ -12,8 +12,8 @@ std::vector<float> depths_inside(const SearchImages& images, const Candidate& ca
 /// Measure what distinguishes a damage from noise and from what is not road.
 void add_evidence(const SearchInput& input, SearchImages& images, Candidate& candidate);
 
-/// Upper bound of the confidence: as if the wall were steep and the pictures agreed. Tells whether measuring these is
-/// worth it.
+/// Upper bound of the confidence, assuming a steep wall and agreement of the images; shows whether it is worth
+/// measuring these.
 double confidence_at_best(const Candidate& candidate, const Thresholds& thresholds);
 
 }  // namespace roadstereo

@@ -9,6 +9,7 @@
 #include "damage/candidate_evidence.hpp"
 #include "damage/candidate_search.hpp"
 #include "damage/connected_components.hpp"
+#include "damage/cores.hpp"
 #include "damage/impossible_depths.hpp"
 #include "damage/inside_rim.hpp"
 #include "damage/region_levels.hpp"
@@ -99,7 +100,7 @@ void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages
                            input.image_edges};
   for (const ConnectedComponent& core : ConnectedComponents(cores)) {
     if (static_cast<float>(core.size) < min_core_area_share * min_cells) continue;
-    Candidate pothole = segment(in_rut, core, rut.kind, images);
+    Candidate pothole = segment(in_rut, {core}, rut.kind, images);
     if (static_cast<float>(pothole.size) < min_cells || !is_measured(pothole, input.depth_cells.valid)) continue;
     add_evidence(in_rut, images, pothole);
     pothole.evidence.rut_significance = 0;
@@ -117,11 +118,12 @@ float min_cells_at(const ConnectedComponent& core, const Thresholds& thresholds)
 }
 
 /// The candidate around a core, if the region is large enough and likely enough to be damage.
-std::optional<Candidate> candidate_around(const SearchInput& input, const ConnectedComponent& core, DamageKind kind,
+std::optional<Candidate> candidate_around(const SearchInput& input, const Core& start, DamageKind kind,
                                           SearchImages& images) {
+  const ConnectedComponent& core = start.cells;
   const float min_cells = min_cells_at(core, input.thresholds);
   if (static_cast<float>(core.size) < min_core_area_share * min_cells) return {};
-  Candidate candidate = segment(input, core, kind, images);
+  Candidate candidate = segment(input, start, kind, images);
   if (candidate.size == 0 || static_cast<float>(candidate.size) < min_cells) return {};
   if (!is_measured(candidate, input.depth_cells.valid)) return {};
   add_evidence(input, images, candidate);
@@ -151,16 +153,16 @@ class KindSearch {
 
   void add_candidates(std::vector<Candidate>& found) {
     constexpr std::size_t max_at_once = 16, growth = 4;
-    const ConnectedComponents components(core_cells(depth_, allowed_, input_.thresholds));
-    std::vector<ConnectedComponent> cores(components.begin(), components.end());
-    std::stable_sort(cores.begin(), cores.end(),
-                     [](const auto& one, const auto& other) { return one.size > other.size; });
-    std::erase_if(cores, [&](const auto& core) { return is_obstacle(input_, core, kind_, depth_, assigned_); });
+    Cores all(depth_, core_cells(depth_, allowed_, input_.thresholds), input_.thresholds);
+    std::vector<Core>& cores = all.cores();
+    std::erase_if(cores, [&](const Core& core) {
+      return !core.is_divided && is_obstacle(input_, core.cells, kind_, depth_, assigned_);
+    });
     // Few until one is no damage: others may be parts of the same.
     std::size_t at_once = 1;
-    for (std::span<const ConnectedComponent> left = cores; !left.empty();) {
+    for (std::span<const Core> left = cores; !left.empty();) {
       SearchImages images = images_of(0);
-      if (!is_assigned(left.front())) remove_outliers(input_, left.front(), kind_, images);
+      if (!is_assigned(left.front())) remove_outliers(input_, left.front().cells, kind_, images);
       const auto next = left.first(count_without_outliers(left, at_once));
       const std::size_t before = found.size(), done = accept(next, examine(next), found);
       at_once = found.size() > before ? 1 : std::min(growth * at_once, max_at_once);
@@ -180,18 +182,23 @@ class KindSearch {
     return {depth_, allowed_, visited, assigned_, {}};
   }
 
-  bool is_assigned(const ConnectedComponent& core) const {
-    return assigned_(core.runs.front().first, core.runs.front().row) != 0;
+  bool is_assigned(const Core& core) const {
+    const auto runs = core.is_divided ? core.cells.runs : core.cells.runs.first(1);
+    return std::any_of(runs.begin(), runs.end(), [&](const CellRun& run) {
+      const std::uint8_t* const labels = assigned_.row(run.row);
+      return std::any_of(labels + run.first, labels + (core.is_divided ? run.last : run.first) + 1,
+                         [](std::uint8_t label) { return label != 0; });
+    });
   }
 
   /// Number of the first cores, up to `most`, of which those after the first one have no outliers.
-  std::size_t count_without_outliers(std::span<const ConnectedComponent> cores, std::size_t most) const {
+  std::size_t count_without_outliers(std::span<const Core> cores, std::size_t most) const {
     std::size_t count = 1;
-    while (count < std::min(most, cores.size()) && !has_outliers(input_, cores[count], kind_, depth_)) ++count;
+    while (count < std::min(most, cores.size()) && !has_outliers(input_, cores[count].cells, kind_, depth_)) ++count;
     return count;
   }
 
-  std::vector<Examined> examine(std::span<const ConnectedComponent> cores) {
+  std::vector<Examined> examine(std::span<const Core> cores) {
     std::vector<Examined> examined(cores.size());
     parallel_for(static_cast<int>(cores.size()), threads_, [&](int index, int worker) {
       const auto k = static_cast<std::size_t>(index);
@@ -205,15 +212,14 @@ class KindSearch {
 
   /// Adds the candidates of the first cores, up to one that has read labels which have changed since. Returns the
   /// number of these cores.
-  std::size_t accept(std::span<const ConnectedComponent> cores, std::vector<Examined> examined,
-                     std::vector<Candidate>& found) {
+  std::size_t accept(std::span<const Core> cores, std::vector<Examined> examined, std::vector<Candidate>& found) {
     CellBox changed;
     for (std::size_t k = 0; k < cores.size(); ++k) {
       if (is_assigned(cores[k])) continue;
       if (changed.overlaps(examined[k].labels_read)) return k;
       if (!examined[k].candidate) continue;
       const std::size_t before = found.size();
-      add(cores[k], std::move(*examined[k].candidate), found);
+      add(cores[k].cells, std::move(*examined[k].candidate), found);
       for (std::size_t n = before; n < found.size(); ++n) changed.add(found[n].box());
     }
     return cores.size();

@@ -116,7 +116,6 @@ DamageMap make_empty_damage_map(int width, int height, const std::string& reason
   none.road.assign(width, height, 0);
   none.surface.assign(width, height, std::numeric_limits<float>::quiet_NaN());
   none.depth = none.surface;
-  none.noise_px = std::numeric_limits<double>::quiet_NaN();
   none.non_metric_reason = reason;
   return none;
 }

@@ -98,7 +98,7 @@ void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics
 std::string severity_text(const DamageMetrics& metrics) {
   if (metrics.severity == Severity::unknown) return "not graded";
   if (metrics.severity != Severity::uncertain) return name_of(metrics.severity);
-  return is_size_known(metrics) ? severity_range(metrics.severity_probabilities) : "not graded";
+  return is_size_known(metrics) ? likely_severity_range(metrics.severity_probabilities) : "not graded";
 }
 
 }  // namespace roadstereo

@@ -14,11 +14,11 @@ double log_steepness(double slope) {
   return std::log(std::clamp(slope, min_slope, 1.0) / even_slope);
 }
 
-/// Log-odds of damage against what one camera alone sees, in full. For a protrusion, whose slope is unknown, the
-/// agreement of the pictures counts little: it shows a surface, and what stands on the road or beside it has one, too.
-/// A hollow with a wall that the pictures confirm is rarely anything but damage, a gentle one may be the relief of the
-/// road. Fitted to regions of rendered roads with rain, snow and dead pixels, and to hollows put into streets
-/// (docs/method.md). `gentle`: share to which gentle walls count. A map alone, whose pictures are unknown, has none.
+/// Log-odds of damage against artefacts that only one camera sees. For a protrusion, whose slope is unknown, agreement
+/// of the images adds little: it proves a surface, but objects on the road or beside it have one, too. A hollow with a
+/// wall that the images confirm is almost always damage; a gentle one may be relief of the road. Fitted to regions of
+/// rendered roads with rain, snow and dead pixels, and to hollows put into streets (docs/method.md). `gentle`: share to
+/// which gentle walls count. A map alone, whose pictures are unknown, has none.
 double surface_log_odds(double significance, double slope, double gentle) {
   constexpr double per_standard_error = 4.7, even_odds = 1.85, max_of_protrusion = 0.5;
   constexpr double per_standard_error_of_hollow = 1, max_standard_errors = 2;
@@ -36,8 +36,8 @@ double range_log_odds(double vote) {
   return vote < even_odds ? per_vote * (vote - even_odds) : 0;
 }
 
-/// Log-odds of damage of which at least a quarter of the pixels lie so many of their own standard errors off the road.
-/// The noise of the intact road does not tell how well a region is measured that has less texture than the road.
+/// Log-odds of damage, given the number of their own standard errors by which at least a quarter of the pixels lie off
+/// the road. The noise of the intact road alone does not show how accurate a region with less texture is.
 double pixel_log_odds(double significance) {
   constexpr double per_log_significance = 1.5, even_odds = 5;
   if (std::isnan(significance)) return 0;
@@ -51,7 +51,15 @@ double specular_log_odds(double excess) {
   return excess > even_odds ? per_excess * (excess - even_odds) : 0;  // 0 if unknown
 }
 
-/// Log-odds of what is wider than the reach of the surface: the road's own shape, a strip or a pavement beside it.
+/// Log-odds of damage for a protrusion whose surroundings look like itself and not like the road: part of a verge, an
+/// island or a pavement. Of bumps, humps and debris on rendered roads 0.27 is the largest share.
+double texture_log_odds(double share) {
+  constexpr double per_share = -15, even_odds = 0.25;
+  return share > even_odds ? per_share * (share - even_odds) : 0;  // 0 if unknown
+}
+
+/// Log-odds for a region wider than the reach of the surface, which may be the shape of the road, a strip or a pavement
+/// beside it.
 double extent_log_odds(double extent) {
   constexpr double per_log_extent = -5.6;
   return extent > 1 ? per_log_extent * std::log(extent) : 0;  // 0 if unknown
@@ -95,7 +103,7 @@ double DamageEvidence::confidence() const {
   return probability_of(log_odds + surface_log_odds(surface_significance, likely_wall_slope, gentle) +
                         gentle * (wall_log_odds(border_share, likely_wall_slope) + extent_log_odds(extent)) +
                         range_log_odds(range_vote) + pixel_log_odds(pixel_significance) +
-                        specular_log_odds(specular_excess));
+                        specular_log_odds(specular_excess) + texture_log_odds(texture_share));
 }
 
 }  // namespace roadstereo

@@ -6,9 +6,9 @@
 
 namespace roadstereo {
 
-/// What a pair without a calibration lacks: a rig with the focal length of the image's width, 1.5 m above the road,
-/// without an offset of the disparities. The points of a plane, b/d·K⁻¹(u, v, 1), are linear in (u, v, 1)/d: a wrong K
-/// and b give points that an affine map turns into the right ones.
+/// Calibration assumed for a pair without one: the focal length is the width of the image, the camera is 1.5 m above
+/// the road, and the disparities have no offset. The points of a plane, b/d·K⁻¹(u, v, 1), are linear in (u, v, 1)/d: a
+/// wrong K and b give points that an affine map turns into the right ones.
 StereoCalibration assumed_calibration(const DisparityPlane& model, int width, int height);
 
 /// Metric geometry of the lines of sight of one frame and its undamaged road. Points are in the camera frame, metres.

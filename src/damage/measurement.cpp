@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "core/order_statistics.hpp"
@@ -16,6 +15,7 @@
 #include "damage/searched_range.hpp"
 #include "damage/specular_excess.hpp"
 #include "damage/surface_correlation.hpp"
+#include "damage/texture_share.hpp"
 #include "road/refinement/smoothing_error.hpp"
 #include "roadstereo/resolution_limits.hpp"
 
@@ -205,6 +205,9 @@ Damage measure_candidate(const DamageInput& input, const DamageOptions& options,
     const PixelBox box = pixel_box(candidate, segmentation.cells);
     damage.evidence.range_vote = range_vote(input, result, damage.id, box);
     damage.evidence.specular_excess = specular_excess(input, result, damage.id, box);
+    if (damage.kind == DamageKind::protrusion) {
+      damage.evidence.texture_share = texture_share(input, result, damage.id, box);
+    }
     damage.confidence = damage.evidence.confidence();
   }
   return damage;
@@ -261,10 +264,6 @@ PixelBox box_around(const std::vector<Damage>& damages) {
   return box;
 }
 
-double depth_of(const Damage& damage) {
-  return damage.metrics ? damage.metrics->max_depth_m.value : damage.max_depth_px.value;
-}
-
 /// Whether the values are finite and within the limits of the options. A damage that extends beyond the road has
 /// infinite values.
 bool is_within_limits(const Damage& damage, const DamageOptions& options) {
@@ -288,8 +287,9 @@ std::vector<std::uint16_t> separate_candidates(const DamageOptions& options, Dam
   result.candidates.clear();
   const std::size_t old_ids = measured.size() + 1;
   std::erase_if(measured, [&](const Damage& damage) { return !is_within_limits(damage, options); });
-  std::stable_sort(measured.begin(), measured.end(),
-                   [](const Damage& one, const Damage& other) { return depth_of(one) > depth_of(other); });
+  std::stable_sort(measured.begin(), measured.end(), [](const Damage& one, const Damage& other) {
+    return one.max_depth().value > other.max_depth().value;
+  });
   std::vector<std::uint16_t> new_id(old_ids, 0);
   for (Damage& damage : measured) {
     const bool is_damage =

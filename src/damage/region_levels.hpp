@@ -10,8 +10,8 @@ namespace roadstereo {
 /// gentle relief of the road in any case.
 void leave_terrace(const SearchInput& input, float min_cells, SearchImages& images, Candidate& candidate);
 
-/// The hollow around a core at a higher level, if it is likelier a damage there. Where the relief of the road is as
-/// steep as the wall, the outline runs out of the hole into a shallow one, and the contrast is lost.
+/// The hollow around a core at a higher level, if it is more likely damage at that level. Where the relief of the road
+/// is as steep as the wall, the outline leaks out of the hole into a shallow hollow, and the contrast is lost.
 void raise_level(const SearchInput& input, const ConnectedComponent& core, float min_cells, SearchImages& images,
                  Candidate& candidate);
 

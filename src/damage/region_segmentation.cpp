@@ -72,13 +72,14 @@ void extend_region(const SearchInput& input, SearchImages& images, Candidate& ca
 
 }  // namespace
 
-Candidate segment(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images) {
+Candidate segment(const SearchInput& input, const Core& start, DamageKind kind, SearchImages& images) {
+  const ConnectedComponent& core = start.cells;
   const DepthField field = images.field();
   const bool metric = input.thresholds.metric();
   Candidate candidate;
   candidate.kind = kind;
   const float floor = floor_depth(field, core);
-  const float min_level = min_level_sigmas * static_cast<float>(input.depth_cells.noise);
+  const float min_level = std::max(start.saddle, min_level_sigmas * static_cast<float>(input.depth_cells.noise));
   const Outline outline = find_outline(field, core, floor, min_level, metric);
   candidate.level = outline.level;
   candidate.evidence.steepness = outline.steepness;

@@ -2,12 +2,13 @@
 
 #include "damage/candidate_search.hpp"
 #include "damage/connected_components.hpp"
+#include "damage/cores.hpp"
 
 namespace roadstereo {
 
 /// Segment the region around a core. If it runs into another damage or an obstacle, the level is raised above the
-/// saddle between them. Size 0 if there is no such region.
-Candidate segment(const SearchInput& input, const ConnectedComponent& core, DamageKind kind, SearchImages& images);
+/// saddle between them; it is never below that of the core. Size 0 if there is no such region.
+Candidate segment(const SearchInput& input, const Core& start, DamageKind kind, SearchImages& images);
 
 /// The region of a hollow at another level, with its evidence; size 0 if it is none.
 Candidate region_at(const SearchInput& input, const ConnectedComponent& core, float level, float min_cells,

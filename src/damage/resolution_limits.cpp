@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/block_row_radius.hpp"
+#include "core/degrees.hpp"
 #include "core/require_range.hpp"
 #include "roadstereo/error.hpp"
 
@@ -14,7 +15,6 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double max_distance_m = 1000;  // along Z
 constexpr double right_angle = std::numbers::pi / 2;
-constexpr double to_degrees = 180 / std::numbers::pi;
 
 /// Area of the support window of a disparity, pixels: the ellipse of the aggregation widened by the block.
 double pixels_of_window(const MatcherOptions& matcher) {
@@ -49,7 +49,7 @@ ResolutionLimits::ResolutionLimits(const StereoCalibration& calibration, const C
   calibration.validate(calibration.width, calibration.height, "the calibration");
   const double min_slant = pose.height_m / max_distance_m;
   if (slant(last_row()) < min_slant) {
-    fail("the road is not in view: the camera looks ", pose.pitch_rad * to_degrees,
+    fail("the road is not in view: the camera looks ", to_degrees(pose.pitch_rad),
          "° below the horizon; the last row of the image must show the road within ", max_distance_m, " m");
   }
   while (first_row_ < last_row() && slant(first_row_) < min_slant) first_row_ += 1;

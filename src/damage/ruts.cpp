@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <optional>
 
+#include "core/degrees.hpp"
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
 #include "core/straightedge.hpp"
@@ -94,8 +94,6 @@ HeightGrid grid_heights(const Samples& samples, const Direction& direction) {
   const int columns = static_cast<int>(std::min((last_x - first_x) / bin_m, max_columns - 1.0)) + 1;
   HeightGrid grid{direction, first_x, Image<double>(columns, rows)};
   Image<int> counts(columns, rows);
-  grid.heights.assign(columns, rows, 0.0);
-  counts.assign(columns, rows, 0);
   const double rows_per_m = rows / std::max(length, min_length_m);
   for (const Sample& sample : samples.all) {
     const int i = grid.column(sample.x, sample.y);
@@ -360,7 +358,7 @@ Ruts find_ruts(const Cells& cells, const SurfaceCoordinates& coordinates, const 
   if (samples.all.empty()) return {};
   std::array<RutGrid, directions> found;
   parallel_for(directions, threads, [&](int k, int) {
-    const double angle = (k * step_degrees - max_degrees) * std::numbers::pi / 180;
+    const double angle = to_radians(k * step_degrees - max_degrees);
     found[static_cast<std::size_t>(k)] = find_along(samples, {std::cos(angle), std::sin(angle)});
   });
   const auto best = std::max_element(found.begin(), found.end(), [](const RutGrid& one, const RutGrid& other) {

@@ -18,8 +18,8 @@ struct Ruts {
   void fill(std::uint8_t value, Image<std::uint8_t>& mask) const;
 };
 
-/// Find ruts; none without metric coordinates. Ruts go on along the road, and a pair of wheel tracks is half of a lane:
-/// they are no outliers of a fit, so that the surface of the road must be fitted without them.
+/// Find ruts; none without metric coordinates. Ruts continue along the road, and a pair of wheel tracks covers half of
+/// a lane, so that a robust fit does not treat them as outliers: the surface of the road must be fitted without them.
 Ruts find_ruts(const Cells& cells, const SurfaceCoordinates& coordinates, const RoadSurface& surface, int threads);
 
 }  // namespace roadstereo

@@ -3,8 +3,8 @@
 #include "roadstereo/damage.hpp"
 #include "roadstereo/pixel_box.hpp"
 
-// Matching takes the best of the disparities that it searches, whatever the picture shows. Where that is something at a
-// disparity that was not searched, such as the top of a vehicle or text in the picture, the best is a match by chance.
+// Matching selects the best of the searched disparities, whatever the image shows. If the true disparity was not
+// searched, as at the top of a vehicle or at text in the image, the best one is a chance match.
 
 namespace roadstereo {
 

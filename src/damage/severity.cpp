@@ -168,11 +168,6 @@ SeverityScheme astm_d6433() {
   return scheme;
 }
 
-Severity astm_severity(double depth_m, double diameter_m) {
-  static const SeverityScheme scheme = astm_d6433();
-  return scheme.find(Distress::pothole)->severity(depth_m, diameter_m);
-}
-
 SeverityProbabilities severity_probabilities(const SeverityTable& table, const Measurement& depth_m,
                                              const Measurement& diameter_m) {
   if (table.classes.empty()) return {};
@@ -211,7 +206,7 @@ Severity likely_severity(const SeverityProbabilities& probabilities) {
   return Severity::uncertain;
 }
 
-std::string severity_range(const SeverityProbabilities& probabilities) {
+std::string likely_severity_range(const SeverityProbabilities& probabilities) {
   const std::array<double, 4> classes = in_order(probabilities);
   for (std::size_t width = 1; width <= classes.size(); ++width) {
     std::size_t best = 0;

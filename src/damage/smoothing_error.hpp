@@ -9,7 +9,8 @@ namespace roadstereo {
 /// of its depth. The shares were measured on synthetic roads (docs/accuracy.md). It is the same in every frame.
 class SmoothingError {
  public:
-  static constexpr int window_radius_px = 10;  ///< block and aggregation radius of `default` without adaptive support
+  /// As far as matching's block and window reach over a rim, some 10 pixels in `default` (docs/method.md).
+  static constexpr int window_radius_px = 10;
 
   explicit SmoothingError(double pixels) {
     const double radius_px = std::sqrt(pixels / std::numbers::pi);

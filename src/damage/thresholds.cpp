@@ -38,7 +38,7 @@ float Thresholds::pixels_below(double depth_m, int i, int j) const {
 }
 
 float Thresholds::min_cells(int i, int j) const {
-  constexpr double min_pixels = 64;  // about the area of the support window of matching
+  constexpr double min_pixels = 64;  // 8×8: what is smaller than the support window is noise
   if (!metric_ || std::isnan(scale_(i, j))) {
     return static_cast<float>(options_.min_area_share * static_cast<double>(cells_.value.pixels()));
   }

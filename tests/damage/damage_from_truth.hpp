@@ -99,8 +99,10 @@ inline DamageMetrics metrics_of(const synth::SyntheticPair& pair, const synth::D
                      : known.kind == "crack" ? Distress::crack
                                              : Distress::pothole;
   metrics.quantity = 1;
-  metrics.severity = known.depth_m < metrics.resolvable_depth_m ? Severity::unresolvable
-                                                                : astm_severity(known.depth_m, metrics.diameter_m);
+  static const SeverityScheme scheme = astm_d6433();
+  metrics.severity = known.depth_m < metrics.resolvable_depth_m
+                         ? Severity::unresolvable
+                         : scheme.find(Distress::pothole)->severity(known.depth_m, metrics.diameter_m);
   return metrics;
 }
 

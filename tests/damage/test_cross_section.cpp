@@ -201,19 +201,5 @@ TEST(Relief, UncalibratedIsInPixels) {
   EXPECT_EQ(relief.measured(0, 0), 255);
 }
 
-TEST(Severity, MatchesTableOfStandard) {
-  EXPECT_EQ(astm_severity(0.0129, 0.5), Severity::minor);
-  EXPECT_EQ(astm_severity(0.06, 0.099), Severity::minor);
-  EXPECT_EQ(astm_severity(0.02, 0.15), Severity::low);
-  EXPECT_EQ(astm_severity(0.02, 0.3), Severity::low);
-  EXPECT_EQ(astm_severity(0.02, 0.6), Severity::medium);
-  EXPECT_EQ(astm_severity(0.04, 0.15), Severity::low);
-  EXPECT_EQ(astm_severity(0.04, 0.3), Severity::medium);
-  EXPECT_EQ(astm_severity(0.04, 0.6), Severity::high);
-  EXPECT_EQ(astm_severity(0.06, 0.15), Severity::medium);
-  EXPECT_EQ(astm_severity(0.06, 0.3), Severity::medium);
-  EXPECT_EQ(astm_severity(0.06, 0.6), Severity::high);
-}
-
 }  // namespace
 }  // namespace roadstereo

@@ -43,7 +43,7 @@ TEST(SeverityProbabilities, WithoutErrorIsTable) {
   for (const double depth : {0.01, 0.02, 0.03, 0.06}) {
     for (const double diameter : {0.05, 0.15, 0.3, 0.6}) {
       const SeverityProbabilities p = severity_probabilities(potholes(), {depth, 0}, {diameter, 0});
-      EXPECT_EQ(likely_severity(p), astm_severity(depth, diameter)) << depth << " " << diameter;
+      EXPECT_EQ(likely_severity(p), potholes().severity(depth, diameter)) << depth << " " << diameter;
       EXPECT_DOUBLE_EQ(p.minor + p.low + p.medium + p.high, 1);
     }
   }

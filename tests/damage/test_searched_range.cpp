@@ -120,7 +120,7 @@ TEST(SearchedRange, PipelineTakesNoVehicleForAPothole) {
     scene.road.boxes.push_back(box);
     const synth::SyntheticPair pair = synth::render(scene);
     Pipeline pipeline(preset("default"), pair.calibration);
-    pipeline.process(pair.left.view(), pair.right.view());
+    ASSERT_TRUE(pipeline.process(pair.left.view(), pair.right.view()).roll_found);
     for (const Damage& damage : pipeline.find_damage().damages) {
       EXPECT_NE(damage.kind, DamageKind::depression) << height_m << " m: " << damage.confidence;
     }

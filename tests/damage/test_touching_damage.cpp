@@ -45,6 +45,24 @@ TEST(FindDamage, FindsShallowDamageBesidePothole) {
   }
 }
 
+/// A gutter joins two potholes to one component of deep cells; each is a damage, measured inside its own outline.
+TEST(FindDamage, FindsBothPotholesInAGutter) {
+  synth::Scene scene = intact_scene();
+  scene.road.blobs = {{-0.26, 0.65, 0.1, 0.09, 0, 0.3, 3},
+                      {0.26, 0.65, 0.13, 0.06, 0, 0.3, 8},
+                      {0, 0.65, 0.19, 0.016, 0, 0.3, 5, false}};
+  const ExactMaps maps(scene);
+  const DamageMap map = find_damage(maps.metric());
+  ASSERT_EQ(map.damages.size(), 2U);
+  for (const synth::DamageTruth& known : maps.pair.damages) {
+    const Damage* found = find(map, maps.pair, known.id);
+    ASSERT_NE(found, nullptr) << known.depth_m;
+    EXPECT_NEAR(found->metrics->max_depth_m.value, known.depth_m, 0.15 * known.depth_m);
+    EXPECT_EQ(map.ids(found->deepest_px[0], found->deepest_px[1]), found->id);
+    EXPECT_GT(f_score(map.ids, found->id, maps.pair.labels, known.id), 0.85);
+  }
+}
+
 /// Picture in which damages and what lies closer to one than `margin` are dark, in 1/16 grey levels.
 GreyImage dark_damages(const Image<std::uint16_t>& labels, int margin) {
   constexpr float road_level = 1600, dark_level = 1000, texture = 32;
