@@ -401,16 +401,16 @@ SUMMARY = [
          number(row_where(result["disparities"], source="wider/synthetic", method="default")
                 ["e_p_or_missing_0.5px_percent"], 1),
          number(best(rows_where(result["disparities"], source="wider/synthetic"), "e_p_or_missing_0.5px_percent"), 1))),
-    (("robustness",), "Drive of 51 frames over an intact street: road found anew, none; false damages",
+    (("robustness",), "Drive of 51 frames over an intact street: frames with a new search for the road, frames without a road; false damages",
      lambda result: (lambda row: "{:.0f} frame, {:.0f}; {:.0f}".format(
          row["found_percent"] * row["frame_count"] / 100, row["none_percent"] * row["frame_count"] / 100,
          row["damages"]))(row_where(result["drives"], drive="wider/odometry"))),
-    (("subpixel",), "Sub-pixel bias, noise against its Cramér–Rao bound, at most; OpenCV's best of each",
+    (("subpixel",), "Largest sub-pixel bias, largest ratio of the noise to its Cramér–Rao bound; the best of OpenCV's for each",
      lambda result: "{} px, {}; {} px, {}".format(
          *(number(max(row[key] for row in rows_where(result["methods"], method="default")), decimals)
            for key, decimals in (("max_bias_px", 3), ("ratio", 2))),
          *(number(best(result["methods"], key), decimals) for key, decimals in (("max_bias_px", 3), ("ratio", 2))))),
-    (("sigma",), "Errors within two of the standard errors that come with the map, the same scenes",
+    (("sigma",), "Disparity errors within two of their predicted standard errors, the synthetic roads",
      lambda sigma: number(row_where(sigma["groups"], group="all", where="visible")["within_2_sigma_percent"], 1) + " %"),
     (("damage_maps", "damage_pairs"),
      "Damage, pixel by pixel: F on six published transformed maps, on five pothole pairs (published on such maps: 0.89)",
@@ -437,7 +437,7 @@ SUMMARY = [
          *(number(row_where(flatness["rows"], frame="mean", disparities="truth")[key], 2)
            for key in ("without_roll_px", "gradient_descent_px")))),
     (("flight",),
-     "Flight of 300 frames that rolls, pitches and climbs: largest error of ψ, carried over and each frame afresh",
+     "Flight of 300 frames that rolls, pitches and climbs: largest error of the roll ψ, with tracking and with every frame on its own",
      lambda flight: ", ".join(f"{row['roll_max_rad']:.4f}"
                               for row in rows_where(flight["rows"], estimate="after matching")) + " rad"),
 ]

@@ -56,6 +56,12 @@ def specular_log_odds(excess):
     return 0.0 if excess is None else per_excess * max(0, excess - even_odds)
 
 
+def texture_log_odds(share):
+    """As in src/damage/evidence.cpp; it is not fitted."""
+    per_share, even_odds = -15, 0.25
+    return 0.0 if share is None else per_share * max(0, share - even_odds)
+
+
 def pixel_log_odds(significance):
     """As in src/damage/evidence.cpp; it is not fitted."""
     per_log_significance, even_odds = 1.5, 5
@@ -110,6 +116,7 @@ def main():
     y = np.array([float(row["is_damage"]) for row in rows])
     offset = np.array([surface_log_odds(row["surface_significance"], row["likely_wall_slope"], gentle_share(row)) +
                        range_log_odds(row["range_vote"]) + specular_log_odds(row["specular_excess"]) +
+                       texture_log_odds(row["texture_share"]) +
                        pixel_log_odds(row["pixel_significance"]) for row in rows])
     program = np.array([row["confidence"] for row in rows])
     weight = np.ones(len(rows))

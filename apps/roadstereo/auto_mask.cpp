@@ -15,17 +15,17 @@ void AutoMask::restore(const io::StaticMaskRecord& record, Image<std::uint8_t> m
 }
 
 bool AutoMask::add(const FrameView& left, const FrameView& right, double white_level,
-                   const std::optional<DisparityPlane>& road) {
+                   const std::optional<DisparityPlane>& road, double at_infinity_px) {
   if (!on_ || record_.judged) return false;
   to_grey(left, white_level, left_);
   to_grey(right, white_level, right_);
   const bool same_size = left.width == right.width && left.height == right.height;
-  return same_size && watch_.add(left_, right_, road);
+  return same_size && watch_.add(left_, right_, road, at_infinity_px);
 }
 
 void AutoMask::look(const FrameView& left, const FrameView& right, double white_level) {
   try {
-    add(left, right, white_level, std::nullopt);
+    add(left, right, white_level, std::nullopt, 0);
   } catch (const Error&) {  // the earlier run could not match it either
   }
 }
@@ -33,8 +33,9 @@ void AutoMask::look(const FrameView& left, const FrameView& right, double white_
 bool AutoMask::apply(std::int64_t frame, const FrameView& left, const FrameView& right, Pipeline& pipeline) {
   const std::optional<TrackedRoad>& road = pipeline.carried().road;
   const bool takes_masks = pipeline.engine_name() != "cuda";
-  const bool judges =
-      add(left, right, pipeline.options().white_level, road ? std::optional(road->model) : std::nullopt);
+  const std::optional<StereoCalibration>& calibration = pipeline.calibration();
+  const bool judges = add(left, right, pipeline.options().white_level, road ? std::optional(road->model) : std::nullopt,
+                          calibration ? -calibration->disparity_offset_px : 0);
   if (judges) {
     mask_ = watch_.mask();
     record_ = {true, frame, watch_.share(), takes_masks && !mask_.empty()};

@@ -35,8 +35,8 @@ class AutoMask {
   const io::StaticMaskRecord& record() const { return record_; }
 
  private:
-  bool add(const FrameView& left, const FrameView& right, double white_level,
-           const std::optional<DisparityPlane>& road);
+  bool add(const FrameView& left, const FrameView& right, double white_level, const std::optional<DisparityPlane>& road,
+           double at_infinity_px);
 
   bool on_;
   StaticMask watch_;

@@ -64,6 +64,30 @@ std::size_t peak_memory_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * kilobyte;
 }
 
+/// OpenCV's matchers, after a first run, on the pair as the pipeline has transformed it, or as it is for
+/// `--raw-disparities`.
+std::vector<io::PeerMatcher> make_baselines(const BenchmarkArguments& arguments, const StereoPair& pair,
+                                            const PerspectiveShift& shift, BenchmarkReport& report) {
+  const bool raw = arguments.raw_disparities > 0;
+  const int searched = io::peer_disparities(raw ? arguments.raw_disparities : report.disparities);
+  if (searched >= report.width) {
+    fail("OpenCV's matchers cannot search ", searched, " disparities in ", report.width,
+         " columns; --no-peers leaves them out");
+  }
+  if (raw) report.raw_disparities = searched;
+  PerspectiveShift none;
+  none.enabled = false;
+  const PeerPair grey = peer_pair(pair, raw ? none : shift);
+  std::vector<io::PeerMatcher> baselines;
+  for (const std::string& name : io::peer_names()) {
+    baselines.emplace_back(name, searched);
+    baselines.back().set_pair(grey.reference, grey.target);
+    baselines.back().match();
+    report.baselines.push_back({name, {}});
+  }
+  return baselines;
+}
+
 /// Runs the pipeline and OpenCV's matchers alternately for equal conditions; the first run of each is not counted.
 BenchmarkReport measure(const BenchmarkArguments& arguments) {
   const StereoPair pair = make_pair(arguments);
@@ -94,24 +118,7 @@ BenchmarkReport measure(const BenchmarkArguments& arguments) {
   if (before) report.scratch_bytes = allocations()->peak_bytes - before->live_bytes;
 
   std::vector<io::PeerMatcher> baselines;
-  if (!arguments.no_peers) {
-    const bool raw = arguments.raw_disparities > 0;
-    const int searched = io::peer_disparities(raw ? arguments.raw_disparities : report.disparities);
-    if (searched >= report.width) {
-      fail("OpenCV's matchers cannot search ", searched, " disparities in ", report.width,
-           " columns; --no-peers leaves them out");
-    }
-    if (raw) report.raw_disparities = searched;
-    PerspectiveShift none;
-    none.enabled = false;
-    const PeerPair grey = peer_pair(pair, raw ? none : result.shift);
-    for (const std::string& name : io::peer_names()) {
-      baselines.emplace_back(name, searched);
-      baselines.back().set_pair(grey.reference, grey.target);
-      baselines.back().match();
-      report.baselines.push_back({name, {}});
-    }
-  }
+  if (!arguments.no_peers) baselines = make_baselines(arguments, pair, result.shift, report);
   std::size_t allocated = 0;
   for (int run = 0; run < arguments.runs; ++run) {
     pipeline.reset();

@@ -107,14 +107,14 @@ void reject_flight_options(const FlightSettings& settings) {
   if (source.max_time_difference_ms != SourceSettings().max_time_difference_ms) reject("--max-time-difference");
   if (source.rate_hz != 0) reject("--rate");
   if (!settings.disparity.empty() && !settings.processing.rig_bias.empty()) {
-    fail("--rig-bias is that of matching; the map of --disparity is taken as it is");
+    fail("--rig-bias corrects the disparities of this program; it cannot be used with --disparity");
   }
 }
 
 PairFiles pair_files(const FlightSettings& settings) {
   const bool has_right = settings.source.size() > 1;
   if (!has_right && (settings.height_m || settings.pitch_deg)) {
-    fail("--height and --pitch need RIGHT: they tell which plane of the pair is the road");
+    fail("--height and --pitch need RIGHT: they are used to find the road in the pair");
   }
   return {settings.source[0], has_right ? settings.source[1] : "", settings.calibration, settings.disparity};
 }
@@ -241,7 +241,7 @@ void add_flight_options(CLI::App& command, FlightSettings& settings) {
                    "Map of the road along the trajectory, in map/: rasters, damages, profiles (as roadstereo map)");
   command.add_flag_callback(
       "--no-auto-mask", [&settings] { settings.auto_mask = false; },
-      "Do not leave out what never moves in the picture, such as a bonnet; nor is it with --mask");
+      "Do not mask parts of the picture that never move, such as a bonnet; --mask implies this");
   command.add_flag("--resume", settings.resume, "Continue the flight in the output folder");
   command.add_option("--from", settings.from, "First frame of the recording, from 0")->type_name("N");
   command.add_option("--to", settings.to, "Last frame of the recording, inclusive")->type_name("N");

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "core/degrees.hpp"
 #include "evaluate/report.hpp"
 #include "evaluate/table.hpp"
 #include "image_size.hpp"
@@ -21,7 +22,6 @@ namespace roadstereo::cli {
 namespace {
 
 constexpr double mm = 1000;
-constexpr double to_radians = std::numbers::pi / 180;
 
 /// Depth classes of potholes in ASTM D6433, metres.
 constexpr std::array<double, 3> astm_depths_m{0.013, 0.025, 0.050};
@@ -160,7 +160,7 @@ Frame limits_figure(const LimitsArguments& arguments, const ResolutionLimits& li
 }
 
 void limits(LimitsArguments arguments) {
-  const CameraPose pose{arguments.height_m, arguments.pitch_deg * to_radians};
+  const CameraPose pose{arguments.height_m, to_radians(arguments.pitch_deg)};
   const ResolutionLimits limits(read_rig(arguments), pose, arguments.resolution);
   if (!arguments.figure.empty()) write_figure(arguments.figure, limits_figure(arguments, limits));
   if (arguments.json) {

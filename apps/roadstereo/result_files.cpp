@@ -133,7 +133,8 @@ const std::vector<ResultGroup>& result_groups() {
         {"transformed_color.png", "the same as a picture with its scale"}},
        add_transformed},
       {"sheet",
-       {{"sheet.png", "left image, disparities, transformed disparities and profile of the road"}},
+       {{"sheet.png",
+         "left image, disparities, transformed disparities and v-disparity histogram with the road model"}},
        [](Inspection& inspection, io::OutputFolder& folder) { folder.add("sheet.png", sheet_of(inspection)); }},
       {"cloud",
        {{"cloud.ply", "points, camera frame (x right, y down, z forward), m"},
@@ -145,7 +146,7 @@ const std::vector<ResultGroup>& result_groups() {
         {"damage.png", "id of the damage at every pixel, 16 bit, 0: none"}},
        add_damages},
       {"overlay", {{"overlay.png", "left image with the outlines of the damages"}}, add_overlay},
-      {"report", {{"report.html", "report for people, one file, also for print"}}, add_report}};
+      {"report", {{"report.html", "report to read or print, a single file"}}, add_report}};
   return groups;
 }
 

@@ -4,17 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/degrees.hpp"
 #include "roadstereo/version.hpp"
 
 namespace roadstereo::cli {
 
 namespace {
-
-double degrees(double radians) {
-  return radians * 180.0 / std::numbers::pi;
-}
 
 std::string line(const std::string& title, const std::string& text) {
   return fmt::format("  {:<10}{}\n", title, text);
@@ -37,7 +33,8 @@ std::string roll_text(const FrameResult& result) {
   if (result.road.status == RoadStatus::none) return "unknown: no road was found";
   if (!result.roll_found) return "unknown: too few pixels with a disparity";
   const RollEstimate& geometry = result.geometry;
-  std::string angle = fmt::format("{:.3f}° ± {:.3f}°", degrees(geometry.roll_rad), degrees(geometry.roll_stderr_rad));
+  std::string angle =
+      fmt::format("{:.3f}° ± {:.3f}°", to_degrees(geometry.roll_rad), to_degrees(geometry.roll_stderr_rad));
   if (geometry.roll_observable) return angle;
   return "not observable: the disparity of the road is nearly constant in the image (fitted " + angle + ")";
 }
@@ -56,7 +53,7 @@ std::string road_text(const FrameResult& result) {
 
 std::string camera_text(const GroundPlane& plane) {
   return fmt::format("{:.3f} m above the road, optical axis {:.1f}° {} the horizon", plane.height_m,
-                     degrees(std::abs(plane.pitch_rad)), plane.pitch_rad < 0 ? "above" : "below");
+                     to_degrees(std::abs(plane.pitch_rad)), plane.pitch_rad < 0 ? "above" : "below");
 }
 
 std::string spread_text(const FrameResult& result) {

@@ -18,11 +18,13 @@ struct StereoCalibration {
   int height = 0;
 
   /// Throws Error naming the value that is not finite or not plausible: focal length outside 0.2 … 50 image widths,
-  /// baseline outside 5 mm … 10 m, principal point more than one image away from the image, size that is not
-  /// `image_width` × `image_height`. `source` (a file name) begins the message.
+  /// baseline outside 5 mm … 10 m, principal point more than one image away from the image, disparity offset
+  /// of more than an image width, size that is not `image_width` × `image_height`. `source` (a file name) begins the
+  /// message.
   void validate(int image_width, int image_height, const std::string& source) const;
 
-  /// Returns the distance along z of a pixel with the given disparity: Z = f·b / (d + doffs), metres.
+  /// Returns the distance along z of a pixel with the given disparity: Z = f·b / (d + doffs), metres; infinite where d
+  /// + doffs is 0, negative where it is below 0.
   double depth_m(double disparity_px) const { return focal_px * baseline_m / (disparity_px + disparity_offset_px); }
   /// Returns the point (x, y, z) seen at pixel (u, v) with the given disparity, metres, camera frame.
   std::array<double, 3> point_m(double u, double v, double disparity_px) const {

@@ -16,9 +16,9 @@ struct CoarseSearchOptions {
   double road_prior_height_m = 0.15;   ///< height above or below the road that costs 1, without texture, 0 … 100; the
                                        ///< cost grows with its square; 0: no prior
   double road_prior_truncation = 1.3;  ///< largest cost of a height, without texture, 0 … 100
-  double border_height_m = 0.15;       ///< height steps up to this are left to the matcher, whose prior is an interval
-                                       ///< (half of it without cost) within a block's radius of one, metres, 0 … 100;
-                                       ///< 0: none
+  double border_height_m = 0.15;       ///< height steps up to this are left to the matcher, metres, 0 … 100: within a
+                                       ///< block's radius of a step its prior is an interval, all of which costs
+                                       ///< nothing for steps up to half of this; 0: no intervals
   double row_offset_sigma_px = 0.5;    ///< standard error of the vertical misalignment that is left, coarse pixels,
                                        ///< 0 … 10; it makes edges along the rows uncertain
   double half_weight_sigma_px =

@@ -12,7 +12,7 @@ struct KernelProfile {
   std::string name;
   int launches = 0;
   double ms = 0;         ///< of all launches
-  int blocks = 0;        ///< of the first launch, like what follows
+  int blocks = 0;        ///< of the first launch, as are the values below
   int threads = 0;       ///< of a block
   double occupancy = 0;  ///< threads resident on a multiprocessor at a time, as a share of the most it can hold, 0 … 1
   int registers = 0;     ///< of a thread
@@ -24,7 +24,7 @@ struct KernelProfile {
 struct DeviceProfile {
   std::vector<KernelProfile> kernels;  ///< in the order of their first launch
   int launches = 0;
-  int waits = 0;               ///< of the host for the device
+  int waits = 0;               ///< number of times that the host waited for the device
   std::size_t bytes_up = 0;    ///< copied from the host to the device
   std::size_t bytes_down = 0;  ///< copied from the device to the host
 };

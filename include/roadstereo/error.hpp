@@ -7,14 +7,15 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// Bad input or a failed operation. The message is one sentence for a person: it names the file or the
-/// argument, its value, and what would be right.
+/// Invalid input or a failed operation. The message is one sentence for the user: it names the file or the argument,
+/// its value, and the values that are allowed.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The system, not the input, is at fault: a full disk, a failed write. The command line exits with 1 instead of 2.
+/// Error of the system, not of the input, such as a full disk or a failed write. The command line exits with 1 instead
+/// of 2.
 class SystemError : public Error {
  public:
   using Error::Error;

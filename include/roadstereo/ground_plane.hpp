@@ -26,9 +26,9 @@ struct GroundPlaneError {
   double pitch_rad = 0;
 };
 
-/// Errors of the plane of a road from which its surface deviates by `deviation_px`, a standard deviation of disparities
-/// over the image of width×height pixels: a plane at another part of the road is off by that, and tilted by it over the
-/// standard deviation of the rows and columns.
+/// Estimates the errors of a road plane from the deviation of the road's surface from it: `deviation_px` is the
+/// standard deviation of the disparities over an image of width×height pixels. A plane fitted to another part of the
+/// road is taken to be shifted by that, and tilted by it over the standard deviation of the rows and of the columns.
 GroundPlaneError ground_plane_error(const DisparityPlane& model, const StereoCalibration& calibration, int width,
                                     int height, double deviation_px);
 
@@ -45,8 +45,9 @@ struct RoadAxes {
 /// Returns the axes: x is the camera's x axis projected onto the plane, z opposite to its normal, y = z × x.
 RoadAxes road_axes(const GroundPlane& plane);
 
-/// Returns the corners (x, y) of the road in view in the axes of `road_axes`, counterclockwise from the lower left one
-/// of the image: down to the last row, up to the row in which a pixel covers 1 m of the road. Empty if no row shows it.
+/// Returns the corners (x, y) of the road in view, metres, in the axes of `road_axes`, counterclockwise from the lower
+/// left corner of the image. The view reaches from the last row up to the row in which a pixel covers 1 m of road.
+/// Empty if no row shows the road.
 std::vector<std::array<double, 2>> road_footprint(const DisparityPlane& model, const StereoCalibration& calibration,
                                                   int width, int height);
 

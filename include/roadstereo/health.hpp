@@ -11,7 +11,7 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// Something out of order with a rig.
+/// A measured quantity of a rig that exceeds its limit.
 struct HealthFinding {
   std::string id;    ///< code, as of a warning: "row-error", "distortion", …
   double value = 0;  ///< measured
@@ -21,13 +21,13 @@ struct HealthFinding {
   bool spoils_depth = false;  ///< depths cannot be trusted: no damage is graded
 };
 
-/// State of a rig as one pair shows it. NaN: unknown.
+/// State of a rig, measured from one pair. NaN: unknown.
 struct PairHealth {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
   // Vertical offsets v_right − v_left, by affine Lucas-Kanade alignment of blocks.
   double row_offset_px = unknown;     ///< at the principal point
-  double row_correction_px = 0;       ///< of it, undone before matching
+  double row_correction_px = 0;       ///< part of that offset that was corrected before matching
   double row_scale = unknown;         ///< relative size of the right view minus 1
   double row_turn_rad = unknown;      ///< of the right view about the optical axis
   double row_error_px = unknown;      ///< vertical offset not undone, 90th percentile of the points
@@ -38,36 +38,40 @@ struct PairHealth {
 
   // The road's residual.
   double noise_px = unknown;  ///< standard deviation of the intact road
-  double wave_px = unknown;   ///< robust one of the medians of its rows: vibration of one view, or undulation
+  double wave_px = unknown;   ///< robust standard deviation of the medians of the road's rows: vibration of one view,
+                              ///< or undulation
 
   // Grey levels on the road.
-  double gain = unknown;           ///< right by left
+  double gain = unknown;           ///< ratio of right to left
   double clipped_left = unknown;   ///< share of the pixels that are black or white, 0 … 1
   double clipped_right = unknown;  ///< the same
   double blur_left_px = unknown;   ///< standard deviation of a Gaussian blur
   double blur_right_px = unknown;
-  double noise_share = unknown;  ///< of the variance of blocks of 7×7 pixels: white noise that the views do not share
+  double noise_share = unknown;  ///< share of white noise, which the views do not have in common, in the variance of
+                                 ///< blocks of 7×7 pixels
   double blocks_left = unknown;  ///< excess of the steps between 8×8 blocks (JPEG) over other steps, relative
   double blocks_right = unknown;
 
   double infinity_px = unknown;  ///< smallest disparity + doffs above the horizon (10th percentile)
 
-  PairSpots spots;  ///< of a recording, by PairWatch
+  PairSpots spots;  ///< set only for recordings, from PairWatch
 
   double threshold_sigma = 5;  ///< of DamageOptions
 
-  /// What exceeds its limit.
+  /// Returns a finding for every value that exceeds its limit.
   std::vector<HealthFinding> findings() const;
-  /// Whether no finding spoils the depth.
+  /// Whether none of the findings has `spoils_depth`.
   bool depth_is_trusted() const;
 };
 
-/// Measure the health of a pair. `damage`: of the frame, by find_damage. Throws Error when it has another size.
+/// Measure the health of a pair. `damage`: result of find_damage for the frame. All values are unknown without a road
+/// (`FrameResult::roll_found`) or without grey images. Throws Error when `damage` has another size.
 PairHealth measure_health(const FrameResult& frame, const DamageMap& damage,
                           const std::optional<StereoCalibration>& calibration, const DamageOptions& options = {},
                           int threads = 0);
 
-/// Set the severity of every damage to `unknown` if the depth cannot be trusted.
+/// If the depth cannot be trusted, set the severity of every damage and candidate to `unknown`, and its probabilities
+/// to 0.
 void withhold_severity(const PairHealth& health, DamageMap& damage);
 
 }  // namespace roadstereo

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "roadstereo/grey_scale.hpp"
@@ -20,7 +21,22 @@ class Image {
   /// An empty image whose pixels will lie in `memory`, which outlives it.
   explicit Image(ImageMemory& memory) : pixels_(ImageAllocator<T>(&memory)) {}
 
-  /// Changes the size; equal sizes never allocate. Pixels are unspecified.
+  Image(const Image&) = default;
+  Image& operator=(const Image&) = default;
+  /// The moved image is empty afterwards.
+  Image(Image&& moved) noexcept
+      : pixels_(std::move(moved.pixels_)),
+        width_(std::exchange(moved.width_, 0)),
+        height_(std::exchange(moved.height_, 0)) {}
+  Image& operator=(Image&& moved) noexcept {
+    pixels_ = std::move(moved.pixels_);
+    width_ = std::exchange(moved.width_, 0);
+    height_ = std::exchange(moved.height_, 0);
+    return *this;
+  }
+  ~Image() = default;
+
+  /// Changes the size. Does not allocate if the size is the same. Pixel values are unspecified.
   void resize(int width, int height) {
     pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     width_ = width;
@@ -100,14 +116,14 @@ struct Frame {
   FrameView view() const;
 };
 
-/// Grey levels in sixteenths, 0 … 4080, whatever the depth of the camera: what matching works on. Fixed point,
-/// so that sums over windows are exact and every engine sees the same input.
+/// Grey image for matching: levels in sixteenths of an 8-bit level, 0 … 4080, for any bit depth of the camera. Fixed
+/// point, so that sums over windows are exact and all engines get the same input.
 using GreyImage = Image<std::int16_t>;
 
 /// Converts a camera frame to grey (Rec. 601 luma for colour).
 /// `white_level` is the sample value of white; 0 takes the largest value of the sample type (255 or 65535).
-/// Throws Error for a null frame, a size outside 32×32 … 8192×8192, rows that overlap, or 16-bit samples at odd
-/// addresses.
+/// Throws Error for a null frame, a size outside 32×32 … 8192×8192, rows that overlap, 16-bit samples at odd
+/// addresses, or a white level that the samples cannot have.
 void to_grey(const FrameView& frame, double white_level, GreyImage& grey);
 
 }  // namespace roadstereo

@@ -19,8 +19,8 @@ class ImageMemory {
   ~ImageMemory() = default;
 };
 
-/// Allocator that images share their code by: of an ImageMemory, or of the heap. It moves and swaps with the image;
-/// copies of an image lie on the heap.
+/// Allocator of images: allocates from an ImageMemory, or from the heap. It moves and swaps with the image; copies of
+/// an image are allocated on the heap.
 template <class T>
 class ImageAllocator {
  public:

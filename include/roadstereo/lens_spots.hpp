@@ -10,7 +10,8 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// Places of a view that keep their grey levels while the picture around them changes. NaN: unknown yet, or none.
+/// Spots of a view whose grey levels stay the same while the image around them changes: dirt on the lens and dead
+/// pixels. NaN: not known yet, or there is no such spot.
 struct LensSpots {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -23,13 +24,14 @@ struct LensSpots {
 };
 
 /// Watches one view of a recording for dirt on its lens and for dead pixels. A frame counts when more than half of the
-/// picture has changed since the last one that did: what never moves because the vehicle stands still tells nothing.
+/// image has changed since the last frame that counted, so that frames at a standstill are ignored.
 class LensWatch {
  public:
-  /// Adds the next frame. Allocates only for the first one, or when the size changes, which begins anew.
+  /// Adds the next frame, in 1/16 grey level. A frame of another size starts over. Allocates memory only for the first
+  /// frame and after a change of size.
   void add(ImageView<const std::int16_t> grey);
 
-  /// What the last 20 frames that count, or more, showed.
+  /// Spots after the last multiple of 20 frames that counted; all NaN before the 20th.
   const LensSpots& spots() const { return spots_; }
 
  private:
@@ -58,7 +60,7 @@ struct PairSpots {
   LensSpots left, right;
 };
 
-/// Watches both views. A view may be empty: it tells nothing.
+/// Watches both views. An empty view is ignored.
 class PairWatch {
  public:
   PairSpots add(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right) {

@@ -19,8 +19,9 @@ struct DamageSighting {
 /// One damage of the road, from all frames and passes that show it.
 struct RoadDamageRecord {
   int id = 0;               ///< from 1, deepest first
-  MapDamage best;           ///< of the map if it is found there, else the best sighting; footprint of all
-  Measurement max_depth_m;  ///< fused, as the next three
+  MapDamage best;           ///< the finding in the map if there is one, else the best sighting; its footprint is that
+                            ///< of all
+  Measurement max_depth_m;  ///< fused from the sightings, as are the next three
   Measurement mean_depth_m;
   Measurement area_m2;
   Measurement volume_m3;
@@ -33,13 +34,14 @@ struct RoadDamageRecord {
   bool found_in_map = false;
 };
 
-/// Joins the sightings of one damage over frames and passes, and what is found in the map: footprints of one kind that
-/// overlap by a fifth of the smaller one. Figures of sightings that no border cuts are weighted with their inverse
-/// variances; only the part of their errors that differs from frame to frame shrinks, by the number of independent
-/// views, n / `view_factor`. What no sighting shows whole is measured in the map. Confidences of n frames, a frame
-/// without a sighting included, are those of one that is √(n / `view_factor`) times as significant. Returns the damages
-/// of at least `min_confidence`, and deeper than three of their standard errors, deepest first. Throws Error when one
-/// has no metric values.
+/// Joins the sightings of one damage over frames and passes, and the finding in the map: damages of one kind whose
+/// footprints overlap by a fifth of the smaller one. Values of sightings that no border cuts are averaged with inverse
+/// variances as weights. Only the part of their errors that differs from frame to frame shrinks, by the number of
+/// independent views, n / `view_factor`. A damage that is cut in all sightings has the values of `best`. The joint
+/// confidence of n frames, including frames without a sighting, is that of one frame √(n / `view_factor`) times as
+/// significant. Returns the damages with at least `min_confidence` whose depth is resolved: it exceeds three standard
+/// errors, or DamageEvidence::is_depth_resolved holds for a sighting or for the finding in the map. Deepest first.
+/// Throws Error when an option is out of range or a damage has no metric values.
 std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
                                           const RoadMap& map, const DamageOptions& options);
 

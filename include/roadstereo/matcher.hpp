@@ -22,12 +22,12 @@ enum class WindowShape { square, disc };
 
 /// Options of section 3.2: matching cost, aggregation, winner-take-all, left–right check, sub-pixel disparity.
 struct MatcherOptions {
-  /// Larger blocks and more weight of the prior where the pair is noisy, and blocks as low as the road is
-  /// foreshortened.
+  /// Adapt the support to the pair: larger blocks and more weight of the prior in noise, and blocks that are lower
+  /// where the road is more foreshortened.
   bool adapt_support = true;
-  /// Distance between the pixels that are matched, along rows and columns, 1 or 2: neighbours share most of their
-  /// window. Those between are interpolated. 2 needs an `aggregation_step` of 2 (or no aggregation) and one matched
-  /// view.
+  /// Distance between the pixels that are matched, along rows and columns, 1 or 2. The pixels between them are
+  /// interpolated, since neighbours share most of their window. 2 needs an `aggregation_step` of 2 (or no aggregation)
+  /// and one matched view.
   int pixel_step = 2;
   int block_radius = 4;  ///< r: N⁺ is 2r + 1 pixels wide, 1 … 10; the paper's 120-connected system is 5
   /// Height of N⁺ over its width, 0.1 … 1: it has 2 · round(r · block_aspect) + 1 rows, 3 at least.
@@ -43,8 +43,9 @@ struct MatcherOptions {
   /// is plain NCC.
   double ncc_noise_sigma = 1.0;
   bool left_right_check = true;  ///< eq. (12)
-  /// Match the target view too, with costs aggregated by its own weights, as the paper does. False projects the winners
-  /// of the reference view into the target view instead, where the largest disparity wins: half the work.
+  /// Match the target view too, with costs aggregated by its own weights, as the paper does. If false, the winners of
+  /// the reference view are projected into the target view instead, where the largest disparity wins; this takes half
+  /// the work.
   bool match_both_views = false;
   /// Cost of one pixel of distance from the prior, in units of the correlation, 0 … 100; 0 ignores the prior.
   double prior_weight = 0.08;
@@ -117,7 +118,8 @@ struct MatchInput {
 
 /// Output of `StereoEngine::match`: (x, y) is pixel (s·x, s·y) of the reference image, s = MatcherOptions::pixel_step.
 struct MatchMaps {
-  Image<float> disparity;  ///< sub-pixel; NaN invalid, as what fails the left–right check with occlusion_sigma_px 0
+  Image<float> disparity;      ///< sub-pixel; NaN invalid. With occlusion_sigma_px 0 that includes pixels that fail the
+                               ///< left–right check
   Image<std::int16_t> winner;  ///< winner-take-all on the reference volume; −1 where nothing can match
   /// Winner-take-all on the target volume, or the reference's winners projected; −1 likewise. All columns of the
   /// target, every s-th row.
@@ -140,21 +142,20 @@ struct EngineInfo {
   std::string name;                                                ///< what `--engine` takes
   std::string description;                                         ///< one line
   bool exact = false;                                              ///< the double-precision oracle
-  std::function<std::unique_ptr<StereoEngine>(int threads)> make;  ///< for that many worker threads, at least 1
+  std::function<std::unique_ptr<StereoEngine>(int threads)> make;  ///< for at most that many worker threads, at least 1
 };
 
-/// Engines of this build that this machine can run, fastest first, then those of register_engine. Where `cuda` is
-/// built, the first call looks for a GPU, which takes time and memory of it; so do "auto" and "cuda", but no other
-/// name.
+/// Engines of this build that can run on this machine, fastest first, then those added by register_engine. In a build
+/// with `cuda`, the first call looks for a GPU, which takes time and GPU memory; the names "auto" and "cuda" do so as
+/// well, but no other name.
 const std::vector<EngineInfo>& engines();
 
 /// The entry of the engine called `name`; "auto" takes the first of the registry. Throws like make_engine.
 const EngineInfo& find_engine(const std::string& name);
 
-/// Adds an engine of the caller's: `PipelineOptions::engine` then takes its name, while "auto" does not select it. The
-/// pipeline does with it what it does with its own: road model, shift, refinement by the variances, roll. Not
-/// thread-safe: call it before other threads use pipelines. Throws Error when the name is empty, "auto" or taken, or
-/// `make` is empty.
+/// Adds an engine of the caller. It is selected by its name in `PipelineOptions::engine`, never by "auto". The pipeline
+/// uses it like its own engines: road model, shift, refinement by the variances, roll. Not thread-safe: call it before
+/// other threads use pipelines. Throws Error when the name is empty, "auto" or taken, or `make` is empty.
 void register_engine(EngineInfo engine);
 
 /// Known engine that is not in `engines()`.

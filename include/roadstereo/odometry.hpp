@@ -16,11 +16,11 @@ struct FrameResult;
 
 struct OdometryOptions {
   double min_correlation = 0.3;    ///< below it there is no link, 0 … 1
-  double weak_correlation = 0.5;   ///< below it a link is weak, 0 … 1
+  double weak_correlation = 0.5;   ///< below it a link is weak, min_correlation … 1
   double min_overlap = 0.15;       ///< share of the view that a link needs, 0 … 1
   double reference_overlap = 0.7;  ///< below it the frame becomes the reference of the next ones, 0 … 1
   bool estimate_offset = true;     ///< estimate and undo an offset of the disparities at infinity
-  int kept_frames = 0;             ///< poses and links that are kept, the last ones, at least; 0: all
+  int kept_frames = 0;             ///< minimum number of the last poses and links that are kept; 0: all
   int threads = 0;                 ///< worker threads, 0: all cores; they do not change the results
 
   /// Throws Error naming the first option that is out of range.
@@ -30,7 +30,7 @@ struct OdometryOptions {
 /// Quality of a link.
 enum class LinkStatus {
   good,
-  weak,  ///< little texture agrees, or little overlaps: the covariance says how far it can be trusted
+  weak,  ///< little texture matches, or the views overlap little; the covariance shows how accurate the link is
 };
 const char* name_of(LinkStatus status);
 
@@ -44,18 +44,19 @@ struct FrameLink {
                                                     ///< to camera `to`
   std::array<double, 36> covariance{};              ///< translation, then rotation vector, in the axes of camera `to`
   double correlation = 0;                           ///< median NCC of patches of texture, −1 … 1
-  double overlap = 0;                               ///< share of the view of `from` that `to` sees, 0 … 1; what it
-                                                    ///< sees from farther away counts by the smaller area
+  double overlap = 0;                               ///< share of the view of `from` that `to` sees, 0 … 1; parts seen
+                                                    ///< from farther away count in proportion to their smaller area
   double offset_px = 0;                             ///< disparity offset at infinity that was undone, pixels
   double offset_sd_px = 0;                          ///< its standard error
-  double measured_offset_px = 0;                    ///< what this link alone tells of the offset
-  double measured_offset_sd_px = 0;                 ///< its standard error, 0: nothing
-  // What this link alone tells of the rig, with a free offset and shutter.
-  double rig_offset_px = 0;     ///< disparity offset at the principal point, pixels, with its growth towards the sides
-                                ///< estimated, too
-  double rig_offset_sd_px = 0;  ///< its standard error, 0: nothing
-  double shutter = 0;     ///< time from the first row of a picture to the last, by that between both frames; 0: global
-  double shutter_sd = 0;  ///< its standard error, 0: nothing
+  double measured_offset_px = 0;                    ///< offset estimated from this link alone, pixels
+  double measured_offset_sd_px = 0;                 ///< its standard error; 0: not measured
+  // Estimates for the rig from this link alone, with offset and shutter time as free parameters.
+  double rig_offset_px = 0;     ///< disparity offset at the principal point, pixels, estimated together with its growth
+                                ///< towards the sides
+  double rig_offset_sd_px = 0;  ///< its standard error; 0: not measured
+  double shutter = 0;     ///< time from the first to the last row of an image, relative to the time between the two
+                          ///< frames; 0: global shutter
+  double shutter_sd = 0;  ///< its standard error; 0: not measured
 };
 
 /// Maps of one frame, W×H.
@@ -79,8 +80,8 @@ class Odometry {
   Odometry(Odometry&&) noexcept;
   Odometry& operator=(Odometry&&) noexcept;
 
-  /// Adds a frame, with an index above that of the last one. Returns its pose. Throws Error when the sizes differ,
-  /// the calibration is not of that size, or the index does not grow.
+  /// Adds a frame, with an index above that of the last one. Returns its pose. Throws Error if the maps differ in size
+  /// from each other or from earlier frames, if the calibration does not fit that size, or if the index does not grow.
   const FramePose& add(int frame, const OdometryFrame& maps);
   const FramePose& add(int frame, const FrameResult& result);
 

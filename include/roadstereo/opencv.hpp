@@ -43,8 +43,8 @@ inline FrameView frame_view(const cv::Mat& image) {
           order};
 }
 
-/// Returns a matrix header over a map: CV_32FC1, CV_16SC1, CV_16UC1 or CV_8UC1 by the type of its values. The map must
-/// outlive it. Values of a const map must not be written.
+/// Returns a matrix header over a map, without a copy: CV_32FC1, CV_16SC1, CV_16UC1 or CV_8UC1, depending on the type
+/// of its values. The map must outlive the matrix. Do not write to a matrix of a const map.
 template <class T>
 cv::Mat mat_view(ImageView<T> map) {
   using Value = std::remove_const_t<T>;
@@ -105,28 +105,30 @@ class StereoMatcher final : public cv::StereoMatcher {
 
   /// Returns the whole result of the last pair: float disparities, standard errors, roll, road, transformed map.
   const FrameResult& result() const { return result_; }
-  /// Returns the damage of the last pair; throws Error as `Pipeline::find_damage`.
+  /// Returns the damage of the last pair. Throws Error if there is none, or its last `compute` failed, and as
+  /// `Pipeline::find_damage`.
   DamageMap find_damage() const {
     const PipelineOptions& options = pipeline_.options();
     return roadstereo::find_damage(result_, calibration_, options.damage, options.threads);
   }
 
-  /// Smaller disparities are invalid, pixels; 0 by default.
+  /// Smaller disparities are invalid, pixels, −2047 … 2047; 0 by default. The setter throws Error for other values.
   int getMinDisparity() const override { return min_disparity_; }
   void setMinDisparity(int minDisparity) override {
     require(minDisparity, -max_disparity, max_disparity, "minDisparity");
     min_disparity_ = minDisparity;
   }
 
-  /// Disparities of at least minDisparity + numDisparities are invalid, pixels; 0, the default, is no limit.
+  /// Disparities of at least minDisparity + numDisparities are invalid, pixels, 0 … 4094; 0, the default, is no limit.
+  /// The setter throws Error for other values.
   int getNumDisparities() const override { return num_disparities_; }
   void setNumDisparities(int numDisparities) override {
     require(numDisparities, 0, 2 * max_disparity, "numDisparities");
     num_disparities_ = numDisparities;
   }
 
-  /// The width of the correlation block, pixels: 2·block_radius + 1; block_aspect gives its height. A new value ends
-  /// the tracking of the road.
+  /// The width of the correlation block, pixels: 2·block_radius + 1, odd, 3 … 21; block_aspect gives its height. A new
+  /// value ends the tracking of the road. The setter throws Error for other values.
   int getBlockSize() const override { return 2 * pipeline_.options().matcher.block_radius + 1; }
   void setBlockSize(int blockSize) override {
     if (blockSize % 2 == 0) fail("blockSize is ", blockSize, "; it must be odd");
@@ -143,11 +145,11 @@ class StereoMatcher final : public cv::StereoMatcher {
   int getSpeckleRange() const override { return speckle_range_; }
   void setSpeckleRange(int speckleRange) override { speckle_range_ = speckleRange; }
 
-  /// The largest difference of the left-right check, pixels; 0 or less: no check. A new value ends the tracking of the
-  /// road.
+  /// The largest difference of the left-right check in whole pixels, at least 1; 0 or less: no check. A new value ends
+  /// the tracking of the road.
   int getDisp12MaxDiff() const override {
     const MatcherOptions& matcher = pipeline_.options().matcher;
-    return matcher.left_right_check ? static_cast<int>(std::lround(matcher.lr_max_diff_px)) : -1;
+    return matcher.left_right_check ? std::max(1, static_cast<int>(std::lround(matcher.lr_max_diff_px))) : -1;
   }
   void setDisp12MaxDiff(int disp12MaxDiff) override {
     PipelineOptions options = pipeline_.options();

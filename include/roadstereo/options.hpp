@@ -19,7 +19,8 @@ struct OptionText {
 /// Every option with its present value.
 std::vector<OptionText> list_options(const PipelineOptions& options);
 
-/// Sets one option from text. Throws Error for an unknown key (naming the nearest) or a value that does not parse.
+/// Sets one option from text. Throws Error for an unknown key (naming the nearest) or a value that does not parse. The
+/// range is not checked here, but by `PipelineOptions::validate`.
 void set_option(PipelineOptions& options, const std::string& key, const std::string& value);
 
 }  // namespace roadstereo

@@ -11,12 +11,12 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// Sampling of the target image when its rows are shifted.
+/// Sampling of the target image when its rows are shifted. `whole_pixel` requires LucasKanadeOptions::radius 0.
 enum class ShiftPrecision { whole_pixel, sub_pixel };
 
 /// What is searched after the shift.
 enum class Scope {
-  road,   ///< the road and its damage: what stands on the road gets no right disparity
+  road,   ///< the road and its damage: objects on the road get no correct disparity
   scene,  ///< everything that the pair shows, vehicles and houses too: slower
 };
 
@@ -25,11 +25,13 @@ struct PerspectiveOptions {
   bool enabled = true;  ///< false: no shift, plain stereo over the full range
   ShiftPrecision shift = ShiftPrecision::sub_pixel;
   Scope scope = Scope::road;
-  double max_damage_depth_m = 0.10;  ///< deepest measurable damage, metres, above 0, at most 2; without a
-                                     ///< calibration below a camera of 1.5 m, PerspectiveShift::assumed_camera_height_m
+  double max_damage_depth_m = 0.10;  ///< deepest measurable damage, metres, above 0, at most 2; without a calibration
+                                     ///< the camera is assumed 1.5 m above the road
+                                     ///< (PerspectiveShift::assumed_camera_height_m)
   double max_bump_height_m = 0.05;   ///< highest measurable bump, metres, above 0, at most 2; likewise
   int disparities = 0;               ///< number of disparities D searched after the shift, 1 … 1024; 0 derives it
-  double delta_p_px = -1;  ///< δp: the road's disparity after the shift, pixels, at most 1024; negative derives it
+  double delta_p_px = -1;  ///< δp: the road's disparity after the shift, pixels, less than the number of disparities;
+                           ///< negative derives it
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
@@ -37,12 +39,14 @@ struct PerspectiveOptions {
 
 /// Chooses δp and D: with a calibration from the deepest damage and the highest bump at the road's distance, without
 /// one from the residuals of the correspondences; for the scene from the largest disparity, too. Without a reliable
-/// model there is no shift and the full range is searched.
+/// model there is no shift and the full range is searched. Throws Error if the given δp is not less than the number of
+/// disparities, which the width of the image bounds.
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
                                   int width, int height, const PerspectiveOptions& options);
 
-/// Shifts the rows of the target image (π_tar → π_tar'), along themselves and by the rows' offset. `first_column[v]`
-/// becomes the first column of the transformed row that lies inside the target image (= width when none does).
+/// Shifts the rows of the target image (π_tar → π_tar') horizontally, and undoes the misalignment of the rows.
+/// `first_column[v]` becomes the first column of the transformed row that lies inside the target image (= width when
+/// none does).
 /// Throws Error for a misalignment of more than Misalignment::max_px.
 void transform_target(ImageView<const std::int16_t> target, const PerspectiveShift& shift, int threads,
                       GreyImage& transformed, std::vector<int>& first_column);

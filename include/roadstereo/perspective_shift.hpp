@@ -7,16 +7,17 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// What the rectification left of a wrong pose of the target's camera, small: its rows lie lower, and it is turned
-/// about its optical axis. A point at column x and row v of the view as it should be lies `columns_at` to the right of
-/// that and `rows_at` below it.
+/// Small error in the pose of the target camera that remains after rectification: a vertical shift and a rotation about
+/// the optical axis. A point that should be at column x and row v is found `columns_at(v)` to the right of that
+/// position and `rows_at(x, v)` below it, pixels.
 struct Misalignment {
   static constexpr double max_px = 8;  ///< largest one that can be undone, pixels
 
   double rows_px = 0;    ///< offset of the rows at the principal point, pixels
   double turn_rad = 0;   ///< clockwise; it moves rows and columns
-  double row_scale = 0;  ///< height of the target's view over the reference's minus 1. Only its effect on the rows is
-                         ///< undone: a wrong focal length and a wrong tilt move the columns differently
+  double row_scale = 0;  ///< ratio of the height of the target view to that of the reference view, minus 1. Only its
+                         ///< effect on the rows is undone, since a wrong focal length and a wrong tilt move the columns
+                         ///< differently
   double cx_px = 0;      ///< principal point
   double cy_px = 0;
 
@@ -24,7 +25,7 @@ struct Misalignment {
   ROADSTEREO_HD double rows_at(double x, double v) const {
     return rows_px + turn_rad * (x - cx_px) + row_scale * (v - cy_px);
   }
-  /// Returns the largest of |rows_at| and |columns_at| in a W×H image, pixels; NaN where a figure is none.
+  /// Returns the largest of |rows_at| and |columns_at| in a W×H image, pixels; NaN if a member is NaN.
   double largest_px(int width, int height) const {
     const double x = 0.5 * (width - 1), v = 0.5 * (height - 1);
     const double rows = std::abs(rows_at(x, v)) + std::abs(turn_rad) * x + std::abs(row_scale) * v;

@@ -32,8 +32,9 @@ struct PipelineOptions {
   std::string engine = "auto";  ///< a name from engines(), or "auto"
   int threads = 0;              ///< worker threads; 0 takes all cores
   double white_level = 0;       ///< sample value of white, 0 … 65535; 0 takes 255 or 65535 by the sample type
-  bool check_rows = true;       ///< measure whether the rows agree: where the road model is estimated anew, and on
-                                ///< a tracked road every 100 frames, every 10 while they are unknown
+  bool check_rows = true;       ///< measure the vertical alignment of the rows: whenever the road is searched without
+                                ///< tracking, and on a tracked road every 100 frames, or every 10 while the alignment
+                                ///< is unknown
   bool correct_rows = true;     ///< undo the misalignment, up to 8 px, that `check_rows` has measured
   bool narrow_search = true;    ///< search each tile only near the disparities that the coarse search finds there
   RoadModelOptions road_model;
@@ -42,11 +43,11 @@ struct PipelineOptions {
   MatcherOptions matcher;
   RefinementOptions refinement;
   LucasKanadeOptions lucas_kanade;
-  OffRoadOptions off_road;  ///< only with scope road and the Lucas–Kanade step. With the horizon outside the picture
-                            ///< σ is not tested: only what the scene contradicts is rejected
+  OffRoadOptions off_road;  ///< applied only with Scope::road and the Lucas–Kanade step. If the horizon is outside the
+                            ///< image, σ is not tested, and only disparities that the scene contradicts are rejected
   RollOptions roll;
   DamageOptions damage;             ///< of `Pipeline::find_damage`
-  std::optional<RigBias> rig_bias;  ///< what every disparity of the left image is too large by; subtracted
+  std::optional<RigBias> rig_bias;  ///< disparity error of the rig, subtracted from the disparities of the left image
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
@@ -62,14 +63,13 @@ struct StageTimes {
   double prepare = 0;  ///< conversion to grey, checks of the pair
   double road_model = 0;
   double perspective = 0;
-  double coarse = 0;  ///< coarse search: disparity range of each tile, prior
-  double match = 0;   ///< cost, aggregation, winner-take-all, left–right check, sub-pixel
-  double refinement =
-      0;  ///< adding the shift back, smoothing by the standard errors, Lucas–Kanade step, what is off the road
-  double roll = 0;       ///< roll and projection model
-  double transform = 0;  ///< disparity transformation
-  double download = 0;   ///< maps from a device to the host; about 0 with the engines of the host
-  double total = 0;      ///< on the host's clock; so are the other stages, unless DeviceOptions::timing is set
+  double coarse = 0;      ///< coarse search: disparity range of each tile, prior
+  double match = 0;       ///< cost, aggregation, winner-take-all, left–right check, sub-pixel
+  double refinement = 0;  ///< adding the shift back, refinement, Lucas–Kanade step, rejection beside the road
+  double roll = 0;        ///< roll and projection model
+  double transform = 0;   ///< disparity transformation
+  double download = 0;    ///< maps from a device to the host; about 0 with the engines of the host
+  double total = 0;       ///< on the host's clock; so are the other stages, unless DeviceOptions::timing is set
 };
 
 /// Result for one pair. All maps have the size of the images.
@@ -84,18 +84,20 @@ struct FrameResult {
   RoadModelEstimate road;    ///< before matching
   PerspectiveShift shift;
   RollEstimate geometry;    ///< after matching; valid only when `roll_found`
-  bool roll_found = false;  ///< false when too few disparities were valid; `transformed` is then all NaN
+  bool roll_found = false;  ///< false without a road, with too few valid disparities, or if the plane is tilted like a
+                            ///< wall; `transformed` is then all NaN
   double delta_t = 0;       ///< δt, pixels
   RoadResiduals spread;     ///< σ_d, eq. (37)
   double valid_share = 0;   ///< share of the pixels that have a disparity
-  RowAlignment rows;        ///< without points where it was not measured: PipelineOptions::check_rows
+  RowAlignment rows;        ///< `points` is 0 if it was not measured for this frame (PipelineOptions::check_rows)
   StageTimes ms;
   double mde_per_s = 0;  ///< millions of disparity evaluations per second: W·H·D / total time
   std::vector<std::string> warnings;
-  std::optional<RigBias> rig_bias;  ///< that `disparity` is without
+  std::optional<RigBias> rig_bias;  ///< error field that was subtracted from `disparity`
 };
 
-/// State that one frame hands to the next; a run restored from it gives the same bits. Frames of another size reset it.
+/// State carried from one frame to the next. A run restored from it gives bit-identical results. A frame of another
+/// size resets it.
 struct PipelineState {
   int width = 0;                    ///< size of the frames, pixels; 0 before the first one
   int height = 0;                   ///< pixels
@@ -103,9 +105,9 @@ struct PipelineState {
   double roll_rad = 0;              ///< ψ(t), start of the descent of ψ(t+1), eq. (25); 0 when not observable
   Misalignment misalignment;        ///< of the target, as last measured; zero where it is none, or unknown
   bool rows_known = false;          ///< whether `misalignment` was measured
-  int frames_since_rows = 0;        ///< frames since the rows were last to be measured
+  int frames_since_rows = 0;        ///< frames since the last attempt to measure the rows
 
-  /// Throws Error naming the first value that no frame of this size leaves.
+  /// Throws Error naming the first value that is out of range for frames of this size.
   void validate() const;
 };
 
@@ -123,16 +125,18 @@ class Pipeline {
 
   /// Processes one rectified pair. The result belongs to the pipeline and is valid until the next call.
   /// Throws Error for an invalid pair: sizes differ or are outside 32×32 … 8192×8192, an image has one colour, both
-  /// images are the same, left and right seem to be swapped, or the calibration, the mask or the rig bias belongs to
-  /// another size or rig.
+  /// images are the same, left and right seem to be swapped, the white level is above 255 and samples have 8 bits, the
+  /// calibration, the mask or the rig bias belongs to another size or rig, or `perspective.delta_p_px` is not less than
+  /// the number of disparities in images of this width.
   const FrameResult& process(const FrameView& left, const FrameView& right);
 
   /// The same, but swaps the result with `result` and reuses its memory: with two or more results in turn, one frame
   /// can be read while the next one is processed.
   void process(const FrameView& left, const FrameView& right, FrameResult& result);
 
-  /// Finds and measures damage in the last frame; none without a road. Throws Error when there is no last frame (none
-  /// yet, rejected, swapped out, reset), or when hardly any of its disparities lies on a road.
+  /// Finds and measures damage in the last frame. Without a road, the result is empty. Throws Error when there is no
+  /// last frame (none yet, rejected, swapped out, reset, or `restore` called since), or when hardly any of its
+  /// disparities lies on a road.
   DamageMap find_damage() const;
   /// The same into an earlier result, whose maps keep their memory when the sizes are equal.
   void find_damage(DamageMap& result) const;
@@ -166,6 +170,7 @@ class Pipeline {
   DeviceProfile device_profile() const;
 
   const PipelineOptions& options() const;
+  const std::optional<StereoCalibration>& calibration() const;
   const std::string& engine_name() const;
 
  private:
@@ -173,7 +178,9 @@ class Pipeline {
   std::unique_ptr<State> state_;
 };
 
-/// Finds damage in a result that was swapped out, as `Pipeline::find_damage` does.
+/// Finds damage in a result that was swapped out, as `Pipeline::find_damage` does. Damages at the edge of a mask are
+/// measured including the part that is interpolated under it; a damage with half or more of its pixels under the mask
+/// is dropped. Throws Error if `frame` has no maps on the host, and as find_damage(DamageInput).
 DamageMap find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
                       const DamageOptions& options = {}, int threads = 0);
 /// The same into an earlier result, whose maps keep their memory when the sizes are equal.

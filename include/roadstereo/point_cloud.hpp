@@ -17,8 +17,8 @@ struct PointCloud {
   std::vector<std::array<std::uint8_t, 3>> colours;  ///< (red, green, blue) per point; empty: no colours
 };
 
-/// Maximum distance of a cloud's points, in baselines: there a disparity error of 0.1 px moves a point by several
-/// metres with any usual camera.
+/// Maximum distance of the points of a cloud, in baselines. At that distance, a disparity error of 0.1 px moves a point
+/// by several metres with any usual camera.
 inline constexpr double farthest_baselines = 250;
 
 /// Triangulates a disparity map: camera frame (x right, y down, z forward), metres, row by row. Skips pixels without a

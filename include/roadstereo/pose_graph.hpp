@@ -20,18 +20,19 @@ namespace roadstereo {
 /// Whether this build has Ceres.
 bool has_pose_graph();
 
-/// Link between frames that are far apart in time: the place was seen before.
+/// Link between frames far apart in time that show the same place.
 struct LoopLink {
   FrameLink link;
-  std::array<double, 3> centre_m{};  ///< what the middle of the image shows, camera `link.to`
+  std::array<double, 3> centre_m{};  ///< point of the road at the centre of the image, in the axes of camera `link.to`
   double pixel_m = 0;                ///< side of a pixel there
   bool used = false;                 ///< agrees with the graph
-  double before_m = 0;               ///< misclosure: how far the trajectory is off at `centre_m`, without loops
+  double before_m = 0;               ///< misclosure at `centre_m` of the trajectory without loops
   double after_m = 0;                ///< ... with loops
 };
 
-/// Position of a GNSS antenna in axes of the Earth: x east, y north, z up. All fixes share one unknown error with these
-/// standard errors; on top each has noise, whose size is estimated from the fit to the trajectory.
+/// Position of a GNSS antenna in axes of the Earth: x east, y north, z up. All fixes have one unknown error in common,
+/// with these standard errors. In addition each has its own noise, whose size is estimated from the fit to the
+/// trajectory.
 struct PositionFix {
   double time_s = 0;
   std::array<double, 3> position_m{};  ///< z NaN: unknown
@@ -45,8 +46,9 @@ struct PositionFix {
 struct PoseGraphInput {
   Trajectory trajectory;        ///< of `Odometry`
   std::vector<double> times_s;  ///< of its frames; NaN unknown. Needed for fixes only
-  /// Normal of the road of each frame, out of the road, camera axes. Roads are level within 3° on average, which
-  /// matters where the fixes say less of it. Needed for fixes only.
+  /// Normal of the road in each frame, pointing up out of the road, in camera axes; absent without a road. Roads are
+  /// assumed level within 3° on average, which matters where the fixes determine the tilt less well. Needed for fixes
+  /// only.
   std::vector<std::optional<std::array<double, 3>>> road_up;
   std::vector<FrameLink> links;
   std::vector<LoopLink> loops;
@@ -55,7 +57,8 @@ struct PoseGraphInput {
 
 struct PoseGraphOptions {
   double max_time_offset_s = 30;  ///< between the clocks of frames and fixes, 0 … 600
-  double time_offset_sd_s = 10;   ///< expected time offset; it is 0 where nothing tells, 0.001 … 600
+  double time_offset_sd_s = 10;   ///< standard deviation of the expected time offset, 0.001 … 600; the offset is 0 if
+                                  ///< the data do not determine it
   double lever_arm_sd_m = 1;      ///< expected distance of the antenna from the camera, per axis, 0.001 … 100
   double fix_correlation_s = 10;  ///< within this time the noise of fixes is the same, 0 … 3600
   double max_fix_gap_s = 5;       ///< no position between fixes farther apart in time, 0.001 … 3600
@@ -73,13 +76,13 @@ struct TrackFit {
 };
 
 struct PoseGraphResult {
-  /// Without fixes in the world of the input: the first frame of each piece stays. With fixes x is east, y north, z up,
-  /// and what they anchor is piece 0; covariances are then those of the position on the Earth.
+  /// Without fixes: in the world of the input, with the first frame of each piece unchanged. With fixes: x east, y
+  /// north, z up; everything that they anchor is piece 0, and the covariances are those of the position on the Earth.
   Trajectory trajectory;
-  std::vector<LoopLink> loops;     ///< those of the input, with what became of them
+  std::vector<LoopLink> loops;     ///< the loops of the input, with `used` and the misclosures filled in
   std::optional<TrackFit> track;   ///< absent without fixes, or if they cannot be used
-  std::string track_unused;        ///< why, a sentence
-  bool track_contradicts = false;  ///< whether the fixes are none of this trajectory
+  std::string track_unused;        ///< why the fixes cannot be used, as a sentence; empty if they are used
+  bool track_contradicts = false;  ///< whether the fixes contradict the trajectory
 
   std::size_t loops_used() const;
   /// RMS misclosure of the loops used, metres and pixels of the ground, without and with loops; 0 without loops.
@@ -91,8 +94,9 @@ struct PoseGraphResult {
 
 /// Optimises the poses. Loops that contradict the trajectory (χ² test with 16 times the covariance of both) or other
 /// loops (Cauchy loss) have no weight. Fixes that do not fit the trajectory at any time offset, or only mirrored, are
-/// refused. The result does not depend on the number of threads. Throws Error for options out of range, links of
-/// unknown frames, or a build without Ceres.
+/// refused. The result does not depend on the number of threads. Throws Error for options out of range, frames with two
+/// poses, links of unknown frames, fixes that are out of range or not in order of time, fixes without `times_s` and
+/// `road_up` for every frame, a graph that cannot be solved, or a build without Ceres.
 PoseGraphResult optimise_poses(const PoseGraphInput& input, const PoseGraphOptions& options = {});
 
 }  // namespace roadstereo

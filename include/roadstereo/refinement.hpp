@@ -6,10 +6,11 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// Options of the refinement: a mean over the neighbours, weighted by their variances and by their agreement with the
-/// pixel. Heights above the road model are averaged, so that the road is flat, in the first pass less what the slope of
-/// the surface at the pixel lets expect, where it is more than noise; differences beyond the joint errors are kept.
-/// Each further pass averages the last one's result over twice its window (à-trous filter, guided by the variance).
+/// Options of the refinement: a mean over the neighbours, weighted by the inverse of their variances and by their
+/// agreement with the pixel. It averages heights above the road model, in which the road is flat. In the first pass the
+/// heights are compared along the local slope of the surface, as far as that exceeds the noise. Differences beyond the
+/// joint errors are kept. Each further pass averages the result of the last one over a window twice as large (à-trous
+/// filter, guided by the variance).
 struct RefinementOptions {
   int passes = 2;                       ///< 1 … 3
   int radius = 12;                      ///< of the first window, pixels, 0 … 32; 0 switches the refinement off
@@ -18,7 +19,8 @@ struct RefinementOptions {
   double max_agreement_sigma_px = 0.6;  ///< upper bound on σ in that test, pixels, min_sigma_px … 10
   double min_sigma_px = 0.02;           ///< standard error of interpolation and calibration, pixels, 0.001 … 1
   double max_sigma_px = 1.0;            ///< disparities with a larger σ become invalid, pixels, above 0
-  int smoothing_px = 6;  ///< standard deviation of all averaging, 0 … 32: what a bent surface adds to σ; 0: nothing
+  int smoothing_px = 6;  ///< standard deviation of all averaging, pixels, 0 … 32; determines what σ gains on a bent
+                         ///< surface; 0: nothing
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
@@ -28,8 +30,8 @@ struct RefinementOptions {
 /// Writes the refined disparities (pixels) and their standard errors `sigma` (pixels); both are NaN where the disparity
 /// is NaN or its error, without that of smoothing, exceeds max_sigma_px. `disparity` (pixels, NaN invalid) and
 /// `variance` (pixels²) are from matching with this `pixel_step`, 1 or 2. `road`: road model, 0 where unknown.
-/// `effective_samples`: number of pixels that one disparity rests on; closer neighbours are not independent. Throws
-/// Error when the maps differ in size.
+/// `effective_samples`: number of pixels from which one disparity is computed; neighbours closer than that are not
+/// independent. Throws Error when the maps differ in size.
 void refine_disparities(ImageView<const float> disparity, ImageView<const float> variance, int pixel_step,
                         const DisparityPlane& road, double effective_samples, const RefinementOptions& options,
                         int threads, Image<float>& refined, Image<float>& sigma);

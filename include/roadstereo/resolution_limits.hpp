@@ -72,8 +72,8 @@ struct RowResolution {
 /// min_area_m2. The noise of the mean over a rut is that of a disparity over the root of the number of support windows.
 class ResolutionLimits {
  public:
-  /// Throws Error for options out of range, for a calibration without a size, and if no row of the image shows the
-  /// road.
+  /// Throws Error for options out of range, for a calibration without a size or refused by its `validate`, and if no
+  /// row of the image shows the road within 1 km.
   ResolutionLimits(const StereoCalibration& calibration, const CameraPose& pose, const ResolutionOptions& options = {});
 
   /// First row that shows the road at Z ≤ 1 km, 0 … height − 1.

@@ -27,7 +27,7 @@ std::array<double, 3> transform_point(const RigidTransform& transform, const std
 /// Returns a direction, rotated.
 std::array<double, 3> rotate(const RigidTransform& transform, const std::array<double, 3>& direction);
 
-/// Largest column or row of a cell, and least but for the sign: about 5000 km at 1 cm.
+/// Largest absolute value of the column or row of a cell: about 5000 km at 1 cm.
 inline constexpr int max_map_cell = 1 << 29;
 
 /// Rectangle of cells of a map. Cell (i, j) covers i … i + 1 times j … j + 1 cell sizes along x and y.
@@ -50,14 +50,14 @@ struct MapRaster {
 struct RoadMapOptions {
   double cell_m = 0.01;      ///< side of a cell, 0.0005 … 10
   int tile_cells = 128;      ///< side of a tile, cells, 16 … 1024
-  int max_tiles = 192;       ///< in memory, at least 4; the others are on disk
+  int max_tiles = 192;       ///< in memory, 4 … 1048576; the others are on disk
   double max_above_m = 0.4;  ///< points higher above the frame's road are vehicles or walls, 0 … 100
   double max_below_m = 0.4;  ///< points deeper below it are no road, 0 … 100
   double max_footprint_cells =
-      10;                  ///< pixels that cover more of the road along the line of sight are left out, 1 … 1000
-  double gate_sigmas = 4;  ///< larger differences are other surfaces, 1 … 100
-  /// Share of the variance of a height that all frames have in common, 0 … 1: it does not shrink. Measured on rendered
-  /// roads (docs/mapping.md): what the support window smooths, it smooths in every frame.
+      10;                  ///< pixels that cover more cells of road along the line of sight are left out, 1 … 1000
+  double gate_sigmas = 4;  ///< heights that differ by more standard errors belong to another surface, 1 … 100
+  /// Share of the variance of a height that all frames have in common, 0 … 1, and that therefore does not shrink with
+  /// their number: the support window smooths alike in every frame. Measured on rendered roads (docs/mapping.md).
   double common_share = 0.1;
   int threads = 0;  ///< 0: all cores
 
@@ -65,7 +65,7 @@ struct RoadMapOptions {
   void validate() const;
 };
 
-/// What one frame says of the road. Views are W×H.
+/// Data of one frame that is added to a map. Views are W×H.
 struct MapFrame {
   ImageView<const float> disparity;  ///< ℓ, pixels; NaN invalid
   ImageView<const float> sigma;      ///< standard error of ℓ, pixels
@@ -76,17 +76,17 @@ struct MapFrame {
   RigidTransform camera_to_map{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< rotation and translation; z up
 };
 
-/// What continues a map with the tiles in its folder.
+/// State from which a map is continued, together with the tiles in its folder.
 struct SavedMap {
   std::vector<std::array<int, 3>> tiles;  ///< column, row, generation of its file
   std::array<double, 3> sums{};           ///< of the errors of heights
 };
 
 /// 2.5-D map of a road: height, its standard error and colour in square cells, z up. Frames are fused cell by cell with
-/// inverse variances. The standard errors are scaled by the spread of the heights, and count the correlation of
-/// successive frames, both of which the map measures. A cell keeps two surfaces, the one that more frames agree on and
-/// its rival, so that what moves does not stay. Tiles of cells are kept on disk, the least recently used first: memory
-/// is bounded.
+/// inverse variances. The standard errors are scaled by the spread of the heights and allow for the correlation between
+/// successive frames; the map measures both. A cell keeps two surfaces, the one on which more frames agree and a rival,
+/// so that moving objects do not remain in the map. Tiles of cells are kept on disk, the least recently used first:
+/// memory is bounded.
 ///
 /// The height of a cell in a frame is found by fixed-point iteration: the point of the surface on the line of sight
 /// through the cell's centre, until the line meets the surface in the cell. Cells that the camera does not see do not
@@ -104,16 +104,18 @@ class RoadMap {
   RoadMap(RoadMap&&) noexcept;
   RoadMap& operator=(RoadMap&&) noexcept;
 
-  /// Fuses a frame. Returns the number of cells that it measures. Throws Error for an image without a size in common
-  /// with the disparities, for a transformation that is not rigid and for one that leads too far from the origin
-  /// (`max_map_cell`), SystemError if a tile cannot be written.
+  /// Fuses a frame. Returns the number of cells that it measures. Throws Error for an image or standard errors of
+  /// another size than the disparities, for a calibration that its `validate` refuses, for a transformation that is not
+  /// rigid, for one that leads too far from the origin (`max_map_cell`) or inclines the road by more than 70°,
+  /// SystemError if a tile cannot be written.
   std::size_t add(const MapFrame& frame);
 
-  /// Writes all tiles to the folder and returns what continues the map. The files of the last save stay until `commit`,
-  /// to be called when this one is recorded. Throws SystemError on a full disk.
+  /// Writes all tiles to the folder and returns the state from which the map can be continued. The files of the
+  /// previous save are kept until `commit`, which is to be called once the returned state is stored. Throws SystemError
+  /// on a full disk.
   SavedMap save();
   void commit();
-  /// Leaves the tiles in the folder at the end.
+  /// Makes the destructor leave the tiles in the folder.
   void keep();
 
   /// Returns the smallest box with all tiles; empty without any.
@@ -139,7 +141,7 @@ class RoadMap {
 
 /// Returns a cell size for a camera over a road and images of width×height pixels, metres: the geometric mean of the
 /// ground sampling distances in the nearest quarter of the road in view, rounded down to 1, 2 or 5 times a power of
-/// ten; one that a map can have.
+/// ten; one that a map can have. Throws Error when no pixel of the images sees the road.
 double suggested_cell_m(const DisparityPlane& road, const StereoCalibration& calibration, int width, int height);
 
 /// Returns the transformation from a camera to axes on its road: origin at the foot of the camera, x to its right, y

@@ -28,9 +28,9 @@ struct RoadModelOptions {
   void validate() const;
 };
 
-/// What is known of the road of a pair.
+/// Status of the road in a pair.
 enum class RoadStatus {
-  none,    ///< there is no road in the pair, or nothing shows it: no roll, nothing metric, no damage
+  none,    ///< the pair shows no road, or gives no evidence of it: no roll, no metric values, no damage
   weak,    ///< a road with little evidence: it fills little of the picture, the picture is poor, or a wall or a plane
            ///< above the camera has far more
   found,   ///< found in this pair alone
@@ -43,8 +43,8 @@ struct RoadModelEstimate {
   DisparityPlane model;
   RoadStatus status = RoadStatus::none;
   std::string reason;           ///< why there is no road, or what speaks against it; else empty
-  double evidence = 0;          ///< for the plane, per pixel of the part of the picture where it would be seen, at
-                                ///< least half of it; about 0 … 2; 0 when tracked
+  double evidence = 0;          ///< evidence for the plane per pixel of the part of the image where it would be
+                                ///< visible, taken as at least half of the image; about 0 … 2; 0 when tracked
   double inlier_share = 0;      ///< share of the textured samples below the horizon that the plane explains, 0 … 1
   double correlation = 0;       ///< 10th percentile of the NCC of blocks on the road, 0.3 … 1; 0 when unknown
   int matches = 0;              ///< reliable correspondences found over the whole image
@@ -73,7 +73,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
 struct TrackedRoad {
   DisparityPlane model;
   double inlier_share = 0;  ///< RoadModelEstimate::inlier_share, 0 … 1
-  double correlation = 0;   ///< RoadModelEstimate::correlation; stays where this pair tells none
+  double correlation = 0;   ///< RoadModelEstimate::correlation; unchanged if the last pair gave none
 };
 
 /// Tracks the last frame's road: searches around `previous` and refits. The status is `none` when the road explains far
@@ -84,8 +84,8 @@ RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageVie
                                     const RoadModelOptions& options, int threads = 0,
                                     ImageView<const std::uint8_t> mask = {});
 
-/// The same by the mean correlation of cells of 5×5 blocks, which still tells the disparity where noise hides that of
-/// every single block.
+/// The same by the mean correlation over cells of 5×5 blocks, which still determines the disparity where a single block
+/// is lost in noise.
 RoadModelEstimate verify_road_model_in_noise(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                              const TrackedRoad& previous,
                                              const std::optional<StereoCalibration>& calibration,

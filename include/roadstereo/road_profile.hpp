@@ -24,11 +24,12 @@ struct LaneOptions {
   void validate() const;
 };
 
-/// Largest gap between a profile and a straightedge that rests on it: below the upper hull of every window of that
-/// length. NaN heights are gaps. 0 with fewer than three heights.
+/// Returns the largest gap, metres, between a profile and a straightedge that rests on it: the depth below the upper
+/// hull of every window of that length. NaN heights are missing values. 0 with fewer than three heights.
 double straightedge_gap(std::span<const double> heights_m, double spacing_m, double straightedge_m);
 
-/// Mean gap of a flat profile whose heights have independent errors of standard deviation 1, by simulation.
+/// Returns the mean gap of a flat profile whose heights have independent errors with a standard deviation of 1, by
+/// simulation; in the unit of that deviation.
 double straightedge_noise_gap(std::size_t heights, double spacing_m, double straightedge_m);
 
 /// Heights across the lane, from left to right.
@@ -69,8 +70,9 @@ struct LaneProfiles {
   std::vector<RoughnessSection> sections;
 };
 
-/// Parts of a path, metres, that lead forward. Steps back are left out until the path is passed again; farther than 5 m
-/// they begin another part, as after a turn. Points closer than 2 cm are one.
+/// Splits a path, metres, into parts that lead forward. Points behind the end of a part are left out until the path
+/// leads beyond it again; more than 5 m from it they begin a new part, as after a turn. Points closer than 2 cm to the
+/// last one are left out.
 std::vector<std::vector<std::array<double, 2>>> forward_paths(std::span<const std::array<double, 2>> path);
 
 /// Measures profiles along a path, metres in the map. Heights of a profile are means over a strip; their standard

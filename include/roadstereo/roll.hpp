@@ -24,7 +24,8 @@ struct RollOptions {
   int max_iterations = 200;                           ///< of the descent or of the robust reweighting, 1 … 100000
   double delta_t_px = -1;                             ///< δt of eq. (29), pixels, at most 10000; negative derives it
   double max_roll_stderr_rad = 0.05;                  ///< largest standard error of an observable ψ, above 0
-  double min_gradient_px = 1.0;  ///< smallest change of the road's disparity over the image for it, at least 0
+  double min_gradient_px = 1.0;  ///< smallest change of the road's disparity over the image for an observable ψ,
+                                 ///< pixels, at least 0
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
@@ -45,7 +46,8 @@ struct RollEstimate {
 
 /// Minimises eq. (23) over the valid disparities, only over those where `region` (W×H, or empty: all) is not 0.
 /// `initial_roll_rad`, the last frame's ψ, starts the descent; `prior`, the road model from before matching, starts the
-/// robust solver. Throws Error when fewer than 16 disparities are valid or all lie on one line of the image.
+/// robust solver. Throws Error when fewer than 16 disparities are valid or all lie on one line of the image, when
+/// `region` has another size, and when an option is out of range.
 RollEstimate estimate_roll(ImageView<const float> disparity, ImageView<const std::uint8_t> region,
                            const std::optional<DisparityPlane>& prior, double initial_roll_rad,
                            const RollOptions& options, int threads = 0);

@@ -18,10 +18,10 @@ struct SeriesSample {
 
 /// Smooth a series: Kalman filter with constant velocity and white acceleration, and Rauch–Tung–Striebel smoother
 /// (1965). The ratio of process to measurement noise and their scale are those of maximum likelihood. Standard errors
-/// count if any known sample has one; those without get the median. If they are larger than the scatter
-/// explains, the excess counts as an error common to all samples, which smoothing cannot reduce: it stays in those
-/// returned. Returns one value per sample, NaN where the sample is NaN; fewer than 5 known samples are returned as they
-/// are.
+/// are used if any known sample has one; samples without one get the median. If they are larger than the scatter
+/// explains, the excess is treated as an error common to all samples. Smoothing cannot reduce it, and it remains in the
+/// returned standard errors. Returns one value per sample, NaN where the sample is NaN; fewer than 5 known samples are
+/// returned as they are.
 std::vector<Measurement> smooth_series(std::span<const SeriesSample> samples);
 
 }  // namespace roadstereo

@@ -24,9 +24,11 @@ const char* name_of(Distress distress);
 
 /// Severity of a damage by a table of its distress.
 enum class Severity {
-  unknown,       ///< no calibration, no table for this distress in the scheme, or the depth cannot be trusted
+  unknown,       ///< no calibration, no table with classes for this distress in the scheme, or the depth cannot be
+                 ///< trusted
   unresolvable,  ///< neither the largest nor the mean depth is three standard errors of its noise
-  uncertain,     ///< no class has more than half of the probability
+  uncertain,     ///< no class has more than half of the probability, or the area or the depth is uncertain by more than
+                 ///< ±50 %
   minor,         ///< below the table
   low,
   medium,
@@ -39,7 +41,7 @@ enum class DistressUnit { count, square_metre, metre };
 /// Return "count", "m2" or "m".
 const char* name_of(DistressUnit unit);
 
-/// Probability of each class of severity, 0 … 1; they sum to 1.
+/// Probability of each class of severity, 0 … 1; they sum to 1, or are all 0 if there are no classes.
 struct SeverityProbabilities {
   double minor = 0, low = 0, medium = 0, high = 0;
 };
@@ -51,8 +53,9 @@ struct SeverityTable {
   std::vector<double> depths_m;     ///< ascending lower limits of the rows; empty: there are no classes
   std::vector<double> diameters_m;  ///< ascending lower limits of the columns; empty: the depth alone decides
   std::vector<std::vector<Severity>> classes;                      ///< low, medium or high by row and column
-  double max_counted_m = std::numeric_limits<double>::infinity();  ///< wider damages count by their area,
-  double area_of_one_m2 = 0.5;                                     ///< divided by this
+  double max_counted_m = std::numeric_limits<double>::infinity();  ///< diameter, metres, above which a damage counts by
+                                                                   ///< its area
+  double area_of_one_m2 = 0.5;                                     ///< area that counts as one damage, m²
 
   /// Look up a class. Values below the first limits, and NaN, give `minor`; a table without classes `unknown`.
   Severity severity(double depth_m, double diameter_m) const;
@@ -77,9 +80,6 @@ struct SeverityScheme {
 /// (m) by a width that the support window hides: both have no classes.
 SeverityScheme astm_d6433();
 
-/// Look up the severity of a pothole in the table of ASTM D6433.
-Severity astm_severity(double depth_m, double diameter_m);
-
 /// Integrate a table over normal distributions of depth and mean diameter.
 SeverityProbabilities severity_probabilities(const SeverityTable& table, const Measurement& depth_m,
                                              const Measurement& diameter_m);
@@ -87,8 +87,9 @@ SeverityProbabilities severity_probabilities(const SeverityTable& table, const M
 /// The class of more than half of the probability; `uncertain` if there is none.
 Severity likely_severity(const SeverityProbabilities& probabilities);
 
-/// Return the shortest range of classes that has more than half of the probability, e.g. "medium–high".
-std::string severity_range(const SeverityProbabilities& probabilities);
+/// Return the shortest range of classes that has more than half of the probability, e.g. "medium–high"; "unknown" if
+/// all are 0.
+std::string likely_severity_range(const SeverityProbabilities& probabilities);
 
 }  // namespace roadstereo
 #pragma GCC visibility pop

@@ -11,33 +11,38 @@
 namespace roadstereo {
 
 struct StaticMaskOptions {
-  int frames = 40;                   ///< that must have moved before it is judged what never moves, 10 … 100
-  double max_variance_ratio = 0.25;  ///< of the levels over the frames, by the square of their gradients, 0.001 … 1
-  int margin_px = 10;                ///< by which the mask is grown: half the matching window, 0 … 100
+  int frames = 40;  ///< frames in which the image has moved that are needed for the decision, 10 … 100
+  double max_variance_ratio = 0.25;  ///< variance of the grey levels over the frames, divided by their squared
+                                     ///< gradient, 0.001 … 1
+  int margin_px = 10;                ///< margin by which the mask is grown, half the matching window, 0 … 100
 
   /// Throws Error naming the first option that is out of range.
   void validate() const;
 };
 
-/// Watches a recording for what never moves in the picture while the rest does: a bonnet, a landing gear, a mount. It
-/// judges once. What is still shows a texture in two directions (structure tensor) that the mean over the frames keeps,
-/// varies no more than noise does, and reaches in from the border of the picture. So neither a road without texture is
-/// still, nor a line along it, nor the point that the vehicle drives to; and nothing is while the vehicle stands.
+/// Finds parts of the image that never move in a recording while the rest does: a bonnet, a landing gear, a mount. The
+/// decision is made once. A still part has texture in two directions (structure tensor) that remains in the mean over
+/// the frames, varies no more than the noise, and touches the border of the image. This excludes a road without
+/// texture, a line along the road and the point towards which the vehicle drives; and no decision is made while the
+/// vehicle is at a standstill.
 class StaticMask {
  public:
   /// Throws Error when an option is out of range.
   explicit StaticMask(const StaticMaskOptions& options = {});
 
-  /// Adds the next pair of a recording, by its grey levels. With `road`, its plane, only what lies below the horizon is
-  /// masked, and what hides the road from the right camera, too. Returns whether this pair was the one that judged.
-  /// Does nothing after that. Allocates only for the first frame, and after half of the frames and all of them.
+  /// Adds the next pair of a recording, by its grey levels. With `road`, the plane of the road, only parts below the
+  /// horizon are masked, and in addition pixels whose road is hidden from the right camera. The horizon is where the
+  /// plane has the disparity `at_infinity_px`, which is −StereoCalibration::disparity_offset_px. Returns whether the
+  /// decision was made with this pair. Does nothing after that. Allocates only for the first frame, and after half of
+  /// the frames and all of them. Throws Error when the sizes of the images differ.
   bool add(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-           const std::optional<DisparityPlane>& road);
+           const std::optional<DisparityPlane>& road, double at_infinity_px = 0);
 
-  /// Whether enough frames have moved.
+  /// Whether the decision has been made.
   bool judged() const { return judged_; }
 
-  /// What never moves, W×H of the left image, for Pipeline::set_mask: 255 there, else 0. Empty: nothing, or not judged.
+  /// Mask of the parts that never move, W×H of the left image, for Pipeline::set_mask: 255 there, else 0. Empty: there
+  /// are none, or no decision was made yet.
   const Image<std::uint8_t>& mask() const { return mask_; }
 
   /// Share of the picture that the mask covers, 0 … 1.

@@ -72,10 +72,10 @@ struct Box {
   double x_m = 3, y_m = 10;          ///< centre on the road
   double width_m = 1.8;              ///< along X, 0.01 … 1000
   double length_m = 4.2;             ///< along Y, 0.01 … 1000
-  double bottom_m = 0, top_m = 1.4;  ///< heights above Z = 0, −100 … 100
+  double bottom_m = 0, top_m = 1.4;  ///< heights above Z = 0, −100 … 100; top_m at least bottom_m
   double grey = 112;                 ///< mean brightness, 8-bit grey levels, 0 … 1000
   double texture_contrast = 0.3;     ///< relative to ordinary asphalt, 0 … 4
-  double panel_m = 0;                ///< size of dark panels, such as windows; 0: none
+  double panel_m = 0;                ///< size of dark panels, such as windows, 0 … 100; 0: none
   std::uint32_t seed = 1;
 };
 
@@ -130,7 +130,7 @@ struct Scene {
   Degradation degradation;
   int supersampling = 3;  ///< rays per pixel and axis, 1 … 8
 
-  /// Throws Error naming the first value out of range, and if a camera is below the surface.
+  /// Throws Error naming the first value out of range, and if a camera is less than 2 cm above the surface.
   void validate() const;
 };
 
@@ -195,7 +195,8 @@ struct FlightPath {
   double climb_period = 170;  ///< 2 … 1e6
   double step_m = 0.1;        ///< along the road per frame, −10 … 10
   double loop_period = 0;     ///< frames after which the rig, on a circle to the right, is back; 0: straight; 2 … 1e6
-  double turn_frame = 0;      ///< of a straight flight, where it turns to fly back 0.3 m beside; 0: never; 1 … 1e6
+  double turn_frame = 0;      ///< frame at which a straight flight turns back, 0.3 m to the side; 0: never; 1 … 1e6;
+                              ///< requires loop_period 0
   std::vector<int> jumps;     ///< frames, ≥ 1, without duplicates
   double jump_roll_deg = 5;   ///< offset of the roll, −45 … 45
   double jump_pitch_deg = 4;  ///< offset of the pitch, −45 … 45

@@ -10,11 +10,11 @@ namespace roadstereo {
 /// Returns the code of a warning, the word before its first colon; empty if it has none. The codes are
 ///   no-road          no road was found: neither roll nor metric values nor damage
 ///   weak-road        there is little evidence for the road that was found
-///   road-anew        the last frame's road did not fit: it was searched anew
-///   tilted-road      the plane through the disparities is no road's: neither roll nor metric values nor damage
+///   road-anew        the last frame's road did not fit, or not the expected pose: the road was searched again
+///   tilted-road      the plane through the disparities is too steep for a road: as no-road
 ///   unexpected-pose  height or pitch are not what was expected
 ///   rows-disagree    the rows of the pair are shifted: it is not rectified
-///   rows-unknown     too few points tell whether they are
+///   rows-unknown     the row alignment could not be measured: too few points, or they contradict each other
 ///   few-disparities  too few pixels have a disparity
 ///   static-mask      a part of the picture never moves and is ignored from this frame on
 ///   no-damage        damage could not be searched

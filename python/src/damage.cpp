@@ -20,7 +20,8 @@ void bind_measurements(py::module_& module) {
   Record<Measurement>(module, "Measurement", "A measured value with its standard error.")
       .field("value", &Measurement::value, "Value.")
       .field("std_error", &Measurement::std_error, "Standard error, in the unit of the value.");
-  Record<SeverityProbabilities>(module, "SeverityProbabilities", "Probability of each class of ASTM D6433, 0 … 1.")
+  Record<SeverityProbabilities>(module, "SeverityProbabilities",
+                                "Probability of each class of the severity scheme, ASTM D6433 by default, 0 … 1.")
       .field("minor", &SeverityProbabilities::minor, "Below the table.")
       .field("low", &SeverityProbabilities::low, "Low.")
       .field("medium", &SeverityProbabilities::medium, "Medium.")
@@ -79,6 +80,9 @@ void bind_one_damage(py::module_& module) {
       .field("specular_excess", &Evidence::specular_excess,
              "RMS of the light that one image shows above the other and above the road around, in brightnesses of that "
              "road: glint on a wet road; NaN unknown.")
+      .field("texture_share", &Evidence::texture_share,
+             "Share of the image around a protrusion with its texture rather than the road's, less that of the road, "
+             "-1 … 1; NaN unknown and for depressions.")
       .field("pixel_significance", &Evidence::pixel_significance,
              "Upper quartile of the depths of the pixels in their standard errors; NaN unknown.")
       .field("likely_wall_slope", &Evidence::likely_wall_slope,
@@ -130,8 +134,9 @@ void bind_damage_map(py::module_& module) {
           .def_property_readonly(
               "depth", damage_map<&DamageMap::depth>,
               "Depth below the undamaged road, negative above it, (H, W) float32: metres if `metric`,\n"
-              "else pixels. NaN in holes outside of damages.")
-          .def_readonly("noise_px", &DamageMap::noise_px, "Robust standard deviation of the intact road, pixels.")
+              "else pixels. NaN in holes outside of damages, and where the right camera does not see the road.")
+          .def_readonly("noise_px", &DamageMap::noise_px,
+                        "Robust standard deviation of the intact road, pixels; NaN without\na road.")
           .def_readonly("metric", &DamageMap::metric, "Whether `depth` is in metres.")
           .def_readonly("non_metric_reason", &DamageMap::non_metric_reason,
                         "Why `metric` is False; empty if it is True.");

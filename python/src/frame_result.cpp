@@ -36,7 +36,7 @@ void bind_road_model(py::module_& module) {
       .field("model", &Road::model, "Disparities of the road.")
       .field(
           "status", [](const Road& road) { return name_of(road.status); }, "'found', 'tracked', 'weak' or 'none'.")
-      .field("reason", &Road::reason, "Why there is no road; empty when there is one.")
+      .field("reason", &Road::reason, "Why there is no road, or a weak one; else empty.")
       .field("evidence", &Road::evidence,
              "Evidence for the plane per pixel of its part of the picture, about 0 … 2; 0 when tracked.")
       .field("inlier_share", &Road::inlier_share, "Share of the textured samples that the plane explains, 0 … 1.")

@@ -93,8 +93,8 @@ constexpr const char* open_doc =
 
 source is a folder (left/ right/ and others), a list of pairs, a video with both views, a bag of ROS 1 or ROS 2
 (.bag, .db3, .mcap), a V4L2 camera (/dev/video0) or a GStreamer pipeline; or source and right are two folders or two
-videos. layout is "auto", "side-by-side" or "top-bottom"; topics are the left and right image topic of a bag; rate_hz, pairs per second, replaces the times of the source. Raises Error if it is none
-of these or cannot be opened.)";
+videos. layout is "auto", "side-by-side" or "top-bottom"; topics are the left and right image topic of a bag; rate_hz,
+pairs per second, replaces the times of the source. Raises Error if it is none of these or cannot be opened.)";
 
 }  // namespace
 

@@ -4,7 +4,6 @@
 #include <pybind11/stl.h>
 
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 
@@ -16,6 +15,7 @@
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/options.hpp"
+#include "serial_calls.hpp"
 #include "type_name.hpp"
 
 namespace roadstereo::python {
@@ -27,20 +27,20 @@ namespace py = pybind11;
 class SharedPipeline {
  public:
   SharedPipeline(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
-      : pipeline_(options, calibration), calibration_(calibration) {}
+      : pipeline_(options, calibration) {}
 
   std::unique_ptr<ProcessedFrame> process(const py::object& left, const py::object& right, const std::string& order) {
     const FrameView left_view = frame_view(left, "left", order);
     const FrameView right_view = frame_view(right, "right", order);
     auto frame = std::make_unique<ProcessedFrame>();
-    frame->calibration = calibration_;
+    frame->calibration = pipeline_.calibration();
     frame->options = pipeline_.options();
-    call([&] { pipeline_.process(left_view, right_view, frame->result); });
+    call_([&] { pipeline_.process(left_view, right_view, frame->result); });
     return frame;
   }
 
   void set_mask(const py::object& mask) {
-    if (mask.is_none()) return call([&] { pipeline_.set_mask({}); });
+    if (mask.is_none()) return call_([&] { pipeline_.set_mask({}); });
     const std::string wanted = "; it must be None or a numpy array of bool or uint8";
     if (!py::isinstance<py::array>(mask)) throw py::type_error("mask is of type " + type_name(mask) + wanted);
     const auto given = py::reinterpret_borrow<py::array>(mask);
@@ -52,40 +52,30 @@ class SharedPipeline {
     const py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast> bytes(given);
     const ImageView<const std::uint8_t> view(bytes.data(), static_cast<int>(bytes.shape(1)),
                                              static_cast<int>(bytes.shape(0)));
-    call([&] { pipeline_.set_mask(view); });
+    call_([&] { pipeline_.set_mask(view); });
   }
 
   void warm_up(int width, int height) {
-    call([&] { pipeline_.warm_up(width, height); });
+    call_([&] { pipeline_.warm_up(width, height); });
   }
   void reset() {
-    call([&] { pipeline_.reset(); });
+    call_([&] { pipeline_.reset(); });
   }
 
   void set_device_options(bool download) {
-    call([&] { pipeline_.set_device_options({.download = download}); });
+    call_([&] { pipeline_.set_device_options({.download = download}); });
   }
   DeviceMaps device_maps() {
-    DeviceMaps maps;
-    call([&] { maps = pipeline_.device_maps(); });
-    return maps;
+    return call_([&] { return pipeline_.device_maps(); });
   }
 
   py::dict options() const { return option_values(pipeline_.options()); }
   const std::string& engine_name() const { return pipeline_.engine_name(); }
-  const std::optional<StereoCalibration>& calibration() const { return calibration_; }
+  const std::optional<StereoCalibration>& calibration() const { return pipeline_.calibration(); }
 
  private:
-  template <class Function>
-  void call(Function function) {
-    const py::gil_scoped_release release;
-    const std::lock_guard lock(mutex_);
-    function();
-  }
-
-  std::mutex mutex_;
+  SerialCalls call_;
   Pipeline pipeline_;
-  std::optional<StereoCalibration> calibration_;
 };
 
 std::unique_ptr<SharedPipeline> make_pipeline(const std::string& preset_name, const py::object& calibration,

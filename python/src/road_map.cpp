@@ -173,8 +173,8 @@ the frame's road are left out. threads: 0 takes all cores.)";
 constexpr const char* map_add_doc =
     R"(Fuse a frame; return the number of cells that it measures.
 
-camera_to_map is (3, 4) or (4, 4), a rigid motion, metres, z up. The picture of the map is that of left, an array as `process` takes it, or
-without one the grey levels of the result. Raises Error for a result without a road or a calibration, or another size.)";
+camera_to_map is (3, 4) or (4, 4), a rigid motion, metres, z up. The picture of the map is that of left, an array as
+`process` takes it, or without one the grey levels of the result. Raises Error for a result without a road or a calibration, or another size.)";
 
 }  // namespace
 

@@ -22,7 +22,7 @@ def columns(damage):
     for name in ("id", "kind", "confidence", "pixels", "measured_share", "mean_depth_px", "cut_by_border"):
         row[name] = getattr(damage, name)
     for name in ("contrast_sigmas", "significance", "steepness", "road_share", "border_share", "unseen_share",
-                 "surface_significance", "range_vote", "specular_excess", "pixel_significance",
+                 "surface_significance", "range_vote", "specular_excess", "texture_share", "pixel_significance",
                  "likely_wall_slope", "extent", "rut_significance", "depth_significance"):
         value = getattr(evidence, name)
         row[name] = None if math.isnan(value) else value  # a protrusion has no likely slope

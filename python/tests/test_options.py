@@ -54,8 +54,8 @@ class Options(unittest.TestCase):
         self.refuse("the nearest is 'matcher.block_radius'", options={"matcher.block_radios": 2})
 
     def test_bad_values(self):
-        self.refuse("'2.0' is no value for threads; it takes a whole number", threads=2.0)
-        self.refuse("'yep' is no value for check_rows; it takes true or false", check_rows="yep")
+        self.refuse("'2.0' is not a valid value of threads; it takes a whole number", threads=2.0)
+        self.refuse("'yep' is not a valid value of check_rows; it takes true or false", check_rows="yep")
         self.refuse("matcher.sigma_space", options={"matcher.sigma_space": float("nan")})
         self.refuse("block_radius", options={"matcher.block_radius": 99})
         self.refuse("engine", engine="gpu")

@@ -5,7 +5,8 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// Returns the number of worker threads: `threads`, or all cores for 0. Throws Error when negative or above 1024.
+/// Returns the number of worker threads: `threads`, or all cores for 0; with oneTBB at most all cores. Throws Error
+/// when negative or above 1024.
 int resolve_threads(int threads);
 
 /// Calls `body(i, worker)` for every i in [0, count), on up to `threads` threads (0: all cores). `worker` numbers the

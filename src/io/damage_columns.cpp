@@ -1,8 +1,8 @@
 #include "io/damage_columns.hpp"
 
 #include <cmath>
-#include <numbers>
 
+#include "core/degrees.hpp"
 #include "io/damage_colours.hpp"
 
 namespace roadstereo::io {
@@ -89,7 +89,7 @@ std::vector<DamageColumn> metric_columns() {
           {"angle_deg",
            [](const Damage& d) -> DamageValue {
              if (!d.metrics) return std::monostate{};
-             return number(d.metrics->angle_rad * 180 / std::numbers::pi);
+             return number(to_degrees(d.metrics->angle_rad));
            }},
           {"diameter_m", metric<&M::diameter_m>},
           {"wall_slope", metric<&M::wall_slope>},
@@ -140,12 +140,14 @@ std::vector<DamageColumn> pixel_columns() {
           {"surface_significance", evidence<&DamageEvidence::surface_significance>},
           {"range_vote", evidence<&DamageEvidence::range_vote>},
           {"specular_excess", evidence<&DamageEvidence::specular_excess>},
+          {"texture_share", evidence<&DamageEvidence::texture_share>},
           {"pixel_significance", evidence<&DamageEvidence::pixel_significance>},
           {"likely_wall_slope", evidence<&DamageEvidence::likely_wall_slope>},
           {"extent", evidence<&DamageEvidence::extent>},
           {"rut_significance", evidence<&DamageEvidence::rut_significance>},
           {"depth_significance", evidence<&DamageEvidence::depth_significance>},
-          {"cut_by_border", [](const Damage& d) -> DamageValue { return d.cut_by_border; }}};
+          {"cut_by_border", [](const Damage& d) -> DamageValue { return d.cut_by_border; }},
+          {"ends_search", [](const Damage& d) -> DamageValue { return d.ends_search; }}};
 }
 
 }  // namespace

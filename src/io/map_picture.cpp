@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/round_length.hpp"
 #include "io/damage_colours.hpp"
 #include "io/drawing.hpp"
 #include "io/frame_mat.hpp"
@@ -165,17 +166,10 @@ ColourScale relief_scale(const Image<float>& relief_mm) {
   return {-half_range, half_range, true, "above the road, mm"};
 }
 
-/// Length of about a fifth of the picture: 1, 2 or 5 times a power of ten, metres.
-double bar_metres(double picture_m) {
-  const double power = std::pow(10.0, std::floor(std::log10(picture_m / 5)));
-  const double digit = picture_m / 5 / power;
-  return power * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
-}
-
 /// Scale bar, and which way the axes point.
 void draw_legend(cv::Mat& canvas, cv::Point at, const Panel& panel, int width, const MapReference& reference) {
   const double pixels_per_m = panel.pixels_per_cell() / reference.cell_m;
-  const double bar_m = bar_metres(width / pixels_per_m);
+  const double bar_m = round_length(width / pixels_per_m / 5);
   const int length = cvRound(bar_m * pixels_per_m);
   cv::line(canvas, at, {at.x + length, at.y}, ink, 3);
   const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(bar_m))));

@@ -79,8 +79,9 @@ class Path {
   double length_m() const { return distance_.empty() ? 0 : distance_.back(); }
 
   Station at(double s_m) const {
-    constexpr double chord_m = 1;  // half of it on either side: directions of single steps are noise
-    const auto before = point(std::max(0.0, s_m - chord_m)), after = point(std::min(length_m(), s_m + chord_m));
+    constexpr double half_chord_m = 1;  // directions of single steps are noise
+    const auto before = point(std::max(0.0, s_m - half_chord_m)),
+               after = point(std::min(length_m(), s_m + half_chord_m));
     const double length = std::hypot(after[0] - before[0], after[1] - before[1]);
     return {s_m, point(s_m), {(after[0] - before[0]) / length, (after[1] - before[1]) / length}};
   }

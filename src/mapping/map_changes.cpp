@@ -24,10 +24,15 @@ class PlacePair {
     share_ = static_cast<double>(inside_.size()) / static_cast<double>(footprint.size());
   }
 
-  /// Absent if one of the maps does not measure half of the footprint, or nothing around it.
-  std::optional<Measurement> change() const {
+  /// Whether both maps measure at least half of the footprint.
+  bool is_measured() const {
     constexpr double min_share = 0.5;
-    if (share_ < min_share || around_.empty()) return std::nullopt;
+    return share_ >= min_share;
+  }
+
+  /// Absent if the footprint is not measured, or nothing around it.
+  std::optional<Measurement> change() const {
+    if (!is_measured() || around_.empty()) return std::nullopt;
     double sum = 0;
     for (const double difference : inside_) sum += difference;
     std::vector<double> around = around_;
@@ -153,7 +158,7 @@ const char* name_of(DamageChangeKind kind) {
 }
 
 bool measures(const RoadMap& map, const MapCells& footprint) {
-  return !footprint.empty() && PlacePair(footprint, map, map).change().has_value();
+  return !footprint.empty() && PlacePair(footprint, map, map).is_measured();
 }
 
 std::vector<DamageChange> compare_damage(std::span<const RoadDamageRecord> before, const RoadMap& map_before,

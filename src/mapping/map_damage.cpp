@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <set>
 
@@ -204,7 +205,8 @@ std::vector<MapDamage> locate_damage(const DamageMap& found, const DisparityPlan
     result.damage = damage;
     const std::array<double, 3> centroid = transform_point(camera_to_map, damage.metrics->centroid_m);
     result.at_m = {centroid[0], centroid[1]};
-    result.length_angle_rad = damage.metrics->angle_rad + std::atan2(axis[1], axis[0]);
+    result.length_angle_rad =
+        std::remainder(damage.metrics->angle_rad + std::atan2(axis[1], axis[0]), std::numbers::pi);
     result.footprint = footprint_of(damage, found, [&](double u, double v) {
       const auto at = transform_point(camera_to_map, calibration.point_m(u, v, road.disparity(u, v)));
       return std::array<double, 2>{at[0], at[1]};

@@ -242,6 +242,7 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const Severit
 
 std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
                                           const RoadMap& map, const DamageOptions& options) {
+  options.validate();
   for (const DamageSighting& sighting : sightings) require_metrics(sighting.found);
   for (const MapDamage& found : in_map) require_metrics(found);
   std::vector<RoadDamageRecord> records;

@@ -10,6 +10,7 @@
 
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
+#include "core/round_length.hpp"
 #include "mapping/frame_projection.hpp"
 #include "mapping/tile_store.hpp"
 #include "roadstereo/ground_plane.hpp"
@@ -281,12 +282,10 @@ double suggested_cell_m(const DisparityPlane& road, const StereoCalibration& cal
       sizes.push_back(std::sqrt(z * z * z / camera_height_m) / calibration.focal_px);  // √(Z/f · Z²/(f·h))
     }
   }
-  if (sizes.empty()) fail("the road of the first frame is not in view");
+  if (sizes.empty()) fail("the road is not in view of the ", width, "×", height, " pixels");
   const auto nearest = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 8);  // the middle of the quarter
   std::nth_element(sizes.begin(), nearest, sizes.end());
-  const double power = std::pow(10.0, std::floor(std::log10(*nearest)));
-  const double digit = *nearest / power;
-  return std::clamp(power * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1), min_cell_m, max_cell_m);
+  return std::clamp(round_length(*nearest), min_cell_m, max_cell_m);
 }
 
 RigidTransform camera_to_road(const DisparityPlane& road, const StereoCalibration& calibration) {

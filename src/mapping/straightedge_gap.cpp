@@ -1,10 +1,9 @@
-#include "core/straightedge.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <random>
 #include <vector>
 
+#include "core/straightedge.hpp"
 #include "roadstereo/road_profile.hpp"
 
 namespace roadstereo {

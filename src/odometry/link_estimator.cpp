@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "core/degrees.hpp"
 #include "odometry/patch_matching.hpp"
 #include "odometry/phase_correlation.hpp"
 
@@ -101,7 +101,7 @@ bool LinkEstimator::accepted(const Alignment& alignment) const {
 std::vector<RigidMotion> LinkEstimator::starts(const LinkReference& from, const FrameMaps& maps,
                                                const OdometryFrame& frame, double yaw_rad) const {
   constexpr int max_yaw_steps = 4;
-  constexpr double yaw_step_rad = 2 * std::numbers::pi / 180;
+  constexpr double yaw_step_rad = to_radians(2);
   constexpr int peaks_per_yaw = 2;
   constexpr std::size_t max_starts = 6;
   constexpr int max_steps = 6;

@@ -9,8 +9,8 @@
 namespace roadstereo {
 namespace {
 
-/// Removes masked pixels from damages, and damages that have half of their pixels or fewer left: what a damage has in a
-/// mask was interpolated. The others are numbered anew, in their order.
+/// Removes masked pixels from damages, since the depth under a mask is interpolated, and damages of which half of the
+/// pixels or fewer remain. The others are renumbered in their order.
 void remove_masked(const FrameResult& frame, DamageMap& map) {
   if (frame.mask.empty() || map.damages.empty()) return;
   std::vector<std::size_t> seen(map.damages.size() + 1);
@@ -54,7 +54,9 @@ DamageMap find_damage(const FrameResult& frame, const std::optional<StereoCalibr
 void find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
                  const DamageOptions& options, int threads, DamageMap& result) {
   if (frame.disparity.empty()) {
-    fail("the frame has no maps on the host, where damage is looked for: it is none, or they were left on the device");
+    fail(
+        "the frame has no maps on the host, which damage detection needs: no pair was processed, or the maps were left "
+        "on the device");
   }
   if (!frame.roll_found) {
     result = make_empty_damage_map(frame.disparity.width(), frame.disparity.height(),

@@ -109,11 +109,11 @@ class FrameStages {
   /// Hands over grey, disparity, sigma and transformed, and the times of the stages that a device has measured.
   virtual void download(FrameResult& result) = 0;
 
-  /// Where a device's maps go, and where they are (roadstereo/device.hpp). Throw Error where there is no device.
+  /// Options and results of a device (roadstereo/device.hpp). Throw Error without a device.
   virtual void set_device_options(const DeviceOptions& use) = 0;
   virtual DeviceMaps device_maps() = 0;
   virtual DeviceProfile device_profile() const = 0;
-  /// Ends what an exception has left undone: a device waits for all that was enqueued.
+  /// Cleans up after an exception: a device waits for all enqueued work.
   virtual void abandon() noexcept {}
 };
 

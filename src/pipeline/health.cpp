@@ -13,8 +13,8 @@
 namespace roadstereo {
 namespace {
 
-/// Largest value of what a quadratic in u and v leaves of the fit's disparity errors at the samples on the road, less
-/// those that are undone. Without distortion of its own the fit says nothing of what is undone.
+/// Largest residual of a quadratic in u and v fitted to the disparity errors at the samples on the road. The rig bias
+/// that is already subtracted (`undone`) is taken off first, but only if the fit itself shows distortion.
 double beyond_quadratic(const std::vector<RowSample>& samples, const DamageMap& damage, const RectificationError& fit,
                         const std::optional<RigBias>& undone) {
   constexpr std::size_t terms = 6, min_points = 20;

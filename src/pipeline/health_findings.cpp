@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/degrees.hpp"
 #include "core/format_message.hpp"
 #include "roadstereo/health.hpp"
 
@@ -39,13 +40,13 @@ void add_rectification(const PairHealth& h, Findings& findings) {
   findings.add_above("row-error", h.row_error_px, max_row_error_px, "px", spoils_rows,
                      "the rows of the pair differ by up to ", rounded(h.row_error_px, 0.01), " px (limit ",
                      max_row_error_px, " px): the right view is ", rounded(100 * h.row_scale, 0.01),
-                     " % larger, turned by ", rounded(h.row_turn_rad * 180 / std::numbers::pi, 0.01), "° and lies ",
-                     rounded(h.row_offset_px, 0.01), " px lower; calibrate the rig anew");
+                     " % larger, turned by ", rounded(to_degrees(h.row_turn_rad), 0.01), "° and lies ",
+                     rounded(h.row_offset_px, 0.01), " px lower; recalibrate the rig");
   findings.add_above("distortion", h.bowl_px, h.noise_px, "px", h.bowl_px > h.threshold_sigma * h.noise_px,
-                     "lens distortion is left (k = ", rounded(h.distortion_right, 1e-4), " in the right view, ",
+                     "residual lens distortion (k = ", rounded(h.distortion_right, 1e-4), " in the right view, ",
                      rounded(h.distortion_both, 1e-4), " in both): it bends the road by up to ",
                      rounded(h.bowl_px, 0.001), " px (limit ", rounded(h.noise_px, 0.001),
-                     " px, its noise); calibrate the rig anew");
+                     " px, the noise of the road); recalibrate the rig");
 }
 
 void add_road(const PairHealth& h, Findings& findings) {
@@ -55,9 +56,8 @@ void add_road(const PairHealth& h, Findings& findings) {
                      " px of ", rounded(h.noise_px, 0.001),
                      " px): one camera vibrates while its shutter rolls, or the road undulates; damp the mount");
   constexpr double max_beyond_px = 1;
-  findings.add_above("infinity", -h.infinity_px, max_beyond_px, "px", true,
-                     "what lies above the horizon has disparities ", rounded(-h.infinity_px, 0.01),
-                     " px beyond infinity (limit ", max_beyond_px,
+  findings.add_above("infinity", -h.infinity_px, max_beyond_px, "px", true, "disparities above the horizon are ",
+                     rounded(-h.infinity_px, 0.01), " px below that of infinity (limit ", max_beyond_px,
                      " px): the offset of the disparities is wrong, or the cameras do not expose at the same moment");
 }
 
@@ -68,10 +68,9 @@ void add_pictures(const PairHealth& h, Findings& findings) {
   findings.add_above("gain", gain, max_gain, "", false, "the right view is ", rounded(h.gain, 0.01),
                      " times as bright as the left one (limit ", max_gain, "); couple the exposures");
   const double clipped = std::fmax(h.clipped_left, h.clipped_right);
-  findings.add_above("clipped", clipped, max_clipped, "", false, "of the road ", rounded(100 * h.clipped_left, 1),
-                     " % (left) and ", rounded(100 * h.clipped_right, 1),
-                     " % (right) of the pixels are black or white (limit ", 100 * max_clipped,
-                     " %); change the exposure");
+  findings.add_above("clipped", clipped, max_clipped, "", false, rounded(100 * h.clipped_left, 1), " % (left) and ",
+                     rounded(100 * h.clipped_right, 1), " % (right) of the road's pixels are black or white (limit ",
+                     100 * max_clipped, " %); change the exposure");
   constexpr double max_blur_px = 3;  // the radius of a block
   constexpr double max_blur_ratio = 1.5;
   const double blur = std::fmax(h.blur_left_px, h.blur_right_px);  // of the other view if one is unknown
@@ -100,8 +99,8 @@ void add_pictures(const PairHealth& h, Findings& findings) {
 void add_spots(const LensSpots& spots, const char* id, const char* view, Findings& findings) {
   constexpr double max_dead_share = 2e-4;  // one of a hundred blocks of 7×7 pixels has a dead one
   const double dead = spots.dead_share > max_dead_share ? spots.dead_pixels : 0;
-  findings.add_above(id, spots.dirt + dead, 0, "", false, "the same ", spots.dirt + dead, " places of the ", view,
-                     " picture stay as they are while the rest moves (", spots.dirt, " of dirt, ", dead,
+  findings.add_above(id, spots.dirt + dead, 0, "", false, spots.dirt + dead, " places of the ", view,
+                     " picture never change while the rest moves (", spots.dirt, " of dirt, ", dead,
                      " dead pixels; the largest is around pixel ", std::round(spots.largest_u), ", ",
                      std::round(spots.largest_v), "; limit 0); clean the lens, mask what stays");
 }

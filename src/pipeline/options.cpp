@@ -49,7 +49,8 @@ void visit_options(Options& o, Visitor visit) {
   visit("threads", o.threads, "worker threads; 0 takes all cores");
   visit("white_level", o.white_level, "sample value of white");
   visit("check_rows", o.check_rows, "measure whether the rows of the pair agree");
-  visit("correct_rows", o.correct_rows, "undo the shift and turn of the right image that check_rows measures");
+  visit("correct_rows", o.correct_rows,
+        "undo the vertical shift, rotation and row scale of the right image that check_rows measures");
   visit("narrow_search", o.narrow_search, "search each tile only near what the coarse search finds there");
 
   visit("road_model.with_roll", o.road_model.with_roll, "the model depends on the column too (a2)");
@@ -61,7 +62,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("road_model.weak_evidence", o.road_model.weak_evidence,
         "evidence for the plane, per pixel of its part of the picture, below which the road is weak");
   visit("road_model.verify_tolerance_px", o.road_model.verify_tolerance_px,
-        "largest spread of a carried-over model, pixels");
+        "largest residual of a tracked road model, pixels");
 
   visit("road_model.height_m", o.road_model.height_m,
         "expected height of the camera, metres (needs a calibration); 0: unknown");
@@ -92,7 +93,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("coarse_search.road_prior_truncation", o.coarse_search.road_prior_truncation,
         "largest cost of such a height, without texture");
   visit("coarse_search.border_height_m", o.coarse_search.border_height_m,
-        "largest change of height within a block whose place the matcher decides, metres; 0: none");
+        "height steps within a block up to this are located by the matcher, not by the coarse search, metres; 0: none");
   visit("coarse_search.row_offset_sigma_px", o.coarse_search.row_offset_sigma_px,
         "standard error of the rows' offset, coarse pixels");
   visit("coarse_search.half_weight_sigma_px", o.coarse_search.half_weight_sigma_px,
@@ -147,8 +148,10 @@ void visit_options(Options& o, Visitor visit) {
         "expected size of the sub-pixel bias that it corrects, pixels");
   visit("lucas_kanade.max_shift_px", o.lucas_kanade.max_shift_px, "largest change of a disparity by it, pixels");
 
-  visit("off_road.max_sigma_px", o.off_road.max_sigma_px,
-        "largest standard error beside the road where the pictures agree, pixels; a third where they do not; 0: any");
+  visit(
+      "off_road.max_sigma_px", o.off_road.max_sigma_px,
+      "disparities off the road with a larger standard error are invalid, pixels (a third of it where the views do not "
+      "correlate); 0 keeps all");
 
   visit("roll.solver", o.roll.solver, "solver of the roll angle");
   visit("roll.initial_lambda", o.roll.initial_lambda, "first learning rate of the descent");
@@ -195,14 +198,16 @@ requires std::is_enum_v<Enum> std::string to_text(Enum value) {
 }
 
 [[noreturn]] void refuse(const std::string& key, const std::string& value, const std::string& wanted) {
-  fail("'", value, "' is no value for ", key, "; it takes ", wanted);
+  fail("'", value, "' is not a valid value of ", key, "; it takes ", wanted);
 }
 
 template <class Number>
 void parse_number(const std::string& key, const std::string& text, const char* wanted, Number& value) {
   const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  Number parsed{};
+  const auto [stop, error] = std::from_chars(text.data(), end, parsed);
   if (error != std::errc{} || stop != end || text.empty()) refuse(key, text, wanted);
+  value = parsed;
 }
 
 void parse(const std::string&, const std::string& text, std::string& value) {

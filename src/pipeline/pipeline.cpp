@@ -46,7 +46,7 @@ class StageTimer {
 
 constexpr double min_correction_px = 0.05;  // interpolation between rows blurs: less is not worth it
 
-/// What a measurement of the rows goes with.
+/// Road with which the rows are measured.
 enum class Rows { of_new_road, of_tracked_road };
 
 /// The misalignment that makes the offsets of the rows.
@@ -57,7 +57,7 @@ Misalignment misalignment_of(const RowOffset& rows, int width, int height,
   return {rows.at(cx, cy), rows.per_column, rows.per_row, cx, cy};
 }
 
-/// Whether the misalignments differ by more than the error of the rows that the first is of.
+/// Whether the misalignments differ by more than the error of `rows`, from which the first one was derived.
 bool differ(const Misalignment& measured, const RowAlignment& rows, const Misalignment& last, int width, int height) {
   constexpr double min_std_errors = 5;
   const Misalignment& centre = measured.is_zero() ? last : measured;  // without a correction it has none
@@ -150,7 +150,8 @@ GreyPair Pipeline::State::convert_to_grey(const FrameView& left, const FrameView
   return pair;
 }
 
-/// The pair as a road model needs it: an edge along the rows turns an offset of theirs into pixels of disparity.
+/// The pair with aligned rows, for the road model: at an edge along the rows, an offset of the rows becomes a disparity
+/// error of pixels.
 GreyPair Pipeline::State::undo_misalignment(const GreyPair& pair) {
   if (carried.misalignment.is_zero()) return pair;
   GreyPair aligned = stages->undo_misalignment(pair, carried.misalignment);
@@ -158,8 +159,9 @@ GreyPair Pipeline::State::undo_misalignment(const GreyPair& pair) {
   return aligned;
 }
 
-/// The same of a pair in host memory, on the host: a device rounds a few grey levels otherwise, and one correspondence
-/// more or less makes RANSAC draw others and takes a correlation across the border between two sizes of blocks.
+/// The same for a pair in host memory, on the host, since a device rounds a few grey levels differently: one
+/// correspondence more or less would make RANSAC draw other samples, and could move the correlation across the limit
+/// between two block sizes.
 GreyPair Pipeline::State::align_on_host(const GreyPair& pair) {
   if (carried.misalignment.is_zero()) return pair;
   transform_target(pair.right, without_road(carried.misalignment), threads, aligned_right, first_column);
@@ -177,7 +179,7 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
     if (!result.road.has_road()) track_in_noise(align_on_host(stages->on_host(pair)));
     if (result.road.has_road() && expected.disagreement(result.road.model).empty()) return;
     if (result.road.has_road()) result.road.reason = "the last frame's road has another pose than expected";
-    result.warnings.push_back(format_message("road-anew: the road model was estimated anew: ", result.road.reason));
+    result.warnings.push_back(format_message("road-anew: the road was searched again: ", result.road.reason));
   }
   const GreyPair on_host = stages->on_host(pair);
   if (options.check_rows) measure_rows(on_host, Rows::of_new_road);
@@ -189,7 +191,8 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
       roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, left_out, last);
   if (!result.road.has_road()) {
     result.warnings.push_back(format_message("no-road: no road was found (", result.road.reason,
-                                             "): matched without perspective transformation over the full range"));
+                                             "): the pair was matched over the full disparity range, without "
+                                             "perspective transformation"));
   } else if (result.road.status == RoadStatus::weak) {
     std::string reason = result.road.reason;
     if (reason.empty()) {
@@ -204,23 +207,23 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   }
 }
 
-/// Where blocks find the last frame's road no more, cells of them may.
+/// If single blocks do not find the last frame's road, cells of blocks may.
 void Pipeline::State::track_in_noise(const GreyPair& pair) {
   const RoadModelEstimate tracked =
       verify_road_model_in_noise(pair.left, pair.right, *carried.road, calibration, options.road_model, threads, mask);
   if (tracked.has_road()) result.road = tracked;
 }
 
-/// Whether the rows are to be measured although the road is tracked: a mount creeps, and where they could not be
-/// measured before, a better frame may tell.
+/// Whether the rows are to be measured although the road is tracked: a mount may creep, and if an earlier measurement
+/// failed, a better frame may succeed.
 bool Pipeline::State::rows_are_due() const {
   constexpr int frames_while_known = 100, frames_while_unknown = 10;
   return options.check_rows &&
          carried.frames_since_rows >= (carried.rows_known ? frames_while_known : frames_while_unknown);
 }
 
-/// Measures the vertical offset of the pair, and keeps it where it is to be corrected. What was measured before stays
-/// where this pair tells none, and on a tracked road where this one tells nothing else.
+/// Measures the vertical offset of the pair, and stores it if it is to be corrected. The previous measurement is kept
+/// if this one fails, and on a tracked road also if this one does not differ from it significantly.
 void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
   constexpr double max_offset_px = 0.5;
   constexpr double max_spread_px = 1.0;
@@ -231,9 +234,9 @@ void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
   if (!rows.known()) {
     if (of == Rows::of_new_road) {
       result.warnings.push_back(
-          "rows-unknown: whether the rows of the pair agree is unknown: " +
+          "rows-unknown: the row alignment of the pair could not be measured: " +
           (rows.points < RowAlignment::min_points
-               ? format_message(rows.points, " points are too few to tell")
+               ? format_message(rows.points, " points are too few")
                : format_message("the offsets of ", rows.points, " points scatter by ", rows.fit_sigma_px, " px")));
     }
     return;
@@ -246,7 +249,7 @@ void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
   }
   carried.rows_known = true;
   if (!is_measured && (std::abs(rows.median_px) > max_offset_px || rows.sigma_px > max_spread_px)) {
-    result.warnings.push_back(format_message("rows-disagree: the rows of the pair do not agree: vertical offset ",
+    result.warnings.push_back(format_message("rows-disagree: the rows of the pair are not aligned: vertical offset ",
                                              rows.median_px, " px (median of ", rows.points, " points, spread ",
                                              rows.sigma_px, " px); rectify the pair"));
   }
@@ -290,7 +293,9 @@ double Pipeline::State::road_foreshortening() const {
   if (!result.shift.enabled) return 1;
   const double focal_px = calibration ? calibration->focal_px : width,
                cy_px = calibration ? calibration->cy_px : height / 2.0;
-  return foreshortening(result.road.model, focal_px, cy_px, width, height);
+  DisparityPlane road = result.road.model;
+  road.a0 += result.shift.disparity_offset_px;  // 0 at infinity
+  return foreshortening(road, focal_px, cy_px, width, height);
 }
 
 /// Costs, eq. (8), bilateral aggregation, eq. (11), winner-take-all, left-right check, eq. (12), and sub-pixel
@@ -350,8 +355,8 @@ bool Pipeline::State::searches_road_alone() const {
          options.lucas_kanade.radius > 0;
 }
 
-/// Disparities of all that the picture shows. Without the road as prior, in blocks as small as can be: the search is to
-/// tell what is not the road.
+/// Disparities of everything that the image shows, without the road as prior and with the smallest blocks, since this
+/// search is to find what is not road.
 DisparityPriorView Pipeline::State::search_scene(const MatchInput& pair) {
   constexpr int max_factor = 8, block_radius = 1;
   if (!searches_road_alone()) return {};
@@ -364,8 +369,9 @@ DisparityPriorView Pipeline::State::search_scene(const MatchInput& pair) {
   return stages->search_scene(whole, result.shift, coarse);
 }
 
-/// What is given off the road is right, or absent. Where the road's horizon is not in the picture, a camera looks down
-/// on the road, which may be all there is: what is not confirmed is noise, and only what the scene contradicts goes.
+/// Removes wrong disparities beside the road. If the horizon of the road is not in the image, the camera looks down on
+/// the road, which may fill the image: unconfirmed disparities are then noisy road, and only those that the scene
+/// contradicts are removed.
 ImageView<const float> Pipeline::State::reject_off_road(ImageView<const float> disparity,
                                                         const DisparityPriorView& scene) {
   constexpr double any_sigma_px = 10;
@@ -386,7 +392,7 @@ ImageView<const float> Pipeline::State::subtract_bias(ImageView<const float> dis
 
 /// Roll angle ψ of the least E_t, eq. (23), and projection model, section 3.3.
 void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
-  // Of a pair without a road nothing is told but its disparities.
+  // A pair without a road has no results except its disparities.
   constexpr double min_valid_share = 0.01, never = 2;
   const StageTimer timer(result.ms.roll);
   const bool has_road = result.road.has_road();
@@ -554,6 +560,9 @@ void Pipeline::reset() {
 
 const PipelineOptions& Pipeline::options() const {
   return state_->options;
+}
+const std::optional<StereoCalibration>& Pipeline::calibration() const {
+  return state_->calibration;
 }
 const std::string& Pipeline::engine_name() const {
   return state_->engine_name;

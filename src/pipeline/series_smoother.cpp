@@ -44,7 +44,8 @@ State update(const State& s, const Known& sample) {
           s.dd - rate_gain * s.xd};
 }
 
-/// The first value is that of the first sample, and its velocity unknown: two innovations tell nothing of the noise.
+/// The state starts at the first sample with unknown velocity, so that the first two innovations contain no information
+/// about the noise.
 Likelihood filter(const std::vector<Known>& samples, double q, double velocity_variance,
                   std::vector<Filtered>& states) {
   constexpr std::size_t free_values = 2;

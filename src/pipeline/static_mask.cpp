@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "core/require_range.hpp"
+#include "core/require_size.hpp"
 #include "pipeline/still_cells.hpp"
 
 namespace roadstereo {
@@ -43,22 +44,24 @@ bool is_empty(const Image<std::uint8_t>& mask) {
   return true;
 }
 
-void paint_left(const Image<std::uint8_t>& still, const std::optional<DisparityPlane>& road, CellPainter& painter) {
+void paint_left(const Image<std::uint8_t>& still, const std::optional<DisparityPlane>& road, double at_infinity_px,
+                CellPainter& painter) {
   for (int y = 0; y < still.height(); ++y) {
     for (int x = 0; x < still.width(); ++x) {
       if (still(x, y) == 0) continue;
-      if (!road || road->disparity(painter.centre(x), painter.centre(y)) > 0) painter.paint(x, y, 0);
+      if (!road || road->disparity(painter.centre(x), painter.centre(y)) > at_infinity_px) painter.paint(x, y, 0);
     }
   }
 }
 
 /// Where the left camera sees the road that these cells hide from the right one: u − d(u, v) is theirs.
-void paint_right(const Image<std::uint8_t>& still, const DisparityPlane& road, CellPainter& painter) {
+void paint_right(const Image<std::uint8_t>& still, const DisparityPlane& road, double at_infinity_px,
+                 CellPainter& painter) {
   for (int y = 0; y < still.height(); ++y) {
     for (int x = 0; x < still.width(); ++x) {
       if (still(x, y) == 0) continue;
       const double disparity = road.disparity(painter.centre(x), painter.centre(y)) / (1 - road.a2);
-      if (disparity > 0) painter.paint(x, y, static_cast<int>(std::lround(disparity)));
+      if (disparity > at_infinity_px) painter.paint(x, y, static_cast<int>(std::lround(disparity)));
     }
   }
 }
@@ -77,7 +80,8 @@ StaticMask::StaticMask(const StaticMaskOptions& options)
 }
 
 bool StaticMask::add(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
-                     const std::optional<DisparityPlane>& road) {
+                     const std::optional<DisparityPlane>& road, double at_infinity_px) {
+  require_one_size({left.width(), left.height()}, {right.width(), right.height()});
   if (judged_) return false;
   left_.add(left);
   right_.add(right);
@@ -100,8 +104,8 @@ bool StaticMask::add(ImageView<const std::int16_t> left, ImageView<const std::in
   mask_.assign(left.width(), left.height(), 0);
   // A cell at the edge of what is still moves in part.
   CellPainter painter(left_.cell_px(), options_.margin_px + left_.cell_px(), mask_);
-  paint_left(*still_left, road, painter);
-  if (road) paint_right(*still_right, *road, painter);
+  paint_left(*still_left, road, at_infinity_px, painter);
+  if (road) paint_right(*still_right, *road, at_infinity_px, painter);
   if (is_empty(mask_)) mask_ = {};
   return true;
 }

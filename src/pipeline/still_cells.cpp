@@ -76,8 +76,9 @@ CellMask find_lasting_texture(const CellLevels& levels, double max_ratio, float 
   return lasting;
 }
 
-/// Largest variance over the frames that noise explains, from that of the lasting texture: its first quartile, for some
-/// of that texture moves slowly, and what an estimate from that many frames may be off by. Negative without any.
+/// Largest variance over the frames that noise explains: the first quartile of the variances of the lasting texture,
+/// since some of it moves slowly, plus the error of an estimate from that number of frames. Negative without lasting
+/// texture.
 float noise_limit(const CellLevels& levels, const CellMask& lasting) {
   constexpr float deviations = 5;
   std::vector<float> variances;
@@ -171,7 +172,7 @@ bool more_moves(const CellLevels& levels, float max_variance, const CellMask& st
 std::optional<Image<std::uint8_t>> find_still_cells(const CellLevels& levels, double max_variance_ratio) {
   const CellMask lasting = find_lasting_texture(levels, max_variance_ratio, std::numeric_limits<float>::infinity());
   const float noise = noise_limit(levels, lasting);
-  // Again without the cells that move, so that it reaches up to the edge of what is still.
+  // Repeated without the moving cells, so that the still area reaches up to its edge.
   CellMask still = find_lasting_texture(levels, max_variance_ratio, noise);
   complete_parts(find_quiet_parts(levels, max_variance_ratio, noise), still);
   fill_surrounded(levels, noise, still);

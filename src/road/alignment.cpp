@@ -10,6 +10,7 @@
 #include "core/mid_grey.hpp"
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
+#include "core/require_size.hpp"
 #include "road/block_alignment.hpp"
 #include "road/masked_blocks.hpp"
 #include "road/plane_fit.hpp"
@@ -196,6 +197,8 @@ int alignment_factor(int width) {
 
 std::vector<RowSample> sample_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                             int threads, ImageView<const std::uint8_t> mask) {
+  require_one_size({left.width(), left.height()}, {right.width(), right.height()});
+  require_mask_size({mask.width(), mask.height()}, {left.width(), left.height()});
   const int factor = alignment_factor(left.width());
   const Pyramid pair{left, right, factor, downsample(left, factor), downsample(right, factor), {mask, factor}};
   std::vector<std::vector<RowSample>> by_row(cells_down);

@@ -22,16 +22,6 @@ void subtract_road(ImageView<const float> disparity, const DisparityPlane& plane
   for (int u = 0; u < disparity.width(); ++u) out[u] = above_road(in[u], road, u);
 }
 
-/// Calls `visit(u, chain)` for the columns of a row.
-template <std::size_t chains, class Visit>
-void for_each_column(int width, Visit&& visit) {
-  int u = 0;
-  for (; u + static_cast<int>(chains) <= width; u += static_cast<int>(chains)) {
-    for (std::size_t k = 0; k < chains; ++k) visit(u + static_cast<int>(k), k);
-  }
-  for (; u < width; ++u) visit(u, 0);
-}
-
 /// The smallest value of a row; infinite where there is none.
 float lowest_of_row(const float* row, int width) {
   constexpr int chains = 8;  // one a column in turn, so that compilers use vectors

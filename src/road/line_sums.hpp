@@ -4,7 +4,7 @@
 
 namespace roadstereo {
 
-/// A v-disparity image: what every row of the picture says to each disparity.
+/// A v-disparity image: evidence of every row of the image for each disparity.
 struct VDisparity {
   const float* values;  ///< row by row, `disparities` apart
   int rows, disparities;

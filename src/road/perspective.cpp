@@ -154,6 +154,10 @@ PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::opti
                                    std::min(max_disparities, width - 1));
   }
   if (options.delta_p_px >= 0) shift.delta_p = options.delta_p_px;
+  if (shift.delta_p >= shift.disparities) {
+    fail("perspective.delta_p_px is ", shift.delta_p, "; it must be less than the ", shift.disparities,
+         " disparities that are searched in images ", width, " pixels wide");
+  }
   return shift;
 }
 

@@ -7,14 +7,14 @@
 
 namespace roadstereo {
 
-/// A plane and what the whole picture says to it.
+/// A plane and the evidence of the whole image for it.
 struct PlaneHypothesis {
   DisparityPlane plane;  ///< in full-size pixels
   double evidence = 0;   ///< RoadModelEstimate::evidence
 };
 
-/// What the cells of a downsampled pair say to planes. A plane gains where the pixels support its disparity and loses
-/// where they lie beyond it, for nothing but damage lies below a road; what stands in front of it says nothing. Lower
+/// Evidence of the cells of a downsampled pair for planes. A plane gains where pixels support its disparity and loses
+/// where they lie beyond it, since nothing but damage lies below a road. Objects in front of it do not count. Lower
 /// rows count more.
 class PlaneEvidence {
  public:
@@ -30,8 +30,9 @@ class PlaneEvidence {
   double middle_column() const { return 0.5 * (column(0) + column(columns_ - 1)); }
   const float* values(int r, int c) const { return values_.data() + at(r, c); }
 
-  /// Mean evidence for a plane per pixel that it would be seen in, about −1 … 2: a plane that reaches higher up crosses
-  /// more of the houses and cars, which say something to any plane. The plane is in full-size pixels.
+  /// Mean evidence for a plane per pixel in which it would be visible, about −1 … 2. It is a mean because a plane that
+  /// reaches higher up crosses more houses and cars, which give some evidence for any plane. The plane is in full-size
+  /// pixels.
   double of_plane(const DisparityPlane& plane) const;
   /// The plane as the rows show it in the opposite order.
   DisparityPlane upside_down(const DisparityPlane& plane) const {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/degrees.hpp"
 #include "core/format_message.hpp"
 #include "road/road_search.hpp"
 
@@ -23,19 +23,19 @@ double inlier_share(const PlaneFitStatistics& evidence) {
 
 /// How far a plane has moved since the last frame: the largest change of its disparity in a corner of the image that
 /// sees the road both times.
-double max_move(const DisparityPlane& now, const DisparityPlane& before, int width, int height) {
+double max_move(const DisparityPlane& now, const DisparityPlane& before, double at_infinity, int width, int height) {
   double largest = 0;
   for (const double v : {0.0, height - 1.0}) {
     for (const double u : {0.0, width - 1.0}) {
       const double d = now.disparity(u, v), last = before.disparity(u, v);
-      if (d > 0 && last > 0) largest = std::max(largest, std::abs(d - last));
+      if (d > at_infinity && last > at_infinity) largest = std::max(largest, std::abs(d - last));
     }
   }
   return largest;
 }
 
-/// A road that has moved farther than this from one frame to the next has jumped: then nothing says that the search
-/// around the last frame's plane, up to `range_px` away, has seen all of it.
+/// A road that has moved farther than this from one frame to the next has jumped: the search around the last frame's
+/// plane, up to `range_px` away, may then have missed a part of it.
 double max_step_px(int range_px, int width) {
   constexpr double share_of_range = 0.7;
   return share_of_range * range_px * fine_factor(width);
@@ -48,7 +48,7 @@ TiltLimit::TiltLimit(int width, int height, const std::optional<StereoCalibratio
       cx_(calibration ? calibration->cx_px : width / 2.0),
       cy_(calibration ? calibration->cy_px : height / 2.0),
       offset_(calibration ? calibration->disparity_offset_px : 0),
-      max_sine_(std::sin(max_tilt_deg * std::numbers::pi / 180)) {}
+      max_sine_(std::sin(to_radians(max_tilt_deg))) {}
 
 double TiltLimit::normal_length(const DisparityPlane& plane) const {
   const double depth = (plane.disparity(cx_, cy_) + offset_) / focal_;
@@ -66,9 +66,10 @@ double TiltLimit::level_weight(const DisparityPlane& plane) const {
   return std::exp(-0.5 * tilt * tilt);
 }
 
-double weight_near(const DisparityPlane& plane, const DisparityPlane& last, int width, int height) {
+double weight_near(const DisparityPlane& plane, const DisparityPlane& last, double at_infinity, int width, int height) {
   constexpr double least = 0.1;
-  const double steps = max_move(plane, last, width, height) / max_step_px(first_search_again.range_px, width);
+  const double steps =
+      max_move(plane, last, at_infinity, width, height) / max_step_px(first_search_again.range_px, width);
   return std::max(least, 1 / (1 + steps * steps));
 }
 
@@ -110,14 +111,16 @@ RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const Pl
   const TiltLimit limit(width, height, calibration, options.max_road_tilt_deg);
   estimate.reason = assess_plane_fit(around.found ? close : around, limit, estimate);
   const double least = std::max(min_share, min_share_of_last * previous.inlier_share);
-  const double moved = max_move(estimate.model, previous.model, width, height);
+  const double at_infinity = calibration ? -calibration->disparity_offset_px : 0;
+  const double moved = max_move(estimate.model, previous.model, at_infinity, width, height);
   if (!estimate.reason.empty()) return estimate;
   if (estimate.inlier_share < least) {
     estimate.reason =
         format_message("the last frame's road explains ", 100 * estimate.inlier_share,
                        " % of the textured samples where it should be seen, less than ", 100 * least, " %");
   } else if (estimate.residual_px > options.verify_tolerance_px) {
-    estimate.reason = format_message("the last frame's road leaves ", estimate.residual_px, " px on this one");
+    estimate.reason =
+        format_message("the residual of the last frame's road in this frame is ", estimate.residual_px, " px");
   } else if (moved > max_step_px(range_px, width)) {
     estimate.reason = format_message("the road has moved by ", moved, " px since the last frame");
   } else {

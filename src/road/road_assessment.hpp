@@ -14,8 +14,8 @@ class TiltLimit {
 
   bool can_be_road(const DisparityPlane& plane) const;
 
-  /// Rigs hang level: of two planes with like evidence the one less tilted is the road. Normal in the sine of the tilt,
-  /// above 0 … 1; for what can be a road.
+  /// Prior weight of a plane that can be a road, above 0 … 1: rigs are mounted level, so that of two planes with
+  /// similar evidence the less tilted one is the road. A normal distribution in the sine of the tilt.
   double level_weight(const DisparityPlane& plane) const;
 
  private:
@@ -27,7 +27,7 @@ class TiltLimit {
 
 /// Weight of a plane, 0.1 … 1: roads are near the last frame's, ½ where tracking loses them. One with ten times the
 /// evidence is taken wherever it is, as after a cut.
-double weight_near(const DisparityPlane& plane, const DisparityPlane& last, int width, int height);
+double weight_near(const DisparityPlane& plane, const DisparityPlane& last, double at_infinity, int width, int height);
 
 /// What a search around a plane and a robust fit found.
 struct PlaneFitStatistics {

@@ -211,16 +211,17 @@ RoadModelEstimate assess_planes(FinePairs& pairs, std::span<const PlaneHypothesi
   return estimate;
 }
 
-/// A wall or a ceiling crosses any plane somewhere and so gives it evidence, but has several times as much itself: a
-/// road that was found is weak then, and a weak one is none. House fronts beside a road have up to three times as much
-/// as the road has; what is above a road seldom has more, a low ceiling apart.
+/// A wall or a ceiling crosses any plane somewhere and so gives it evidence, but has several times as much itself. If
+/// so, a found road becomes weak, and a weak one is rejected. House fronts beside a road have up to three times the
+/// evidence of the road; objects above a road seldom have more, except low ceilings.
 void doubt_road(double wall, double ceiling, RoadModelEstimate& road) {
   constexpr double wall_ratio = 4, ceiling_ratio = 2;
   if (ceiling > ceiling_ratio * road.evidence) {
     road.reason = format_message("the pair looks upside down: the evidence for a plane above the camera is ", ceiling,
-                                 " per pixel, for a road ", road.evidence);
+                                 " per pixel, that for a road only ", road.evidence);
   } else if (wall > wall_ratio * road.evidence) {
-    road.reason = format_message("the evidence for a wall is ", wall, " per pixel, for a road ", road.evidence);
+    road.reason =
+        format_message("the evidence for a wall is ", wall, " per pixel, that for a road only ", road.evidence);
   }
   if (!road.reason.empty()) road.status = road.status == RoadStatus::weak ? RoadStatus::none : RoadStatus::weak;
 }
@@ -241,8 +242,8 @@ RoadModelEstimate track_road(ImageView<const std::int16_t> left, ImageView<const
   return estimate;
 }
 
-/// Why there is no road where few blocks match. That alone decides nothing: noise that leaves no block reliable
-/// averages out over a plane.
+/// The reason for no road if few blocks match. Few matches alone are no reason to reject a road, since noise that
+/// leaves no block reliable averages out over a plane.
 std::string too_few(int matches) {
   return format_message("only ", matches, " reliable correspondences in the whole image");
 }
@@ -313,8 +314,9 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   constexpr int max_planes = 3;
   const PlaneEvidence evidence(coarse);
   const RigPrior rig(options, calibration);
+  const double at_infinity = calibration ? -calibration->disparity_offset_px : 0;
   const auto prior = [&](const DisparityPlane& plane) {
-    return rig.weight(plane) * (last ? weight_near(plane, *last, left.width(), left.height()) : 1);
+    return rig.weight(plane) * (last ? weight_near(plane, *last, at_infinity, left.width(), left.height()) : 1);
   };
   const PlaneSearchResult planes = search_planes(evidence, limit, prior, road_max_slope, max_planes, threads);
   if (planes.roads.empty()) {

@@ -47,8 +47,8 @@ inline constexpr std::size_t min_even_points = 40;
 /// Its plane is taken unless it has less than this share of the evidence of the plane it started from.
 inline constexpr double min_even_evidence = 0.75;
 
-/// Of the robust fit after a search. The window is in pixels of the shrunk image: a kerb must not pull the plane, a
-/// road that is not flat must stay in.
+/// Of the robust fit after a search. Its window, in pixels of the downsampled image, is narrow enough that a kerb does
+/// not pull the plane, and wide enough for a road that is not flat.
 inline constexpr int fine_fit_iterations = 50;
 inline constexpr double fine_fit_scale = 0.5;
 

@@ -30,7 +30,7 @@ ROADSTEREO_HD inline int spread_step(double pixels) {
   return step > 1 ? step : 1;
 }
 
-/// What stands on the road or beside it must not widen the limit: first only what is this near counts.
+/// Only residuals up to this are used at first, so that objects on the road or beside it do not widen the limit.
 inline constexpr double spread_nearest_px = 3.0;
 
 /// Residuals up to this are the road's; `median` is that of the near ones' magnitudes.

@@ -32,8 +32,8 @@ inline double downsampled_correlation(double correlation, int factor) {
 }
 
 /// Length of road that a row covers over the width that a column does, at the centre of the lower half of the image: 1
-/// seen from above, Z / h far ahead of a camera at height h. Of d = a0 + a1 v the depth Z = f B / d changes by −Z a1 /
-/// d a row. 1 where the plane is behind the camera there.
+/// seen from above, Z / h far ahead of a camera at height h. Of d = a0 + a1 v, 0 at infinity, the depth Z = f B / d
+/// changes by −Z a1 / d a row. 1 where the plane is behind the camera there.
 inline double foreshortening(const DisparityPlane& road, double focal_px, double cy_px, int width, int height) {
   const double v = 0.75 * height, disparity = road.disparity(width / 2.0, v);
   if (!(disparity > 0)) return 1;
@@ -47,8 +47,8 @@ struct PairSupport {
   double foreshortening = 1;  ///< of the road
 };
 
-/// The options for a pair: blocks as low as the road is foreshortened, down to three rows of nine columns; in noise a
-/// larger block, and as much more weight of the prior as the costs are less certain.
+/// The options for a pair: blocks that are lower in proportion to the foreshortening of the road, down to three rows of
+/// nine columns; in noise a larger block, and more weight of the prior in proportion to the uncertainty of the costs.
 inline MatcherOptions adapt_support(MatcherOptions options, const PairSupport& pair) {
   if (!options.adapt_support) return options;
   constexpr double min_aspect = 0.22;  // unless less is asked for

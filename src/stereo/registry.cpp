@@ -36,7 +36,7 @@ std::deque<EngineInfo> make_host_engines() {
   return engines;
 }
 
-/// With those of register_engine, which leave references to the others valid.
+/// Engines of the host, including those of register_engine. Adding one keeps references to the others valid.
 std::deque<EngineInfo>& host_engines() {
   static std::deque<EngineInfo> of_this_machine = make_host_engines();
   return of_this_machine;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/degrees.hpp"
+
 namespace roadstereo::synth {
 namespace {
 
@@ -14,7 +16,7 @@ struct SineCosine {
 /// Sine and cosine of an angle, exact at 0° and 90°: a camera that looks straight down must see a plane at constant
 /// depth, but cos(π/2) is not 0 in floating point.
 SineCosine sine_cosine(double degrees) {
-  const double radians = degrees * std::numbers::pi / 180.0;
+  const double radians = to_radians(degrees);
   if (degrees == 90) return {1, 0};
   if (degrees == 0) return {0, 1};
   return {std::sin(radians), std::cos(radians)};

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "core/degrees.hpp"
 #include "core/parallel.hpp"
 #include "synth/hash.hpp"
 
@@ -62,7 +62,7 @@ double bilinear(const Image<float>& image, double u, double v) {
 /// Linear motion blur: mean over taps along the motion.
 void motion_blur(const Image<float>& in, double length, double angle_deg, int threads, Image<float>& out) {
   const int taps = 2 * static_cast<int>(std::ceil(length)) + 1;
-  const double angle = angle_deg * std::numbers::pi / 180;
+  const double angle = to_radians(angle_deg);
   const double step_u = std::cos(angle) * length / taps;
   const double step_v = std::sin(angle) * length / taps;
   out.resize(in.width(), in.height());

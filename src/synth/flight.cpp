@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/degrees.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/synth.hpp"
 
@@ -28,7 +29,7 @@ void circle(const FlightPath& path, double frame, Rig& rig) {
   const double radius_m = path.loop_period * path.step_m / (2 * std::numbers::pi);
   rig.x_m += radius_m * (1 - std::cos(turn));
   rig.y_m += radius_m * std::sin(turn);
-  rig.yaw_deg = std::remainder(rig.yaw_deg - turn * 180 / std::numbers::pi, 360.0);
+  rig.yaw_deg = std::remainder(rig.yaw_deg - to_degrees(turn), 360.0);
 }
 
 /// Moves the rig along the road, and after `turn_frame` frames back: within 30 frames round half a circle to the right.
@@ -42,7 +43,7 @@ void straight(const FlightPath& path, double frame, Rig& rig) {
   const double back = std::max(frame - path.turn_frame - turn_frames, 0.0);
   rig.x_m += radius_m * (1 - std::cos(turn));
   rig.y_m += (path.turn_frame - back) * path.step_m + radius_m * std::sin(turn);
-  rig.yaw_deg = std::remainder(rig.yaw_deg - turn * 180 / std::numbers::pi, 360.0);
+  rig.yaw_deg = std::remainder(rig.yaw_deg - to_degrees(turn), 360.0);
 }
 
 /// Pose of the rig at a time, in frames. Jumps are between frames.

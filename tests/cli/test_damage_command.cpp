@@ -122,8 +122,7 @@ TEST_F(DamageCommand, SeverityFileReplacesTables) {
   const std::string map = "map.tiff --disparity disparity.tiff --calibration rig.yaml --severity ";
   const auto standard = damages_of(map + "d6433")["damages"][0];
   EXPECT_EQ(standard["distress"], "pothole");
-  EXPECT_EQ(standard["severity"],
-            astm_severity(standard["max_depth_m"], standard["diameter_m"]) == Severity::high ? "high" : "medium");
+  EXPECT_EQ(standard["severity"], standard["diameter_m"].get<double>() >= 0.45 ? "high" : "medium");
   write("own.yaml", std::string("name: own\npothole: {unit: m2, depth_mm: [40, 100], severity: [low, high]}\n"));
   const auto own = damages_of(map + "own.yaml")["damages"][0];
   EXPECT_EQ(own["severity"], "low");

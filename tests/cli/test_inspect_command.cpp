@@ -215,7 +215,7 @@ TEST_F(InspectCommand, ExpectedHeightIsCompared) {
   ASSERT_EQ(inspect(calibrated + "--height 4").exit_code, 0);
   const auto warnings = json_file("result/result.json")["warnings"];
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].get<std::string>().find("expected were 4 m"), std::string::npos) << warnings;
+  EXPECT_NE(warnings[0].get<std::string>().find("not 4 m as expected"), std::string::npos) << warnings;
   expect_complaint(inspect("--height 2"), "need a calibration");
   expect_complaint(inspect(calibrated + "--pitch 100"), "road_model.pitch_deg is 100");
 }
@@ -354,7 +354,7 @@ TEST_F(InspectCommand, MaskWithoutWhiteIsRefused) {
   Frame mask{std::vector<std::uint8_t>(std::size_t{320} * 180, 0), 320, 180};
   std::fill_n(mask.bytes.begin(), 1000, std::uint8_t{1});
   write("mask.png", io::encode_png(mask.view()));
-  expect_complaint(inspect("--mask mask.png"), 2, "mask.png: the mask has no pixel of 255");
+  expect_complaint(inspect("--mask mask.png"), 2, "mask.png: the mask has no white pixel (255)");
   std::fill_n(mask.bytes.begin(), 1000, std::uint8_t{0});
   write("mask.png", io::encode_png(mask.view()));
   EXPECT_EQ(inspect("--mask mask.png --quiet").exit_code, 0) << "nothing is left out";

@@ -92,6 +92,20 @@ TEST(Frame, RejectsBadSizesAndLevels) {
   EXPECT_NO_THROW(to_grey({samples + 39 * 80, 40, 40, -80, SampleType::u16, ChannelOrder::grey}, 0, grey));
 }
 
+TEST(Image, MovedImageIsEmpty) {
+  Image<float> image(64, 32, 1.0F);
+  const Image<float> other = std::move(image);
+  EXPECT_EQ(other.width(), 64);
+  EXPECT_EQ(other(63, 31), 1.0F);
+  EXPECT_TRUE(image.empty());         // NOLINT(bugprone-use-after-move)
+  EXPECT_TRUE(image.view().empty());  // NOLINT(bugprone-use-after-move)
+  Image<float> assigned(3, 2);
+  image.assign(16, 8, 2.0F);
+  assigned = std::move(image);
+  EXPECT_EQ(assigned.height(), 8);
+  EXPECT_EQ(image.width(), 0);  // NOLINT(bugprone-use-after-move)
+}
+
 TEST(Image, KeepsMemoryWhenSizeComesBack) {
   Image<float> image(64, 32);
   const float* before = image.row(0);

@@ -78,7 +78,7 @@ TEST_F(FlightHealthCommand, NamesSpecksOfOneLens) {
   EXPECT_NEAR(health_["left_spots"]["largest_v"], 120, 2);
   EXPECT_EQ(health_["frames_with"]["left-spots"], 2);  // from the twentieth frame on
   const std::string report = read_text(folder_ / "flight_out/report.html");
-  EXPECT_NE(report.find("the same 6 places of the left picture"), std::string::npos);
+  EXPECT_NE(report.find("6 places of the left picture"), std::string::npos);
 }
 
 TEST_F(FlightHealthCommand, PauseIsNoLoss) {
@@ -126,7 +126,7 @@ TEST_F(FlightHealthCommand, TellsHowLongShutterRolls) {
   const nlohmann::json& finding = health_["findings"][0];
   EXPECT_EQ(finding["unit"], "ms");
   EXPECT_NEAR(finding["value"], 0.4 * 50, 2);
-  EXPECT_NE(read_text(folder_ / "rolling_out/report.html").find("Health: the shutters roll"), std::string::npos);
+  EXPECT_NE(read_text(folder_ / "rolling_out/report.html").find("Health: rolling shutter"), std::string::npos);
 }
 
 }  // namespace

@@ -154,9 +154,10 @@ TEST(DamageTables, UncalibratedOmitMetresWithReason) {
     const bool is_metric = metric_names.count(lines[0][k]) > 0;
     const bool needs_right_image =
         lines[0][k] == "surface_significance" || lines[0][k] == "range_vote" || lines[0][k] == "specular_excess";
+    const bool needs_image = lines[0][k] == "texture_share";
     const bool needs_sigma = lines[0][k] == "pixel_significance";
     const bool needs_metres = lines[0][k] == "extent";
-    const bool expected_empty = is_metric || needs_right_image || needs_sigma || needs_metres;
+    const bool expected_empty = is_metric || needs_right_image || needs_image || needs_sigma || needs_metres;
     metric += is_metric ? 1 : 0;
     EXPECT_EQ(row[lines[0][k]].is_null(), expected_empty) << lines[0][k];
     EXPECT_EQ(lines[1][k].empty(), expected_empty) << lines[0][k];

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/degrees.hpp"
 #include "mapping/footprints.hpp"
 #include "tests/mapping/step_frame.hpp"
 
@@ -71,6 +72,36 @@ TEST(Footprint, OfDistantDamageHasNoHoles) {
     ASSERT_EQ(located.size(), 1U);
     const double row_m = ahead_m * ahead_m / (focal_px * camera_m);
     EXPECT_NEAR(area_m2(located[0].footprint), std::numbers::pi * radius_m * radius_m, 2 * radius_m * row_m) << ahead_m;
+  }
+}
+
+/// A camera that looks ahead, turned about the vertical: a side has no direction, so that its angle is −90 … 90°.
+TEST(LocatedDamage, LongerSideTurnsWithCamera) {
+  StereoCalibration calibration;
+  calibration.width = 64;
+  calibration.height = 48;
+  calibration.focal_px = 60;
+  calibration.cx_px = 32;
+  calibration.cy_px = 10;
+  calibration.baseline_m = 0.5;
+  const DisparityPlane road{-calibration.cy_px * 0.5 / 1.6, 0.5 / 1.6, 0};
+  DamageMap found;
+  found.ids.assign(calibration.width, calibration.height, 0);
+  found.ids(30, 40) = 1;
+  Damage damage;
+  damage.id = 1;
+  damage.box_px = {30, 40, 30, 40};
+  damage.metrics.emplace();
+  damage.metrics->angle_rad = to_radians(80);
+  found.damages = {damage};
+  for (const double yaw_deg : {0.0, 60.0, 130.0, 170.0, -100.0}) {
+    const double c = std::cos(to_radians(yaw_deg)), s = std::sin(to_radians(yaw_deg));
+    const RigidTransform pose{c, 0, -s, 0, s, 0, c, 0, 0, -1, 0, 1.6};
+    const std::vector<MapDamage> located = locate_damage(found, road, calibration, pose);
+    ASSERT_EQ(located.size(), 1U);
+    const double angle_deg = to_degrees(located[0].length_angle_rad);
+    EXPECT_LE(std::abs(angle_deg), 90) << yaw_deg;
+    EXPECT_NEAR(std::remainder(angle_deg - 80 - yaw_deg, 180.0), 0, 1e-9) << yaw_deg;
   }
 }
 

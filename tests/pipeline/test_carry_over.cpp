@@ -101,7 +101,7 @@ TEST_P(CarryOverJump, IsDetectedInSameFrame) {
   EXPECT_NE(result.road.status, RoadStatus::tracked);
   EXPECT_TRUE(result.road.has_road());
   ASSERT_FALSE(result.warnings.empty());
-  EXPECT_NE(result.warnings.front().find("estimated anew"), std::string::npos);
+  EXPECT_NE(result.warnings.front().find("searched again"), std::string::npos);
   // Of the frame before only the order of the planes is left, and so the place where a search starts.
   const FrameResult& expected = fresh.process(after.left.view(), after.right.view());
   EXPECT_LT(difference(result.road.model, expected.road.model, after), 0.03);

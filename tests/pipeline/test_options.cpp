@@ -54,6 +54,13 @@ TEST(SetOption, ParsesNumbersWordsAndBooleans) {
   EXPECT_EQ(options.roll.solver, RollSolver::closed_form);
 }
 
+TEST(SetOption, RefusedValueChangesNothing) {
+  PipelineOptions options;
+  for (const char* key : {"threads", "matcher.sigma_space"}) EXPECT_THROW(set_option(options, key, "4x"), Error) << key;
+  EXPECT_EQ(options.threads, PipelineOptions{}.threads);
+  EXPECT_EQ(options.matcher.sigma_space, PipelineOptions{}.matcher.sigma_space);
+}
+
 TEST(SetOption, SuggestsNearestKey) {
   EXPECT_EQ(refusal("matcher.sigma_spce", "2"),
             "there is no option called 'matcher.sigma_spce'; the nearest is 'matcher.sigma_space'");
@@ -62,12 +69,13 @@ TEST(SetOption, SuggestsNearestKey) {
 
 TEST(SetOption, ErrorSaysExpectedValue) {
   EXPECT_EQ(refusal("perspective.disparities", "many"),
-            "'many' is no value for perspective.disparities; it takes a whole number");
+            "'many' is not a valid value of perspective.disparities; it takes a whole number");
   EXPECT_EQ(refusal("perspective.disparities", "3.5"),
-            "'3.5' is no value for perspective.disparities; it takes a whole number");
-  EXPECT_EQ(refusal("matcher.sub_pixel", "maybe"), "'maybe' is no value for matcher.sub_pixel; it takes true or false");
+            "'3.5' is not a valid value of perspective.disparities; it takes a whole number");
+  EXPECT_EQ(refusal("matcher.sub_pixel", "maybe"),
+            "'maybe' is not a valid value of matcher.sub_pixel; it takes true or false");
   EXPECT_EQ(refusal("perspective.shift", "half"),
-            "'half' is no value for perspective.shift; it takes whole_pixel or sub_pixel");
+            "'half' is not a valid value of perspective.shift; it takes whole_pixel or sub_pixel");
   EXPECT_NE(refusal("matcher.sigma_space", ""), "accepted");
 }
 

@@ -517,7 +517,7 @@ TEST(Pipeline, WarnsAboutRowOffset) {
   const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
   EXPECT_NEAR(result.rows.median_px, 1.5, 0.15);
   ASSERT_FALSE(result.warnings.empty());
-  EXPECT_NE(result.warnings.back().find("the rows of the pair do not agree"), std::string::npos);
+  EXPECT_NE(result.warnings.back().find("the rows of the pair are not aligned"), std::string::npos);
   EXPECT_EQ(warning_code(result.warnings.back()), "rows-disagree");
   EXPECT_EQ(warning_code("A sentence: with a colon"), "");
   EXPECT_EQ(warning_code("word"), "");

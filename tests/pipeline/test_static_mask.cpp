@@ -80,14 +80,15 @@ void add_noise(GreyImage& picture, std::mt19937& random) {
 
 /// Both cameras see what `picture_at` gives for a frame, with noise of their own.
 template <class PictureAt>
-StaticMask watch(int frames, const PictureAt& picture_at, const std::optional<DisparityPlane>& road = std::nullopt) {
+StaticMask watch(int frames, const PictureAt& picture_at, const std::optional<DisparityPlane>& road = std::nullopt,
+                 double at_infinity_px = 0) {
   StaticMask mask;
   std::mt19937 random(3);
   for (int frame = 0; frame < frames; ++frame) {
     GreyImage left = picture_at(frame), right = left;
     add_noise(left, random);
     add_noise(right, random);
-    mask.add(left, right, road);
+    mask.add(left, right, road, at_infinity_px);
   }
   return mask;
 }
@@ -204,6 +205,22 @@ TEST(StaticMask, NothingIsMaskedAboveHorizon) {
   ASSERT_FALSE(mask.mask().empty());
   for (int u = 0; u < mask_width; ++u) ASSERT_EQ(mask.mask()(u, 170 - reach_px - 4), 0) << u;
   EXPECT_NE(mask.mask()(160, 178), 0);
+}
+
+/// The principal points differ by 25 pixels: disparities of far points are −25, and those of the road from there on.
+TEST(StaticMask, HorizonIsAtDisparityOfInfinity) {
+  const DisparityPlane road{-110, 0.5, 0};  // −25 in row 170
+  const StaticMask mask = watch(40, road_behind_ellipse, road, -25);
+  ASSERT_TRUE(mask.judged());
+  ASSERT_FALSE(mask.mask().empty());
+  for (int u = 0; u < mask_width; ++u) ASSERT_EQ(mask.mask()(u, 170 - reach_px - 4), 0) << u;
+  EXPECT_NE(mask.mask()(160, 178), 0);
+}
+
+TEST(StaticMask, RefusesImagesOfTwoSizes) {
+  StaticMask mask;
+  const GreyImage left(64, 48), right(64, 47);
+  EXPECT_THROW(mask.add(left, right, std::nullopt), Error);
 }
 
 TEST(StaticMask, WhatRightCameraSeesIsMaskedWhereLeftSeesRoad) {

@@ -265,6 +265,18 @@ TEST(PlanPerspective, UnreliableRoadSearchesFullRange) {
   EXPECT_GE(shift.disparities, 80);
 }
 
+/// 200 columns have 199 disparities.
+TEST(PlanPerspective, RefusesRoadBeyondSearchedDisparities) {
+  RoadModelEstimate road;
+  road.status = RoadStatus::found;
+  road.model = {2, 0.2, 0};
+  PerspectiveOptions options;
+  options.delta_p_px = 198;
+  EXPECT_EQ(plan_perspective(road, std::nullopt, 200, 100, options).disparities, 199);
+  options.delta_p_px = 199;
+  EXPECT_THROW(plan_perspective(road, std::nullopt, 200, 100, options), Error);
+}
+
 TEST(PerspectiveOptions, RejectsValuesOutOfRange) {
   PerspectiveOptions options;
   options.disparities = 1025;

@@ -261,7 +261,7 @@ TEST(WeightNear, HalvesWhereTrackingLosesTheRoad) {
   constexpr int width = 640, height = 360;
   constexpr double lost_px = 0.7 * 4;      // of the search around the last plane
   const DisparityPlane last{-10, 0.1, 0};  // 25.9 px at the lower border, no road above row 100
-  const auto weight = [&](const DisparityPlane& plane) { return weight_near(plane, last, width, height); };
+  const auto weight = [&](const DisparityPlane& plane) { return weight_near(plane, last, 0, width, height); };
   EXPECT_EQ(weight(last), 1);
   EXPECT_NEAR(weight({-10 + lost_px, 0.1, 0}), 0.5, 1e-9);
   EXPECT_NEAR(weight({-10 - lost_px / 2, 0.1, 0}), 0.8, 1e-9);

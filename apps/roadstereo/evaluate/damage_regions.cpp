@@ -48,6 +48,7 @@ nlohmann::ordered_json regions_json(const std::vector<FoundRegion>& regions) {
                     {"surface_significance", number(evidence.surface_significance)},
                     {"range_vote", number(evidence.range_vote)},
                     {"specular_excess", number(evidence.specular_excess)},
+                    {"texture_share", number(evidence.texture_share)},
                     {"pixel_significance", number(evidence.pixel_significance)},
                     {"likely_wall_slope", number(evidence.likely_wall_slope)},
                     {"extent", number(evidence.extent)},

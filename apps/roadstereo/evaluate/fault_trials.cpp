@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/degrees.hpp"
 #include "evaluation/image_faults.hpp"
 #include "find_damage_or_warn.hpp"
 #include "roadstereo/error.hpp"
@@ -36,7 +37,7 @@ Frame distorted(const Frame& frame, const Lens& lens, double k) {
 }
 
 Frame turned(const Frame& frame, const Lens& lens, double scale, double angle_deg) {
-  const double angle = angle_deg * std::numbers::pi / 180;
+  const double angle = to_radians(angle_deg);
   const double c = scale * std::cos(angle), s = scale * std::sin(angle);
   return io::warped(frame, [&](double u, double v) {
     const double x = u - lens.cx, y = v - lens.cy;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -121,7 +122,7 @@ Table damage_table(const MapTrials& trials) {
     const bool found = trial.records > 0;
     const RoadDamageRecord& record = trial.record;
     table.rows.push_back({trial.truth.kind, Cell(mm * trial.truth.depth_m, 1),
-                          Cell(mm * std::sqrt(trial.truth.area_m2 / 3.141592653589793), 0),
+                          Cell(mm * std::sqrt(trial.truth.area_m2 / std::numbers::pi), 0),
                           Cell(found ? mm * record.max_depth_m.value : NAN, 1),
                           Cell(found ? mm * record.max_depth_m.std_error : NAN, 1),
                           Cell(mm * trial.best_frame_error_m, 1), Cell(record.sightings, 0), Cell(record.passes, 0),

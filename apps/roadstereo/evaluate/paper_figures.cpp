@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
 #include <optional>
 
+#include "core/degrees.hpp"
 #include "evaluate/error_map.hpp"
 #include "evaluate/kitti_frames.hpp"
 #include "evaluate/roll_maps.hpp"
@@ -73,12 +73,11 @@ Frame draw_roll(const MethodSettings& methods) {
     RollOptions options;
     options.solver = RollSolver::gradient_descent;
     const RollEstimate estimate = estimate_roll(map, {}, std::nullopt, 0, options, methods.threads);
-    constexpr double degrees = 180 / std::numbers::pi;
-    rows.push_back({{fmt::format("roll {:.3f}°", pair.roll_rad * degrees),
+    rows.push_back({{fmt::format("roll {:.3f}°", to_degrees(pair.roll_rad)),
                      io::tint_magenta(pair.left.view(), 0, Image<std::uint8_t>(map.width(), map.height(), 0))},
                     disparity_cell(map, "disparities"),
                     disparity_cell(rotate_map(map, -estimate.roll_rad, Resampling::bilinear),
-                                   fmt::format("rotated by {:.3f}°", -estimate.roll_rad * degrees))});
+                                   fmt::format("rotated by {:.3f}°", to_degrees(-estimate.roll_rad)))});
   }
   return io::picture_sheet(rows, cell_width);
 }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/degrees.hpp"
 #include "core/order_statistics.hpp"
 #include "roadstereo/error.hpp"
 
@@ -180,7 +181,7 @@ std::vector<RigidMotion> initial_motions(const Points& cloud, const PrincipalAxe
 
 /// Whether two motions differ by more than 10° or a tenth of the extent of the cloud.
 bool is_distinct(const RigidMotion& one, const RigidMotion& other, const PrincipalAxes& cloud) {
-  constexpr double max_angle_rad = 10 * std::numbers::pi / 180;
+  constexpr double max_angle_rad = to_radians(10);
   constexpr double max_translation = 0.3;  // standard deviations: about a tenth of the extent
   const double angle = Eigen::AngleAxisd(one.rotation.transpose() * other.rotation).angle();
   return angle > max_angle_rad || (one(cloud.centre) - other(cloud.centre)).norm() > max_translation * cloud.sigma[0];

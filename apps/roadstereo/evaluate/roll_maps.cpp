@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
+
+#include "core/degrees.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -45,7 +46,7 @@ synth::Scene roll_scene(const RollView& view, double roll_deg, bool damaged, dou
   scene.road.camber = camber;
   if (!damaged) return scene;
   // Near the point that is seen in the lower part of the image; sizes are proportional to its distance.
-  const double angle = (view.pitch_deg + 10) * std::numbers::pi / 180;
+  const double angle = to_radians(view.pitch_deg + 10);
   const double distance = view.height_m / std::sin(angle);
   const double ahead = view.height_m / std::tan(angle);
   scene.road.blobs = {{0.35 * distance, ahead, 0.13 * distance, 0.08, 0.30, 0.25, 61},

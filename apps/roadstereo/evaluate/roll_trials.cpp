@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "core/degrees.hpp"
 #include "evaluate/roll_maps.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "settings.hpp"
@@ -14,7 +14,6 @@
 namespace roadstereo::cli {
 namespace {
 
-constexpr double radians_per_degree = std::numbers::pi / 180;
 constexpr double camber = 0.004;  ///< 1 cm at 1.6 m beside the crown
 constexpr double outlier_share = 0.05;
 
@@ -90,7 +89,7 @@ void run_rotated_maps(const Condition& condition, Resampling resampling, const R
         exact_map(synth::render(roll_scene(view, 0, condition.damaged, condition.camber), options.methods.threads));
     add_outliers(level, condition.outliers, ++seed);
     for (const double angle : symmetric_angles(options.max_roll_deg, options.angles)) {
-      const double roll = angle * radians_per_degree;
+      const double roll = to_radians(angle);
       trials.add(rotate_map(level, roll, resampling), angle, roll);
     }
   }

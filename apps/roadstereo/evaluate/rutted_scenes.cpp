@@ -1,9 +1,10 @@
 #include "evaluate/rutted_scenes.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <string>
+
+#include "core/degrees.hpp"
 
 namespace roadstereo::cli {
 
@@ -26,7 +27,7 @@ synth::Scene rutted_scene(std::uint64_t seed) {
   scene.road.cracks.clear();
   scene.road.kerbs.clear();
   constexpr double ahead_m = 3, reach_m = 60;  // of the camera, where the tracks are placed, and of their ends
-  const double heading = uniform(-12, 12) * std::numbers::pi / 180;
+  const double heading = to_radians(uniform(-12, 12));
   const double middle_m = uniform(-0.4, 0.4), gauge_m = uniform(1.55, 1.85);
   const bool both = uniform(0, 1) < 0.6;
   synth::Rut rut;

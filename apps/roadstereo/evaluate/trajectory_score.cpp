@@ -1,7 +1,6 @@
 #include "evaluate/trajectory_score.hpp"
 
-#include <numbers>
-
+#include "core/degrees.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
@@ -52,7 +51,7 @@ void score_pieces(const std::vector<Eigen::Isometry3d>& truth, const std::vector
   }
   const double count = static_cast<double>(score.pieces);
   score.translation_percent = 100 * translation / count;
-  score.rotation_deg_per_m = rotation / count * 180 / std::numbers::pi;
+  score.rotation_deg_per_m = to_degrees(rotation / count);
 }
 
 /// Least squares of t − v × t over the translations of single motions, v small and without a part about z.

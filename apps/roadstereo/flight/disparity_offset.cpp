@@ -27,8 +27,8 @@ std::optional<HealthFinding> disparity_offset(const std::vector<FrameLink>& link
       "px",
       fmt::format(
           "disparities with the calibration's offset are {:.2f} ± {:.2f} px too {} for the motion of the pictures "
-          "(limit {:.2f} px), so that every depth and height is wrong; correct the offset, or calibrate the rig "
-          "anew",
+          "(limit {:.2f} px), so that every depth and height is wrong; correct the offset, or recalibrate the "
+          "rig",
           value, offset->std_error, offset->value > 0 ? "small" : "large", limit),
       false};
 }

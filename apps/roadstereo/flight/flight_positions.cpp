@@ -109,8 +109,9 @@ std::string FlightPositions::no_position_reason() const {
 std::string FlightPositions::outliers_text() const {
   const std::vector<io::TrackPoint>& outliers = track_.outliers();
   if (outliers.empty()) return {};
-  return fmt::format("{} of the {} fixes of the track left out: no vehicle comes there in time (the first at {:.3f} s)",
-                     outliers.size(), outliers.size() + track_.points().size(), outliers.front().time_s);
+  return fmt::format(
+      "{} of the {} fixes of the track rejected: faster than 100 m/s from their neighbours (the first at {:.3f} s)",
+      outliers.size(), outliers.size() + track_.points().size(), outliers.front().time_s);
 }
 
 std::vector<StagedFile> FlightPositions::files(std::span<const io::RoadDamage> damages, bool with_candidates) const {

@@ -44,7 +44,8 @@ Image<std::uint8_t> read_ignored(const FlightSettings& settings) {
     return std::any_of(marked.row(0), marked.row(0) + marked.pixels(), [](std::uint8_t value) { return value != 0; });
   };
   if (!has_any(mask) && has_any(read_mask(settings.mask, 1))) {
-    fail(settings.mask, ": the mask has no pixel of 255, which --mask leaves out, but darker ones; white must be 255");
+    fail(settings.mask,
+         ": the mask has no white pixel (255), only darker ones; --mask ignores the pixels that are 255");
   }
   return mask;
 }

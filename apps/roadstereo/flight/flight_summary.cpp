@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
+
+#include "core/degrees.hpp"
 
 namespace roadstereo::cli {
 
 void FlightSummary::add(const io::FlightFrame& frame) {
   constexpr std::size_t max_reasons = 5;
-  constexpr double degrees = 180 / std::numbers::pi;  // in a radian
   ++frames;
   health.add(frame);
   static_mask = frame.static_mask;
@@ -31,15 +31,15 @@ void FlightSummary::add(const io::FlightFrame& frame) {
   if (std::isnan(first_time_s)) first_time_s = frame.time_s;
   if (std::isfinite(frame.time_s)) last_time_s = frame.time_s;
   curves.time.push_back(frame.time_s);
-  curves.roll_deg.push_back(frame.roll_observable ? frame.roll_rad * degrees : io::FlightFrame::unknown);
+  curves.roll_deg.push_back(frame.roll_observable ? to_degrees(frame.roll_rad) : io::FlightFrame::unknown);
   curves.height_m.push_back(frame.height_m);
   curves.sigma_d_px.push_back(frame.sigma_d_px);
 }
 
 std::string FlightSummary::no_road_text() const {
   if (inspected == good) return {};
-  return fmt::format("No road was found in {} of {} frames: nothing is known of its damage there", good - inspected,
-                     frames);
+  return fmt::format("No road was found in {} of {} frames, so damage could not be searched for there",
+                     good - inspected, frames);
 }
 
 void FlightSummary::settle_times() {

@@ -56,7 +56,7 @@ void RectifiedSource::require_white_level(const io::SourcePair& pair) const {
   const double white = io::find_white_level(pair.left.view(), pair.right.view());
   if (white <= white_level_) return;
   fail("the image has samples above ", white_level_,
-       ", which the first pair tells to be white; set --set white_level=", white);
+       ", the white level found in the first pair; set it with --set white_level=", white);
 }
 
 void RectifiedSource::rectify(io::SourcePair& pair) {

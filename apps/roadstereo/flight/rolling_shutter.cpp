@@ -35,7 +35,7 @@ std::optional<HealthFinding> rolling_shutter(const std::vector<FrameLink>& links
       value,
       limit,
       unit,
-      fmt::format("the shutters roll: the last row is exposed {:.2f} ± {:.2f} {} {} the first (limit {:.2f} {}), so "
+      fmt::format("rolling shutter: the last row is exposed {:.2f} ± {:.2f} {} {} the first (limit {:.2f} {}), so "
                   "that motion shears pictures and bends the trajectory; use global shutters, or move slower",
                   value, readout->std_error, unit, readout->value > 0 ? "after" : "before", limit, unit),
       false};

@@ -144,10 +144,10 @@ void add_options(CLI::App& command, LiveCommandArguments& arguments) {
       ->capture_default_str();
   command.add_flag_callback(
       "--no-auto-mask", [&arguments] { arguments.auto_mask = false; },
-      "Do not leave out what never moves in the picture, such as a bonnet");
+      "Do not mask parts of the picture that never move, such as a bonnet");
   command.add_flag("--loop", arguments.loop, "Repeat a recording");
   command
-      .add_option("--frames", arguments.frames, "Stop when so many pairs are processed; those under way are finished")
+      .add_option("--frames", arguments.frames, "Stop after this many processed pairs; pairs in progress are finished")
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
   command.add_option("--seconds", arguments.seconds, "Stop after this time")

@@ -1,8 +1,8 @@
 #include "live/status_json.hpp"
 
 #include <cmath>
-#include <numbers>
 
+#include "core/degrees.hpp"
 #include "health_json.hpp"
 #include "json_text.hpp"
 
@@ -10,10 +10,6 @@ namespace roadstereo::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-double degrees(double radians) {
-  return radians * 180 / std::numbers::pi;
-}
 
 ordered_json measurement_json(const Measurement& measured, double scale, const char* unit) {
   return {{"value", json_number(scale * measured.value)},
@@ -44,8 +40,8 @@ ordered_json damage_json(const ListedDamage& listed) {
 
 ordered_json roll_json(const LiveView& view) {
   if (!view.geometry) return nullptr;
-  return {{"degrees", json_number(degrees(view.geometry->roll_rad))},
-          {"error_degrees", json_number(degrees(view.geometry->roll_stderr_rad))},
+  return {{"degrees", json_number(to_degrees(view.geometry->roll_rad))},
+          {"error_degrees", json_number(to_degrees(view.geometry->roll_stderr_rad))},
           {"observable", view.geometry->roll_observable}};
 }
 
@@ -72,7 +68,7 @@ ordered_json view_json(const LiveView& view, const RecentHealth& recent) {
   for (const HealthFinding& finding : recent.findings()) json["warnings"].push_back(finding.id + ": " + finding.text);
   if (view.plane) {
     json["height_m"] = json_number(view.plane->height_m);
-    json["pitch_degrees"] = json_number(degrees(view.plane->pitch_rad));
+    json["pitch_degrees"] = json_number(to_degrees(view.plane->pitch_rad));
   }
   return json;
 }
@@ -87,7 +83,7 @@ ordered_json path_json(const LivePath& path) {
   ordered_json points = ordered_json::array();
   for (const auto& [x, y] : path.points_m) points.push_back({std::round(mm * x) / mm, std::round(mm * y) / mm});
   return {{"points_m", points},
-          {"heading_degrees", json_number(degrees(path.heading_rad))},
+          {"heading_degrees", json_number(to_degrees(path.heading_rad))},
           {"length_m", json_number(path.length_m)},
           {"pieces", path.pieces}};
 }

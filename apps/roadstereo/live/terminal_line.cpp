@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <numbers>
 
+#include "core/degrees.hpp"
 #include "log_stderr.hpp"
 
 namespace roadstereo::cli {
@@ -19,7 +19,7 @@ std::string road_text(const LiveView& view) {
   if (!view.geometry) return ", no road";
   std::string text = ", roll not observable";
   if (view.geometry->roll_observable) {
-    text = fmt::format(", roll {:.2f}°", view.geometry->roll_rad * 180 / std::numbers::pi);
+    text = fmt::format(", roll {:.2f}°", to_degrees(view.geometry->roll_rad));
   }
   if (view.plane) text += fmt::format(", {:.2f} m", view.plane->height_m);
   return text;

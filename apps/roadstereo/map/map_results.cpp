@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 
+#include "core/degrees.hpp"
 #include "io/csv.hpp"
 #include "json_text.hpp"
 #include "map/day_layers.hpp"
@@ -22,7 +22,6 @@ std::string damages_csv(const BuiltMap& built, const MapResults& results) {
       "id,kind,x_m,y_m,max_depth_m,max_depth_stderr_m,mean_depth_m,mean_depth_stderr_m,area_m2,area_stderr_m2,"
       "volume_m3,volume_stderr_m3,length_m,width_m,angle_deg,distress,severity,confidence,sightings,passes,views,"
       "found_in_map,day\r\n";
-  constexpr double degrees = 180 / 3.14159265358979323846;
   for (std::size_t k = 0; k < results.damages.size(); ++k) {
     const RoadDamageRecord& damage = results.damages[k];
     const std::array<double, 2> at = in_crs(built, damage.best.at_m);
@@ -32,7 +31,7 @@ std::string damages_csv(const BuiltMap& built, const MapResults& results) {
       text += fmt::format("{},{},", csv(measured.value, 6), csv(measured.std_error, 6));
     }
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},", csv(metrics.length_m, 4), csv(metrics.width_m, 4),
-                        csv(damage.best.length_angle_rad * degrees, 1), name_of(metrics.distress),
+                        csv(to_degrees(damage.best.length_angle_rad), 1), name_of(metrics.distress),
                         name_of(damage.severity), csv(damage.confidence, 3), damage.sightings, damage.passes,
                         damage.views, damage.found_in_map ? 1 : 0);
     text += io::CsvLine().add(built.days[results.damage_days[k]].name).end();

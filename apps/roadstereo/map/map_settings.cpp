@@ -13,7 +13,7 @@ namespace {
 /// Options of recordings that runs have of their own.
 void reject_run_options(const MapSettings& settings) {
   const auto reject = [](const char* option) {
-    fail(option, " is for recordings; the runs have theirs from inspect, which are used again");
+    fail(option, " is for recordings; outputs of inspect are mapped with the settings of their run");
   };
   if (!settings.calibration.empty()) reject("--calibration");
   if (!settings.processing.settings.empty()) reject("--set");

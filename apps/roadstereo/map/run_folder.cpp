@@ -31,7 +31,7 @@ std::string input_file(const fs::path& folder, const std::string& name) {
   const fs::path path = (folder / name).lexically_normal();
   if (fs::exists(path, absent)) return path.string();
   fail(folder.string(), ": the run was made with ", path.string(),
-       ", which does not exist; a run is mapped where it was made, beside its recording");
+       ", which does not exist; keep the run and its recording at the places that they had during inspect");
 }
 
 std::vector<std::string> input_paths(const fs::path& folder, const Json& names) {

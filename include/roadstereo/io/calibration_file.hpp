@@ -28,7 +28,8 @@ struct CalibrationFile {
   std::string format;                          ///< e.g. "plain YAML", "OpenCV stereo", "ROS camera_info", "KITTI P2/P3"
   std::optional<StereoCalibration> rectified;  ///< the images are already rectified
   std::optional<StereoRig> rig;                ///< the images must be rectified first
-  std::vector<StereoRig> rigs{};               ///< either of both, one per size of the images: `select_size`
+  std::vector<StereoRig> rigs{};               ///< one rig per image size, from which `select_size` takes one: it
+                                               ///< becomes `rig` or `rectified`
 
   /// Makes the member of `rigs` of that size the `rig`, or `rectified` if it needs no rectification; does nothing
   /// without `rigs`. Throws Error naming the sizes.

@@ -22,12 +22,12 @@ enum class FrameStatus {
 };
 const char* name_of(FrameStatus status);
 
-/// What never moves in the picture of a flight, by StaticMask.
+/// Result of StaticMask for a flight.
 struct StaticMaskRecord {
-  bool judged = false;     ///< whether enough frames have moved to tell
-  std::int64_t frame = 0;  ///< in which it was judged, index in the source
-  double share = 0;        ///< of the picture that never moves, 0 … 1
-  bool applied = false;    ///< whether it is left out from that frame on
+  bool judged = false;     ///< whether the decision was made (StaticMask::judged)
+  std::int64_t frame = 0;  ///< frame of the decision, index in the source
+  double share = 0;        ///< share of the image that never moves, 0 … 1
+  bool applied = false;    ///< whether that part is masked from that frame on
 };
 
 /// Record of one frame of a flight, without its maps. NaN: unknown.
@@ -57,16 +57,16 @@ struct FlightFrame {
   double damage_ms = unknown;                      ///< time in find_damage
   std::vector<std::array<double, 2>> footprint_m;  ///< `road_footprint`; empty without a calibration
   PairHealth health;
-  std::optional<RigBiasFrame> rig_bias;  ///< what the frame tells of it
+  std::optional<RigBiasFrame> rig_bias;  ///< contribution of the frame to the rig bias (measure_rig_bias)
   std::vector<Damage> damages;           ///< deepest first
   std::vector<Damage> candidates;        ///< `DamageMap::candidates`
   std::vector<std::string> warnings;
   double white_level = 0;        ///< sample value of white; 0: maximum of the sample type
   PipelineState pipeline_state;  ///< state of the pipeline after this frame
-  StaticMaskRecord static_mask;  ///< as known in this frame
+  StaticMaskRecord static_mask;  ///< state at this frame
 };
 
-/// Returns the text as JSON files have it: every byte that is not UTF-8 replaced by U+FFFD.
+/// Returns the text as it is written to JSON files: every byte that is not valid UTF-8 is replaced by U+FFFD.
 std::string valid_utf8(const std::string& text);
 
 /// Returns one line of JSON without a line end. Numbers are read back bit for bit.

@@ -30,7 +30,7 @@ struct RoadDamage {
   std::string picture;                             ///< file in the folder of the results; empty: none
 };
 
-/// Returns whether a damage is a rut, which runs through the pictures and tells nothing of their motion.
+/// Returns whether a damage is a rut. A rut runs through the images and gives no information about their motion.
 bool is_rut(const Damage& damage);
 
 /// Returns whether one of two damages is a rut and the other a small part of its box, such as a pothole in it.
@@ -43,12 +43,12 @@ bool is_worse(const RoadDamage& one, const RoadDamage& other);
 std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool candidates);
 
 /// Tracks damages over the frames of a flight. Sightings in successive frames are one damage if their boxes overlap
-/// after the image motion is compensated. Tracking restarts where the road jumps: at a frame whose road model was
-/// estimated anew after one that had a road. Frames too far apart to overlap yield one damage per sighting. A rut that
-/// runs through the pictures is one damage; a pothole in it is another.
-/// A damage of the road is one in at least one frame, and the two frames that are surest of it agree: the mean of their
-/// log-odds is at least that of the minimum confidence. Of many frames noise makes one that is sure. What a single
-/// frame shows is decided by that.
+/// after the image motion is compensated. Tracking restarts at a frame whose road was not tracked although the frame
+/// before had one, since the image has then jumped. Frames too far apart to overlap give one damage per sighting. A rut
+/// that runs through the pictures is one damage; a pothole in it is another.
+/// A region counts as damage of the road if it is a damage in at least one frame and the two frames with the highest
+/// confidence agree: the mean of their log-odds is at least that of the minimum confidence. Otherwise noise in one of
+/// many frames would suffice. A region that only one frame shows is decided by that frame.
 class FlightInventory {
  public:
   /// `min_confidence`: DamageOptions::min_confidence, 0 … 1.
@@ -83,7 +83,7 @@ class FlightInventory {
   std::vector<Agreement> agreements_;  ///< of each of them
   std::vector<Sighting> recent_;
   std::array<double, 2> motion_px_{};  ///< image motion from frame to frame
-  bool motion_known_ = false;          ///< whether damages of the last frame told it
+  bool motion_known_ = false;          ///< whether damages of the last frame determined it
   bool had_road_ = false;              ///< whether the last frame had a road
   std::int64_t sequence_ = 0;
 };

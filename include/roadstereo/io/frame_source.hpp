@@ -25,7 +25,8 @@ StereoLayout stereo_layout(const std::string& name);
 
 struct SourceOptions {
   StereoLayout layout = StereoLayout::automatic;  ///< of videos and cameras
-  std::vector<std::string> topics;                ///< left and right image topic of a ROS bag; empty: the only pair
+  std::vector<std::string> topics;                ///< left and right image topic of a ROS bag, two names; empty: the
+                                                  ///< only pair
   double max_time_difference_s = 0.005;           ///< between the views of a pair, 0 … 10
   int camera_width = 2560;  ///< of the image with both views, requested from a V4L2 camera; 64 … 16384
   int camera_height = 720;  ///< likewise

@@ -28,7 +28,7 @@ struct GeoFrame {
   double height_m = std::numeric_limits<double>::quiet_NaN();
   double sigma_d_px = std::numeric_limits<double>::quiet_NaN();
   double valid_share = std::numeric_limits<double>::quiet_NaN();
-  std::optional<std::int64_t> damages;  ///< nothing: no road, so that nothing is known of damage
+  std::optional<std::int64_t> damages;  ///< number of damages; empty: no road was found, so that damage is unknown
   std::string status;
 };
 
@@ -65,10 +65,10 @@ struct NamedText {
 /// GeoPackage.
 std::vector<NamedText> geojson_files(const GeoLayers& layers);
 
-/// Encodes an OGC GeoPackage (EPSG:4326) with the layers of `geojson_files` and `track`, one line per segment without a
-/// gap, cut at ±180°: start_utc, end_utc, points, length_m; time_utc is a DateTime. The table `layer_styles` has a QGIS
-/// style by severity for `damages` and `candidates`. Throws SystemError with GDAL's message on failure; Error if built
-/// without GDAL.
+/// Encodes an OGC GeoPackage (EPSG:4326) with the layers of `geojson_files` and a layer `track`: one line per segment
+/// without a gap, cut at ±180°, with start_utc, end_utc, points and length_m. time_utc is a DateTime. The table
+/// `layer_styles` has a QGIS style by severity for `damages` and `candidates`. Throws SystemError with GDAL's message
+/// on failure; Error if built without GDAL.
 std::vector<std::uint8_t> geopackage(const GeoLayers& layers, const Track& track);
 
 /// Header line of damages.csv and candidates.csv: id, lat_deg, lon_deg and the ten columns that are used first.

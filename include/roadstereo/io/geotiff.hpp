@@ -31,8 +31,9 @@ enum class MapLayer {
 using ReadMap = std::function<MapRaster(const MapBox& box)>;
 
 /// Writes a layer as Cloud-Optimised GeoTIFF (tiles of 512 pixels, overviews, JPEG for the orthophoto, else DEFLATE).
-/// Blocks are read one after another, so that memory does not grow with the map. Throws SystemError with GDAL's message
-/// on failure; Error if built without GDAL.
+/// Blocks are read one after another, so that memory does not grow with the map. Throws Error for an empty map, for a
+/// coordinate system that GDAL does not know or that is not projected, and if built without GDAL; SystemError with
+/// GDAL's message on failure.
 void write_geotiff(const std::filesystem::path& file, MapLayer layer, const MapBox& bounds,
                    const MapReference& reference, const ReadMap& read);
 

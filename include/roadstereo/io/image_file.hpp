@@ -14,12 +14,14 @@ namespace roadstereo::io {
 /// 8192×8192.
 Frame read_frame(const std::string& path);
 
-/// Returns the white level of a 16-bit pair whose camera has fewer than 16 bits: the smallest of 2^10−1,
-/// 2^12−1, 2^14−1, 2^16−1 that no sample of either frame exceeds. 255 for 8-bit frames.
+/// Returns the white level of a 16-bit pair whose camera has fewer than 16 bits: the smallest of 2^10−1, 2^12−1,
+/// 2^14−1, 2^16−1 that no sample of either frame exceeds. 255 for 8-bit frames. Throws Error when the frames differ in
+/// depth.
 double find_white_level(const FrameView& left, const FrameView& right);
 
-/// Reads a disparity map: float TIFF or PFM (NaN, infinity and values beyond ±1e15, such as −3.4e38, invalid), or
-/// 16-bit PNG (value / 256, 0 invalid).
+/// Reads a disparity map, pixels, NaN invalid: float TIFF or PFM (NaN, infinity and values beyond ±1e15, such as
+/// −3.4e38, are invalid), or 16-bit PNG (value / 256, 0 is invalid). Throws Error naming the file if it is missing,
+/// damaged or of another type.
 Image<float> read_disparity(const std::string& path);
 
 /// Encodes a float map as 32-bit TIFF, NaN kept.
@@ -29,7 +31,7 @@ std::vector<std::uint8_t> encode_float_tiff(ImageView<const float> map);
 /// to 0 is written as 1. Throws Error naming the first value outside 0 … 255.99 px.
 std::vector<std::uint8_t> encode_kitti_png(ImageView<const float> disparity);
 
-/// Encodes an 8-bit frame (grey or colour) as PNG.
+/// Encodes an 8-bit frame (grey or colour) as PNG. Throws Error for 16-bit samples.
 std::vector<std::uint8_t> encode_png(const FrameView& frame);
 
 /// Encodes an 8-bit frame as JPEG, `quality` 1 … 100, and decodes it. Throws Error for another quality or depth.

@@ -10,14 +10,14 @@
 #pragma GCC visibility push(default)
 namespace roadstereo::io {
 
-/// Axes at the first fix of a track, x east, y north, z up, metres, and the UTM zone around it (WGS84). In UTM lengths
-/// are up to 0.04 % shorter and 0.1 % longer than on the ground; in these axes they are not. Needs a build with GDAL
-/// and GeographicLib; without it the constructor throws Error.
+/// Axes at the first fix of a track, x east, y north, z up, metres, and the UTM zone around it (WGS84). Lengths in UTM
+/// differ from those on the ground by −0.04 to +0.1 %; in these axes they do not. The constructor throws Error at a
+/// latitude without UTM (near the poles), and in a build without GDAL and GeographicLib.
 class LocalAxes {
  public:
   explicit LocalAxes(const Track& track);
 
-  /// The fixes of the track; accuracies that it does not have are those of `PositionFix`.
+  /// The fixes of the track. Where the track has no accuracies, those of `PositionFix` are used.
   const std::vector<PositionFix>& fixes() const { return fixes_; }
 
   /// The coordinate system of `to_utm`, e.g. "EPSG:32632".

@@ -14,8 +14,8 @@ void write_map_points(const std::filesystem::path& file, const MapBox& bounds, c
 
 /// Writes the cells of a map as LAS 1.4, point data record format 7: coordinates in steps of 0.1 mm, class 11 (road
 /// surface), red, green, blue, and `sigma`, the standard error of z, as an extra float; the coordinate system is in a
-/// WKT record. Throws Error for a coordinate system that is not known and points more than 214 km from the map's
-/// corner, SystemError if writing fails.
+/// WKT record. Throws Error for an empty map, for an unknown coordinate system and for points more than 214 km from the
+/// map's corner; SystemError if writing fails.
 void write_map_las(const std::filesystem::path& file, const MapBox& bounds, const MapReference& reference,
                    const ReadMap& read);
 

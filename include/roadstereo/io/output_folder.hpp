@@ -34,8 +34,8 @@ class OutputFolder {
   /// Returns whether a file of that name is staged.
   bool has(const std::string& name) const;
 
-  /// Names a file that this result does not have: `commit` removes what an earlier one has left of it,
-  /// unless it is protected.
+  /// Names a file that is not part of this result. `commit` removes such a file of an earlier result, unless it is
+  /// protected.
   void remove(const std::string& name);
 
   /// Moves all staged files into the output folder. Throws SystemError; the folder is then unchanged.

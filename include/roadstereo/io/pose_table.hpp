@@ -14,8 +14,8 @@ class PoseTable {
  public:
   void add(const FlightFrame& frame);
 
-  /// Returns pose.csv: one row per frame, with standard errors. Unknown values are empty. Without the times of all
-  /// frames their numbers take their place.
+  /// Returns pose.csv: one row per frame, with standard errors. Unknown values are empty. If the time of any frame is
+  /// unknown, frame numbers are used instead of times.
   std::string csv() const;
 
  private:

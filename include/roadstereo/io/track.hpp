@@ -44,10 +44,10 @@ struct TrackOptions {
 /// At least two fixes in chronological order.
 class Track {
  public:
-  /// Of several points with one time the first is kept. Outliers, to and from which no vehicle or drone comes (faster
-  /// than 100 m/s), are left out. Unknown headings are computed from the movement around the point; at standstill the
-  /// last heading since the last gap is kept, if any. Throws Error naming the point that is out of range or earlier
-  /// than its predecessor.
+  /// Of several points with the same time the first is kept. Outliers, which could be reached and left only at more
+  /// than 100 m/s, are left out. Unknown headings are computed from the movement around the point; at standstill the
+  /// last heading since the last gap is kept, if any. Throws Error for fewer than two points at different times, and
+  /// naming the point that is out of range or earlier than its predecessor.
   explicit Track(std::vector<TrackPoint> points, const TrackOptions& options = {});
 
   const std::vector<TrackPoint>& points() const { return points_; }
@@ -78,7 +78,7 @@ class Track {
 Track read_track(const std::string& path, const TrackOptions& options = {});
 
 /// Interpolates the position at a time on the geodesic between the neighbouring points. Returns nullopt before the
-/// first point, after the last one, in gaps, and where the track goes on elsewhere (faster than 100 m/s).
+/// first point, after the last one, in gaps, and between points that could be reached only at more than 100 m/s.
 std::optional<GeoPosition> position_at(const Track& track, double time_s);
 
 /// Returns the position `right_m` to the right, `forward_m` in front of and `up_m` above a camera, or nullopt if the

@@ -9,19 +9,20 @@
 namespace roadstereo::io {
 
 /// Reads a trajectory as KITTI has it: one line of 12 numbers per frame, the 3×4 matrix from the camera of the frame to
-/// the world, metres; line i (from 0) is frame i. `nan` marks a frame without a pose. Throws Error naming the file, the
-/// line, and a matrix that is no rotation.
+/// the world, metres; line i (from 0) is frame i. `nan` marks a frame without a pose. All poses are of piece 0. Throws
+/// Error naming the file and the line for a number that cannot be read, a line without 12 numbers and a matrix that is
+/// no rotation, and for a file without a pose.
 Trajectory read_trajectory(const std::string& path);
 
 /// Writes what `read_trajectory` reads: the poses of one piece; the lines of other frames are `nan`.
 std::string kitti_trajectory(const Trajectory& trajectory, int piece);
 
-/// Writes the poses of one piece as the TUM RGB-D benchmark has them: one line "time x y z qx qy qz qw" per frame,
-/// camera to world. `times_s` has one entry per frame of the trajectory, of all pieces; where it is NaN the index of
-/// the frame stands for it.
+/// Writes the poses of one piece in the format of the TUM RGB-D benchmark: after a comment line, one line "time x y z
+/// qx qy qz qw" per frame, camera to world. `times_s` has one entry, in seconds, for every frame of the trajectory, of
+/// all pieces; where an entry is NaN or missing, the index of the frame is written.
 std::string tum_trajectory(const Trajectory& trajectory, int piece, const std::vector<double>& times_s);
 
-/// Returns the piece with the most frames, the first of them; 0 for an empty trajectory.
+/// Returns the piece with the most frames, the first one if several have as many; 0 for an empty trajectory.
 int longest_piece(const Trajectory& trajectory);
 
 }  // namespace roadstereo::io

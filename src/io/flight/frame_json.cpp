@@ -112,6 +112,7 @@ void each_field(DamageEvidence& evidence, Visit& visit) {
   visit("surface_significance", evidence.surface_significance);
   visit("range_vote", evidence.range_vote);
   visit("specular_excess", evidence.specular_excess);
+  visit("texture_share", evidence.texture_share);
   visit("pixel_significance", evidence.pixel_significance);
   visit("likely_wall_slope", evidence.likely_wall_slope);
   visit("extent", evidence.extent);
@@ -156,6 +157,7 @@ void each_field(Damage& damage, Visit& visit) {
   visit("confidence", damage.confidence);
   visit("evidence", damage.evidence);
   visit("cut_by_border", damage.cut_by_border);
+  visit("ends_search", damage.ends_search);
   visit("metrics", damage.metrics);
 }
 

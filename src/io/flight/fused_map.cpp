@@ -41,7 +41,8 @@ std::string table_of(const std::vector<RoadDamageRecord>& damages) {
       templates::table,
       {{"id", "map-damages"},
        {"title", "Damages on the map"},
-       {"hint", "Numbers are those of the picture. Figures are fused from all frames; ± is one standard error."},
+       {"hint",
+        "The numbers are those in the picture. Measurements are fused over all frames; ± is one standard error."},
        {"headings", report_headings(columns)},
        {"rows", report_rows(columns, damages)}});
 }

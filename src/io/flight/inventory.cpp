@@ -14,14 +14,6 @@ namespace {
 /// Maximum number of frames between two sightings of a damage.
 constexpr std::int64_t max_gap = 2;
 
-double depth_of(const Damage& damage) {
-  return damage.metrics ? damage.metrics->max_depth_m.value : damage.max_depth_px.value;
-}
-
-double error_of(const Damage& damage) {
-  return damage.metrics ? damage.metrics->max_depth_m.std_error : damage.max_depth_px.std_error;
-}
-
 /// Severity as a number; the expected class where none has more than half of the probability.
 double severity_rank(const Damage& damage) {
   const Severity severity = severity_of(damage);
@@ -34,7 +26,8 @@ double severity_rank(const Damage& damage) {
 
 /// Whether the damage is measured better: not cut by the border, then smaller error.
 bool is_better(const Damage& one, const Damage& other) {
-  return std::tuple(one.cut_by_border, error_of(one)) < std::tuple(other.cut_by_border, error_of(other));
+  return std::tuple(one.cut_by_border, one.max_depth().std_error) <
+         std::tuple(other.cut_by_border, other.max_depth().std_error);
 }
 
 /// Overlap of two boxes after `box` is moved, as a fraction of the smaller one.
@@ -74,7 +67,7 @@ bool is_part_of_rut(const Damage& one, const Damage& other) {
 
 bool is_worse(const RoadDamage& one, const RoadDamage& other) {
   const auto rank = [](const RoadDamage& damage) {
-    return std::tuple(-severity_rank(damage.best), -depth_of(damage.best), damage.id);
+    return std::tuple(-severity_rank(damage.best), -damage.best.max_depth().value, damage.id);
   };
   return rank(one) < rank(other);
 }

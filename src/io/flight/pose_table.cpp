@@ -4,13 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/degrees.hpp"
 #include "io/csv.hpp"
 #include "roadstereo/series_smoother.hpp"
 
 namespace roadstereo::io {
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;  // in a radian
 
 /// Remove the jumps of an angle known up to multiples of π, as that of a line is.
 void unwrap(std::vector<SeriesSample>& samples) {
@@ -57,8 +56,8 @@ std::string PoseTable::csv() const {
   for (std::size_t k = 0; k < poses_.size(); ++k) {
     CsvLine line;
     line.add(poses_[k].frame).add(poses_[k].time_s);
-    line.add(wrap(rolls[k].value) * degrees).add(rolls[k].std_error * degrees);
-    line.add(pitches[k].value * degrees).add(pitches[k].std_error * degrees);
+    line.add(to_degrees(wrap(rolls[k].value))).add(to_degrees(rolls[k].std_error));
+    line.add(to_degrees(pitches[k].value)).add(to_degrees(pitches[k].std_error));
     text += line.add(heights[k].value).add(heights[k].std_error).end();
   }
   return text;

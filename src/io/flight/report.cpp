@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/degrees.hpp"
 #include "io/drawing.hpp"
 #include "io/flight/fused_map.hpp"
 #include "io/flight/road_map.hpp"
@@ -21,7 +21,6 @@ namespace roadstereo::io {
 namespace {
 
 constexpr double mm = 1000;  // in a metre
-constexpr double degrees = 180 / std::numbers::pi;
 
 std::string jpeg_uri(const std::vector<std::uint8_t>& jpeg) {
   return "data:image/jpeg;base64," + base64(jpeg);
@@ -37,8 +36,8 @@ std::string notices_of(const FlightReportInput& input) {
   const std::size_t in_map = input.map ? input.map->damages.size() : 0;
   if (inspected == 0) {
     html +=
-        "<p class=\"notice\"><strong>Not inspected.</strong> No frame has a road, so that nothing is known of its "
-        "damage; frames.csv has the reasons.</p>";
+        "<p class=\"notice\"><strong>Not inspected.</strong> No road was found in any frame, so damage could not be "
+        "searched for; frames.csv has the reasons.</p>";
   } else if (input.damages.empty() && in_map > 0) {
     html += "<p class=\"notice\"><strong>No damage found in single frames.</strong> Their map shows " +
             std::to_string(in_map) + ": see \"Damages on the map\".</p>";
@@ -153,11 +152,12 @@ std::string candidates_of(const FlightReportInput& input) {
   constexpr std::size_t max_rows = 50;
   std::vector<RoadDamage> rows = input.candidates;
   rows.resize(std::min(rows.size(), max_rows));
-  return table_of(input, "candidates", "Candidates",
-                  "Regions that may be damage: below the required confidence, or shallower than three standard errors "
-                  "of their depth. They are not counted above. Number in candidates.csv: " +
-                      std::to_string(input.candidates.size()) + ".",
-                  rows);
+  return table_of(
+      input, "candidates", "Candidates",
+      "Regions that may be damage, but whose confidence is too low or whose depth is below three standard errors of "
+      "the noise. They are not counted above. Number in candidates.csv: " +
+          std::to_string(input.candidates.size()) + ".",
+      rows);
 }
 
 std::string where_html(const FlightReportInput& input, const RoadDamage& damage) {
@@ -201,7 +201,7 @@ std::string segments_of(const FlightReportInput& input) {
          const std::string id = std::to_string(s.worst);
          return {"<a href=\"#damage-" + id + "\">" + id + "</a>", static_cast<double>(s.worst)};
        }},
-      {"Roll", "°", [](const S& s) { return fixed_cell(s.roll_rad * degrees, 2); }},
+      {"Roll", "°", [](const S& s) { return fixed_cell(to_degrees(s.roll_rad), 2); }},
       {"Camera height", "m", [](const S& s) { return fixed_cell(s.height_m, 2); }}};
   return fill(templates::table, {{"id", "segments"},
                                  {"title", "Segments of the road"},
@@ -214,7 +214,7 @@ std::string map_of(const FlightReportInput& input) {
   const std::string svg = road_map_svg(input);
   if (svg.empty()) return "";
   return "<figure class=\"wide\">" + svg +
-         "<figcaption>Way of the camera and the damages by severity, north up; the ring is the start.</figcaption>"
+         "<figcaption>Path of the camera and damages by severity; north is up, the ring marks the start.</figcaption>"
          "</figure>\n";
 }
 

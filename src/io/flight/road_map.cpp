@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/round_length.hpp"
 #include "io/damage_colours.hpp"
 #include "io/drawing.hpp"
 #include "io/flight/templates.hpp"
@@ -108,13 +109,6 @@ class Dots {
   std::string dots_;
 };
 
-/// Largest 1, 2 or 5 times a power of ten that is at most a fifth of the map.
-double bar_metres(double pixels_per_metre) {
-  const double most = width / 5 / pixels_per_metre;
-  const double power = std::pow(10.0, std::floor(std::log10(most)));
-  return power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
-}
-
 std::string metres_text(double metres) {
   if (metres >= 1000) return number_text(metres / 1000, 0) + " km";
   return number_text(metres, metres < 1 ? 1 : 0) + " m";
@@ -135,7 +129,7 @@ std::string road_map_svg(const FlightReportInput& input) {
   const Projection map(points);
   Dots dots(map);
   for (const ReportedDamage& reported : input.damages) dots.add(reported.damage);
-  const double bar_m = bar_metres(map.pixels_per_metre());
+  const double bar_m = round_length(width / 5 / map.pixels_per_metre());
   const auto [x, y] = map.at(points.front()[0], points.front()[1]);
   return fill(flight_templates::map, {{"width", number_text(width, 0)},
                                       {"height", number_text(map.height(), 0)},

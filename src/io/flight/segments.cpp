@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/degrees.hpp"
 #include "core/order_statistics.hpp"
 #include "io/csv.hpp"
 #include "io/damage_colours.hpp"
@@ -76,7 +76,7 @@ std::string segments_csv(std::span<const RoadSegment> segments, std::span<const 
     } else {
       line.add(worst->id).add(name_of(distress_of(worst->best))).add(name_of(severity_of(worst->best)));
     }
-    text += line.add(segment.roll_rad * 180 / std::numbers::pi).add(segment.height_m).end();
+    text += line.add(to_degrees(segment.roll_rad)).add(segment.height_m).end();
   }
   return text;
 }

@@ -1,13 +1,11 @@
-#include <numbers>
 
+#include "core/degrees.hpp"
 #include "io/csv.hpp"
 #include "io/damage_columns.hpp"
 #include "roadstereo/io/flight_tables.hpp"
 
 namespace roadstereo::io {
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;  // in a radian
 
 /// The warnings of the pipeline in one cell.
 std::string remarks(const FlightFrame& frame) {
@@ -58,12 +56,15 @@ std::string frames_csv_row(const FlightFrame& frame) {
   const bool good = frame.status == FrameStatus::good;
   CsvLine line;
   line.add(frame.index).add(frame.name).add(frame.time_s).add(name_of(frame.status));
-  line.add(frame.roll_rad * degrees).add(frame.roll_stderr_rad * degrees);
+  line.add(to_degrees(frame.roll_rad)).add(to_degrees(frame.roll_stderr_rad));
   good ? line.add(frame.roll_observable) : line.add_nothing();
   line.add(road_status(frame)).add(frame.alpha0).add(frame.alpha1);
   line.add(frame.road.a0).add(frame.road.a1).add(frame.road.a2);
   line.add(frame.height_m).add(frame.height_stderr_m);
-  line.add(frame.pitch_rad * degrees).add(frame.pitch_stderr_rad * degrees).add(frame.sigma_d_px).add(frame.noise_px);
+  line.add(to_degrees(frame.pitch_rad))
+      .add(to_degrees(frame.pitch_stderr_rad))
+      .add(frame.sigma_d_px)
+      .add(frame.noise_px);
   line.add(100 * frame.valid_share);
   good ? line.add(static_cast<std::int64_t>(frame.damages.size())) : line.add_nothing();
   line.add(frame.matching_ms, 2).add(frame.damage_ms, 2).add(remarks(frame));

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 
+#include "core/degrees.hpp"
 #include "io/csv.hpp"
 #include "io/damage_columns.hpp"
 
@@ -31,7 +31,7 @@ GeoColumn<Row> damage_property(const DamageColumn& column, const Damage Row::*me
   Damage known;
   known.metrics.emplace();
   DamageEvidence& evidence = known.evidence;
-  evidence.surface_significance = evidence.range_vote = evidence.specular_excess = 0;
+  evidence.surface_significance = evidence.range_vote = evidence.specular_excess = evidence.texture_share = 0;
   evidence.pixel_significance = evidence.likely_wall_slope = evidence.extent = 0;
   return {column.name, std::visit(TypeOf{}, column.value(known)), [value = column.value, member](const Row& row) {
             return std::visit([](const auto& each) -> GeoValue { return each; }, value(row.*member));
@@ -68,7 +68,7 @@ std::vector<FrameColumn> frame_columns() {
       {"heading_deg", GeoType::number,
        [](const GeoFrame& f) { return number(f.position.value_or(GeoPosition{}).heading_deg); }},
       {"alt_m", GeoType::number, [](const GeoFrame& f) { return number(f.position.value_or(GeoPosition{}).alt_m); }},
-      {"roll_deg", GeoType::number, [](const GeoFrame& f) { return number(f.roll_rad * 180 / std::numbers::pi); }},
+      {"roll_deg", GeoType::number, [](const GeoFrame& f) { return number(to_degrees(f.roll_rad)); }},
       {"height_m", GeoType::number, [](const GeoFrame& f) { return number(f.height_m); }},
       {"sigma_d_px", GeoType::number, [](const GeoFrame& f) { return number(f.sigma_d_px); }},
       {"valid_share", GeoType::number, [](const GeoFrame& f) { return number(f.valid_share); }}};

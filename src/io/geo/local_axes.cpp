@@ -3,8 +3,8 @@
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 #include <cmath>
-#include <numbers>
 
+#include "core/degrees.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
@@ -40,7 +40,7 @@ std::array<double, 12> LocalAxes::to_utm(const std::array<double, 12>& pose) con
   bool northern = north_;
   GeographicLib::UTMUPS::Forward(lat, lon, zone, northern, east, north, convergence_deg, scale, zone_);
   if (northern != north_) north += north_ ? -GeographicLib::UTMUPS::UTMShift() : GeographicLib::UTMUPS::UTMShift();
-  const double angle = convergence_deg * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+  const double angle = to_radians(convergence_deg), c = std::cos(angle), s = std::sin(angle);
   std::array<double, 12> result{};
   for (std::size_t column = 0; column < 3; ++column) {
     std::array<double, 3> here{};

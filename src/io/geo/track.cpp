@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <utility>
 
+#include "core/degrees.hpp"
 #include "io/geo/track_outliers.hpp"
 #include "io/geo/travel_heading.hpp"
 #include "io/geo/utc_time.hpp"
@@ -99,7 +99,7 @@ std::optional<GeoPosition> position_at(const Track& track, double time_s) {
 
 std::optional<GeoPosition> offset_position(const GeoPosition& from, double right_m, double forward_m, double up_m) {
   if (!std::isfinite(from.heading_deg + right_m + forward_m)) return std::nullopt;
-  const double bearing_deg = from.heading_deg + std::atan2(right_m, forward_m) * 180 / std::numbers::pi;
+  const double bearing_deg = from.heading_deg + to_degrees(std::atan2(right_m, forward_m));
   GeoPosition to = from;
   GeographicLib::Geodesic::WGS84().Direct(from.lat_deg, from.lon_deg, bearing_deg, std::hypot(right_m, forward_m),
                                           to.lat_deg, to.lon_deg);

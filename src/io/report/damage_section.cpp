@@ -104,8 +104,9 @@ std::string scale_html(double max_depth) {
 
 std::string note_of(const Damage& damage) {
   std::string note = damage.metrics ? distress_reason(*damage.metrics) : "";
-  if (damage.cut_by_border)
-    note += (note.empty() ? "" : "; ") + std::string("cut by the border of the view: may be larger");
+  const auto add = [&](const char* text) { note += (note.empty() ? "" : "; ") + std::string(text); };
+  if (damage.cut_by_border) add("cut by the border of the view: may be larger");
+  if (damage.ends_search) add("the search for disparities ends at its floor: may be deeper");
   return note;
 }
 

@@ -78,13 +78,13 @@ std::string damage_list(const DamageMap& map) {
 }
 
 std::string candidate_list(const DamageMap& map) {
-  return table_of(
-      map, map.candidates, false,
-      {{"id", "candidates"},
-       {"title", "Candidates"},
-       {"hint",
-        "Regions that may be damage: below the required confidence, or shallower than three standard errors "
-        "of their depth. They are not counted above."}});
+  return table_of(map, map.candidates, false,
+                  {{"id", "candidates"},
+                   {"title", "Candidates"},
+                   {"hint",
+                    "Regions that may be damage, but whose confidence is too low or whose depth is below three "
+                    "standard errors of the "
+                    "noise. They are not counted above."}});
 }
 
 }  // namespace roadstereo::io

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <vector>
 
+#include "core/round_length.hpp"
 #include "io/damage_colours.hpp"
 #include "io/drawing.hpp"
 #include "io/panels.hpp"
@@ -103,12 +104,6 @@ std::string outline(const DamageMap& map, const Damage& damage, const Crop& crop
 
 cv::Rect rect_of(const PixelBox& box) {
   return {box.u0, box.v0, box.width(), box.height()};
-}
-
-/// Largest 1, 2 or 5 times a power of ten that is at most `most`.
-double round_length(double most) {
-  const double power = std::pow(10.0, std::floor(std::log10(most)));
-  return power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
 }
 
 /// Height of the strip with the scale bar below a crop.

@@ -83,13 +83,9 @@ std::string total_cards(const Damages& damages, DamageKind kind) {
               escaped((below ? "missing volume " : "raised volume ") + measured_text(scaled(volume, litres), "L")));
 }
 
-double depth_of(const Damage& damage) {
-  return damage.metrics ? damage.metrics->max_depth_m.value : damage.max_depth_px.value;
-}
-
 std::string deepest_card(const Damages& damages) {
   const Damage& deepest = *std::max_element(damages.begin(), damages.end(), [](const Damage& one, const Damage& other) {
-    return depth_of(one) < depth_of(other);
+    return one.max_depth().value < other.max_depth().value;
   });
   const std::string link =
       "<a href=\"#damage-" + std::to_string(deepest.id) + "\">damage " + std::to_string(deepest.id) + "</a>";
@@ -103,9 +99,9 @@ std::string deepest_card(const Damages& damages) {
 
 std::string damages_cards(const Damages& damages, std::size_t candidates, bool metric) {
   if (damages.empty()) return "";
-  const std::string apart =
-      candidates == 0 ? ""
-                      : "; " + std::to_string(candidates) + (candidates == 1 ? " candidate" : " candidates") + " apart";
+  const std::string apart = candidates == 0 ? ""
+                                            : "; " + std::to_string(candidates) +
+                                                  (candidates == 1 ? " candidate" : " candidates") + " not counted";
   std::string cards = card("Damages", std::to_string(damages.size()), distress_counts(damages) + apart);
   if (metric) {
     cards += "<div class=\"card\"><div class=\"name\">Severity</div><div class=\"chips\">" + severity_chips(damages) +
@@ -128,7 +124,7 @@ std::string no_damage_notice(const std::string& where, bool has_candidates) {
 
 std::string summary_notices(const DamageMap& map) {
   if (!map.has_road()) {
-    return "<p class=\"notice\"><strong>Not inspected.</strong> Nothing is known of the damage of the road: " +
+    return "<p class=\"notice\"><strong>Not inspected.</strong> Damage could not be searched for: " +
            escaped(map.non_metric_reason) + ".</p>";
   }
   std::string notices;

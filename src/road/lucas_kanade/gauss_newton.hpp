@@ -11,8 +11,8 @@
 
 namespace roadstereo {
 
-/// Triangle filter of five pixels along a row, times nine. Interpolation shifts what is finer, by a part of its period
-/// that depends on the phase; the gradients are too small there.
+/// Triangle filter of five pixels along a row, times nine. Interpolation shifts finer texture by a part of its period
+/// that depends on the phase, and underestimates its gradients.
 constexpr int prefilter_radius = 2;
 ROADSTEREO_HD inline float prefiltered(const std::int16_t* row, int u) {
   return static_cast<float>(row[u - 2] + row[u + 2] + 2 * (row[u - 1] + row[u + 1]) + 3 * row[u]);

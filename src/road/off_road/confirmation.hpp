@@ -122,8 +122,8 @@ ROADSTEREO_HD inline CellState assess_cell(const CoarseScene& scene, float resid
   return known ? contradicted : otherwise;
 }
 
-/// Whether cell (i, j) is rejected, after the flood fill: what lies beside a contradicted cell goes with it, since
-/// there the edge of a thing was matched wrongly.
+/// Whether cell (i, j) is rejected, after the flood fill. Neighbours of a contradicted cell are rejected, too, since
+/// the edge of an object was matched wrongly there.
 ROADSTEREO_HD inline bool is_rejected(ImageView<const CellState> states, int i, int j) {
   const int state = states(i, j);
   if (state < outside) return false;

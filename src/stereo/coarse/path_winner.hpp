@@ -22,9 +22,9 @@ struct RoadCost {
 /// Fraction of a winner beside the road: the mean of the vertex of the pixel's own costs before, at and after it and of
 /// the road's offset from it, weighted by their inverse variances. A block's is 2c/K, with the cost c and its second
 /// difference K, since its errors are correlated (stereo/window.hpp with n = 1); the road's is 1 / (2 · weight). Where
-/// the road is no prior, the winner is one with a variance of 1. The totals of the paths would do for large changes
-/// only: their penalties and the prior at whole disparities lock the fraction to 0 where the texture is weak, and there
-/// damage below a coarse pixel would be lost.
+/// the road is no prior, the winner is one with a variance of 1. The total costs of the paths are suitable for large
+/// changes only: where the texture is weak, their penalties and the prior at whole disparities lock the fraction to 0,
+/// so that damage of less than a coarse pixel would be lost.
 ROADSTEREO_HD inline float fraction_near_road(float before, float at, float after, float offset, float weight) {
   // All times 2c. The vertex, half of the slope over K, is at most a pixel away.
   constexpr float min_cost = 0.02F;

@@ -4,9 +4,9 @@
 
 #include "stereo/coarse/map_pixel.hpp"
 
-// Where the coarse map changes, it knows the place of the change to the radius of its blocks only: a block that holds
-// more contrast on one side of a border takes the disparity of that side, so that dark potholes shrink. There the prior
-// is an interval: the disparities of both sides cost nothing. C++17, for kernels.
+// Where the coarse map changes, the place of the change is known only to within the radius of its blocks: a block with
+// more contrast on one side of a border takes the disparity of that side, so that dark potholes would shrink. There the
+// prior is an interval: the disparities of both sides cost nothing. C++17, for kernels.
 
 namespace roadstereo {
 
@@ -30,9 +30,10 @@ ROADSTEREO_HD inline float from_half_to_one(float x) {
   return x < 0.5F ? 0.0F : x > 1.0F ? 1.0F : 2.0F * x - 1.0F;
 }
 
-/// Interval of a pixel of disparity `own`, where one pixel means `pixel_height` in units of border_height_m: all of the
-/// spread up to half that height, nothing from it on, since what is higher occludes what is behind it; nothing up to
-/// half a coarse pixel, of `factor` pixels, which is noise of the map, all from one on.
+/// Interval of a pixel of disparity `own`, where one pixel means `pixel_height` in units of border_height_m: the full
+/// spread up to half of that height, none of it from that height on, since higher objects occlude what is behind them;
+/// none of it up to half a coarse pixel (`factor` pixels), which is noise of the map, and the full spread from one
+/// coarse pixel on.
 ROADSTEREO_HD inline PriorInterval prior_interval(float own, const DisparitySpread& around, float pixel_height,
                                                   int factor) {
   const float spread = around.largest - around.smallest;

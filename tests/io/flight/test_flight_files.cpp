@@ -66,6 +66,7 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   FlightFrame frame = frame_of(7, {pothole(100, 50, 0.1 / 3), pothole(200, 50)});
   frame.damages[1].metrics.reset();
   frame.damages[1].kind = DamageKind::protrusion;
+  frame.damages[1].ends_search = true;
   frame.time_s = 1403636579.763555584;
   frame.roll_rad = -0.1 / 3;
   frame.road = {1.0 / 3, 2.0 / 7, -1e-17};
@@ -100,6 +101,8 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   EXPECT_EQ(back.damages[0].metrics->severity, Severity::medium);
   EXPECT_FALSE(back.damages[1].metrics);
   EXPECT_EQ(back.damages[1].kind, DamageKind::protrusion);
+  EXPECT_FALSE(back.damages[0].ends_search);
+  EXPECT_TRUE(back.damages[1].ends_search);
   EXPECT_EQ(flight_frame_json(back), flight_frame_json(frame));
   EXPECT_EQ(flight_frame_json(frame).find('\n'), std::string::npos) << "a line is a frame";
 }

@@ -125,7 +125,7 @@
     element("way_length").textContent = `${number(path.length_m, 1)} m`;
     const breaks = path.pieces - 1;
     element("way_pieces").textContent = breaks === 0 ? ""
-      : `Begun anew ${breaks === 1 ? "once" : `${breaks} times`}: a frame could not be linked to those before it.`;
+      : `Restarted ${breaks === 1 ? "once" : `${breaks} times`}: a frame could not be linked to those before it.`;
   }
 
   function showCounts(state) {
