@@ -19,7 +19,8 @@ def columns(damage):
     """The damage as a row of damages.json."""
     metrics, evidence = damage.metrics, damage.evidence
     row = {"severity": metrics.severity, "angle_deg": round(math.degrees(metrics.angle_rad), 9)}
-    for name in ("id", "kind", "confidence", "pixels", "measured_share", "mean_depth_px", "cut_by_border"):
+    for name in ("id", "kind", "confidence", "pixels", "measured_share", "mean_depth_px", "cut_by_border",
+                 "ends_search"):
         row[name] = getattr(damage, name)
     for name in ("contrast_sigmas", "significance", "steepness", "road_share", "border_share", "unseen_share",
                  "surface_significance", "range_vote", "specular_excess", "texture_share", "pixel_significance",

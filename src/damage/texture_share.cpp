@@ -76,6 +76,7 @@ double texture_share(const DamageInput& input, const DamageMap& maps, int id, co
   const double of_inside = upper_median(inside), of_road = upper_median(road);
   for (double& contrast : inside) contrast -= of_inside;
   const double range = max_sigmas * gaussian_mad * upper_median_magnitude(inside);
+  if (std::abs(of_inside - of_road) < range) return 0;  // of one texture, as far as can be told
   const auto share = [&](const std::vector<double>& contrasts) {
     const auto like_inside = std::count_if(contrasts.begin(), contrasts.end(), [&](double contrast) {
       return std::abs(contrast - of_inside) < std::min(range, std::abs(contrast - of_road));

@@ -51,7 +51,7 @@ struct CoreSearch {
 
 TEST(Cores, AreTheBasinsOverASaddle) {
   CoreSearch search;
-  for (const float saddle : {1.5F, 2.0F, 3.0F}) {
+  for (const float saddle : {1.2F, 1.5F, 2.0F}) {
     Cores found = search.cores(two_cones(10, saddle));
     ASSERT_EQ(found.cores().size(), 3U) << saddle;
     EXPECT_TRUE(found.cores()[2].is_divided);

@@ -42,12 +42,12 @@ double share_of(const GreyImage& grey, int u0) {
 }
 
 TEST(TextureShare, IsThatOfTheSameTextureAround) {
-  // In the middle of a verge that is a third of the road region all around is verge.
+  // A verge of 106 columns: 0.80 of what lies within 46 pixels of the region is verge, 0.30 of the road region is.
   GreyImage grey = picture(0.3, 0.05);
   for (int v = 0; v < picture_height; ++v) {
     for (int u = 106; u < verge_end; ++u) grey(u, v) = grey(u + verge_end, v);
   }
-  EXPECT_NEAR(share_of(grey, 20), 0.6, 0.15);
+  EXPECT_NEAR(share_of(grey, 20), 0.5, 0.1);
   EXPECT_NEAR(share_of(grey, 200), 0, 0.1) << "on the road";
 }
 

@@ -174,7 +174,7 @@ TEST(DamageTables, NoDamageStillHasColumns) {
   const auto lines = csv_lines(damages_csv(map));
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].front(), "id");
-  EXPECT_EQ(lines[0].back(), "cut_by_border");
+  EXPECT_EQ(lines[0].back(), "ends_search");
   const Json document = Json::parse(damages_json(map));
   EXPECT_TRUE(document["damages"].is_array());
   EXPECT_TRUE(document["damages"].empty());
