@@ -52,7 +52,7 @@ double specular_log_odds(double excess) {
 }
 
 /// Log-odds of damage for a protrusion whose surroundings look like itself and not like the road: part of a verge, an
-/// island or a pavement. Of bumps, humps and debris on rendered roads 0.27 is the largest share.
+/// island or a pavement. Of bumps, humps and debris on rendered roads 0.15 is the largest share.
 double texture_log_odds(double share) {
   constexpr double per_share = -15, even_odds = 0.25;
   return share > even_odds ? per_share * (share - even_odds) : 0;  // 0 if unknown
