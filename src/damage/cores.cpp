@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "damage/outline.hpp"
@@ -12,12 +11,14 @@ namespace {
 
 constexpr float max_saddle_share = 0.5F;  ///< of the depth of the floor of both basins
 
-float floor_of_runs(const Image<float>& depth, std::span<const CellRun> runs) {
-  std::vector<float> depths;
+ConnectedComponent component_of(const std::vector<CellRun>& runs) {
+  ConnectedComponent component;
+  component.runs = runs;
   for (const CellRun& run : runs) {
-    depths.insert(depths.end(), depth.row(run.row) + run.first, depth.row(run.row) + run.last + 1);
+    component.size += static_cast<std::size_t>(run.last - run.first + 1);
+    component.box.add_run(run.row, run.first, run.last);
   }
-  return floor_of(std::move(depths));
+  return component;
 }
 
 /// The connected parts of a core deeper than a level that are as large as a damage and have a floor deep enough.
@@ -37,19 +38,9 @@ std::vector<std::vector<CellRun>> basins_at(const Image<float>& depth, const Con
     for (const CellRun& run : part.runs) {
       runs.push_back({run.row + box.first_row, run.first + box.first_column, run.last + box.first_column});
     }
-    if (max_saddle_share * floor_of_runs(depth, runs) >= level) basins.push_back(std::move(runs));
+    if (max_saddle_share * floor_depth(depth, component_of(runs)) >= level) basins.push_back(std::move(runs));
   }
   return basins;
-}
-
-ConnectedComponent component_of(const std::vector<CellRun>& runs) {
-  ConnectedComponent component;
-  component.runs = runs;
-  for (const CellRun& run : runs) {
-    component.size += static_cast<std::size_t>(run.last - run.first + 1);
-    component.box.add_run(run.row, run.first, run.last);
-  }
-  return component;
 }
 
 }  // namespace
@@ -70,7 +61,7 @@ Cores::Cores(const Image<float>& depth, const Image<std::uint8_t>& deep, const T
 void Cores::add(const Image<float>& depth, const Core& core, float min_level, float min_cells) {
   constexpr int levels = 6;
   const bool can_be_two = static_cast<float>(core.cells.size) >= 2 * min_cells;
-  const float max_level = can_be_two ? max_saddle_share * floor_of_runs(depth, core.cells.runs) : 0;
+  const float max_level = can_be_two ? max_saddle_share * floor_depth(depth, core.cells) : 0;
   for (int k = 1; k <= levels && max_level > min_level; ++k) {
     const float level = min_level * std::pow(max_level / min_level, static_cast<float>(k) / levels);
     std::vector<std::vector<CellRun>> basins = basins_at(depth, core.cells, level, min_cells);

@@ -57,7 +57,7 @@ void remove_outliers(const SearchInput& input, const ConnectedComponent& core, D
   ConnectedComponent seeds;
   seeds.runs = impossible;
   constexpr float outlier_floors = 1.25F;  // minimum depth, in depths of the floor, around an impossible cell
-  const float floor = floor_depth(images.field(), core);
+  const float floor = floor_depth(images.depth, core);
   constexpr int smoothing_radius = 2;  // of the 5×5 binomial mean, which spreads them
   const BoxMask wrong = flood_fill(images.field(), seeds, outlier_floors * floor);
   const CellBox box = wrong.box().grown(smoothing_radius, images.depth.width(), images.depth.height());

@@ -126,11 +126,11 @@ float floor_of(std::vector<float> depths) {
   return floor;
 }
 
-float floor_depth(const DepthField& field, const ConnectedComponent& seeds) {
+float floor_depth(const Image<float>& depth, const ConnectedComponent& seeds) {
   std::vector<float> depths;
   depths.reserve(seeds.size);
   for (const CellRun& run : seeds.runs) {
-    const float* const row = field.depth.row(run.row);
+    const float* const row = depth.row(run.row);
     depths.insert(depths.end(), row + run.first, row + run.last + 1);
   }
   return floor_of(std::move(depths));

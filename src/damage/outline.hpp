@@ -24,7 +24,7 @@ RobustNormal depths_around(const DepthField& field, const BoxMask& region, int n
 /// single outliers and independent of how much of the hollow they cover.
 float floor_of(std::vector<float> depths);
 /// Depth of the floor of the seeds.
-float floor_depth(const DepthField& field, const ConnectedComponent& seeds);
+float floor_depth(const Image<float>& depth, const ConnectedComponent& seeds);
 
 /// Outline of a damage.
 struct Outline {

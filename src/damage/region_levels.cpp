@@ -90,7 +90,7 @@ void raise_level(const SearchInput& input, const ConnectedComponent& core, float
                  Candidate& candidate) {
   constexpr int likelier_levels = 3;
   const float first = candidate.level;
-  const float last = likelier_level_share * floor_depth(images.field(), core);
+  const float last = likelier_level_share * floor_depth(images.depth, core);
   double confidence = confidence_at_best(candidate, input.thresholds);
   for (int k = 1; k <= likelier_levels && last > first; ++k) {
     const float level = first + (last - first) * static_cast<float>(k) / static_cast<float>(likelier_levels);

@@ -78,7 +78,7 @@ Candidate segment(const SearchInput& input, const Core& start, DamageKind kind, 
   const bool metric = input.thresholds.metric();
   Candidate candidate;
   candidate.kind = kind;
-  const float floor = floor_depth(field, core);
+  const float floor = floor_depth(images.depth, core);
   const float min_level = std::max(start.saddle, min_level_sigmas * static_cast<float>(input.depth_cells.noise));
   const Outline outline = find_outline(field, core, floor, min_level, metric);
   candidate.level = outline.level;

@@ -29,6 +29,17 @@ void smear(Image<float>& map, int radius) {
   }
 }
 
+/// Both damages of a pair are found with their depths, the largest inside their outlines.
+void expect_both(const DamageMap& map, const synth::SyntheticPair& pair) {
+  ASSERT_EQ(map.damages.size(), 2U);
+  for (const synth::DamageTruth& known : pair.damages) {
+    const Damage* found = find(map, pair, known.id);
+    ASSERT_NE(found, nullptr) << known.depth_m;
+    EXPECT_NEAR(found->metrics->max_depth_m.value, known.depth_m, 0.15 * known.depth_m);
+    EXPECT_EQ(map.ids(found->deepest_px[0], found->deepest_px[1]), found->id);
+  }
+}
+
 /// Two damages whose outlines touch are both kept.
 TEST(FindDamage, FindsShallowDamageBesidePothole) {
   synth::Scene scene = intact_scene();
@@ -37,12 +48,7 @@ TEST(FindDamage, FindsShallowDamageBesidePothole) {
   smear(maps.transformed, 6);
   maps.transformed = with_noise(maps.transformed, 0.02);
   const DamageMap map = find_damage(maps.metric());
-  ASSERT_EQ(map.damages.size(), 2U);
-  for (const synth::DamageTruth& known : maps.pair.damages) {
-    const Damage* found = find(map, maps.pair, known.id);
-    ASSERT_NE(found, nullptr) << known.depth_m;
-    EXPECT_NEAR(found->metrics->max_depth_m.value, known.depth_m, 0.15 * known.depth_m);
-  }
+  expect_both(map, maps.pair);
 }
 
 /// A gutter joins two potholes to one component of deep cells; each is a damage, measured inside its own outline.
@@ -53,12 +59,10 @@ TEST(FindDamage, FindsBothPotholesInAGutter) {
                       {0, 0.65, 0.19, 0.016, 0, 0.3, 5, false}};
   const ExactMaps maps(scene);
   const DamageMap map = find_damage(maps.metric());
-  ASSERT_EQ(map.damages.size(), 2U);
+  expect_both(map, maps.pair);
   for (const synth::DamageTruth& known : maps.pair.damages) {
-    const Damage* found = find(map, maps.pair, known.id);
-    ASSERT_NE(found, nullptr) << known.depth_m;
-    EXPECT_NEAR(found->metrics->max_depth_m.value, known.depth_m, 0.15 * known.depth_m);
-    EXPECT_EQ(map.ids(found->deepest_px[0], found->deepest_px[1]), found->id);
+    const Damage* const found = find(map, maps.pair, known.id);
+    ASSERT_NE(found, nullptr);
     EXPECT_GT(f_score(map.ids, found->id, maps.pair.labels, known.id), 0.85);
   }
 }
@@ -96,12 +100,12 @@ TEST(FindDamage, ToneJoinsNoCellsOfDeeperPothole) {
   DamageInput input = maps.metric();
   input.grey = grey;
   const DamageMap map = find_damage(input);
-  ASSERT_EQ(map.damages.size(), 2U);
+  expect_both(map, maps.pair);
   for (const synth::DamageTruth& known : maps.pair.damages) {
-    const Damage* found = find(map, maps.pair, known.id);
-    ASSERT_NE(found, nullptr) << known.depth_m;
-    EXPECT_NEAR(found->metrics->max_depth_m.value, known.depth_m, 0.15 * known.depth_m);
-    EXPECT_EQ(maps.pair.labels(found->deepest_px[0], found->deepest_px[1]), known.id);
+    const Damage* const found = find(map, maps.pair, known.id);
+    ASSERT_NE(found, nullptr);
+    const auto [u, v] = found->deepest_px;
+    EXPECT_EQ(maps.pair.labels(u, v), known.id);
   }
 }
 
