@@ -147,10 +147,12 @@ struct EngineInfo {
 
 /// Engines of this build that can run on this machine, fastest first, then those added by register_engine. In a build
 /// with `cuda`, the first call looks for a GPU, which takes time and GPU memory; the names "auto" and "cuda" do so as
-/// well, but no other name.
+/// well, but no other name. The first call after register_engine makes the list grow: references to its elements from
+/// before are then invalid, those from find_engine are not.
 const std::vector<EngineInfo>& engines();
 
-/// The entry of the engine called `name`; "auto" takes the first of the registry. Throws like make_engine.
+/// The entry of the engine called `name`; "auto" takes the first of the registry. The reference stays valid. Throws
+/// like make_engine.
 const EngineInfo& find_engine(const std::string& name);
 
 /// Adds an engine of the caller. It is selected by its name in `PipelineOptions::engine`, never by "auto". The pipeline

@@ -39,7 +39,8 @@ struct PerspectiveOptions {
 
 /// Chooses δp and D: with a calibration from the deepest damage and the highest bump at the road's distance, without
 /// one from the residuals of the correspondences; for the scene from the largest disparity, too. Without a reliable
-/// model there is no shift and the full range is searched. Throws Error if the given δp is not less than the number of
+/// model there is no shift and the full range is searched. Throws Error if an option is out of range, if the image, of
+/// width × height pixels, is not one of 32×32 … 8192×8192, and if the given δp is not less than the number of
 /// disparities, which the width of the image bounds.
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
                                   int width, int height, const PerspectiveOptions& options);

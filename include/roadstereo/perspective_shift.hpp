@@ -7,9 +7,9 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
-/// Small error in the pose of the target camera that remains after rectification: a vertical shift and a rotation about
-/// the optical axis. A point that should be at column x and row v is found `columns_at(v)` to the right of that
-/// position and `rows_at(x, v)` below it, pixels.
+/// Small error in the pose of the target camera that remains after rectification: a vertical shift, a rotation about
+/// the optical axis and a scale of the rows. A point that should be at column x and row v is found `columns_at(v)` to
+/// the right of that position and `rows_at(x, v)` below it, pixels.
 struct Misalignment {
   static constexpr double max_px = 8;  ///< largest one that can be undone, pixels
 

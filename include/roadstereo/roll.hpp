@@ -53,7 +53,8 @@ RollEstimate estimate_roll(ImageView<const float> disparity, ImageView<const std
                            const RollOptions& options, int threads = 0);
 
 /// Transforms ℓ to ℓ', eq. (29): the intact road lies at δt; NaN invalid. Returns δt, pixels: `options.delta_t_px`, or
-/// the smallest whole number, at least `min_delta_t`, that makes every value positive.
+/// the smallest whole number, at least `min_delta_t`, that makes every value positive. Throws Error when the map is
+/// empty and when an option is out of range.
 double transform_disparity(ImageView<const float> disparity, const RollEstimate& geometry, double min_delta_t,
                            const RollOptions& options, int threads, Image<float>& transformed);
 

@@ -150,7 +150,8 @@ struct SyntheticPair {
   Frame left;  ///< 8-bit grey
   Frame right;
   StereoCalibration calibration;
-  Image<double> disparity;      ///< exact, pixels; NaN for sky: above the horizon, or road farther than 1 km
+  Image<double> disparity;  ///< exact, pixels; NaN for sky (above the horizon, or road farther than 1 km), and where
+                            ///< the bonnet hides the road
   Image<std::uint8_t> visible;  ///< 255 where the right camera sees the point, too
   Image<std::uint16_t> labels;  ///< id of the damage at the pixel; 0: none
   Image<std::uint8_t> road;     ///< 255 on the carriageway, damage included; 0 on kerbs, verges, boxes and the bonnet

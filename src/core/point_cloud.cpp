@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/colour_reader.hpp"
+#include "core/require_size.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -40,10 +41,7 @@ PointCloud cloud_from_disparity(ImageView<const float> disparity, const StereoCa
 
 PointCloud cloud_from_disparity(ImageView<const float> disparity, const FrameView& left, double white_level,
                                 const StereoCalibration& calibration) {
-  if (disparity.width() != left.width || disparity.height() != left.height) {
-    fail("the disparity map has ", disparity.width(), "×", disparity.height(), " pixels and the left image ",
-         left.width, "×", left.height, "; they must have the same size");
-  }
+  require_same_size("the disparity map", map_size(disparity), "the left image", {left.width, left.height});
   if (left.data == nullptr) fail("the image has no data");
   const ColourReader colours(left, white_level);
   PointCloud cloud;

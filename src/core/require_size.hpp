@@ -10,6 +10,19 @@ struct ImageSize {
   friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
+/// Returns the size of an image or a map, pixels.
+template <class Map>
+ImageSize map_size(const Map& map) {
+  return {map.width(), map.height()};
+}
+
+/// Throws Error unless both have one size. The names begin with an article: "the disparity map".
+inline void require_same_size(const char* name, const ImageSize& size, const char* other_name, const ImageSize& other) {
+  if (size == other) return;
+  fail(name, " has ", size.width, "×", size.height, " pixels and ", other_name, " ", other.width, "×", other.height,
+       "; they must have the same size");
+}
+
 inline void require_one_size(const ImageSize& left, const ImageSize& right) {
   if (left == right) return;
   fail("the left image has ", left.width, "×", left.height, " pixels and the right image ", right.width, "×",

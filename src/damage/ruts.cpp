@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <optional>
 
@@ -135,7 +136,7 @@ double mean_of(const std::vector<double>& values) {
 /// medians, which a pothole does not bend.
 MeanProfile fit_profile(const Image<double>& heights) {
   constexpr int iterations = 3, min_rows = 3;
-  constexpr double of_median = 1.2533;  // standard error of a median over that of a mean
+  const double of_median = std::sqrt(std::numbers::pi / 2);  // standard error of a median over that of a mean
   const int columns = heights.width(), rows = heights.height();
   std::vector<double> across(static_cast<std::size_t>(columns), 0.0), along(static_cast<std::size_t>(rows), 0.0);
   std::vector<std::size_t> counts(across.size());

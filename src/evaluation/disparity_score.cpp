@@ -5,20 +5,13 @@
 #include <limits>
 
 #include "core/order_statistics.hpp"
+#include "core/require_size.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// Throws Error naming the sizes unless they are equal.
-template <class View>
-void require_size(const View& view, ImageView<const float> disparity, const char* name) {
-  if (view.width() == disparity.width() && view.height() == disparity.height()) return;
-  fail("the ", name, " has ", view.width(), "×", view.height(), " pixels; it must have ", disparity.width(), "×",
-       disparity.height(), " like the disparity map");
-}
 
 /// Signed errors of the labelled pixels with a disparity. Adds the number of labelled pixels to `labelled`.
 std::vector<double> signed_errors(ImageView<const float> disparity, ImageView<const float> truth,
@@ -45,8 +38,8 @@ double median_magnitude(std::vector<double> errors) {
 DisparityScore score_disparity(ImageView<const float> disparity, ImageView<const float> truth,
                                const std::optional<ImageView<const std::uint8_t>>& mask,
                                std::span<const double> tolerances_px) {
-  require_size(truth, disparity, "ground truth");
-  if (mask) require_size(*mask, disparity, "mask");
+  require_same_size("the ground truth", map_size(truth), "the disparity map", map_size(disparity));
+  if (mask) require_same_size("the mask", map_size(*mask), "the disparity map", map_size(disparity));
   DisparityScore score;
   const std::vector<double> errors = signed_errors(disparity, truth, mask, score.labelled_pixels);
   score.valid_pixels = errors.size();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/require_size.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -15,13 +16,8 @@ SubPixelBias::SubPixelBias(int bins) {
 
 void SubPixelBias::add(ImageView<const float> disparity, ImageView<const float> truth,
                        ImageView<const std::uint8_t> mask) {
-  const auto has_size_of_truth = [&](const auto& image) {
-    return image.width() == truth.width() && image.height() == truth.height();
-  };
-  if (!has_size_of_truth(disparity) || !has_size_of_truth(mask)) {
-    fail("the ground truth has ", truth.width(), "×", truth.height(),
-         " pixels; the disparity map and the mask must have the same size");
-  }
+  require_same_size("the ground truth", map_size(truth), "the disparity map", map_size(disparity));
+  require_same_size("the ground truth", map_size(truth), "the mask", map_size(mask));
   constexpr double max_error_px = 1;  // larger errors are mismatches
   for (int v = 0; v < truth.height(); ++v) {
     for (int u = 0; u < truth.width(); ++u) {

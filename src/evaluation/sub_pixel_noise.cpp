@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "roadstereo/error.hpp"
+#include "core/require_size.hpp"
 
 namespace roadstereo {
 namespace {
@@ -50,13 +50,9 @@ class BoxSums {
 
 void SubPixelNoise::add(ImageView<const float> first, ImageView<const float> second, ImageView<const float> derivative,
                         ImageView<const std::uint8_t> mask, double noise_grey) {
-  const auto has_size_of_first = [&](const auto& image) {
-    return image.width() == first.width() && image.height() == first.height();
-  };
-  if (!has_size_of_first(second) || !has_size_of_first(derivative) || !has_size_of_first(mask)) {
-    fail("the first map has ", first.width(), "×", first.height(),
-         " pixels; the second, the derivative and the mask must have the same size");
-  }
+  require_same_size("the first map", map_size(first), "the second map", map_size(second));
+  require_same_size("the first map", map_size(first), "the derivative", map_size(derivative));
+  require_same_size("the first map", map_size(first), "the mask", map_size(mask));
   constexpr float max_difference_px = 1;  // larger ones are mismatches
   Image<float> errors(first.width(), first.height());
   for (int v = 0; v < first.height(); ++v) {

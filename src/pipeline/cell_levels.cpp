@@ -40,7 +40,7 @@ void CellLevels::average_cells(ImageView<const std::int16_t> grey) {
 
 /// Whether enough cells have changed since the last frame that counted.
 bool CellLevels::has_moved() const {
-  constexpr float min_change = 2 * grey_max / 255.0F;
+  constexpr float min_change = 2 * grey_scale;
   if (frames_ == 0) return true;
   std::size_t changed = 0;
   for (int y = 0; y < cells_.height(); ++y) {

@@ -47,7 +47,7 @@ struct InterpolatedMaps {
 /// Section 3.3.1 on one disparity map.
 struct RollFit {
   double valid_share = 0;                ///< share of the pixels that have a disparity
-  std::optional<RollEstimate> geometry;  ///< empty when that is too small
+  std::optional<RollEstimate> geometry;  ///< empty when that is too small, or they determine none
 };
 
 /// What the disparity transformation tells of the map.

@@ -6,9 +6,9 @@
 
 #include "core/cholesky.hpp"
 #include "core/order_statistics.hpp"
+#include "core/require_size.hpp"
 #include "pipeline/picture_health.hpp"
 #include "pipeline/rectification_error.hpp"
-#include "roadstereo/error.hpp"
 
 namespace roadstereo {
 namespace {
@@ -120,10 +120,7 @@ PairHealth measure_health(const FrameResult& frame, const DamageMap& damage,
   PairHealth health;
   health.threshold_sigma = options.threshold_sigma;
   if (!frame.roll_found || frame.grey.empty() || frame.right.empty()) return health;
-  if (damage.road.width() != frame.disparity.width() || damage.road.height() != frame.disparity.height()) {
-    fail("the damage map has ", damage.road.width(), "×", damage.road.height(), " pixels and the frame ",
-         frame.disparity.width(), "×", frame.disparity.height(), "; they must have the same size");
-  }
+  require_same_size("the damage map", map_size(damage.road), "the disparity map", map_size(frame.disparity));
   measure_rectification(frame, damage, calibration, threads, health);
   health.noise_px = damage.noise_px;
   health.wave_px = measure_wave(frame, damage);

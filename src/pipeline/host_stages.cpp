@@ -11,6 +11,7 @@
 #include "road/lucas_kanade/alignment_maps.hpp"
 #include "road/refinement/refinement_maps.hpp"
 #include "road/rig_bias_field.hpp"
+#include "road/roll_assessment.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
@@ -159,7 +160,8 @@ class HostStages final : public FrameStages {
                         double initial_roll_rad, double min_share, const PerspectiveShift&) override {
     RollFit fit{valid_share(disparity), std::nullopt};
     if (fit.valid_share < min_share) return fit;
-    fit.geometry = roadstereo::estimate_roll(disparity, {}, prior, initial_roll_rad, options_.roll, threads_);
+    fit.geometry = geometry_if_determined(
+        [&] { return roadstereo::estimate_roll(disparity, {}, prior, initial_roll_rad, options_.roll, threads_); });
     return fit;
   }
 

@@ -9,7 +9,6 @@ namespace roadstereo {
 namespace {
 
 constexpr int frames_to_judge = 20;  // a pixel of a moving picture is an extreme in all of them once in 10^13
-constexpr float level_of_8_bits = grey_max / 255.0F;
 
 }  // namespace
 
@@ -25,7 +24,7 @@ void LensWatch::begin(int width, int height) {
 
 /// Keeps the pixels that are brighter, or darker, than their four neighbours in this frame, too.
 void LensWatch::add_extremes(ImageView<const std::int16_t> grey) {
-  constexpr int margin = static_cast<int>(8 * level_of_8_bits);
+  constexpr int margin = 8 * grey_scale;
   const auto brighter_by = [&](int u, int v, int sign) {
     const int level = sign * grey(u, v);
     const int across = std::min(level - sign * grey(u - 1, v), level - sign * grey(u + 1, v));
@@ -49,7 +48,7 @@ void LensWatch::add_extremes(ImageView<const std::int16_t> grey) {
 /// Whether the levels vary much less in a cell than all around it, `reach` cells off, and differ from theirs by more
 /// than they vary.
 bool LensWatch::stands_out(int x, int y, int reach) const {
-  constexpr float max_ratio = 0.5F, min_deviation = 2 * level_of_8_bits;
+  constexpr float max_ratio = 0.5F, min_deviation = 2 * grey_scale;
   const float limit = std::max(deviation_(x, y) / max_ratio, min_deviation);
   float contrast = 0, deviation = 0;
   const auto varies = [&](int u, int v) {
@@ -118,7 +117,7 @@ void LensWatch::count_dirt() {
 
 /// Only where the picture changes: the texture of a bonnet is always the same.
 void LensWatch::count_dead_pixels() {
-  constexpr float min_deviation = 2 * level_of_8_bits;
+  constexpr float min_deviation = 2 * grey_scale;
   std::erase_if(extremes_, [&](const Extreme& one) {
     for (const int dv : {-1, 0, 1}) {
       for (const int du : {-1, 0, 1}) {

@@ -47,7 +47,7 @@ template <class Options, class Visitor>
 void visit_options(Options& o, Visitor visit) {
   visit("engine", o.engine, "engine by name, or auto");
   visit("threads", o.threads, "worker threads; 0 takes all cores");
-  visit("white_level", o.white_level, "sample value of white");
+  visit("white_level", o.white_level, "sample value of white; 0: the largest of the sample type");
   visit("check_rows", o.check_rows, "measure whether the rows of the pair agree");
   visit("correct_rows", o.correct_rows,
         "undo the vertical shift, rotation and row scale of the right image that check_rows measures");
@@ -80,7 +80,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("perspective.delta_p_px", o.perspective.delta_p_px,
         "the road's disparity after the shift, pixels; negative derives it");
 
-  visit("coarse_search.factor", o.coarse_search.factor, "downsampling of the pair");
+  visit("coarse_search.factor", o.coarse_search.factor, "downsampling of the pair, 2, 4 or 8; 0 derives it");
   visit("coarse_search.block_radius", o.coarse_search.block_radius, "radius of its correlation block, coarse pixels");
   visit("coarse_search.ncc_noise_sigma", o.coarse_search.ncc_noise_sigma,
         "standard deviation of the noise in its correlation, 8-bit grey levels");

@@ -413,8 +413,10 @@ void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
     return;
   }
   if (has_road && !result.roll_found) {
-    result.warnings.push_back(
-        format_message("few-disparities: only ", 100 * result.valid_share, " % of the pixels have a disparity"));
+    const char* const lacking =
+        result.valid_share < min_valid_share ? "" : ": too few for a road geometry, or all on one line of the image";
+    result.warnings.push_back(format_message("few-disparities: only ", 100 * result.valid_share,
+                                             " % of the pixels have a disparity", lacking));
   }
 }
 

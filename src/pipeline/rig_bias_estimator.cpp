@@ -4,6 +4,7 @@
 #include "core/cholesky.hpp"
 #include "core/order_statistics.hpp"
 #include "core/require_range.hpp"
+#include "core/require_size.hpp"
 #include "damage/local_ground_plane.hpp"
 #include "road/robust_weights.hpp"
 #include "roadstereo/pipeline.hpp"
@@ -310,11 +311,7 @@ std::optional<RigBiasFrame> measure_rig_bias(const FrameResult& frame, const Dam
   constexpr std::size_t min_cells = 60;
   if (!frame.roll_found || frame.transformed.empty() || frame.sigma.empty() || damage.road.empty()) return std::nullopt;
   require_same_size(damage, frame.transformed);
-  if (frame.sigma.width() != frame.transformed.width() || frame.sigma.height() != frame.transformed.height()) {
-    fail("the standard errors have ", frame.sigma.width(), "×", frame.sigma.height(),
-         " pixels and the transformed map ", frame.transformed.width(), "×", frame.transformed.height(),
-         "; they must be equal");
-  }
+  require_same_size("the transformed map", map_size(frame.transformed), "its standard errors", map_size(frame.sigma));
   const BiasCells cells = CellReader(frame, damage).read();
   if (cells.list.size() < min_cells) return std::nullopt;
   RigBiasFrame measured;

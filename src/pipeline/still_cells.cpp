@@ -13,10 +13,9 @@
 namespace roadstereo {
 namespace {
 
-constexpr float one_level = grey_max / 255.0F;
-constexpr float rounding_variance = one_level * one_level / 12;  // of 8-bit levels
-constexpr std::size_t min_still_cells = 12;                      // less is no evidence
-constexpr int texture_radius = 3;                                // cells
+constexpr float rounding_variance = grey_scale * grey_scale / 12.0F;  // of 8-bit levels
+constexpr std::size_t min_still_cells = 12;                           // less is no evidence
+constexpr int texture_radius = 3;                                     // cells
 
 using CellMask = Image<std::uint8_t>;
 

@@ -67,6 +67,7 @@ class BandMemory {
         values_(scratch_vector<float>(layout.volume_size())),
         posterior_(scratch_vector<float>(static_cast<std::size_t>(layout.disparities * row_guard))),
         rows_(scratch_vector<float>(row_count * row_size_)),
+        whole_rows_(scratch_vector<std::int32_t>(whole_row_count * row_size_)),
         columns_(scratch_vector<std::int32_t>(2 * row_size_)) {}
 
   void clear_sums() { std::fill(sums_.begin(), sums_.end(), 0); }
@@ -75,8 +76,8 @@ class BandMemory {
   std::int32_t* column_sums() { return columns_.data(); }
   std::int32_t* column_squares() { return columns_.data() + row_size_; }
 
-  BlockRow left() { return {row(0), row(1)}; }
-  BlockRow right() { return {row(2), row(3)}; }
+  BlockRow left() { return {whole_row(0), whole_row(1), row(0), row(1)}; }
+  BlockRow right() { return {whole_row(2), whole_row(3), row(2), row(3)}; }
   BestOfRow best_of_left() { return {row(4), row(5)}; }
   BestOfRow best_of_right() { return {row(6), row(7)}; }
   float* rivals() { return row(8); }
@@ -86,14 +87,15 @@ class BandMemory {
   void clear_best() { std::fill_n(row(4) - front_, 4 * row_size_, -1.0f); }
 
  private:
-  static constexpr std::size_t row_count = 9;
+  static constexpr std::size_t row_count = 9, whole_row_count = 4;
   float* row(std::size_t i) { return rows_.data() + i * row_size_ + front_; }
+  std::int32_t* whole_row(std::size_t i) { return whole_rows_.data() + i * row_size_ + front_; }
 
   std::ptrdiff_t front_;
   std::size_t row_size_;
   ScratchVector<std::int32_t> sums_;
   ScratchVector<float> values_, posterior_, rows_;
-  ScratchVector<std::int32_t> columns_;
+  ScratchVector<std::int32_t> whole_rows_, columns_;
 };
 
 /// Sum of a block's columns.
@@ -117,9 +119,15 @@ void describe_blocks(const PaddedImage& image, int v, int width, float noise, co
     }
   }
   for (int u = half_width; u + half_width < width; ++u) {
-    const float mean = static_cast<float>(block_sum(sums + u)) / row_block_pixels;
-    const float variance = static_cast<float>(block_sum(squares + u)) / row_block_pixels - mean * mean;
+    const std::int32_t sum = block_sum(sums + u), mean = (sum + row_block_pixels / 2) / row_block_pixels;
+    const std::int32_t rest = sum - row_block_pixels * mean;
+    const float residue = static_cast<float>(rest) / row_block_pixels;
+    // n·σ² = Σ i² − mean·(sum + rest) − rest² / n, whole numbers up to the last term.
+    const float deviations = static_cast<float>(block_sum(squares + u) - mean * (sum + rest));
+    const float variance = deviations / row_block_pixels - residue * residue;
+    blocks.sum[u] = sum;
     blocks.mean[u] = mean;
+    blocks.residue[u] = residue;
     blocks.inverse_deviation[u] =
         masked.contains(u, v, half_width, half_height) ? 0.0f : 1 / std::sqrt(std::max(variance, 0.0f) + noise * noise);
   }

@@ -10,6 +10,7 @@
 #include "road/plane_fit.hpp"
 #include "road/row_spread.hpp"
 #include "road/transformed.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/roll.hpp"
 
 namespace roadstereo {
@@ -39,6 +40,8 @@ float lowest_of_row(const float* row, int width) {
 
 double transform_disparity(ImageView<const float> disparity, const RollEstimate& geometry, double min_delta_t,
                            const RollOptions& options, int threads, Image<float>& transformed) {
+  options.validate();
+  if (disparity.empty()) fail("the disparity map is empty; a transformation needs one of at least 1×1 pixels");
   const int height = disparity.height();
   transformed.resize(disparity.width(), height);
   auto lowest = scratch_vector<float>(static_cast<std::size_t>(height));

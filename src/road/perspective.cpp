@@ -7,6 +7,7 @@
 #include "core/max_disparities.hpp"
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
+#include "core/require_size.hpp"
 #include "core/scratch.hpp"
 #include "road/cubic.hpp"
 #include "road/cubic_row.hpp"
@@ -122,6 +123,8 @@ void PerspectiveOptions::validate() const {
 
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
                                   int width, int height, const PerspectiveOptions& options) {
+  options.validate();
+  require_image_size(width, height);
   PerspectiveShift shift;
   shift.whole_pixel = options.shift == ShiftPrecision::whole_pixel;
   shift.enabled = options.enabled && road.has_road();

@@ -7,11 +7,11 @@
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
+#include "core/require_size.hpp"
 #include "road/bend.hpp"
 #include "road/plane_fit.hpp"
 #include "road/roll_assessment.hpp"
 #include "road/roll_energy.hpp"
-#include "roadstereo/error.hpp"
 
 namespace roadstereo {
 namespace {
@@ -183,10 +183,7 @@ void RollOptions::validate() const {
 RollEstimate estimate_roll(ImageView<const float> disparity, Region region, const std::optional<DisparityPlane>& prior,
                            double initial_roll_rad, const RollOptions& options, int threads) {
   options.validate();
-  if (!region.empty() && (region.width() != disparity.width() || region.height() != disparity.height())) {
-    fail("the region has ", region.width(), "×", region.height(), " pixels and the disparity map ", disparity.width(),
-         "×", disparity.height(), "; they must be equal");
-  }
+  if (!region.empty()) require_same_size("the region", map_size(region), "the disparity map", map_size(disparity));
   const ScratchVector<DisparityPoint> points = sample_map(disparity, region);
   auto weights = scratch_vector<double>();
   RollEstimate geometry = options.solver == RollSolver::robust

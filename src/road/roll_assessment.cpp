@@ -56,12 +56,12 @@ bool observable(const RollEstimate& geometry, int width, int height, const RollO
 void require_enough(double points) {
   constexpr double fewest = 16;
   if (points < fewest) {
-    fail("only ", points, " disparities are valid; the road geometry needs at least ", fewest);
+    fail<NoRoadGeometry>("only ", points, " disparities are valid; the road geometry needs at least ", fewest);
   }
 }
 
 void fail_on_one_line() {
-  fail("all valid disparities lie on one line of the image; the road geometry needs an area");
+  fail<NoRoadGeometry>("all valid disparities lie on one line of the image; the road geometry needs an area");
 }
 
 RollEstimate solve_from_sums(const PlaneSums& sums, double initial_roll_rad, const RollOptions& options) {

@@ -1,16 +1,35 @@
 #pragma once
 
+#include <optional>
+
 #include "road/map_sample.hpp"
 #include "road/plane_fit.hpp"
 #include "road/roll_energy.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/roll.hpp"
 
 namespace roadstereo {
 
-/// Throws Error when `points` disparities are too few for a road geometry.
+/// Error of disparities that determine no road geometry: too few, or all on one line of the image.
+class NoRoadGeometry : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The road geometry that `fit` returns; nothing if it throws NoRoadGeometry.
+template <class Fit>
+std::optional<RollEstimate> geometry_if_determined(const Fit& fit) {
+  try {
+    return fit();
+  } catch (const NoRoadGeometry&) {
+    return std::nullopt;
+  }
+}
+
+/// Throws NoRoadGeometry when `points` disparities are too few.
 void require_enough(double points);
 
-/// Throws Error: the disparities have no area.
+/// Throws NoRoadGeometry: the disparities have no area.
 [[noreturn]] void fail_on_one_line();
 
 /// What the solvers that take all disparities find: plane, roll angle and iterations. Throws as above.

@@ -14,6 +14,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, row_guard>;
 using Float = hn::Vec<Floats>;
+using Integers = hn::RebindToSigned<Floats>;
+using Integer = hn::Vec<Integers>;
 
 void add_products(const std::int16_t* left, const std::int16_t* right, const RowCorrelations& row, int sign,
                   std::int32_t* sums) {
@@ -39,20 +41,28 @@ HWY_INLINE void keep_better(Float correlation, Float disparity, const BestOfRow&
   hn::StoreU(hn::IfThenElse(better, disparity, hn::LoadU(df, best.disparity + at)), df, best.disparity + at);
 }
 
-/// The sums of a block's columns, as a float.
-HWY_INLINE Float block_sum(const std::int32_t* centre) {
-  const Floats df;
-  const hn::RebindToSigned<Floats> d32;
+/// The sums of a block's columns.
+HWY_INLINE Integer block_sum(const std::int32_t* centre) {
+  const Integers d32;
   auto sum = hn::LoadU(d32, centre);
   for (int x = 1; x <= row_block_half_width; ++x) {
     sum = hn::Add(sum, hn::Add(hn::LoadU(d32, centre - x), hn::LoadU(d32, centre + x)));
   }
-  return hn::ConvertTo(df, sum);
+  return sum;
+}
+
+/// n times the covariance of blocks of n pixels: (Σ own·other − sum_own·mean_other) − sum_own·residue_other, the
+/// bracket in whole numbers.
+HWY_INLINE Float block_covariance(Integer products, Integer own_sum, Integer other_mean, Float other_residue) {
+  const Floats df;
+  const Float whole = hn::ConvertTo(df, hn::Sub(products, hn::Mul(own_sum, other_mean)));
+  return hn::NegMulAdd(hn::ConvertTo(df, own_sum), other_residue, whole);
 }
 
 void correlate_row(const std::int32_t* sums, const BlockRow& left, const BlockRow& right, const RowCorrelations& row,
                    const BestOfRow& best_of_left, const BestOfRow& best_of_right) {
   const Floats df;
+  const Integers d32;
   const int lanes = static_cast<int>(hn::Lanes(df));
   const Float per_pixel = hn::Set(df, 1.0f / row_block_pixels), none = hn::Set(df, -1.0f);
   for (int d = 0; d < row.disparities; ++d) {
@@ -61,8 +71,9 @@ void correlate_row(const std::int32_t* sums, const BlockRow& left, const BlockRo
       const std::ptrdiff_t at = d * row.pitch + u, there = std::ptrdiff_t{u} - d;
       const Float inverse =
           hn::Mul(hn::LoadU(df, left.inverse_deviation + u), hn::LoadU(df, right.inverse_deviation + there));
-      const Float means = hn::Mul(hn::LoadU(df, left.mean + u), hn::LoadU(df, right.mean + there));
-      const Float covariance = hn::MulSub(block_sum(sums + at), per_pixel, means);
+      const Float covariance = hn::Mul(
+          per_pixel, block_covariance(block_sum(sums + at), hn::LoadU(d32, left.sum + u),
+                                      hn::LoadU(d32, right.mean + there), hn::LoadU(df, right.residue + there)));
       const Float correlation = hn::IfThenElse(hn::Gt(inverse, hn::Zero(df)), hn::Mul(covariance, inverse), none);
       hn::StoreU(correlation, df, row.values + at);
       keep_better(correlation, disparity, best_of_left, u);

@@ -15,11 +15,13 @@ inline constexpr int row_block_pixels = (2 * row_block_half_width + 1) * (2 * ro
 /// Elements before and behind every row that are read, and without effect when they are 0.
 inline constexpr std::ptrdiff_t row_guard = 16;
 
-/// The blocks along a row: their mean grey level, and the inverse of its standard deviation; 0 where there is no
-/// texture or no whole block.
+/// The blocks along a row, each of n = row_block_pixels pixels: n·mean + n·residue = sum, sum and mean whole, so that
+/// no covariance is the difference of two large rounded numbers, however bright the image is.
 struct BlockRow {
-  float* mean;
-  float* inverse_deviation;
+  std::int32_t* sum;         ///< of the grey levels
+  std::int32_t* mean;        ///< grey level, rounded
+  float* residue;            ///< of the mean, −½ … ½ grey level
+  float* inverse_deviation;  ///< 1 / standard deviation; 0 where there is no texture or no whole block
 };
 
 /// How well the blocks of a left row correlate with those of the right one; disparity d of column u at

@@ -8,7 +8,7 @@ namespace roadstereo {
 
 // Matching cost, eq. (8): one minus the normalised cross-correlation of two blocks. C++17, for kernels.
 
-/// Variance of a block (fixed-point grey²) below which its cost is 1.
+/// Variance of a block (fixed-point grey²) below which its cost is 1: half a step of standard deviation is no texture.
 constexpr float min_variance = 0.25F;
 
 /// One view's part of a block of n pixels, of grey levels less mid-grey: S = n·mean + residue, mean whole. Aligned, so

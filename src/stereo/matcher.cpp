@@ -6,6 +6,7 @@
 
 #include "core/max_disparities.hpp"
 #include "core/require_range.hpp"
+#include "core/require_size.hpp"
 #include "roadstereo/error.hpp"
 #include "stereo/window.hpp"
 
@@ -34,10 +35,7 @@ void validate(const DisparityPriorView& prior) {
   if (prior.factor < 1) fail("the prior's factor is ", prior.factor, "; it must be at least 1");
   for (const ImageView<const float>& end : {prior.low, prior.high}) {
     if (end.empty() && prior.low.empty() == prior.high.empty()) continue;
-    if (end.width() != prior.disparity.width() || end.height() != prior.disparity.height()) {
-      fail("the prior has ", prior.disparity.width(), "×", prior.disparity.height(), " pixels, but the ends of its ",
-           "intervals ", end.width(), "×", end.height(), "; they must be equal");
-    }
+    require_same_size("the prior", map_size(prior.disparity), "an end of its intervals", map_size(end));
   }
 }
 
@@ -144,10 +142,7 @@ void project_winners(const Image<std::int16_t>& winner, int y, int pixel_step, I
 
 void validate(const MatchInput& input) {
   if (input.reference.empty()) fail("matching needs an image, but the reference image is empty");
-  if (input.reference.width() != input.target.width() || input.reference.height() != input.target.height()) {
-    fail("the reference image has ", input.reference.width(), "×", input.reference.height(),
-         " pixels and the target image ", input.target.width(), "×", input.target.height(), "; they must be equal");
-  }
+  require_same_size("the reference image", map_size(input.reference), "the target image", map_size(input.target));
   if (input.disparities < 1 || input.disparities > max_disparities) {
     fail("the number of disparities is ", input.disparities, "; it must be between 1 and ", max_disparities);
   }

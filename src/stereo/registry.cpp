@@ -1,6 +1,7 @@
 #include <cstddef>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -20,7 +21,8 @@ namespace {
 constexpr const char* device_engine = "cuda";
 
 struct Registry {
-  std::vector<EngineInfo> usable;  ///< best first
+  std::optional<EngineInfo> device;  ///< stays where it is when `usable` grows
+  std::vector<EngineInfo> usable;    ///< best first
   std::vector<UnavailableEngine> absent;
   std::size_t host_engines = 0;  ///< that are among the usable
 };
@@ -46,7 +48,8 @@ Registry find_device_engine() {
   Registry registry;
 #if defined(ROADSTEREO_WITH_CUDA) && !defined(ROADSTEREO_CUDA_EMULATED)
   if (const cuda::Device device = cuda::find_device(); device.usable) {
-    registry.usable.push_back({device_engine, "CUDA on " + device.name, false, make_cuda_engine});
+    registry.device = EngineInfo{device_engine, "CUDA on " + device.name, false, make_cuda_engine};
+    registry.usable.push_back(*registry.device);
   } else {
     registry.absent.push_back({device_engine, device.reason});
   }
@@ -93,12 +96,11 @@ const EngineInfo& find_engine(const std::string& name) {
   for (const EngineInfo& info : host_engines()) {
     if (info.name == name) return info;
   }
-  if (name == "auto") return engines().front();
+  const Registry& all = registry();
+  if (all.device && (name == "auto" || name == all.device->name)) return *all.device;
+  if (name == "auto") return host_engines().front();
   std::string known = "auto";
-  for (const EngineInfo& info : engines()) {
-    if (info.name == name) return info;
-    known += ", " + info.name;
-  }
+  for (const EngineInfo& info : all.usable) known += ", " + info.name;
   for (const UnavailableEngine& absent : unavailable_engines()) {
     if (absent.name == name) fail("the engine ", name, " cannot be used: ", absent.reason, "; there are: ", known);
   }

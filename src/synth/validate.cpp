@@ -117,9 +117,8 @@ void check_road(const Road& road) {
   check_kerbs(road.kerbs);
   check_boxes(road.boxes);
   constexpr std::size_t max_damages = std::numeric_limits<std::uint16_t>::max();
-  if (road.blobs.size() + road.cracks.size() > max_damages) {
-    fail("the road has ", road.blobs.size() + road.cracks.size(), " damages; it must have at most ", max_damages);
-  }
+  const std::size_t damages = road.blobs.size() + road.cracks.size() + road.ruts.size();
+  if (damages > max_damages) fail("the road has ", damages, " damages; it must have at most ", max_damages);
 }
 
 void check_degradation(const Degradation& degradation) {

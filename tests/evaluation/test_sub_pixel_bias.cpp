@@ -53,7 +53,12 @@ TEST(SubPixelBias, EmptyMapIsNan) {
   EXPECT_TRUE(std::isnan(SubPixelBias().ripple_px()));
   EXPECT_THROW(SubPixelBias(1), Error);
   SubPixelBias bias;
-  EXPECT_THROW(bias.add(Image<float>(2, 2), Image<float>(3, 2), Image<std::uint8_t>(3, 2)), Error);
+  try {
+    bias.add(Image<float>(3, 2), Image<float>(3, 2), Image<std::uint8_t>(2, 2));
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "the ground truth has 3×2 pixels and the mask 2×2; they must have the same size");
+  }
 }
 
 }  // namespace

@@ -23,17 +23,29 @@ TEST(Presets, PaperHasConstantsOfPaper) {
   EXPECT_EQ(paper.matcher.block_radius, 5);  // 120-connected
   EXPECT_EQ(paper.matcher.block_aspect, 1);
   EXPECT_EQ(paper.matcher.aggregation_radius, 5);
+  EXPECT_EQ(paper.matcher.pixel_step, 1);
+  EXPECT_FALSE(paper.matcher.adapt_support);
+  EXPECT_EQ(paper.matcher.aggregation_aspect, 1);
+  EXPECT_EQ(paper.matcher.aggregation_step, 1);
   EXPECT_EQ(paper.matcher.aggregation_shape, WindowShape::square);
   EXPECT_EQ(paper.matcher.sigma_space, 1.5);
   EXPECT_EQ(paper.matcher.sigma_colour, 5.5);
   EXPECT_EQ(paper.matcher.lr_max_diff_px, 1);
   EXPECT_EQ(paper.matcher.occlusion_sigma_px, 0);
   EXPECT_EQ(paper.matcher.ncc_noise_sigma, 0);
+  EXPECT_TRUE(paper.matcher.match_both_views);
+  EXPECT_EQ(paper.matcher.prior_weight, 0);
+  EXPECT_EQ(paper.matcher.peak_fit, PeakFit::parabola);  // eq. (13)
+  EXPECT_FALSE(paper.matcher.reject_range_boundary);
+  EXPECT_EQ(paper.lucas_kanade.radius, 0);
+  EXPECT_EQ(paper.off_road.max_sigma_px, 0);
+  EXPECT_EQ(paper.refinement.radius, 0);
   EXPECT_EQ(paper.roll.initial_lambda, 10);
   EXPECT_NEAR(paper.roll.roll_threshold_rad, 3.14159265358979 / 1.8e6, 1e-18);
   EXPECT_EQ(paper.roll.solver, RollSolver::gradient_descent);
   EXPECT_FALSE(paper.road_model.with_roll);
   EXPECT_EQ(paper.perspective.shift, ShiftPrecision::whole_pixel);
+  EXPECT_FALSE(paper.correct_rows);
 }
 
 TEST(Presets, AreValidAndUnknownIsRejected) {

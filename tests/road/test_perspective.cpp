@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/perspective.hpp"
@@ -275,6 +276,25 @@ TEST(PlanPerspective, RefusesRoadBeyondSearchedDisparities) {
   EXPECT_EQ(plan_perspective(road, std::nullopt, 200, 100, options).disparities, 199);
   options.delta_p_px = 199;
   EXPECT_THROW(plan_perspective(road, std::nullopt, 200, 100, options), Error);
+}
+
+// Disparities are at least 8 and less than the width: the range was upside down in images of 8 columns.
+TEST(PlanPerspective, RefusesSmallImagesAndOptionsOutOfRange) {
+  const auto message = [](int width, int height, const PerspectiveOptions& options) -> std::string {
+    try {
+      plan_perspective(RoadModelEstimate{}, std::nullopt, width, height, options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  PerspectiveOptions options;
+  EXPECT_EQ(message(32, 32, options), "accepted");
+  EXPECT_NE(message(8, 32, options).find("8×32"), std::string::npos) << message(8, 32, options);
+  EXPECT_NE(message(0, 0, options).find("0×0"), std::string::npos) << message(0, 0, options);
+  options.max_damage_depth_m = -1;
+  EXPECT_NE(message(640, 360, options).find("perspective.max_damage_depth_m is -1"), std::string::npos)
+      << message(640, 360, options);
 }
 
 TEST(PerspectiveOptions, RejectsValuesOutOfRange) {

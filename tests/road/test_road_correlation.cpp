@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "road/coarse_match.hpp"
 #include "road/row_correlation.hpp"
 #include "road/strip_correlation.hpp"
 #include "tests/core/every_target.hpp"
@@ -160,20 +162,27 @@ TEST_P(RoadCorrelationTarget, RowsMatchDefinitionAtEveryDisparity) {
   std::copy_n(pair.reference.row(0), width, left.data() + front);
   std::copy_n(pair.target.row(0), width, right.data() + front);
   std::vector<std::int32_t> sums(2 * row_guard + disparities * pitch);
-  std::vector<float> values(disparities * pitch), left_mean(front + pitch), right_mean(front + pitch);
+  std::vector<float> values(disparities * pitch), left_residue(front + pitch), right_residue(front + pitch);
   std::vector<float> left_inverse(front + pitch), right_inverse(front + pitch);
+  std::vector<std::int32_t> left_sum(front + pitch), right_sum(front + pitch);
+  std::vector<std::int32_t> left_mean(front + pitch), right_mean(front + pitch);
+  constexpr double mean = 100 - 20.0 / row_block_pixels, other_mean = 90 + 0.25;
   std::vector<std::vector<float>> best(4, std::vector<float>(front + pitch, -1));
   for (int u = row_block_half_width; u + row_block_half_width < width; ++u) {
     const auto i = static_cast<std::size_t>(front + u);
-    left_mean[i] = 100, right_mean[i] = 90, left_inverse[i] = 0.01f, right_inverse[i] = 0.02f;
+    left_sum[i] = 100 * row_block_pixels - 20, left_mean[i] = 100, left_residue[i] = -20.0f / row_block_pixels;
+    right_mean[i] = 90, right_residue[i] = 0.25f;
+    left_inverse[i] = 0.01f, right_inverse[i] = 0.02f;
   }
   const RowCorrelations row{values.data(), pitch, width, disparities};
   add_products(left.data() + front, right.data() + front, row, 1, sums.data() + row_guard);
   add_products(left.data() + front, right.data() + front, row, 1, sums.data() + row_guard);
   add_products(left.data() + front, right.data() + front, row, -1, sums.data() + row_guard);
-  correlate_row(sums.data() + row_guard, {left_mean.data() + front, left_inverse.data() + front},
-                {right_mean.data() + front, right_inverse.data() + front}, row,
-                {best[0].data() + front, best[1].data() + front}, {best[2].data() + front, best[3].data() + front});
+  correlate_row(
+      sums.data() + row_guard,
+      {left_sum.data() + front, left_mean.data() + front, left_residue.data() + front, left_inverse.data() + front},
+      {right_sum.data() + front, right_mean.data() + front, right_residue.data() + front, right_inverse.data() + front},
+      row, {best[0].data() + front, best[1].data() + front}, {best[2].data() + front, best[3].data() + front});
   for (int u = 0; u < width; ++u) {
     double most = -1;
     for (int d = 0; d < disparities; ++d) {
@@ -183,7 +192,7 @@ TEST_P(RoadCorrelationTarget, RowsMatchDefinitionAtEveryDisparity) {
         for (int x = u - row_block_half_width; x <= u + row_block_half_width; ++x) {
           sum += static_cast<double>(pair.reference(x, 0)) * pair.target(x - d, 0);
         }
-        expected = (sum / row_block_pixels - 100.0 * 90.0) * 0.01 * 0.02;
+        expected = (sum / row_block_pixels - mean * other_mean) * 0.01 * 0.02;
       }
       EXPECT_NEAR(values[static_cast<std::size_t>(d * pitch + u)], expected, 1e-5 * std::abs(expected) + 1e-6);
       most = std::max(most, expected);
@@ -195,6 +204,39 @@ TEST_P(RoadCorrelationTarget, RowsMatchDefinitionAtEveryDisparity) {
   find_rivals(row, best_disparity.data(), rivals.data());
   const auto at = [&](int d) { return values[static_cast<std::size_t>(d * pitch + 20)]; };
   EXPECT_EQ(rivals[20], std::max({at(0), at(6), at(7), at(8)}));
+}
+
+/// Evidence of two images that have nothing in common, of the grey levels `base` ± 8 after downsampling.
+DisparityEvidence evidence_at(int base) {
+  constexpr int factor = 8, width = 120, height = 20, max_disparity_px = 64;
+  const auto noise = [base](std::uint64_t seed) {
+    GreyImage image(factor * width, factor * height);
+    for (int v = 0; v < image.height(); ++v) {
+      for (int u = 0; u < image.width(); ++u) {
+        const double level = 16 * (test::lattice(u / factor, v / factor, seed) - 0.5);
+        image(u, v) = static_cast<std::int16_t>(base + std::lround(level));
+      }
+    }
+    return image;
+  };
+  return match_coarsely(noise(1), noise(2), factor, max_disparity_px, 1).evidence;
+}
+
+// In single precision the difference of products near 4060² was off by 2, half the variance of the noise.
+TEST(MatchCoarsely, BrightPairHasEvidenceOfDarkOne) {
+  const DisparityEvidence dark = evidence_at(20), bright = evidence_at(grey_max - 20);
+  ASSERT_EQ(bright.disparities(), dark.disparities());
+  double most = 0;
+  for (int row = 0; row < dark.rows(); ++row) {
+    for (int column = 0; column < dark.columns(); ++column) {
+      for (int d = 0; d < dark.disparities(); ++d) {
+        const double support = dark.support(row, column)[d];
+        most = std::max(most, std::abs(support));
+        ASSERT_NEAR(bright.support(row, column)[d], support, 0.01) << row << ", " << column << ": " << d;
+      }
+    }
+  }
+  EXPECT_GT(most, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Machine, RoadCorrelationTarget, testing::ValuesIn(test::targets_of_this_machine()),

@@ -196,6 +196,14 @@ TEST(TransformDisparity, RoadIsFlatAndDamageKeepsDepth) {
   EXPECT_NEAR(transformed(160, 90), 27, 1e-3);
 }
 
+TEST(TransformDisparity, RefusesEmptyMapAndOptionsOutOfRange) {
+  Image<float> transformed;
+  EXPECT_THROW(transform_disparity(Image<float>(), RollEstimate{}, 2, RollOptions{}, 1, transformed), Error);
+  RollOptions options;
+  options.delta_t_px = 10001;
+  EXPECT_THROW(transform_disparity(Image<float>(8, 4, 5), RollEstimate{}, 2, options, 1, transformed), Error);
+}
+
 TEST(RoadResiduals, IsStandardDeviation) {
   Image<float> map(100, 100, 10);
   for (int v = 0; v < 100; ++v) {

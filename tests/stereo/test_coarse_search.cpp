@@ -16,6 +16,7 @@
 #include "stereo/coarse/coarse_map.hpp"
 #include "stereo/coarse/coarse_search.hpp"
 #include "stereo/coarse/coarse_size.hpp"
+#include "stereo/cpu/padded_rows.hpp"
 #include "tests/stereo/textured_pair.hpp"
 
 namespace roadstereo {
@@ -219,6 +220,12 @@ TEST(FillHidden, TakesFartherNeighbour) {
   for (std::size_t u = 16; u < 24; ++u) EXPECT_EQ(row[u], 6) << u;
 }
 
+void expect_same(const Image<float>& a, const Image<float>& b) {
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = 0; x < a.width(); ++x) ASSERT_TRUE(a(x, y) == b(x, y) || (std::isnan(a(x, y)) && std::isnan(b(x, y))));
+  }
+}
+
 TEST(CoarseSearch, IsIndependentOfThreads) {
   const auto pair = test::textured_pair(258, 230, [](double u, double v) { return 9 + 0.03 * v + std::sin(0.1 * u); });
   std::vector<int> first_column(230);
@@ -230,10 +237,36 @@ TEST(CoarseSearch, IsIndependentOfThreads) {
   ASSERT_TRUE(three.find(input, road));
   EXPECT_EQ(one.ranges()->reference, three.ranges()->reference);
   EXPECT_EQ(one.ranges()->target, three.ranges()->target);
-  const Image<float>&a = one.prior().disparity, &b = three.prior().disparity;
-  for (int y = 0; y < a.height(); ++y) {
-    for (int x = 0; x < a.width(); ++x) ASSERT_TRUE(a(x, y) == b(x, y) || (std::isnan(a(x, y)) && std::isnan(b(x, y))));
-  }
+  expect_same(one.prior().disparity, three.prior().disparity);
+}
+
+// Memory that is laid out as for the last frame keeps what it holds: 21 and 31 coarse disparities take 32 elements.
+TEST(CoarseSearch, IsIndependentOfEarlierFrames) {
+  const auto pair = test::textured_pair(258, 230, [](double u, double v) { return 9 + 0.03 * v + std::sin(0.1 * u); });
+  const auto other = test::textured_pair(
+      258, 230, [](double, double) { return 5; }, 9);
+  CoarseSearchOptions options;
+  options.factor = 2;
+  CoarseSearch fresh(options, 2), used(options, 2);
+  const PerspectiveShift road = shift_of({9, 0.03, 0}, 40);
+  ASSERT_TRUE(used.find({other.reference, other.target, nullptr, 61}, no_road));
+  ASSERT_TRUE(used.find({other.reference, other.target, nullptr, 41}, no_road));
+  ASSERT_TRUE(used.find({pair.reference, pair.target, nullptr, 61}, road));
+  ASSERT_TRUE(fresh.find({pair.reference, pair.target, nullptr, 61}, road));
+  EXPECT_EQ(used.ranges()->reference, fresh.ranges()->reference);
+  expect_same(used.prior().disparity, fresh.prior().disparity);
+}
+
+TEST(PaddedRows, KeepValuesWhileLaidOutAlike) {
+  cpu::PaddedRows<float> rows;
+  rows.resize(2, 0, 100);
+  EXPECT_EQ(rows.row(1)[7], 0);
+  rows.row(1)[7] = 3;
+  rows.resize(2, 0, 100);
+  EXPECT_EQ(rows.row(1)[7], 3);
+  rows.resize(1, 0, 100);
+  rows.resize(2, 0, 100);
+  EXPECT_EQ(rows.row(1)[7], 0);
 }
 
 TEST(SceneDisparities, EndAtNearestRoadQuarterOfWidthAndMatchersMost) {

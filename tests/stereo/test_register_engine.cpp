@@ -1,13 +1,19 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "road/map_sample.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
+#include "roadstereo/warning.hpp"
 
 namespace {
 
@@ -55,7 +61,19 @@ TEST(RegisterEngine, PipelineUsesIt) {
   const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
   EXPECT_EQ(result.disparity(100, 50), 7.25F);
   EXPECT_EQ(result.disparity(result.disparity.width() - 1, result.disparity.height() - 1), 7.25F);
-  EXPECT_NEAR(result.sigma(100, 50), 0.1F, 0.1F);  // of the variance
+  // The variance of the engine, and that of interpolation and calibration.
+  EXPECT_NEAR(result.sigma(100, 50), std::sqrt(0.01 + std::pow(options.refinement.min_sigma_px, 2)), 1e-5);
+}
+
+TEST(RegisterEngine, EntriesStayWhereTheyAre) {
+  const EngineInfo &best = find_engine("auto"), &oracle = find_engine("reference");
+  const std::size_t before = engines().size();
+  constexpr std::size_t added = 20;
+  for (std::size_t i = 0; i < added; ++i) register_engine({"spare " + std::to_string(i), "", false, make_constant});
+  EXPECT_EQ(engines().size(), before + added);
+  EXPECT_EQ(&find_engine("auto"), &best);
+  EXPECT_EQ(&find_engine("reference"), &oracle);
+  EXPECT_EQ(best.name, engines().front().name);
 }
 
 /// Has maps of a quarter of the image.
@@ -80,6 +98,47 @@ TEST(RegisterEngine, MapsOfAnotherSizeAreRefused) {
     const std::string size = std::to_string(pair.left.width) + "×" + std::to_string(pair.left.height);
     EXPECT_NE(std::string(error.what()).find("small has matched"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find(size), std::string::npos) << error.what();
+  }
+}
+
+/// Finds disparities everywhere but in the rows that the road geometry is fitted to, of which the first few have some.
+class UnsampledRowsEngine final : public StereoEngine {
+ public:
+  explicit UnsampledRowsEngine(int sampled_rows) : sampled_rows_(sampled_rows) {}
+
+  void match(const MatchInput& input, const MatcherOptions& /*options*/, MatchMaps& maps) override {
+    const int width = input.reference.width(), height = input.reference.height();
+    maps.disparity.assign(width, height, 7.25F);
+    maps.variance.assign(width, height, 0.01F);
+    const MapSample sample = map_sample(width, height);
+    for (int row = sampled_rows_; row < sample.rows; ++row) {
+      std::fill_n(maps.disparity.row(sample.at(row)), width, std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+
+ private:
+  int sampled_rows_;
+};
+
+// The first has no sample at all, the samples of the other lie on one line.
+TEST(RegisterEngine, DisparitiesWithoutRoadGeometryAreWarning) {
+  const synth::SyntheticPair pair = synth::render(synth::named_scene("demo"));
+  ASSERT_GT(map_sample(pair.left.width, pair.left.height).step, 1);
+  for (const int rows : {0, 1}) {
+    PipelineOptions options = preset("default");
+    options.engine = "unsampled " + std::to_string(rows);
+    options.refinement.radius = 0;
+    options.lucas_kanade.radius = 0;
+    register_engine(
+        {options.engine, "", false, [rows](int /*threads*/) { return std::make_unique<UnsampledRowsEngine>(rows); }});
+    Pipeline pipeline(options, pair.calibration);
+    const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+    EXPECT_TRUE(result.road.has_road());
+    EXPECT_FALSE(result.roll_found);
+    EXPECT_GT(result.valid_share, 0.5);
+    EXPECT_TRUE(std::any_of(result.warnings.begin(), result.warnings.end(),
+                            [](const std::string& warning) { return warning_code(warning) == "few-disparities"; }));
+    EXPECT_TRUE(std::isnan(result.transformed(100, 50)));
   }
 }
 

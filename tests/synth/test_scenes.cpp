@@ -40,6 +40,19 @@ TEST(Texture, HasContrastAtEveryDistance) {
   }
 }
 
+// Ids are of 16 bits, and 0 is none.
+TEST(Scenes, RutsCountAmongDamagesOfSixteenBits) {
+  Scene scene = bare_scene(75, 0);
+  scene.road.ruts.assign(65535, Rut{});
+  scene.road.blobs.assign(1, Blob{});
+  try {
+    scene.validate();
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "the road has 65536 damages; it must have at most 65535");
+  }
+}
+
 TEST(Scenes, EverySceneRenders) {
   std::set<std::string> names;
   for (const std::string& name : scene_names()) {

@@ -338,13 +338,11 @@ RollFit DeviceStages::estimate_roll(ImageView<const float> disparity, const std:
   RollFit fit{static_cast<double>(transform_.statistics().valid) / (static_cast<double>(width_) * height_),
               std::nullopt};
   if (fit.valid_share < min_share) return fit;
-  if (!transformed_) {
-    fit.geometry = fit_on_host(disparity);
-  } else if (robust) {
-    fit.geometry = finish_road_fit(fit_.statistics(), width_, height_, options);
-  } else {
-    fit.geometry = finish_solved(sums_.solved(), fit_.statistics(), width_, height_, options);
-  }
+  fit.geometry = geometry_if_determined([&] {
+    if (!transformed_) return fit_on_host(disparity);
+    if (robust) return finish_road_fit(fit_.statistics(), width_, height_, options);
+    return finish_solved(sums_.solved(), fit_.statistics(), width_, height_, options);
+  });
   return fit;
 }
 

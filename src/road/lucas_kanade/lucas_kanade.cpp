@@ -14,7 +14,6 @@
 #include "road/lucas_kanade/settings.hpp"
 #include "road/lucas_kanade/window_sums.hpp"
 #include "road/row_shift.hpp"
-#include "roadstereo/error.hpp"
 
 namespace roadstereo {
 namespace {
@@ -150,13 +149,10 @@ void add_shifts(CellShifts& shifts, float scale, int v, const float* disparity, 
 }
 
 void require_sizes(const TransformedPair& pair, ImageView<const float> disparity) {
-  const ImageSize size{disparity.width(), disparity.height()};
-  for (const ImageView<const std::int16_t>& image : {pair.reference, pair.target}) {
-    if (ImageSize{image.width(), image.height()} == size) continue;
-    fail("the disparity map has ", size.width, "×", size.height, " pixels and an image ", image.width(), "×",
-         image.height(), "; they must be equal");
-  }
-  require_mask_size({pair.mask.width(), pair.mask.height()}, size);
+  const ImageSize size = map_size(disparity);
+  require_same_size("the disparity map", size, "the reference image", map_size(pair.reference));
+  require_same_size("the disparity map", size, "the target image", map_size(pair.target));
+  require_mask_size(map_size(pair.mask), size);
 }
 
 }  // namespace

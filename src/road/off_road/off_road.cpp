@@ -176,10 +176,7 @@ void require_sizes(ImageView<const float> correlation, const DisparityPriorView&
                    ImageView<const float> disparity, ImageView<const float> sigma) {
   const int width = disparity.width(), height = disparity.height();
   const int columns = alignment_cells(width), rows = alignment_cells(height);
-  if (sigma.width() != width || sigma.height() != height) {
-    fail("the disparity map has ", width, "×", height, " pixels and its standard errors ", sigma.width(), "×",
-         sigma.height(), "; they must be equal");
-  }
+  require_same_size("the disparity map", map_size(disparity), "its standard errors", map_size(sigma));
   if (correlation.width() != columns || correlation.height() != rows) {
     fail("the correlation has ", correlation.width(), "×", correlation.height(), " cells; a map of ", width, "×",
          height, " pixels has ", columns, "×", rows);

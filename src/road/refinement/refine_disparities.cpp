@@ -4,6 +4,7 @@
 
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
+#include "core/require_size.hpp"
 #include "core/scratch.hpp"
 #include "road/refinement/band_rows.hpp"
 #include "road/refinement/band_slopes.hpp"
@@ -12,7 +13,6 @@
 #include "road/refinement/smoothing_error.hpp"
 #include "road/refinement/weighted_mean.hpp"
 #include "road/row_shift.hpp"
-#include "roadstereo/error.hpp"
 #include "roadstereo/refinement.hpp"
 
 namespace roadstereo {
@@ -114,10 +114,7 @@ void refine_disparities(ImageView<const float> disparity, ImageView<const float>
                         int threads, const RefinementMaps& between, Image<float>& refined, Image<float>& sigma) {
   options.validate();
   require_range("matcher", "pixel_step", pixel_step, 1, 2);
-  if (variance.width() != disparity.width() || variance.height() != disparity.height()) {
-    fail("the disparity map has ", disparity.width(), "×", disparity.height(), " pixels and its variance ",
-         variance.width(), "×", variance.height(), "; they must be equal");
-  }
+  require_same_size("the disparity map", map_size(disparity), "its variance", map_size(variance));
   RefinementInput maps{disparity, variance, of_matched_pixels(road, pixel_step),
                        of_matched_pixels(options, pixel_step)};
   const double samples = of_matched_pixels(effective_samples, pixel_step);

@@ -16,16 +16,20 @@ template <class T>
 class PaddedRows {
  public:
   /// `before` columns of each row lie to the left of column 0. Allocates only when there are more elements than ever.
+  /// Rows that are laid out as before keep what they hold; others begin with 0.
   void resize(std::size_t rows, std::ptrdiff_t before, std::ptrdiff_t columns) {
     constexpr std::ptrdiff_t line = 128 / static_cast<std::ptrdiff_t>(sizeof(T));
-    offset_ = (row_padding + before + line - 1) / line * line;
-    pitch_ = (offset_ + columns + row_padding + line - 1) / line * line;
-    const std::size_t size = rows * static_cast<std::size_t>(pitch_);
+    const std::ptrdiff_t offset = (row_padding + before + line - 1) / line * line;
+    const std::ptrdiff_t pitch = (offset + columns + row_padding + line - 1) / line * line;
+    const std::size_t size = rows * static_cast<std::size_t>(pitch);
+    if (offset == offset_ && pitch == pitch_ && size == size_) return;
     if (size > capacity_) {
       values_ = hwy::AllocateAligned<T>(size);
       if (!values_) throw std::bad_alloc();
       capacity_ = size;
     }
+    offset_ = offset;
+    pitch_ = pitch;
     size_ = size;
     clear();
   }

@@ -5,15 +5,13 @@
 #include <limits>
 
 #include "core/parallel.hpp"
+#include "stereo/block_correlation.hpp"
 #include "stereo/window.hpp"
 
 namespace roadstereo {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// Below half a fixed-point step of standard deviation a block has no texture.
-constexpr double min_block_variance = 0.25;
 
 /// The matching costs c(p, d), or the aggregated costs E_d(p, d), of all pixels; NaN where p has no counterpart.
 class CostVolume {
@@ -87,7 +85,7 @@ double matching_cost(const Scene& scene, int u, int v, int d) {
   const double variance_tar = sum_tar_tar / n - mu_tar * mu_tar;
   // Without texture in a block nothing correlates: the cost is neutral. The camera's noise is added to the deviations,
   // so that texture that may be noise counts less; 0 is the paper's equation.
-  if (variance_ref < min_block_variance || variance_tar < min_block_variance) return 1;
+  if (variance_ref < min_variance || variance_tar < min_variance) return 1;
   const double noise = scene.options.ncc_noise_sigma * grey_scale;
   const double sigma_ref = std::sqrt(variance_ref + noise * noise);
   const double sigma_tar = std::sqrt(variance_tar + noise * noise);
