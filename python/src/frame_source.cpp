@@ -16,6 +16,7 @@
 #include "frame_array.hpp"
 #include "record.hpp"
 #include "roadstereo/error.hpp"
+#include "roadstereo/io/flight_frame.hpp"
 #include "serial_calls.hpp"
 
 namespace roadstereo::python {
@@ -41,7 +42,7 @@ class SharedSource {
   PairArrays next() {
     std::optional<io::SourcePair> pair = call_([&] { return source_->next(); });
     if (!pair) throw py::stop_iteration();
-    PairArrays arrays{pair->index, std::move(pair->name), pair->time_s, {}, {}, std::move(pair->error)};
+    PairArrays arrays{pair->index, io::valid_utf8(pair->name), pair->time_s, {}, {}, io::valid_utf8(pair->error)};
     if (arrays.error.empty()) {
       arrays.left = frame_array(std::move(pair->left));
       arrays.right = frame_array(std::move(pair->right));
@@ -55,7 +56,7 @@ class SharedSource {
     return call_([&] { return source_->size(); });
   }
   std::string description() {
-    return call_([&] { return source_->description(); });
+    return io::valid_utf8(call_([&] { return source_->description(); }));
   }
   py::object calibration() {
     const auto file = call_([&] { return source_->calibration(); });
@@ -94,7 +95,7 @@ constexpr const char* open_doc =
 source is a folder (left/ right/ and others), a list of pairs, a video with both views, a bag of ROS 1 or ROS 2
 (.bag, .db3, .mcap), a V4L2 camera (/dev/video0) or a GStreamer pipeline; or source and right are two folders or two
 videos. layout is "auto", "side-by-side" or "top-bottom"; topics are the left and right image topic of a bag; rate_hz,
-pairs per second, replaces the times of the source. Raises Error if it is none of these or cannot be opened.)";
+pairs per second, replaces the times of a recording. Raises Error if it is none of these or cannot be opened.)";
 
 }  // namespace
 
@@ -119,7 +120,8 @@ void bind_frame_source(py::module_& module) {
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &SharedSource::next)
       .def("skip", &SharedSource::skip, py::arg("pairs"), "Skip pairs, without decoding them if the format allows it.")
-      .def_property_readonly("size", &SharedSource::size, "Number of pairs; of videos an estimate. None: unknown.")
+      .def_property_readonly("size", &SharedSource::size,
+                             "Number of pairs; of videos and bags an estimate. None: unknown.")
       .def_property_readonly("live", &SharedSource::live, "Whether the source is a camera.")
       .def_property_readonly("calibration", &SharedSource::calibration,
                              "Calibration or StereoRig contained in the source, or None.")

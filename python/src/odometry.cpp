@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "bindings.hpp"
@@ -26,7 +27,7 @@ class SharedOdometry {
       : calibration_(calibration), odometry_(calibration, options) {}
 
   FramePose add(int frame, const ProcessedFrame& processed) {
-    if (processed.result.disparity.empty()) fail("odometry: the maps of frame ", frame, " were left on the device");
+    require_maps(processed, "odometry: the maps of frame " + std::to_string(frame));
     const Image<float>& disparity = processed.result.disparity;
     calibration_.validate(disparity.width(), disparity.height(), "calibration");
     return call_([&] { return odometry_.add(frame, processed.result); });

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "roadstereo/calibration.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo::python {
@@ -13,5 +15,10 @@ struct ProcessedFrame {
   std::optional<StereoCalibration> calibration;
   PipelineOptions options;
 };
+
+/// Throws Error if the maps of a result, which `whose` names, were left on the device.
+inline void require_maps(const ProcessedFrame& frame, const std::string& whose) {
+  if (frame.result.disparity.empty()) fail(whose, " were left on the device");
+}
 
 }  // namespace roadstereo::python

@@ -76,6 +76,7 @@ class SharedRoadMap {
 
   std::size_t add(const ProcessedFrame& frame, const PoseArray& camera_to_map, const py::object& left,
                   const std::string& order) {
+    require_maps(frame, "map: the maps of the result");
     const FrameResult& result = frame.result;
     const GreyImage& grey = result.grey;
     MapFrame seen{result.disparity,
@@ -174,7 +175,8 @@ constexpr const char* map_add_doc =
     R"(Fuse a frame; return the number of cells that it measures.
 
 camera_to_map is (3, 4) or (4, 4), a rigid motion, metres, z up. The picture of the map is that of left, an array as
-`process` takes it, or without one the grey levels of the result. Raises Error for a result without a road or a calibration, or another size.)";
+`process` takes it, or without one the grey levels of the result. Raises Error for a result without a road or a
+calibration, for one whose maps were left on the device, and for another size.)";
 
 }  // namespace
 

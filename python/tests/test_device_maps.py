@@ -163,6 +163,8 @@ class DeviceMaps(unittest.TestCase):
         self.assertEqual(self.pipeline.device_maps().disparity.shape, (180, 320))
         with self.assertRaisesRegex(roadstereo.Error, "left on the device"):
             roadstereo.find_damage(result)
+        with self.assertRaisesRegex(roadstereo.Error, "map: the maps of the result were left on the device"):
+            roadstereo.RoadMap(cell_m=0.02).add(result, np.eye(4))
         self.pipeline.set_device_options()
         self.assertEqual(self.pipeline.process(*pair()).disparity.shape, (180, 320))
 

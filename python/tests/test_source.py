@@ -1,5 +1,6 @@
 """Recordings as iterators."""
 
+import os
 import pathlib
 import shutil
 import threading
@@ -53,6 +54,17 @@ class Source(unittest.TestCase):
         self.assertIn("000001.png", pairs[1].error)
         with self.assertRaisesRegex(roadstereo.Error, "000001.png"):
             pairs[1].left
+
+    def test_names_that_are_not_utf8(self):
+        folder = FOLDER / "bytes"
+        shutil.copytree(self.folder, folder)
+        for side in ("left", "right"):
+            (folder / side / "000003.png").rename(folder / side / os.fsdecode(b"000003\xff.png"))
+        (folder / "right" / os.fsdecode(b"000003\xff.png")).write_bytes(b"no image")
+        pair = list(roadstereo.open_source(folder))[3]
+        self.assertEqual(pair.name, "000003\ufffd")
+        self.assertIn("000003\ufffd.png", pair.error)
+        self.assertIn("000003\ufffd", repr(pair))
 
     def test_no_source(self):
         with self.assertRaisesRegex(roadstereo.Error, "no/such"):

@@ -6,6 +6,7 @@
 #include <memory>
 #include <numeric>
 
+#include "core/degrees.hpp"
 #include "core/order_statistics.hpp"
 #include "graph/pose_graph_problem.hpp"
 #include "graph/track_alignment.hpp"
@@ -143,7 +144,7 @@ class Optimiser {
   }
 
   void add_track(PoseGraphProblem& problem) {
-    constexpr double road_sd_rad = 3 * 3.14159265358979323846 / 180;
+    constexpr double road_sd_rad = to_radians(3);
     const std::vector<PositionFix>& fixes = curve_->fixes();
     const double frames_s = recorded_s(input_.times_s, options_.max_fix_gap_s);
     const double shared_s = std::max(options_.fix_correlation_s, 0.0);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
 
 #include "io/text_line.hpp"
@@ -93,11 +93,11 @@ Ticks round_ticks(double lowest, double highest, int max_count) {
 }
 
 std::string number_text(double value, int decimals) {
-  std::array<char, 64> text{};
+  std::array<char, 400> text{};  // more than the largest number has
   const double scale = std::pow(10.0, decimals);
   const double shown = std::round(value * scale) == 0 ? 0.0 : value;
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, shown);
-  return text.data();
+  char* const end = text.data() + text.size();
+  return {text.data(), std::to_chars(text.data(), end, shown, std::chars_format::fixed, decimals).ptr};
 }
 
 }  // namespace roadstereo::io

@@ -12,6 +12,7 @@
 
 #include "io/geo/map_crs.hpp"
 #include "io/map_blocks.hpp"
+#include "io/require_written.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/map_points.hpp"
 #include "roadstereo/version.hpp"
@@ -128,6 +129,7 @@ void write_map_las(const std::filesystem::path& file, const MapBox& bounds, cons
                                        std::floor(reference.north_m + bounds.j0 * reference.cell_m),
                                        std::floor(reference.up_m)};
   std::ofstream stream(file, std::ios::binary);
+  require_written(stream, file);
   stream << std::string(las_header_bytes, '\0') << records;
   LasExtent extent;
   LasBytes block;
@@ -140,12 +142,13 @@ void write_map_las(const std::filesystem::path& file, const MapBox& bounds, cons
       add_las_point(block, at, raster, u, v);
     });
     stream << block.bytes();
+    require_written(stream, file);
   });
   if (extent.points == 0) fail(file.string(), ": the map is empty");
   stream.seekp(0);
   stream << las_header(records.size(), offset_m, extent);
   stream.close();
-  if (!stream) fail<SystemError>(file.string(), ": cannot be written");
+  require_written(stream, file);
 }
 
 }  // namespace roadstereo::io

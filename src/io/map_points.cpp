@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/map_blocks.hpp"
-#include "roadstereo/error.hpp"
+#include "io/require_written.hpp"
 
 namespace roadstereo::io {
 namespace {
@@ -29,6 +29,7 @@ void write_map_points(const std::filesystem::path& file, const MapBox& bounds, c
     points += raster.views.pixels() - static_cast<std::size_t>(std::count(views, views + raster.views.pixels(), 0));
   });
   std::ofstream stream(file, std::ios::binary);
+  require_written(stream, file);
   stream << "ply\nformat binary_little_endian 1.0\nelement vertex " << points
          << "\nproperty double x\nproperty double y\nproperty double z\nproperty float sigma\nproperty uchar red\n"
             "property uchar green\nproperty uchar blue\nend_header\n";
@@ -41,9 +42,10 @@ void write_map_points(const std::filesystem::path& file, const MapBox& bounds, c
       for (const std::uint8_t colour : raster.colour(u, v)) append(bytes, colour);
     });
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    require_written(stream, file);
   });
   stream.close();
-  if (!stream) fail<SystemError>(file.string(), ": cannot be written");
+  require_written(stream, file);
 }
 
 }  // namespace roadstereo::io

@@ -6,7 +6,9 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <optional>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "io/quaternion.hpp"
@@ -26,6 +28,29 @@ double rotation_error(const std::array<double, 12>& pose) {
     }
   }
   return error;
+}
+
+/// Determinant of the first three columns: 1 of a rotation, −1 of a reflection.
+double determinant(const std::array<double, 12>& m) {
+  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+}
+
+/// Parses a word as a number, whatever the locale; nullopt if it is none.
+std::optional<double> number_of(std::string_view word) {
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+/// Whether every frame of a piece has a time.
+bool has_times(const Trajectory& trajectory, int piece, const std::vector<double>& times_s) {
+  for (std::size_t i = 0; i < trajectory.frames.size(); ++i) {
+    if (trajectory.frames[i].piece != piece) continue;
+    if (i >= times_s.size() || !std::isfinite(times_s[i])) return false;
+  }
+  return true;
 }
 
 /// With as many digits as read back the same number.
@@ -48,16 +73,10 @@ Trajectory read_trajectory(const std::string& path) {
     std::vector<double> numbers;
     bool missing = false;
     for (std::string word; words >> word;) {
-      std::size_t used = 0;
-      double value = 0;
-      try {
-        value = std::stod(word, &used);
-      } catch (const std::exception&) {
-        used = 0;
-      }
-      if (used != word.size()) fail(path, ", line ", row + 1, ": \"", word, "\" is no number");
-      missing = missing || !std::isfinite(value);
-      numbers.push_back(value);
+      const std::optional<double> value = number_of(word);
+      if (!value) fail(path, ", line ", row + 1, ": \"", word, "\" is no number");
+      missing = missing || !std::isfinite(*value);
+      numbers.push_back(*value);
     }
     if (numbers.empty() && file.peek() == EOF) break;
     if (numbers.size() != 12) {
@@ -71,8 +90,13 @@ Trajectory read_trajectory(const std::string& path) {
     if (rotation_error(pose.camera_to_world) > max_rotation_error) {
       fail(path, ", line ", row + 1, ": the first three columns are no rotation");
     }
+    if (determinant(pose.camera_to_world) < 0) {
+      fail(path, ", line ", row + 1, ": the first three columns are a reflection, not a rotation: the axes of the ",
+           "camera or of the world are left-handed");
+    }
     trajectory.frames.push_back(pose);
   }
+  if (file.bad()) fail<SystemError>(path, " cannot be read");
   if (trajectory.frames.empty()) fail(path, ": there is no pose in this file");
   return trajectory;
 }
@@ -96,11 +120,12 @@ std::string kitti_trajectory(const Trajectory& trajectory, int piece) {
 
 std::string tum_trajectory(const Trajectory& trajectory, int piece, const std::vector<double>& times_s) {
   std::string text = "# time x y z qx qy qz qw: seconds, metres, camera to world\n";
+  const bool timed = has_times(trajectory, piece, times_s);
   for (std::size_t i = 0; i < trajectory.frames.size(); ++i) {
     const FramePose& pose = trajectory.frames[i];
     if (pose.piece != piece) continue;
     const std::array<double, 12>& m = pose.camera_to_world;
-    text += number_text(i < times_s.size() && std::isfinite(times_s[i]) ? times_s[i] : pose.frame);
+    text += number_text(timed ? times_s[i] : pose.frame);
     for (const double value : {m[3], m[7], m[11]}) text += ' ' + number_text(value);
     for (const double value : quaternion(m)) text += ' ' + number_text(value);
     text += '\n';

@@ -52,10 +52,6 @@ TEST_F(MapCommand, NamesWhatIsMissing) {
   write("short.txt", std::string("1 0 0 0 0 1 0 0 0 0 1\n"));
   expect_complaint(map("--trajectory short.txt"), "12");
   expect_complaint(map("--trajectory flight/trajectory_kitti.txt --cell 100"), "--cell is 100");
-  std::string poses;
-  for (int i = 0; i < 9; ++i) poses += "1 0 0 0 0 1 0 0 0 0 1 0\n";
-  write("long.txt", poses);
-  expect_complaint(map("--trajectory long.txt"), "has 2 frames");
   expect_complaint(map("--trajectory flight/trajectory_kitti.txt --crs NOSUCH"), "--crs NOSUCH: GDAL does not know");
   expect_complaint(map("--trajectory flight/trajectory_kitti.txt --crs EPSG:4326"), "not projected");
 }
@@ -68,6 +64,20 @@ TEST_F(MapCommand, SaysHowManyFramesHaveNoPose) {
   const nlohmann::json result = json_file("map/map.json");
   ASSERT_EQ(result["reasons"].size(), 1U);
   EXPECT_EQ(result["reasons"][0], "1 of 2 frames have no pose in one.txt");
+}
+
+// The number of frames is an estimate for bags and videos: what has been read counts.
+TEST_F(MapCommand, SaysWhereRecordingEnds) {
+  make_flight("160x90");
+  const std::string poses = read_text(folder_ / "flight/trajectory_kitti.txt");
+  const std::string first = poses.substr(0, poses.find('\n') + 1);
+  write("long.txt", poses + first + first);
+  const Outcome outcome = map("--trajectory long.txt --quiet");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json result = json_file("map/map.json");
+  EXPECT_GE(result["mapped"].get<int>(), 1);
+  EXPECT_NE(result["reasons"].dump().find("\"flight ends before frame 2 of long.txt\""), std::string::npos)
+      << result["reasons"];
 }
 
 // The same road with and without its potholes ("flat" has none); poses are true, so both days have one world.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "io/drawing.hpp"
 #include "io/plot.hpp"
 #include "io/plot_axes.hpp"
 #include "roadstereo/error.hpp"
@@ -99,6 +100,12 @@ std::string complaint(const Call& call) {
     return error.what();
   }
   return "";
+}
+
+TEST(NumberText, HasEveryDigit) {
+  EXPECT_EQ(number_text(-0.0004, 3), "0.000");
+  EXPECT_EQ(number_text(2.5, 3), "2.500");
+  EXPECT_EQ(number_text(1e100, 0).size(), 101U);
 }
 
 TEST(Plot, RejectsEmptyPlot) {

@@ -33,6 +33,14 @@ TEST(ReadTrajectory, ReadsPosesAndSkipsUnknownOnes) {
   EXPECT_EQ(trajectory.frames[1].camera_to_world[11], 0.01);
 }
 
+TEST(ReadTrajectory, ReadsEveryFiniteNumber) {
+  const Trajectory trajectory = read_trajectory(trajectory_file("+1 0 -0 4.9e-324 0 1e+00 0 1e300 0 0 1. -.5\n"));
+  ASSERT_EQ(trajectory.frames.size(), 1U);
+  EXPECT_EQ(trajectory.frames[0].camera_to_world[3], 4.9e-324);
+  EXPECT_EQ(trajectory.frames[0].camera_to_world[7], 1e300);
+  EXPECT_EQ(trajectory.frames[0].camera_to_world[11], -0.5);
+}
+
 void expect_error(const std::string& text, const std::string& part) {
   try {
     read_trajectory(trajectory_file(text));
@@ -46,8 +54,13 @@ TEST(ReadTrajectory, NamesWhatIsWrong) {
   expect_error("", "no pose");
   expect_error("1 0 0 0 0 1 0 0 0 0 1\n", "line 1 has 11 numbers");
   expect_error("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 one 0\n", "line 2: \"one\" is no number");
+  expect_error("1 0 0 0 0 1 0 0 0 0 0x1 0\n", "line 1: \"0x1\" is no number");
+  expect_error("1 0 0 0 0 1 0 0 0 0 +-1 0\n", "line 1: \"+-1\" is no number");
   expect_error("2 0 0 0 0 1 0 0 0 0 1 0\n", "no rotation");
+  expect_error("1 0 0 0 0 1 0 0 0 0 1 0\n0 1 0 0 1 0 0 0 0 0 1 0\n",
+               "line 2: the first three columns are a reflection");
   EXPECT_THROW(read_trajectory("/nonexistent/poses.txt"), Error);
+  EXPECT_THROW(read_trajectory(testing::TempDir()), SystemError) << "a folder can be opened, but not read";
 }
 
 }  // namespace

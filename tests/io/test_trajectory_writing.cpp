@@ -66,5 +66,22 @@ TEST(WriteTrajectory, TumWithoutTimesHasIndex) {
   }
 }
 
+// Another piece has no say in it.
+TEST(WriteTrajectory, TumHasTimesOfAllFramesOrNone) {
+  Trajectory trajectory = turned(0);
+  FramePose pose = trajectory.frames[0];
+  pose.frame = 8;
+  trajectory.frames.push_back(pose);
+  pose.frame = 9;
+  pose.piece = 1;
+  trajectory.frames.push_back(pose);
+  const std::string timed = tum_trajectory(trajectory, 0, {12.5, 13.5, NAN});
+  EXPECT_NE(timed.find("\n12.5 1 "), std::string::npos) << timed;
+  EXPECT_NE(timed.find("\n13.5 1 "), std::string::npos) << timed;
+  const std::string untimed = tum_trajectory(trajectory, 0, {12.5, NAN, 14.5});
+  EXPECT_NE(untimed.find("\n7 1 "), std::string::npos) << untimed;
+  EXPECT_NE(untimed.find("\n8 1 "), std::string::npos) << untimed;
+}
+
 }  // namespace
 }  // namespace roadstereo::io

@@ -40,8 +40,10 @@ int lock_folder(const fs::path& folder) {
     fail("cannot write to folder ", folder.string(), ": ", std::generic_category().message(errno));
   }
   if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  const int error = errno;
   ::close(descriptor);
-  fail(folder.parent_path().string(), ": another process is writing to this folder");
+  if (error == EWOULDBLOCK) fail(folder.parent_path().string(), ": another process is writing to this folder");
+  fail<SystemError>("cannot lock ", file.string(), ": ", std::generic_category().message(error));
 }
 
 /// What a flight writes besides the files of its frames, its track and its trajectory.

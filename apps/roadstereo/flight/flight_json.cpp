@@ -44,8 +44,8 @@ Json frames_json(const FlightSummary& summary) {
 Json damages_json(const FlightSummary& summary, const std::vector<io::RoadDamage>& damages, bool metric) {
   std::int64_t depressions = 0;
   Json severities = Json::object(), distresses = Json::object();
-  for (const Severity severity :
-       {Severity::high, Severity::medium, Severity::low, Severity::minor, Severity::uncertain, Severity::unknown}) {
+  for (const Severity severity : {Severity::high, Severity::medium, Severity::low, Severity::minor, Severity::uncertain,
+                                  Severity::unresolvable, Severity::unknown}) {
     severities[name_of(severity)] = 0;
   }
   const auto count = [](Json& counts, const char* name) { counts[name] = counts.value(name, std::int64_t{0}) + 1; };

@@ -2,6 +2,7 @@
 
 #include "roadstereo/error.hpp"
 #include "roadstereo/ground_plane.hpp"
+#include "roadstereo/io/flight_frame.hpp"
 #include "roadstereo/io/image_file.hpp"
 
 namespace roadstereo::cli {
@@ -34,9 +35,9 @@ void begin(FlightJob& job) {
   io::FlightFrame& frame = job.frame;
   frame = {};
   frame.index = job.pair.index;
-  frame.name = job.pair.name;
+  frame.name = io::valid_utf8(job.pair.name);
   frame.time_s = job.pair.time_s;
-  frame.reason = job.pair.error;
+  frame.reason = io::valid_utf8(job.pair.error);
   if (!frame.reason.empty()) frame.status = io::FrameStatus::rejected;
   job.damage.damages.clear();
   job.damage.candidates.clear();
@@ -68,7 +69,7 @@ void match_frame(Pipeline& pipeline, const std::optional<StereoCalibration>& cal
       throw;
     } catch (const Error& error) {
       job.frame.status = io::FrameStatus::failed;
-      job.frame.reason = error.what();
+      job.frame.reason = io::valid_utf8(error.what());
     }
   }
   if (found_mask) add_static_mask(mask, job);

@@ -16,6 +16,7 @@
 #include "map/map_provenance.hpp"
 #include "progress.hpp"
 #include "roadstereo/error.hpp"
+#include "roadstereo/ground_plane.hpp"
 #include "roadstereo/io/trajectory_file.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/road_profile.hpp"
@@ -122,11 +123,6 @@ class MapBuilder {
     for (const FramePose& pose : trajectory.frames) {
       if (pose.frame % plan_.every == 0) pass.poses[pose.frame] = pose;
     }
-    const std::optional<std::int64_t> size = pass.source->source().size();
-    const int last = trajectory.frames.back().frame;
-    if (size && last >= *size) {
-      fail(from.trajectory, ": its last pose is of frame ", last, ", but ", from.source[0], " has ", *size, " frames");
-    }
     return pass;
   }
 
@@ -145,7 +141,10 @@ class MapBuilder {
       }
       pass.source->source().skip(pose->first - next);
       const std::optional<io::SourcePair> pair = pass.source->next();
-      if (!pair) break;
+      if (!pair) {
+        add_reason(fmt::format("{} ends before frame {} of {}", from.source[0], pose->first, from.trajectory));
+        break;
+      }
       next = pair->index + 1;
       const std::int64_t mapped = state_.mapped;
       add_pair(from, *pass.source, *pair, pose->second, pipeline);
@@ -214,11 +213,12 @@ class MapBuilder {
       if (days_.empty()) set_axes(result, pose, calibration);
       const RigidTransform camera_to_map = compose(state_.world_to_map, pose.camera_to_world);
       pipeline.find_damage(damage_);
+      const auto foot_m = transform_point(camera_to_map, road_axes(ground_plane(road, calibration)).origin_m);
       MappedFrame mapped{state_.pass,
                          pose.frame,
                          *state_.day,
                          pose.piece != state_.piece,
-                         foot_of(road, calibration, camera_to_map),
+                         {foot_m[0], foot_m[1]},
                          locate_damage(damage_, road, calibration, camera_to_map)};
       map_of(*state_.day)
           .map.add({result.disparity, result.sigma, pair.left.view(), pipeline.options().white_level, road, calibration,
@@ -241,13 +241,6 @@ class MapBuilder {
     for (MapDamage& found : frame.found) {
       day.sightings.push_back({frame.pass, static_cast<int>(frame.index), std::move(found)});
     }
-  }
-
-  static std::array<double, 2> foot_of(const DisparityPlane& road, const StereoCalibration& calibration,
-                                       const RigidTransform& camera_to_map) {
-    const RigidTransform map_to_road = compose(camera_to_road(road, calibration), inverse(camera_to_map));
-    const RigidTransform road_to_map = inverse(map_to_road);
-    return {road_to_map[3], road_to_map[7]};
   }
 
   std::filesystem::path folder_of(std::size_t day) const { return folder_ / std::to_string(day); }

@@ -138,6 +138,7 @@ std::optional<MapState> MapJournal::restore(const std::function<void(MappedFrame
         MappedFrame frame = read_frame(line);
         visit(frame);
       }
+      if (stream.bad()) fail<SystemError>(frames_file().string(), " cannot be read");
       state = read_state(json.at("state"));
     } catch (const Json::exception& error) {
       fail(folder_.string(), ": the journal of this map is broken; start again without --resume: ", error.what());

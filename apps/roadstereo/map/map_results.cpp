@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/degrees.hpp"
+#include "core/order_statistics.hpp"
 #include "io/csv.hpp"
 #include "json_text.hpp"
 #include "map/day_layers.hpp"
@@ -134,14 +135,9 @@ std::string rut_text(const std::vector<LaneProfiles>& lanes) {
     }
   }
   if (ruts.empty()) return "  ruts      the mapped road is too narrow\n";
-  const auto median = [](std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  };
   constexpr double mm = 1000;
   return fmt::format("  ruts      {} profiles, median {:.1f} mm; noise alone makes {:.1f} mm; resolvable in {}\n",
-                     ruts.size(), mm * median(ruts), mm * median(floors), resolvable);
+                     ruts.size(), mm * upper_median(ruts), mm * upper_median(floors), resolvable);
 }
 
 std::string roughness_text(const std::vector<LaneProfiles>& lanes) {

@@ -23,7 +23,8 @@ class FlightJournal {
   /// Creates a journal; replaces an existing one. Throws SystemError if the file cannot be written.
   static FlightJournal begin(const std::filesystem::path& file, const Provenance& provenance);
 
-  /// Opens an existing journal. Throws Error if there is none, or naming the first entry of `provenance` that differs.
+  /// Opens an existing journal. Throws Error if there is none, or naming the first entry of `provenance` that differs,
+  /// and SystemError if it cannot be read.
   static FlightJournal resume(const std::filesystem::path& file, const Provenance& provenance);
 
   FlightJournal(FlightJournal&& other) noexcept;
@@ -51,7 +52,8 @@ class FlightJournal {
   std::optional<FlightFrame> last_;
 };
 
-/// Calls `visit` for every frame of a journal in order. Throws Error if there is no journal.
+/// Calls `visit` for every frame of a journal in order. Throws Error if there is no journal, SystemError if it cannot
+/// be read.
 void read_flight_journal(const std::filesystem::path& file, const std::function<void(const FlightFrame&)>& visit);
 
 }  // namespace roadstereo::io

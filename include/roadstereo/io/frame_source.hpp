@@ -30,7 +30,7 @@ struct SourceOptions {
   double max_time_difference_s = 0.005;           ///< between the views of a pair, 0 … 10
   int camera_width = 2560;  ///< of the image with both views, requested from a V4L2 camera; 64 … 16384
   int camera_height = 720;  ///< likewise
-  double rate_hz = 0;       ///< pairs per second, replaces the times of the source; 0 … 10000; 0: off
+  double rate_hz = 0;       ///< pairs per second, replaces the times of a recording; 0 … 10000; 0: off
 
   /// Throws Error naming the first option out of range.
   void validate() const;
@@ -62,7 +62,8 @@ class FrameSource {
   /// Skips pairs, without decoding them if the format allows it. Stops at the end.
   virtual void skip(std::int64_t pairs) = 0;
 
-  /// Number of pairs if known. For videos an estimate that may be off by a few.
+  /// Number of pairs if known, else nullopt. An estimate for videos, which may be off by a few, and for bags: each
+  /// image without a partner is a pair of its own, and `next` returns more.
   virtual std::optional<std::int64_t> size() const = 0;
 
   /// Whether the source is a camera: pairs arrive in real time and never end.
@@ -80,7 +81,8 @@ class FrameSource {
 
 /// Opens a recording or a camera. Recognises:
 ///   folder         with left/ right/, image_2/ image_3/, image_0/ image_1/, image_02/data image_03/data,
-///                  cam0/data cam1/data (EuRoC), or L*.png R*.png names; times from times.txt, data.csv or EuRoC names
+///                  cam0/data cam1/data (EuRoC), or L*.png R*.png names; times from times.txt,
+///                  timestamps.txt (KITTI raw data), or names that are times (EuRoC)
 ///   list file      .txt or .csv: lines "left right [seconds]", paths relative to the list; # starts a comment
 ///   video          both views in one image, see StereoLayout
 ///   two names      left and right: two folders or two videos

@@ -22,7 +22,9 @@ struct RoadSegment {
   double height_m = 0;         ///< of the camera above the road, median over its frames
 };
 
-/// Divides the road into segments of `length_m`. Empty if no frame has a position.
+/// Divides the road into segments of `length_m`, metres, from 0 to the largest station of a frame. Empty if no frame
+/// has a position. Frames and damages at other stations, and at unknown ones, are left out. Throws Error naming
+/// `length_m` unless it is above 0 and makes at most ten million segments.
 std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::span<const RoadDamage> damages,
                                        double length_m = 20);
 

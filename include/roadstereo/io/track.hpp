@@ -12,15 +12,15 @@ namespace roadstereo::io {
 // Needs a build with GDAL, GeographicLib and pugixml (CMake option ROADSTEREO_GEO); without it every function here
 // throws Error naming the packages.
 
-/// One fix of a GNSS receiver.
+/// One fix of a GNSS receiver, with standard errors (sd).
 struct TrackPoint {
   double time_s = 0;                                              ///< Unix, UTC: 0 … 4102444800 (the year 2100)
   double lat_deg = 0;                                             ///< -90 … 90
   double lon_deg = 0;                                             ///< -180 … 180
   double alt_m = std::numeric_limits<double>::quiet_NaN();        ///< NaN unknown
   double heading_deg = std::numeric_limits<double>::quiet_NaN();  ///< clockwise from north, -360 … 360; NaN unknown
-  double horizontal_sd_m = std::numeric_limits<double>::quiet_NaN();  ///< standard error per axis, > 0; NaN unknown
-  double vertical_sd_m = std::numeric_limits<double>::quiet_NaN();    ///< of the altitude, > 0; NaN unknown
+  double horizontal_sd_m = std::numeric_limits<double>::quiet_NaN();  ///< per axis, > 0, finite; NaN unknown
+  double vertical_sd_m = std::numeric_limits<double>::quiet_NaN();    ///< of the altitude, > 0, finite; NaN unknown
 };
 
 /// A position and the direction of the upper image border of the camera.

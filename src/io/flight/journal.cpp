@@ -45,6 +45,7 @@ void for_each_line(const fs::path& file, const Visit& visit) {
     end += line.size() + 1;
     visit(line, end);
   }
+  if (stream.bad()) fail<SystemError>(file.string(), " cannot be read");
 }
 
 FlightFrame frame_of(const std::string& line, const fs::path& file, std::int64_t number) {

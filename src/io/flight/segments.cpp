@@ -5,10 +5,13 @@
 #include "core/order_statistics.hpp"
 #include "io/csv.hpp"
 #include "io/damage_colours.hpp"
+#include "roadstereo/error.hpp"
 #include "roadstereo/io/road_segments.hpp"
 
 namespace roadstereo::io {
 namespace {
+
+constexpr double max_segments = 1e7;  ///< 200 000 km of 20 m
 
 /// Median of the finite values of the frames.
 double median_of(const std::vector<const GeoFrame*>& frames, double GeoFrame::*member) {
@@ -23,19 +26,27 @@ double median_of(const std::vector<const GeoFrame*>& frames, double GeoFrame::*m
 
 std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::span<const RoadDamage> damages,
                                        double length_m) {
-  const auto index_of = [length_m](double station_m) { return static_cast<std::size_t>(station_m / length_m); };
+  if (!(length_m > 0)) fail("the length_m of road segments is ", length_m, "; it must be above 0");
   double end_m = -1;
-  for (const GeoFrame& frame : frames) end_m = std::fmax(end_m, frame.station_m);
+  for (const GeoFrame& frame : frames) {
+    if (std::isfinite(frame.station_m)) end_m = std::max(end_m, frame.station_m);
+  }
   if (end_m < 0) return {};
+  if (end_m / length_m >= max_segments) {
+    fail("the length_m of road segments is ", length_m, "; ", end_m, " m of road are more than ", max_segments,
+         " such");
+  }
+  const auto index_of = [length_m](double station_m) { return static_cast<std::size_t>(station_m / length_m); };
+  const auto is_on_road = [end_m](double station_m) { return station_m >= 0 && station_m <= end_m; };
   const std::size_t count = index_of(end_m) + 1;
   std::vector<RoadSegment> segments(count);
   std::vector<std::vector<const GeoFrame*>> members(count);
   std::vector<const RoadDamage*> worst(count);
   for (const GeoFrame& frame : frames) {
-    if (std::isfinite(frame.station_m)) members[index_of(frame.station_m)].push_back(&frame);
+    if (is_on_road(frame.station_m)) members[index_of(frame.station_m)].push_back(&frame);
   }
   for (const RoadDamage& damage : damages) {
-    if (damage.candidate || !std::isfinite(damage.station_m)) continue;
+    if (damage.candidate || !is_on_road(damage.station_m)) continue;
     const std::size_t i = index_of(damage.station_m);
     ++segments[i].damages;
     if (damage.best.metrics) segments[i].area_m2 += damage.best.metrics->area_m2.value;

@@ -182,9 +182,11 @@ void write_geotiff(const std::filesystem::path& file, MapLayer layer, const MapB
   CPLStringList options;
   for (const auto& [name, value] : format.options) options.SetNameValue(name, value);
   options.SetNameValue("BIGTIFF", "IF_SAFER");
-  const GDALDatasetUniquePtr optimised(
+  GDALDatasetUniquePtr optimised(
       driver("COG")->CreateCopy(file.string().c_str(), plain.get(), TRUE, options.List(), nullptr, nullptr));
   errors.require(optimised != nullptr, "writing");
+  optimised.reset();  // the last bytes are written here
+  errors.require(true, "closing the file");
 }
 
 }  // namespace roadstereo::io

@@ -32,6 +32,12 @@ void check_point(const TrackPoint& point, std::size_t index) {
   require("lon_deg", point.lon_deg, -180, 180);
   if (!std::isnan(point.heading_deg)) require("heading_deg", point.heading_deg, -360, 360);
   if (std::isinf(point.alt_m)) fail("point ", index, " of the track: alt_m is infinite; it must be a number or NaN");
+  const auto require_error = [index](const char* name, double value) {
+    if (std::isnan(value) || (value > 0 && std::isfinite(value))) return;
+    fail("point ", index, " of the track: ", name, " is ", value, "; it must be above 0 and finite, or NaN");
+  };
+  require_error("horizontal_sd_m", point.horizontal_sd_m);
+  require_error("vertical_sd_m", point.vertical_sd_m);
 }
 
 void check_points(const std::vector<TrackPoint>& points) {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include "io/geo/track_formats.hpp"
 #include "io/source/message_log.hpp"
@@ -20,6 +21,12 @@ BagTopic fix_topic(const std::string& path, const std::vector<BagTopic>& topics)
   fail(path, ": the bag has ", fixes.size(), " topics of sensor_msgs/NavSatFix; it must have one: ", names);
 }
 
+/// NaN unless the receiver knows it.
+double root_of_variance(double variance_m2) {
+  const bool known = variance_m2 > 0 && std::isfinite(variance_m2);
+  return known ? std::sqrt(variance_m2) : std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
 
 std::vector<TrackLine> read_track_bag(const std::string& path) {
@@ -37,8 +44,8 @@ std::vector<TrackLine> read_track_bag(const std::string& path) {
     point.lat_deg = fix.lat_deg;
     point.lon_deg = fix.lon_deg;
     point.alt_m = fix.alt_m;
-    if (fix.horizontal_variance_m2 > 0) point.horizontal_sd_m = std::sqrt(fix.horizontal_variance_m2);
-    if (fix.vertical_variance_m2 > 0) point.vertical_sd_m = std::sqrt(fix.vertical_variance_m2);
+    point.horizontal_sd_m = root_of_variance(fix.horizontal_variance_m2);
+    point.vertical_sd_m = root_of_variance(fix.vertical_variance_m2);
     points.push_back({point, number});
   }
   return points;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <limits>
 #include <optional>
 #include <span>
@@ -133,6 +134,13 @@ double standard_error(const std::string& where, const std::optional<Column>& col
   return value > 0 ? value : unknown;
 }
 
+/// With six decimals, whatever the locale.
+std::string decimal_text(double value) {
+  std::array<char, 400> text{};
+  char* const end = text.data() + text.size();
+  return {text.data(), std::to_chars(text.data(), end, value, std::chars_format::fixed, 6).ptr};
+}
+
 /// A row of PX4's vehicle_gps_position. Integers are 1e-7 degrees and millimetres in the columns lat, lon, alt.
 std::optional<TrackPoint> read_px4_row(const std::string& where, const Columns& columns,
                                        const std::vector<std::string_view>& cells) {
@@ -140,14 +148,13 @@ std::optional<TrackPoint> read_px4_row(const std::string& where, const Columns& 
   const double microseconds = number(columns.time);
   if (microseconds == 0) return std::nullopt;  // no fix yet
   const bool whole = columns.lat.name == "lat";
-  const auto text = [](double value) { return std::to_string(value); };
   TrackPoint point;
-  point.time_s = parse_any_time(where, columns.time.name, text(1e-6 * microseconds));
+  point.time_s = parse_any_time(where, columns.time.name, decimal_text(1e-6 * microseconds));
   const double degrees = whole ? 1e-7 : 1;
   point.lat_deg = degrees * number(columns.lat);
   point.lon_deg = degrees * number(columns.lon);
-  parse_latitude(where, columns.lat.name, text(point.lat_deg));
-  parse_longitude(where, columns.lon.name, text(point.lon_deg));
+  parse_latitude(where, columns.lat.name, decimal_text(point.lat_deg));
+  parse_longitude(where, columns.lon.name, decimal_text(point.lon_deg));
   if (columns.alt) point.alt_m = (whole ? 1e-3 : 1) * number(*columns.alt);
   return point;
 }

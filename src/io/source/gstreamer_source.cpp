@@ -10,13 +10,13 @@ namespace {
 class GStreamerSource final : public FrameSource {
  public:
   GStreamerSource(const std::string& pipeline, const SourceOptions& options)
-      : pipeline_(pipeline), wanted_layout_(options.layout) {}
+      : pipeline_(pipeline), wanted_layout_(options.layout), rate_hz_(pipeline_.live() ? 0 : options.rate_hz) {}
 
   std::optional<SourcePair> next() override {
     const std::optional<PipelinePicture> picture = pipeline_.pull();
     if (!picture) return std::nullopt;
-    SourcePair pair = numbered_pair(index_++, 0);
-    pair.time_s = picture->time_s;
+    SourcePair pair = numbered_pair(index_++, rate_hz_);
+    if (rate_hz_ == 0) pair.time_s = picture->time_s;
     if (picture->samples.empty()) {
       pair.error = "the output of the pipeline is not an image";
       return pair;
@@ -40,6 +40,7 @@ class GStreamerSource final : public FrameSource {
  private:
   GStreamerPipeline pipeline_;
   StereoLayout wanted_layout_;
+  double rate_hz_;  ///< 0: the times of the pipeline, as a camera has them
   std::int64_t index_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "io/source/mcap_records.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
@@ -14,7 +15,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view ros1_magic = "#ROSBAG V2.0";
 constexpr std::string_view sqlite_magic{"SQLite format 3\0", 16};
-constexpr std::string_view mcap_magic = "\x89MCAP0\r\n";
 
 bool is_rosbag2_folder(const std::string& path) {
   std::error_code ignored;

@@ -18,7 +18,7 @@ namespace {
 class MessageSource final : public FrameSource {
  public:
   MessageSource(const std::string& file, const SourceOptions& options)
-      : file_(file), log_(open_message_log(file)), pairs_(options.max_time_difference_s) {
+      : file_(file), log_(open_message_log(file)), pairs_(options.max_time_difference_s), rate_hz_(options.rate_hz) {
     std::tie(left_, right_) = find_image_topics(file, log_->topics(), options.topics);
     left_info_ = first_camera_info(left_);
     right_info_ = first_camera_info(right_);
@@ -28,8 +28,10 @@ class MessageSource final : public FrameSource {
   std::optional<SourcePair> next() override {
     const std::optional<MatchedMessages> matched = next_messages();
     if (!matched) return std::nullopt;
-    SourcePair pair = numbered_pair(index_++, 0);
-    pair.time_s = 1e-9 * static_cast<double>((matched->left ? matched->left : matched->right)->stamp_ns);
+    SourcePair pair = numbered_pair(index_++, rate_hz_);
+    if (rate_hz_ == 0) {
+      pair.time_s = 1e-9 * static_cast<double>((matched->left ? matched->left : matched->right)->stamp_ns);
+    }
     pair.error = matched->error;
     if (pair.error.empty()) decode(*matched, pair);
     return pair;
@@ -130,6 +132,7 @@ class MessageSource final : public FrameSource {
   std::unique_ptr<MessageLog> log_;
   BagTopic left_, right_;
   NearestPairs pairs_;
+  double rate_hz_;
   std::optional<CameraInfo> left_info_, right_info_;
   std::string info_error_;  ///< why there is none
   std::int64_t index_ = 0;

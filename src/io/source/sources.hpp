@@ -23,7 +23,7 @@ std::unique_ptr<FrameSource> open_two_videos(const std::string& left, const std:
 /// V4L2, both views in one image; `next` throws Error if the camera is unplugged.
 std::unique_ptr<FrameSource> open_camera(const std::string& device, const SourceOptions& options);
 /// Both views in one image. Appends " ! videoconvert ! appsink max-buffers=2 sync=false" to a pipeline without appsink.
-/// `next` returns nullopt at the end of the pipeline and throws Error if it fails.
+/// `next` returns nullopt at the end of the pipeline and throws Error if it fails. A live one keeps its own times.
 std::unique_ptr<FrameSource> open_gstreamer(const std::string& pipeline, const SourceOptions& options);
 
 /// ROS 1, rosbag2, MCAP. Also throws Error if built without it.

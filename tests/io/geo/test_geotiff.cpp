@@ -131,12 +131,36 @@ TEST_F(GeoTiffTest, RejectsEmptyMapsAndUnknownCoordinateSystems) {
                SystemError);
 }
 
-TEST_F(GeoTiffTest, PointsHaveHeaderAndOneRecordPerCell) {
-  write_map_points(folder_ / "points.ply", bounds, {0.02, 0, 0, 0, ""}, read_cells);
-  constexpr std::size_t record = 3 * 8 + 4 + 3, points = 1000 * 700;
-  const auto size = fs::file_size(folder_ / "points.ply");
-  EXPECT_GT(size, points * record + 100);
-  EXPECT_LT(size, points * record + 300);
+// Pixel (700, 300) is cell (400, 439), 0.001 · 400 − 0.002 · 439 m high; left of column 100 nothing is measured. Only
+// heights are those above the reference.
+TEST_F(GeoTiffTest, EveryLayerHasItsValues) {
+  struct Case {
+    MapLayer layer;
+    GDALDataType type;
+    double value, empty;
+  };
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Case& expected :
+       {Case{MapLayer::height, GDT_Float32, 100 - 0.478, nan}, Case{MapLayer::sigma, GDT_Float32, 0.003, nan},
+        Case{MapLayer::relief, GDT_Float32, -0.478, nan}, Case{MapLayer::views, GDT_UInt16, 439, 0}}) {
+    SCOPED_TRACE(static_cast<int>(expected.layer));
+    const auto dataset = written(expected.layer, {0.02, 500000, 5400000, 100, "EPSG:32632"});
+    ASSERT_NE(dataset, nullptr);
+    ASSERT_EQ(dataset->GetRasterCount(), 1);
+    EXPECT_EQ(dataset->GetRasterBand(1)->GetRasterDataType(), expected.type);
+    const auto pixel = [&](int u, int v) {
+      double value = -1;
+      EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Read, u, v, 1, 1, &value, 1, 1, GDT_Float64, 0, 0, nullptr),
+                CE_None);
+      return value;
+    };
+    EXPECT_NEAR(pixel(700, 300), expected.value, 1e-5);
+    if (std::isnan(expected.empty)) {
+      EXPECT_TRUE(std::isnan(pixel(20, 300)));
+    } else {
+      EXPECT_EQ(pixel(20, 300), expected.empty);
+    }
+  }
 }
 
 template <class Value>
@@ -144,6 +168,55 @@ Value value_at(const std::string& bytes, std::size_t at) {
   Value value;
   std::memcpy(&value, bytes.data() + at, sizeof value);  // little-endian, as this machine
   return value;
+}
+
+TEST_F(GeoTiffTest, PointsHaveHeaderAndOneRecordPerCell) {
+  const fs::path file = folder_ / "points.ply";
+  write_map_points(file, bounds, {0.02, 500000, 5400000, 100, "EPSG:32632"}, read_cells);
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  constexpr std::size_t record = 3 * 8 + 4 + 3, points = 1000 * 700;
+  const std::string end = "end_header\n";
+  const std::size_t header = bytes.find(end) + end.size();
+  ASSERT_EQ(bytes.size(), header + points * record);
+  EXPECT_NE(bytes.find("\nelement vertex 700000\n"), std::string::npos);
+  std::set<std::pair<int, int>> cells;
+  for (const std::size_t at : {header, header + (points - 1) * record}) {
+    const double x = value_at<double>(bytes, at) - 500000, y = value_at<double>(bytes, at + 8) - 5400000;
+    const auto i = static_cast<int>(std::lround(x / 0.02 - 0.5)), j = static_cast<int>(std::lround(y / 0.02 - 0.5));
+    cells.insert({i, j});
+    EXPECT_TRUE(i >= -200 && i < 800 && j >= 40 && j < 740) << i << ", " << j;
+    EXPECT_NEAR(x, (i + 0.5) * 0.02, 1e-6);
+    EXPECT_NEAR(y, (j + 0.5) * 0.02, 1e-6);
+    EXPECT_NEAR(value_at<double>(bytes, at + 16), 100 + height_at(i, j), 1e-6);  // heights are floats
+    EXPECT_EQ(value_at<float>(bytes, at + 24), 0.003F);
+    EXPECT_EQ(value_at<std::uint8_t>(bytes, at + 28), 200);
+    EXPECT_EQ(value_at<std::uint8_t>(bytes, at + 29), 100);
+    EXPECT_EQ(value_at<std::uint8_t>(bytes, at + 30), 50);
+  }
+  EXPECT_EQ(cells.size(), 2U);
+}
+
+// The map has six blocks, each of more bytes than a stream keeps; PLY counts the points first.
+TEST_F(GeoTiffTest, PointsEndAtFirstFailedWrite) {
+  int blocks = 0;
+  const ReadMap counted = [&](const MapBox& box) {
+    ++blocks;
+    return read_cells(box);
+  };
+  const auto complaint = [&](auto* write_points) {
+    blocks = 0;
+    try {
+      write_points("/dev/full", bounds, {0.02, 500000, 5400000, 100, "EPSG:32632"}, counted);
+    } catch (const SystemError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(complaint(write_map_points), "/dev/full: cannot be written: No space left on device");
+  EXPECT_EQ(blocks, 6 + 1);
+  EXPECT_EQ(complaint(write_map_las), "/dev/full: cannot be written: No space left on device");
+  EXPECT_EQ(blocks, 1);
 }
 
 // Offsets are those of the tables of "LAS Specification 1.4 - R15" (ASPRS): public header block, variable length record

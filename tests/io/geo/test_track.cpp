@@ -240,6 +240,16 @@ TEST(TrackPoints, RejectsBadPoints) {
   expect_error([] { Track({{noon, 0, 0}, {noon, 90.5, 0}}); }, "lat_deg is 90.5; it must be between -90 and 90");
   expect_error([] { Track({{noon, 0, 0}, {noon, 0, unknown}}); }, "lon_deg is nan");
   expect_error([] { Track({{noon * 1000, 0, 0}, {noon, 0, 0}}); }, "time_s is 1.7145648e+12; it must be between 0");
+  expect_error(
+      [] {
+        Track({{noon, 0, 0}, {noon + 1, 0, 0, unknown, unknown, 0}});
+      },
+      "point 1 of the track: horizontal_sd_m is 0; it must be above 0");
+  expect_error(
+      [] {
+        Track({{noon, 0, 0, unknown, unknown, 1, -2}, {noon + 1, 0, 0}});
+      },
+      "point 0 of the track: vertical_sd_m is -2; it must be above 0");
   expect_error([] { Track({{noon, 0, 0}, {noon + 1, 0, 0}}, {.max_gap_s = 0}); }, "track.max_gap_s is 0");
   expect_error([] { TrackOptions{.min_heading_distance_m = unknown}.validate(); },
                "track.min_heading_distance_m is nan");

@@ -117,6 +117,15 @@ TEST_F(Ros2Bag, CompressedImagesInLz4Chunks) {
   }
 }
 
+TEST_F(Ros2Bag, RateReplacesTimes) {
+  SourceOptions options;
+  options.rate_hz = 4;
+  const auto source = open_source({data / "lz4.mcap"}, options);
+  source->skip(1);
+  EXPECT_DOUBLE_EQ(source->next().value().time_s, 0.25);
+  EXPECT_DOUBLE_EQ(source->next().value().time_s, 0.5);
+}
+
 TEST_F(Ros2Bag, ChunksWithoutSelectedTopicsAreLeftOut) {
   const auto log = open_message_log(data / "zstd.mcap");
   log->select({"/gnss/fix"});

@@ -354,6 +354,13 @@ TEST_F(GStreamerSource, ReadsEveryFrameOfFinitePipeline) {
   EXPECT_FALSE(source->next());
 }
 
+TEST_F(GStreamerSource, RateReplacesTimesOfRecording) {
+  SourceOptions options;
+  options.rate_hz = 4;
+  const auto source = open_gstreamer("videotestsrc num-buffers=3 ! video/x-raw,width=192,height=64", options);
+  for (int i = 0; i < 3; ++i) EXPECT_DOUBLE_EQ(source->next().value().time_s, i / 4.0);
+}
+
 TEST_F(GStreamerSource, TakesGreyAndUsersSink) {
   const auto source = open_gstreamer(
       "videotestsrc num-buffers=2 pattern=white ! video/x-raw,format=GRAY8,width=100,height=128 ! appsink sync=false",
@@ -369,8 +376,10 @@ TEST_F(GStreamerSource, TakesGreyAndUsersSink) {
 }
 
 TEST_F(GStreamerSource, LivePipelineHasCaptureTimes) {
-  const auto source =
-      open_gstreamer("videotestsrc is-live=true num-buffers=4 ! video/x-raw,width=192,height=64,framerate=50/1", {});
+  SourceOptions options;
+  options.rate_hz = 4;  // replaces only the times of recordings
+  const auto source = open_gstreamer(
+      "videotestsrc is-live=true num-buffers=4 ! video/x-raw,width=192,height=64,framerate=50/1", options);
   EXPECT_TRUE(source->live());
   int pairs = 0;
   double last_s = 1.6e9;
