@@ -35,13 +35,14 @@ struct RoadDamageRecord {
 };
 
 /// Joins the sightings of one damage over frames and passes, and the finding in the map: damages of one kind whose
-/// footprints overlap by a fifth of the smaller one. Values of sightings that no border cuts are averaged with inverse
-/// variances as weights. Only the part of their errors that differs from frame to frame shrinks, by the number of
-/// independent views, n / `view_factor`. A damage that is cut in all sightings has the values of `best`. The joint
-/// confidence of n frames, including frames without a sighting, is that of one frame √(n / `view_factor`) times as
-/// significant. Returns the damages with at least `min_confidence` whose depth is resolved: it exceeds three standard
-/// errors, or DamageEvidence::is_depth_resolved holds for a sighting or for the finding in the map. Deepest first.
-/// Throws Error when an option is out of range or a damage has no metric values.
+/// footprints overlap by a fifth of the smaller one. Values of sightings that no border cuts and that are confident
+/// (all, where none is) are averaged with inverse variances, scaled to the median value, as weights. Only the part of
+/// their errors that differs from frame to frame shrinks, by the number of independent views, n / `view_factor`. A
+/// damage that is cut in all sightings has the values of `best`. The joint confidence of n frames, including frames
+/// without a sighting, is that of one frame √(n / `view_factor`) times as significant. Returns the damages with at
+/// least `min_confidence` whose depth is resolved: it exceeds three standard errors, or
+/// DamageEvidence::is_depth_resolved holds for a sighting or for the finding in the map. Deepest first. Throws Error
+/// when an option is out of range or a damage has no metric values.
 std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
                                           const RoadMap& map, const DamageOptions& options);
 

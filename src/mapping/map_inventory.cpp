@@ -110,16 +110,21 @@ struct Figure {
   double common = 0;
 };
 
-/// Mean with inverse variances; the common part of the errors does not shrink.
+/// Mean with inverse variances; the common part of the errors does not shrink. Errors grow with the value, so that a
+/// sighting that is too small would weigh most: each counts as that of the median value.
 Measurement fuse(const std::vector<Figure>& figures, double view_factor) {
   constexpr double min_share = 0.05;  // of the variance, for the part that shrinks
+  std::vector<double> values;
+  for (const Figure& figure : figures) values.push_back(figure.measured.value);
+  const double typical = upper_median(values);
   double weight = 0, sum = 0, common = 0;
   for (const Figure& figure : figures) {
-    const double variance = figure.measured.std_error * figure.measured.std_error;
-    const double own = std::max(variance - figure.common * figure.common, min_share * variance);
+    const double scale = figure.measured.value > 0 ? typical / figure.measured.value : 1;
+    const double error = scale * figure.measured.std_error, of_all = scale * figure.common;
+    const double variance = error * error, own = std::max(variance - of_all * of_all, min_share * variance);
     weight += 1 / own;
     sum += figure.measured.value / own;
-    common += figure.common * figure.common / own;
+    common += of_all * of_all / own;
   }
   const auto n = static_cast<double>(figures.size());
   return {sum / weight, std::sqrt(common / weight + std::min(n, view_factor) / weight)};
@@ -191,8 +196,12 @@ void require_metrics(const MapDamage& found) {
     fail("damage ", found.damage.id, " has no metric values; only measured damages are joined");
 }
 
-RoadDamageRecord record_of(const Group& group, const RoadMap& map, const SeverityScheme& severity) {
+RoadDamageRecord record_of(const Group& group, const RoadMap& map, const DamageOptions& options) {
   const double view_factor = map.view_factor();
+  // What is hardly seen is hardly measured: such sightings count only where there are no others.
+  const bool any_confident = std::any_of(group.sightings.begin(), group.sightings.end(), [&](auto* one) {
+    return one->found.damage.confidence >= options.min_confidence && !one->found.damage.cut_by_border;
+  });
   RoadDamageRecord record;
   record.best = best_of(group);
   record.best.footprint = group.footprint;
@@ -205,7 +214,7 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const Severit
     frames.insert({sighting->pass, sighting->frame});
     passes.insert(sighting->pass);
     const Damage& damage = sighting->found.damage;
-    if (damage.cut_by_border) continue;
+    if (damage.cut_by_border || (any_confident && damage.confidence < options.min_confidence)) continue;
     const DamageMetrics& m = *damage.metrics;
     const SmoothingError smoothing(static_cast<double>(damage.pixels));
     depth.push_back({m.max_depth_m, smoothing.max_depth(m.max_depth_m.value)});
@@ -232,7 +241,7 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const Severit
   fused.area_m2 = record.area_m2;
   fused.diameter_m = 2 * std::sqrt(record.area_m2.value / std::numbers::pi);
   const bool resolvable = is_depth_resolved(group, fused.max_depth_m) || fused.mean_depth_m.is_resolved();
-  grade(severity, resolvable, fused);
+  grade(options.severity, resolvable, fused);
   record.severity_probabilities = fused.severity_probabilities;
   record.severity = fused.severity;
   return record;
@@ -247,7 +256,7 @@ std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sighti
   for (const MapDamage& found : in_map) require_metrics(found);
   std::vector<RoadDamageRecord> records;
   for (const Group& group : group_findings(sightings, in_map, options.min_confidence)) {
-    RoadDamageRecord record = record_of(group, map, options.severity);
+    RoadDamageRecord record = record_of(group, map, options);
     const bool is_damage = record.confidence >= options.min_confidence && is_depth_resolved(group, record.max_depth_m);
     if (is_damage) records.push_back(std::move(record));
   }

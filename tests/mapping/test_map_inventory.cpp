@@ -53,15 +53,26 @@ TEST_F(JoinDamage, SightingsOfTwoPassesAreOneDamage) {
   EXPECT_NEAR(records[1].best.at_m[0], 0.9, 1e-9);
 }
 
-// Inverse variances: (0.04/0.004² + 0.052/0.008²)/(1/0.004² + 1/0.008²) = 0.0424. The map has no frames yet: its factor
-// is that of r = 1/3, so that two views are worth one.
+// Errors of 10 % of 40 mm and 16 % of 50 mm are 5 and 8 mm of the median, 50 mm: (0.04/5² + 0.05/8²)/(1/5² + 1/8²) =
+// 0.0428. The map has no frames yet: its factor is that of r = 1/3, so that two views are worth one.
 TEST_F(JoinDamage, FiguresAreWeightedWithInverseVariances) {
   const std::vector<DamageSighting> sightings{{0, 0, finding(0, 0, 10, 0.04, 0.004, 0.9)},
-                                              {0, 1, finding(0, 0, 10, 0.052, 0.008, 0.9)}};
+                                              {0, 1, finding(0, 0, 10, 0.05, 0.008, 0.9)}};
   const std::vector<RoadDamageRecord> records = join_damage(sightings, {}, map_, {});
   ASSERT_EQ(records.size(), 1U);
-  EXPECT_NEAR(records[0].max_depth_m.value, 0.0424, 3e-4);
-  EXPECT_NEAR(records[0].max_depth_m.std_error, std::sqrt(2 / (1 / 16e-6 + 1 / 64e-6)), 3e-4);
+  EXPECT_NEAR(records[0].max_depth_m.value, 0.0428, 3e-4);
+  EXPECT_NEAR(records[0].max_depth_m.std_error, std::sqrt(2 / (1 / 25e-6 + 1 / 64e-6)), 3e-4);
+}
+
+// Far sightings that see a tenth of the depth, as sure of it and hardly of the damage, do not count.
+TEST_F(JoinDamage, UnlikelySightingsAreNotAveraged) {
+  std::vector<DamageSighting> sightings;
+  for (int frame = 0; frame < 6; ++frame) sightings.push_back({0, frame, finding(0, 0, 10, 0.005, 0.0005, 0.1)});
+  for (int frame = 6; frame < 16; ++frame) sightings.push_back({0, frame, finding(0, 0, 10, 0.05, 0.005, 0.99)});
+  const std::vector<RoadDamageRecord> records = join_damage(sightings, {}, map_, {});
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_NEAR(records[0].max_depth_m.value, 0.05, 1e-9);
+  EXPECT_EQ(records[0].sightings, 16);
 }
 
 TEST_F(JoinDamage, AgreementRaisesConfidenceAndShrinksError) {
