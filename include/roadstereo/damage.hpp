@@ -95,8 +95,8 @@ std::string severity_text(const DamageMetrics& metrics);
 
 /// Evidence that distinguishes a damage from noise and from objects beside the road. No single value decides.
 struct DamageEvidence {
-  /// Median depth inside minus that of the surrounding band, in robust standard deviations of the band, or of the
-  /// intact road if those are larger
+  /// Median depth inside minus that of the surrounding band, in robust standard deviations of the band, or of the road
+  /// around (a band three times as wide, at most those of all intact road) if these are larger
   double contrast_sigmas = 0;
   double significance = 0;  ///< contrast times the root of the number of independent samples: support windows inside
   double steepness = 0;     ///< maximum of the mean slope on a contour, relative to a cone of the same area and depth

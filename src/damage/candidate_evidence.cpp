@@ -108,14 +108,19 @@ std::vector<float> depths_inside(const SearchImages& images, const Candidate& ca
 
 void add_evidence(const SearchInput& input, SearchImages& images, Candidate& candidate) {
   constexpr int near_cells = 3;  // closer to the rim the depth is smoothed
-  constexpr double band_radii = 1;
+  constexpr double band_radii = 1, wide_band_radii = 3;
+  constexpr double min_noise_px = 1e-6;  // of maps without noise
   std::vector<float> inside = depths_inside(images, candidate);
   const RobustNormal damage = robust_normal(inside);
   const RobustNormal around = depths_around(images.field(), candidate.cells, near_cells, band_radii);
+  // In the distance, on gravel or in the shade the road may be noisier than here.
+  const RobustNormal wide = depths_around(images.field(), candidate.cells, near_cells, wide_band_radii);
+  const bool is_known = wide.samples >= candidate.size;
+  const double of_road = input.depth_cells.noise, noise = is_known ? std::min(of_road, wide.sigma) : of_road;
   const double window = input.image_edges.window_radius;
   const double samples = std::max(1.0, static_cast<double>(candidate.size) / (std::numbers::pi * window * window));
   DamageEvidence& evidence = candidate.evidence;
-  evidence.contrast_sigmas = (damage.median - around.median) / std::max(around.sigma, input.depth_cells.noise);
+  evidence.contrast_sigmas = (damage.median - around.median) / std::max({around.sigma, noise, min_noise_px});
   evidence.significance = evidence.contrast_sigmas * std::sqrt(samples);
   evidence.road_share = road_share(input, candidate, static_cast<float>(damage.median), images);
   measure_border(candidate.cells, input.view, input.gaps.unseen, evidence);

@@ -24,6 +24,7 @@ struct SearchInput {
   const CommonView& view;
   const Ruts& ruts;
   const ViewGaps& gaps;
+  const SurfaceCoordinates& coordinates;
   const Thresholds& thresholds;
   const ImageEdges& image_edges;
 };

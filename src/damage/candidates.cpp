@@ -96,8 +96,9 @@ void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages
       images.depth(i, j) -= input.thresholds.pixels_below(double{input.ruts.depth_m(i, j)}, i, j);
     }
   }
-  const SearchInput in_rut{input.depth_cells, road, input.view, input.ruts, input.gaps, input.thresholds,
-                           input.image_edges};
+  const SearchInput in_rut{
+      input.depth_cells, road, input.view, input.ruts, input.gaps, input.coordinates, input.thresholds,
+      input.image_edges};
   for (const ConnectedComponent& core : ConnectedComponents(cores)) {
     if (static_cast<float>(core.size) < min_core_area_share * min_cells) continue;
     Candidate pothole = segment(in_rut, {core}, rut.kind, images);
@@ -246,10 +247,11 @@ class KindSearch {
 }  // namespace
 
 std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road, const CommonView& view,
-                                       const Ruts& ruts, const Thresholds& thresholds, const ImageEdges& image_edges,
-                                       bool protrusions, int threads) {
+                                       const Ruts& ruts, const SurfaceCoordinates& coordinates,
+                                       const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions,
+                                       int threads) {
   const ViewGaps gaps = classify_gaps(depth_cells, view, thresholds);
-  const SearchInput input{depth_cells, road, view, ruts, gaps, thresholds, image_edges};
+  const SearchInput input{depth_cells, road, view, ruts, gaps, coordinates, thresholds, image_edges};
   std::vector<Candidate> found;
   Image<std::uint8_t> assigned(road.width(), road.height(), 0);
   KindSearch(input, DamageKind::depression, threads, assigned).add_candidates(found);

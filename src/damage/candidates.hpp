@@ -37,7 +37,8 @@ struct Candidate {
 /// before it. Regions do not overlap, and end at the border of the view. Outliers in them, deeper than a damage can be,
 /// become gaps of `depth_cells` at the depth of the floor.
 std::vector<Candidate> find_candidates(DepthCells& depth_cells, const Image<std::uint8_t>& road, const CommonView& view,
-                                       const Ruts& ruts, const Thresholds& thresholds, const ImageEdges& image_edges,
-                                       bool protrusions, int threads);
+                                       const Ruts& ruts, const SurfaceCoordinates& coordinates,
+                                       const Thresholds& thresholds, const ImageEdges& image_edges, bool protrusions,
+                                       int threads);
 
 }  // namespace roadstereo

@@ -86,7 +86,7 @@ void search_and_fill(const DamageInput& input, const DamageOptions& options, con
   parallel_for(bands + 2, threads, [&](int task, int) {
     if (task == 0) {
       segmentation.candidates =
-          find_candidates(depth_cells, segmentation.road, segmentation.view, ruts, thresholds,
+          find_candidates(depth_cells, segmentation.road, segmentation.view, ruts, segmentation.coordinates, thresholds,
                           make_image_edges(input, segmentation.cells), options.protrusions, threads);
     } else if (task == 1) {
       if (FrameGeometry::is_possible(input)) geometry.emplace(input);

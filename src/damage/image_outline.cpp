@@ -134,15 +134,15 @@ double log_ratio(double grey, const RobustNormal& one, const RobustNormal& other
 }  // namespace
 
 void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uint8_t>& unseen,
-                             const BoxMask& other_hollows, BoxMask& region) {
+                             const BoxMask& other_hollows, int window_rows, BoxMask& region) {
   // Prior log-odds of the road: most of these cells were measured on it.
   constexpr double min_log_ratio = 1.5;
   constexpr std::size_t min_samples = 30;
   const int radius = image_edges.window_radius, columns = unseen.width(), rows = unseen.height();
   const CellBox around = region.box().grown(3 * radius, columns, rows);
   const BoxMap grey = smooth_grey_cells(image_edges, around, columns, rows);
-  const BoxMask near = dilate(region, radius, around);
-  BoxMask far = dilate(near, 2 * radius, around), core = erode(region, 2, around);
+  const BoxMask near = dilate(region, radius, window_rows, around);
+  BoxMask far = dilate(near, 2 * radius, 2 * window_rows, around), core = erode(region, 2, around);
   for (int j = 0; j < around.rows(); ++j) {
     const std::uint8_t* const is_unseen = unseen.row(around.first_row + j) + around.first_column;
     const std::uint8_t* const is_near = near.cells().row(j);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "damage/candidate_evidence.hpp"
@@ -9,6 +10,7 @@
 #include "damage/contours.hpp"
 #include "damage/image_outline.hpp"
 #include "damage/neighbours.hpp"
+#include "damage/region_segmentation.hpp"
 
 namespace roadstereo {
 namespace {
@@ -16,7 +18,7 @@ namespace {
 /// Depth of the rim where an average over a Gaussian of that standard deviation (cells) has left a wall of height
 /// `floor` this steep. Both walls, the measured and the true one, are taken for straight slopes around the same middle.
 float rim_depth(float floor, float slope, double smoothing) {
-  constexpr double half_run_of_step = 1.2533;  // √(2π) / 2 standard deviations: of a vertical wall
+  const double half_run_of_step = std::sqrt(std::numbers::pi / 2);  // standard deviations: of a vertical wall
   const double half_run = 0.5 * double{floor} / double{slope}, spread = half_run_of_step * smoothing;
   const double true_half_run = std::sqrt(std::max(0.0, half_run * half_run - spread * spread));
   return static_cast<float>(0.5 * (1 - true_half_run / half_run)) * floor;
@@ -82,7 +84,8 @@ BoxMask inside_rim(const SearchInput& input, const SearchImages& images, const C
   const float floor = floor_of(depths_inside(images, candidate));
   if (!peel_to_rim(images.depth, floor, input.depth_cells.smoothing, inside)) return {};
   if (candidate.kind == DamageKind::depression && !input.image_edges.grey.empty()) {
-    refine_outline_by_image(input.image_edges, input.gaps.unseen, BoxMask(candidate.box()), inside);
+    refine_outline_by_image(input.image_edges, input.gaps.unseen, BoxMask(candidate.box()),
+                            window_rows(input, candidate.box()), inside);
   }
   fill_holes(inside.cells(), inside.cells().pixels());
   return keep_largest_part(candidate.cells, inside) ? inside : BoxMask();

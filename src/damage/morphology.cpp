@@ -49,17 +49,17 @@ void dilate_rows(Image<std::uint8_t>& lines, int first, int end, int radius) {
   }
 }
 
-/// Dilate a mask, or its inverse, and invert the result again.
-Image<std::uint8_t> dilate(const Image<std::uint8_t>& mask, int radius, std::uint8_t inverse, int threads) {
+/// Dilate a mask, or its inverse, by a rectangle, and invert the result again.
+Image<std::uint8_t> dilate(const Image<std::uint8_t>& mask, int columns, int rows, std::uint8_t inverse, int threads) {
   constexpr int rows_per_band = 64;
   const int width = mask.width(), height = mask.height();
   Image<std::uint8_t> dilated(width, height);
   parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {
-    Image<std::uint8_t> lines(width, last - first + 2 * radius, 0);
-    const int top = std::max(0, first - radius), bottom = std::min(height, last + radius);
-    for (int j = top; j < bottom; ++j) copy_inverted(mask.row(j), inverse, width, lines.row(j - first + radius));
-    dilate_rows(lines, top - first + radius, bottom - first + radius, radius);
-    unite_by_doubling(2 * radius + 1, [&](int shift) {
+    Image<std::uint8_t> lines(width, last - first + 2 * rows, 0);
+    const int top = std::max(0, first - rows), bottom = std::min(height, last + rows);
+    for (int j = top; j < bottom; ++j) copy_inverted(mask.row(j), inverse, width, lines.row(j - first + rows));
+    dilate_rows(lines, top - first + rows, bottom - first + rows, columns);
+    unite_by_doubling(2 * rows + 1, [&](int shift) {
       for (int j = 0; j + shift < lines.height(); ++j) unite_with(lines.row(j + shift), width, lines.row(j));
     });
     for (int j = first; j < last; ++j) copy_inverted(lines.row(j - first), inverse, width, dilated.row(j));
@@ -70,15 +70,19 @@ Image<std::uint8_t> dilate(const Image<std::uint8_t>& mask, int radius, std::uin
 }  // namespace
 
 Image<std::uint8_t> dilate(const Image<std::uint8_t>& mask, int radius, int threads) {
-  return dilate(mask, radius, 0, threads);
+  return dilate(mask, radius, radius, 0, threads);
 }
 
 Image<std::uint8_t> erode(const Image<std::uint8_t>& mask, int radius, int threads) {
-  return dilate(mask, radius, 255, threads);
+  return dilate(mask, radius, radius, 255, threads);
+}
+
+BoxMask dilate(const BoxMask& mask, int columns, int rows, const CellBox& box) {
+  return {box, dilate(mask.cropped(box).cells(), columns, rows, 0, 1)};
 }
 
 BoxMask dilate(const BoxMask& mask, int radius, const CellBox& box) {
-  return {box, dilate(mask.cropped(box).cells(), radius, 1)};
+  return dilate(mask, radius, radius, box);
 }
 
 BoxMask erode(const BoxMask& mask, int radius, const CellBox& box) {

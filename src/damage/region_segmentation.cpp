@@ -65,12 +65,19 @@ void extend_region(const SearchInput& input, SearchImages& images, Candidate& ca
   update_extent(input, images.labels(candidate.box()), candidate);
   if (candidate.size == 0 || candidate.kind == DamageKind::protrusion || input.image_edges.grey.empty()) return;
   const BoxMask other_hollows = hollows_beside(candidate, input.image_edges.window_radius, images);
-  refine_outline_by_image(input.image_edges, input.gaps.unseen, other_hollows, candidate.cells);
+  refine_outline_by_image(input.image_edges, input.gaps.unseen, other_hollows, window_rows(input, candidate.box()),
+                          candidate.cells);
   fill_holes(candidate.cells.cells(), max_hole);
   update_extent(input, images.labels(candidate.box()), candidate);
 }
 
 }  // namespace
+
+int window_rows(const SearchInput& input, const CellBox& box) {
+  const double aspect =
+      input.coordinates.aspect((box.first_column + box.last_column) / 2, (box.first_row + box.last_row) / 2);
+  return std::max(1, static_cast<int>(std::lround(aspect * input.image_edges.window_radius)));
+}
 
 Candidate segment(const SearchInput& input, const Core& start, DamageKind kind, SearchImages& images) {
   const ConnectedComponent& core = start.cells;

@@ -6,6 +6,10 @@
 
 namespace roadstereo {
 
+/// Rows of cells over which the support window carries the road into a region of that box: as few as the road is
+/// foreshortened there.
+int window_rows(const SearchInput& input, const CellBox& box);
+
 /// Segment the region around a core. If it runs into another damage or an obstacle, the level is raised above the
 /// saddle between them; it is never below that of the core. Size 0 if there is no such region.
 Candidate segment(const SearchInput& input, const Core& start, DamageKind kind, SearchImages& images);

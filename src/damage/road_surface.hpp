@@ -11,8 +11,13 @@ struct SurfaceCoordinates {
   /// Metres on the road, up to an affine map without a calibration, NaN where there is no road; without a plane −1 … 1
   /// over the image.
   Image<float> x, y;
-  bool is_metric = false;  ///< x and y are metres
+  bool is_on_road = false;  ///< x and y are those of the plane of the road
+  bool is_metric = false;   ///< x and y are metres
   Image<float> scale;  ///< pixels of ℓ' per metre of height, without a calibration below a camera of 1.5 m; else 1
+
+  /// Width of the road in a column of cells over its length in a row, at most 1: how low what lies on it is in the
+  /// image. 1 seen from above, and where it is unknown.
+  double aspect(int i, int j) const;
 };
 
 /// Coordinates from the plane and the calibration, which is assumed where it is not given; without a plane of the

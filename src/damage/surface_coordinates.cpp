@@ -57,6 +57,7 @@ SurfaceCoordinates road_coordinates(const Cells& cells, const DisparityPlane& mo
   constexpr double max_row_m = 1;  // maximum length of the road in one row of pixels
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   SurfaceCoordinates c;
+  c.is_on_road = true;
   c.x.resize(cells.width(), cells.height());
   c.y.resize(cells.width(), cells.height());
   c.scale.resize(cells.width(), cells.height());
@@ -95,6 +96,19 @@ SurfaceCoordinates road_coordinates(const Cells& cells, const DisparityPlane& mo
 }
 
 }  // namespace
+
+double SurfaceCoordinates::aspect(int i, int j) const {
+  if (!is_on_road) return 1;
+  const int left = std::max(i - 1, 0), right = std::min(i + 1, x.width() - 1);
+  const int top = std::max(j - 1, 0), bottom = std::min(j + 1, x.height() - 1);
+  const auto distance_m = [this](int i0, int j0, int i1, int j1) {
+    return std::hypot(double{x(i1, j1)} - x(i0, j0), double{y(i1, j1)} - y(i0, j0));
+  };
+  const double column_m = distance_m(left, j, right, j) / (right - left);
+  const double row_m = distance_m(i, top, i, bottom) / (bottom - top);
+  const double aspect = column_m / row_m;
+  return std::isnan(aspect) ? 1 : std::min(aspect, 1.0);
+}
 
 SurfaceCoordinates surface_coordinates(const Cells& cells, const DamageInput& input, int threads) {
   if (!input.plane) return image_coordinates(cells);

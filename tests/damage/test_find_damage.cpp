@@ -374,6 +374,25 @@ TEST(FindDamage, BandsOfErrorsDoNotDivideRoad) {
 
 /// A bonnet over a fifth of a pothole, masked, is like the border of the image: not a gap, and not road that is
 /// missing.
+// The right half of the road is noisier by fifteen times; the pothole lies in the left one.
+TEST(FindDamage, NoiseElsewhereDoesNotHideDamage) {
+  ExactMaps maps = damaged();
+  const double quiet = find_damage(maps.metric()).damages.at(0).evidence.contrast_sigmas;
+  const int middle = maps.disparity.width() / 2;
+  const Image<float> noisy = with_noise(maps.disparity, 0.3, 2);
+  for (int v = 0; v < noisy.height(); ++v) {
+    for (int u = middle; u < noisy.width(); ++u) {
+      maps.transformed(u, v) += noisy(u, v) - maps.disparity(u, v);
+      maps.disparity(u, v) = noisy(u, v);
+    }
+  }
+  const DamageMap found = find_damage(maps.metric());
+  ASSERT_FALSE(found.damages.empty());
+  EXPECT_EQ(found.damages[0].kind, DamageKind::depression);
+  EXPECT_GT(found.noise_px, 0.02);
+  EXPECT_GT(found.damages[0].evidence.contrast_sigmas, 0.7 * quiet);
+}
+
 TEST(FindDamage, MaskEndsViewAsBorderDoes) {
   ExactMaps maps(damaged_scene());
   const DamageMap whole = find_damage(maps.metric());

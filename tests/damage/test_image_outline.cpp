@@ -45,7 +45,7 @@ double joined(const Image<std::int16_t>& grey, const Image<std::uint8_t>& unseen
   for (int j = first; j <= last; ++j) {
     for (int i = first; i <= last; ++i) region.set(i, j);
   }
-  refine_outline_by_image({grey, 1, radius}, unseen, other_hollows, region);
+  refine_outline_by_image({grey, 1, radius}, unseen, other_hollows, radius, region);
   int count = 0, all = 0;
   for (int j = first + 1; j < last; ++j) {
     for (int i = last + 2; i < last + strip_columns; ++i) {
@@ -104,6 +104,30 @@ TEST(ImageOutline, ShadowThatEndsAtTheHoleStays) {
 // ½ (16 − 16/9) − ln 3 = 6.
 TEST(ImageOutline, DarkWallInShadowJoins) {
   EXPECT_EQ(joined(square_on_road({4, -4, 3, true})), 1);
+}
+
+// A hole as dark as the cross around it, which reaches to the border.
+TEST(ImageOutline, GrowsFewerRowsWhereRoadIsForeshortened) {
+  Image<std::int16_t> grey(side, side);
+  for (int v = 0; v < side; ++v) {
+    for (int u = 0; u < side; ++u) {
+      const bool in_cross = (u >= first && u <= last) || (v >= first && v <= last);
+      grey(u, v) = static_cast<std::int16_t>((in_cross ? 400 : 1600) + (u * 7 + v * 5) % 8);
+    }
+  }
+  const Image<std::uint8_t> unseen(side, side, 0);
+  for (const int rows : {1, 2, radius}) {
+    BoxMask region(CellBox{first, first, last, last});
+    for (int j = first; j <= last; ++j) {
+      for (int i = first; i <= last; ++i) region.set(i, j);
+    }
+    refine_outline_by_image({grey, 1, radius}, unseen, {}, rows, region);
+    constexpr int middle = (first + last) / 2;
+    EXPECT_TRUE(region(middle, last + rows) && region(middle, first - rows)) << rows;
+    EXPECT_FALSE(region(middle, last + rows + 1) || region(middle, first - rows - 1)) << rows;
+    EXPECT_TRUE(region(last + radius, middle) && region(first - radius, middle)) << rows;
+    EXPECT_FALSE(region(last + radius + 1, middle)) << rows;
+  }
 }
 
 TEST(ImageOutline, EqualTonesChangeNothing) {

@@ -54,6 +54,27 @@ TEST(SurfaceCoordinates, ScaleIsDisparityPerMetre) {
   }
 }
 
+// Ahead of a level camera at height h a column at depth Z is Z/f wide and a row is Z²/(f h) long: h/Z of it.
+TEST(SurfaceCoordinates, AspectIsHeightOverDepth) {
+  Cells cells;
+  cells.factor = 2;
+  cells.value.assign(160, 120, 30.0F);
+  DamageInput input;
+  const StereoCalibration rig{400, 159.5, 39.5, 0.2, 0, 320, 240};
+  constexpr double height_m = 1.6;
+  input.calibration = rig;
+  input.plane = DisparityPlane{-39.5 * rig.baseline_m / height_m, rig.baseline_m / height_m, 0};
+  const SurfaceCoordinates ahead = surface_coordinates(cells, input, 1);
+  for (int j = 40; j < 119; j += 13) {
+    const double depth_m = rig.depth_m(input.plane->disparity(0, cells.middle(j)));
+    EXPECT_NEAR(ahead.aspect(80, j), height_m / depth_m, 0.01 * height_m / depth_m) << j;
+  }
+  EXPECT_EQ(ahead.aspect(80, 2), 1) << "in the sky";
+  input.plane = DisparityPlane{50, 0, 0};
+  EXPECT_NEAR(surface_coordinates(cells, input, 1).aspect(3, 100), 1, 1e-4) << "from above";
+  EXPECT_EQ(surface_coordinates(cells, {}, 1).aspect(3, 100), 1);
+}
+
 /// A quadratic of the coordinates with noise and, in `spoilt` of the cells, anything.
 struct QuadraticRoad {
   Cells cells;
